@@ -1,0 +1,3 @@
+"""Finite elements: two elastic bodies in frictional contact, in plane strain or plane stress."""
+
+from partialslip_fem.model import solve as solve

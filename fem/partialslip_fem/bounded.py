@@ -1,0 +1,128 @@
+"""The one problem that normal contact and friction share: a convex quadratic programme with bounds and a sum."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import scipy.linalg as la
+
+from partialslip.result import Array
+
+_EPS = float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Multipliers ``x`` and what certifies them.
+
+    ``residual`` (n,) is the distance of each multiplier from its augmented projection, ``imbalance`` that of the
+    sum from the total, both in units of x; ``iterations`` counts the faces solved.
+    """
+
+    x: Array
+    residual: Array
+    imbalance: float
+    iterations: int
+
+
+def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float) -> Solution:
+    """Minimise x.C x/2 - g.x over lower <= x <= upper with sum(x) = total.
+
+    The multiplier of the sum is a rigid shift. With it the conditions read, for r = C x - g - shift and any
+    rho > 0: x is the projection of the augmented multiplier x - rho r onto the bounds. At a given shift they are
+    solved by block pivoting, which ends for every positive definite C; sum(x) grows with the shift, piecewise
+    linearly, so that a bracketed Newton iteration ends at its root.
+
+    Parameters
+    ----------
+    C : (n, n) array
+        Symmetric positive definite.
+    g, lower, upper : (n,) arrays
+        ``upper`` may be infinite.
+    total : float
+        Between sum(lower) and sum(upper).
+    """
+    pivoting = _BlockPivoting(C, g, lower, upper)
+    low, high, shift = -np.inf, np.inf, pivoting.shift_if_all_free(total)
+    while True:
+        x, r, slope = pivoting.solve(shift)
+        excess = float(x.sum() - total)
+        if abs(excess) <= len(x) * _EPS * max(float(np.abs(x).sum()), abs(total)):
+            break
+        low, high = (shift, high) if excess < 0 else (low, shift)
+        step = -excess / slope if slope > 0 else pivoting.to_next_free(r, excess < 0)
+        following = shift + step
+        if not low < following < high:
+            following = (low + high) / 2
+        if following in (low, high, shift) or not np.isfinite(following):
+            break  # the sum cannot come closer to the total in this arithmetic
+        shift = following
+    residual = np.abs(x - np.clip(x - r / np.diag(C), lower, upper))
+    return Solution(x, residual, abs(excess), pivoting.iterations)
+
+
+class _BlockPivoting:
+    """Minimise x.C x/2 - (g + shift).x over lower <= x <= upper.
+
+    All members that violate their condition change sides at once; if their number has not fallen for three
+    rounds, only the last of them does (Murty's rule), until it falls. That cannot cycle (Judice and Pires 1994)
+    but by rounding, where a member sits exactly on its bound and neither side is right to the last digit: if a
+    partition comes back, what counts as rounding is doubled.
+    """
+
+    def __init__(self, C: Array, g: Array, lower: Array, upper: Array) -> None:
+        self._C, self._g, self._lower, self._upper = C, g, lower, upper
+        self._diagonal = np.diag(C).copy()
+        self._side = np.zeros(len(g), dtype=np.int8)  # -1 at the lower bound, 0 free, +1 at the upper
+        self._factored: npt.NDArray[np.bool_] | None = None
+        self.iterations = 0
+
+    def shift_if_all_free(self, total: float) -> float:
+        """The shift that gives the total without bounds: where to begin."""
+        at_zero, slope = self._face(0.0)
+        return float((total - at_zero.sum()) / slope)
+
+    def to_next_free(self, r: Array, more: bool) -> float:
+        """With every member at a bound: free the nearest one that can give more (or less); the shift to it."""
+        steps = np.where(self._side == (-1 if more else 1), np.abs(r), np.inf)
+        nearest = int(np.argmin(steps))
+        self._side[nearest] = 0
+        return float(steps[nearest] if more else -steps[nearest])
+
+    def solve(self, shift: float) -> tuple[Array, Array, float]:
+        """The minimiser, its r = C x - g - shift, and how fast its sum grows with the shift."""
+        fewest, chances, rounding = len(self._g) + 1, 3, 4 * _EPS
+        seen: set[bytes] = set()
+        while True:
+            x, slope = self._face(shift)
+            r = self._C @ x - self._g - shift
+            noise = rounding * (self._diagonal * np.abs(x).sum() + np.abs(self._g) + abs(shift)) / self._diagonal
+            augmented = x - r / self._diagonal
+            wanted = (augmented > self._upper + noise).astype(np.int8) - (augmented < self._lower - noise)
+            wrong = np.flatnonzero(wanted != self._side)
+            if len(wrong) == 0:
+                return x, r, slope
+            if len(wrong) < fewest:
+                fewest, chances = len(wrong), 3
+            elif chances > 0:
+                chances -= 1
+            else:
+                wrong = wrong[-1:]
+                if (partition := self._side.tobytes()) in seen:
+                    rounding *= 2
+                seen.add(partition)
+            self._side[wrong] = np.where(self._side[wrong] == 0, wanted[wrong], 0)
+
+    def _face(self, shift: float) -> tuple[Array, float]:
+        """Minimise with the bound members held: x, and the growth of its sum with the shift."""
+        self.iterations += 1
+        free = self._side == 0
+        x = np.select([self._side < 0, self._side > 0], [self._lower, self._upper], 0.0)
+        if not free.any():
+            return x, 0.0
+        if self._factored is None or not np.array_equal(free, self._factored):
+            self._factored = free
+            self._factor = la.cho_factor(self._C[np.ix_(free, free)], check_finite=False)
+            self._growth = la.cho_solve(self._factor, np.ones(free.sum()), check_finite=False)
+        x[free] = la.cho_solve(self._factor, (self._g + shift - self._C @ x)[free], check_finite=False)
+        return x, float(self._growth.sum())

@@ -1,0 +1,149 @@
+"""One mesh, from its size to the zones found on it. Scaled as in :mod:`partialslip_fem.contact`."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.interpolate import PPoly
+
+from partialslip.result import Array, Clock
+from partialslip_fem.bounded import Solution
+from partialslip_fem.condensation import Condensed
+from partialslip_fem.contact import press, relative_compliances
+from partialslip_fem.elasticity import Body, Indices, body
+from partialslip_fem.farfield import FarField, half_plane
+from partialslip_fem.friction import march
+from partialslip_fem.recovery import traction
+from partialslip_fem.zones import left_end, right_end
+from partialslip_meshes import Mesh, block
+
+_STICKS = 1e-9  # a node that slips has used up its bound to rounding, whatever the units
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is to be solved, scaled: a gap and P = 1; ``loads`` are (Q, strain) at the end of each load step.
+
+    The last two steps are load point 1 and load point 2. Without steps there is no friction to solve.
+    """
+
+    gap: Callable[[Array], Array]
+    f: float
+    loads: list[tuple[float, float]]
+    kappa: float
+    order: int
+    far_field: Literal["half-plane", "box"]
+
+
+@dataclass(frozen=True)
+class Zone:
+    """The stick zone and the signs of dq in the slip zones on its left and right."""
+
+    left: float
+    right: float
+    signs: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Level:
+    """The solution on one mesh. ``nodes`` of the contact line are in contact, over [left, right]."""
+
+    mesh: Mesh
+    body: Body
+    condensed: Condensed
+    far_field: FarField | None
+    nodes: Indices
+    pressing: Solution
+    steps: list[Solution]
+    left: float
+    right: float
+    stick: Zone | None
+
+    @property
+    def ends(self) -> Array:
+        """Ends of the contact and of the stick zone: where the next mesh is to be fine."""
+        return np.array([self.left, self.right, *((self.stick.left, self.stick.right) if self.stick else ())])
+
+    @property
+    def half_width(self) -> float:
+        """Contact half-width."""
+        return (self.right - self.left) / 2
+
+    @property
+    def iterations(self) -> int:
+        """Faces solved, for normal contact and friction."""
+        return self.pressing.iterations + sum(step.iterations for step in self.steps)
+
+    def pressure(self) -> PPoly:
+        """p along the contact line."""
+        return traction(self.body, self.pressing.x, self.nodes)
+
+    def shear(self, step: int) -> PPoly:
+        """q along the contact line at the end of a load step."""
+        return traction(self.body, self.on_line(self.steps[step].x), self.nodes)
+
+    def on_line(self, values: Array) -> Array:
+        """Values of the nodes in contact, as those of the whole line, zero elsewhere."""
+        result = np.zeros(len(self.body.x))
+        result[self.nodes] = values
+        return result
+
+
+def solve_level(
+    problem: Problem,
+    width: float,
+    contact: tuple[float, float],
+    sizes: Mapping[float, float],
+    growth: float,
+    clock: Clock,
+) -> Level:
+    """Mesh a block of half-width ``width`` (:func:`partialslip_meshes.block`) and solve on it."""
+    with clock.phase("mesh"):
+        mesh = block(width, contact, sizes, growth)
+    with clock.phase("assembly"):
+        half = body(mesh, problem.kappa, problem.order)
+    with clock.phase("factorisation"):
+        condensed = Condensed(half)
+    with clock.phase("far field"):
+        outer = half_plane(half.far_points, half.x, width, problem.kappa) if problem.far_field == "half-plane" else None
+        tangential, normal = relative_compliances(half, condensed, outer)
+    with clock.phase("contact"):
+        pressing = press(normal, problem.gap(half.x), 1.0)
+        nodes = np.flatnonzero(pressing.x > 0)
+        bound = problem.f * pressing.x[nodes]
+        steps = march(tangential[np.ix_(nodes, nodes)], half.x[nodes], bound, problem.loads)
+        forces = _cell_forces(half, pressing.x, nodes)
+        return Level(
+            mesh, half, condensed, outer, nodes, pressing, steps,
+            left=left_end(half.x[:: half.order], forces, half.x[nodes]),
+            right=right_end(half.x[:: half.order], forces, half.x[nodes]),
+            stick=_stick_zone(half, nodes, bound, steps) if steps else None,
+        )  # fmt: skip
+
+
+def _stick_zone(half: Body, nodes: Indices, bound: Array, steps: list[Solution]) -> Zone:
+    """Read from the range 2 f p - |dq|, never from what sticks at one instant."""
+    change = steps[-1].x - steps[-2].x
+    sticks = np.flatnonzero(2 * bound - np.abs(change) > _STICKS * bound)
+    signs = (1 if change[0] > 0 else -1), (1 if change[-1] > 0 else -1)
+    x, vertices = half.x[nodes], half.x[:: half.order]
+    if len(sticks) == 0:  # a stick zone smaller than an element: it is where the slip turns round
+        turn = int(np.argmax(np.sign(change) != np.sign(change[0])))
+        point = float(x[max(turn - 1, 0)] + x[turn]) / 2
+        return Zone(point, point, signs)
+
+    def room(sign: int) -> Array:
+        forces = np.zeros(len(half.x))
+        forces[nodes] = 2 * bound - sign * change
+        return _cell_forces(half, forces, nodes)
+
+    left = left_end(vertices, room(signs[0]), x[sticks])
+    right = right_end(vertices, room(signs[1]), x[sticks])
+    return Zone(left, max(right, left), signs)
+
+
+def _cell_forces(half: Body, forces: Array, nodes: Indices) -> Array:
+    """Integrals over each cell of the contact line of the traction that belongs to nodal forces."""
+    resultant = traction(half, forces, nodes).antiderivative()
+    return np.diff(resultant(half.x[:: half.order]))

@@ -1,0 +1,82 @@
+"""Recipe: a block below the line y = 0, graded towards points on its contact line."""
+
+from collections.abc import Mapping
+from types import ModuleType
+
+import numpy as np
+import numpy.typing as npt
+
+from partialslip_meshes.gmsh import gmsh_session
+from partialslip_meshes.mesh import Mesh
+
+
+def block(width: float, contact: tuple[float, float], sizes: Mapping[float, float], growth: float) -> Mesh:
+    """Mesh the block [-width, width] x [-width, 0].
+
+    Parameters
+    ----------
+    width : float
+        Half-width and height of the block.
+    contact : (float, float)
+        Ends of the line "contact" on y = 0; the block's sides and bottom are the line "far".
+    sizes : mapping of float to float
+        Points on the contact line, each to become a vertex, and the element size there.
+    growth : float
+        Element size gained per unit of distance from each point, so that a wide block costs no more than the
+        logarithm of its width.
+
+    Raises
+    ------
+    MissingLibraryError
+        If gmsh, or a system library that it needs, is not there.
+    """
+    with gmsh_session() as gmsh:
+        lines = _outline(gmsh, width, contact, sizes, growth)
+        gmsh.model.mesh.generate(2)
+        return _collect(gmsh, lines)
+
+
+def _outline(
+    gmsh: ModuleType, width: float, contact: tuple[float, float], sizes: Mapping[float, float], growth: float
+) -> dict[str, list[int]]:
+    """Geometry and size field; returns the curves of each named line."""
+    geo, field = gmsh.model.geo, gmsh.model.mesh.field
+    on_contact = sorted({*contact, *sizes})
+    surface = [geo.addPoint(x, 0, 0) for x in (-width, *on_contact, width)]
+    bottom = [geo.addPoint(x, -width, 0) for x in (-width, width)]
+    loop = [*bottom, *reversed(surface)]
+    curves = [geo.addLine(start, end) for start, end in zip(loop, [*loop[1:], loop[0]], strict=True)]
+    geo.addPlaneSurface([geo.addCurveLoop(curves)])
+    geo.synchronize()
+
+    grades = []
+    for x, size in sizes.items():
+        distance = field.add("Distance")
+        field.setNumbers(distance, "PointsList", [surface[1 + on_contact.index(x)]])
+        grades.append(field.add("MathEval"))
+        field.setString(grades[-1], "F", f"{size!r} + {growth!r} * F{distance}")
+    smallest = field.add("Min")
+    field.setNumbers(smallest, "FieldsList", grades)
+    field.setAsBackgroundMesh(smallest)
+    for other in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
+        gmsh.option.setNumber(f"Mesh.{other}", 0)
+
+    return {"contact": curves[3:-2], "far": [*curves[:2], curves[-1]]}
+
+
+def _collect(gmsh: ModuleType, lines: Mapping[str, list[int]]) -> Mesh:
+    """Arrays of the mesh in gmsh, with the nodes numbered from zero."""
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
+    number[tags] = np.arange(len(tags))
+
+    def cells(dimension: int, entity: int, corners: int) -> npt.NDArray[np.int64]:
+        _, _, nodes = gmsh.model.mesh.getElements(dimension, entity)
+        result: npt.NDArray[np.int64] = number[nodes[0].reshape(-1, corners)]
+        return result
+
+    return Mesh(
+        points=np.ascontiguousarray(coordinates.reshape(-1, 3)[:, :2]),
+        triangles=cells(2, -1, 3),
+        lines={name: np.vstack([cells(1, curve, 2) for curve in curves]) for name, curves in lines.items()},
+    )

@@ -1,0 +1,24 @@
+"""The mesh, as plain arrays."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Straight-sided triangles.
+
+    Parameters
+    ----------
+    points : (n, 2) float array
+    triangles : (t, 3) int array
+        Corners, counter-clockwise.
+    lines : dict of (k, 2) int arrays
+        Named groups of boundary edges; "contact" is the contact line, "far" the outer boundary.
+    """
+
+    points: npt.NDArray[np.float64]
+    triangles: npt.NDArray[np.int64]
+    lines: dict[str, npt.NDArray[np.int64]]

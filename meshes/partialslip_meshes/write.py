@@ -1,0 +1,43 @@
+"""Writing bodies through meshio."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import meshio
+import numpy as np
+import numpy.typing as npt
+
+from partialslip.result import DeformedBody
+
+
+def write_msh(path: Path, body: DeformedBody) -> None:
+    """Write a body's mesh for gmsh, its triangles and lines as physical groups named after body and lines."""
+    cells = [("triangle", body.triangles), *(("line", line) for line in body.lines.values())]
+    numbers = [np.full(len(block), number) for number, (_, block) in enumerate(cells, start=1)]
+    groups = {body.name: np.array([1, 2])}
+    groups |= {name: np.array([number, 1]) for number, name in enumerate(body.lines, start=2)}
+    mesh = meshio.Mesh(
+        _in_space(body.points),
+        cells,
+        cell_data={"gmsh:physical": numbers, "gmsh:geometrical": numbers},
+        field_data=groups,
+    )
+    meshio.write(path, mesh, file_format="gmsh22", binary=True)  # meshio writes broken ASCII under NumPy 2
+
+
+def write_vtu(path: Path, bodies: Sequence[DeformedBody]) -> None:
+    """Write bodies side by side in one file, with their displacements as point data and ``body`` as cell data."""
+    first = np.cumsum([0, *(len(body.points) for body in bodies)])
+    triangles = [body.triangles + start for body, start in zip(bodies, first, strict=False)]
+    names = bodies[0].displacements
+    mesh = meshio.Mesh(
+        _in_space(np.vstack([body.points for body in bodies])),
+        [("triangle", np.vstack(triangles))],
+        point_data={name: _in_space(np.vstack([body.displacements[name] for body in bodies])) for name in names},
+        cell_data={"body": [np.repeat(np.arange(len(bodies)), [len(block) for block in triangles])]},
+    )
+    meshio.write(path, mesh, file_format="vtu")
+
+
+def _in_space(plane: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    return np.column_stack([plane, np.zeros(len(plane))])

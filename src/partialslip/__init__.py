@@ -1,0 +1,26 @@
+"""partialslip: how right is a frictional contact calculation?
+
+>>> import partialslip
+>>> scene = partialslip.load_scene("fretting-aluminium")
+>>> exact = partialslip.run(scene, methods=["exact"]).results["exact"]
+>>> round(exact.m / exact.a, 6), round(exact.n / exact.a, 6)
+(0.419531, 0.020906)
+"""
+
+from importlib.metadata import version
+
+from partialslip.compare import Comparison as Comparison
+from partialslip.compare import compare as compare
+from partialslip.errors import InputError as InputError
+from partialslip.errors import PartialslipError as PartialslipError
+from partialslip.plan import Plan as Plan
+from partialslip.plan import plan as plan
+from partialslip.reading import load_scene as load_scene
+from partialslip.reading import shipped_scenes as shipped_scenes
+from partialslip.result import Result as Result
+from partialslip.result import Traction as Traction
+from partialslip.run import Run as Run
+from partialslip.run import run as run
+from partialslip.scene import Scene as Scene
+
+__version__ = version("partialslip")

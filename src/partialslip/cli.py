@@ -1,0 +1,105 @@
+"""The command line. Exit codes: 0 fine, 1 a bar missed, 2 bad input (one line on stderr)."""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NoReturn
+
+from partialslip import __version__
+from partialslip.errors import InputError, PartialslipError
+from partialslip.reading import load_scene, shipped_scenes
+from partialslip.run import METHODS, run
+
+
+class _Parser(argparse.ArgumentParser):
+    """Errors in one line, like all others."""
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message} (see {self.prog} --help)")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit code."""
+    try:
+        options = _parser().parse_args(arguments)
+        code: int = options.command(options)
+    except PartialslipError as error:
+        print(f"partialslip: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("partialslip: interrupted", file=sys.stderr)
+        return 130
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="partialslip",
+        description="How right is a frictional contact calculation? Exact solution and finite elements, side by side.",
+    )
+    parser.add_argument("--version", action="version", version=f"partialslip {__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
+
+    runs = commands.add_parser(
+        "run",
+        help="solve a scene, compare the methods, write the report",
+        epilog="example: partialslip run fretting-aluminium --set fem.far_field=box --out results/box",
+    )
+    runs.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
+    runs.add_argument("--with", dest="methods", default=",".join(METHODS), metavar="METHODS",
+                      help="methods, separated by commas (default: %(default)s)")  # fmt: skip
+    runs.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
+                      help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
+    runs.add_argument("--accuracy", metavar="FRACTION",
+                      help="of a, m and n, as a fraction of a; short for --set fem.accuracy=FRACTION")  # fmt: skip
+    runs.add_argument("--fields", action="store_true",
+                      help="also write mesh.msh and bodies.vtu, the displaced bodies")  # fmt: skip
+    runs.add_argument("--out", type=Path, metavar="DIR", help="folder for the files (default: results/NAME)")
+    runs.add_argument("--json", action="store_true", help="print results.json and nothing else; files only with --out")
+    runs.set_defaults(command=_run)
+
+    scenes = commands.add_parser("scenes", help="list the shipped scenes")
+    scenes.set_defaults(command=_scenes)
+    return parser
+
+
+def _run(options: argparse.Namespace) -> int:
+    overrides = [*options.overrides]
+    if options.accuracy is not None:
+        overrides.append(f"fem.accuracy={options.accuracy}")
+    methods = [method.strip() for method in options.methods.split(",")]
+    for method in methods:
+        if method not in METHODS:
+            raise InputError(f"--with {method!r}: must be of {', '.join(METHODS)}")
+    if options.fields and "fem" not in methods:
+        raise InputError("--fields: needs the method fem")
+    scene = load_scene(options.scene, overrides)
+
+    from rich.console import Console
+
+    from partialslip.report import print_run, record, write_run
+
+    messages = Console(stderr=True, highlight=False)
+    with messages.status(f"{scene.name} ...") as status:
+        outcome = run(
+            scene, methods, subsurface=options.fields, progress=lambda line: status.update(f"{scene.name}: {line}")
+        )
+        folder = options.out or (None if options.json else Path("results") / scene.name)
+        files = write_run(outcome, folder) if folder else []
+    if options.json:
+        print(json.dumps(record(outcome), indent=1, allow_nan=False))
+    else:
+        console = Console(highlight=False)
+        print_run(outcome, console)
+        console.print("written: " + ", ".join(map(str, files)), soft_wrap=True)
+    return 0 if outcome.passed else 1
+
+
+def _scenes(_: argparse.Namespace) -> int:
+    scenes = shipped_scenes()
+    width = max(map(len, scenes))
+    for name, title in scenes.items():
+        print(f"{name:{width}}  {title}")
+    return 0

@@ -1,0 +1,139 @@
+"""Error measures between two results, and verdicts against bars. The measures are fixed, so that figures compare
+across versions and codes: see :class:`Comparison`."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from partialslip.result import Array, Result, Traction
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+
+# A solver that has closed leaves residuals at rounding; on the finest meshes that is 1e-9 f p0.
+CERTIFICATE_BAR = 1e-7
+
+# Bars on traction errors, in multiples of the accuracy asked of a, m and n.
+P_BAR, Q_BAR = 10.0, 15.0
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Errors of a result against a reference; None where there is nothing to compare.
+
+    ``a``, ``m``, ``n``: |difference| / a. ``p``, ``q``: relative L2 over the contact of cell averages (each cell's
+    mean against the reference's mean over the same cell), q being (q2 - q1)/2. ``*_nodal``: relative L2 of nodal
+    values; ``*_max``: the largest error of a node, in p0 and f p0. ``bars`` are what a, m, n, p and q must not
+    exceed; ``missed`` says what failed, in words.
+    """
+
+    a: float
+    m: float | None
+    n: float | None
+    p: float | None
+    q: float | None
+    p_nodal: float
+    q_nodal: float | None
+    p_max: float
+    q_max: float | None
+    bars: dict[str, float]
+    missed: tuple[str, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every error is within its bar, and the regimes agree."""
+        return not self.missed
+
+
+def compare(result: Result, reference: Result, f: float, accuracy: float) -> Comparison:
+    """Compare ``result`` with ``reference``, of the same scene.
+
+    Parameters
+    ----------
+    f : float
+        Coefficient of friction: errors of q are given in f p0.
+    accuracy : float
+        Bar for a, m and n (fractions of a); p and q have 10 and 15 times that.
+    """
+    a, p0 = reference.a, reference.p0
+    errors: dict[str, float | None] = {"a": abs(result.a - a) / a, "m": None, "n": None}
+    if None not in (result.m, result.n, reference.m, reference.n):
+        # by centre and half-width, which do not cancel in a tiny stick zone
+        centre = (result.stick_centre or 0.0) - (reference.stick_centre or 0.0)
+        half_width = (result.stick_half_width or 0.0) - (reference.stick_half_width or 0.0)
+        errors |= {"m": abs(half_width - centre) / a, "n": abs(half_width + centre) / a}
+    errors["p"], errors["q"] = cell_errors(result.traction, reference.traction)
+
+    p, dq = reference.traction.at(result.traction.x)
+    p_off, q_off = result.traction.p - p, (result.traction.dq - dq) / 2
+    shears = bool(dq.any())
+    bars = {"a": accuracy, "m": accuracy, "n": accuracy, "p": P_BAR * accuracy, "q": Q_BAR * accuracy}
+    return Comparison(
+        **{key: errors[key] for key in bars},  # type: ignore[arg-type]
+        p_nodal=_relative(p_off, p, result.traction.x),
+        q_nodal=_relative(q_off, dq / 2, result.traction.x) if shears else None,
+        p_max=float(np.abs(p_off).max() / p0),
+        q_max=float(np.abs(q_off).max() / (f * p0)) if shears else None,
+        bars=bars,
+        missed=_missed(result, reference, errors, bars),
+    )
+
+
+def cell_errors(traction: Traction, reference: Traction) -> tuple[float | None, float | None]:
+    """Relative L2 errors of p and q = dq/2 as averages over the cells that overlap the reference's contact."""
+    if traction.cells is None:
+        return None, None
+    left, right = reference.breaks.min(), reference.breaks.max()
+    cells = traction.cells
+    first, last = np.searchsorted(cells, left, "right") - 1, np.searchsorted(cells, right, "left")
+    cells = cells[max(first, 0) : last + 1]
+    widths = np.diff(cells)
+    means, exact = cell_means(traction, cells), cell_means(reference, cells)
+    p, q = (
+        float(np.sqrt(np.sum((mean - true) ** 2 * widths) / norm)) if (norm := np.sum(true**2 * widths)) > 0 else None
+        for mean, true in zip(means, exact, strict=True)
+    )
+    return p, q
+
+
+def cell_means(traction: Traction, cells: Array) -> tuple[Array, Array]:
+    """Means of p and dq over each of the cells with ends ``cells`` (ascending), (c,) each.
+
+    Gauss quadrature in an angle over every piece between cell ends and breaks of the traction, which takes square
+    roots at the breaks exactly.
+    """
+    ends = np.unique(np.concatenate([cells, traction.breaks]))
+    ends = ends[(ends >= cells[0]) & (ends <= cells[-1])]
+    middle, half = (ends[1:] + ends[:-1]) / 2, np.diff(ends) / 2
+    angle = np.pi / 2 * (_NODES + 1)
+    weights = np.pi / 2 * _WEIGHTS * np.sin(angle)
+    points = middle[:, None] - half[:, None] * np.cos(angle)
+    owner = np.searchsorted(cells, middle) - 1
+
+    def mean(values: Array) -> Array:
+        pieces = half * (values.reshape(points.shape) @ weights)
+        result: Array = np.bincount(owner, pieces, len(cells) - 1) / np.diff(cells)
+        return result
+
+    p, dq = traction.at(points.ravel())
+    return mean(p), mean(dq)
+
+
+def _relative(error: Array, true: Array, x: Array) -> float:
+    norm = np.trapezoid(true**2, x)
+    return float(np.sqrt(np.trapezoid(error**2, x) / norm))
+
+
+def _missed(
+    result: Result, reference: Result, errors: dict[str, float | None], bars: dict[str, float]
+) -> tuple[str, ...]:
+    missed = [
+        f"{key}: error {error:.1e} > {bars[key]:.1e}" for key, error in errors.items() if error and error > bars[key]
+    ]
+    missed += [
+        f"certificate: {name} {residual:.1e} > {CERTIFICATE_BAR:.0e}"
+        for name, residual in result.certificate.items()
+        if name != "steady" and not residual <= CERTIFICATE_BAR
+    ]
+    if result.regime != reference.regime:
+        missed.append(f"regime: {result.regime}, not {reference.regime}")
+    return tuple(missed)

@@ -1,0 +1,51 @@
+"""The plan: which effects a scene calls for and which it leaves out, each with its reason in words.
+
+Methods read the plan and build only what it calls for.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from partialslip.scene import Scene
+
+Effect = Literal["normal", "friction", "shear", "tension", "opposing-slip", "history", "far-field", "subsurface"]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Effects by name, with the reason why each is called for or left out."""
+
+    called_for: dict[Effect, str]
+    left_out: dict[Effect, str]
+
+    def needs(self, effect: Effect) -> bool:
+        """Whether the scene calls for ``effect``."""
+        return effect in self.called_for
+
+
+def plan(scene: Scene, *, subsurface: bool = False) -> Plan:
+    """Decide which effects ``scene`` calls for; ``subsurface`` asks for fields inside the bodies."""
+    load, f = scene.load, scene.friction.f
+    shear, tension = any(load.Q), any(load.sigma)
+    friction = f > 0 and (shear or tension)
+    decisions: list[tuple[Effect, bool, str, str]] = [
+        ("normal", True, "two bodies are pressed together by a constant P", ""),
+        ("friction", friction, f"tangential loads act and f = {f:g}",
+         "f = 0: no traction can hold a tangential load" if shear or tension else "no tangential load acts"),
+        ("shear", shear, f"Q cycles by dQ = {load.dQ:g} N/m", "Q = 0 at both load points"),
+        ("tension", tension, f"sigma cycles by dsigma = {load.dsigma:g} Pa", "sigma = 0 at both load points"),
+        ("opposing-slip", friction and load.dsigma != 0, "tension may turn the slip at one end of the contact",
+         "without a change of tension both ends slip the same way"),
+        ("history", friction and (not load.fully_reversed or load.cycles > 1),
+         "mean loads or several cycles: what is locked in depends on the path",
+         "fully reversed, one cycle: nothing is locked in"),
+        ("far-field", scene.fem.far_field == "half-plane",
+         "the finite block is held by the displacements of the half-plane it stands for",
+         "a plain box: the block's outer boundary is clamped"),
+        ("subsurface", subsurface, "fields inside the bodies were asked for",
+         "fields inside the bodies were not asked for"),
+    ]  # fmt: skip
+    return Plan(
+        called_for={effect: why for effect, needed, why, _ in decisions if needed},
+        left_out={effect: why for effect, needed, _, why in decisions if not needed},
+    )

@@ -1,0 +1,169 @@
+"""Reading scene files: TOML in, a :class:`Scene` out, or one line that says what is wrong."""
+
+import difflib
+import math
+import re
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from partialslip.errors import InputError
+from partialslip.scene import Scene, Table
+
+_KINDS = {
+    "object": "a table",
+    "array": "an array",
+    "float": "a number",
+    "int": "a whole number",
+    "str": "a string",
+    "bool": "true or false",
+}
+
+
+def shipped_scenes() -> dict[str, str]:
+    """Names and titles of the scenes that come with the package, sorted by name."""
+    files = resources.files("partialslip") / "scenes"
+    texts = {f.name.removesuffix(".toml"): f.read_text("utf-8") for f in files.iterdir() if f.name.endswith(".toml")}
+    return {name: tomllib.loads(texts[name]).get("title", "") for name in sorted(texts)}
+
+
+def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
+    """Read a scene.
+
+    Parameters
+    ----------
+    scene : str or Path
+        The name of a shipped scene or the path of a TOML file.
+    overrides : iterable of str
+        Settings to change, each as ``"table.key=value"`` with a TOML value, e.g. ``"load.P=2e5"``.
+
+    Raises
+    ------
+    InputError
+        With one line that names the field, its value and what is allowed.
+    """
+    data = _parse(_text(scene), str(scene))
+    for override in overrides:
+        _override(data, override)
+    try:
+        return parse_scene(data)
+    except InputError as error:
+        raise InputError(f"{scene}: {error}") from None
+
+
+def parse_scene(data: Mapping[str, Any]) -> Scene:
+    """Make a scene from nested tables, as read from TOML or from ``results.json``. Raises InputError."""
+    for path, value in _leaves(data):
+        if isinstance(value, float) and not math.isfinite(value):
+            raise InputError(f"{path} = {value}: must be finite")
+    try:
+        return msgspec.convert(data, Scene)
+    except msgspec.ValidationError as error:
+        if isinstance(error.__cause__, InputError):
+            raise error.__cause__ from None
+        raise InputError(_explain(str(error), data)) from None
+
+
+def _text(scene: str | Path) -> str:
+    path = Path(scene)
+    try:
+        if path.suffix == ".toml" or path.is_file():
+            return path.read_text("utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{scene}: not UTF-8 text (byte {error.start})") from None
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise InputError(f"{scene}: cannot be read: {reason}") from None
+    shipped = shipped_scenes()
+    if str(scene) in shipped:
+        return (resources.files("partialslip") / "scenes" / f"{scene}.toml").read_text("utf-8")
+    raise InputError(f"scene {str(scene)!r}: neither a file nor a shipped scene{_nearest(str(scene), shipped)}")
+
+
+def _parse(text: str, origin: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{origin}: not valid TOML: {error}") from None
+
+
+def _override(data: dict[str, Any], override: str) -> None:
+    path, equals, value = override.partition("=")
+    keys = path.strip().split(".")
+    if not (equals and all(keys)):
+        raise InputError(f"--set {override}: must be table.key=value, for example load.P=2e5")
+    try:
+        parsed = tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        parsed = value.strip()  # a bare word is a string: fem.far_field=box
+    for key in keys[:-1]:
+        data = data.setdefault(key, {})
+        if not isinstance(data, dict):
+            raise InputError(f"--set {override}: {key} is not a table")
+    data[keys[-1]] = parsed
+
+
+def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    if isinstance(value, Mapping):
+        for key, child in value.items():
+            yield from _leaves(child, f"{path}.{key}" if path else str(key))
+    elif isinstance(value, (list, tuple)):
+        for index, child in enumerate(value):
+            yield from _leaves(child, f"{path}[{index}]")
+    else:
+        yield path, value
+
+
+def _explain(message: str, data: Any) -> str:
+    """Turn the decoder's message into: field = value: what is allowed."""
+    what, _, where = message.partition(" - at `$")
+    path = where.rstrip("`").lstrip(".")
+    value: Any = data
+    kind: Any = Scene
+    for key, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", path):
+        value = value[int(index)] if index else value[key]
+        kind = kind if index else _fields(kind).get(key)
+    if unknown := re.fullmatch(r"Object contains unknown field `(.*)`", what):
+        return f"{_join(path, unknown[1])}: unknown key{_nearest(unknown[1], _fields(kind))}"
+    if missing := re.fullmatch(r"Object missing required field `(.*)`", what):
+        return f"{_join(path, missing[1])}: missing"
+    return f"{path} = {_shown(value)}: must be {_allowed(what, kind)}"
+
+
+def _allowed(what: str, kind: Any) -> str:
+    if what.startswith("Invalid enum value"):
+        return "one of " + ", ".join(map(repr, kind.__args__))
+    if length := re.fullmatch(r"Expected `array` of length (\d+), got \d+", what):
+        return f"an array of {length[1]} numbers"
+    if wrong := re.fullmatch(r"Expected `([a-z]+)(?: \| null)?`, got `([a-z]+)`", what):
+        return f"{_KINDS.get(wrong[1], wrong[1])}, not {_KINDS.get(wrong[2], wrong[2])}"
+    if bound := re.fullmatch(r"Expected `(?:float|int)(?: \| null)?` (.*)", what):
+        return bound[1]
+    if "regex" in what:
+        return "letters, digits, '.', '_' or '-', and begin with a letter or digit"
+    return what.replace("`", "").removeprefix("Expected ")
+
+
+def _fields(kind: Any) -> dict[str, Any]:
+    tables = isinstance(kind, type) and issubclass(kind, Table)
+    return {field.name: field.type for field in msgspec.structs.fields(kind)} if tables else {}
+
+
+def _join(path: str, key: str) -> str:
+    return f"{path}.{key}" if path else key
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _nearest(key: str, known: Iterable[str]) -> str:
+    by_lower = {name.lower(): name for name in known}
+    if near := difflib.get_close_matches(key.lower(), by_lower, n=1, cutoff=0.5):
+        return f"; did you mean {by_lower[near[0]]!r}?"
+    return f"; known are {', '.join(by_lower.values())}"

@@ -1,0 +1,69 @@
+"""The traction plot: exact line, finite-element markers, stick zone shaded; x/a against q/(f p0)."""
+
+import io
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from partialslip.result import Array, Result
+from partialslip.run import Run
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_MARKERS = 41
+_STYLE: dict[Any, Any] = {
+    "svg.fonttype": "none",  # text stays text
+    "svg.hashsalt": "partialslip",  # the same run gives the same file
+    "font.size": 10,
+    "font.family": "sans-serif",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+}
+
+
+def traction_svg(run: Run) -> str:
+    """The traction plot of a run as SVG."""
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    with rc_context(_STYLE):
+        figure = Figure(figsize=(7.4, 4.4), layout="constrained")
+        draw_tractions(figure.subplots(), run)
+        text = io.StringIO()
+        figure.savefig(text, format="svg", metadata={"Date": None})
+    return text.getvalue()
+
+
+def draw_tractions(axes: "Axes", run: Run) -> None:
+    """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of every method: lines for a closed form, markers for a mesh."""
+    reference = run.results.get("exact") or next(iter(run.results.values()))
+    a, p0, f = reference.a, reference.p0, run.scene.friction.f
+    if reference.m is not None and reference.n is not None:
+        axes.axvspan(-reference.m / a, reference.n / a, color="0.88", lw=0, label="stick zone [-m, n]")
+    shears = bool(reference.traction.dq.any())
+    for name, result in run.results.items():
+        traction = result.traction
+        if traction.cells is None:
+            x, p, q = traction.x, traction.p, traction.dq / 2
+            axes.plot(x / a, p / p0, color="0.45", lw=1, ls="--", label=f"p/p0, {name}")
+            if shears:
+                axes.plot(x / a, -p / p0, color="0.45", lw=1, ls="--")
+                axes.plot(x / a, q / (f * p0), color="black", lw=1.4, label=f"q/(f p0), {name}")
+        else:
+            x = _spread(result)
+            p, dq = traction.at(x)
+            axes.plot(x / a, p / p0, "k+", ms=6, mew=1, label=f"p/p0, {name}")
+            if shears:
+                axes.plot(x / a, dq / 2 / (f * p0), "o", mfc="white", mec="black", ms=4.5, label=f"q/(f p0), {name}")
+    axes.axhline(0, color="0.7", lw=0.6, zorder=0)
+    axes.set(xlabel="x/a", ylabel="tractions: p/p0 and q/(f p0)", xlim=(-1.04, 1.04))
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+
+
+def _spread(result: Result) -> Array:
+    """Some of the nodes, about evenly spread over the contact."""
+    x = result.traction.x
+    nearest = np.abs(x[:, None] - np.linspace(x[0], x[-1], _MARKERS)).argmin(axis=0)
+    spread: Array = x[np.unique(nearest)]
+    return spread

@@ -1,0 +1,74 @@
+"""The files of a run: whole ones or none, whenever it is stopped."""
+
+import csv
+import io
+import json
+import os
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from partialslip.errors import InputError
+from partialslip.report.figure import traction_svg
+from partialslip.report.page import page
+from partialslip.report.record import record
+from partialslip.run import Run
+
+
+def write_run(run: Run, folder: Path) -> list[Path]:
+    """Write results.json, tractions.csv and report.html into ``folder``; mesh.msh and bodies.vtu where fields
+    inside the bodies were asked for. Returns the files' paths. Raises InputError if the folder cannot be written.
+    """
+    data = record(run)
+    files: dict[str, Callable[[Path], object]] = {
+        "results.json": lambda path: path.write_text(json.dumps(data, indent=1, allow_nan=False) + "\n", "utf-8"),
+        "tractions.csv": lambda path: path.write_text(tractions_csv(run), "utf-8"),
+        "report.html": lambda path: path.write_text(page(run, data, traction_svg(run)), "utf-8"),
+    }
+    if bodies := next((result.bodies for result in run.results.values() if result.bodies), None):
+        from partialslip_meshes.write import write_msh, write_vtu
+
+        files["mesh.msh"] = lambda path: write_msh(path, bodies[0])
+        files["bodies.vtu"] = lambda path: write_vtu(path, bodies)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, write in files.items():
+            with _replacing(folder / name) as path:
+                write(path)
+    except OSError as error:
+        raise InputError(f"--out {folder}: cannot be written: {error.strerror}") from None
+    return [folder / name for name in files]
+
+
+def tractions_csv(run: Run) -> str:
+    """Tractions of every method, one row a point; SI units, empty where a method does not determine a value."""
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\n")
+    writer.writerow(["method", "x", "x_over_a", "p", "q1", "q2", "dq"])
+    for name, result in run.results.items():
+        traction = result.traction
+        columns = [traction.x, traction.x / result.a, traction.p, traction.q1, traction.q2, traction.dq]
+        listed = [[""] * len(traction.x) if column is None else column.tolist() for column in columns]
+        writer.writerows([name, *row] for row in zip(*listed, strict=True))
+    return table.getvalue()
+
+
+@contextmanager
+def _replacing(path: Path) -> Iterator[Path]:
+    """A path beside ``path`` to write to, which takes its place when the block ends well."""
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
+    os.close(handle)
+    beside = Path(name)
+    try:
+        yield beside
+        beside.chmod(0o666 & ~_umask())
+        beside.replace(path)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

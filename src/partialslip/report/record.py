@@ -1,0 +1,53 @@
+"""A run as plain data: what ``results.json`` holds."""
+
+import platform
+from dataclasses import asdict
+from importlib.metadata import version
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from partialslip.compare import Comparison
+from partialslip.result import Result
+from partialslip.run import Run
+
+SCHEMA = "partialslip/result/1"
+_PACKAGES = ("partialslip", "numpy", "scipy", "scikit-fem", "gmsh", "meshio")
+
+
+def record(run: Run) -> dict[str, Any]:
+    """Everything a run found, as numbers, strings, lists and tables; SI units."""
+    return {
+        "schema": SCHEMA,
+        "scene": msgspec.to_builtins(run.scene),
+        "plan": {"called_for": run.plan.called_for, "left_out": run.plan.left_out},
+        "methods": {name: _method(result) for name, result in run.results.items()},
+        "comparison": {name: _comparison(comparison) for name, comparison in run.comparisons.items()},
+        "versions": versions(),
+    }
+
+
+def versions() -> dict[str, str]:
+    """Versions of what the figures depend on."""
+    return {"python": platform.python_version(), **{package: version(package) for package in _PACKAGES}}
+
+
+def _method(result: Result) -> dict[str, Any]:
+    traction = result.traction
+    return {
+        **{key: getattr(result, key) for key in ("a", "p0", "regime", "m", "n", "stick_half_width", "stick_centre")},
+        **{key: result.counts[key] for key in ("dofs", "contact_nodes") if key in result.counts},
+        **{key: dict(getattr(result, key)) for key in ("settings", "counts", "certificate", "estimate")},
+        "notes": list(result.notes),
+        "cost": asdict(result.cost),
+        "traction": {key: _listed(getattr(traction, key)) for key in ("x", "p", "q1", "q2", "dq")},
+    }
+
+
+def _comparison(comparison: Comparison) -> dict[str, Any]:
+    return {**asdict(comparison), "passed": comparison.passed}
+
+
+def _listed(values: np.ndarray | None) -> list[float] | None:
+    return None if values is None else values.tolist()

@@ -1,0 +1,68 @@
+"""A run in words and table cells: the terminal and the page show the same ones."""
+
+import numpy as np
+
+from partialslip.result import Result
+from partialslip.run import Run
+
+HEADINGS = ("quantity", "exact", "value", "error", "bar", "")
+_MEANING = {
+    "a": "a, contact half-width",
+    "m": "m, stick zone from -m",
+    "n": "n, stick zone to n",
+    "p": "p, pressure",
+    "q": "q, shear (q2 - q1)/2",
+}
+
+
+def error_rows(run: Run, name: str) -> list[tuple[str, ...]]:
+    """Quantity, exact value, value of method ``name``, error, bar and verdict, of a, m, n, p and q."""
+    exact, result, comparison = run.results["exact"], run.results[name], run.comparisons[name]
+    rows: list[tuple[str, ...]] = []
+    for key, meaning in _MEANING.items():
+        error, bar = getattr(comparison, key), comparison.bars[key]
+        verdict = (
+            ("-", "-", "") if error is None else (f"{error:.1e}", f"{bar:.1e}", "ok" if error <= bar else "MISSED")
+        )
+        rows.append((meaning, value(exact, key), value(result, key), *verdict))
+    return rows
+
+
+def value(result: Result, key: str) -> str:
+    """A quantity of a result with its unit; of p and q the largest value."""
+    if key in ("m", "n"):
+        end = getattr(result, key)
+        return "none" if end is None else f"{end / result.a:.7f} a"
+    if key == "a":
+        return f"{result.a * 1e3:.7g} mm"
+    peak = result.p0 if key == "p" else np.abs(result.traction.dq).max() / 2
+    return f"max {peak / 1e6:.6g} MPa"
+
+
+def setting(choice: object) -> str:
+    """A scene's setting as text."""
+    if isinstance(choice, (list, tuple)):
+        return ", ".join(f"{number:.10g}" for number in choice)
+    return f"{choice:.10g}" if isinstance(choice, float) else str(choice)
+
+
+def work(result: Result) -> str:
+    """What was built and counted."""
+    counts = ", ".join(f"{count:,} {name.replace('_', ' ')}" for name, count in result.counts.items())
+    settings = ", ".join(f"{name.replace('_', ' ')} {setting(choice)}" for name, choice in result.settings.items())
+    return "; ".join(part for part in (settings, counts) if part)
+
+
+def certificate(result: Result) -> str:
+    """Residuals and the method's own error estimate."""
+    residuals = ", ".join(f"{name.replace('_', ' ')} {residual:.0e}" for name, residual in result.certificate.items())
+    estimate = ", ".join(f"{name} {error:.1e}" for name, error in result.estimate.items())
+    return "; ".join(part for part in (residuals, f"own estimate of errors: {estimate}" if estimate else "") if part)
+
+
+def cost(result: Result) -> str:
+    """CPU seconds, in all and by phase, wall seconds and memory."""
+    spent = result.cost
+    phases = ", ".join(f"{name} {seconds:.2f}" for name, seconds in spent.phases.items())
+    memory = "" if spent.peak_rss_mb is None else f", peak memory {spent.peak_rss_mb:.0f} MB"
+    return f"{spent.cpu_s:.3f} CPU s{f' ({phases})' if phases else ''}, {spent.wall_s:.3f} s{memory}"

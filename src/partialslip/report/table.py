@@ -1,0 +1,41 @@
+"""The terminal's view of a run."""
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from partialslip.report import rows
+from partialslip.run import Run
+
+
+def print_run(run: Run, console: Console) -> None:
+    """Print regimes, errors, certificates and costs."""
+    title = f"{run.scene.name}: {run.scene.title}" if run.scene.title else run.scene.name
+    console.print(f"[bold]{title}[/bold]", highlight=False)
+    for name in run.comparisons:
+        console.print(_errors(run, name))
+    for name, result in run.results.items():
+        lines = {"regime": result.regime, "built": rows.work(result), "certificate": rows.certificate(result)}
+        if name not in run.comparisons:
+            lines["found"] = ", ".join(f"{key} = {rows.value(result, key)}" for key in ("a", "m", "n"))
+        lines |= {"cost": rows.cost(result), "note": "; ".join(result.notes)}
+        _print_lines(console, name, lines)
+    if run.comparisons:
+        missed = [f"{name}: {what}" for name, comparison in run.comparisons.items() for what in comparison.missed]
+        console.print("[bold]missed[/bold]: " + "; ".join(missed) if missed else "all bars met", highlight=False)
+
+
+def _errors(run: Run, name: str) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for number, heading in enumerate(rows.HEADINGS):
+        table.add_column(heading.replace("value", name), justify="left" if number in (0, 5) else "right", no_wrap=True)
+    for row in rows.error_rows(run, name):
+        table.add_row(*row)
+    return table
+
+
+def _print_lines(console: Console, name: str, lines: dict[str, str]) -> None:
+    grid = Table.grid(padding=(0, 2))
+    for number, (key, text) in enumerate((key, text) for key, text in lines.items() if text):
+        grid.add_row(name if number == 0 else "", key, text)
+    console.print(grid, highlight=False)

@@ -1,0 +1,153 @@
+"""What a method hands over: the same type from every one."""
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+try:
+    import resource
+except ImportError:  # Windows
+    resource = None  # type: ignore[assignment]
+
+Array = npt.NDArray[np.float64]
+Regime = Literal["stuck", "small tension", "large tension", "sliding", "ratchets"]
+
+
+@dataclass(frozen=True)
+class Traction:
+    """Tractions over the contact line.
+
+    Parameters
+    ----------
+    x : (n,) array
+        Points, ascending, m.
+    p, dq : (n,) arrays
+        Pressure and the change of shear traction q2 - q1, Pa.
+    q1, q2 : (n,) arrays or None
+        Shear traction at load points 1 and 2, Pa. None where the method determines the change only (with
+        mean loads a closed form cannot know what the first cycles lock in).
+    at : callable
+        ``at(x) -> (p, dq)``: tractions at any points, as this method represents them; zero outside the contact.
+    breaks : (k,) array
+        Points where the tractions are not smooth (ends of the contact and of the stick zone), m.
+    cells : (c + 1,) array or None
+        The ends of the cells (contact edges) that the method's accuracy is judged on, m; None if it has none.
+    """
+
+    x: Array
+    p: Array
+    dq: Array
+    q1: Array | None
+    q2: Array | None
+    at: Callable[[Array], tuple[Array, Array]]
+    breaks: Array
+    cells: Array | None = None
+
+
+@dataclass(frozen=True)
+class DeformedBody:
+    """A body's mesh and its displacements.
+
+    Parameters
+    ----------
+    name : str
+    points : (n, 2) array
+        Undeformed, m.
+    triangles : (t, 3) int array
+    lines : dict of (k, 2) int arrays
+        Named groups of boundary edges.
+    displacements : dict of (n, 2) arrays
+        By name, m.
+    """
+
+    name: str
+    points: Array
+    triangles: npt.NDArray[np.int64]
+    lines: Mapping[str, npt.NDArray[np.int64]]
+    displacements: Mapping[str, Array]
+
+
+@dataclass(frozen=True)
+class Cost:
+    """CPU and wall seconds, peak resident memory in MB (None where the system does not tell), CPU seconds by phase."""
+
+    cpu_s: float
+    wall_s: float
+    peak_rss_mb: float | None
+    phases: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Result:
+    """A method's answer to a scene.
+
+    The stick zone [-m, n] is kept as its centre (n - m)/2 and half-width (n + m)/2, because n + m cancels when
+    it is tiny; both are None where nothing sticks (``regime`` says "sliding").
+    ``certificate`` holds residuals in units of f p0 (of p0 for the normal problem) and equilibrium relative to
+    the load; ``estimate`` the method's own estimate of its errors in a, m and n, as fractions of a;
+    ``settings`` and ``counts`` say what was built and how much work it was; ``notes`` what a reader must know;
+    ``bodies`` is there only where fields inside the bodies were asked for.
+    """
+
+    method: str
+    a: float
+    p0: float
+    regime: Regime
+    stick_centre: float | None
+    stick_half_width: float | None
+    traction: Traction
+    cost: Cost
+    settings: Mapping[str, str | float | int] = field(default_factory=dict)
+    counts: Mapping[str, int] = field(default_factory=dict)
+    certificate: Mapping[str, float] = field(default_factory=dict)
+    estimate: Mapping[str, float] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    bodies: tuple[DeformedBody, ...] = ()
+
+    @property
+    def m(self) -> float | None:
+        """The stick zone's left end is at x = -m, m."""
+        if self.stick_centre is None or self.stick_half_width is None:
+            return None
+        return self.stick_half_width - self.stick_centre
+
+    @property
+    def n(self) -> float | None:
+        """The stick zone's right end is at x = n, m."""
+        if self.stick_centre is None or self.stick_half_width is None:
+            return None
+        return self.stick_half_width + self.stick_centre
+
+
+class Clock:
+    """Counts what a method costs, phase by phase."""
+
+    def __init__(self) -> None:
+        self._cpu, self._wall = time.process_time(), time.perf_counter()
+        self.phases: dict[str, float] = {}
+
+    @contextmanager
+    def phase(self, name: str) -> Iterator[None]:
+        """Add the CPU seconds of the block to phase ``name``."""
+        start = time.process_time()
+        try:
+            yield
+        finally:
+            self.phases[name] = self.phases.get(name, 0.0) + time.process_time() - start
+
+    def cost(self) -> Cost:
+        """What it has cost up to now."""
+        return Cost(time.process_time() - self._cpu, time.perf_counter() - self._wall, _peak_rss_mb(), self.phases)
+
+
+def _peak_rss_mb() -> float | None:
+    if resource is None:
+        return None
+    peak: int = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # bytes on macOS, kilobytes elsewhere
+    return peak / (1024**2 if sys.platform == "darwin" else 1024)
