@@ -36,7 +36,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     while True:
         guess = dict.fromkeys(np.linspace(-reach, reach, 16).tolist(), 2 * size * reach)
         level = solve_level(problem, width * reach, (-reach, reach), guess, 1.0, clock)
-        if level.pressing.x[0] == 0 == level.pressing.x[-1]:
+        if level.enclosed:
             break
         reach *= 2
     iterations, errors = level.iterations, {}
@@ -44,7 +44,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         a = level.half_width
         size, growth = size / _FINER, growth * _CALMER
         sizes = dict.fromkeys(_separate(level.ends, size * a), size * a)
-        margin = 0.1 * a
+        margin = (0.1 + 2 * _FINER * size) * a  # of safety, and what the mesh before may have been off by
         contact = (level.left - margin, level.right + margin)
         before, level = level, solve_level(problem, width * a, contact, sizes, growth, clock)
         iterations += level.iterations
@@ -53,7 +53,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
             f"mesh {passes}: {level.body.stiffness.shape[0]:,} unknowns, "
             f"{', '.join(errors)} known to {max(errors.values()):.1e} a"
         )
-        if max(errors.values()) <= accuracy:
+        if max(errors.values()) <= accuracy and level.enclosed:
             break
     return Adapted(level, errors, passes, iterations, width)
 

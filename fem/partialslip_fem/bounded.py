@@ -57,6 +57,7 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float) 
         if following in (low, high, shift) or not np.isfinite(following):
             break  # the sum cannot come closer to the total in this arithmetic
         shift = following
+    x = np.clip(x, lower, upper)  # but for rounding it is within
     residual = np.abs(x - np.clip(x - r / np.diag(C), lower, upper))
     return Solution(x, residual, abs(excess), pivoting.iterations)
 
@@ -104,6 +105,7 @@ class _BlockPivoting:
                 return x, r, slope
             if len(wrong) < fewest:
                 fewest, chances = len(wrong), 3
+                seen.clear()
             elif chances > 0:
                 chances -= 1
             else:

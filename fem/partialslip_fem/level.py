@@ -66,6 +66,11 @@ class Level:
         return np.array([self.left, self.right, *((self.stick.left, self.stick.right) if self.stick else ())])
 
     @property
+    def enclosed(self) -> bool:
+        """Whether the contact ends within the contact line."""
+        return bool(self.pressing.x[0] == 0 == self.pressing.x[-1])
+
+    @property
     def half_width(self) -> float:
         """Contact half-width."""
         return (self.right - self.left) / 2
@@ -77,11 +82,11 @@ class Level:
 
     def pressure(self) -> PPoly:
         """p along the contact line."""
-        return traction(self.body, self.pressing.x, self.nodes)
+        return traction(self.body, self.pressing.x)
 
     def shear(self, step: int) -> PPoly:
         """q along the contact line at the end of a load step."""
-        return traction(self.body, self.on_line(self.steps[step].x), self.nodes)
+        return traction(self.body, self.on_line(self.steps[step].x))
 
     def on_line(self, values: Array) -> Array:
         """Values of the nodes in contact, as those of the whole line, zero elsewhere."""
@@ -113,7 +118,7 @@ def solve_level(
         nodes = np.flatnonzero(pressing.x > 0)
         bound = problem.f * pressing.x[nodes]
         steps = march(tangential[np.ix_(nodes, nodes)], half.x[nodes], bound, problem.loads)
-        forces = _cell_forces(half, pressing.x, nodes)
+        forces = _cell_forces(half, pressing.x)
         return Level(
             mesh, half, condensed, outer, nodes, pressing, steps,
             left=left_end(half.x[:: half.order], forces, half.x[nodes]),
@@ -136,14 +141,14 @@ def _stick_zone(half: Body, nodes: Indices, bound: Array, steps: list[Solution])
     def room(sign: int) -> Array:
         forces = np.zeros(len(half.x))
         forces[nodes] = 2 * bound - sign * change
-        return _cell_forces(half, forces, nodes)
+        return _cell_forces(half, forces)
 
     left = left_end(vertices, room(signs[0]), x[sticks])
     right = right_end(vertices, room(signs[1]), x[sticks])
     return Zone(left, max(right, left), signs)
 
 
-def _cell_forces(half: Body, forces: Array, nodes: Indices) -> Array:
+def _cell_forces(half: Body, forces: Array) -> Array:
     """Integrals over each cell of the contact line of the traction that belongs to nodal forces."""
-    resultant = traction(half, forces, nodes).antiderivative()
+    resultant = traction(half, forces).antiderivative()
     return np.diff(resultant(half.x[:: half.order]))

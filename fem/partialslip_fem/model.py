@@ -6,6 +6,7 @@ import numpy as np
 from scipy.interpolate import PPoly
 from threadpoolctl import threadpool_limits
 
+from partialslip.errors import InputError
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Regime, Result, Traction
 from partialslip.scene import Scene
@@ -14,6 +15,7 @@ from partialslip_fem.fields import displaced
 from partialslip_fem.level import Level, Problem
 
 _WIDTH = {"half-plane": 16.0, "box": 4096.0}  # in contact half-widths
+_LARGEST_NU = 0.4999999
 
 
 def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None) -> Result:
@@ -28,9 +30,15 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
 
     Raises
     ------
+    InputError
+        If the material is all but incompressible: beyond that the stiffness is of rounding only.
     MissingLibraryError
         If gmsh, or a system library that it needs, is not there.
     """
+    if scene.material.plane == "strain" and scene.material.nu > _LARGEST_NU:
+        raise InputError(
+            f"material.nu = {scene.material.nu}: must be <= {_LARGEST_NU} in plane strain by finite elements"
+        )
     clock = Clock()
     width = scene.fem.width or _WIDTH[scene.fem.far_field]
     problem = _scaled(scene, plan)

@@ -5,23 +5,16 @@ import scipy.sparse.linalg as spla
 from scipy.interpolate import PPoly
 
 from partialslip.result import Array
-from partialslip_fem.elasticity import Body, Indices
+from partialslip_fem.elasticity import Body
 
 
-def traction(body: Body, forces: Array, nodes: Indices) -> PPoly:
-    """The traction, of the elements' own order along the line, that is equivalent to nodal ``forces``.
+def traction(body: Body, forces: Array) -> PPoly:
+    """The traction, of the elements' own order along the contact line, that is equivalent to nodal ``forces`` (n,).
 
     Nodal forces are integrals of the traction times shape functions. Dividing them by the integrals of the shape
-    functions gives values that waver by h^2 p''; the mass matrix of the nodes in contact takes them back exactly.
-
-    Parameters
-    ----------
-    forces : (n,) array
-        Nodal forces; zero but for ``nodes``, and so is the traction.
-    nodes : (k,) int array
+    functions gives values that waver by h^2 p''; the mass matrix takes them back exactly, and keeps their resultant.
     """
-    values = np.zeros_like(forces)
-    values[nodes] = spla.spsolve(body.mass[nodes][:, nodes].tocsc(), forces[nodes])
+    values = spla.spsolve(body.mass.tocsc(), forces)
     k = body.order
     cells = np.lib.stride_tricks.sliding_window_view(values, k + 1)[::k]
     coefficients = np.linalg.solve(np.vander(np.linspace(0, 1, k + 1)), cells.T)

@@ -1,4 +1,4 @@
 """Meshes: gmsh recipes, and writing through meshio. The only package that imports either."""
 
-from partialslip_meshes.block import block as block
+from partialslip_meshes.blocks import block as block
 from partialslip_meshes.mesh import Mesh as Mesh

@@ -2,10 +2,11 @@
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from partialslip import __version__
 from partialslip.errors import InputError, PartialslipError
@@ -14,7 +15,10 @@ from partialslip.run import METHODS, run
 
 
 class _Parser(argparse.ArgumentParser):
-    """Errors in one line, like all others."""
+    """Errors in one line, like all others; no abbreviations."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(allow_abbrev=False, **settings)
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} (see {self.prog} --help)")
@@ -25,13 +29,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         options = _parser().parse_args(arguments)
         code: int = options.command(options)
+        sys.stdout.flush()
     except PartialslipError as error:
-        print(f"partialslip: {error}", file=sys.stderr)
+        print(f"partialslip: {_one_line(str(error))}", file=sys.stderr)
         return 2
+    except BrokenPipeError:  # whoever read the output has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
     except KeyboardInterrupt:
         print("partialslip: interrupted", file=sys.stderr)
         return 130
     return code
+
+
+def _one_line(text: str) -> str:
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -73,6 +85,8 @@ def _run(options: argparse.Namespace) -> int:
     for method in methods:
         if method not in METHODS:
             raise InputError(f"--with {method!r}: must be of {', '.join(METHODS)}")
+    if options.out is not None and not options.out.name:
+        raise InputError(f"--out {str(options.out)!r}: must name a folder")
     if options.fields and "fem" not in methods:
         raise InputError("--fields: needs the method fem")
     scene = load_scene(options.scene, overrides)
@@ -93,7 +107,7 @@ def _run(options: argparse.Namespace) -> int:
     else:
         console = Console(highlight=False)
         print_run(outcome, console)
-        console.print("written: " + ", ".join(map(str, files)), soft_wrap=True)
+        console.print("written: " + ", ".join(map(str, files)), soft_wrap=True, markup=False)
     return 0 if outcome.passed else 1
 
 

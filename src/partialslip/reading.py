@@ -12,7 +12,7 @@ from typing import Any
 import msgspec
 
 from partialslip.errors import InputError
-from partialslip.scene import Scene, Table
+from partialslip.scene import LARGEST, SMALLEST, Scene, Table
 
 _KINDS = {
     "object": "a table",
@@ -60,6 +60,8 @@ def parse_scene(data: Mapping[str, Any]) -> Scene:
     for path, value in _leaves(data):
         if isinstance(value, float) and not math.isfinite(value):
             raise InputError(f"{path} = {value}: must be finite")
+        if type(value) in (int, float) and value != 0 and not SMALLEST <= abs(value) <= LARGEST:
+            raise InputError(f"{path} = {_shown(value)}: must be zero or of a size from {SMALLEST} to {LARGEST}")
     try:
         return msgspec.convert(data, Scene)
     except msgspec.ValidationError as error:
@@ -72,7 +74,7 @@ def _text(scene: str | Path) -> str:
     path = Path(scene)
     try:
         if path.suffix == ".toml" or path.is_file():
-            return path.read_text("utf-8")
+            return path.read_text("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(f"{scene}: not UTF-8 text (byte {error.start})") from None
     except (OSError, ValueError) as error:
@@ -87,7 +89,7 @@ def _text(scene: str | Path) -> str:
 def _parse(text: str, origin: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # also numbers too long and arrays too deep for Python
         raise InputError(f"{origin}: not valid TOML: {error}") from None
 
 
@@ -96,10 +98,11 @@ def _override(data: dict[str, Any], override: str) -> None:
     keys = path.strip().split(".")
     if not (equals and all(keys)):
         raise InputError(f"--set {override}: must be table.key=value, for example load.P=2e5")
-    try:
-        parsed = tomllib.loads(f"value = {value}")["value"]
-    except tomllib.TOMLDecodeError:
-        parsed = value.strip()  # a bare word is a string: fem.far_field=box
+    value = value.strip()
+    if value[:1].isalpha() and value not in ("true", "false", "nan", "inf"):
+        parsed: Any = value  # words are a string: fem.far_field=box
+    else:
+        parsed = _parse(f"value = {value}", f"--set {override}").popitem()[1]
     for key in keys[:-1]:
         data = data.setdefault(key, {})
         if not isinstance(data, dict):
@@ -127,7 +130,7 @@ def _explain(message: str, data: Any) -> str:
     for key, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", path):
         value = value[int(index)] if index else value[key]
         kind = kind if index else _fields(kind).get(key)
-    if unknown := re.fullmatch(r"Object contains unknown field `(.*)`", what):
+    if unknown := re.fullmatch(r"(?s)Object contains unknown field `(.*)`", what):
         return f"{_join(path, unknown[1])}: unknown key{_nearest(unknown[1], _fields(kind))}"
     if missing := re.fullmatch(r"Object missing required field `(.*)`", what):
         return f"{_join(path, missing[1])}: missing"
@@ -143,6 +146,10 @@ def _allowed(what: str, kind: Any) -> str:
         return f"{_KINDS.get(wrong[1], wrong[1])}, not {_KINDS.get(wrong[2], wrong[2])}"
     if bound := re.fullmatch(r"Expected `(?:float|int)(?: \| null)?` (.*)", what):
         return bound[1]
+    if what == "Number out of range":
+        return f"of a size from {SMALLEST} to {LARGEST}"
+    if "of length <=" in what:
+        return f"at most {what.split()[-1]} characters"
     if "regex" in what:
         return "letters, digits, '.', '_' or '-', and begin with a letter or digit"
     return what.replace("`", "").removeprefix("Expected ")
@@ -158,12 +165,12 @@ def _join(path: str, key: str) -> str:
 
 
 def _shown(value: Any) -> str:
-    text = repr(value)
+    text = repr(value) if isinstance(value, (str, int, float, list, dict)) else str(value)
     return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _nearest(key: str, known: Iterable[str]) -> str:
     by_lower = {name.lower(): name for name in known}
-    if near := difflib.get_close_matches(key.lower(), by_lower, n=1, cutoff=0.5):
+    if near := difflib.get_close_matches(key.lower(), by_lower, n=1, cutoff=0.6):
         return f"; did you mean {by_lower[near[0]]!r}?"
     return f"; known are {', '.join(by_lower.values())}"

@@ -13,7 +13,9 @@ import numpy.typing as npt
 from partialslip.errors import InputError
 
 Positive = Annotated[float, msgspec.Meta(gt=0)]
-NonNegative = Annotated[float, msgspec.Meta(ge=0)]
+
+# Numbers are zero or within these magnitudes, so that products and squares of a few of them stay finite.
+SMALLEST, LARGEST = 1e-100, 1e100
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -58,7 +60,7 @@ class Profile(Table, frozen=True, kw_only=True):
 class Friction(Table, frozen=True, kw_only=True):
     """Coulomb friction: |q| <= f p. Without friction (f = 0) any tangential load slides."""
 
-    f: NonNegative
+    f: Annotated[float, msgspec.Meta(ge=0, le=1000)]
 
 
 class Load(Table, frozen=True, kw_only=True):
@@ -108,7 +110,7 @@ class Fem(Table, frozen=True, kw_only=True):
 class Scene(Table, frozen=True, kw_only=True):
     """A whole scene file. See the README for the format, :func:`partialslip.load_scene` for reading one."""
 
-    name: Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=100)]
+    name: Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*\Z", max_length=100)]
     material: Material
     profile: Profile
     load: Load
@@ -120,7 +122,11 @@ class Scene(Table, frozen=True, kw_only=True):
         given = [key for key in ("P", "a", "p0") if getattr(self.load, key) is not None]
         if len(given) != 1:
             raise InputError(f"load: exactly one of P, a, p0 must be given, not {' and '.join(given) or 'none'}")
-        if not (math.isfinite(self.P) and self.P > 0 and math.isfinite(self.length) and self.length > 0):
+        try:
+            derived = self.P, self.length
+        except (OverflowError, ZeroDivisionError):
+            derived = math.nan, math.nan
+        if not all(SMALLEST <= value <= LARGEST for value in derived):
             raise InputError(f"load.{given[0]} = {getattr(self.load, given[0])!r}: out of range with this E and R")
 
     @property

@@ -31,7 +31,7 @@ def traction_svg(run: Run) -> str:
         figure = Figure(figsize=(7.4, 4.4), layout="constrained")
         draw_tractions(figure.subplots(), run)
         text = io.StringIO()
-        figure.savefig(text, format="svg", metadata={"Date": None})
+        figure.savefig(text, format="svg", metadata=dict.fromkeys(("Date", "Creator", "Format", "Type")))
     return text.getvalue()
 
 

@@ -32,12 +32,16 @@ def write_run(run: Run, folder: Path) -> list[Path]:
         files["mesh.msh"] = lambda path: write_msh(path, bodies[0])
         files["bodies.vtu"] = lambda path: write_vtu(path, bodies)
     try:
+        for name in files:
+            if (folder / name).is_dir():
+                raise InputError(f"{folder / name}: cannot be written: is a folder")
         folder.mkdir(parents=True, exist_ok=True)
         for name, write in files.items():
             with _replacing(folder / name) as path:
                 write(path)
-    except OSError as error:
-        raise InputError(f"--out {folder}: cannot be written: {error.strerror}") from None
+    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise InputError(f"--out {folder}: cannot be written: {reason}") from None
     return [folder / name for name in files]
 
 

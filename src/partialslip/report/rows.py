@@ -7,11 +7,11 @@ from partialslip.run import Run
 
 HEADINGS = ("quantity", "exact", "value", "error", "bar", "")
 _MEANING = {
-    "a": "a, contact half-width",
-    "m": "m, stick zone from -m",
-    "n": "n, stick zone to n",
+    "a": "a, half-width",
+    "m": "m, stick from -m",
+    "n": "n, stick to n",
     "p": "p, pressure",
-    "q": "q, shear (q2 - q1)/2",
+    "q": "q, shear",
 }
 
 

@@ -3,6 +3,7 @@
 from rich import box
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from partialslip.report import rows
 from partialslip.run import Run
@@ -11,7 +12,7 @@ from partialslip.run import Run
 def print_run(run: Run, console: Console) -> None:
     """Print regimes, errors, certificates and costs."""
     title = f"{run.scene.name}: {run.scene.title}" if run.scene.title else run.scene.name
-    console.print(f"[bold]{title}[/bold]", highlight=False)
+    console.print(title, style="bold", markup=False)
     for name in run.comparisons:
         console.print(_errors(run, name))
     for name, result in run.results.items():
@@ -22,11 +23,11 @@ def print_run(run: Run, console: Console) -> None:
         _print_lines(console, name, lines)
     if run.comparisons:
         missed = [f"{name}: {what}" for name, comparison in run.comparisons.items() for what in comparison.missed]
-        console.print("[bold]missed[/bold]: " + "; ".join(missed) if missed else "all bars met", highlight=False)
+        console.print("missed: " + "; ".join(missed) if missed else "all bars met", style="bold", markup=False)
 
 
 def _errors(run: Run, name: str) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for number, heading in enumerate(rows.HEADINGS):
         table.add_column(heading.replace("value", name), justify="left" if number in (0, 5) else "right", no_wrap=True)
     for row in rows.error_rows(run, name):
@@ -37,5 +38,5 @@ def _errors(run: Run, name: str) -> Table:
 def _print_lines(console: Console, name: str, lines: dict[str, str]) -> None:
     grid = Table.grid(padding=(0, 2))
     for number, (key, text) in enumerate((key, text) for key, text in lines.items() if text):
-        grid.add_row(name if number == 0 else "", key, text)
-    console.print(grid, highlight=False)
+        grid.add_row(name if number == 0 else "", key, Text(text))
+    console.print(grid)

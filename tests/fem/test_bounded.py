@@ -1,0 +1,81 @@
+"""The bounded quadratic programme: its conditions, on random and on degenerate problems."""
+
+import numpy as np
+import pytest
+
+from partialslip_fem.bounded import solve_bounded
+
+
+def compliance(n: int, random: np.random.Generator) -> np.ndarray:
+    """-log|x - s| between irregular points, smoothed: positive definite like an elastic half-plane's, no M-matrix."""
+    x = np.sort(random.random(n))
+    return 3 - np.log((x[:, None] - x) ** 2 + 1e-4) / 2 + 1e-2 * np.eye(n)
+
+
+def check(C, g, lower, upper, total, tolerance=1e-9):
+    solution = solve_bounded(C, g, lower, upper, total)
+    x = solution.x
+    assert np.all((x >= lower) & (x <= upper))
+    assert x.sum() == pytest.approx(total, abs=1e-12 * max(1.0, np.abs(x).sum()))
+    gradient = C @ x - g
+    free = (x > lower) & (x < upper)
+    low = gradient[free | (x == upper)].max(initial=-np.inf)  # these could give, so no other may gain by taking
+    high = gradient[free | (x == lower)].min(initial=np.inf)
+    assert low - high <= tolerance * max(1.0, np.abs(gradient).max())
+    assert solution.residual.max() <= tolerance
+    return solution
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_random_problems(seed):
+    random = np.random.default_rng(seed)
+    n = int(random.integers(1, 80))
+    C = compliance(n, random)
+    bound = random.random(n) ** 3
+    total = random.uniform(-1, 1) * 0.999 * bound.sum()
+    check(C, 10 ** random.uniform(-3, 2) * random.standard_normal(n), -bound, bound, total)
+    check(C, random.standard_normal(n), np.zeros(n), np.full(n, np.inf), 10 ** random.uniform(-2, 2))
+
+
+@pytest.mark.parametrize("total", [-1.0, 1.0])
+def test_all_at_the_bound(total):
+    C = compliance(20, np.random.default_rng(0))
+    bound = np.full(20, 0.05)
+    solution = check(C, np.linspace(-1, 1, 20), -bound, bound, total)
+    assert np.sign(solution.x) == pytest.approx(total)
+
+
+def test_on_the_bound_to_the_last_digit():
+    """A solution that rests on its bounds without pressing on them: neither side is right, and it must still end."""
+    random = np.random.default_rng(3)
+    for n in (5, 30, 60):
+        C = compliance(n, random)
+        x = random.choice([-1.0, 1.0, 0.3], n)
+        solution = check(C, C @ x, -np.ones(n), np.ones(n), x.sum())
+        assert solution.x == pytest.approx(x, abs=1e-9)
+
+
+def test_nothing_free_between_two_blocks_of_bounds():
+    """A huge load puts every member at a bound but for the one that balances the sum."""
+    C = compliance(31, np.random.default_rng(5))
+    solution = check(C, 1e6 * np.linspace(-1, 1, 31), -np.ones(31), np.ones(31), 0.4)
+    assert np.sum(np.abs(solution.x) < 1) == 1
+
+
+def test_unbounded_is_a_linear_solve():
+    C = compliance(12, np.random.default_rng(7))
+    g = np.linspace(0, 1, 12)
+    solution = solve_bounded(C, g, np.full(12, -np.inf), np.full(12, np.inf), 2.0)
+    saddle = np.block([[C, -np.ones((12, 1))], [np.ones((1, 12)), np.zeros((1, 1))]])
+    assert solution.x == pytest.approx(np.linalg.solve(saddle, np.append(g, 2.0))[:-1], rel=1e-10)
+    assert solution.iterations <= 3
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1e12])
+def test_independent_of_units(scale):
+    random = np.random.default_rng(11)
+    C, g, bound = compliance(40, random), random.standard_normal(40), random.random(40)
+    base = solve_bounded(C, g, -bound, bound, 1.0)
+    scaled = solve_bounded(C * scale, g, -bound / scale, bound / scale, 1.0 / scale)
+    assert scaled.x * scale == pytest.approx(base.x, rel=1e-8, abs=1e-12)
+    assert scaled.iterations == base.iterations

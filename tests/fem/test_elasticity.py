@@ -1,0 +1,91 @@
+"""The body: rigid motions, constant strain, weights, and one factorisation that keeps the contact last."""
+
+import numpy as np
+import pytest
+import scipy.sparse.linalg as spla
+
+from partialslip_fem import condensation
+from partialslip_fem.condensation import Condensed
+from partialslip_fem.elasticity import body
+from partialslip_meshes import block
+
+SIZES = {-1.0: 0.2, 0.3: 0.1, 1.0: 0.2}
+
+
+@pytest.fixture(scope="module", params=[2, 3, 4])
+def half(request):
+    return body(block(5.0, (-1.2, 1.2), SIZES, 0.6), kappa=1.8, order=request.param)
+
+
+def test_rigid_motions_are_free(half):
+    N = half.stiffness.shape[0] // 2
+    for motion in np.repeat(np.eye(2), N, axis=1):
+        assert np.abs(half.stiffness @ motion).max() < 1e-10
+
+
+def test_stiffness_is_symmetric(half):
+    assert abs(half.stiffness - half.stiffness.T).max() < 1e-12
+
+
+def test_weights_are_the_closed_newton_cotes_ones(half):
+    weights = np.asarray(half.mass.sum(axis=1)).ravel()
+    assert weights.sum() == pytest.approx(2.4, rel=1e-13)
+    assert (weights > 0).all()
+    inner = {2: [4 / 6], 3: [3 / 8, 3 / 8], 4: [32 / 90, 12 / 90, 32 / 90]}[half.order]
+    k = half.order
+    lengths = np.diff(half.x[::k])
+    for offset, weight in enumerate(inner, start=1):
+        assert weights[offset::k] == pytest.approx(weight * lengths, rel=1e-12)
+
+
+def test_contact_nodes_are_evenly_spaced_within_cells(half):
+    k = half.order
+    vertices = half.x[::k]
+    assert set(SIZES) <= {round(x, 12) for x in vertices}
+    for offset in range(k):
+        assert half.x[offset::k][: len(vertices) - 1] == pytest.approx(vertices[:-1] + np.diff(vertices) * offset / k)
+
+
+@pytest.mark.parametrize("kappa", [1.0004, 1.8, 2.0, 2.9])
+def test_constant_strain_is_exact(kappa):
+    """Displacements linear in x and y on the outer boundary and balancing forces on the line: no error at any nu."""
+    half = body(block(5.0, (-4.0, 4.0), {0.0: 1.0}, 0.3), kappa, order=4)
+    mu = (kappa + 1) / 2
+    lam = mu * (3 - kappa) / (kappa - 1)
+    # uniaxial tension along x leaves the line y = 0 free: eps_y = -lam/(lam + 2 mu) eps_x
+    strain = np.array([1.0, -lam / (lam + 2 * mu)])
+    displacement = Condensed(half).respond((half.far_points * strain[:, None]).reshape(-1, 1))
+    expected = np.concatenate([half.x * strain[0], 0 * half.x])
+    assert displacement.ravel() == pytest.approx(expected, abs=1e-9 * max(1.0, lam))
+
+
+def test_schur_complement_from_the_factor_is_the_inverse(half):
+    condensed = Condensed(half)
+    free = np.setdiff1d(np.arange(half.stiffness.shape[0]), half.far)
+    forces = np.zeros((len(free), 2))
+    places = np.searchsorted(free, half.contact.ravel()[[3, -5]])
+    forces[places, [0, 1]] = 1.0
+    direct = spla.spsolve(half.stiffness[free][:, free].tocsc(), forces)
+    contact = np.searchsorted(free, half.contact.ravel())
+    assert condensed.compliance[:, [3, -5]] == pytest.approx(direct[contact], abs=1e-11)
+    assert condensed.compliance == pytest.approx(condensed.compliance.T, abs=1e-12)
+
+
+def test_one_factorisation(half, monkeypatch):
+    calls = []
+    original = condensation.spla.splu
+    monkeypatch.setattr(condensation.spla, "splu", lambda *args, **kw: calls.append(1) or original(*args, **kw))
+    condensed = Condensed(half)
+    condensed.respond(np.zeros((half.far.size, 3)))
+    condensed.displace(np.zeros((half.contact.size, 3)), np.zeros((half.far.size, 3)))
+    assert len(calls) == 1
+
+
+def test_displacements_of_all_nodes_carry_the_contact_forces(half):
+    condensed = Condensed(half)
+    forces = np.linspace(0, 1, half.contact.size)[:, None]
+    u = condensed.displace(forces, np.zeros((half.far.size, 1)))
+    residual = half.stiffness @ u
+    residual[half.contact.ravel()] -= forces
+    residual[half.far.ravel()] = 0
+    assert np.abs(residual).max() < 1e-10

@@ -1,0 +1,88 @@
+"""The exact method: published cases, regimes, signs and mean loads."""
+
+import numpy as np
+import pytest
+
+from partialslip import load_scene, plan
+from partialslip.halfplane import solve
+
+
+def exact(name, *overrides):
+    scene = load_scene(name, overrides)
+    return solve(scene, plan(scene))
+
+
+def test_fretting_aluminium():
+    result = exact("fretting-aluminium")
+    assert result.regime == "small tension"
+    assert result.a * 1e3 == pytest.approx(0.206698, abs=5e-7)
+    assert result.p0 / 1e6 == pytest.approx(418.104, abs=5e-4)
+    assert (result.m / result.a, result.n / result.a) == pytest.approx((0.419531, 0.020906), abs=5e-7)
+    assert result.traction.q2.max() / 1e6 == pytest.approx(125.40, abs=5e-3)
+
+
+def test_yang_laursen():
+    result = exact("yang-laursen")
+    assert (result.m / result.a, result.n / result.a) == pytest.approx((0.729308, 0.729308), abs=5e-7)
+    assert result.traction.at(np.array([result.n]))[1][0] / 2e6 == pytest.approx(1.279612, abs=5e-7)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "regime"),
+    [
+        (["load.Q=[0, 0]", "load.sigma=[0, 0]"], "stuck"),
+        (["load.Q=[5e4, 5e4]", "load.sigma=[1e8, 1e8]"], "stuck"),
+        (["load.sigma=[0, 0]"], "small tension"),
+        (["load.Q=[0, 0]"], "large tension"),
+        (["load.Q=[-314159.26535897935, 314159.26535897935]"], "sliding"),
+        (["load.Q=[-4e5, 4e5]"], "sliding"),
+        (["load.Q=[2e5, 4e5]"], "sliding"),
+        (["load.Q=[62831.85, 251327.4]", "load.sigma=[2e8, 1e9]"], "ratchets"),
+        (["friction.f=0"], "sliding"),
+    ],
+)
+def test_regimes(overrides, regime):
+    result = exact("hertz-large-tension", *overrides)
+    assert result.regime == regime
+    assert (result.m is None) == (regime == "sliding")
+    assert np.isfinite(result.traction.p).all()
+    assert np.isfinite(result.traction.dq).all()
+
+
+@pytest.mark.parametrize("name", ["hertz-small-tension", "hertz-large-tension"])
+def test_signs_of_the_loads(name):
+    """Turning dQ round mirrors the zone; turning dsigma round mirrors it too; turning both leaves it."""
+    base, scene = exact(name), load_scene(name)
+    Q, sigma = scene.load.Q[1], scene.load.sigma[1]
+    for sign_Q, sign_sigma in ((-1, 1), (1, -1), (-1, -1)):
+        turned = exact(
+            name, f"load.Q=[{-sign_Q * Q}, {sign_Q * Q}]", f"load.sigma=[{-sign_sigma * sigma}, {sign_sigma * sigma}]"
+        )
+        side = sign_Q * sign_sigma
+        assert (turned.m, turned.n) == pytest.approx((base.m, base.n) if side > 0 else (base.n, base.m), rel=1e-14)
+        x = np.linspace(-1, 1, 41) * base.a
+        assert turned.traction.at(x)[1] == pytest.approx(sign_Q * base.traction.at(side * x)[1], rel=1e-12, abs=1e-3)
+
+
+def test_mean_loads_leave_the_levels_open():
+    """The range depends on the changes only; q1 and q2 themselves on the path."""
+    base = exact("hertz-small-tension")
+    shifted = exact("hertz-small-tension", "load.Q=[-200000, 271238.898038469]", "load.sigma=[0, 480e6]")
+    assert (shifted.m, shifted.n) == pytest.approx((base.m, base.n), rel=1e-12)
+    assert shifted.traction.q1 is None
+    assert shifted.traction.q2 is None
+    assert "mean loads" in shifted.notes[0]
+
+
+def test_any_units_give_the_same_zone():
+    """Lengths, forces and stresses scaled together leave every ratio alone."""
+    base = exact("fretting-aluminium")
+    for L, S in ((1e3, 1e-6), (1e-12, 1e12)):
+        scaled = exact(
+            "fretting-aluminium",
+            f"material.E={72.1e9 * S}", f"profile.R={0.010 * L}", f"load.P={135750.0 * S * L}",
+            f"load.Q=[{-38750.0 * S * L}, {38750.0 * S * L}]", f"load.sigma=[{-100e6 * S}, {100e6 * S}]",
+        )  # fmt: skip
+        assert scaled.m / scaled.a == pytest.approx(base.m / base.a, rel=1e-12)
+        assert scaled.n / scaled.a == pytest.approx(base.n / base.a, rel=1e-10)
+        assert scaled.p0 == pytest.approx(base.p0 * S, rel=1e-12)

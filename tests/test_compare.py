@@ -1,0 +1,120 @@
+"""Error measures on tractions that are known, and perturbations that they must see."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from partialslip import compare, load_scene, plan
+from partialslip.compare import CERTIFICATE_BAR, cell_errors, cell_means
+from partialslip.halfplane import solve
+from partialslip.result import Traction
+
+CELLS = np.array([-1.1, -0.9, -0.5, 0.1, 0.3, 0.97, 1.2])
+
+
+def traction_of(p, dq, breaks=(-1.0, 1.0), cells=CELLS):
+    x = np.linspace(-1, 1, 50)
+    return Traction(x, p(x), dq(x), None, None, lambda points: (p(points), dq(points)), np.array(breaks), cells)
+
+
+def root(x):
+    return np.sqrt(np.maximum(1 - x**2, 0))
+
+
+@pytest.fixture(scope="module")
+def exact():
+    scene = load_scene("hertz-large-tension")
+    return solve(scene, plan(scene))
+
+
+def with_cells(result, p_factor=lambda x: 1 + 0 * x, q_added=lambda x: 0 * x):
+    """The result as a method on a mesh would give it, tampered with."""
+    scaled = np.linspace(-1.05, 1.05, 43) * result.a
+
+    def at(x):
+        p, dq = result.traction.at(x)
+        return p * p_factor(x / result.a), dq + 2 * q_added(x / result.a)
+
+    p, dq = at(result.traction.x)
+    return replace(result, traction=replace(result.traction, p=p, dq=dq, at=at, cells=scaled))
+
+
+def test_cell_means_are_exact_for_square_roots():
+    p, _ = cell_means(traction_of(root, root), CELLS)
+    inner = np.clip(CELLS, -1, 1)
+    resultant = (np.arcsin(inner) + inner * np.sqrt(1 - inner**2)) / 2
+    assert p * np.diff(CELLS) == pytest.approx(np.diff(resultant), abs=1e-14)
+
+
+def test_cell_means_see_inner_breaks():
+    def kinked(x):
+        return root(x) - np.sqrt(np.maximum((0.2 - x) * (x + 0.8), 0))
+
+    means, _ = cell_means(traction_of(kinked, kinked, breaks=(-1, -0.8, 0.2, 1)), CELLS)
+    assert means @ np.diff(CELLS) == pytest.approx(np.pi / 2 * (1 - 0.25), abs=1e-13)
+
+
+def test_a_result_equals_itself(exact):
+    comparison = compare(with_cells(exact), exact, 0.5, 1e-12)
+    assert comparison.passed
+    assert comparison.a == comparison.m == comparison.n == comparison.p == comparison.q == 0
+
+
+def test_scaled_pressure_is_measured_as_such(exact):
+    comparison = compare(with_cells(exact, p_factor=lambda x: 1.01 + 0 * x), exact, 0.5, 1e-4)
+    assert comparison.p == pytest.approx(0.01, rel=1e-10)
+    assert comparison.p_nodal == pytest.approx(0.01, rel=1e-10)
+    assert comparison.p_max == pytest.approx(0.01, rel=1e-2)
+    assert comparison.missed == ("p: error 1.0e-02 > 1.0e-03",)
+
+
+def test_perturbation_that_keeps_the_resultant_is_seen(exact):
+    """Deliberate fault: shear moved from one side to the other, sum unchanged."""
+    moved = with_cells(exact, q_added=lambda x: 2e6 * np.sin(2 * np.pi * x) * (np.abs(x) < 1))
+    comparison = compare(moved, exact, 0.5, 2e-5)
+    assert not comparison.passed
+    assert comparison.q > 1e-3
+    assert comparison.q_max == pytest.approx(2e6 / (0.5 * exact.p0), rel=1e-3)
+
+
+@pytest.mark.parametrize("key", ["m", "n"])
+def test_a_shifted_end_is_measured_in_a(exact, key):
+    shift = 1e-3 * exact.a
+    centre = exact.stick_centre + (shift if key == "n" else -shift) / 2
+    moved = replace(exact, stick_centre=centre, stick_half_width=exact.stick_half_width + shift / 2)
+    comparison = compare(moved, exact, 0.5, 2e-5)
+    assert getattr(comparison, key) == pytest.approx(1e-3, rel=1e-9)
+    assert getattr(comparison, "n" if key == "m" else "m") == pytest.approx(0, abs=1e-15)
+    assert not comparison.passed
+
+
+def test_tiny_stick_zone_is_compared_without_cancellation(exact):
+    tiny = replace(exact, stick_centre=-0.3 * exact.a, stick_half_width=1e-20 * exact.a)
+    wider = replace(tiny, stick_half_width=3e-20 * exact.a)
+    assert compare(wider, tiny, 0.5, 1e-12).m == pytest.approx(2e-20, rel=1e-9)
+
+
+def test_another_regime_is_missed(exact):
+    comparison = compare(replace(exact, regime="small tension"), exact, 0.5, 1e-4)
+    assert comparison.missed == ("regime: small tension, not large tension",)
+
+
+def test_a_solver_that_did_not_close_is_missed(exact):
+    open_ended = replace(exact, certificate={"kkt_friction": 10 * CERTIFICATE_BAR, "steady": 1.0})
+    assert [what.split()[1] for what in compare(open_ended, exact, 0.5, 1e-4).missed] == ["kkt_friction"]
+    undefined = replace(exact, certificate={"equilibrium_Q": float("nan")})
+    assert not compare(undefined, exact, 0.5, 1e-4).passed
+
+
+def test_no_shear_no_error_of_shear():
+    scene = load_scene("hertz-shear", ["load.Q=[0, 0]"])
+    result = solve(scene, plan(scene))
+    comparison = compare(with_cells(result), result, 0.5, 1e-4)
+    assert comparison.q is None
+    assert comparison.q_nodal is None
+    assert comparison.passed
+
+
+def test_points_without_cells_have_no_cell_errors(exact):
+    assert cell_errors(exact.traction, exact.traction) == (None, None)
