@@ -17,7 +17,7 @@ def print_run(run: Run, console: Console) -> None:
         console.print(_errors(run, name))
     for name, result in run.results.items():
         lines = {"regime": result.regime, "built": rows.work(result), "certificate": rows.certificate(result)}
-        if name not in run.comparisons:
+        if not run.comparisons:
             lines["found"] = ", ".join(f"{key} = {rows.value(result, key)}" for key in ("a", "m", "n"))
         lines |= {"cost": rows.cost(result), "note": "; ".join(result.notes)}
         _print_lines(console, name, lines)

@@ -1,0 +1,60 @@
+"""The README says what is so."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from partialslip import shipped_scenes
+from partialslip.cli import main
+from partialslip.reading import parse_scene
+from partialslip_meshes.gmsh import DEBIAN_PACKAGES
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text("utf-8")
+
+
+def blocks(language):
+    return re.findall(rf"^```{language}\n(.*?)^```", README, flags=re.MULTILINE | re.DOTALL)
+
+
+def test_two_commands_set_up_one_runs_one_tests():
+    set_up, run, tests = blocks("sh")
+    assert len(set_up.strip().splitlines()) == 2
+    assert run.strip() == ".venv/bin/partialslip run fretting-aluminium"
+    assert tests.strip() == ".venv/bin/python -m pytest"
+    assert all(f"<!-- {name} -->\n```sh" in README for name in ("set-up", "run", "tests"))
+
+
+def test_every_library_that_gmsh_needs_is_set_up():
+    assert all(f" {package}" in blocks("sh")[0] for package in DEBIAN_PACKAGES.values())
+
+
+def test_scene_in_the_readme_is_the_shipped_one(capsys):
+    (text,) = blocks("toml")
+    scene = parse_scene(tomllib.loads(text))
+    assert main(["run", scene.name, "--with", "exact", "--json"]) == 0
+    printed = capsys.readouterr().out
+    shipped = tomllib.loads((ROOT / f"src/partialslip/scenes/{scene.name}.toml").read_text("utf-8"))
+    assert scene.load == parse_scene(shipped).load
+    assert f'"name": "{scene.name}"' in printed
+
+
+def test_python_in_the_readme_runs(capsys):
+    (code,) = blocks("python")
+    exec(compile(code.replace('"load.Q=', '"fem.accuracy=1e-2", "load.Q='), "README.md", "exec"), {})
+    exact_m, fem_m, q, cpu = map(float, capsys.readouterr().out.split())
+    assert fem_m == pytest.approx(exact_m, abs=1e-2)
+    assert 0 < q < 0.15
+    assert cpu > 0
+
+
+def test_all_scenes_are_in_the_table():
+    assert all(f"| {name} |" in README for name in shipped_scenes())
+
+
+def test_links_lead_somewhere():
+    targets = re.findall(r"\]\((?!https?:)([^)#]+)\)", README)
+    assert targets
+    assert all((ROOT / target).exists() for target in targets)
