@@ -68,7 +68,8 @@ class _BlockPivoting:
     All members that violate their condition change sides at once; if their number has not fallen for three
     rounds, only the last of them does (Murty's rule), until it falls. That cannot cycle (Judice and Pires 1994)
     but by rounding, where a member sits exactly on its bound and neither side is right to the last digit: if a
-    partition comes back, what counts as rounding is doubled.
+    partition comes back, or 10 n rounds of that rule bring nothing, more counts as rounding. What is left of the
+    conditions is in the solution's residual.
     """
 
     def __init__(self, C: Array, g: Array, lower: Array, upper: Array) -> None:
@@ -110,8 +111,9 @@ class _BlockPivoting:
                 chances -= 1
             else:
                 wrong = wrong[-1:]
-                if (partition := self._side.tobytes()) in seen:
-                    rounding *= 2
+                if (partition := self._side.tobytes()) in seen or len(seen) == 10 * len(self._g):
+                    rounding *= 16
+                    seen.clear()
                 seen.add(partition)
             self._side[wrong] = np.where(self._side[wrong] == 0, wanted[wrong], 0)
 

@@ -16,6 +16,7 @@ from partialslip_fem.level import Level, Problem
 
 _WIDTH = {"half-plane": 16.0, "box": 4096.0}  # in contact half-widths
 _LARGEST_NU = 0.4999999
+_STEADY = 1e-6  # change of q in a cycle, in f p0, that counts as none
 
 
 def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None) -> Result:
@@ -75,12 +76,15 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     x = level.body.x[level.nodes]
     p0 = float(pressure(x).max())
     regime, notes = _regime(scene, level)
+    certificate = _certificate(problem, level, p0)
     if max(adapted.errors.values()) > scene.fem.accuracy:
         notes += (f"accuracy {scene.fem.accuracy:g} not reached: the ends are known to {_listed(adapted.errors)} a",)
+    if (change := certificate.get("steady", 0.0)) > max(scene.fem.accuracy, _STEADY):
+        notes += (f"not steady: q changed by {change:.1e} f p0 in the last cycle; take more of them (load.cycles)",)
 
     shear = [level.shear(step) for step in range(len(level.steps))]
-    q1, q2 = (stress * shear[-2](x), stress * shear[-1](x)) if shear else (np.zeros_like(x), np.zeros_like(x))
     dq = _difference(shear[-1], shear[-2]) if shear else None
+    q1, q2 = (stress * shear[-2](x), stress * shear[-1](x)) if shear else (np.zeros_like(x), np.zeros_like(x))
 
     def at(points: Array) -> tuple[Array, Array]:
         scaled = points / L
@@ -99,8 +103,8 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
             x=x * L,
             p=stress * pressure(x),
             dq=q2 - q1,
-            q1=q1,
-            q2=q2,
+            q1=q1 if regime != "sliding" else None,
+            q2=q2 if regime != "sliding" else None,
             at=at,
             breaks=np.sort(level.ends) * L,
             cells=level.body.x[:: level.body.order] * L,
@@ -121,7 +125,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
             "load_steps": len(level.steps),
             "iterations": adapted.iterations,
         },
-        certificate=_certificate(problem, level, p0),
+        certificate=certificate,
         estimate=adapted.errors,
         notes=notes,
         bodies=displaced(level, problem, L, scene.material.A * scene.P) if plan.needs("subsurface") else (),

@@ -28,7 +28,7 @@ def right_end(vertices: Array, forces: Array, inside: Array) -> float:
     last = np.searchsorted(vertices, inside[-1])  # the first vertex at or beyond the last node
     x = vertices[:last][::-1]
     x = x[x >= inside[0]]
-    force = np.cumsum(forces[:last][::-1])[: len(x)]
+    force = np.cumsum(forces[::-1])[len(forces) - last :][: len(x)]
     # the nearest vertex has but part of a cell beyond it: leave it out where there are others
     skip = 1 if len(x) > _VERTICES else 0
     x, force = x[skip : skip + _VERTICES], force[skip : skip + _VERTICES]

@@ -26,7 +26,7 @@ class Material(Table, frozen=True, kw_only=True):
     """Linear elastic, isotropic; both bodies. ``E`` in Pa."""
 
     E: Positive
-    nu: Annotated[float, msgspec.Meta(gt=-1, lt=0.5)]
+    nu: Annotated[float, msgspec.Meta(ge=-0.9, lt=0.5)]
     plane: Literal["strain", "stress"] = "strain"
 
     @property

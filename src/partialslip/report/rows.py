@@ -35,6 +35,8 @@ def value(result: Result, key: str) -> str:
         return "none" if end is None else f"{end / result.a:.7f} a"
     if key == "a":
         return f"{result.a * 1e3:.7g} mm"
+    if key == "q" and result.regime == "sliding":
+        return "none"
     peak = result.p0 if key == "p" else np.abs(result.traction.dq).max() / 2
     return f"max {peak / 1e6:.6g} MPa"
 
