@@ -1,6 +1,7 @@
 """Bad input: exit code 2, one line that names the field, nothing on stdout and no file."""
 
 import re
+from pathlib import Path
 
 import pytest
 
@@ -31,6 +32,7 @@ width = 16.0
 """
 EXACT = ("run", "bench.toml", "--with", "exact")
 SHIPPED = ("run", "hertz-shear", "--with", "exact")
+SIZE = "must be zero or of a size from 1e-100 to 1e+100"
 TABLES = ("material", "profile", "friction", "load")
 
 # Wording of the libraries below, which says nothing to whoever wrote the scene.
@@ -47,11 +49,6 @@ def edited(line, new):
 def without(table):
     """The good scene without a table."""
     return re.sub(rf"\[{table}\]\n([^\[].*\n)+", "", GOOD)
-
-
-def broken(reason, *values):
-    """A case that is not handled as it should be, yet."""
-    return pytest.param(*values, marks=pytest.mark.xfail(strict=True, reason=reason))
 
 
 @pytest.fixture
@@ -97,21 +94,23 @@ def test_the_good_scene_is_good(tmp_path, capsys):
         ("E =", "E = true", "material.E = True: must be a number, not true or false"),
         ("E =", "E = [1.0]", "material.E = [1.0]: must be a number, not an array"),
         ("E =", "E = {x = 1}", "material.E = {'x': 1}: must be a number, not a table"),
-        broken("a date is shown in Python's words", "E =", "E = 1979-05-27", "material.E = 1979-05-27: must be a"),
-        broken("the library's words", "E =", "E = " + "9" * 400, "material.E"),
-        broken("traceback: ValueError", "E =", "E = " + "9" * 5000, "bench.toml"),
-        broken("traceback: RecursionError", "E =", "E = " + "[" * 3000 + "]" * 3000, "bench.toml"),
+        ("E =", "E = 1979-05-27", "material.E = 1979-05-27: must be a number, not "),
+        ("E =", "E = " + "9" * 400, f"material.E = {'9' * 57}...: {SIZE}"),
+        ("E =", "E = " + "9" * 5000, "not valid TOML: "),
+        ("E =", "E = " + "[" * 3000 + "]" * 3000, "not valid TOML: "),
         ("nu =", "nu = 0.5", "material.nu = 0.5: must be < 0.5"),
-        ("nu =", "nu = -1", "material.nu = -1: must be > -1"),
+        ("nu =", "nu = -1", "material.nu = -1: must be >= -0."),
         ("nu =", "nu = 2", "material.nu = 2: must be < 0.5"),
         ("f =", "f = -0.1", "friction.f = -0.1: must be >= 0"),
         ("f =", "f = nan", "friction.f = nan: must be finite"),
-        broken("traceback: RuntimeWarning or NaN in the record", "f =", "f = 1e300", "friction.f = 1e+300"),
+        ("f =", "f = 1001", "friction.f = 1001: must be <= 1000"),
+        ("f =", "f = 1e300", "friction.f = 1e+300: must be "),
         ("R =", "R = 0", "profile.R = 0: must be > 0"),
         ("R =", "R = -0.05", "profile.R = -0.05: must be > 0"),
-        ("E =", "E = 1e-320", "load.p0 = 400000000.0: out of range with this E and R"),
-        broken("traceback: ZeroDivisionError", "R =", "R = 1e-320", "load.p0 = 400000000.0: out of range"),
-        broken("traceback: OverflowError", "R =", "R = 1e300", "load.p0 = 400000000.0: out of range"),
+        ("E =", "E = 1e-320", f"material.E = 1e-320: {SIZE}"),
+        ("R =", "R = 1e300", f"profile.R = 1e+300: {SIZE}"),
+        ("E =", "E = 1e-99", "load.p0 = 400000000.0: out of range with this E and R"),
+        ("R =", "R = 1e99", "load.p0 = 400000000.0: out of range with this E and R"),
         # words
         ("plane =", 'plane = "plain"', "material.plane = 'plain': must be one of 'strain', 'stress'"),
         ("plane =", "plane = 1", "material.plane = 1: must be a string"),
@@ -122,8 +121,8 @@ def test_the_good_scene_is_good(tmp_path, capsys):
         ("name =", 'name = ""', "name = '': must be letters"),
         ("name =", 'name = "a/b"', "name = 'a/b': must be letters"),
         ("name =", 'name = ".."', "name = '..': must be letters"),
-        broken("accepted, and a folder is named so", "name =", r'name = "bench\n"', r"name = 'bench\n'"),
-        broken("the library's words", "name =", f'name = "{"x" * 101}"', "name = 'xxx"),
+        ("name =", r'name = "bench\n"', r"name = 'bench\n': must be letters"),
+        ("name =", f'name = "{"x" * 101}"', f"name = '{'x' * 56}...: must be at most 100 characters"),
         # the load
         ("p0 =", "P = 0", "load.P = 0: must be > 0"),
         ("p0 =", "P = nan", "load.P = nan: must be finite"),
@@ -131,20 +130,19 @@ def test_the_good_scene_is_good(tmp_path, capsys):
         ("p0 =", "", "load: exactly one of P, a, p0 must be given, not none"),
         ("p0 =", "P = 1e5\na = 1e-3", "load: exactly one of P, a, p0 must be given, not P and a"),
         ("p0 =", "P = 1e5\na = 1e-3\np0 = 4e8", "load: exactly one of P, a, p0 must be given, not P and a and p0"),
-        ("p0 =", "P = 1e-320", "load.P = 1e-320: out of range"),
-        ("p0 =", "p0 = 1e-300", "load.p0 = 1e-300: out of range"),
-        ("p0 =", "a = 1e-200", "load.a = 1e-200: out of range"),
-        ("p0 =", "a = 1e150", "load.a = 1e+150: out of range"),
-        broken("traceback: OverflowError", "p0 =", "a = 1e200", "load.a = 1e+200: out of range"),
-        broken("traceback: OverflowError", "p0 =", "p0 = 1e300", "load.p0 = 1e+300: out of range"),
+        ("p0 =", "P = 1e-320", f"load.P = 1e-320: {SIZE}"),
+        ("p0 =", "P = 1e308", f"load.P = 1e+308: {SIZE}"),
+        ("p0 =", "p0 = 1e300", f"load.p0 = 1e+300: {SIZE}"),
+        ("p0 =", "a = 1e99", "load.a = 1e+99: out of range with this E and R"),
+        ("p0 =", "p0 = 1e99", "load.p0 = 1e+99: out of range with this E and R"),
         ("Q =", "Q = 1e5", "load.Q = 100000.0: must be an array, not a number"),
         ("Q =", "Q = [1.0]", "load.Q = [1.0]: must be an array of 2 numbers"),
         ("Q =", "Q = [1, 2, 3]", "load.Q = [1, 2, 3]: must be an array of 2 numbers"),
         ("Q =", 'Q = ["1", 2]', "load.Q[0] = '1': must be a number, not a string"),
         ("Q =", "Q = [1, inf]", "load.Q[1] = inf: must be finite"),
-        ("Q =", "Q = [-1e308, 1e308]", "load.Q = [-1e+308, 1e+308]: "),
+        ("Q =", "Q = [-1e308, 1e308]", f"load.Q[0] = -1e+308: {SIZE}"),
         ("sigma =", "sigma = [0, [1]]", "load.sigma[1] = [1]: must be a number, not an array"),
-        ("sigma =", "sigma = [-1e308, 1e308]", "load.sigma = [-1e+308, 1e+308]: "),
+        ("sigma =", "sigma = [0, 1e-308]", f"load.sigma[1] = 1e-308: {SIZE}"),
         ("cycles =", "cycles = 0", "load.cycles = 0: must be >= 1"),
         ("cycles =", "cycles = 1.5", "load.cycles = 1.5: must be a whole number"),
         ("cycles =", "cycles = 1000000000", "load.cycles = 1000000000: must be <= 1000"),
@@ -167,10 +165,10 @@ def test_the_good_scene_is_good(tmp_path, capsys):
         ("far_field =", 'farfield = "box"', "fem.farfield: unknown key; did you mean 'far_field'?"),
         ("[material]", "[materiel]", "materiel: unknown key; did you mean 'material'?"),
         ("[fem]", "[FEM]", "FEM: unknown key; did you mean 'fem'?"),
-        broken("suggests 'name' for a table", "[fem]", "[mesh]", "mesh: unknown key; known are "),
+        ("[fem]", "[mesh]", "mesh: unknown key; known are name, material, "),
         ("[load]", "[[load]]", "load = [{'p0': 400000000.0, "),
         ("[friction]", "[friction.f]", "friction.f = {'f': 0.5}: must be a number, not a table"),
-        broken("line break in a key", "E =", r'"E\nE" = 1', "material.E"),
+        ("E =", r'"E\nE" = 1', r"material.E\nE: unknown key; known are E, nu, plane"),
         # TOML
         ("E =", "E =", "not valid TOML: Invalid value (at line 4"),
         ("E =", "E = 1\nE = 2", "not valid TOML: Cannot overwrite a value (at line 5"),
@@ -216,7 +214,7 @@ def test_broken_file(rejected, content, expected):
         ("../scenes/yang-laursen", ["'../scenes/yang-laursen'"]),
         ("nul\0.toml", ["cannot be read"]),
         ("two\nlines", [r"'two\nlines'"]),
-        broken("line break in a path", "two\nlines.toml", ["cannot be read"]),
+        ("two\nlines.toml", [r"two\nlines.toml: cannot be read: No such file"]),
     ],
 )
 def test_no_such_scene(rejected, tmp_path, path, expected):
@@ -236,17 +234,17 @@ def test_no_such_scene(rejected, tmp_path, path, expected):
         ("name.x=1", "--set name.x=1: name is not a table"),
         ("load.Q.0=1", "--set load.Q.0=1: Q is not a table"),
         ("load=1", "load = 1: must be a table"),
-        ("load.p0=", "load.p0 = '': must be a number"),
+        ("load.p0=", "--set load.p0=: not valid TOML: "),
         ("load.p0=x y", "load.p0 = 'x y': must be a number"),
-        ("load.p0=1=2", "load.p0 = '1=2': must be a number"),
+        ("load.p0=1=2", "--set load.p0=1=2: not valid TOML: "),
         ("load.p0=nan", "load.p0 = nan: must be finite"),
-        ("load.Q=[1", "load.Q = '[1': must be an array"),
+        ("load.Q=[1", "--set load.Q=[1: not valid TOML: "),
         ("load.P=1e5", "load: exactly one of P, a, p0 must be given, not P and p0"),
         ("lod.P=1", "lod: unknown key; did you mean 'load'?"),
         ("fem.far_field=bx", "fem.far_field = 'bx': must be one of"),
-        broken("traceback: ValueError", "load.p0=" + "9" * 5000, "load.p0"),
-        broken("traceback: RecursionError", "load.p0=" + "[" * 3000, "load.p0"),
-        broken("line break in a key", "x\ny=1", "unknown key"),
+        ("load.p0=" + "9" * 5000, "999...: not valid TOML: "),
+        ("load.p0=" + "[" * 3000, "[[[...: not valid TOML: "),
+        ("x\ny=1", r"x\ny: unknown key"),
     ],
 )
 def test_bad_setting(rejected, setting, expected):
@@ -266,34 +264,33 @@ def test_bad_setting(rejected, setting, expected):
         (["run", "hertz-shear", "--with", "exact,bem"], "--with 'bem': must be of exact, fem"),
         (["run", "hertz-shear", "--with", ""], "--with '': must be of exact, fem"),
         (["run", "hertz-shear", "--with", "exact,"], "--with '': must be of exact, fem"),
-        ([*SHIPPED, "--accuracy", "fine"], "fem.accuracy = 'fine': must be a number"),
-        ([*SHIPPED, "--accuracy", "0"], "fem.accuracy = 0: must be >= 1e-08"),
+        ([*SHIPPED, "--accuracy", "fine"], "--accuracy 'fine': must be a number"),
+        ([*SHIPPED, "--accuracy", "0"], "fem.accuracy = 0.0: must be >= 1e-08"),
         ([*SHIPPED, "--accuracy", "nan"], "fem.accuracy = nan: must be finite"),
-        ([*SHIPPED, "--accuracy", ""], "fem.accuracy = '': must be a number"),
+        ([*SHIPPED, "--accuracy", ""], "--accuracy '': must be a number"),
         ([*SHIPPED, "--fields"], "--fields: needs the method fem"),
         ([*SHIPPED, "--out", "bench.toml"], "--out bench.toml: cannot be written"),
         ([*SHIPPED, "--out", "bench.toml/inside"], "--out bench.toml/inside: cannot be written"),
-        broken("traceback: ValueError", [*SHIPPED, "--out", "nul\0"], "--out"),
-        broken("line break in an option", [*SHIPPED, "--bo\ngus"], "unrecognized"),
+        ([*SHIPPED, "--out", "nul\0"], r"--out nul\x00: cannot be written"),
+        ([*SHIPPED, "--out", ""], "must name a folder"),
+        ([*SHIPPED, "--acc", "1e-3"], "unrecognized arguments: --acc"),
+        ([*SHIPPED, "--bo\ngus"], r"unrecognized arguments: --bo\ngus"),
     ],
 )
 def test_bad_arguments(rejected, arguments, expected):
     assert expected in rejected(GOOD, arguments)
 
 
-@pytest.mark.parametrize(
-    ("line", "new", "expected"),
-    [
-        broken("traceback: NaN in the record", "p0 =", "P = 1e-300", "load.P"),
-        broken("traceback: overflow, NaN in the record", "p0 =", "P = 1e308", "load.P"),
-        broken("traceback: no stiffness left", "nu =", "nu = 0.4999999999999999", "material.nu"),
-    ],
-)
-def test_beyond_what_finite_elements_can_hold(rejected, line, new, expected):
-    assert expected in rejected(edited(line, new), ["run", "bench.toml"])
+def test_all_but_incompressible_is_for_the_exact_method_alone(rejected, capsys):
+    text = edited("nu =", "nu = 0.49999991")
+    message = rejected(text, ["run", "bench.toml"])
+    assert "material.nu = 0.49999991: must be <= 0.4999999 in plane strain" in message
+    assert main([*EXACT, "--json"]) == 0
+    assert capsys.readouterr().err == ""
 
 
-@pytest.mark.xfail(strict=True, reason="blames an option that was not given, not the file in the way; writes two files")
-def test_a_folder_where_a_file_must_go(rejected, tmp_path):
-    (tmp_path / "results" / "hertz-shear" / "report.html").mkdir(parents=True)
-    assert "results/hertz-shear/report.html" in rejected(None, SHIPPED).replace("\\", "/")
+@pytest.mark.parametrize("name", ["results.json", "tractions.csv", "report.html"])
+def test_a_folder_where_a_file_must_go(rejected, tmp_path, name):
+    place = Path("results", "hertz-shear", name)
+    (tmp_path / place).mkdir(parents=True)
+    assert rejected(None, SHIPPED) == f"partialslip: {place}: cannot be written: is a folder\n"

@@ -11,7 +11,7 @@ from partialslip_fem.level import Level, Problem, solve_level
 _GROWTH = {2: 0.25, 3: 0.5, 4: 0.7}  # element size gained per distance, on the first graded mesh
 _FINER, _CALMER = 8.0, 0.85  # from mesh to mesh: element size at the ends, and growth
 _FIRST = 0.1  # element size of the first mesh, in contact half-widths
-_PASSES = 7
+_FINEST = _FIRST / _FINER**6  # below that rounding takes over
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Adapted:
 
     level: Level
     errors: dict[str, float]
-    passes: int
+    meshes: int
     iterations: int
     width: float
 
@@ -33,29 +33,29 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     contact line is a guess, doubled until the contact does not reach its ends.
     """
     reach, size, growth = 1.5, _FIRST, _GROWTH[problem.order]
+    meshes, iterations = 0, 0
     while True:
         guess = dict.fromkeys(np.linspace(-reach, reach, 16).tolist(), 2 * size * reach)
         level = solve_level(problem, width * reach, (-reach, reach), guess, 1.0, clock)
+        meshes, iterations = meshes + 1, iterations + level.iterations
         if level.enclosed:
             break
         reach *= 2
-    iterations, errors = level.iterations, {}
-    for passes in range(2, _PASSES + 1):
+    while True:
         a = level.half_width
         size, growth = size / _FINER, growth * _CALMER
         sizes = dict.fromkeys(_separate(level.ends, size * a), size * a)
         margin = (0.1 + 2 * _FINER * size) * a  # of safety, and what the mesh before may have been off by
         contact = (level.left - margin, level.right + margin)
         before, level = level, solve_level(problem, width * a, contact, sizes, growth, clock)
-        iterations += level.iterations
+        meshes, iterations = meshes + 1, iterations + level.iterations
         errors = {key: change / 3 for key, change in _changes(before, level).items()}
         progress(
-            f"mesh {passes}: {level.body.stiffness.shape[0]:,} unknowns, "
+            f"mesh {meshes}: {level.body.stiffness.shape[0]:,} unknowns, "
             f"{', '.join(errors)} known to {max(errors.values()):.1e} a"
         )
-        if max(errors.values()) <= accuracy and level.enclosed:
-            break
-    return Adapted(level, errors, passes, iterations, width)
+        if (max(errors.values()) <= accuracy and level.enclosed) or size <= _FINEST:
+            return Adapted(level, errors, meshes, iterations, width)
 
 
 def _changes(before: Level, after: Level) -> dict[str, float]:

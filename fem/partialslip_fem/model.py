@@ -120,8 +120,8 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         counts={
             "dofs": level.body.stiffness.shape[0],
             "contact_nodes": len(level.nodes),
-            "meshes": adapted.passes,
-            "factorizations": adapted.passes,
+            "meshes": adapted.meshes,
+            "factorizations": adapted.meshes,
             "load_steps": len(level.steps),
             "iterations": adapted.iterations,
         },
@@ -145,20 +145,18 @@ def _regime(scene: Scene, level: Level) -> tuple[Regime, tuple[str, ...]]:
 
 
 def _certificate(problem: Problem, level: Level, p0: float) -> dict[str, float]:
-    """Residuals as tractions in p0 (normal) and f p0 (friction), sums relative to P and f P; ``steady`` is the
-    change of q between the last two visits of load point 2, in f p0."""
+    """``kkt``: residuals as tractions, in p0 (normal) and f p0 (friction); ``equilibrium``: of P and of Q, relative to
+    P and f P; ``steady``: change of q between the last two visits of load point 2, in f p0."""
     weights = np.asarray(level.body.mass.sum(axis=1)).ravel()
     pressing, steps = level.pressing, level.steps
-    certificate = {
-        "kkt_normal": float((pressing.residual / weights).max() / p0),
-        "equilibrium_P": pressing.imbalance,
-    }
-    if steps:
-        held = weights[level.nodes] * problem.f * p0
-        certificate["kkt_friction"] = max(float((step.residual / held).max()) for step in steps)
-        certificate["equilibrium_Q"] = max(step.imbalance for step in steps) / problem.f
-        certificate["steady"] = float((np.abs(steps[-1].x - steps[-3].x) / held).max())
-    return certificate
+    kkt, equilibrium = [float((pressing.residual / weights).max() / p0)], [pressing.imbalance]
+    if not steps:
+        return {"kkt": max(kkt), "equilibrium": max(equilibrium)}
+    held = weights[level.nodes] * problem.f * p0
+    kkt += [float((step.residual / held).max()) for step in steps]
+    equilibrium += [step.imbalance / problem.f for step in steps]
+    steady = float((np.abs(steps[-1].x - steps[-3].x) / held).max())
+    return {"kkt": max(kkt), "equilibrium": max(equilibrium), "steady": steady}
 
 
 def _difference(after: PPoly, before: PPoly) -> PPoly:

@@ -68,7 +68,7 @@ def _parser() -> argparse.ArgumentParser:
                       help="of a, m and n, as a fraction of a; short for --set fem.accuracy=FRACTION")  # fmt: skip
     runs.add_argument("--fields", action="store_true",
                       help="also write mesh.msh and bodies.vtu, the displaced bodies")  # fmt: skip
-    runs.add_argument("--out", type=Path, metavar="DIR", help="folder for the files (default: results/NAME)")
+    runs.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME)")
     runs.add_argument("--json", action="store_true", help="print results.json and nothing else; files only with --out")
     runs.set_defaults(command=_run)
 
@@ -80,13 +80,16 @@ def _parser() -> argparse.ArgumentParser:
 def _run(options: argparse.Namespace) -> int:
     overrides = [*options.overrides]
     if options.accuracy is not None:
-        overrides.append(f"fem.accuracy={options.accuracy}")
+        try:
+            overrides.append(f"fem.accuracy={float(options.accuracy)!r}")
+        except ValueError:
+            raise InputError(f"--accuracy {options.accuracy!r}: must be a number, for example 1e-4") from None
     methods = [method.strip() for method in options.methods.split(",")]
     for method in methods:
         if method not in METHODS:
             raise InputError(f"--with {method!r}: must be of {', '.join(METHODS)}")
-    if options.out is not None and not options.out.name:
-        raise InputError(f"--out {str(options.out)!r}: must name a folder")
+    if options.out == "":
+        raise InputError("--out '': must name a folder")
     if options.fields and "fem" not in methods:
         raise InputError("--fields: needs the method fem")
     scene = load_scene(options.scene, overrides)
@@ -100,7 +103,7 @@ def _run(options: argparse.Namespace) -> int:
         outcome = run(
             scene, methods, subsurface=options.fields, progress=lambda line: status.update(f"{scene.name}: {line}")
         )
-        folder = options.out or (None if options.json else Path("results") / scene.name)
+        folder = Path(options.out) if options.out else None if options.json else Path("results") / scene.name
         files = write_run(outcome, folder) if folder else []
     if options.json:
         print(json.dumps(record(outcome), indent=1, allow_nan=False))

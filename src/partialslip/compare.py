@@ -127,7 +127,7 @@ def _missed(
     result: Result, reference: Result, errors: dict[str, float | None], bars: dict[str, float]
 ) -> tuple[str, ...]:
     missed = [
-        f"{key}: error {error:.1e} > {bars[key]:.1e}" for key, error in errors.items() if error and error > bars[key]
+        f"{key}: error {error:.3g} > {bars[key]:.3g}" for key, error in errors.items() if error and error > bars[key]
     ]
     missed += [
         f"certificate: {name} {residual:.1e} > {CERTIFICATE_BAR:.0e}"

@@ -36,7 +36,7 @@ def plan(scene: Scene, *, subsurface: bool = False) -> Plan:
         ("tension", any(load.sigma), f"sigma goes between {load.sigma[0]:g} and {load.sigma[1]:g} Pa",
          "sigma = 0 at both load points"),
         ("opposing-slip", friction and load.dsigma != 0, "tension may turn the slip at one end of the contact",
-         "without a change of tension both ends slip the same way" if friction else no_friction),
+         "without a change of tension both ends slip the same way in the steady state" if friction else no_friction),
         ("history", friction and (not load.fully_reversed or load.cycles > 1),
          "mean loads or several cycles: what is locked in depends on the path",
          "fully reversed, one cycle: nothing is locked in" if friction else no_friction),

@@ -21,6 +21,9 @@ _KINDS = {
     "int": "a whole number",
     "str": "a string",
     "bool": "true or false",
+    "date": "a date",
+    "time": "a time",
+    "datetime": "a date and time",
 }
 
 
@@ -89,8 +92,10 @@ def _text(scene: str | Path) -> str:
 def _parse(text: str, origin: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # also numbers too long and arrays too deep for Python
-        raise InputError(f"{origin}: not valid TOML: {error}") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{_shown(origin)}: not valid TOML: {error}") from None
+    except (ValueError, RecursionError):
+        raise InputError(f"{_shown(origin)}: not valid TOML: a number too long or a value nested too deep") from None
 
 
 def _override(data: dict[str, Any], override: str) -> None:
@@ -102,7 +107,10 @@ def _override(data: dict[str, Any], override: str) -> None:
     if value[:1].isalpha() and value not in ("true", "false", "nan", "inf"):
         parsed: Any = value  # words are a string: fem.far_field=box
     else:
-        parsed = _parse(f"value = {value}", f"--set {override}").popitem()[1]
+        read = _parse(f"value = {value}", f"--set {override}")
+        if list(read) != ["value"] or "\n" in value:
+            raise InputError(f"--set {override}: must be one value")
+        parsed = read["value"]
     for key in keys[:-1]:
         data = data.setdefault(key, {})
         if not isinstance(data, dict):
@@ -134,7 +142,7 @@ def _explain(message: str, data: Any) -> str:
         return f"{_join(path, unknown[1])}: unknown key{_nearest(unknown[1], _fields(kind))}"
     if missing := re.fullmatch(r"Object missing required field `(.*)`", what):
         return f"{_join(path, missing[1])}: missing"
-    return f"{path} = {_shown(value)}: must be {_allowed(what, kind)}"
+    return f"{path} = {_shown(repr(value) if isinstance(value, str) else value)}: must be {_allowed(what, kind)}"
 
 
 def _allowed(what: str, kind: Any) -> str:
@@ -150,6 +158,8 @@ def _allowed(what: str, kind: Any) -> str:
         return f"of a size from {SMALLEST} to {LARGEST}"
     if "of length <=" in what:
         return f"at most {what.split()[-1]} characters"
+    if "regex" in what and "\\x00" in what:
+        return "one line of text"
     if "regex" in what:
         return "letters, digits, '.', '_' or '-', and begin with a letter or digit"
     return what.replace("`", "").removeprefix("Expected ")
@@ -165,7 +175,7 @@ def _join(path: str, key: str) -> str:
 
 
 def _shown(value: Any) -> str:
-    text = repr(value) if isinstance(value, (str, int, float, list, dict)) else str(value)
+    text = repr(value) if isinstance(value, (int, float, list, dict)) else str(value)
     return text if len(text) <= 60 else text[:57] + "..."
 
 

@@ -115,7 +115,7 @@ class Scene(Table, frozen=True, kw_only=True):
     profile: Profile
     load: Load
     friction: Friction
-    title: str = ""
+    title: Annotated[str, msgspec.Meta(pattern=r"^[^\x00-\x1f\x7f]*\Z", max_length=200)] = ""
     fem: Fem = Fem()
 
     def __post_init__(self) -> None:

@@ -101,7 +101,7 @@ def test_contact_points_beyond_a_hidden_gap_dropped(monkeypatch):
         return type(solution)(x, np.pad(solution.residual, (0, len(gap) - len(candidates))), 0.0, solution.iterations)
 
     monkeypatch.setattr(level, "press", cut_off)
-    monkeypatch.setattr(adapt, "_PASSES", 3)
+    monkeypatch.setattr(adapt, "_FINEST", 1e-2)
     assert {"a", "p"} <= missed(outcome("hertz-shear"))
 
 

@@ -55,7 +55,9 @@ def _large_tension(Qf: float, sf: float) -> StickZone:
 
     def edge(c: float) -> float:
         def excess(way: float) -> float:
-            return (consistency((1 - c) * way, c)[1] if way > 0 else 1 - c**2) - Qf  # touching: eq. (22)
+            if way == 0:  # touching the end: eq. (22)
+                return 1 - c**2 - Qf
+            return (consistency((1 - c) * way, c)[1] if way < 1 else 0.0) - Qf  # in the middle dQ = 0
 
         if Qf == 0 or excess(0.0) <= 0:  # centred; or, but for rounding, at the transition itself
             return 1 - c if Qf == 0 else 0.0

@@ -31,10 +31,10 @@ def write_run(run: Run, folder: Path) -> list[Path]:
 
         files["mesh.msh"] = lambda path: write_msh(path, bodies[0])
         files["bodies.vtu"] = lambda path: write_vtu(path, bodies)
+    for name in files:
+        if os.path.isdir(folder / name):
+            raise InputError(f"{folder / name}: cannot be written: is a folder")
     try:
-        for name in files:
-            if (folder / name).is_dir():
-                raise InputError(f"{folder / name}: cannot be written: is a folder")
         folder.mkdir(parents=True, exist_ok=True)
         for name, write in files.items():
             with _replacing(folder / name) as path:

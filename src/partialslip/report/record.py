@@ -21,7 +21,11 @@ def record(run: Run) -> dict[str, Any]:
     return {
         "schema": SCHEMA,
         "scene": msgspec.to_builtins(run.scene),
-        "plan": {"called_for": run.plan.called_for, "left_out": run.plan.left_out},
+        "plan": {
+            "called_for": list(run.plan.called_for),
+            "left_out": list(run.plan.left_out),
+            "reasons": {**run.plan.called_for, **run.plan.left_out},
+        },
         "methods": {name: _method(result) for name, result in run.results.items()},
         "comparison": {name: _comparison(comparison) for name, comparison in run.comparisons.items()},
         "versions": versions(),

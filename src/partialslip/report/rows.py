@@ -34,11 +34,19 @@ def value(result: Result, key: str) -> str:
         end = getattr(result, key)
         return "none" if end is None else f"{end / result.a:.7f} a"
     if key == "a":
-        return f"{result.a * 1e3:.7g} mm"
+        return f"{result.a * 1e3:.7g} mm" if 1e-6 <= result.a < 1 else engineering(result.a, "m", 7)
     if key == "q" and result.regime == "sliding":
         return "none"
     peak = result.p0 if key == "p" else np.abs(result.traction.dq).max() / 2
-    return f"max {peak / 1e6:.6g} MPa"
+    return f"max {engineering(float(peak), 'Pa', 6)}"
+
+
+def engineering(number: float, unit: str, digits: int) -> str:
+    """A number with the SI prefix that suits it, where there is one."""
+    for exponent, prefix in ((9, "G"), (6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ"), (-9, "n")):
+        if 1 <= abs(number) / 10.0**exponent < 1000:
+            return f"{number / 10.0**exponent:.{digits}g} {prefix}{unit}"
+    return f"{number:.4g} {unit}"
 
 
 def setting(choice: object) -> str:
