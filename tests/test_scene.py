@@ -5,6 +5,7 @@ import itertools
 import math
 
 import msgspec
+import numpy as np
 import pytest
 
 import partialslip
@@ -292,3 +293,10 @@ def test_reasons_are_true_of_the_scene(Q, sigma):
         for why in (effects.called_for | effects.left_out).values():
             (holds,) = (holds for words, holds in TRUE_IF.items() if why.startswith(words))
             assert holds(what), why
+
+
+def test_numpy_numbers_and_arrays_will_do():
+    data = msgspec.to_builtins(load_scene("hertz-shear"))
+    data["load"]["Q"] = np.array(data["load"]["Q"])
+    data["material"]["E"] = np.float64(data["material"]["E"])
+    assert parse_scene(data) == load_scene("hertz-shear")

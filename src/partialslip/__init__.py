@@ -16,6 +16,7 @@ from partialslip.errors import PartialslipError as PartialslipError
 from partialslip.plan import Plan as Plan
 from partialslip.plan import plan as plan
 from partialslip.reading import load_scene as load_scene
+from partialslip.reading import parse_scene as parse_scene
 from partialslip.reading import shipped_scenes as shipped_scenes
 from partialslip.result import Result as Result
 from partialslip.result import Traction as Traction

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+import numpy as np
 
 from partialslip.errors import InputError
 from partialslip.scene import LARGEST, SMALLEST, Scene, Table
@@ -59,7 +60,14 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
 
 
 def parse_scene(data: Mapping[str, Any]) -> Scene:
-    """Make a scene from nested tables, as read from TOML or from ``results.json``. Raises InputError."""
+    """Make a scene from nested tables, as in a scene file or in ``results.json``; NumPy numbers and arrays will do.
+
+    Raises
+    ------
+    InputError
+        With one line that names the field, its value and what is allowed.
+    """
+    data = _plain(data)
     for path, value in _leaves(data):
         if isinstance(value, float) and not math.isfinite(value):
             raise InputError(f"{path} = {value}: must be finite")
@@ -116,6 +124,14 @@ def _override(data: dict[str, Any], override: str) -> None:
         if not isinstance(data, dict):
             raise InputError(f"--set {override}: {key} is not a table")
     data[keys[-1]] = parsed
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {key: _plain(child) for key, child in value.items()}
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    return [_plain(child) for child in value] if isinstance(value, (list, tuple)) else value
 
 
 def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:

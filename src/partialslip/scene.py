@@ -108,7 +108,8 @@ class Fem(Table, frozen=True, kw_only=True):
 
 
 class Scene(Table, frozen=True, kw_only=True):
-    """A whole scene file. See the README for the format, :func:`partialslip.load_scene` for reading one."""
+    """A whole scene file. See the README for the format; :func:`partialslip.load_scene` reads one, and
+    :func:`partialslip.parse_scene` makes one from nested tables. Both check it, the constructor does not."""
 
     name: Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*\Z", max_length=100)]
     material: Material
