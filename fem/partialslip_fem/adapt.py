@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip.result import Array, Clock
+from partialslip.result import Clock
 from partialslip_fem.level import Level, Problem, solve_level
 
 _GROWTH = {2: 0.25, 3: 0.5, 4: 0.7}  # element size gained per distance, on the first graded mesh
@@ -32,7 +32,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     of the last change is left. ``width`` is the block's half-width in contact half-widths. The first
     contact line is a guess, doubled until the contact does not reach its ends.
     """
-    reach, size, growth = 1.5, _FIRST, _GROWTH[problem.order]
+    reach, size, growth = 1.5 + max(problem.kinks, default=0.0), _FIRST, _GROWTH[problem.order]
     meshes, iterations = 0, 0
     while True:
         guess = dict.fromkeys(np.linspace(-reach, reach, 16).tolist(), 2 * size * reach)
@@ -44,7 +44,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     while True:
         a = level.half_width
         size, growth = size / _FINER, growth * _CALMER
-        sizes = dict.fromkeys(_separate(level.ends, size * a), size * a)
+        sizes = dict.fromkeys(_separate([*level.ends.tolist(), *problem.kinks], size * a), size * a)
         margin = (0.1 + 2 * _FINER * size) * a  # of safety, and what the mesh before may have been off by
         contact = (level.left - margin, level.right + margin)
         before, level = level, solve_level(problem, width * a, contact, sizes, growth, clock)
@@ -67,10 +67,10 @@ def _changes(before: Level, after: Level) -> dict[str, float]:
     return changes
 
 
-def _separate(ends: Array, size: float) -> list[float]:
+def _separate(ends: list[float], size: float) -> list[float]:
     """Without those that lie within an element of an earlier one."""
     kept: list[float] = []
-    for end in ends.tolist():
+    for end in ends:
         if all(abs(end - other) > size for other in kept):
             kept.append(end)
     return kept

@@ -23,12 +23,14 @@ _STICKS = 1e-9  # a node that slips has used up its bound to rounding, whatever 
 
 @dataclass(frozen=True)
 class Problem:
-    """What is to be solved, scaled: a gap and P = 1; ``loads`` are (Q, strain) at the end of each load step.
+    """What is to be solved, scaled: a gap, smooth but for its ``kinks``, and P = 1.
 
-    The last two steps are load point 1 and load point 2. Without steps there is no friction to solve.
+    ``loads`` are (Q, strain) at the end of each load step; the last two steps are load point 1 and load point 2.
+    Without steps there is no friction to solve.
     """
 
     gap: Callable[[Array], Array]
+    kinks: tuple[float, ...]
     f: float
     loads: list[tuple[float, float]]
     kappa: float

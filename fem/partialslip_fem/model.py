@@ -57,6 +57,7 @@ def _scaled(scene: Scene, plan: Plan) -> Problem:
         loads = [point2] + [point1, point2] * load.cycles
     return Problem(
         gap=lambda x: scene.profile.gap(x * L) / (A * P),
+        kinks=tuple(kink / L for kink in scene.profile.kinks),
         f=scene.friction.f,
         loads=loads,
         kappa=scene.material.kappa,
@@ -74,7 +75,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     level, L, stress = adapted.level, scene.length, scene.P / scene.length
     pressure = level.pressure()
     x = level.body.x[level.nodes]
-    p0 = float(pressure(x).max())
+    p0 = 2 / (np.pi * level.half_width)
     regime, notes = _regime(scene, level)
     certificate = _certificate(problem, level, p0)
     if max(adapted.errors.values()) > scene.fem.accuracy:
@@ -106,7 +107,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
             q1=q1 if regime != "sliding" else None,
             q2=q2 if regime != "sliding" else None,
             at=at,
-            breaks=np.sort(level.ends) * L,
+            breaks=np.sort([*level.ends, *problem.kinks]) * L,
             cells=level.body.x[:: level.body.order] * L,
         ),
         cost=clock.cost(),

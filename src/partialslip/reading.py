@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import msgspec
 import numpy as np
@@ -152,18 +152,30 @@ def _explain(message: str, data: Any) -> str:
     value: Any = data
     kind: Any = Scene
     for key, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", path):
+        kind = kind if index else _fields(_table(kind, value)).get(key)
         value = value[int(index)] if index else value[key]
-        kind = kind if index else _fields(kind).get(key)
+    kind = _table(kind, value)
     if unknown := re.fullmatch(r"(?s)Object contains unknown field `(.*)`", what):
-        return f"{_join(path, unknown[1])}: unknown key{_nearest(unknown[1], _fields(kind))}"
+        return f"{_join(path, unknown[1])}: unknown key{_nearest(unknown[1], _keys(kind))}"
     if missing := re.fullmatch(r"Object missing required field `(.*)`", what):
         return f"{_join(path, missing[1])}: missing"
     return f"{path} = {_shown(repr(value) if isinstance(value, str) else value)}: must be {_allowed(what, kind)}"
 
 
+def _table(kind: Any, value: Any) -> Any:
+    """The table that is meant, where a key ``kind`` chooses between several."""
+    tables = [table for table in get_args(kind) if isinstance(table, type) and issubclass(table, Table)]
+    tag = value.get("kind") if isinstance(value, Mapping) else None
+    return next((table for table in tables if table.__struct_config__.tag == tag), kind)
+
+
 def _allowed(what: str, kind: Any) -> str:
+    if what.startswith("Invalid value"):  # of the key that chooses
+        return "one of " + ", ".join(
+            repr(table.__struct_config__.tag) for table in get_args(Scene.__annotations__["profile"])
+        )
     if what.startswith("Invalid enum value"):
-        return "one of " + ", ".join(map(repr, kind.__args__))
+        return "one of " + ", ".join(map(repr, get_args(kind)))
     if length := re.fullmatch(r"Expected `array` of length (\d+), got \d+", what):
         return f"an array of {length[1]} numbers"
     if wrong := re.fullmatch(r"Expected `([a-z]+)(?: \| null)?`, got `([a-z]+)`", what):
@@ -184,6 +196,11 @@ def _allowed(what: str, kind: Any) -> str:
 def _fields(kind: Any) -> dict[str, Any]:
     tables = isinstance(kind, type) and issubclass(kind, Table)
     return {field.name: field.type for field in msgspec.structs.fields(kind)} if tables else {}
+
+
+def _keys(kind: Any) -> list[str]:
+    chooser = kind.__struct_config__.tag_field
+    return [*([chooser] if chooser else []), *_fields(kind)]
 
 
 def _join(path: str, key: str) -> str:

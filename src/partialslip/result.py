@@ -87,6 +87,8 @@ class Cost:
 class Result:
     """A method's answer to a scene.
 
+    ``a`` is the contact half-width (m) and ``p0`` = 2 P/(pi a) (Pa), for Hertz the largest pressure.
+
     The stick zone [-m, n] is kept as its centre (n - m)/2 and half-width (n + m)/2, because n + m cancels when
     it is tiny; both are None where nothing sticks (``regime`` says "sliding").
     ``certificate`` holds residuals in units of f p0 (of p0 for the normal problem) and equilibrium relative to

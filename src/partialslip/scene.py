@@ -46,15 +46,38 @@ class Material(Table, frozen=True, kw_only=True):
         return (self.kappa + 1) / (2 * self.mu)
 
 
-class Profile(Table, frozen=True, kw_only=True):
-    """The undeformed gap between the surfaces: ``hertz`` is x^2/(2R), with ``R`` the relative radius in m."""
+class Hertz(Table, frozen=True, kw_only=True, tag_field="kind", tag="hertz"):
+    """Undeformed gap x^2/(2R), with ``R`` the relative radius in m."""
 
-    kind: Literal["hertz"]
     R: Positive
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Where the gap is not smooth, m: nowhere."""
+        return ()
 
     def gap(self, x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Gap before loading at ``x`` (m), m."""
         return x**2 / (2 * self.R)
+
+
+class FlatRounded(Table, frozen=True, kw_only=True, tag_field="kind", tag="flat-rounded"):
+    """A flat of half-width ``b`` (m) with corners of radius ``R`` (m): undeformed gap (|x| - b)^2/(2R) beyond it."""
+
+    R: Positive
+    b: Positive
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Where the gap is not smooth, m: the ends of the flat."""
+        return (-self.b, self.b)
+
+    def gap(self, x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Gap before loading at ``x`` (m), m."""
+        return np.maximum(np.abs(x) - self.b, 0.0) ** 2 / (2 * self.R)
+
+
+Profile = Hertz | FlatRounded
 
 
 class Friction(Table, frozen=True, kw_only=True):
@@ -66,7 +89,7 @@ class Friction(Table, frozen=True, kw_only=True):
 class Load(Table, frozen=True, kw_only=True):
     """Loads per unit depth. The cycle runs 0 -> point 2 -> point 1 -> point 2 ... with ``Q`` and ``sigma`` in phase.
 
-    ``P`` (N/m) is constant; ``a`` (m) or ``p0`` (Pa) may be given instead. ``Q`` (N/m) and ``sigma`` (Pa, the
+    ``P`` (N/m) is constant; for Hertz ``a`` (m) or ``p0`` (Pa) may be given instead. ``Q`` (N/m) and ``sigma`` (Pa, the
     difference of the two bodies' bulk tensions) are pairs: their values at load points 1 and 2.
     """
 
@@ -123,6 +146,8 @@ class Scene(Table, frozen=True, kw_only=True):
         given = [key for key in ("P", "a", "p0") if getattr(self.load, key) is not None]
         if len(given) != 1:
             raise InputError(f"load: exactly one of P, a, p0 must be given, not {' and '.join(given) or 'none'}")
+        if given != ["P"] and not isinstance(self.profile, Hertz):
+            raise InputError(f"load.{given[0]}: only for the profile hertz; give load.P")
         try:
             derived = self.P, self.length
         except (OverflowError, ZeroDivisionError):

@@ -119,9 +119,9 @@ def test_sign_of_x_instead_of_the_slip_zones(monkeypatch):
     """The exact side can be wrong too: sgn(x) breaks down where the stick zone lies beside the middle."""
     true = exact_traction.half_range
 
-    def by_x(x, zone):
+    def by_x(x, zone, shape):
         slips = (x < zone.centre - zone.half_width) | (x > zone.centre + zone.half_width)
-        return np.where(slips, np.sign(x) * np.abs(true(x, zone)), true(x, zone))
+        return np.where(slips, np.sign(x) * np.abs(true(x, zone, shape)), true(x, zone, shape))
 
     from partialslip.halfplane import method
 

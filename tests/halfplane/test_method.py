@@ -86,3 +86,23 @@ def test_any_units_give_the_same_zone():
         assert scaled.m / scaled.a == pytest.approx(base.m / base.a, rel=1e-12)
         assert scaled.n / scaled.a == pytest.approx(base.n / base.a, rel=1e-10)
         assert scaled.p0 == pytest.approx(base.p0 * S, rel=1e-12)
+
+
+def test_flat_and_rounded_contact():
+    """P = a^2/(A R) [(pi - 2 phi0)/2 - sin phi0 cos phi0] with b = a sin phi0, down to a bare flat and up to Hertz."""
+    scene = load_scene("flat-rounded")
+    A, R = scene.material.A, scene.profile.R
+    for P, b in ((scene.P, 1e-3), (scene.P, 1e-9), (1.0, 1e-3), (1e-6, 1.0)):
+        result = exact("flat-rounded", f"load.P={P}", f"profile.b={b}", "load.Q=[0, 0]", "load.sigma=[0, 0]")
+        phi0 = np.arcsin(b / result.a)
+        if b / result.a < 0.999:
+            force = result.a**2 / (A * R) * ((np.pi - 2 * phi0) / 2 - np.sin(phi0) * np.cos(phi0))
+            assert force == pytest.approx(P, rel=1e-10)
+        assert result.a >= b
+    hertz = exact("hertz-shear", "load.Q=[0, 0]")
+    P = np.pi * hertz.a * hertz.p0 / 2
+    nearly = exact(
+        "flat-rounded", "material.E=72.8e9", "material.nu=0.3", "profile.R=0.05", "profile.b=1e-9", f"load.P={P}",
+        "load.Q=[0, 0]", "load.sigma=[0, 0]",
+    )  # fmt: skip
+    assert nearly.a == pytest.approx(hertz.a, rel=1e-5)

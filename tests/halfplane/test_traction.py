@@ -4,52 +4,72 @@ import numpy as np
 import pytest
 
 from partialslip.halfplane.adhered import adhered
-from partialslip.halfplane.hertz import half_width, pressure
-from partialslip.halfplane.steady import StickZone, stick_zone
+from partialslip.halfplane.shape import FlatRounded, Hertz, Shape, StickZone
+from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range, mean_load_bound
 
 LOADS = [(0.19, 0.4), (0.75, 2.4), (0.4, 4.03), (0.3, 8.0), (0.0, 3.0), (0.9, 20.0), (0.4, 87.8), (0.5, 2.3431457535)]
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(400)
 
 
-def integrate(function, zone: StickZone) -> float:
-    """Over [-1, 1], exact for square roots at the ends of the zones."""
-    ends = np.unique([-1.0, zone.centre - zone.half_width, zone.centre + zone.half_width, 1.0])
-    angle = np.pi / 2 * (NODES + 1)
-    x = (ends[1:] + ends[:-1])[:, None] / 2 - np.diff(ends)[:, None] / 2 * np.cos(angle)
-    values = function(x.ravel()).reshape(x.shape) * np.sin(angle) * WEIGHTS
-    return float(np.pi / 2 * np.sum(np.diff(ends)[:, None] / 2 * values))
+HERTZ = Hertz()
+SHAPES = [HERTZ, FlatRounded(0.1), FlatRounded(0.6), FlatRounded(0.95)]
+every_shape = pytest.mark.parametrize("shape", SHAPES)
 
 
+def integrate(function, zone: StickZone, shape: Shape = HERTZ) -> float:
+    """Over [-1, 1], for square roots at the ends of the zones and logarithmic kinks at the flat's."""
+    ends = np.unique(
+        np.clip([-1.0, *shape.kinks, zone.centre - zone.half_width, zone.centre + zone.half_width, 1.0], -1, 1)
+    )
+    u = np.linspace(-3.5, 3.5, 241)
+    x = np.tanh(np.pi / 2 * np.sinh(u))
+    weights = (u[1] - u[0]) * np.pi / 2 * np.cosh(u) / np.cosh(np.pi / 2 * np.sinh(u)) ** 2
+    points = (ends[1:] + ends[:-1])[:, None] / 2 + np.diff(ends)[:, None] / 2 * x
+    return float(np.sum(np.diff(ends)[:, None] / 2 * weights * function(points.ravel()).reshape(points.shape)))
+
+
+@every_shape
 @pytest.mark.parametrize(("Qf", "sf"), LOADS)
-def test_resultant_is_the_shear_force(Qf, sf):
-    zone = stick_zone(Qf, sf)
-    assert integrate(lambda x: half_range(x, zone), zone) == pytest.approx(Qf * np.pi / 2, abs=2e-13)
+def test_resultant_is_the_shear_force(Qf, sf, shape):
+    zone = stick_zone(Qf, sf, shape)
+    assert integrate(lambda x: half_range(x, zone, shape), zone, shape) == pytest.approx(Qf * np.pi / 2, abs=1e-12)
 
 
+@every_shape
+def test_resultant_of_the_pressure(shape):
+    zone = StickZone(0.0, 1.0, 1)
+    assert integrate(shape.pressure, zone, shape) == pytest.approx(np.pi / 2, abs=1e-12)
+
+
+@every_shape
 @pytest.mark.parametrize(("Qf", "sf"), LOADS)
-def test_friction_bound_holds_everywhere(Qf, sf):
-    zone = stick_zone(Qf, sf)
+def test_friction_bound_holds_everywhere(Qf, sf, shape):
+    zone = stick_zone(Qf, sf, shape)
     x = np.concatenate([np.linspace(-1, 1, 2001), zone.centre + zone.half_width * np.linspace(-1, 1, 201)])
-    assert np.all(np.abs(half_range(x, zone)) <= pressure(x, 1.0, 1.0) + 1e-14)
+    assert np.all(np.abs(half_range(x, zone, shape)) <= shape.pressure(x) + 1e-13)
 
 
+@every_shape
 @pytest.mark.parametrize(("Qf", "sf"), LOADS[:6])
-def test_what_sticks_does_not_move(Qf, sf):
+def test_what_sticks_does_not_move(Qf, sf, shape):
     """In the stick zone the strain under dq cancels that of the tension: (1/pi) PV int dq/(x-s) ds + dsigma/4 = 0."""
-    zone = stick_zone(Qf, sf)
+    zone = stick_zone(Qf, sf, shape)
     for x in zone.centre + zone.half_width * np.array([-0.9, -0.5, 0.1, 0.7, 0.95]):
-        here = half_range(np.array([x]), zone)[0]
-        smooth = integrate(lambda s, x=x, here=here: (half_range(s, zone) - here) / (x - s), zone)
+        here = half_range(np.array([x]), zone, shape)[0]
+        split = type("Split", (Shape,), {"kinks": (*shape.kinks, x)})()
+        smooth = integrate(
+            lambda s, x=x, here=here: (half_range(s, zone, shape) - here) / (x - s + (s == x)), zone, split
+        )
         principal = smooth + here * np.log((x + 1) / (1 - x))
-        assert principal / np.pi + sf / 8 == pytest.approx(0, abs=1e-10)
+        assert principal / np.pi + sf / 8 == pytest.approx(0, abs=1e-6)  # kinks at both sides of the pole cost digits
 
 
 def test_small_tension_is_the_superposition_of_two_hertz_tractions():
-    zone = stick_zone(0.75, 2.4)
+    zone = stick_zone(0.75, 2.4, HERTZ)
     x = np.linspace(-1, 1, 101)
     inner = np.sqrt(np.maximum((0.2 - x) * (x + 0.8), 0))
-    assert half_range(x, zone) == pytest.approx(np.sqrt(1 - x**2) - inner, abs=1e-15)
+    assert half_range(x, zone, HERTZ) == pytest.approx(np.sqrt(1 - x**2) - inner, abs=1e-15)
 
 
 def test_large_friction_tends_to_the_adhered_traction():
@@ -57,8 +77,8 @@ def test_large_friction_tends_to_the_adhered_traction():
     a, p0, dQ, dsigma, x = 1.0, 1.0, 0.3, 0.5, np.linspace(-0.9, 0.9, 19)
     errors = []
     for f in (100.0, 1e4):
-        zone = stick_zone(dQ / (2 * f * np.pi / 2), dsigma / (f * p0))
-        errors.append(np.abs(2 * f * half_range(x, zone) - adhered(x, a, dQ, dsigma)).max())
+        zone = stick_zone(dQ / (2 * f * np.pi / 2), dsigma / (f * p0), HERTZ)
+        errors.append(np.abs(2 * f * half_range(x, zone, HERTZ) - adhered(x, a, dQ, dsigma)).max())
     assert errors[1] < 2e-4
     assert errors[1] == pytest.approx(errors[0] / 100, rel=0.1)
 
@@ -67,19 +87,21 @@ def test_large_friction_tends_to_the_adhered_traction():
     ("Qf", "sf", "bound"), [(0.25464790894703254, 1.6, 0.55786 / (0.5 * np.pi / 2)), (0.3, 4.0, 0.4725)]
 )
 def test_mean_load_bound_of_large_tension(Qf, sf, bound):
-    assert mean_load_bound(stick_zone(Qf, sf)) == pytest.approx(bound, rel=1e-4)
-    assert mean_load_bound(stick_zone(Qf, sf)) < 1 - Qf
+    assert mean_load_bound(stick_zone(Qf, sf, HERTZ), HERTZ) == pytest.approx(bound, rel=1e-4)
+    assert mean_load_bound(stick_zone(Qf, sf, HERTZ), HERTZ) < 1 - Qf
 
 
-def test_mean_load_bound_of_small_tension_is_gross_sliding():
-    assert mean_load_bound(stick_zone(0.75, 2.4)) == pytest.approx(0.25, abs=1e-14)
+@every_shape
+def test_mean_load_bound_of_small_tension_is_gross_sliding(shape):
+    assert mean_load_bound(stick_zone(0.19, 0.4, shape), shape) == pytest.approx(0.81, abs=1e-4)
+    assert mean_load_bound(stick_zone(0.19, 0.4, HERTZ), HERTZ) == pytest.approx(0.81, abs=1e-14)
 
 
-def test_hertz_published_numbers():
-    """Yang and Laursen's cylinders: a = 0.680778 mm, p0 = 9.35135 MPa."""
-    A, R, P = 4 * (1 - 0.3**2) / 200e6, 4e-3, 10e3
-    a = half_width(P, A, R)
-    assert a * 1e3 == pytest.approx(0.680778, abs=5e-7)
-    assert a / (A * R) / 1e6 == pytest.approx(9.35135, abs=5e-6)
-    zone = StickZone(0.0, 1.0, 1)
-    assert integrate(lambda x: pressure(x, 1.0, 1.0), zone) == pytest.approx(np.pi / 2, rel=1e-14)
+@every_shape
+def test_traction_is_continuous_at_the_ends_of_the_zones(shape):
+    for Qf, sf in LOADS[:6]:
+        zone = stick_zone(Qf, sf, shape)
+        for end in (zone.centre - zone.half_width, zone.centre + zone.half_width):
+            if abs(end) < 1:
+                steps = [np.ptp(half_range(end + np.array([-h, h]), zone, shape)) for h in (1e-6, 1e-8)]
+                assert steps[1] < 0.2 * steps[0]

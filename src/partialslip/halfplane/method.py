@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from partialslip.halfplane.hertz import half_width, pressure
-from partialslip.halfplane.steady import StickZone, stick_zone
+from partialslip.halfplane.contact import contact
+from partialslip.halfplane.shape import Shape, StickZone
+from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range, mean_load_bound
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Regime, Result, Traction
@@ -16,23 +17,23 @@ def solve(scene: Scene, plan: Plan) -> Result:
     """Solve ``scene`` exactly, as two elastically similar half-planes in the steady state; SI units."""
     clock = Clock()
     f, load = scene.friction.f, scene.load
-    a = half_width(scene.P, scene.material.A, scene.profile.R)
-    p0 = a / (scene.material.A * scene.profile.R)
-    regime, zone = _steady_state(scene, plan, p0)
+    a, shape = contact(scene)
+    p0 = 2 * scene.P / (np.pi * a)
+    regime, zone = _steady_state(scene, plan, p0, shape)
 
     # zone is the one for positive dQ and dsigma: turning q round, and mirroring x, brings it to the signs here
     turn = -1 if load.dQ < 0 else 1
     mirror = turn * (-1 if load.dsigma < 0 else 1)
 
     def at(x: Array) -> tuple[Array, Array]:
-        p = pressure(x, a, p0)
+        p = p0 * shape.pressure(x / a)
         if not zone or regime == "stuck":
             return p, np.zeros_like(p)
-        return p, turn * 2 * f * p0 * half_range(mirror * x / a, zone)
+        return p, turn * 2 * f * p0 * half_range(mirror * x / a, zone, shape)
 
     ends = [zone.centre - zone.half_width, zone.centre + zone.half_width] if zone else []
-    breaks = a * np.unique(np.clip([-1.0, *(mirror * end for end in ends), 1.0], -1, 1))
-    x = _sample(breaks)
+    breaks = a * np.unique(np.clip([-1.0, *shape.kinks, *(mirror * end for end in ends), 1.0], -1, 1))
+    x = _sample(np.union1d(breaks, [0.0]))
     p, dq = at(x)
     levels = load.fully_reversed and regime != "sliding"
     return Result(
@@ -49,7 +50,7 @@ def solve(scene: Scene, plan: Plan) -> Result:
     )
 
 
-def _steady_state(scene: Scene, plan: Plan, p0: float) -> tuple[Regime, StickZone | None]:
+def _steady_state(scene: Scene, plan: Plan, p0: float, shape: Shape) -> tuple[Regime, StickZone | None]:
     """Regime and stick zone (scaled, for positive dQ and dsigma; None where the contact slides)."""
     f, load, limit = scene.friction.f, scene.load, scene.friction.f * scene.P
     if plan.needs("friction") and (abs(load.dQ) >= 2 * limit or max(map(abs, load.Q)) >= limit):
@@ -58,8 +59,8 @@ def _steady_state(scene: Scene, plan: Plan, p0: float) -> tuple[Regime, StickZon
         return ("sliding", None) if f == 0 else ("stuck", StickZone(0.0, 1.0, 1))
     if load.dQ == 0 and load.dsigma == 0:
         return "stuck", StickZone(0.0, 1.0, 1)
-    zone = stick_zone(abs(load.dQ) / (2 * limit), abs(load.dsigma) / (f * p0))
-    if abs(sum(load.Q)) / 2 > limit * mean_load_bound(zone):
+    zone = stick_zone(abs(load.dQ) / (2 * limit), abs(load.dsigma) / (f * p0), shape)
+    if abs(sum(load.Q)) / 2 > limit * mean_load_bound(zone, shape):
         return "ratchets", zone
     return ("small tension" if zone.s > 0 else "large tension"), zone
 

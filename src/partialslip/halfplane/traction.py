@@ -1,18 +1,14 @@
-"""The change of shear traction over a steady cycle, Hertz contact.
-
-Scaled as in :mod:`partialslip.halfplane.steady`: lengths by a, tractions by f p0.
-"""
+"""The change of shear traction over a steady cycle, scaled as in :mod:`partialslip.halfplane.shape`."""
 
 import numpy as np
 
-from partialslip.halfplane.hertz import pressure
-from partialslip.halfplane.steady import StickZone
+from partialslip.halfplane.shape import Hertz, Shape, StickZone
 from partialslip.result import Array
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(120)
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(60)
 
 
-def half_range(x: Array, zone: StickZone) -> Array:
+def half_range(x: Array, zone: StickZone, shape: Shape) -> Array:
     """dq/(2 f p0) at ``x`` (fractions of a), for loads of positive dQ and dsigma; zero outside [-1, 1].
 
     In the slip zones dq/2 = p on the right and s p on the left. In the stick zone, from the bounded inversion of
@@ -20,48 +16,47 @@ def half_range(x: Array, zone: StickZone) -> Array:
 
         dq/2 = sqrt((n-x)(x+m))/pi [ int_n^1 p(t)/(w(t)(t-x)) dt + s int_{-1}^{-m} p(t)/(w(t)(x-t)) dt ],
 
-    w(t) = sqrt((t-n)(t+m)). For small tension it is p - sqrt((n-x)(x+m)).
+    w(t) = sqrt((t-n)(t+m)). For small tension and Hertz it is p - sqrt((n-x)(x+m)).
     """
     m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
-    p = pressure(x, 1.0, 1.0)
+    p = shape.pressure(x)
     result = np.where(x < zone.centre, zone.s * p, p)
     sticks = (x > -m) & (x < n)
-    if zone.s > 0:
+    if zone.s > 0 and isinstance(shape, Hertz):
         result[sticks] -= np.sqrt((n - x[sticks]) * (x[sticks] + m))
     elif sticks.any():
-        result[sticks] = _opposing(x[sticks], zone)
+        result[sticks] = _inside(x[sticks], zone, shape)
     return result
 
 
-def mean_load_bound(zone: StickZone) -> float:
+def mean_load_bound(zone: StickZone, shape: Shape) -> float:
     """The largest \\|Q_mean\\|/(f P) that a steady state can hold: int (f p - \\|dq\\|/2) dx over the stick zone.
 
     Beyond it no locked-in mean traction fits under the friction bound and the contact ratchets (the frictional
     Melan argument: Klarbring, Ciavarella and Barber, 2007).
     """
-    angle = np.pi / 2 * (_NODES + 1)
-    x = zone.centre + zone.half_width * np.cos(angle)
-    room = pressure(x, 1.0, 1.0) - np.abs(half_range(x, zone))
-    return float(np.sum(_WEIGHTS * room * np.sin(angle)) * zone.half_width)  # weights pi/2, and P = pi/2
-
-
-def _opposing(x: Array, zone: StickZone) -> Array:
-    """The stick zone's traction for large tension.
-
-    p(t) is split into p(x), whose integrals are arc tangents, and p(t) - p(x), whose integrand is smooth: for
-    Hertz (p(t) - p(x))/(t - x) = -(t + x)/(p(t) + p(x)).
-    """
     centre, c = zone.centre, zone.half_width
+    kinks = [kink for kink in shape.kinks if abs(kink - centre) < c]
+    ends = np.array([0.0, *sorted(np.arccos((kink - centre) / c) for kink in kinks), np.pi])
+    angle = (ends[1:] + ends[:-1])[:, None] / 2 + np.diff(ends)[:, None] / 2 * _NODES
+    weights = np.diff(ends)[:, None] / 2 * _WEIGHTS * np.sin(angle)
+    x = (centre + c * np.cos(angle)).ravel()
+    room = shape.pressure(x) - np.abs(half_range(x, zone, shape))
+    return float(room @ weights.ravel()) * c * 2 / np.pi  # f P is pi/2
+
+
+def _inside(x: Array, zone: StickZone, shape: Shape) -> Array:
+    """The stick zone's traction: p(t) is split into p(x), whose integrals are arc tangents, and p(t) - p(x), which
+    the factor t - x divides without a pole."""
+    centre, c = zone.centre, zone.half_width
+    edge = 1 + centre - c
     to_left, to_right = np.sqrt(x - centre + c), np.sqrt(centre + c - x)
-    p = pressure(x, 1.0, 1.0)
     arcs, smooth = np.zeros_like(x), np.zeros_like(x)
     for side, sign, near, far in ((1, 1, to_right, to_left), (-1, zone.s, to_left, to_right)):
-        # t = centre +- c cosh(theta) takes away w; theta = end (1 - u^2) the square root of p at the contact's end
-        end = np.arccosh(max((1 - side * centre) / c, 1.0))
-        u = (_NODES + 1) / 2
-        t = centre + side * c * np.cosh(end * (1 - u**2))
-        arcs += sign * 2 * np.arctan2(np.tanh(end / 2) * far, near)
-        integrand = -side * (t + x[:, None]) / (pressure(t, 1.0, 1.0) + p[:, None])
-        smooth += sign * integrand @ (_WEIGHTS * end * u)
-    result: Array = (p * arcs + to_left * to_right * smooth) / np.pi
+        gap = 2 - edge - 2 * c if side > 0 else edge
+        tangent = np.sqrt(max(gap, 0.0) / (max(gap, 0.0) + 2 * c))  # tanh of half of theta's end
+        t, weights = shape.rule(edge, c, side)
+        arcs += sign * 2 * np.arctan2(tangent * far, near)
+        smooth += side * sign * (shape.difference(t, x[:, None]) @ weights)
+    result: Array = (shape.pressure(x) * arcs + to_left * to_right * smooth) / np.pi
     return result

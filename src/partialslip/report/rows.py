@@ -37,7 +37,7 @@ def value(result: Result, key: str) -> str:
         return f"{result.a * 1e3:.7g} mm" if 1e-6 <= result.a < 1 else engineering(result.a, "m", 7)
     if key == "q" and result.regime == "sliding":
         return "none"
-    peak = result.p0 if key == "p" else np.abs(result.traction.dq).max() / 2
+    peak = result.traction.p.max() if key == "p" else np.abs(result.traction.dq).max() / 2
     return f"max {engineering(float(peak), 'Pa', 6)}"
 
 
