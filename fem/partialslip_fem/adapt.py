@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from partialslip.condensed.zones import apart
 from partialslip.result import Clock
 from partialslip_fem.level import Level, Problem, solve_level
 
@@ -44,7 +45,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     while True:
         a = level.half_width
         size, growth = size / _FINER, growth * _CALMER
-        sizes = dict.fromkeys(_separate([*level.ends.tolist(), *problem.kinks], size * a), size * a)
+        sizes = dict.fromkeys(apart([*level.ends.tolist(), *problem.kinks], size * a), size * a)
         margin = (0.1 + 2 * _FINER * size) * a  # of safety, and what the mesh before may have been off by
         contact = (level.left - margin, level.right + margin)
         before, level = level, solve_level(problem, width * a, contact, sizes, growth, clock)
@@ -65,12 +66,3 @@ def _changes(before: Level, after: Level) -> dict[str, float]:
         changes["m"] = abs(after.stick.left - before.stick.left) / after.half_width
         changes["n"] = abs(after.stick.right - before.stick.right) / after.half_width
     return changes
-
-
-def _separate(ends: list[float], size: float) -> list[float]:
-    """Without those that lie within an element of an earlier one."""
-    kept: list[float] = []
-    for end in ends:
-        if all(abs(end - other) > size for other in kept):
-            kept.append(end)
-    return kept

@@ -6,8 +6,8 @@ Nodal contact forces are the Lagrange multipliers of the relative displacements 
 
 import numpy as np
 
+from partialslip.condensed.bounded import Solution, solve_bounded
 from partialslip.result import Array
-from partialslip_fem.bounded import Solution, solve_bounded
 from partialslip_fem.condensation import Condensed
 from partialslip_fem.elasticity import Body
 from partialslip_fem.farfield import FarField

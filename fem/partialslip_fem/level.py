@@ -7,18 +7,16 @@ from typing import Literal
 import numpy as np
 from scipy.interpolate import PPoly
 
+from partialslip.condensed.bounded import Solution
+from partialslip.condensed.friction import march
+from partialslip.condensed.zones import Zone, left_end, right_end, stick_zone
 from partialslip.result import Array, Clock
-from partialslip_fem.bounded import Solution
 from partialslip_fem.condensation import Condensed
 from partialslip_fem.contact import press, relative_compliances
 from partialslip_fem.elasticity import Body, Indices, body
 from partialslip_fem.farfield import FarField, half_plane
-from partialslip_fem.friction import march
 from partialslip_fem.recovery import traction
-from partialslip_fem.zones import left_end, right_end
 from partialslip_meshes import Mesh, block
-
-_STICKS = 1e-9  # a node that slips has used up its bound to rounding, whatever the units
 
 
 @dataclass(frozen=True)
@@ -36,15 +34,6 @@ class Problem:
     kappa: float
     order: int
     far_field: Literal["half-plane", "box"]
-
-
-@dataclass(frozen=True)
-class Zone:
-    """The stick zone and the signs of dq in the slip zones on its left and right."""
-
-    left: float
-    right: float
-    signs: tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -130,24 +119,12 @@ def solve_level(
 
 
 def _stick_zone(half: Body, nodes: Indices, bound: Array, steps: list[Solution]) -> Zone:
-    """Read from the range 2 f p - |dq|, never from what sticks at one instant."""
-    change = steps[-1].x - steps[-2].x
-    sticks = np.flatnonzero(2 * bound - np.abs(change) > _STICKS * bound)
-    signs = (1 if change[0] > 0 else -1), (1 if change[-1] > 0 else -1)
-    x, vertices = half.x[nodes], half.x[:: half.order]
-    if len(sticks) == 0:  # a stick zone smaller than an element: it is where the slip turns round
-        turn = int(np.argmax(np.sign(change) != np.sign(change[0])))
-        point = float(x[max(turn - 1, 0)] + x[turn]) / 2
-        return Zone(point, point, signs)
+    def cell_forces(forces: Array) -> Array:
+        on_line = np.zeros(len(half.x))
+        on_line[nodes] = forces
+        return _cell_forces(half, on_line)
 
-    def room(sign: int) -> Array:
-        forces = np.zeros(len(half.x))
-        forces[nodes] = 2 * bound - sign * change
-        return _cell_forces(half, forces)
-
-    left = left_end(vertices, room(signs[0]), x[sticks])
-    right = right_end(vertices, room(signs[1]), x[sticks])
-    return Zone(left, max(right, left), signs)
+    return stick_zone(half.x[nodes], bound, steps[-1].x - steps[-2].x, half.x[:: half.order], cell_forces)
 
 
 def _cell_forces(half: Body, forces: Array) -> Array:

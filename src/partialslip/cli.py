@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 from partialslip import __version__
 from partialslip.errors import InputError, PartialslipError
 from partialslip.reading import load_scene, shipped_scenes
-from partialslip.run import METHODS, run
+from partialslip.run import DEFAULT, METHODS, run
 
 
 class _Parser(argparse.ArgumentParser):
@@ -60,8 +60,8 @@ def _parser() -> argparse.ArgumentParser:
         epilog="example: partialslip run fretting-aluminium --set fem.far_field=box --out results/box",
     )
     runs.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
-    runs.add_argument("--with", dest="methods", default=",".join(METHODS), metavar="METHODS",
-                      help="methods, separated by commas (default: %(default)s)")  # fmt: skip
+    runs.add_argument("--with", dest="methods", default=",".join(DEFAULT), metavar="METHODS",
+                      help="methods, separated by commas, of exact, march, fem (default: %(default)s)")  # fmt: skip
     runs.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
                       help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
     runs.add_argument("--accuracy", metavar="FRACTION",

@@ -9,7 +9,8 @@ from partialslip.plan import Plan, plan
 from partialslip.result import Result
 from partialslip.scene import Scene
 
-METHODS = ("exact", "fem")
+METHODS = ("exact", "march", "fem")
+DEFAULT = ("exact", "fem")
 Progress = Callable[[str], None]
 
 
@@ -29,9 +30,9 @@ class Run:
 
 
 def run(
-    scene: Scene, methods: Iterable[str] = METHODS, *, subsurface: bool = False, progress: Progress = lambda _: None
+    scene: Scene, methods: Iterable[str] = DEFAULT, *, subsurface: bool = False, progress: Progress = lambda _: None
 ) -> Run:
-    """Solve ``scene`` by each of ``methods`` ("exact", "fem") and compare.
+    """Solve ``scene`` by each of ``methods`` ("exact", "march", "fem") and compare.
 
     Parameters
     ----------
@@ -50,7 +51,7 @@ def run(
         If finite elements are asked for and gmsh, or a system library that it needs, is not there.
     """
     effects = plan(scene, subsurface=subsurface)
-    results = {name: _solve(name, scene, effects, progress) for name in dict.fromkeys(methods)}
+    results = {name: _method(name)(scene, effects, _told_by(name, progress)) for name in dict.fromkeys(methods)}
     comparisons = {
         name: compare(result, results["exact"], scene.friction.f, scene.fem.accuracy)
         for name, result in results.items()
@@ -59,13 +60,22 @@ def run(
     return Run(scene, effects, results, comparisons)
 
 
-def _solve(name: str, scene: Scene, effects: Plan, progress: Progress) -> Result:
+def _told_by(name: str, progress: Progress) -> Progress:
+    return lambda line: progress(f"{name}: {line}")
+
+
+def _method(name: str) -> Callable[[Scene, Plan, Progress], Result]:
+    """A method by its name, imported now: finite elements bring much along."""
     if name == "exact":
-        from partialslip.halfplane import solve as solve_exactly
+        from partialslip.halfplane.method import solve as solve_exactly
 
-        return solve_exactly(scene, effects)
+        return solve_exactly
+    if name == "march":
+        from partialslip.halfplane.marching import solve as solve_by_marching
+
+        return solve_by_marching
     if name == "fem":
-        from partialslip_fem import solve as solve_by_elements
+        from partialslip_fem.model import solve as solve_by_elements
 
-        return solve_by_elements(scene, effects, lambda line: progress(f"fem: {line}"))
+        return solve_by_elements
     raise InputError(f"method {name!r}: must be one of {', '.join(METHODS)}")

@@ -119,9 +119,10 @@ class Load(Table, frozen=True, kw_only=True):
 class Fem(Table, frozen=True, kw_only=True):
     """Settings of the finite-element method.
 
-    ``accuracy`` is asked of a, m and n, as a fraction of a; ``order`` is the polynomial order of the
-    triangles; ``far_field`` says what holds the block's outer boundary: the half-plane's displacements under
-    the contact tractions, or a clamped ``box``; ``width`` is the block's half-width in contact half-widths.
+    ``accuracy`` is asked of a, m and n, as a fraction of a (of m and n in marching, too); ``order`` is the
+    polynomial order of the triangles; ``far_field`` says what holds the block's outer boundary: the half-plane's
+    displacements under the contact tractions, or a clamped ``box``; ``width`` is the block's half-width in contact
+    half-widths.
     """
 
     accuracy: Annotated[float, msgspec.Meta(ge=1e-8, le=0.1)] = 2e-5

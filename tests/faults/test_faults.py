@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 import partialslip
+from partialslip.condensed import friction
+from partialslip.condensed.friction import march as true_march
 from partialslip.halfplane import traction as exact_traction
-from partialslip_fem import adapt, friction, level
+from partialslip_fem import adapt, level
 from partialslip_fem.farfield import FarField
 from partialslip_fem.farfield import half_plane as true_half_plane
-from partialslip_fem.friction import march as true_march
 
 ACCURACY = "fem.accuracy=1e-3"
 

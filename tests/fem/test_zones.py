@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from partialslip.condensed.zones import left_end, right_end
 from partialslip_fem.elasticity import body
 from partialslip_fem.recovery import traction
-from partialslip_fem.zones import left_end, right_end
 from partialslip_meshes import block
 
 

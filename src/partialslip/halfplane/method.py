@@ -1,5 +1,7 @@
 """The exact method: scene and plan in, result out."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from partialslip.halfplane.contact import contact
@@ -13,8 +15,12 @@ from partialslip.scene import Scene
 _POINTS_PER_ZONE = 101
 
 
-def solve(scene: Scene, plan: Plan) -> Result:
-    """Solve ``scene`` exactly, as two elastically similar half-planes in the steady state; SI units."""
+def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None) -> Result:
+    """Solve ``scene`` exactly, as two elastically similar half-planes in the steady state; SI units.
+
+    It is done before there is any ``progress`` to tell.
+    """
+    del progress
     clock = Clock()
     f, load = scene.friction.f, scene.load
     a, shape = contact(scene)

@@ -6,11 +6,56 @@ function of x whose root is the end. Forces are far better than nodal values her
 last elements hardly touches them.
 """
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import numpy as np
 
 from partialslip.result import Array
 
 _VERTICES = 5
+_STICKS = 1e-9  # what slips has used up its bound to rounding, whatever the units
+
+
+@dataclass(frozen=True)
+class Zone:
+    """The stick zone and the signs of dq in the slip zones on its left and right."""
+
+    left: float
+    right: float
+    signs: tuple[int, int]
+
+
+def stick_zone(x: Array, bound: Array, change: Array, vertices: Array, cell_forces: Callable[[Array], Array]) -> Zone:
+    """Read the stick zone from the range 2 f p - |dq|, never from what sticks at one instant.
+
+    Parameters
+    ----------
+    x, bound, change : (n,) arrays
+        Nodes in contact, f times their normal forces, and changes of their tangential forces over the cycle.
+    vertices : (c + 1,) array
+        Ends of the cells of the contact line.
+    cell_forces : callable
+        Takes forces of the nodes in contact to integrals over the cells.
+    """
+    sticks = np.flatnonzero(2 * bound - np.abs(change) > _STICKS * bound)
+    signs = (1 if change[0] > 0 else -1), (1 if change[-1] > 0 else -1)
+    if len(sticks) == 0:  # a stick zone smaller than a cell: it is where the slip turns round
+        turn = int(np.argmax(np.sign(change) != np.sign(change[0])))
+        point = float(x[max(turn - 1, 0)] + x[turn]) / 2
+        return Zone(point, point, signs)
+    left = left_end(vertices, cell_forces(2 * bound - signs[0] * change), x[sticks])
+    right = right_end(vertices, cell_forces(2 * bound - signs[1] * change), x[sticks])
+    return Zone(left, max(right, left), signs)
+
+
+def apart(ends: list[float], size: float) -> list[float]:
+    """Without those that lie within ``size`` of an earlier one: where the next mesh is to be fine."""
+    kept: list[float] = []
+    for end in ends:
+        if all(abs(end - other) > size for other in kept):
+            kept.append(end)
+    return kept
 
 
 def right_end(vertices: Array, forces: Array, inside: Array) -> float:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from partialslip_fem.bounded import solve_bounded
+from partialslip.condensed.bounded import solve_bounded
 
 
 def compliance(n: int, random: np.random.Generator) -> np.ndarray:

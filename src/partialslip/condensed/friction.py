@@ -1,0 +1,91 @@
+"""Coulomb friction under a constant normal force, step by step through the load history.
+
+Scaled: lengths by sqrt(A R P), forces by P and displacements by A P, so that nothing depends on units.
+"""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from partialslip.condensed.bounded import Solution, solve_bounded
+from partialslip.condensed.zones import Zone
+from partialslip.plan import Plan
+from partialslip.result import Array, Regime
+from partialslip.scene import Scene
+
+_STEADY = 1e-6  # change of q in a cycle, in f p0, that counts as none
+
+
+def load_steps(scene: Scene, plan: Plan) -> list[tuple[float, float]]:
+    """(Q, relative strain of the surfaces due to bulk tension) at the end of each load step, scaled.
+
+    The cycle runs 0 -> point 2 -> point 1 -> point 2 ...; empty where there is no friction to solve.
+    """
+    if not plan.needs("friction") or slides(scene):
+        return []
+    P, L, load = scene.P, scene.length, scene.load
+    point1, point2 = ((Q / P, sigma * L / (4 * P)) for Q, sigma in zip(load.Q, load.sigma, strict=True))
+    return [point2] + [point1, point2] * load.cycles
+
+
+def slides(scene: Scene) -> bool:
+    """Whether friction cannot carry Q: no forces within the bound could sum to it."""
+    return max(map(abs, scene.load.Q)) >= scene.friction.f * scene.P
+
+
+def march(tangential: Array, x: Array, bound: Array, loads: Iterable[tuple[float, float]]) -> list[Solution]:
+    """Tangential forces after each load step.
+
+    At constant pressure a step is a convex problem: where nothing slips, the relative displacement keeps what it
+    was, so that C (T - T_before) follows the increment of the free relative displacement.
+
+    Parameters
+    ----------
+    tangential : (n, n) array
+        Relative compliance C of what is in contact.
+    x : (n,) array
+        Where it is.
+    bound : (n,) array
+        f times its normal forces.
+    loads : iterable of (Q, strain)
+        Tangential force and relative strain of the two surfaces due to bulk tension, at the end of each step.
+    """
+    steps: list[Solution] = []
+    before, strain_before = 0 * x, 0.0
+    for Q, strain in loads:
+        free = tangential @ before + (strain - strain_before) * x
+        steps.append(solve_bounded(tangential, free, -bound, bound, Q))
+        before, strain_before = steps[-1].x, strain
+    return steps
+
+
+def certificate(steps: list[Solution], weights: Array, f: float, p0: float) -> dict[str, float]:
+    """``kkt``: residuals as tractions, in f p0; ``equilibrium``: of Q, relative to f P; ``steady``: change of q between
+    the last two visits of load point 2, in f p0. ``weights`` (n,) turn tractions into forces."""
+    held = weights * f * p0
+    return {
+        "kkt": max(float((step.residual / held).max()) for step in steps),
+        "equilibrium": max(step.imbalance for step in steps) / f,
+        "steady": float((np.abs(steps[-1].x - steps[-3].x) / held).max()),
+    }
+
+
+def regime(scene: Scene, stick: Zone | None) -> tuple[Regime, tuple[str, ...]]:
+    """The regime, and what must be said of it, of a scene whose stick zone has been found to be ``stick``."""
+    load = scene.load
+    if slides(scene):
+        return "sliding", ("the contact slides: |Q| >= f P at a load point; there is no steady partial slip",)
+    if stick is None or (load.dQ == 0 and load.dsigma == 0):
+        return "stuck", ()
+    notes: tuple[str, ...] = ()
+    if stick.left == stick.right:
+        notes = ("the stick zone is smaller than an element: m and n are where the slip turns round",)
+    return ("small tension" if stick.signs[0] == stick.signs[1] else "large tension"), notes
+
+
+def unsteady(certificate: dict[str, float], accuracy: float) -> tuple[str, ...]:
+    """A note if q still changed in the last cycle."""
+    change = certificate.get("steady", 0.0)
+    if change <= max(accuracy, _STEADY):
+        return ()
+    return (f"not steady: q changed by {change:.1e} f p0 in the last cycle; take more of them (load.cycles)",)

@@ -1,0 +1,69 @@
+"""Cells of constant shear traction on two half-planes, and their compliance. Scaled so that A = 1."""
+
+import itertools
+
+import numpy as np
+
+from partialslip.halfplane.shape import Shape
+from partialslip.result import Array
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
+_NEAR = 4.0  # cells within so many of the wider one's widths are integrated in closed form
+
+
+def graded(points: Array, size: float, growth: float) -> Array:
+    """Ends of cells from the first to the last of ``points`` (ascending), each of them an end.
+
+    Cells are about ``size`` wide at the points and gain ``growth`` times their distance from the nearest.
+    """
+    vertices = [points[:1]]
+    for left, right in itertools.pairwise(points):
+        reach = np.log1p(growth * (right - left) / 2 / size)
+        count = max(int(np.ceil(reach / growth)), 1)
+        steps = size / growth * np.expm1(np.linspace(0, reach, count + 1))
+        vertices += [left + steps[1:], right - steps[-2::-1]]
+    return np.concatenate(vertices)
+
+
+def forces(shape: Shape, vertices: Array) -> Array:
+    """Normal force on each cell of [-1, 1], as a fraction of the whole: in the angle x = sin(phi) the square roots at
+    the contact's ends are smooth."""
+    angles = np.arcsin(np.clip(vertices, -1, 1))
+    half = np.diff(angles)[:, None] / 2
+    phi = (angles[1:] + angles[:-1])[:, None] / 2 + half * _NODES
+    values = shape.pressure(np.sin(phi)) * np.cos(phi)
+    result: Array = (values * half) @ _WEIGHTS * 2 / np.pi
+    return result
+
+
+def compliance(vertices: Array) -> Array:
+    """Mean relative displacement of each cell under a unit force spread over each other one, (c, c).
+
+    -1/pi times the mean of log|x - s| over both cells (Galerkin): symmetric, and positive definite for a contact
+    narrower than 2, to which lengths are to be scaled; that is a rigid shift.
+    """
+    middle, width = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices)
+    # far apart: a product of Gauss rules, in which nothing cancels
+    points = (middle[:, None] + width[:, None] / 2 * _NODES).ravel()
+    weights = _WEIGHTS / 2
+    count = len(middle)
+    distance = np.abs(middle[:, None] - middle)
+    near = distance < _NEAR * np.maximum(width[:, None], width)
+    result = np.empty((count, count))
+    for rows in np.array_split(np.arange(count), max(count // 64, 1)):
+        x = points.reshape(count, -1)[rows].ravel()
+        logs = np.log(np.abs(x[:, None] - points) + 1e-300).reshape(len(rows), len(_NODES), count, len(_NODES))
+        result[rows] = np.einsum("iajb,a,b->ij", logs, weights, weights, optimize=True)
+    i, j = np.nonzero(near)
+    offset = middle[i] - middle[j]
+    total, apart = (width[i] + width[j]) / 2, (width[i] - width[j]) / 2
+    outer = _primitive(offset + total) + _primitive(offset - total)
+    closed = outer - _primitive(offset - apart) - _primitive(offset + apart)
+    result[i, j] = closed / (width[i] * width[j])
+    return -(result + result.T) / (2 * np.pi)
+
+
+def _primitive(z: Array) -> Array:
+    """Twice the integral of log|z|."""
+    result: Array = z**2 / 2 * np.log(np.abs(z) + (z == 0)) - 3 / 4 * z**2
+    return result

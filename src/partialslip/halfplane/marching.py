@@ -1,0 +1,131 @@
+"""Marching in time: the exact pressure, and shear step by step through any load history at constant P.
+
+Unlike the steady closed form it knows what the first cycles lock in. Cells of constant shear traction, graded to the
+ends of the contact and of the stick zone that it finds itself; each step is a convex problem with a certificate.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from partialslip.condensed.bounded import Solution
+from partialslip.condensed.friction import certificate, load_steps, march, regime, unsteady
+from partialslip.condensed.threads import one_thread
+from partialslip.condensed.zones import Zone, apart, stick_zone
+from partialslip.halfplane.cells import compliance, forces, graded
+from partialslip.halfplane.contact import contact
+from partialslip.halfplane.shape import Shape
+from partialslip.plan import Plan
+from partialslip.result import Array, Clock, Result, Traction
+from partialslip.scene import Scene
+
+# Errors of m and n fall at least fivefold from mesh to mesh, so that a quarter of the last change bounds the rest.
+_MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # cell size at the ends (in a), and growth
+
+
+@dataclass(frozen=True)
+class _Level:
+    """The solution on one mesh of cells; lengths in contact half-widths, forces in P."""
+
+    vertices: Array
+    pressed: Array
+    steps: list[Solution]
+    stick: Zone | None
+
+
+@one_thread
+def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None) -> Result:
+    """Solve ``scene`` by marching through its load history, as two elastically similar half-planes.
+
+    Parameters
+    ----------
+    scene, plan
+        The scene, and which effects it calls for.
+    progress : callable, optional
+        Called with one line after each mesh.
+    """
+    clock = Clock()
+    a, shape = contact(scene)
+    loads = load_steps(scene, plan)
+    ends = [-1.0, 1.0, *shape.kinks]
+    level: _Level | None = None
+    errors: dict[str, float] = {}
+    meshes, iterations = 0, 0
+    for size, growth in _MESHES:
+        found = [level.stick.left, level.stick.right] if level and level.stick else []
+        points = np.sort(apart([*ends, *found], size))
+        before, level = level, _solve_level(scene, shape, loads, a, graded(points, size, growth), clock)
+        meshes, iterations = meshes + 1, iterations + sum(step.iterations for step in level.steps)
+        if level.stick is None:
+            break
+        if before and before.stick:
+            moved = {"m": level.stick.left - before.stick.left, "n": level.stick.right - before.stick.right}
+            errors = {key: abs(change) / 4 for key, change in moved.items()}
+            progress(f"mesh {meshes}: {len(level.pressed):,} cells, m, n known to {max(errors.values()):.1e} a")
+            if max(errors.values()) <= scene.fem.accuracy:
+                break
+    assert level is not None
+    return _result(scene, shape, a, level, errors, {"meshes": meshes, "iterations": iterations}, clock)
+
+
+def _solve_level(
+    scene: Scene, shape: Shape, loads: list[tuple[float, float]], a: float, vertices: Array, clock: Clock
+) -> _Level:
+    pressed = forces(shape, vertices)
+    if not loads:
+        return _Level(vertices, pressed, [], None)
+    x = (vertices[1:] + vertices[:-1]) / 2
+    bound = scene.friction.f * pressed
+    with clock.phase("compliance"):
+        tangential = compliance(vertices / 2)  # a change of length is a rigid shift, which is free
+    with clock.phase("contact"):
+        steps = march(tangential, x * a / scene.length, bound, loads)
+        stick = stick_zone(x, bound, steps[-1].x - steps[-2].x, vertices, lambda values: values)
+    return _Level(vertices, pressed, steps, stick)
+
+
+def _result(
+    scene: Scene, shape: Shape, a: float, level: _Level, errors: dict[str, float], counts: dict[str, int], clock: Clock
+) -> Result:
+    f, P, stick = scene.friction.f, scene.P, level.stick
+    p0 = 2 * P / (np.pi * a)
+    found, notes = regime(scene, stick)
+    widths = np.diff(level.vertices)
+    certified = certificate(level.steps, widths, f, 2 / np.pi) if level.steps else {}
+    notes += unsteady(certified, scene.fem.accuracy)
+    if max(errors.values(), default=0.0) > scene.fem.accuracy:
+        notes += (f"accuracy {scene.fem.accuracy:g} not reached: m and n are known to {max(errors.values()):.1e} a",)
+    x = (level.vertices[1:] + level.vertices[:-1]) / 2
+    q1, q2 = (P / a * step.x / widths for step in level.steps[-2:]) if level.steps else (0 * x, 0 * x)
+
+    def at(points: Array) -> tuple[Array, Array]:
+        scaled = points / a
+        cell = np.clip(np.searchsorted(level.vertices, scaled) - 1, 0, len(x) - 1)
+        return p0 * shape.pressure(scaled), np.where(np.abs(scaled) <= 1, (q2 - q1)[cell], 0.0)
+
+    whole = found == "stuck"  # nothing changes over the cycle: all of the contact sticks
+    return Result(
+        method="march",
+        a=a,
+        p0=p0,
+        regime=found,
+        stick_centre=0.0 if whole else (stick.right + stick.left) / 2 * a if stick else None,
+        stick_half_width=a if whole else (stick.right - stick.left) / 2 * a if stick else None,
+        traction=Traction(
+            x=x * a,
+            p=p0 * shape.pressure(x),
+            dq=q2 - q1,
+            q1=q1 if found != "sliding" else None,
+            q2=q2 if found != "sliding" else None,
+            at=at,
+            breaks=np.array([-a, *(kink * a for kink in shape.kinks), a]),
+            cells=level.vertices * a,
+        ),
+        cost=clock.cost(),
+        settings={"model": "two half-planes, exact pressure, cells of constant shear", "accuracy": scene.fem.accuracy},
+        counts={"cells": len(x), "load_steps": len(level.steps), **counts},
+        certificate=certified,
+        estimate=errors,
+        notes=notes,
+    )

@@ -1,0 +1,67 @@
+"""Cells of constant shear: grading, forces and compliance."""
+
+import numpy as np
+import pytest
+
+from partialslip.halfplane.cells import compliance, forces, graded
+from partialslip.halfplane.shape import FlatRounded, Hertz
+
+POINTS = np.array([-1.0, -0.8, 0.2, 1.0])
+
+
+@pytest.mark.parametrize(("size", "growth"), [(1e-2, 0.2), (1e-5, 0.05)])
+def test_cells_grow_from_the_points(size, growth):
+    vertices = graded(POINTS, size, growth)
+    widths = np.diff(vertices)
+    assert (widths > 0).all()
+    assert np.isin(POINTS, vertices).all()
+    middle = (vertices[1:] + vertices[:-1]) / 2
+    distance = np.abs(middle[:, None] - POINTS).min(axis=1)
+    assert np.all(widths <= 1.5 * (size + growth * distance))
+    assert np.all(widths >= 0.4 * (size + growth * distance))
+
+
+@pytest.mark.parametrize("shape", [Hertz(), FlatRounded(0.5)])
+def test_forces_are_the_integrals_of_the_pressure(shape):
+    vertices = graded(np.array([-1.0, -0.5, 0.5, 1.0]), 1e-3, 0.1)
+    pressed = forces(shape, vertices)
+    assert pressed.sum() == pytest.approx(1, abs=1e-11)
+    inner = np.abs(vertices[1:] + vertices[:-1]) < 1.6
+    middle = (vertices[1:] + vertices[:-1]) / 2
+    midpoint = shape.pressure(middle) * np.diff(vertices) * 2 / np.pi
+    assert pressed[inner] == pytest.approx(midpoint[inner], rel=2e-3)
+
+
+def test_compliance_is_the_mean_of_the_logarithm():
+    """Against adaptive quadrature, for cells apart, side by side, of very different widths, and one with itself."""
+    vertices = np.array([-0.4, -0.2, -0.19, -0.1899, 0.1, 0.4])
+    C = compliance(vertices)
+    nodes = np.tanh(np.pi / 2 * np.sinh(np.linspace(-3.2, 3.2, 161)))
+    u = np.linspace(-3.2, 3.2, 161)
+    weights = (u[1] - u[0]) * np.pi / 4 * np.cosh(u) / np.cosh(np.pi / 2 * np.sinh(u)) ** 2
+
+    def primitive(x):
+        return x * np.log(np.abs(x) + (x == 0)) - x
+
+    for i in range(5):
+        a, b = vertices[i], vertices[i + 1]
+        x = (a + b) / 2 + (b - a) / 2 * nodes
+        for j in range(5):
+            c, d = vertices[j], vertices[j + 1]
+            inner = (primitive(x - c) - primitive(x - d)) / (d - c)
+            assert C[i, j] == pytest.approx(-(inner @ weights) / np.pi, abs=2e-9)
+
+
+def test_compliance_is_positive_definite_on_strongly_graded_cells():
+    C = compliance(graded(POINTS / 2, 1e-6, 0.1))
+    assert np.abs(C - C.T).max() == 0
+    assert np.linalg.eigvalsh(C)[0] > 0.01
+
+
+def test_adhered_traction():
+    """What sticks everywhere under tension carries q = x sigma/(4 sqrt(a^2 - x^2)) (paper, eq. (1))."""
+    vertices = graded(np.array([-0.5, 0.5]), 1e-4, 0.05)
+    x, widths = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices)
+    q = np.linalg.solve(compliance(vertices), x / 4) / widths
+    inner = np.abs(x) < 0.49
+    assert q[inner] == pytest.approx((x / 4 / np.sqrt(0.25 - x**2))[inner], rel=2e-3, abs=2e-4)

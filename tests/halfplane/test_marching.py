@@ -1,0 +1,97 @@
+"""Marching against the closed forms, and what only marching knows: the first cycles."""
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip.halfplane import marching
+
+MEAN = ["load.Q=[31415.926535897932, 219911.48575128554]", "load.sigma=[2e8, 1e9]"]  # 0.1 .. 0.7 fP, 1 .. 5 f p0
+ROUGH = "fem.accuracy=1e-3"
+
+
+def marched(name, *overrides):
+    return partialslip.run(partialslip.load_scene(name, overrides), ["march"]).results["march"]
+
+
+@pytest.mark.parametrize("name", partialslip.shipped_scenes())
+def test_shipped_scenes(name):
+    outcome = partialslip.run(partialslip.load_scene(name), ["exact", "march"])
+    comparison = outcome.comparisons["march"]
+    assert outcome.passed
+    assert comparison.a == 0
+    assert max(comparison.m, comparison.n) <= 2e-5
+    assert comparison.q <= 3e-4
+    assert max(outcome.results["march"].certificate.values()) < 1e-9
+
+
+def test_order_of_convergence(monkeypatch):
+    """m and n are of first order and better in the cells' size at the ends, q of nearly first."""
+    scene, errors = partialslip.load_scene("hertz-large-tension"), []
+    for mesh in ((1e-2, 0.2), (2.5e-3, 0.1), (6.25e-4, 0.05)):
+        monkeypatch.setattr(marching, "_MESHES", (mesh, mesh))
+        comparison = partialslip.run(scene, ["exact", "march"]).comparisons["march"]
+        errors.append([max(comparison.m, comparison.n), comparison.q])
+    orders = -np.polyfit([0, 1, 2], np.log2(errors), 1)[0]
+    assert orders[0] > 1.3
+    assert orders[1] > 1.0
+    assert errors[-1][0] < 1e-4
+
+
+def test_transients_die_out_geometrically_and_leave_the_steady_range():
+    results = {k: marched("hertz-large-tension", ROUGH, *MEAN, f"load.cycles={k}") for k in (1, 2, 7, 11, 19)}
+    changes = [result.certificate["steady"] for result in results.values()]
+    assert changes[0] == pytest.approx(3e-2, rel=0.2)
+    assert changes[1] == pytest.approx(3.5e-3, rel=0.2)
+    assert 1e-6 < changes[2] < 2e-4
+    assert changes[3] < 0.1 * changes[2]
+    assert changes[4] < 1e-8
+    assert all(("not steady" in " ".join(r.notes)) == (r.certificate["steady"] > 1e-3) for r in results.values())
+    result = marched("hertz-large-tension", *MEAN, "load.cycles=12")
+    assert (result.m / result.a, result.n / result.a) == pytest.approx((0.749058362969, 0.370590356334), abs=2e-5)
+
+
+@pytest.mark.parametrize(("level", "steady"), [(0.5, True), (0.9, True), (1.1, False)])
+def test_steady_below_the_mean_load_bound_ratchets_above(level, steady):
+    """The bound is 0.4725 f P for dQ/(2 f P) = 0.3, dsigma/(f p0) = 4."""
+    fP = 314159.26535897935
+    Q = [(level * 0.47249988 + turn * 0.3) * fP for turn in (-1, 1)]
+    result = marched("hertz-large-tension", ROUGH, f"load.Q={Q}", "load.sigma=[-4e8, 4e8]", "load.cycles=30")
+    exact_m, exact_n = 0.749058362969, 0.370590356334
+    off = max(abs(result.m / result.a - exact_m), abs(result.n / result.a - exact_n))
+    assert (off < 2e-3) == steady
+    assert result.certificate["steady"] < 1e-4  # ratcheting tractions repeat themselves, too: slip does not
+    scene = partialslip.load_scene("hertz-large-tension", [f"load.Q={Q}", "load.sigma=[-4e8, 4e8]"])
+    exact = partialslip.run(scene, ["exact"]).results["exact"]
+    assert (exact.regime != "ratchets") == steady
+
+
+def test_marching_and_finite_elements_lock_in_the_same():
+    """Two discretisations of one history: q at both load points after three cycles of a mean load."""
+    overrides = [*MEAN, "load.cycles=3", "fem.accuracy=1e-4"]
+    results = partialslip.run(partialslip.load_scene("hertz-large-tension", overrides), ["march", "fem"]).results
+    fem, march = results["fem"].traction, results["march"].traction
+    scale = 0.5 * results["march"].p0
+    inner = np.abs(fem.x) < 0.99 * results["march"].a
+    for key in ("q1", "q2"):
+        other = np.interp(fem.x[inner], march.x, getattr(march, key))
+        off = np.abs(getattr(fem, key)[inner] - other) / scale
+        assert np.quantile(off, 0.9) < 0.01  # but for the square roots at the ends of the zones
+        assert np.median(off) < 1e-3
+
+
+def test_scenes_without_friction_to_solve():
+    assert marched("hertz-shear", "load.Q=[0, 0]").regime == "stuck"
+    assert marched("hertz-shear", "load.Q=[-4e5, 4e5]").regime == "sliding"
+    sliding = marched("flat-rounded", "friction.f=0")
+    assert sliding.m is None
+    assert sliding.counts["load_steps"] == 0
+
+
+def test_units_do_not_matter():
+    base = marched("fretting-aluminium", ROUGH)
+    scaled = marched(
+        "fretting-aluminium", ROUGH, "material.E=72.1e-3", "profile.R=10e9", "load.P=135750",
+        "load.Q=[-38750.0, 38750.0]", "load.sigma=[-100e-6, 100e-6]",
+    )  # fmt: skip
+    assert (scaled.m / scaled.a, scaled.n / scaled.a) == pytest.approx((base.m / base.a, base.n / base.a), abs=1e-9)
