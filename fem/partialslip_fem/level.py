@@ -23,14 +23,15 @@ from partialslip_meshes import Mesh, block
 class Problem:
     """What is to be solved, scaled: a gap, smooth but for its ``kinks``, and P = 1.
 
-    ``loads`` are (Q, strain) at the end of each load step; the last two steps are load point 1 and load point 2.
-    Without steps there is no friction to solve.
+    ``loads`` are (Q, strain) at the load points in turn, the last two being points 1 and 2, each reached in
+    ``substeps``. Without loads there is no friction to solve.
     """
 
     gap: Callable[[Array], Array]
     kinks: tuple[float, ...]
     f: float
     loads: list[tuple[float, float]]
+    substeps: int
     kappa: float
     order: int
     far_field: Literal["half-plane", "box"]
@@ -108,7 +109,7 @@ def solve_level(
         pressing = press(normal, problem.gap(half.x), 1.0)
         nodes = np.flatnonzero(pressing.x > 0)
         bound = problem.f * pressing.x[nodes]
-        steps = march(tangential[np.ix_(nodes, nodes)], half.x[nodes], bound, problem.loads)
+        steps = march(tangential[np.ix_(nodes, nodes)], half.x[nodes], bound, problem.loads, problem.substeps)
         forces = _cell_forces(half, pressing.x)
         return Level(
             mesh, half, condensed, outer, nodes, pressing, steps,

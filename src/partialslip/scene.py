@@ -90,7 +90,8 @@ class Load(Table, frozen=True, kw_only=True):
     """Loads per unit depth. The cycle runs 0 -> point 2 -> point 1 -> point 2 ... with ``Q`` and ``sigma`` in phase.
 
     ``P`` (N/m) is constant; for Hertz ``a`` (m) or ``p0`` (Pa) may be given instead. ``Q`` (N/m) and ``sigma`` (Pa, the
-    difference of the two bodies' bulk tensions) are pairs: their values at load points 1 and 2.
+    difference of the two bodies' bulk tensions) are pairs: their values at load points 1 and 2. Methods that go
+    through the history take ``cycles`` of them, and ``steps`` from each load point to the next.
     """
 
     P: Positive | None = None
@@ -99,6 +100,7 @@ class Load(Table, frozen=True, kw_only=True):
     Q: tuple[float, float] = (0.0, 0.0)
     sigma: tuple[float, float] = (0.0, 0.0)
     cycles: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 1
+    steps: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 1
 
     @property
     def dQ(self) -> float:

@@ -32,27 +32,27 @@ def test_without_a_fault_everything_passes():
 
 def test_tension_of_the_wrong_sign(monkeypatch):
     monkeypatch.setattr(
-        level, "march", lambda C, x, bound, loads: true_march(C, x, bound, [(Q, -strain) for Q, strain in loads])
+        level, "march", lambda C, x, bound, loads, _: true_march(C, x, bound, [(Q, -strain) for Q, strain in loads])
     )
     assert {"m", "n", "q"} <= missed(outcome())
 
 
 def test_tension_left_out(monkeypatch):
     monkeypatch.setattr(
-        level, "march", lambda C, x, bound, loads: true_march(C, x, bound, [(Q, 0.0) for Q, _ in loads])
+        level, "march", lambda C, x, bound, loads, _: true_march(C, x, bound, [(Q, 0.0) for Q, _ in loads])
     )
     assert {"m", "n", "q", "regime"} <= missed(outcome())
 
 
 def test_friction_silently_smaller(monkeypatch):
-    monkeypatch.setattr(level, "march", lambda C, x, bound, loads: true_march(C, x, 0.9 * bound, loads))
+    monkeypatch.setattr(level, "march", lambda C, x, bound, loads, _: true_march(C, x, 0.9 * bound, loads))
     assert "q" in missed(outcome())
 
 
 def test_history_not_committed_between_steps(monkeypatch):
     """Every step starts from nothing: reversed proportional loads cannot tell, a mean load does."""
 
-    def forgetful(C, x, bound, loads):
+    def forgetful(C, x, bound, loads, _):
         return [true_march(C, x, bound, [load])[0] for load in loads]
 
     mean = ["load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]", "load.cycles=12"]
@@ -109,7 +109,7 @@ def test_contact_points_beyond_a_hidden_gap_dropped(monkeypatch):
 def test_stick_that_is_a_stiff_spring(monkeypatch):
     """Penalty: what sticks creeps in proportion to its traction, here by about a hundredth of the slip."""
 
-    def springs(C, x, bound, loads):
+    def springs(C, x, bound, loads, _):
         return true_march(C + 0.01 * np.diag(1 / bound), x, bound, loads)
 
     monkeypatch.setattr(level, "march", springs)

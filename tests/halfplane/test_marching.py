@@ -95,3 +95,22 @@ def test_units_do_not_matter():
         "load.Q=[-38750.0, 38750.0]", "load.sigma=[-100e-6, 100e-6]",
     )  # fmt: skip
     assert (scaled.m / scaled.a, scaled.n / scaled.a) == pytest.approx((base.m / base.a, base.n / base.a), abs=1e-9)
+
+
+TURNS = [(0.3, 1.0, False), (0.4, 4.03, False), (0.5, 2.8, True), (0.75, 4.5, True)]
+
+
+@pytest.mark.parametrize(("Qf", "sf", "turns"), TURNS)
+def test_slip_that_turns_round_on_a_gradual_way(Qf, sf, turns):
+    """Where it does the closed form says so, and the range of a gradual way is another; elsewhere it is the same."""
+    fP, half = 314159.26535897935, sf * 1e8
+    loads = ["fem.accuracy=1e-4", f"load.Q=[{-Qf * fP}, {Qf * fP}]", f"load.sigma=[{-half}, {half}]"]
+    one, gradual = (
+        partialslip.run(partialslip.load_scene("hertz-large-tension", [*loads, f"load.steps={k}"]), ["exact", "march"])
+        for k in (1, 12)
+    )
+    assert any("turns round" in note for note in one.results["exact"].notes) == turns
+    assert (gradual.comparisons["march"].q > 5e-3) == turns
+    if not turns:
+        assert gradual.comparisons["march"].passed
+        assert gradual.comparisons["march"].q == pytest.approx(one.comparisons["march"].q, rel=1e-5)

@@ -33,8 +33,10 @@ def slides(scene: Scene) -> bool:
     return max(map(abs, scene.load.Q)) >= scene.friction.f * scene.P
 
 
-def march(tangential: Array, x: Array, bound: Array, loads: Iterable[tuple[float, float]]) -> list[Solution]:
-    """Tangential forces after each load step.
+def march(
+    tangential: Array, x: Array, bound: Array, loads: Iterable[tuple[float, float]], substeps: int = 1
+) -> list[Solution]:
+    """Tangential forces at each load point, certified over the way there.
 
     At constant pressure a step is a convex problem: where nothing slips, the relative displacement keeps what it
     was, so that C (T - T_before) follows the increment of the free relative displacement.
@@ -48,15 +50,27 @@ def march(tangential: Array, x: Array, bound: Array, loads: Iterable[tuple[float
     bound : (n,) array
         f times its normal forces.
     loads : iterable of (Q, strain)
-        Tangential force and relative strain of the two surfaces due to bulk tension, at the end of each step.
+        Tangential force and relative strain of the two surfaces due to bulk tension, at each load point.
+    substeps : int
+        In how many equal steps each is reached. Slip that turns round on the way shows in several only.
     """
-    steps: list[Solution] = []
-    before, strain_before = 0 * x, 0.0
-    for Q, strain in loads:
-        free = tangential @ before + (strain - strain_before) * x
-        steps.append(solve_bounded(tangential, free, -bound, bound, Q))
-        before, strain_before = steps[-1].x, strain
-    return steps
+    points: list[Solution] = []
+    before, load_before = 0 * x, np.zeros(2)
+    for load in loads:
+        way = []
+        for Q, strain in np.linspace(load_before, load, substeps + 1)[1:].tolist():
+            free = tangential @ before + (strain - load_before[1]) * x
+            way.append(solve_bounded(tangential, free, -bound, bound, Q))
+            before, load_before = way[-1].x, np.array([Q, strain])
+        points.append(
+            Solution(
+                x=way[-1].x,
+                residual=np.max([step.residual for step in way], axis=0),
+                imbalance=max(step.imbalance for step in way),
+                iterations=sum(step.iterations for step in way),
+            )
+        )
+    return points
 
 
 def certificate(steps: list[Solution], weights: Array, f: float, p0: float) -> dict[str, float]:

@@ -80,7 +80,7 @@ def _solve_level(
     with clock.phase("compliance"):
         tangential = compliance(vertices / 2)  # a change of length is a rigid shift, which is free
     with clock.phase("contact"):
-        steps = march(tangential, x * a / scene.length, bound, loads)
+        steps = march(tangential, x * a / scene.length, bound, loads, scene.load.steps)
         stick = stick_zone(x, bound, steps[-1].x - steps[-2].x, vertices, lambda values: values)
     return _Level(vertices, pressed, steps, stick)
 
@@ -124,7 +124,7 @@ def _result(
         ),
         cost=clock.cost(),
         settings={"model": "two half-planes, exact pressure, cells of constant shear", "accuracy": scene.fem.accuracy},
-        counts={"cells": len(x), "load_steps": len(level.steps), **counts},
+        counts={"cells": len(x), "load_steps": len(level.steps) * scene.load.steps, **counts},
         certificate=certified,
         estimate=errors,
         notes=notes,

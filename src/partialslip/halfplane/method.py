@@ -52,7 +52,7 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
         traction=Traction(x, p, dq, -dq / 2 if levels else None, dq / 2 if levels else None, at, breaks),
         cost=clock.cost(),
         settings={"model": "two half-planes, steady state"},
-        notes=_notes(regime, levels),
+        notes=_notes(regime, levels, _turns_round(scene, p0, zone)),
     )
 
 
@@ -77,11 +77,33 @@ def _sample(breaks: Array) -> Array:
     return np.unique(breaks[:-1, None] + np.diff(breaks)[:, None] * crowd)
 
 
-def _notes(regime: Regime, levels: bool) -> tuple[str, ...]:
+def _turns_round(scene: Scene, p0: float, zone: StickZone | None) -> bool:
+    """Whether slip at one end turns round on a gradual way between the load points.
+
+    On such a way the stick zone's left end, at a half-width c, recedes by slip in the direction of dQ/pi - c dsigma/4
+    (the adhered traction of the zone). With one direction throughout that is positive from c = a on (small tension),
+    or negative down to the last c (large tension).
+    """
+    if zone is None or scene.load.dsigma == 0:
+        return False
+    Qf = abs(scene.load.dQ) / (2 * scene.friction.f * scene.P)
+    sf = abs(scene.load.dsigma) / (scene.friction.f * p0)
+    return sf > 4 * Qf if zone.s > 0 else zone.half_width * sf < 4 * Qf
+
+
+def _notes(regime: Regime, levels: bool, turns_round: bool) -> tuple[str, ...]:
     if regime == "sliding":
         return ("the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip",)
+    notes: list[str] = []
     if regime == "ratchets":
-        return ("the mean of Q is beyond what a steady state can hold: the contact ratchets, m and n are not reached",)
-    if not levels:
-        return ("with mean loads the steady state fixes the change dq = q2 - q1, not q1 and q2 themselves",)
-    return ()
+        notes.append(
+            "the mean of Q is beyond what a steady state can hold: the contact ratchets, m and n are not reached"
+        )
+    elif not levels:
+        notes.append("with mean loads the steady state fixes the change dq = q2 - q1, not q1 and q2 themselves")
+    if turns_round:
+        notes.append(
+            "slip at one end turns round on a gradual way between these load points: dq then differs from the closed "
+            "form; march with load.steps shows by how much"
+        )
+    return tuple(notes)

@@ -1,8 +1,10 @@
 """The change of shear traction over a steady cycle, scaled as in :mod:`partialslip.halfplane.shape`."""
 
+import math
+
 import numpy as np
 
-from partialslip.halfplane.shape import Hertz, Shape, StickZone
+from partialslip.halfplane.shape import Hertz, Shape, StickZone, root
 from partialslip.result import Array
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(60)
@@ -37,7 +39,12 @@ def mean_load_bound(zone: StickZone, shape: Shape) -> float:
     """
     centre, c = zone.centre, zone.half_width
     kinks = [kink for kink in shape.kinks if abs(kink - centre) < c]
-    ends = np.array([0.0, *sorted(np.arccos((kink - centre) / c) for kink in kinks), np.pi])
+    breaks = [math.acos((kink - centre) / c) for kink in kinks]
+    if zone.s < 0:  # dq changes sign on the way from one end to the other
+        breaks.append(
+            root(lambda a: float(half_range(np.array([centre + c * math.cos(a)]), zone, shape)[0]), 0, math.pi)
+        )
+    ends = np.array([0.0, *sorted(breaks), math.pi])
     angle = (ends[1:] + ends[:-1])[:, None] / 2 + np.diff(ends)[:, None] / 2 * _NODES
     weights = np.diff(ends)[:, None] / 2 * _WEIGHTS * np.sin(angle)
     x = (centre + c * np.cos(angle)).ravel()
