@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _MARKERS = 41
+_P_MARKS = {"march": "x", "fem": "+"}
+_Q_MARKS = {"march": "s", "fem": "o"}
 _STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",  # text stays text
     "svg.hashsalt": "partialslip",  # the same run gives the same file
@@ -53,9 +55,17 @@ def draw_tractions(axes: "Axes", run: Run) -> None:
         else:
             x = _spread(result)
             p, dq = traction.at(x)
-            axes.plot(x / a, p / p0, "k+", ms=6, mew=1, label=f"p/p0, {name}")
+            axes.plot(x / a, p / p0, _P_MARKS[name], ms=6, color="black", ls="", label=f"p/p0, {name}")
             if shears:
-                axes.plot(x / a, dq / 2 / (f * p0), "o", mfc="white", mec="black", ms=4.5, label=f"q/(f p0), {name}")
+                axes.plot(
+                    x / a,
+                    dq / 2 / (f * p0),
+                    _Q_MARKS[name],
+                    mfc="white",
+                    mec="black",
+                    ms=4.5,
+                    label=f"q/(f p0), {name}",
+                )
     axes.axhline(0, color="0.7", lw=0.6, zorder=0)
     axes.set(xlabel="x/a", ylabel="tractions: p/p0 and q/(f p0)", xlim=(-1.04, 1.04))
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
