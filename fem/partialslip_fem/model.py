@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.condensed.friction import certificate, load_steps, regime, unsteady
+from partialslip.condensed.friction import certificate, doubts, judge, load_points
 from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
 from partialslip.plan import Plan
@@ -55,7 +55,7 @@ def _scaled(scene: Scene, plan: Plan) -> Problem:
         gap=lambda x: scene.profile.gap(x * L) / (A * P),
         kinks=tuple(kink / L for kink in scene.profile.kinks),
         f=scene.friction.f,
-        loads=load_steps(scene, plan),
+        loads=load_points(scene, plan),
         substeps=scene.load.steps,
         kappa=scene.material.kappa,
         order=scene.fem.order,
@@ -68,35 +68,31 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     pressure = level.pressure()
     x = level.body.x[level.nodes]
     p0 = 2 / (np.pi * level.half_width)
-    found, notes = regime(scene, level.stick)
+    found = judge(scene, level.stick, level.half_width)
     certified = _certificate(problem, level, p0)
-    if max(adapted.errors.values()) > scene.fem.accuracy:
-        notes += (f"accuracy {scene.fem.accuracy:g} not reached: the ends are known to {_listed(adapted.errors)} a",)
-    notes += unsteady(certified, scene.fem.accuracy)
 
-    shear = [level.shear(step) for step in range(len(level.steps))]
-    dq = _difference(shear[-1], shear[-2]) if shear else None
-    q1, q2 = (stress * shear[-2](x), stress * shear[-1](x)) if shear else (np.zeros_like(x), np.zeros_like(x))
+    q1, q2, dq = np.zeros_like(x), np.zeros_like(x), None
+    if level.steps:
+        at1, at2 = level.shear(-2), level.shear(-1)
+        q1, q2, dq = stress * at1(x), stress * at2(x), PPoly(at2.c - at1.c, at2.x)
 
     def at(points: Array) -> tuple[Array, Array]:
         scaled = points / L
         return stress * _inside(pressure, scaled), stress * _inside(dq, scaled)
 
-    stick = level.stick
-    whole = found == "stuck"  # nothing changes over the cycle: all of the contact sticks
     return Result(
         method="fem",
         a=level.half_width * L,
         p0=p0 * stress,
-        regime=found,
-        stick_centre=0.0 if whole else (stick.right + stick.left) / 2 * L if stick else None,
-        stick_half_width=level.half_width * L if whole else (stick.right - stick.left) / 2 * L if stick else None,
+        regime=found.regime,
+        stick_centre=None if found.centre is None else found.centre * L,
+        stick_half_width=None if found.half_width is None else found.half_width * L,
         traction=Traction(
             x=x * L,
             p=stress * pressure(x),
             dq=q2 - q1,
-            q1=q1 if found != "sliding" else None,
-            q2=q2 if found != "sliding" else None,
+            q1=q1 if found.regime != "sliding" else None,
+            q2=q2 if found.regime != "sliding" else None,
             at=at,
             breaks=np.sort([*level.ends, *problem.kinks]) * L,
             cells=level.body.x[:: level.body.order] * L,
@@ -119,7 +115,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         },
         certificate=certified,
         estimate=adapted.errors,
-        notes=notes,
+        notes=found.notes + doubts(certified, adapted.errors, scene.fem.accuracy),
         bodies=displaced(level, problem, L, scene.material.A * scene.P) if plan.needs("subsurface") else (),
     )
 
@@ -135,17 +131,9 @@ def _certificate(problem: Problem, level: Level, p0: float) -> dict[str, float]:
     return slid | {key: max(closed[key], slid[key]) for key in closed}
 
 
-def _difference(after: PPoly, before: PPoly) -> PPoly:
-    return PPoly(after.c - before.c, after.x)
-
-
 def _inside(polynomial: PPoly | None, points: Array) -> Array:
     """Its values, zero off the contact line."""
     if polynomial is None:
         return np.zeros_like(points)
     values: Array = np.nan_to_num(polynomial(points, extrapolate=False), nan=0.0)
     return values
-
-
-def _listed(errors: dict[str, float]) -> str:
-    return ", ".join(f"{key} {value:.1e}" for key, value in errors.items())

@@ -3,7 +3,8 @@
 Scaled: lengths by sqrt(A R P), forces by P and displacements by A P, so that nothing depends on units.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,8 +17,17 @@ from partialslip.scene import Scene
 _STEADY = 1e-6  # change of q in a cycle, in f p0, that counts as none
 
 
-def load_steps(scene: Scene, plan: Plan) -> list[tuple[float, float]]:
-    """(Q, relative strain of the surfaces due to bulk tension) at the end of each load step, scaled.
+class Verdict(NamedTuple):
+    """Regime, the stick zone's centre and half-width (None where nothing sticks), and what must be said of them."""
+
+    regime: Regime
+    centre: float | None
+    half_width: float | None
+    notes: tuple[str, ...]
+
+
+def load_points(scene: Scene, plan: Plan) -> list[tuple[float, float]]:
+    """(Q, relative strain of the surfaces due to bulk tension) at the load points in turn, scaled.
 
     The cycle runs 0 -> point 2 -> point 1 -> point 2 ...; empty where there is no friction to solve.
     """
@@ -84,22 +94,28 @@ def certificate(steps: list[Solution], weights: Array, f: float, p0: float) -> d
     }
 
 
-def regime(scene: Scene, stick: Zone | None) -> tuple[Regime, tuple[str, ...]]:
-    """The regime, and what must be said of it, of a scene whose stick zone has been found to be ``stick``."""
+def judge(scene: Scene, stick: Zone | None, half_width: float) -> Verdict:
+    """What it means that the stick zone of ``scene`` has been found to be ``stick`` (None: there was no friction to
+    solve), in a contact of ``half_width``; lengths in any one unit."""
     load = scene.load
     if slides(scene):
-        return "sliding", ("the contact slides: |Q| >= f P at a load point; there is no steady partial slip",)
-    if stick is None or (load.dQ == 0 and load.dsigma == 0):
-        return "stuck", ()
+        note = "the contact slides: |Q| >= f P at a load point; there is no steady partial slip"
+        return Verdict("sliding", None, None, (note,))
+    if stick is None or (load.dQ == 0 and load.dsigma == 0):  # nothing changes over the cycle: all of it sticks
+        return Verdict("stuck", 0.0, half_width, ())
     notes: tuple[str, ...] = ()
     if stick.left == stick.right:
         notes = ("the stick zone is smaller than an element: m and n are where the slip turns round",)
-    return ("small tension" if stick.signs[0] == stick.signs[1] else "large tension"), notes
+    regime: Regime = "small tension" if stick.signs[0] == stick.signs[1] else "large tension"
+    return Verdict(regime, (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, notes)
 
 
-def unsteady(certificate: dict[str, float], accuracy: float) -> tuple[str, ...]:
-    """A note if q still changed in the last cycle."""
-    change = certificate.get("steady", 0.0)
-    if change <= max(accuracy, _STEADY):
-        return ()
-    return (f"not steady: q changed by {change:.1e} f p0 in the last cycle; take more of them (load.cycles)",)
+def doubts(certificate: Mapping[str, float], errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:
+    """Notes on an accuracy that was not reached, and on q that still changed in the last cycle."""
+    notes: tuple[str, ...] = ()
+    if max(errors.values(), default=0.0) > accuracy:
+        known = ", ".join(f"{key} {error:.1e}" for key, error in errors.items())
+        notes += (f"accuracy {accuracy:g} not reached: the ends are known to {known} a",)
+    if (change := certificate.get("steady", 0.0)) > max(accuracy, _STEADY):
+        notes += (f"not steady: q changed by {change:.1e} f p0 in the last cycle; take more of them (load.cycles)",)
+    return notes

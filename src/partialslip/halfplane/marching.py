@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.condensed.bounded import Solution
-from partialslip.condensed.friction import certificate, load_steps, march, regime, unsteady
+from partialslip.condensed.friction import certificate, doubts, judge, load_points, march
 from partialslip.condensed.threads import one_thread
 from partialslip.condensed.zones import Zone, apart, stick_zone
 from partialslip.halfplane.cells import compliance, forces, graded
@@ -47,7 +47,7 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
     """
     clock = Clock()
     a, shape = contact(scene)
-    loads = load_steps(scene, plan)
+    loads = load_points(scene, plan)
     ends = [-1.0, 1.0, *shape.kinks]
     level: _Level | None = None
     errors: dict[str, float] = {}
@@ -88,14 +88,10 @@ def _solve_level(
 def _result(
     scene: Scene, shape: Shape, a: float, level: _Level, errors: dict[str, float], counts: dict[str, int], clock: Clock
 ) -> Result:
-    f, P, stick = scene.friction.f, scene.P, level.stick
+    P, widths = scene.P, np.diff(level.vertices)
     p0 = 2 * P / (np.pi * a)
-    found, notes = regime(scene, stick)
-    widths = np.diff(level.vertices)
-    certified = certificate(level.steps, widths, f, 2 / np.pi) if level.steps else {}
-    notes += unsteady(certified, scene.fem.accuracy)
-    if max(errors.values(), default=0.0) > scene.fem.accuracy:
-        notes += (f"accuracy {scene.fem.accuracy:g} not reached: m and n are known to {max(errors.values()):.1e} a",)
+    found = judge(scene, level.stick, 1.0)
+    certified = certificate(level.steps, widths, scene.friction.f, 2 / np.pi) if level.steps else {}
     x = (level.vertices[1:] + level.vertices[:-1]) / 2
     q1, q2 = (P / a * step.x / widths for step in level.steps[-2:]) if level.steps else (0 * x, 0 * x)
 
@@ -104,20 +100,19 @@ def _result(
         cell = np.clip(np.searchsorted(level.vertices, scaled) - 1, 0, len(x) - 1)
         return p0 * shape.pressure(scaled), np.where(np.abs(scaled) <= 1, (q2 - q1)[cell], 0.0)
 
-    whole = found == "stuck"  # nothing changes over the cycle: all of the contact sticks
     return Result(
         method="march",
         a=a,
         p0=p0,
-        regime=found,
-        stick_centre=0.0 if whole else (stick.right + stick.left) / 2 * a if stick else None,
-        stick_half_width=a if whole else (stick.right - stick.left) / 2 * a if stick else None,
+        regime=found.regime,
+        stick_centre=None if found.centre is None else found.centre * a,
+        stick_half_width=None if found.half_width is None else found.half_width * a,
         traction=Traction(
             x=x * a,
             p=p0 * shape.pressure(x),
             dq=q2 - q1,
-            q1=q1 if found != "sliding" else None,
-            q2=q2 if found != "sliding" else None,
+            q1=q1 if found.regime != "sliding" else None,
+            q2=q2 if found.regime != "sliding" else None,
             at=at,
             breaks=np.array([-a, *(kink * a for kink in shape.kinks), a]),
             cells=level.vertices * a,
@@ -127,5 +122,5 @@ def _result(
         counts={"cells": len(x), "load_steps": len(level.steps) * scene.load.steps, **counts},
         certificate=certified,
         estimate=errors,
-        notes=notes,
+        notes=found.notes + doubts(certified, errors, scene.fem.accuracy),
     )
