@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from partialslip.halfplane.shape import Hertz
+from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import mean_load_bound
 

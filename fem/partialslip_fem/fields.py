@@ -20,15 +20,16 @@ def displaced(level: Level, problem: Problem, length: float, unit: float) -> tup
     body, n = level.body, len(level.body.x)
     forces = np.zeros((2 * n, 3))  # pressed; sheared at load points 1 and 2
     forces[n:, 0] = -level.pressing.x
-    for column, step in enumerate(level.steps[-2:], start=1):
-        forces[:n, column] = level.on_line(step.x)
+    history = level.history
+    for column, tangential in enumerate(history.at_ends if history else (), start=1):
+        forces[:n, column] = level.on_line(tangential)
     far = level.far_field
     held = far.fields @ (far.moments @ forces) if far else np.zeros((body.far.size, 3))
     pressed, *sheared = np.moveaxis(level.condensed.displace(forces, held)[body.vertices], -1, 0)
 
     points = level.mesh.points.T
     stretch = points * np.array([[1.0], [-(3 - problem.kappa) / (1 + problem.kappa)]])
-    strains = [strain for _, strain in problem.loads[-2:]] or [0.0, 0.0]
+    strains = [history.path.cycle[end][1] for end in history.path.ends] if history else [0.0, 0.0]
     mirror = np.array([[1.0], [-1.0]])
     lower = [pressed - shear + strain * stretch for shear, strain in zip(sheared, strains, strict=True)]
     upper = [mirror * (pressed + shear) for shear in sheared]

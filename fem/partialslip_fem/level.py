@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.condensed.bounded import Solution
-from partialslip.condensed.friction import march
+from partialslip.condensed.friction import History, Path, march
 from partialslip.condensed.zones import Zone, left_end, right_end, stick_zone
 from partialslip.result import Array, Clock
 from partialslip_fem.condensation import Condensed
@@ -21,17 +21,13 @@ from partialslip_meshes import Mesh, block
 
 @dataclass(frozen=True)
 class Problem:
-    """What is to be solved, scaled: a gap, smooth but for its ``kinks``, and P = 1.
-
-    ``loads`` are (Q, strain) at the load points in turn, the last two being points 1 and 2, each reached in
-    ``substeps``. Without loads there is no friction to solve.
-    """
+    """What is to be solved, scaled: a gap, smooth but for its ``kinks``, and P = 1. Without a ``path`` of loads there
+    is no friction to solve."""
 
     gap: Callable[[Array], Array]
     kinks: tuple[float, ...]
     f: float
-    loads: list[tuple[float, float]]
-    substeps: int
+    path: Path | None
     kappa: float
     order: int
     far_field: Literal["half-plane", "box"]
@@ -47,7 +43,7 @@ class Level:
     far_field: FarField | None
     nodes: Indices
     pressing: Solution
-    steps: list[Solution]
+    history: History | None
     left: float
     right: float
     stick: Zone | None
@@ -70,15 +66,15 @@ class Level:
     @property
     def iterations(self) -> int:
         """Faces solved, for normal contact and friction."""
-        return self.pressing.iterations + sum(step.iterations for step in self.steps)
+        return self.pressing.iterations + (self.history.iterations if self.history else 0)
 
     def pressure(self) -> PPoly:
         """p along the contact line."""
         return traction(self.body, self.pressing.x)
 
-    def shear(self, step: int) -> PPoly:
-        """q along the contact line at the end of a load step."""
-        return traction(self.body, self.on_line(self.steps[step].x))
+    def shear(self, forces: Array) -> PPoly:
+        """q along the contact line that belongs to tangential forces of the nodes in contact."""
+        return traction(self.body, self.on_line(forces))
 
     def on_line(self, values: Array) -> Array:
         """Values of the nodes in contact, as those of the whole line, zero elsewhere."""
@@ -109,23 +105,24 @@ def solve_level(
         pressing = press(normal, problem.gap(half.x), 1.0)
         nodes = np.flatnonzero(pressing.x > 0)
         bound = problem.f * pressing.x[nodes]
-        steps = march(tangential[np.ix_(nodes, nodes)], half.x[nodes], bound, problem.loads, problem.substeps)
+        inner = tangential[np.ix_(nodes, nodes)]
+        history = march(inner, half.x[nodes], bound, problem.path) if problem.path else None
         forces = _cell_forces(half, pressing.x)
         return Level(
-            mesh, half, condensed, outer, nodes, pressing, steps,
+            mesh, half, condensed, outer, nodes, pressing, history,
             left=left_end(half.x[:: half.order], forces, half.x[nodes]),
             right=right_end(half.x[:: half.order], forces, half.x[nodes]),
-            stick=_stick_zone(half, nodes, bound, steps) if steps else None,
+            stick=_stick_zone(half, nodes, bound, history) if history else None,
         )  # fmt: skip
 
 
-def _stick_zone(half: Body, nodes: Indices, bound: Array, steps: list[Solution]) -> Zone:
+def _stick_zone(half: Body, nodes: Indices, bound: Array, history: History) -> Zone:
     def cell_forces(forces: Array) -> Array:
         on_line = np.zeros(len(half.x))
         on_line[nodes] = forces
         return _cell_forces(half, on_line)
 
-    return stick_zone(half.x[nodes], bound, steps[-1].x - steps[-2].x, half.x[:: half.order], cell_forces)
+    return stick_zone(half.x[nodes], bound, history.change, half.x[:: half.order], cell_forces)
 
 
 def _cell_forces(half: Body, forces: Array) -> Array:

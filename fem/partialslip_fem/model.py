@@ -5,11 +5,11 @@ from collections.abc import Callable
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.condensed.friction import certificate, doubts, judge, load_points
+from partialslip.condensed.friction import certificate, doubts, judge, load_path
 from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
 from partialslip.plan import Plan
-from partialslip.result import Array, Clock, Result, Traction
+from partialslip.result import Array, Clock, Result, Slip, Traction
 from partialslip.scene import Scene
 from partialslip_fem.adapt import Adapted, adapt
 from partialslip_fem.fields import displaced
@@ -52,11 +52,10 @@ def _scaled(scene: Scene, plan: Plan) -> Problem:
     """The scene in lengths of sqrt(A R P), forces of P, displacements of A P."""
     P, A, L = scene.P, scene.material.A, scene.length
     return Problem(
-        gap=lambda x: scene.profile.gap(x * L) / (A * P),
+        gap=lambda x: scene.profile.gap_at(x * L) / (A * P),
         kinks=tuple(kink / L for kink in scene.profile.kinks),
         f=scene.friction.f,
-        loads=load_points(scene, plan),
-        substeps=scene.load.steps,
+        path=load_path(scene, plan),
         kappa=scene.material.kappa,
         order=scene.fem.order,
         far_field=scene.fem.far_field,
@@ -68,12 +67,14 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     pressure = level.pressure()
     x = level.body.x[level.nodes]
     p0 = 2 / (np.pi * level.half_width)
+    unit = scene.material.A * scene.P  # of displacement
     found = judge(scene, level.stick, level.half_width)
     certified = _certificate(problem, level, p0)
 
     q1, q2, dq = np.zeros_like(x), np.zeros_like(x), None
-    if level.steps:
-        at1, at2 = level.shear(-2), level.shear(-1)
+    history = level.history
+    if history:
+        at1, at2 = level.shear(history.q1), level.shear(history.q2)
         q1, q2, dq = stress * at1(x), stress * at2(x), PPoly(at2.c - at1.c, at2.x)
 
     def at(points: Array) -> tuple[Array, Array]:
@@ -98,6 +99,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
             cells=level.body.x[:: level.body.order] * L,
         ),
         cost=clock.cost(),
+        slip=Slip(x * L, history.slip * unit, history.dissipated * unit * scene.P) if history else None,
         settings={
             "bodies": "mirror images, one factored",
             "elements": f"P{problem.order}",
@@ -110,13 +112,13 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
             "contact_nodes": len(level.nodes),
             "meshes": adapted.meshes,
             "factorizations": adapted.meshes,
-            "load_steps": len(level.steps) * problem.substeps,
+            "load_steps": history.load_steps if history else 0,
             "iterations": adapted.iterations,
         },
         certificate=certified,
         estimate=adapted.errors,
         notes=found.notes + doubts(certified, adapted.errors, scene.fem.accuracy),
-        bodies=displaced(level, problem, L, scene.material.A * scene.P) if plan.needs("subsurface") else (),
+        bodies=displaced(level, problem, L, unit) if plan.needs("subsurface") else (),
     )
 
 
@@ -125,9 +127,9 @@ def _certificate(problem: Problem, level: Level, p0: float) -> dict[str, float]:
     weights = np.asarray(level.body.mass.sum(axis=1)).ravel()
     pressing = level.pressing
     closed = {"kkt": float((pressing.residual / weights).max() / p0), "equilibrium": pressing.imbalance}
-    if not level.steps:
+    if not level.history:
         return closed
-    slid = certificate(level.steps, weights[level.nodes], problem.f, p0)
+    slid = certificate(level.history, weights[level.nodes], problem.f, p0)
     return slid | {key: max(closed[key], slid[key]) for key in closed}
 
 

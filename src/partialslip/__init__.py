@@ -19,6 +19,7 @@ from partialslip.reading import load_scene as load_scene
 from partialslip.reading import parse_scene as parse_scene
 from partialslip.reading import shipped_scenes as shipped_scenes
 from partialslip.result import Result as Result
+from partialslip.result import Slip as Slip
 from partialslip.result import Traction as Traction
 from partialslip.run import Run as Run
 from partialslip.run import run as run

@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 from partialslip import __version__
 from partialslip.errors import InputError, PartialslipError
 from partialslip.reading import load_scene, shipped_scenes
-from partialslip.run import DEFAULT, METHODS, run
+from partialslip.run import METHODS, run
 
 
 class _Parser(argparse.ArgumentParser):
@@ -60,8 +60,9 @@ def _parser() -> argparse.ArgumentParser:
         epilog="example: partialslip run fretting-aluminium --set fem.far_field=box --out results/box",
     )
     runs.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
-    runs.add_argument("--with", dest="methods", default=",".join(DEFAULT), metavar="METHODS",
-                      help="methods, separated by commas, of exact, march, fem (default: %(default)s)")  # fmt: skip
+    runs.add_argument("--with", dest="methods", metavar="METHODS",
+                      help="methods, separated by commas, of exact, march, fem (default: exact,fem; march,fem where "
+                      "Q and sigma are out of phase)")  # fmt: skip
     runs.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
                       help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
     runs.add_argument("--accuracy", metavar="FRACTION",
@@ -84,13 +85,13 @@ def _run(options: argparse.Namespace) -> int:
             overrides.append(f"fem.accuracy={float(options.accuracy)!r}")
         except ValueError:
             raise InputError(f"--accuracy {options.accuracy!r}: must be a number, for example 1e-4") from None
-    methods = [method.strip() for method in options.methods.split(",")]
-    for method in methods:
+    methods = None if options.methods is None else [method.strip() for method in options.methods.split(",")]
+    for method in methods or []:
         if method not in METHODS:
             raise InputError(f"--with {method!r}: must be of {', '.join(METHODS)}")
     if options.out == "":
         raise InputError("--out '': must name a folder")
-    if options.fields and "fem" not in methods:
+    if options.fields and methods and "fem" not in methods:
         raise InputError("--fields: needs the method fem")
     scene = load_scene(options.scene, overrides)
 

@@ -26,19 +26,20 @@ class Plan:
 def plan(scene: Scene, *, subsurface: bool = False) -> Plan:
     """Decide which effects ``scene`` calls for; ``subsurface`` asks for fields inside the bodies."""
     load, f = scene.load, scene.friction.f
-    tangential = any(load.Q) or any(load.sigma)
+    Q, sigma = zip(*load.points, strict=True)
+    tangential = any(Q) or any(sigma)
     friction = f > 0 and tangential
     no_friction = "f = 0: no traction can hold a tangential load" if tangential else "no tangential load acts"
     decisions: list[tuple[Effect, bool, str, str]] = [
         ("normal", True, "two bodies are pressed together by a constant P", ""),
         ("friction", friction, f"tangential loads act and f = {f:g}", no_friction),
-        ("shear", any(load.Q), f"Q goes between {load.Q[0]:g} and {load.Q[1]:g} N/m", "Q = 0 at both load points"),
-        ("tension", any(load.sigma), f"sigma goes between {load.sigma[0]:g} and {load.sigma[1]:g} Pa",
-         "sigma = 0 at both load points"),
+        ("shear", any(Q), f"Q goes between {min(Q):g} and {max(Q):g} N/m", "Q = 0 at every load point"),
+        ("tension", any(sigma), f"sigma goes between {min(sigma):g} and {max(sigma):g} Pa",
+         "sigma = 0 at every load point"),
         ("opposing-slip", friction and load.dsigma != 0, "tension may turn the slip at one end of the contact",
          "without a change of tension both ends slip the same way in the steady state" if friction else no_friction),
         ("history", friction and (not load.fully_reversed or load.cycles > 1),
-         "mean loads or several cycles: what is locked in depends on the path",
+         "mean loads, several cycles or loads out of phase: what is locked in depends on the path",
          "fully reversed, one cycle: nothing is locked in" if friction else no_friction),
         ("far-field", scene.fem.far_field == "half-plane",
          "the finite block is held by the displacements of the half-plane it stands for",

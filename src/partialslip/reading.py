@@ -176,8 +176,8 @@ def _allowed(what: str, kind: Any) -> str:
         )
     if what.startswith("Invalid enum value"):
         return "one of " + ", ".join(map(repr, get_args(kind)))
-    if length := re.fullmatch(r"Expected `array` of length (\d+), got \d+", what):
-        return f"an array of {length[1]} numbers"
+    if length := re.fullmatch(r"Expected `array` of length (>=|<=) (\d+)", what):
+        return f"an array of at {'least' if length[1] == '>=' else 'most'} {length[2]} numbers"
     if wrong := re.fullmatch(r"Expected `([a-z]+)(?: \| null)?`, got `([a-z]+)`", what):
         return f"{_KINDS.get(wrong[1], wrong[1])}, not {_KINDS.get(wrong[2], wrong[2])}"
     if bound := re.fullmatch(r"Expected `(?:float|int)(?: \| null)?` (.*)", what):

@@ -16,7 +16,7 @@ except ImportError:  # Windows
     resource = None  # type: ignore[assignment]
 
 Array = npt.NDArray[np.float64]
-Regime = Literal["stuck", "small tension", "large tension", "sliding", "ratchets"]
+Regime = Literal["stuck", "small tension", "large tension", "out of phase", "sliding", "ratchets"]
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,8 @@ class Traction:
         Pressure and the change of shear traction q2 - q1, Pa.
     q1, q2 : (n,) arrays or None
         Shear traction at load points 1 and 2, Pa. None where the method determines the change only (with
-        mean loads a closed form cannot know what the first cycles lock in).
+        mean loads a closed form cannot know what the first cycles lock in). Where Q and sigma are out of phase,
+        the least and the largest of the last cycle.
     at : callable
         ``at(x) -> (p, dq)``: tractions at any points, as this method represents them; zero outside the contact.
     breaks : (k,) array
@@ -48,6 +49,25 @@ class Traction:
     at: Callable[[Array], tuple[Array, Array]]
     breaks: Array
     cells: Array | None = None
+
+
+@dataclass(frozen=True)
+class Slip:
+    """Slip over half a cycle.
+
+    Parameters
+    ----------
+    x : (k,) array
+        Points, ascending, m.
+    slip : (k,) array
+        Change, from load point 1 to 2, of the displacement of the body that pushes with q against the other, m.
+    dissipated : float
+        Work against friction over a whole cycle, per unit depth, J/m.
+    """
+
+    x: Array
+    slip: Array
+    dissipated: float
 
 
 @dataclass(frozen=True)
@@ -94,7 +114,8 @@ class Result:
     ``certificate`` holds residuals in units of f p0 (of p0 for the normal problem) and equilibrium relative to
     the load; ``estimate`` the method's own estimate of its errors in a, m and n, as fractions of a;
     ``settings`` and ``counts`` say what was built and how much work it was; ``notes`` what a reader must know;
-    ``bodies`` is there only where fields inside the bodies were asked for.
+    ``slip`` is None where the contact slides as a whole or there is no friction; ``bodies`` is there only where fields
+    inside the bodies were asked for.
     """
 
     method: str
@@ -105,6 +126,7 @@ class Result:
     stick_half_width: float | None
     traction: Traction
     cost: Cost
+    slip: Slip | None = None
     settings: Mapping[str, str | float | int] = field(default_factory=dict)
     counts: Mapping[str, int] = field(default_factory=dict)
     certificate: Mapping[str, float] = field(default_factory=dict)

@@ -10,18 +10,24 @@ from partialslip.result import Result
 from partialslip.scene import Scene
 
 METHODS = ("exact", "march", "fem")
-DEFAULT = ("exact", "fem")
+DEFAULT = {True: ("exact", "fem"), False: ("march", "fem")}  # by whether the loads are in phase
 Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class Run:
-    """A scene, its plan, the results by method, and the comparisons of all others with the exact one."""
+    """A scene, its plan, the results by method, and the comparisons of all others with the reference: the exact one,
+    or, where there is none, the march's."""
 
     scene: Scene
     plan: Plan
     results: dict[str, Result]
     comparisons: dict[str, Comparison]
+
+    @property
+    def reference(self) -> str | None:
+        """The method that the others are compared with."""
+        return next((name for name in ("exact", "march") if name in self.results), None)
 
     @property
     def passed(self) -> bool:
@@ -30,14 +36,15 @@ class Run:
 
 
 def run(
-    scene: Scene, methods: Iterable[str] = DEFAULT, *, subsurface: bool = False, progress: Progress = lambda _: None
+    scene: Scene, methods: Iterable[str] | None = None, *, subsurface: bool = False, progress: Progress = lambda _: None
 ) -> Run:
     """Solve ``scene`` by each of ``methods`` ("exact", "march", "fem") and compare.
 
     Parameters
     ----------
     scene : Scene
-    methods : iterable of str
+    methods : iterable of str, optional
+        As a rule exact and fem; march and fem where Q and sigma are out of phase, as there is no closed form then.
     subsurface : bool
         Whether to solve for the displacements inside the bodies, too (finite elements).
     progress : callable
@@ -46,18 +53,19 @@ def run(
     Raises
     ------
     InputError
-        If a method is unknown.
+        If a method is unknown, or the exact one is asked for loads out of phase.
     MissingLibraryError
         If finite elements are asked for and gmsh, or a system library that it needs, is not there.
     """
     effects = plan(scene, subsurface=subsurface)
-    results = {name: _method(name)(scene, effects, _told_by(name, progress)) for name in dict.fromkeys(methods)}
-    comparisons = {
-        name: compare(result, results["exact"], scene.friction.f, scene.fem.accuracy)
-        for name, result in results.items()
-        if name != "exact" and "exact" in results
-    }
-    return Run(scene, effects, results, comparisons)
+    chosen = dict.fromkeys(DEFAULT[scene.load.in_phase] if methods is None else methods)
+    results = {name: _method(name)(scene, effects, _told_by(name, progress)) for name in chosen}
+    outcome = Run(scene, effects, results, {})
+    for name, result in results.items():
+        if outcome.reference and name != outcome.reference:
+            reference = results[outcome.reference]
+            outcome.comparisons[name] = compare(result, reference, scene.friction.f, scene.fem.accuracy)
+    return outcome
 
 
 def _told_by(name: str, progress: Progress) -> Progress:

@@ -3,6 +3,7 @@
 Signs: positive ``dQ`` and positive ``dsigma`` add up at x -> +a, so that the stick zone moves towards -a.
 """
 
+import itertools
 import math
 from typing import Annotated, Literal
 
@@ -16,6 +17,11 @@ Positive = Annotated[float, msgspec.Meta(gt=0)]
 
 # Numbers are zero or within these magnitudes, so that products and squares of a few of them stay finite.
 SMALLEST, LARGEST = 1e-100, 1e100
+
+_ROUGH = 1e-9  # changes of slope and curvature in a table, in the largest one, that are taken for rounding
+_SHARP = 0.5
+
+Array = npt.NDArray[np.float64]
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -56,9 +62,10 @@ class Hertz(Table, frozen=True, kw_only=True, tag_field="kind", tag="hertz"):
         """Where the gap is not smooth, m: nowhere."""
         return ()
 
-    def gap(self, x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def gap_at(self, x: Array) -> Array:
         """Gap before loading at ``x`` (m), m."""
-        return x**2 / (2 * self.R)
+        result: Array = x**2 / (2 * self.R)
+        return result
 
 
 class FlatRounded(Table, frozen=True, kw_only=True, tag_field="kind", tag="flat-rounded"):
@@ -72,12 +79,84 @@ class FlatRounded(Table, frozen=True, kw_only=True, tag_field="kind", tag="flat-
         """Where the gap is not smooth, m: the ends of the flat."""
         return (-self.b, self.b)
 
-    def gap(self, x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    @property
+    def reach(self) -> float:
+        """How far the profile is known, m."""
+        return math.inf
+
+    def gap_at(self, x: Array) -> Array:
         """Gap before loading at ``x`` (m), m."""
-        return np.maximum(np.abs(x) - self.b, 0.0) ** 2 / (2 * self.R)
+        result: Array = np.maximum(np.abs(x) - self.b, 0.0) ** 2 / (2 * self.R)
+        return result
+
+    def curvature_steps(self) -> tuple[Array, Array]:
+        """Where the gap's curvature steps up (|x|, m), and by how much (1/m)."""
+        return np.array([self.b]), np.array([1 / self.R])
 
 
-Profile = Hertz | FlatRounded
+class Tabulated(Table, frozen=True, kw_only=True, tag_field="kind", tag="tabulated"):
+    """An even, convex gap by a table: ``gap`` (m) at ``x`` (m), both from 0 on.
+
+    The slope goes linearly from the middle of each interval, where it is that of the chord, to the next: second-order
+    accurate, exact for a parabola, and convex as the table is. Beyond the last middle the curvature stays as it is.
+    """
+
+    x: Annotated[tuple[float, ...], msgspec.Meta(min_length=3, max_length=1000)]
+    gap: Annotated[tuple[float, ...], msgspec.Meta(min_length=3, max_length=1000)]
+
+    def __post_init__(self) -> None:
+        if len(self.x) != len(self.gap):
+            raise InputError(f"profile.gap: must have as many numbers as profile.x, {len(self.x)}, not {len(self.gap)}")
+        for name, values in (("x", self.x), ("gap", self.gap)):
+            if values[0] != 0:
+                raise InputError(f"profile.{name}[0] = {values[0]}: must be 0, the middle of the contact")
+        for i, (before, x) in enumerate(itertools.pairwise(self.x)):
+            if not x > before:
+                raise InputError(f"profile.x[{i + 1}] = {x}: must be > {before}, the one before it")
+        slopes = np.diff(self.gap) / np.diff(self.x)
+        falls = np.flatnonzero(np.diff(slopes, prepend=0.0) < -_ROUGH * max(slopes.max(), 0.0))
+        if len(falls):
+            x = self.x[falls[0]]
+            raise InputError(f"profile.gap: must be convex, a slope that never falls: it does at x = {x}")
+        if not slopes[-1] > 0:
+            raise InputError("profile.gap: must rise somewhere")
+
+    @property
+    def R(self) -> float:
+        """Radius of the parabola through the last point, m: a measure of size only."""
+        return self.x[-1] ** 2 / (2 * self.gap[-1])
+
+    @property
+    def reach(self) -> float:
+        """How far the profile is known, m."""
+        return self.x[-1]
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Where the gap is not smooth, m: where its curvature steps by more than half of the largest one."""
+        at, steps = self.curvature_steps()
+        sharp = at[(np.abs(steps) > _SHARP * np.cumsum(steps).max()) & (at > 0)]
+        return (*(-sharp[::-1]).tolist(), *sharp.tolist())
+
+    def gap_at(self, x: Array) -> Array:
+        """Gap before loading at ``x`` (m), m."""
+        at, steps = self.curvature_steps()
+        beyond = np.maximum(np.abs(x)[..., None] - at, 0.0)
+        result: Array = beyond**2 @ steps / 2
+        return result
+
+    def curvature_steps(self) -> tuple[Array, Array]:
+        """Where the gap's curvature steps (|x|, m), and by how much (1/m)."""
+        x = np.array(self.x)
+        middles = np.concatenate([[0.0], (x[1:] + x[:-1]) / 2])
+        slopes = np.maximum.accumulate(np.concatenate([[0.0], np.diff(self.gap) / np.diff(x)]))
+        curvatures = np.diff(slopes) / np.diff(middles)
+        steps = np.diff(curvatures, prepend=0.0)
+        real = np.abs(steps) > _ROUGH * curvatures.max()
+        return middles[:-1][real], steps[real]
+
+
+Profile = Hertz | FlatRounded | Tabulated
 
 
 class Friction(Table, frozen=True, kw_only=True):
@@ -86,36 +165,77 @@ class Friction(Table, frozen=True, kw_only=True):
     f: Annotated[float, msgspec.Meta(ge=0, le=1000)]
 
 
+Turns = Annotated[tuple[float, ...], msgspec.Meta(min_length=2, max_length=1000)]
+
+
 class Load(Table, frozen=True, kw_only=True):
-    """Loads per unit depth. The cycle runs 0 -> point 2 -> point 1 -> point 2 ... with ``Q`` and ``sigma`` in phase.
+    """Loads per unit depth, along straight lines from one load point of the cycle to the next.
 
     ``P`` (N/m) is constant; for Hertz ``a`` (m) or ``p0`` (Pa) may be given instead. ``Q`` (N/m) and ``sigma`` (Pa, the
-    difference of the two bodies' bulk tensions) are pairs: their values at load points 1 and 2. Methods that go
-    through the history take ``cycles`` of them, and ``steps`` from each load point to the next.
+    difference of the two bodies' bulk tensions) are their values at the load points: as a rule at points 1 and 2,
+    between which they cycle in phase, or at more of them. The path begins without shear, goes to the last point, and
+    then ``cycles`` times through all of them; methods that follow it take ``steps`` from each to the next.
     """
 
     P: Positive | None = None
     a: Positive | None = None
     p0: Positive | None = None
-    Q: tuple[float, float] = (0.0, 0.0)
-    sigma: tuple[float, float] = (0.0, 0.0)
+    Q: Turns = (0.0, 0.0)
+    sigma: Turns = (0.0, 0.0)
     cycles: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 1
     steps: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 1
+
+    def __post_init__(self) -> None:
+        if len(self.Q) != len(self.sigma) and any(self.Q) and any(self.sigma):
+            raise InputError(f"load.sigma: must have as many numbers as load.Q, {len(self.Q)}, not {len(self.sigma)}")
+
+    @property
+    def points(self) -> tuple[tuple[float, float], ...]:
+        """(Q, sigma) at the load points of the cycle."""
+        count = max(len(self.Q), len(self.sigma))
+        Q, sigma = (values if any(values) else (0.0,) * count for values in (self.Q, self.sigma))
+        return tuple(zip(Q, sigma, strict=True))
+
+    @property
+    def ends(self) -> tuple[int, int]:
+        """Indices of load points 1 and 2, the first and the second to be visited: the extremes of the cycle. Where Q
+        and sigma are out of phase, those of Q."""
+        Q, sigma = np.array(self.points).T
+        values = Q if np.ptp(Q) > 0 else sigma
+        first, second = sorted((int(np.argmin(values)), int(np.argmax(values))))
+        return (first, second) if first != second else (0, len(values) - 1)
+
+    @property
+    def in_phase(self) -> bool:
+        """Whether Q and sigma go up and down together, on one straight line."""
+        Q, sigma = np.array(self.points).T
+        first, second = self.ends
+        Q, sigma = Q - Q[first], sigma - sigma[first]
+        return bool((np.abs(Q * sigma[second] - sigma * Q[second]) <= _ROUGH * np.ptp(Q) * np.ptp(sigma)).all())
 
     @property
     def dQ(self) -> float:
         """Q2 - Q1, N/m (paper, eq. (2))."""
-        return self.Q[1] - self.Q[0]
+        first, second = self.ends
+        return self.points[second][0] - self.points[first][0]
 
     @property
     def dsigma(self) -> float:
         """sigma2 - sigma1, Pa (paper, eq. (3))."""
-        return self.sigma[1] - self.sigma[0]
+        first, second = self.ends
+        return self.points[second][1] - self.points[first][1]
+
+    @property
+    def Q_mean(self) -> float:
+        """(Q1 + Q2)/2, N/m."""
+        first, second = self.ends
+        return (self.points[first][0] + self.points[second][0]) / 2
 
     @property
     def fully_reversed(self) -> bool:
-        """Whether Q1 = -Q2 and sigma1 = -sigma2, so that no mean load is locked in."""
-        return self.Q[0] == -self.Q[1] and self.sigma[0] == -self.sigma[1]
+        """Whether Q1 = -Q2 and sigma1 = -sigma2, in phase, so that no mean load is locked in."""
+        (Q1, sigma1), (Q2, sigma2) = (self.points[end] for end in self.ends)
+        return self.in_phase and Q1 == -Q2 and sigma1 == -sigma2
 
 
 class Fem(Table, frozen=True, kw_only=True):

@@ -4,6 +4,8 @@
 function's own tests must catch stand beside those tests.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -30,30 +32,35 @@ def test_without_a_fault_everything_passes():
     assert outcome().passed
 
 
-def test_tension_of_the_wrong_sign(monkeypatch):
-    monkeypatch.setattr(
-        level, "march", lambda C, x, bound, loads, _: true_march(C, x, bound, [(Q, -strain) for Q, strain in loads])
+def march_with(change):
+    """A march along a path whose load points have been changed."""
+    return lambda C, x, bound, path: true_march(
+        C, x, bound, replace(path, cycle=tuple(change(Q, strain) for Q, strain in path.cycle))
     )
+
+
+def test_tension_of_the_wrong_sign(monkeypatch):
+    monkeypatch.setattr(level, "march", march_with(lambda Q, strain: (Q, -strain)))
     assert {"m", "n", "q"} <= missed(outcome())
 
 
 def test_tension_left_out(monkeypatch):
-    monkeypatch.setattr(
-        level, "march", lambda C, x, bound, loads, _: true_march(C, x, bound, [(Q, 0.0) for Q, _ in loads])
-    )
+    monkeypatch.setattr(level, "march", march_with(lambda Q, _: (Q, 0.0)))
     assert {"m", "n", "q", "regime"} <= missed(outcome())
 
 
 def test_friction_silently_smaller(monkeypatch):
-    monkeypatch.setattr(level, "march", lambda C, x, bound, loads, _: true_march(C, x, 0.9 * bound, loads))
+    monkeypatch.setattr(level, "march", lambda C, x, bound, path: true_march(C, x, 0.9 * bound, path))
     assert "q" in missed(outcome())
 
 
 def test_history_not_committed_between_steps(monkeypatch):
     """Every step starts from nothing: reversed proportional loads cannot tell, a mean load does."""
 
-    def forgetful(C, x, bound, loads, _):
-        return [true_march(C, x, bound, [load])[0] for load in loads]
+    def forgetful(C, x, bound, path):
+        alone = [true_march(C, x, bound, replace(path, cycle=(load,), ends=(0, 0), cycles=1)) for load in path.cycle]
+        first, second = (alone[end].q2 for end in path.ends)
+        return replace(true_march(C, x, bound, path), q1=first, q2=second)
 
     mean = ["load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]", "load.cycles=12"]
     assert outcome("hertz-large-tension", *mean).passed
@@ -99,7 +106,8 @@ def test_contact_points_beyond_a_hidden_gap_dropped(monkeypatch):
         solution = true(normal[np.ix_(candidates, candidates)], gap[candidates], P)
         x = np.zeros(len(gap))
         x[candidates] = solution.x
-        return type(solution)(x, np.pad(solution.residual, (0, len(gap) - len(candidates))), 0.0, solution.iterations)
+        missing = (0, len(gap) - len(candidates))
+        return replace(solution, x=x, residual=np.pad(solution.residual, missing))
 
     monkeypatch.setattr(level, "press", cut_off)
     monkeypatch.setattr(adapt, "_FINEST", 1e-2)
@@ -109,8 +117,8 @@ def test_contact_points_beyond_a_hidden_gap_dropped(monkeypatch):
 def test_stick_that_is_a_stiff_spring(monkeypatch):
     """Penalty: what sticks creeps in proportion to its traction, here by about a hundredth of the slip."""
 
-    def springs(C, x, bound, loads, _):
-        return true_march(C + 0.01 * np.diag(1 / bound), x, bound, loads)
+    def springs(C, x, bound, path):
+        return true_march(C + 0.01 * np.diag(1 / bound), x, bound, path)
 
     monkeypatch.setattr(level, "march", springs)
     assert {"m", "n", "q"} & missed(outcome())

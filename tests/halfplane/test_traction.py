@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from partialslip.halfplane.adhered import adhered
-from partialslip.halfplane.shape import FlatRounded, Hertz, Shape, StickZone
-from partialslip.halfplane.steady import stick_zone
+from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.punch import Punch
+from partialslip.halfplane.shape import Shape
+from partialslip.halfplane.steady import StickZone, stick_zone
 from partialslip.halfplane.traction import half_range, mean_load_bound
 
 LOADS = [(0.19, 0.4), (0.75, 2.4), (0.4, 4.03), (0.3, 8.0), (0.0, 3.0), (0.9, 20.0), (0.4, 87.8), (0.5, 2.3431457535)]
@@ -13,7 +15,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(400)
 
 
 HERTZ = Hertz()
-SHAPES = [HERTZ, FlatRounded(0.1), FlatRounded(0.6), FlatRounded(0.95)]
+SHAPES = [HERTZ, Punch(0.1), Punch(0.6), Punch(0.95)]
 every_shape = pytest.mark.parametrize("shape", SHAPES)
 
 
@@ -67,7 +69,7 @@ def test_what_sticks_does_not_move(Qf, sf, shape):
 
 def test_small_tension_is_the_superposition_of_two_hertz_tractions():
     zone = stick_zone(0.75, 2.4, HERTZ)
-    x = np.linspace(-1, 1, 101)
+    x = np.linspace(-1, 1, 100)  # at no end of a zone, which rounding moves
     inner = np.sqrt(np.maximum((0.2 - x) * (x + 0.8), 0))
     assert half_range(x, zone, HERTZ) == pytest.approx(np.sqrt(1 - x**2) - inner, abs=1e-15)
 

@@ -15,11 +15,13 @@ _EPS = float(np.finfo(float).eps)
 class Solution:
     """Multipliers ``x`` and what certifies them.
 
-    ``residual`` (n,) is the distance of each multiplier from its augmented projection, ``imbalance`` that of the
-    sum from the total, both in units of x; ``iterations`` counts the faces solved.
+    ``rest`` (n,) is C x - g - shift: zero between the bounds, what a bound holds back elsewhere. ``residual`` (n,) is
+    the distance of each multiplier from its augmented projection, ``imbalance`` that of the sum from the total, both
+    in units of x; ``iterations`` counts the faces solved.
     """
 
     x: Array
+    rest: Array
     residual: Array
     imbalance: float
     iterations: int
@@ -59,7 +61,8 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float) 
         shift = following
     x = np.clip(x, lower, upper)  # but for rounding it is within
     residual = np.abs(x - np.clip(x - r / np.diag(C), lower, upper))
-    return Solution(x, residual, abs(excess), pivoting.iterations)
+    rest = np.where((x > lower) & (x < upper), 0.0, r)
+    return Solution(x, rest, residual, abs(excess), pivoting.iterations)
 
 
 class _BlockPivoting:

@@ -1,29 +1,145 @@
-"""Contact half-widths: how far the contact reaches under a normal force."""
+"""The pressed contact: its half-width, its pressure, and the stick zones under changes of load, in SI units."""
 
 import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
 
-from partialslip.halfplane.shape import FlatRounded, Hertz, Shape, root
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import brentq
+
+from partialslip.errors import InputError
+from partialslip.halfplane.given import Given
+from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.punch import Punch, punch_force
+from partialslip.halfplane.shape import Shape
+from partialslip.halfplane.steady import stick_zones
+from partialslip.result import Array
 from partialslip.scene import Hertz as HertzProfile
 from partialslip.scene import Scene
 
 
-def contact(scene: Scene) -> tuple[float, Shape]:
-    """Contact half-width a (m) and the shape of the pressure.
+@dataclass(frozen=True)
+class Contact:
+    """Two half-planes pressed together: contact half-width ``a`` (m), normal force ``P`` (N/m) and the shape of p."""
 
-    Hertz: P = pi a^2/(2 A R). Flat and rounded (Ciavarella, Hills and Monno, 1998), with b = a cos(psi):
-    P = a^2/(A R) (psi - sin(psi) cos(psi)).
+    a: float
+    P: float
+    shape: Shape
+
+    @property
+    def p0(self) -> float:
+        """2 P/(pi a), Pa; for Hertz the largest pressure."""
+        return 2 * self.P / (math.pi * self.a)
+
+    def pressure(self, x: Array) -> Array:
+        """p at ``x`` (m), Pa."""
+        return self.p0 * self.shape.pressure(np.asarray(x, float) / self.a)
+
+
+def contact(scene: Scene) -> Contact:
+    """The contact of a scene.
+
+    Hertz: P = pi a^2/(2 A R). Any profile whose curvature steps by w at |x| = b (flat and rounded: by 1/R at b):
+    P = a^2/(2 A) sum w (2 psi - sin 2 psi), b = a cos(psi) (Ciavarella, Hills and Monno, 1998).
+
+    Raises
+    ------
+    InputError
+        If the contact reaches beyond a tabulated profile.
     """
-    A, R, P = scene.material.A, scene.profile.R, scene.P
-    if isinstance(scene.profile, HertzProfile):
-        return math.sqrt(2 * A * R * P / math.pi), Hertz()
-    b = scene.profile.b
-    load = A * R * P / b**2
+    A, P, profile = scene.material.A, scene.P, scene.profile
+    if isinstance(profile, HertzProfile):
+        return Contact(math.sqrt(2 * A * profile.R * P / math.pi), P, Hertz())
+    at, steps = profile.curvature_steps()
+    inner, reach = float(at[0]), profile.reach
 
-    def excess(log_psi: float) -> float:
-        psi = math.exp(log_psi)
-        # psi - sin(psi) cos(psi) cancels in a contact hardly wider than its flat
-        rest = 2 / 3 * psi**3 * (1 - psi**2 / 5) if psi < 1e-3 else psi - math.sin(psi) * math.cos(psi)
-        return load - rest / math.cos(psi) ** 2
+    def psi(beyond: float) -> Array:
+        """From its half-angle form, which knows a contact hardly wider than its flat."""
+        result: Array = 2 * np.arcsin(np.sqrt(np.maximum(beyond - (at - inner), 0.0) / (2 * (inner + beyond))))
+        return result
 
-    psi = math.exp(root(excess, -60.0, math.log(math.pi / 2)))
-    return b / math.cos(psi), FlatRounded(math.cos(psi))
+    def excess(log_beyond: float) -> float:
+        beyond = math.exp(log_beyond)
+        return float(((inner + beyond) * math.sqrt(1 / (2 * A * P))) ** 2 * (steps @ punch_force(psi(beyond)))) - 1
+
+    scale = math.log(max(inner, scene.length))
+    low, high = scale - 120.0, (math.log(reach - inner) if reach < math.inf else scale + 120.0)
+    if excess(high) < 0:
+        raise InputError(f"load.P = {P:g}: the contact reaches beyond profile.x, which ends at {reach:g}")
+    beyond = math.exp(brentq(excess, low, high, xtol=1e-15, rtol=8.9e-16))
+    a = inner + beyond
+    within = at < a
+    return Contact(a, P, Punch(at[within] / a, steps[within], psi(beyond)[within]))
+
+
+def contact_of(pressure: Callable[[Array], Array], a: float, kinks: Sequence[float] = ()) -> Contact:
+    """The contact with a pressure of one's own.
+
+    Parameters
+    ----------
+    pressure : callable
+        Takes points (n,) in m, within [-a, a], to p in Pa: even, positive inside, and going to zero at +-a like a
+        square root (as any does that comes from a smooth profile).
+    a : float
+        Contact half-width, m.
+    kinks : sequence of float
+        Where p is not smooth, m; -x goes with x.
+
+    Raises
+    ------
+    InputError
+        If the pressure is not even, finite and positive.
+    """
+    if not (math.isfinite(a) and a > 0):
+        raise InputError(f"a = {a}: must be finite and > 0")
+    shape = Given(lambda x: pressure(x * a), [kink / a for kink in kinks])
+    return Contact(a, shape.scale * math.pi * a / 2, shape)
+
+
+class StickZones(NamedTuple):
+    """Stick zones [-m, n], m; arrays of the shape to which the loads broadcast.
+
+    ``centre`` is (n - m)/2 and ``half_width`` (n + m)/2, which does not cancel in a narrow zone; ``s`` is +1 where both
+    ends slip the same way (small tension) and -1 where they slip opposite ways (large tension).
+    """
+
+    m: Array
+    n: Array
+    centre: Array
+    half_width: Array
+    s: Array
+
+
+def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: npt.ArrayLike) -> StickZones:
+    """Permanent stick zones of the steady state (paper, eqs. (17) and (18)), many at once.
+
+    Parameters
+    ----------
+    contact : Contact
+    f : array_like
+        Coefficient of friction.
+    dQ, dsigma : array_like
+        Changes of the shear force (N/m) and of the differential bulk tension (Pa) over half a cycle, of any sign.
+
+    Raises
+    ------
+    InputError
+        If f is not positive, or |dQ| >= 2 f P: the contact slides.
+    """
+    given = {"f": f, "dQ": dQ, "dsigma": dsigma}
+    arrays = np.broadcast_arrays(*(np.asarray(values, float) for values in given.values()))
+    for name, values in zip(given, arrays, strict=True):
+        if not np.isfinite(values).all():
+            raise InputError(f"{name} = {values[~np.isfinite(values)].flat[0]}: must be finite")
+    f_, dQ_, dsigma_ = arrays
+    if not (f_ > 0).all():
+        raise InputError(f"f = {f_[~(f_ > 0)].flat[0]}: must be > 0")
+    Qf, sf = np.abs(dQ_) / (2 * f_ * contact.P), np.abs(dsigma_) / (f_ * contact.p0)
+    if (slides := Qf >= 1).any():
+        raise InputError(f"dQ = {dQ_[slides].flat[0]}: must be less than 2 f P in size, or the contact slides")
+    centre, half_width, s = stick_zones(Qf, sf, contact.shape)
+    mirror = np.where((dQ_ < 0) == (dsigma_ < 0), 1, -1)
+    centre, half_width = mirror * centre * contact.a, half_width * contact.a
+    return StickZones(half_width - centre, half_width + centre, centre, half_width, s)

@@ -9,15 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip.condensed.bounded import Solution
-from partialslip.condensed.friction import certificate, doubts, judge, load_points, march
+from partialslip.condensed.friction import History, Path, certificate, doubts, judge, load_path, march
 from partialslip.condensed.threads import one_thread
 from partialslip.condensed.zones import Zone, apart, stick_zone
 from partialslip.halfplane.cells import compliance, forces, graded
-from partialslip.halfplane.contact import contact
-from partialslip.halfplane.shape import Shape
+from partialslip.halfplane.contact import Contact, contact
 from partialslip.plan import Plan
-from partialslip.result import Array, Clock, Result, Traction
+from partialslip.result import Array, Clock, Result, Slip, Traction
 from partialslip.scene import Scene
 
 # Errors of m and n fall at least fivefold from mesh to mesh, so that a quarter of the last change bounds the rest.
@@ -30,7 +28,7 @@ class _Level:
 
     vertices: Array
     pressed: Array
-    steps: list[Solution]
+    history: History | None
     stick: Zone | None
 
 
@@ -46,17 +44,17 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
         Called with one line after each mesh.
     """
     clock = Clock()
-    a, shape = contact(scene)
-    loads = load_points(scene, plan)
-    ends = [-1.0, 1.0, *shape.kinks]
+    pressed = contact(scene)
+    path = load_path(scene, plan)
+    ends = [-1.0, 1.0, *(kink / pressed.a for kink in scene.profile.kinks if abs(kink) < pressed.a)]
     level: _Level | None = None
     errors: dict[str, float] = {}
     meshes, iterations = 0, 0
     for size, growth in _MESHES:
         found = [level.stick.left, level.stick.right] if level and level.stick else []
         points = np.sort(apart([*ends, *found], size))
-        before, level = level, _solve_level(scene, shape, loads, a, graded(points, size, growth), clock)
-        meshes, iterations = meshes + 1, iterations + sum(step.iterations for step in level.steps)
+        before, level = level, _solve_level(scene, pressed, path, graded(points, size, growth), clock)
+        meshes, iterations = meshes + 1, iterations + (level.history.iterations if level.history else 0)
         if level.stick is None:
             break
         if before and before.stick:
@@ -66,39 +64,37 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
             if max(errors.values()) <= scene.fem.accuracy:
                 break
     assert level is not None
-    return _result(scene, shape, a, level, errors, {"meshes": meshes, "iterations": iterations}, clock)
+    return _result(scene, pressed, level, errors, {"meshes": meshes, "iterations": iterations}, clock)
 
 
-def _solve_level(
-    scene: Scene, shape: Shape, loads: list[tuple[float, float]], a: float, vertices: Array, clock: Clock
-) -> _Level:
-    pressed = forces(shape, vertices)
-    if not loads:
-        return _Level(vertices, pressed, [], None)
+def _solve_level(scene: Scene, pressed: Contact, path: Path | None, vertices: Array, clock: Clock) -> _Level:
+    normal = forces(pressed.shape, vertices)
+    if not path:
+        return _Level(vertices, normal, None, None)
     x = (vertices[1:] + vertices[:-1]) / 2
-    bound = scene.friction.f * pressed
+    bound = scene.friction.f * normal
     with clock.phase("compliance"):
         tangential = compliance(vertices / 2)  # a change of length is a rigid shift, which is free
     with clock.phase("contact"):
-        steps = march(tangential, x * a / scene.length, bound, loads, scene.load.steps)
-        stick = stick_zone(x, bound, steps[-1].x - steps[-2].x, vertices, lambda values: values)
-    return _Level(vertices, pressed, steps, stick)
+        history = march(tangential, x * pressed.a / scene.length, bound, path)
+        stick = stick_zone(x, bound, history.change, vertices, lambda values: values)
+    return _Level(vertices, normal, history, stick)
 
 
 def _result(
-    scene: Scene, shape: Shape, a: float, level: _Level, errors: dict[str, float], counts: dict[str, int], clock: Clock
+    scene: Scene, pressed: Contact, level: _Level, errors: dict[str, float], counts: dict[str, int], clock: Clock
 ) -> Result:
-    P, widths = scene.P, np.diff(level.vertices)
-    p0 = 2 * P / (np.pi * a)
+    P, a, p0, widths, history = scene.P, pressed.a, pressed.p0, np.diff(level.vertices), level.history
     found = judge(scene, level.stick, 1.0)
-    certified = certificate(level.steps, widths, scene.friction.f, 2 / np.pi) if level.steps else {}
+    certified = certificate(history, widths, scene.friction.f, 2 / np.pi) if history else {}
     x = (level.vertices[1:] + level.vertices[:-1]) / 2
-    q1, q2 = (P / a * step.x / widths for step in level.steps[-2:]) if level.steps else (0 * x, 0 * x)
+    q1, q2 = (P / a * force / widths for force in (history.q1, history.q2)) if history else (0 * x, 0 * x)
+    unit = scene.material.A * P  # of displacement
 
     def at(points: Array) -> tuple[Array, Array]:
         scaled = points / a
         cell = np.clip(np.searchsorted(level.vertices, scaled) - 1, 0, len(x) - 1)
-        return p0 * shape.pressure(scaled), np.where(np.abs(scaled) <= 1, (q2 - q1)[cell], 0.0)
+        return pressed.pressure(points), np.where(np.abs(scaled) <= 1, (q2 - q1)[cell], 0.0)
 
     return Result(
         method="march",
@@ -109,17 +105,18 @@ def _result(
         stick_half_width=None if found.half_width is None else found.half_width * a,
         traction=Traction(
             x=x * a,
-            p=p0 * shape.pressure(x),
+            p=pressed.pressure(x * a),
             dq=q2 - q1,
             q1=q1 if found.regime != "sliding" else None,
             q2=q2 if found.regime != "sliding" else None,
             at=at,
-            breaks=np.array([-a, *(kink * a for kink in shape.kinks), a]),
+            breaks=np.array([-a, *(kink for kink in scene.profile.kinks if abs(kink) < a), a]),
             cells=level.vertices * a,
         ),
         cost=clock.cost(),
+        slip=Slip(x * a, history.slip * unit, history.dissipated * unit * P) if history else None,
         settings={"model": "two half-planes, exact pressure, cells of constant shear", "accuracy": scene.fem.accuracy},
-        counts={"cells": len(x), "load_steps": len(level.steps) * scene.load.steps, **counts},
+        counts={"cells": len(x), "load_steps": history.load_steps if history else 0, **counts},
         certificate=certified,
         estimate=errors,
         notes=found.notes + doubts(certified, errors, scene.fem.accuracy),

@@ -4,12 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from partialslip.halfplane.contact import contact
-from partialslip.halfplane.shape import Shape, StickZone
-from partialslip.halfplane.steady import stick_zone
+from partialslip.errors import InputError
+from partialslip.halfplane.contact import Contact, contact
+from partialslip.halfplane.slip import dissipation
+from partialslip.halfplane.steady import StickZone, stick_zone
 from partialslip.halfplane.traction import half_range, mean_load_bound
 from partialslip.plan import Plan
-from partialslip.result import Array, Clock, Regime, Result, Traction
+from partialslip.result import Array, Clock, Regime, Result, Slip, Traction
 from partialslip.scene import Scene
 
 _POINTS_PER_ZONE = 101
@@ -19,26 +20,34 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
     """Solve ``scene`` exactly, as two elastically similar half-planes in the steady state; SI units.
 
     It is done before there is any ``progress`` to tell.
+
+    Raises
+    ------
+    InputError
+        If Q and sigma are out of phase: there is no closed form.
     """
     del progress
     clock = Clock()
     f, load = scene.friction.f, scene.load
-    a, shape = contact(scene)
-    p0 = 2 * scene.P / (np.pi * a)
-    regime, zone = _steady_state(scene, plan, p0, shape)
+    if not load.in_phase:
+        raise InputError("load.sigma: out of phase with load.Q; the exact method is for loads in phase, take march")
+    pressed = contact(scene)
+    a, p0, shape = pressed.a, pressed.p0, pressed.shape
+    regime, zone = _steady_state(scene, plan, pressed)
 
     # zone is the one for positive dQ and dsigma: turning q round, and mirroring x, brings it to the signs here
     turn = -1 if load.dQ < 0 else 1
     mirror = turn * (-1 if load.dsigma < 0 else 1)
 
     def at(x: Array) -> tuple[Array, Array]:
-        p = p0 * shape.pressure(x / a)
+        p = pressed.pressure(x)
         if not zone or regime == "stuck":
             return p, np.zeros_like(p)
         return p, turn * 2 * f * p0 * half_range(mirror * x / a, zone, shape)
 
-    ends = [zone.centre - zone.half_width, zone.centre + zone.half_width] if zone else []
-    breaks = a * np.unique(np.clip([-1.0, *shape.kinks, *(mirror * end for end in ends), 1.0], -1, 1))
+    ends = [mirror * (zone.centre + way * zone.half_width) for way in (-1, 1)] if zone else []
+    kinks = [kink for kink in scene.profile.kinks if abs(kink) < a]
+    breaks = np.unique([-a, *kinks, *(a * np.clip(ends, -1, 1)), a])
     x = _sample(np.union1d(breaks, [0.0]))
     p, dq = at(x)
     levels = load.fully_reversed and regime != "sliding"
@@ -51,24 +60,31 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
         stick_half_width=zone.half_width * a if zone else None,
         traction=Traction(x, p, dq, -dq / 2 if levels else None, dq / 2 if levels else None, at, breaks),
         cost=clock.cost(),
+        slip=_slip(scene, pressed, zone, turn, mirror) if zone and regime not in ("stuck", "ratchets") else None,
         settings={"model": "two half-planes, steady state"},
         notes=_notes(regime, levels, _turns_round(scene, p0, zone)),
     )
 
 
-def _steady_state(scene: Scene, plan: Plan, p0: float, shape: Shape) -> tuple[Regime, StickZone | None]:
+def _steady_state(scene: Scene, plan: Plan, pressed: Contact) -> tuple[Regime, StickZone | None]:
     """Regime and stick zone (scaled, for positive dQ and dsigma; None where the contact slides)."""
     f, load, limit = scene.friction.f, scene.load, scene.friction.f * scene.P
-    if plan.needs("friction") and (abs(load.dQ) >= 2 * limit or max(map(abs, load.Q)) >= limit):
+    if plan.needs("friction") and (abs(load.dQ) >= 2 * limit or max(abs(Q) for Q, _ in load.points) >= limit):
         return "sliding", None
     if not plan.needs("friction"):
         return ("sliding", None) if f == 0 else ("stuck", StickZone(0.0, 1.0, 1))
     if load.dQ == 0 and load.dsigma == 0:
         return "stuck", StickZone(0.0, 1.0, 1)
-    zone = stick_zone(abs(load.dQ) / (2 * limit), abs(load.dsigma) / (f * p0), shape)
-    if abs(sum(load.Q)) / 2 > limit * mean_load_bound(zone, shape):
+    zone = stick_zone(abs(load.dQ) / (2 * limit), abs(load.dsigma) / (f * pressed.p0), pressed.shape)
+    if abs(load.Q_mean) > limit * mean_load_bound(zone, pressed.shape):
         return "ratchets", zone
     return ("small tension" if zone.s > 0 else "large tension"), zone
+
+
+def _slip(scene: Scene, pressed: Contact, zone: StickZone, turn: int, mirror: int) -> Slip:
+    x, slips, dissipated = dissipation(zone, pressed.shape)
+    stress, unit = scene.friction.f * pressed.p0, scene.material.A * scene.friction.f * pressed.p0 * pressed.a
+    return Slip(mirror * pressed.a * x[::mirror], turn * unit * slips[::mirror], dissipated * unit * stress * pressed.a)
 
 
 def _sample(breaks: Array) -> Array:

@@ -1,46 +1,43 @@
 """Even pressures over [-1, 1] and the consistency conditions on the stick zone (paper, eqs. (17) and (18)).
 
 Scaled: lengths by a, pressures by p0 = 2 P/(pi a) (for Hertz the largest pressure), so that every pressure has the
-resultant pi/2; dQ and dsigma by the friction, as Qf = dQ/(2 f P) and sf = dsigma/(f p0).
+resultant pi/2; dQ and dsigma by the friction, as Qf = dQ/(2 f P) and sf = dsigma/(f p0). A stick zone is given by its
+distance from the contact's left end, ``edge`` = 1 - m, and its half-width ``c`` = (n + m)/2, which keep their digits
+when they are small; ``s`` is +1 where both ends slip the same way and -1 where they slip opposite ways. All of them
+may be arrays.
 """
 
-import math
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import elliprd, elliprf, elliprj
+import numpy.typing as npt
 
 from partialslip.result import Array
 
-
-class StickZone(NamedTuple):
-    """Stick zone [-m, n] as fractions of a, by its centre (n - m)/2 and half-width (n + m)/2; ``s`` is +1 where
-    both ends slip the same way (small tension) and -1 where they slip opposite ways (large tension)."""
-
-    centre: float
-    half_width: float
-    s: int
-
-
-LOG_TINY = -230.0  # stick zones narrower than 1e-100 a are not told apart
-
-
-def root(function: Callable[[float], float], low: float, high: float) -> float:
-    """Where a falling function changes sign; an end of the bracket where rounding, or a limit, leaves no change."""
-    if function(high) >= 0:
-        return high
-    if function(low) <= 0:
-        return low
-    return float(brentq(function, low, high, xtol=1e-20, rtol=8.9e-16, maxiter=500))
+_THIN = 1e-12
 
 
 class Rule(NamedTuple):
-    """Quadrature over a slip zone: int g(t)/w(t) dt = sum weights g(t), w(t) = sqrt(|(t-n)(t+m)|)."""
+    """Quadrature over a slip zone: int g(t)/w(t) dt = sum weights g(t), w(t) = sqrt(|(t-n)(t+m)|) = c sinh(theta);
+    (..., points) each."""
 
     t: Array
+    theta: Array
     weights: Array
+
+
+class Conditions(NamedTuple):
+    """The loads that belong to a stick zone, and how stiff its ends are.
+
+    ``right`` and ``left`` are c times the K of f p - |dq|/2 = K sqrt(2 c r) at a small distance r inside either end
+    (in f p0); ``skew`` is (right - left)/c, which cancels in a narrow stick zone.
+    """
+
+    sf: Array
+    Qf: Array
+    right: Array
+    left: Array
+    skew: Array
 
 
 class Shape:
@@ -53,128 +50,71 @@ class Shape:
         raise NotImplementedError
 
     def difference(self, t: Array, x: Array) -> Array:
-        """(p(t) - p(x))/(t - x), for t in a slip zone and x in the stick zone."""
-        step: Array = t - x
-        result: Array = (self.pressure(t) - self.pressure(x)) / np.where(step == 0, 1.0, step)
-        return result
+        """(p(t) - p(x))/(t - x)."""
+        return self._quotient(t, self.pressure(t), x)
 
-    def loads(self, edge: float, c: float, s: int) -> tuple[float, float]:
-        """The (sf, Qf) whose stick zone is [edge - 1, edge - 1 + 2c].
+    def conditions(self, edge: Array, c: Array, s: Array) -> Conditions:
+        """The consistency conditions by quadrature. The second is taken about the zone's centre, which leaves dQ/2
+        alone on its other side."""
+        edge, c, s = np.asarray(edge, float), np.asarray(c, float), np.asarray(s, float)
+        centre = edge + c - 1
+        # the stiffness of an end goes to a limit as its slip zone vanishes
+        gap, near = np.maximum(1 - centre - c, _THIN), np.maximum(edge, _THIN)
+        ends = 1 - gap, near - 1
+        first = second = right = left = np.zeros(np.shape(c))
+        for side, sign in ((1, np.ones_like(s)), (-1, -s)):
+            t, _, weights = self.rule(edge, c, side)
+            p = self.pressure(t)
+            first = first + sign * (weights * p).sum(axis=-1)
+            second = second + sign * (weights * p * (t - centre[..., None])).sum(axis=-1)
+            # minus the smooth part of the traction in the stick zone, see partialslip.halfplane.traction
+            smooth = [(self._quotient(t, p, end[..., None]) * weights).sum(axis=-1) for end in ends]
+            right = right - side * np.abs(sign) * np.where(side > 0, 1, s) * c * smooth[0]
+            left = left - side * np.where(side > 0, s, 1) * c * smooth[1]
+        to_right, to_left = np.sqrt(gap / (gap + 2 * c)), np.sqrt(near / (near + 2 * c))
+        right = (right + self.pressure(ends[0]) * (1 / to_right - s * to_left)) / np.pi
+        left = (left + self.pressure(ends[1]) * (1 / to_left - s * to_right)) / np.pi
+        skew = np.where(c > 1e-5, (right - left) / c, 0.0)
+        return Conditions(8 / np.pi * first, 2 / np.pi * second, right, left, skew)
 
-        The second condition is taken about the zone's centre, which leaves dQ/2 alone on its other side.
-        """
-        first = second = 0.0
-        for side, sign in ((1, 1), (-1, -s)):
-            t, weights = self.rule(edge, c, side)
-            p = weights * self.pressure(t)
-            first += sign * float(p.sum())
-            second += sign * float(p @ (t - (edge + c - 1)))
-        return 8 / math.pi * first, 2 / math.pi * second
+    def guess(self, Qf: Array, sf: Array) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+        """Roughly where the stick zone is: s * edge, c, and whether that is exact."""
+        from partialslip.halfplane.hertz import Hertz
 
-    def touching(self, Qf: float) -> float:
-        """Half-width of the zone that touches the contact's end under ``Qf``: where small tension turns large."""
-        if Qf == 0:
-            return 1.0
-        return math.exp(root(lambda log_c: self.loads(0.0, math.exp(log_c), 1)[1] - Qf, LOG_TINY, 0.0))
+        edge, c, _ = Hertz().guess(Qf, sf)
+        return edge, c, np.zeros(np.shape(c), bool)
 
-    def small(self, Qf: float, sf: float) -> StickZone:
-        """The zone under small tension: at a given half-width the tension fixes the place, and dQ falls as it grows."""
-
-        def edge(c: float) -> float:
-            return (1 - c) * root(lambda way: self.loads((1 - c) * way, c, 1)[0] - sf, 0.0, 1.0)
-
-        centred = root(lambda c: self.loads(1 - c, c, 1)[1] - Qf, math.exp(LOG_TINY), 1.0)
-        touching = self.touching(Qf)
-        c = root(lambda c: self.loads(edge(c), c, 1)[1] - Qf, min(centred, touching), max(centred, touching))
-        return StickZone(edge(c) + c - 1, c, 1)
-
-    def rule(self, edge: float, c: float, side: int) -> Rule:
+    def rule(self, edge: Array | float, c: Array | float, side: int, splits: Array | None = None) -> Rule:
         """Points in the slip zone on the right (``side`` = 1) or left (-1).
 
-        t = centre +- c cosh(theta) takes w away; what is left are a square root at the contact's end and kinks, to
-        which the points of every piece crowd double exponentially.
+        t = centre +- c cosh(theta) takes w away; what is left are a square root at the contact's end and kinks (and
+        ``splits``, more points (..., k) to split at), to which the points of every piece crowd double exponentially.
         """
+        edge, c = np.asarray(edge, float), np.asarray(c, float)
         centre = edge + c - 1
-        # theta from its half-angle form: cosh(theta) - 1 = gap/c, where gap is the slip zone's width
-        gap = (2 - edge - 2 * c) if side > 0 else edge
 
-        def theta(width: float) -> float:
-            return 2 * math.asinh(math.sqrt(max(width, 0.0) / (2 * c)))
+        def theta(width: Array) -> Array:
+            """From its half-angle form: cosh(theta) - 1 = width/c, width being the distance from the stick zone."""
+            result: Array = 2 * np.arcsinh(np.sqrt(np.maximum(width, 0.0) / (2 * c[..., None])))
+            return result
 
-        inner = [theta(side * kink - side * centre - c) for kink in self.kinks if side * kink > side * centre + c]
-        end = theta(gap)
-        ends = np.unique(np.clip([0.0, end - 3.0, *inner, end], 0.0, end))
-        half = np.diff(ends)[:, None] / 2
-        points = np.where(_NODES < 0, ends[:-1, None] + half * (1 + _NODES), ends[1:, None] - half * _TO_END)
-        weights = half * _WEIGHTS
-        t = centre + side * c * np.cosh(points)
-        return Rule(np.clip(t, -1.0, 1.0).ravel(), weights.ravel())
+        end = theta((1 - centre - c if side > 0 else edge)[..., None])
+        inner = np.broadcast_to(np.array(self.kinks), (*c.shape, len(self.kinks)))
+        if splits is not None:
+            inner = np.concatenate([np.broadcast_to(inner, (*splits.shape[:-1], len(self.kinks))), splits], axis=-1)
+        inner = theta(side * (inner - centre[..., None]) - c[..., None])
+        ends = np.concatenate(np.broadcast_arrays(0 * end, end - 3.0, end), axis=-1)
+        ends = np.concatenate([np.broadcast_to(ends, (*inner.shape[:-1], 3)), inner], axis=-1)
+        ends = np.sort(np.clip(ends, 0.0, end), axis=-1)
+        half = np.diff(ends)[..., None] / 2
+        points = np.where(_NODES < 0, ends[..., :-1, None] + half * (1 + _NODES), ends[..., 1:, None] - half * _TO_END)
+        points = points.reshape(*points.shape[:-2], -1)
+        t = centre[..., None] + side * c[..., None] * np.cosh(points)
+        return Rule(np.clip(t, -1.0, 1.0), points, (half * _WEIGHTS).reshape(points.shape))
 
-
-class Hertz(Shape):
-    """p/p0 = sqrt(1 - x^2), in the paper's closed and elliptic forms."""
-
-    def pressure(self, x: Array) -> Array:
-        result: Array = np.sqrt(np.maximum((1 - x) * (1 + x), 0.0))
-        return result
-
-    def difference(self, t: Array, x: Array) -> Array:
-        return -(t + x) / (self.pressure(t) + self.pressure(x))
-
-    def touching(self, Qf: float) -> float:
-        return math.sqrt(1 - Qf)
-
-    def small(self, Qf: float, sf: float) -> StickZone:
-        return StickZone(-sf / 8, math.sqrt(1 - Qf), 1)
-
-    def loads(self, edge: float, c: float, s: int) -> tuple[float, float]:
-        """Paper, eqs. (21), (22) and (24)-(26). ``chi`` is the modulus. Carlson's forms take 1 - chi^2 =
-        4 c/((1+m)(1+n)); all that is small with c or ``edge`` = 1 - m is formed without cancellation."""
-        if s > 0 or edge == 0:
-            return 8 * (1 - c - edge), (1 - c) * (1 + c)
-        m, n, centre = 1 - edge, edge + 2 * c - 1, edge + c - 1
-        root = math.sqrt((2 - edge) * (edge + 2 * c))  # sqrt((1+m)(1+n))
-        complement = 4 * c / root**2
-        phi, omega = -edge / (2 - edge), 1 - 2 * c / (2 - edge)  # (m-1)/(m+1), (1-n)/(1+m)
-
-        K = elliprf(0.0, complement, 1.0)
-        E = K - (1 - complement) / 3 * elliprd(0.0, complement, 1.0)
-        Pi_phi = K + phi / 3 * elliprj(0.0, complement, 1.0, 2 / (2 - edge))
-        Pi_omega = K + omega / 3 * elliprj(0.0, complement, 1.0, 2 * c / (2 - edge))
-
-        cubic = n**2 - 2 * m * n / 3 + m**2 - 4 / 3
-        first = (
-            -2 * root * E
-            + (2 * centre + 4) * (1 + m) / root * K
-            + 4 * centre / root * Pi_phi
-            - 4 * centre * c / root * Pi_omega
-        )
-        second = 1.5 * (
-            -2 * centre * root * E
-            - (1 + m) / root * ((n / 3 + 2) * m - (m**2 + n**2) / 2 - 2 * (1 + n) / 3) * K
-            + cubic / root * Pi_phi
-            - c * cubic / root * Pi_omega
-        )
-        return float(8 / math.pi * first), float(2 / math.pi * (second - centre * first))
-
-
-class FlatRounded(Shape):
-    """A flat of half-width ``flat`` (a fraction of a) with rounded edges (Ciavarella, Hills and Monno, 1998)."""
-
-    def __init__(self, flat: float) -> None:
-        self.flat, self.kinks = flat, (-flat, flat)
-        self._angle = math.asin(flat)
-
-    def pressure(self, x: Array) -> Array:
-        flat, end = self.flat, self._angle
-        x = np.minimum(np.abs(x), 1.0)
-        angle = np.arcsin(x)
-        apart = np.abs(np.sin(angle - end))
-        logarithm = np.log(np.sin(angle + end) / np.where(apart == 0, 1.0, apart))
-        # the two logarithms of the usual form, whose singularities at the flat's ends cancel, taken together
-        rest = 2 * flat * np.log(np.sin((angle + end) / 2) / np.cos((angle - end) / 2))
-        values = (math.pi - 2 * end) * np.cos(angle) + (x - flat) * logarithm + rest
-        result: Array = np.where(x < 1, np.maximum(values, 0.0), 0.0) / (math.pi - 2 * end - math.sin(2 * end))
+    def _quotient(self, t: Array, values: Array, x: Array) -> Array:
+        step = t - x
+        result: Array = (values - self.pressure(x)) / np.where(step == 0, np.inf, step)
         return result
 
 

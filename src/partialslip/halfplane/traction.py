@@ -3,10 +3,13 @@
 import math
 
 import numpy as np
+from scipy.optimize import brentq
 
-from partialslip.halfplane.shape import Hertz, Shape, StickZone, root
+from partialslip.halfplane.shape import Shape
+from partialslip.halfplane.steady import StickZone
 from partialslip.result import Array
 
+_AT_ONCE = 2**22  # pairs of points in memory
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(60)
 
 
@@ -24,9 +27,7 @@ def half_range(x: Array, zone: StickZone, shape: Shape) -> Array:
     p = shape.pressure(x)
     result = np.where(x < zone.centre, zone.s * p, p)
     sticks = (x > -m) & (x < n)
-    if zone.s > 0 and isinstance(shape, Hertz):
-        result[sticks] -= np.sqrt((n - x[sticks]) * (x[sticks] + m))
-    elif sticks.any():
+    if sticks.any():
         result[sticks] = _inside(x[sticks], zone, shape)
     return result
 
@@ -42,7 +43,7 @@ def mean_load_bound(zone: StickZone, shape: Shape) -> float:
     breaks = [math.acos((kink - centre) / c) for kink in kinks]
     if zone.s < 0:  # dq changes sign on the way from one end to the other
         breaks.append(
-            root(lambda a: float(half_range(np.array([centre + c * math.cos(a)]), zone, shape)[0]), 0, math.pi)
+            brentq(lambda a: float(half_range(np.array([centre + c * math.cos(a)]), zone, shape)[0]), 0, math.pi)
         )
     ends = np.array([0.0, *sorted(breaks), math.pi])
     angle = (ends[1:] + ends[:-1])[:, None] / 2 + np.diff(ends)[:, None] / 2 * _NODES
@@ -62,8 +63,9 @@ def _inside(x: Array, zone: StickZone, shape: Shape) -> Array:
     for side, sign, near, far in ((1, 1, to_right, to_left), (-1, zone.s, to_left, to_right)):
         gap = 2 - edge - 2 * c if side > 0 else edge
         tangent = np.sqrt(max(gap, 0.0) / (max(gap, 0.0) + 2 * c))  # tanh of half of theta's end
-        t, weights = shape.rule(edge, c, side)
+        t, _, weights = shape.rule(edge, c, side)
         arcs += sign * 2 * np.arctan2(tangent * far, near)
-        smooth += side * sign * (shape.difference(t, x[:, None]) @ weights)
+        for part in np.array_split(np.arange(len(x)), len(x) * len(t) // _AT_ONCE + 1):
+            smooth[part] += side * sign * (shape.difference(t, x[part, None]) @ weights)
     result: Array = (shape.pressure(x) * arcs + to_left * to_right * smooth) / np.pi
     return result

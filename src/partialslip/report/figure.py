@@ -39,7 +39,7 @@ def traction_svg(run: Run) -> str:
 
 def draw_tractions(axes: "Axes", run: Run) -> None:
     """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of every method: lines for a closed form, markers for a mesh."""
-    reference = run.results.get("exact") or next(iter(run.results.values()))
+    reference = run.results[run.reference or next(iter(run.results))]
     a, p0, f = reference.a, reference.p0, run.scene.friction.f
     if reference.m is not None and reference.n is not None:
         axes.axvspan(-reference.m / a, reference.n / a, color="0.88", lw=0, label="stick zone [-m, n]")

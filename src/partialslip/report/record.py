@@ -45,6 +45,9 @@ def _method(result: Result) -> dict[str, Any]:
         **{key: dict(getattr(result, key)) for key in ("settings", "counts", "certificate", "estimate")},
         "notes": list(result.notes),
         "cost": asdict(result.cost),
+        "slip": {"x": result.slip.x.tolist(), "slip": result.slip.slip.tolist(), "dissipated": result.slip.dissipated}
+        if result.slip
+        else None,
         "traction": {key: _listed(getattr(traction, key)) for key in ("x", "p", "q1", "q2", "dq")},
     }
 

@@ -5,7 +5,7 @@ import numpy as np
 from partialslip.result import Result
 from partialslip.run import Run
 
-HEADINGS = ("quantity", "exact", "value", "error", "bar", "")
+HEADINGS = ("quantity", "reference", "value", "error", "bar", "")
 _MEANING = {
     "a": "a, half-width",
     "m": "m, stick from -m",
@@ -15,16 +15,21 @@ _MEANING = {
 }
 
 
+def headings(run: Run, name: str) -> list[str]:
+    """Those of the errors of method ``name``."""
+    return [{"reference": run.reference or "", "value": name}.get(heading, heading) for heading in HEADINGS]
+
+
 def error_rows(run: Run, name: str) -> list[tuple[str, ...]]:
-    """Quantity, exact value, value of method ``name``, error, bar and verdict, of a, m, n, p and q."""
-    exact, result, comparison = run.results["exact"], run.results[name], run.comparisons[name]
+    """Quantity, the reference's value, that of method ``name``, error, bar and verdict, of a, m, n, p and q."""
+    reference, result, comparison = run.results[run.reference or name], run.results[name], run.comparisons[name]
     rows: list[tuple[str, ...]] = []
     for key, meaning in _MEANING.items():
         error, bar = getattr(comparison, key), comparison.bars[key]
         verdict = (
             ("-", "-", "") if error is None else (f"{error:.1e}", f"{bar:.1e}", "ok" if error <= bar else "MISSED")
         )
-        rows.append((meaning, value(exact, key), value(result, key), *verdict))
+        rows.append((meaning, value(reference, key), value(result, key), *verdict))
     return rows
 
 
@@ -39,6 +44,14 @@ def value(result: Result, key: str) -> str:
         return "none"
     peak = result.traction.p.max() if key == "p" else np.abs(result.traction.dq).max() / 2
     return f"max {engineering(float(peak), 'Pa', 6)}"
+
+
+def slip(result: Result) -> str:
+    """The largest slip over half a cycle, and what a cycle dissipates."""
+    if result.slip is None:
+        return ""
+    largest = engineering(float(np.abs(result.slip.slip).max()), "m", 5)
+    return f"{largest} at most over half a cycle, {engineering(result.slip.dissipated, 'J/m', 5)} dissipated a cycle"
 
 
 def engineering(number: float, unit: str, digits: int) -> str:

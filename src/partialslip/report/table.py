@@ -19,7 +19,7 @@ def print_run(run: Run, console: Console) -> None:
         lines = {"regime": result.regime, "built": rows.work(result), "certificate": rows.certificate(result)}
         if not run.comparisons:
             lines["found"] = ", ".join(f"{key} = {rows.value(result, key)}" for key in ("a", "m", "n"))
-        lines |= {"cost": rows.cost(result), "note": "; ".join(result.notes)}
+        lines |= {"slip": rows.slip(result), "cost": rows.cost(result), "note": "; ".join(result.notes)}
         _print_lines(console, name, lines)
     if run.comparisons:
         missed = [f"{name}: {what}" for name, comparison in run.comparisons.items() for what in comparison.missed]
@@ -28,8 +28,8 @@ def print_run(run: Run, console: Console) -> None:
 
 def _errors(run: Run, name: str) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
-    for number, heading in enumerate(rows.HEADINGS):
-        table.add_column(heading.replace("value", name), justify="left" if number in (0, 5) else "right", no_wrap=True)
+    for number, heading in enumerate(rows.headings(run, name)):
+        table.add_column(heading, justify="left" if number in (0, 5) else "right", no_wrap=True)
     for row in rows.error_rows(run, name):
         table.add_row(*row)
     return table

@@ -1,0 +1,69 @@
+"""Hertz's pressure in the paper's closed and elliptic forms; scaled as in :mod:`partialslip.halfplane.shape`."""
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import ellipe, ellipkm1, elliprj
+
+from partialslip.halfplane.shape import Conditions, Shape
+from partialslip.result import Array
+
+
+class Hertz(Shape):
+    """p/p0 = sqrt(1 - x^2)."""
+
+    def pressure(self, x: Array) -> Array:
+        result: Array = np.sqrt(np.maximum((1 - x) * (1 + x), 0.0))
+        return result
+
+    def difference(self, t: Array, x: Array) -> Array:
+        return -(t + x) / (self.pressure(t) + self.pressure(x))
+
+    def conditions(self, edge: Array, c: Array, s: Array) -> Conditions:
+        """Paper, eqs. (21), (22) and (24)-(26).
+
+        The paper's two Pi are related: the difference of their integrals is a residue at infinity. What is left of
+        them is X = K - Pi((m-1)/(m+1)), small with ``edge``, and terms that are small with c or edge are formed as
+        such: nothing large cancels.
+        """
+        edge, c, s = np.broadcast_arrays(np.asarray(edge, float), c, s)
+        large = s < 0
+        small = Conditions(8 * (1 - c - edge), (1 - c) * (1 + c), c.copy(), c.copy(), np.zeros_like(c))
+        if not large.any():
+            return small
+        if large.all():
+            return _opposite(edge, c)
+        for values, found in zip(small, _opposite(edge[large], c[large]), strict=True):
+            values[large] = found
+        return small
+
+    def guess(self, Qf: Array, sf: Array) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+        """Exact for small tension: paper, eqs. (21) and (22), by which the zone's centre is -sf/8. For large tension
+        between the transition and what the stick zone tends to as it gets narrow."""
+        c = np.sqrt(1 - Qf)
+        edge = Qf / (1 + c) - sf / 8  # 1 - c - sf/8, without its cancellation
+        large = edge < 0
+        if not large.any():
+            return edge, c, ~large
+        c_touching, y, beyond = c[large], np.pi / 2 * Qf[large], -8 * edge[large]
+        b = y / 2  # b + sin(b) cos(b) = y is the condition on dQ; -sin(b) is the centre
+        for _ in range(3):
+            b = np.clip(b - (b + np.sin(2 * b) / 2 - y) / (1 + np.cos(2 * b) + 1e-9), 0.0, np.pi / 2)
+        decay = np.exp(np.maximum(-np.pi * beyond / (16 * np.maximum(np.cos(b), 1e-3)), -230.0))
+        c[large] = c_touching * decay
+        centre = -np.sin(b) + (c_touching - 1 + np.sin(b)) * decay
+        edge[large] = -np.clip(1 + centre - c[large], 1e-6 * (1 - c[large]), 1 - c[large])
+        return edge, c, ~large
+
+
+def _opposite(edge: Array, c: Array) -> Conditions:
+    """Large tension. K, E and Pi have the modulus chi, 1 - chi^2 = 4 c/((1+m)(1+n))."""
+    centre, from_left = edge + c - 1, edge + 2 * c  # 1 + n
+    square = (2 - edge) * from_left  # (1+m)(1+n)
+    root, complement = np.sqrt(square), 4 * c / square
+    K, E = ellipkm1(complement), ellipe(1 - complement)
+    X = edge / (2 - edge) / 3 * elliprj(0.0, complement, 1.0, 2 / (2 - edge))
+    first = -2 * root * E + (4 * from_left * K - 8 * centre * X) / root - np.pi * centre
+    second = -centre * root * E + (1 - c) * ((4 * (1 + c) * X - 2 * from_left * K) / root + np.pi / 2 * (1 + c))
+    right = c + 2 / np.pi * (root * E - 4 * c * (K - X) / root)
+    skew = 2 + 8 * (2 * X - K) / (np.pi * root)
+    return Conditions(8 / np.pi * first, 2 / np.pi * second, right, right - c * skew, skew)

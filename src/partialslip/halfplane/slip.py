@@ -1,0 +1,105 @@
+"""Slip over half a steady cycle, and what it dissipates; scaled as in :mod:`partialslip.halfplane.shape`.
+
+Slip is the change from load point 1 to 2 of the displacement, along +x, of the body that pushes with q against the
+other. For loads of positive dQ and dsigma.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+from partialslip.halfplane.shape import Rule, Shape
+from partialslip.halfplane.steady import StickZone
+from partialslip.result import Array
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
+_SPLITS = 4  # a pressure with more kinks than that in a slip zone is taken as smooth there
+
+
+def density(x: Array, zone: StickZone, shape: Shape) -> Array:
+    """Slope of the slip, the density of the paper's glide dislocations, in A f p0 at ``x``; zero outside the slip
+    zones. For y on the side tau = +-1,
+
+        D(y) = 2 tau w(y)/pi [ PV int_n^1 p/(w(t)(y-t)) dt - s PV int_{-1}^{-m} p/(w(t)(y-t)) dt ],
+
+    w(t) = sqrt(|(t-n)(t+m)|). p(t) is split into p(y) and p(t) - p(y), which y - t divides without a pole.
+    """
+    result = np.zeros_like(x)
+    edge = 1 + zone.centre - zone.half_width
+    rules = {side: shape.rule(edge, zone.half_width, side) for side in (1, -1)}
+    for side, sign in ((1, 1), (-1, zone.s)):
+        here = _slips(x, zone, side)
+        y = x[here]
+        beyond = np.maximum(side * (y - zone.centre) - zone.half_width, 0.0)
+        width = 1 - side * zone.centre - zone.half_width
+        w = np.sqrt(beyond * (beyond + 2 * zone.half_width))
+        half = np.sqrt(beyond / (beyond + 2 * zone.half_width))
+        ratio = np.minimum(half / np.sqrt(width / (width + 2 * zone.half_width)), 1 - 1e-16)
+        own, other = rules[side], rules[-side]
+        smooth = shape.difference(own.t, y[:, None]) @ own.weights
+        across = (shape.pressure(other.t) * other.weights / (y[:, None] - other.t)).sum(axis=-1)
+        same = shape.pressure(y) * 2 * np.arctanh(ratio) - side * w * smooth
+        result[here] = side * 2 / np.pi * (sign * same - (zone.s if side > 0 else -1) * w * across)
+    return result
+
+
+def slip(x: Array, zone: StickZone, shape: Shape) -> Array:
+    """Slip in A f p0 a at ``x``, zero in the stick zone: the integral of the density, from the stick zone on, with
+    the order of the integrations turned round."""
+    result = np.zeros_like(x)
+    c, edge = zone.half_width, 1 + zone.centre - zone.half_width
+    for side, sign in ((1, 1), (-1, zone.s)):
+        here = _slips(x, zone, side)
+        y = x[here][:, None]
+        if not len(y):
+            continue
+        eta = 2 * np.arcsinh(np.sqrt(np.maximum(side * (y - zone.centre) - c, 0.0) / (2 * c)))
+        same, across = _kernels(eta)
+        own = shape.rule(np.full(len(y), edge), np.full(len(y), c), side, splits=y)
+        other = shape.rule(edge, c, -side)
+        by_own = (own.weights * shape.pressure(own.t) * same(own)).sum(axis=-1)
+        by_other = (other.weights * shape.pressure(other.t) * across(other)).sum(axis=-1)
+        result[here] = 2 / np.pi * c * (sign * by_own - (zone.s if side > 0 else 1) * by_other)
+    return result
+
+
+def dissipation(zone: StickZone, shape: Shape) -> tuple[Array, Array, float]:
+    """Points over the slip zones (ascending, with the contact's ends), the slip there, and the energy that a whole
+    cycle dissipates, 2 int f p |slip| dx, in A (f p0 a)^2."""
+    m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
+    x, weights = [], []
+    for low, high in ((-1.0, -m), (n, 1.0)):
+        inner = [kink for kink in shape.kinks if low < kink < high]
+        ends = np.array([low, *(inner if len(inner) <= _SPLITS else []), high])
+        angle, half = np.pi / 2 * (1 + _NODES), np.diff(ends)[:, None] / 2
+        x.append((ends[:-1, None] + half * (1 - np.cos(angle))).ravel())
+        weights.append((half * np.pi / 2 * _WEIGHTS * np.sin(angle)).ravel())
+    points = np.concatenate([[-1.0], *x, [1.0]])
+    slips = slip(points, zone, shape)
+    return points, slips, 2 * float(np.concatenate(weights) @ (shape.pressure(points) * np.abs(slips))[1:-1])
+
+
+def _slips(x: Array, zone: StickZone, side: int) -> npt.NDArray[np.bool_]:
+    result: npt.NDArray[np.bool_] = (side * (x - zone.centre) > zone.half_width) & (np.abs(x) <= 1)
+    return result
+
+
+def _kernels(eta: Array) -> tuple[Callable[[Rule], Array], Callable[[Rule], Array]]:
+    """int_0^eta sinh^2(y)/(cosh(y) -+ cosh(theta)) dy: slip at eta by a unit of traction at theta and its answer in
+    the stick zone, on the same side and across."""
+
+    def same(rule: Rule) -> Array:
+        theta = rule.theta
+        apart = np.abs(np.sinh((eta - theta) / 2))
+        logarithm = np.log(np.sinh((eta + theta) / 2) / np.where(apart == 0, 1.0, apart))
+        result: Array = np.sinh(eta) + eta * np.cosh(theta) - np.sinh(theta) * logarithm
+        return result
+
+    def across(rule: Rule) -> Array:
+        theta = rule.theta
+        logarithm = np.log(np.cosh((eta + theta) / 2) / np.cosh((eta - theta) / 2))
+        result: Array = np.sinh(eta) - eta * np.cosh(theta) + np.sinh(theta) * logarithm
+        return result
+
+    return same, across
