@@ -68,8 +68,8 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     x = level.body.x[level.nodes]
     p0 = 2 / (np.pi * level.half_width)
     unit = scene.material.A * scene.P  # of displacement
-    found = judge(scene, level.stick, level.half_width)
     certified = _certificate(problem, level, p0)
+    found = judge(scene, level.history, level.stick, level.half_width, certified.get("steady", 0.0))
 
     q1, q2, dq = np.zeros_like(x), np.zeros_like(x), None
     history = level.history

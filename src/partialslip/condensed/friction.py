@@ -16,6 +16,7 @@ from partialslip.result import Array, Regime
 from partialslip.scene import Scene
 
 _STEADY = 1e-6  # change of q in a cycle, in f p0, that counts as none
+_RATCHETS = 1e-3  # net slip of a cycle, in the slip of half a cycle, that counts where q has settled
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,8 @@ class History:
         The same; where Q and sigma are out of phase the least and the largest ones of that cycle.
     slip : (n,) array
         From load point 1 to 2 of the last cycle.
+    net_slip : (n,) array
+        What the last cycle has added to the slip: in a steady state nothing.
     dissipated : float
         Work against friction over the last cycle.
     """
@@ -62,6 +65,7 @@ class History:
     q1: Array
     q2: Array
     slip: Array
+    net_slip: Array
     dissipated: float
 
     @property
@@ -150,7 +154,14 @@ def march(tangential: Array, x: Array, bound: Array, path: Path) -> History:
     if path.in_phase:
         least, largest = cycle[first].x, cycle[second].x
     return History(
-        path, points, (cycle[first].x, cycle[second].x), least, largest, slips[second] - slips[first], dissipated
+        path=path,
+        points=points,
+        at_ends=(cycle[first].x, cycle[second].x),
+        q1=least,
+        q2=largest,
+        slip=slips[second] - slips[first],
+        net_slip=slip,
+        dissipated=dissipated,
     )
 
 
@@ -165,14 +176,14 @@ def certificate(history: History, weights: Array, f: float, p0: float) -> dict[s
     }
 
 
-def judge(scene: Scene, stick: Zone | None, half_width: float) -> Verdict:
+def judge(scene: Scene, history: History | None, stick: Zone | None, half_width: float, steady: float) -> Verdict:
     """What it means that the stick zone of ``scene`` has been found to be ``stick`` (None: there was no friction to
-    solve), in a contact of ``half_width``; lengths in any one unit."""
+    solve), in a contact of ``half_width``; lengths in any one unit. ``steady`` is the certificate's."""
     load = scene.load
     if slides(scene):
         note = "the contact slides: |Q| >= f P at a load point; there is no steady partial slip"
         return Verdict("sliding", None, None, (note,))
-    if stick is None or (load.dQ == 0 and load.dsigma == 0):  # nothing changes over the cycle: all of it sticks
+    if history is None or stick is None or (load.dQ == 0 and load.dsigma == 0):  # nothing changes: all of it sticks
         return Verdict("stuck", 0.0, half_width, ())
     notes: tuple[str, ...] = ()
     if stick.left == stick.right:
@@ -180,6 +191,12 @@ def judge(scene: Scene, stick: Zone | None, half_width: float) -> Verdict:
     regime: Regime = "small tension" if stick.signs[0] == stick.signs[1] else "large tension"
     if not load.in_phase:
         regime = "out of phase"
+    added = float(np.abs(history.net_slip).max() / np.abs(history.slip).max())
+    if steady <= _STEADY and added > _RATCHETS:
+        regime = "ratchets"
+        notes += (
+            f"tractions repeat, slip does not: every cycle adds up to {added:.1g} times the slip of half a cycle",
+        )
     return Verdict(regime, (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, notes)
 
 

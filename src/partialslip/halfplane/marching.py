@@ -85,8 +85,8 @@ def _result(
     scene: Scene, pressed: Contact, level: _Level, errors: dict[str, float], counts: dict[str, int], clock: Clock
 ) -> Result:
     P, a, p0, widths, history = scene.P, pressed.a, pressed.p0, np.diff(level.vertices), level.history
-    found = judge(scene, level.stick, 1.0)
     certified = certificate(history, widths, scene.friction.f, 2 / np.pi) if history else {}
+    found = judge(scene, history, level.stick, 1.0, certified.get("steady", 0.0))
     x = (level.vertices[1:] + level.vertices[:-1]) / 2
     q1, q2 = (P / a * force / widths for force in (history.q1, history.q2)) if history else (0 * x, 0 * x)
     unit = scene.material.A * P  # of displacement
@@ -110,7 +110,7 @@ def _result(
             q1=q1 if found.regime != "sliding" else None,
             q2=q2 if found.regime != "sliding" else None,
             at=at,
-            breaks=np.array([-a, *(kink for kink in scene.profile.kinks if abs(kink) < a), a]),
+            breaks=level.vertices * a,
             cells=level.vertices * a,
         ),
         cost=clock.cost(),

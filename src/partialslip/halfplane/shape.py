@@ -84,12 +84,12 @@ class Shape:
         edge, c, _ = Hertz().guess(Qf, sf)
         return edge, c, np.zeros(np.shape(c), bool)
 
-    def rule(self, edge: Array | float, c: Array | float, side: int, splits: Array | None = None) -> Rule:
-        """Points in the slip zone on the right (``side`` = 1) or left (-1).
+    def rule(self, edge: Array | float, c: Array | float, side: int) -> Rule:
+        """Points in the slip zone on the right (``side`` = 1) or left (-1): see :func:`rule_between`."""
+        return rule_between(self.pieces(edge, c, side), edge, c, side)
 
-        t = centre +- c cosh(theta) takes w away; what is left are a square root at the contact's end and kinks (and
-        ``splits``, more points (..., k) to split at), to which the points of every piece crowd double exponentially.
-        """
+    def pieces(self, edge: Array | float, c: Array | float, side: int) -> Array:
+        """theta at the ends of the pieces, (..., k), in which the pressure of a slip zone is smooth inside."""
         edge, c = np.asarray(edge, float), np.asarray(c, float)
         centre = edge + c - 1
 
@@ -99,23 +99,28 @@ class Shape:
             return result
 
         end = theta((1 - centre - c if side > 0 else edge)[..., None])
-        inner = np.broadcast_to(np.array(self.kinks), (*c.shape, len(self.kinks)))
-        if splits is not None:
-            inner = np.concatenate([np.broadcast_to(inner, (*splits.shape[:-1], len(self.kinks))), splits], axis=-1)
-        inner = theta(side * (inner - centre[..., None]) - c[..., None])
-        ends = np.concatenate(np.broadcast_arrays(0 * end, end - 3.0, end), axis=-1)
-        ends = np.concatenate([np.broadcast_to(ends, (*inner.shape[:-1], 3)), inner], axis=-1)
-        ends = np.sort(np.clip(ends, 0.0, end), axis=-1)
-        half = np.diff(ends)[..., None] / 2
-        points = np.where(_NODES < 0, ends[..., :-1, None] + half * (1 + _NODES), ends[..., 1:, None] - half * _TO_END)
-        points = points.reshape(*points.shape[:-2], -1)
-        t = centre[..., None] + side * c[..., None] * np.cosh(points)
-        return Rule(np.clip(t, -1.0, 1.0), points, (half * _WEIGHTS).reshape(points.shape))
+        inner = theta(side * (np.array(self.kinks) - centre[..., None]) - c[..., None])
+        ends = np.concatenate([0 * end, end - 3.0, end, inner], axis=-1)
+        return np.sort(np.clip(ends, 0.0, end), axis=-1)
 
     def _quotient(self, t: Array, values: Array, x: Array) -> Array:
         step = t - x
         result: Array = (values - self.pressure(x)) / np.where(step == 0, np.inf, step)
         return result
+
+
+def rule_between(ends: Array, edge: Array | float, c: Array | float, side: int) -> Rule:
+    """Points between ``ends`` (..., k) in theta, ascending, in the slip zone on the right (``side`` = 1) or left (-1).
+
+    t = centre +- c cosh(theta) takes w away; what is left are a square root at the contact's end and kinks, to which
+    the points of every piece crowd double exponentially.
+    """
+    edge, c = np.asarray(edge, float), np.asarray(c, float)
+    half = np.diff(ends)[..., None] / 2
+    points = np.where(_NODES < 0, ends[..., :-1, None] + half * (1 + _NODES), ends[..., 1:, None] - half * _TO_END)
+    points = points.reshape(*points.shape[:-2], -1)
+    t = (edge + c - 1)[..., None] + side * c[..., None] * np.cosh(points)
+    return Rule(np.clip(t, -1.0, 1.0), points, (half * _WEIGHTS).reshape(points.shape))
 
 
 def _double_exponential(count: int) -> tuple[Array, Array, Array]:

@@ -9,12 +9,11 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.halfplane.shape import Rule, Shape
+from partialslip.halfplane.shape import Rule, Shape, rule_between
 from partialslip.halfplane.steady import StickZone
 from partialslip.result import Array
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
-_SPLITS = 4  # a pressure with more kinks than that in a slip zone is taken as smooth there
+_NODES, _FEWEST = 32, 6  # Gauss points in a slip zone, and in each of its pieces
 
 
 def density(x: Array, zone: StickZone, shape: Shape) -> Array:
@@ -56,10 +55,16 @@ def slip(x: Array, zone: StickZone, shape: Shape) -> Array:
             continue
         eta = 2 * np.arcsinh(np.sqrt(np.maximum(side * (y - zone.centre) - c, 0.0) / (2 * c)))
         same, across = _kernels(eta)
-        own = shape.rule(np.full(len(y), edge), np.full(len(y), c), side, splits=y)
         other = shape.rule(edge, c, -side)
-        by_own = (own.weights * shape.pressure(own.t) * same(own)).sum(axis=-1)
-        by_other = (other.weights * shape.pressure(other.t) * across(other)).sum(axis=-1)
+        by_other = across(other) @ (other.weights * shape.pressure(other.t))
+        # on the own side the kernel has a logarithm at eta: the piece around it is split there
+        ends = shape.pieces(edge, c, side)
+        piece = np.clip(np.searchsorted(ends, eta, "left") - 1, 0, len(ends) - 2)
+        own = rule_between(ends, edge, c, side)
+        elsewhere = np.arange(len(own.t)) // (len(own.t) // (len(ends) - 1)) != piece
+        around = rule_between(np.concatenate([ends[piece], eta, ends[piece + 1]], axis=-1), edge, c, side)
+        by_own = np.where(elsewhere, same(own), 0.0) @ (own.weights * shape.pressure(own.t))
+        by_own += (around.weights * shape.pressure(around.t) * same(around)).sum(axis=-1)
         result[here] = 2 / np.pi * c * (sign * by_own - (zone.s if side > 0 else 1) * by_other)
     return result
 
@@ -70,11 +75,11 @@ def dissipation(zone: StickZone, shape: Shape) -> tuple[Array, Array, float]:
     m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
     x, weights = [], []
     for low, high in ((-1.0, -m), (n, 1.0)):
-        inner = [kink for kink in shape.kinks if low < kink < high]
-        ends = np.array([low, *(inner if len(inner) <= _SPLITS else []), high])
-        angle, half = np.pi / 2 * (1 + _NODES), np.diff(ends)[:, None] / 2
+        ends = np.array([low, *(kink for kink in shape.kinks if low < kink < high), high])
+        nodes, factors = np.polynomial.legendre.leggauss(max(_NODES // (len(ends) - 1), _FEWEST))
+        angle, half = np.pi / 2 * (1 + nodes), np.diff(ends)[:, None] / 2
         x.append((ends[:-1, None] + half * (1 - np.cos(angle))).ravel())
-        weights.append((half * np.pi / 2 * _WEIGHTS * np.sin(angle)).ravel())
+        weights.append((half * np.pi / 2 * factors * np.sin(angle)).ravel())
     points = np.concatenate([[-1.0], *x, [1.0]])
     slips = slip(points, zone, shape)
     return points, slips, 2 * float(np.concatenate(weights) @ (shape.pressure(points) * np.abs(slips))[1:-1])

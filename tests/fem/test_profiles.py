@@ -1,0 +1,36 @@
+"""Profiles given by a table: finite elements press the gap itself, the exact solution its inversion."""
+
+import msgspec
+import numpy as np
+import pytest
+
+import partialslip
+
+
+def tabulated(x, gap):
+    data = msgspec.to_builtins(partialslip.load_scene("fretting-aluminium", ["fem.accuracy=1e-4"]))
+    return partialslip.parse_scene({**data, "profile": {"kind": "tabulated", "x": x, "gap": gap}})
+
+
+def gaps():
+    x = np.linspace(0, 4e-4, 25)
+    yield "parabola and quartic", x, x**4 / 4e-9 + x**2 / 0.04
+    yield "flat and rounded", x, np.maximum(x - 1e-4, 0) ** 2 / 0.02
+    uneven = np.concatenate([[0], np.cumsum(np.random.default_rng(1).uniform(0.1, 1, 12))])
+    uneven *= 4e-4 / uneven[-1]
+    yield "uneven", uneven, uneven**2 / 0.02 * (1 + 0.3 * (uneven / 4e-4) ** 2)
+
+
+@pytest.mark.parametrize(("x", "gap"), [case[1:] for case in gaps()], ids=[case[0] for case in gaps()])
+def test_a_table_by_all_methods(x, gap):
+    outcome = partialslip.run(tabulated(x, gap), ["exact", "march", "fem"])
+    assert outcome.passed
+    exact, fem = outcome.results["exact"], outcome.results["fem"]
+    assert fem.slip.dissipated == pytest.approx(exact.slip.dissipated, rel=1e-4)
+
+
+def test_a_table_of_a_parabola_is_hertz():
+    x = np.array([0, 1e-4, 1.5e-4, 3e-4, 4e-4])
+    table = partialslip.run(tabulated(x, x**2 / 0.02), ["fem"]).results["fem"]
+    hertz = partialslip.run(partialslip.load_scene("fretting-aluminium", ["fem.accuracy=1e-4"]), ["fem"]).results["fem"]
+    assert (table.a, table.m, table.n) == pytest.approx((hertz.a, hertz.m, hertz.n), rel=1e-9, abs=1e-12)

@@ -1,0 +1,112 @@
+"""Load paths of any kind: many load points, loads out of phase, hundreds of cycles, ratchets."""
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip import halfplane
+
+ROUGH = "fem.accuracy=1e-3"
+BASE = partialslip.load_scene("hertz-large-tension")
+FP = BASE.friction.f * BASE.P
+FP0 = BASE.friction.f * halfplane.contact(BASE).p0
+CIRCLE = np.linspace(0, 2 * np.pi, 17)[1:]
+
+
+def scene(Q, sigma, *overrides):
+    """Loads in f P and f p0."""
+    Q, sigma = ([float(v) for v in np.array(values) * unit] for values, unit in ((Q, FP), (sigma, FP0)))
+    return partialslip.load_scene("hertz-large-tension", [f"load.Q={Q}", f"load.sigma={sigma}", ROUGH, *overrides])
+
+
+def marched(Q, sigma, *overrides):
+    return partialslip.run(scene(Q, sigma, *overrides), ["march"]).results["march"]
+
+
+def ends(result):
+    return result.m / result.a, result.n / result.a
+
+
+def test_load_points_of_a_cycle():
+    load = scene([0.1, 0.5, 0.7, 0.3], [1, 3, 4, 2]).load
+    assert load.in_phase
+    assert load.ends == (0, 2)
+    assert (load.dQ, load.dsigma) == pytest.approx((0.6 * FP, 3 * FP0))
+    assert not scene([0.1, 0.5, 0.7, 0.3], [1, 3, 4, 2.1]).load.in_phase
+    assert scene([0.2, 0.2, 0.2], [1, 3, 2]).load.in_phase  # Q does not change
+    assert partialslip.load_scene("hertz-shear", ["load.Q=[-1e5, 0, 1e5]"]).load.points[0] == (-1e5, 0.0)
+
+
+def test_points_on_the_way_of_loads_in_phase_do_not_matter():
+    """Proportional loading: as long as slip does not turn round, a path may be cut into pieces."""
+    two = marched([-0.3, 0.3], [-2, 2])
+    many = marched([-0.3, 0, 0.3, 0.1, 0], [-2, 0, 2, 2 / 3, 0], "load.cycles=2")
+    assert ends(many) == pytest.approx(ends(two), abs=1e-6)
+    assert many.slip.dissipated == pytest.approx(two.slip.dissipated, rel=1e-6)
+    outcome = partialslip.run(scene([-0.3, 0, 0.3, 0], [-2, 0, 2, 0]), ["exact", "march"])
+    assert outcome.passed
+    assert outcome.results["exact"].regime == "large tension"
+
+
+def test_loads_out_of_phase():
+    """Both step-by-step methods find one answer: the part that never slips, the tractions' range, the energy."""
+    outcome = partialslip.run(scene(0.5 * np.cos(CIRCLE), 3 * np.sin(CIRCLE), "load.cycles=3"))
+    march, fem = (outcome.results[name] for name in ("march", "fem"))
+    assert outcome.reference == "march"
+    assert (march.regime, fem.regime) == ("out of phase", "out of phase")
+    assert ends(march) == pytest.approx(ends(fem), abs=1e-4)
+    assert outcome.comparisons["fem"].q < 1e-3
+    assert march.slip.dissipated == pytest.approx(fem.slip.dissipated, rel=3e-4)
+    assert (march.traction.q1 <= march.traction.q2).all()
+
+
+def test_out_of_phase_mirror_and_turn():
+    """Mirroring x turns Q round and keeps sigma; a path with both turned round is the same with q turned round."""
+    Q, sigma = 0.5 * np.cos(CIRCLE), 2 * np.sin(CIRCLE) + 1
+    base, mirrored, turned = (marched(*loads, "load.cycles=2") for loads in ((Q, sigma), (-Q, sigma), (-Q, -sigma)))
+    assert ends(mirrored) == pytest.approx(ends(base)[::-1], abs=1e-9)
+    assert ends(turned) == pytest.approx(ends(base), abs=1e-9)
+    assert turned.traction.q2 == pytest.approx(-base.traction.q1, abs=1e-6 * base.p0)
+    assert base.slip.dissipated == pytest.approx(mirrored.slip.dissipated, rel=1e-9)
+
+
+def test_out_of_phase_tends_to_in_phase():
+    """A narrow ellipse in the plane of Q and sigma is nearly a line, and dissipates nearly what that does."""
+    way = np.cos(CIRCLE)
+    line = marched(0.3 * way, 2 * way, "load.cycles=2")
+    ellipse = marched(0.3 * way, 2 * np.cos(CIRCLE + 1e-3), "load.cycles=2")
+    assert (line.regime, ellipse.regime) == ("large tension", "out of phase")
+    assert ends(ellipse) == pytest.approx(ends(line), abs=3e-3)
+    assert ellipse.slip.dissipated == pytest.approx(line.slip.dissipated, rel=3e-3)
+
+
+def test_the_exact_method_says_that_it_has_no_closed_form():
+    with pytest.raises(partialslip.InputError, match=r"load\.sigma: out of phase with load\.Q"):
+        partialslip.run(scene([0.3, 0, -0.3], [1, 2, 1]), ["exact"])
+
+
+def test_two_hundred_cycles_all_certified():
+    """Q 0.1 .. 0.7 f P and sigma 1 .. 5 f p0."""
+    result = marched([0.1, 0.7], [1, 5], "load.cycles=200")
+    assert result.counts["load_steps"] == 401
+    assert result.certificate["kkt"] < 1e-11
+    assert result.certificate["equilibrium"] < 1e-12  # rounding of a sum over hundreds of cells
+    assert result.certificate["steady"] < 1e-10
+    assert result.regime == "large tension"
+
+
+def test_ratchets_beyond_the_mean_load_bound():
+    """The bound is 0.4725 f P; all methods say so, and what is not reached is not judged."""
+    outcome = partialslip.run(scene([0.22, 0.82], [1, 5], "load.cycles=40"), ["exact", "march", "fem"])
+    assert {result.regime for result in outcome.results.values()} == {"ratchets"}
+    assert outcome.passed
+    assert outcome.comparisons["march"].q is None
+    below = partialslip.run(scene([0.1, 0.7], [1, 5], "load.cycles=40"), ["exact", "march", "fem"])
+    assert {result.regime for result in below.results.values()} == {"large tension"}
+    assert below.passed
+
+
+def test_a_cycle_of_nothing_dissipates_nothing():
+    still = marched([0.3, 0.3], [1, 1])
+    assert still.regime == "stuck"
+    assert still.slip.dissipated == pytest.approx(0, abs=1e-12)
