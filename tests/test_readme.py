@@ -42,9 +42,13 @@ def test_scene_in_the_readme_is_the_shipped_one(capsys):
 
 
 def test_python_in_the_readme_runs(capsys):
-    (code,) = blocks("python")
+    code = "\n".join(blocks("python"))
     exec(compile(code.replace('"load.Q=', '"fem.accuracy=1e-2", "load.Q='), "README.md", "exec"), {})
-    exact_m, fem_m, q, cpu = map(float, capsys.readouterr().out.split())
+    compared, *zones, slips = capsys.readouterr().out.splitlines()
+    exact_m, fem_m, q, cpu = map(float, compared.split())
+    _, exact_dissipated, fem_dissipated = map(float, slips.split())
+    assert fem_dissipated == pytest.approx(exact_dissipated, rel=1e-2)
+    assert "-1" in zones[-1]
     assert fem_m == pytest.approx(exact_m, abs=1e-2)
     assert 0 < q < 0.15
     assert cpu > 0

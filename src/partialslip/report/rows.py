@@ -51,7 +51,7 @@ def slip(result: Result) -> str:
     if result.slip is None:
         return ""
     largest = engineering(float(np.abs(result.slip.slip).max()), "m", 5)
-    return f"{largest} at most over half a cycle, {engineering(result.slip.dissipated, 'J/m', 5)} dissipated a cycle"
+    return f"up to {largest} each way, {engineering(result.slip.dissipated, 'J/m', 5)} dissipated a cycle"
 
 
 def engineering(number: float, unit: str, digits: int) -> str:
