@@ -114,7 +114,9 @@ class Result:
     ``certificate`` holds residuals in units of f p0 (of p0 for the normal problem) and equilibrium relative to
     the load; ``estimate`` the method's own estimate of its errors in a, m and n, as fractions of a;
     ``settings`` and ``counts`` say what was built and how much work it was; ``notes`` what a reader must know;
-    ``slip`` is None where the contact slides as a whole or there is no friction; ``bodies`` is there only where fields
+    ``limits`` are loads at which something else begins, where the method knows them: ``dsigma_transition`` (Pa, where
+    small tension turns large at this dQ), ``Q_sliding`` (N/m, f P) and ``Q_mean`` (N/m, the largest mean that a steady
+    state can hold). ``slip`` is None where the contact slides as a whole or there is no friction; ``bodies`` is there only where fields
     inside the bodies were asked for.
     """
 
@@ -129,6 +131,7 @@ class Result:
     slip: Slip | None = None
     settings: Mapping[str, str | float | int] = field(default_factory=dict)
     counts: Mapping[str, int] = field(default_factory=dict)
+    limits: Mapping[str, float] = field(default_factory=dict)
     certificate: Mapping[str, float] = field(default_factory=dict)
     estimate: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()

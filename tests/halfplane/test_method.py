@@ -106,3 +106,22 @@ def test_flat_and_rounded_contact():
         "load.Q=[0, 0]", "load.sigma=[0, 0]",
     )  # fmt: skip
     assert nearly.a == pytest.approx(hertz.a, rel=1e-5)
+
+
+def test_limits_are_where_something_else_begins():
+    base = exact("hertz-large-tension")
+    sliding, transition, mean = (base.limits[key] for key in ("Q_sliding", "dsigma_transition", "Q_mean"))
+    load = load_scene("hertz-large-tension").load
+    for key, at, below, above in (
+        ("sigma", transition / 2, "small tension", "large tension"),
+        ("Q", sliding, "small tension", "sliding"),
+    ):
+        for factor, regime in ((1 - 1e-6, below), (1 + 1e-6, above)):
+            assert exact("hertz-large-tension", f"load.{key}=[{-at * factor}, {at * factor}]").regime == regime
+    for factor, regime in ((1 - 1e-6, "large tension"), (1 + 1e-6, "ratchets")):
+        Q = [factor * mean - load.dQ / 2, factor * mean + load.dQ / 2]
+        assert exact("hertz-large-tension", f"load.Q={Q}").regime == regime
+    still = exact("hertz-large-tension", "load.Q=[1e4, 1e4]", "load.sigma=[1e7, 1e7]")
+    assert still.regime == "stuck"
+    assert still.limits["Q_mean"] == pytest.approx(still.limits["Q_sliding"])
+    assert exact("hertz-large-tension", "friction.f=0").limits == {}

@@ -7,7 +7,7 @@ import numpy as np
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.slip import dissipation
-from partialslip.halfplane.steady import StickZone, stick_zone
+from partialslip.halfplane.steady import StickZone, stick_zone, transition
 from partialslip.halfplane.traction import half_range, mean_load_bound
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Regime, Result, Slip, Traction
@@ -62,6 +62,7 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
         cost=clock.cost(),
         slip=_slip(scene, pressed, zone, turn, mirror) if zone and regime not in ("stuck", "ratchets") else None,
         settings={"model": "two half-planes, steady state"},
+        limits=_limits(scene, pressed, zone) if plan.needs("friction") else {},
         notes=_notes(regime, levels, _turns_round(scene, p0, zone)),
     )
 
@@ -79,6 +80,16 @@ def _steady_state(scene: Scene, plan: Plan, pressed: Contact) -> tuple[Regime, S
     if abs(load.Q_mean) > limit * mean_load_bound(zone, pressed.shape):
         return "ratchets", zone
     return ("small tension" if zone.s > 0 else "large tension"), zone
+
+
+def _limits(scene: Scene, pressed: Contact, zone: StickZone | None) -> dict[str, float]:
+    limit = scene.friction.f * scene.P
+    limits = {"Q_sliding": limit}
+    if zone:
+        turns = transition(abs(scene.load.dQ) / (2 * limit), pressed.shape)
+        limits["dsigma_transition"] = float(turns) * scene.friction.f * pressed.p0
+        limits["Q_mean"] = limit * mean_load_bound(zone, pressed.shape)
+    return limits
 
 
 def _slip(scene: Scene, pressed: Contact, zone: StickZone, turn: int, mirror: int) -> Slip:

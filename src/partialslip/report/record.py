@@ -42,7 +42,7 @@ def _method(result: Result) -> dict[str, Any]:
     return {
         **{key: getattr(result, key) for key in ("a", "p0", "regime", "m", "n", "stick_half_width", "stick_centre")},
         **{key: result.counts[key] for key in ("dofs", "contact_nodes") if key in result.counts},
-        **{key: dict(getattr(result, key)) for key in ("settings", "counts", "certificate", "estimate")},
+        **{key: dict(getattr(result, key)) for key in ("settings", "counts", "limits", "certificate", "estimate")},
         "notes": list(result.notes),
         "cost": asdict(result.cost),
         "slip": {"x": result.slip.x.tolist(), "slip": result.slip.slip.tolist(), "dissipated": result.slip.dissipated}

@@ -46,6 +46,22 @@ def value(result: Result, key: str) -> str:
     return f"max {engineering(float(peak), 'Pa', 6)}"
 
 
+_LIMITS = {
+    "Q_sliding": ("slides at |Q| = {}", "N/m"),
+    "dsigma_transition": ("small tension ends at dsigma = {}", "Pa"),
+    "Q_mean": ("the mean of Q can be {}", "N/m"),
+}
+
+
+def limits(result: Result) -> str:
+    """Loads at which something else begins."""
+    return ", ".join(
+        text.format(engineering(result.limits[key], unit, 4))
+        for key, (text, unit) in _LIMITS.items()
+        if key in result.limits
+    )
+
+
 def slip(result: Result) -> str:
     """The largest slip over half a cycle, and what a cycle dissipates."""
     if result.slip is None:

@@ -19,7 +19,12 @@ def print_run(run: Run, console: Console) -> None:
         lines = {"regime": result.regime, "built": rows.work(result), "certificate": rows.certificate(result)}
         if not run.comparisons:
             lines["found"] = ", ".join(f"{key} = {rows.value(result, key)}" for key in ("a", "m", "n"))
-        lines |= {"slip": rows.slip(result), "cost": rows.cost(result), "note": "; ".join(result.notes)}
+        lines |= {
+            "limits": rows.limits(result),
+            "slip": rows.slip(result),
+            "cost": rows.cost(result),
+            "note": "; ".join(result.notes),
+        }
         _print_lines(console, name, lines)
     if run.comparisons:
         missed = [f"{name}: {what}" for name, comparison in run.comparisons.items() for what in comparison.missed]
