@@ -34,12 +34,12 @@ class Given(Shape):
         x = np.cos((np.arange(_CHECKED) + 0.5) * np.pi / (2 * _CHECKED))
         p, mirrored = self.pressure(x), self.pressure(-x)
         for fine, allowed in (
-            (np.isfinite(p) & np.isfinite(mirrored), "finite"),
-            (p > 0, "> 0 inside the contact"),
-            (np.abs(p - mirrored) <= _EVEN * np.abs(p).max(), "even: the same at -x"),
+            (lambda: np.isfinite(p) & np.isfinite(mirrored), "finite"),
+            (lambda: p > 0, "> 0 inside the contact"),
+            (lambda: np.abs(p - mirrored) <= _EVEN * np.abs(p).max(), "even: the same at -x"),
         ):
-            if not fine.all():
-                raise InputError(f"pressure at x = {x[~fine][0]:g} a: must be {allowed}, not {p[~fine][0]:g}")
+            if not (right := fine()).all():
+                raise InputError(f"pressure at x = {x[~right][0]:g} a: must be {allowed}, not {p[~right][0]:g}")
         # P over a contact of half-width 1 is pi/2 p0: the limit of a stick zone that shrinks to nothing
         t, _, weights = self.rule(1.0, 1e-30, 1)
         self.scale = 4 / np.pi * float((weights * self.pressure(t) * t).sum())

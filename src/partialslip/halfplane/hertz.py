@@ -16,7 +16,8 @@ class Hertz(Shape):
         return result
 
     def difference(self, t: Array, x: Array) -> Array:
-        return -(t + x) / (self.pressure(t) + self.pressure(x))
+        total = self.pressure(t) + self.pressure(x)
+        return -(t + x) / np.where(total == 0, np.inf, total)
 
     def conditions(self, edge: Array, c: Array, s: Array) -> Conditions:
         """Paper, eqs. (21), (22) and (24)-(26).

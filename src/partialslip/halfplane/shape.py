@@ -15,6 +15,7 @@ import numpy.typing as npt
 from partialslip.result import Array
 
 _THIN = 1e-12
+NARROW = 1e-5
 
 
 class Rule(NamedTuple):
@@ -30,7 +31,8 @@ class Conditions(NamedTuple):
     """The loads that belong to a stick zone, and how stiff its ends are.
 
     ``right`` and ``left`` are c times the K of f p - |dq|/2 = K sqrt(2 c r) at a small distance r inside either end
-    (in f p0); ``skew`` is (right - left)/c, which cancels in a narrow stick zone.
+    (in f p0); ``skew`` is (right - left)/c, which cancels in a stick zone narrower than ``NARROW``: the quadrature then
+    leaves it 0.
     """
 
     sf: Array
@@ -74,7 +76,7 @@ class Shape:
         to_right, to_left = np.sqrt(gap / (gap + 2 * c)), np.sqrt(near / (near + 2 * c))
         right = (right + self.pressure(ends[0]) * (1 / to_right - s * to_left)) / np.pi
         left = (left + self.pressure(ends[1]) * (1 / to_left - s * to_right)) / np.pi
-        skew = np.where(c > 1e-5, (right - left) / c, 0.0)
+        skew = np.where(c > NARROW, (right - left) / c, 0.0)
         return Conditions(8 / np.pi * first, 2 / np.pi * second, right, left, skew)
 
     def guess(self, Qf: Array, sf: Array) -> tuple[Array, Array, npt.NDArray[np.bool_]]:

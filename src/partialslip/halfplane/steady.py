@@ -8,12 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize.elementwise import find_root
 
-from partialslip.halfplane.shape import Conditions, Shape
+from partialslip.halfplane.shape import NARROW, Conditions, Shape
 from partialslip.result import Array
 
 _NARROWEST = 1e-100  # stick zones narrower than that are not told apart
 _CHUNK = 2**14  # zones at a time: what they need stays in the processor's cache
 _CLOSE = 1e-9  # after a Newton step as small as that, rounding is all that is left
+_SETTLED = 1e-13
 _ROUNDING = 4 * np.finfo(float).eps
 _STEPS = 40
 
@@ -88,9 +89,12 @@ def _solve(Qf: Array, sf: Array, shape: Shape) -> tuple[Array, Array]:
         edge[active], c[active] = np.clip(e + to_edge, new - 1, 1 - new), new
         slip = 2 - 2 * width  # both slip zones together: what is small is small against that
         close = (np.abs(to_edge) < _CLOSE * slip + _ROUNDING) & (np.abs(grow) < _CLOSE * slip + _ROUNDING)
+        # the step in log c leaves dQf out where skew is not known
+        close &= (width > NARROW) | (np.abs(dQf) <= _SETTLED)
         exact = (np.abs(dQf) <= _ROUNDING) & (np.abs(dsf) <= _ROUNDING * np.maximum(sf[active], 8))
         active = active[~(close | exact)]
-    edge[active], c[active] = _bracketed(Qf[active], sf[active], shape)
+    if len(active):
+        edge[active], c[active] = _bracketed(Qf[active], sf[active], shape)
     return edge, c
 
 

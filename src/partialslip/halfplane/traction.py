@@ -58,7 +58,7 @@ def _inside(x: Array, zone: StickZone, shape: Shape) -> Array:
     the factor t - x divides without a pole."""
     centre, c = zone.centre, zone.half_width
     edge = 1 + centre - c
-    to_left, to_right = np.sqrt(x - centre + c), np.sqrt(centre + c - x)
+    to_left, to_right = np.sqrt(c + (x - centre)), np.sqrt(c - (x - centre))
     arcs, smooth = np.zeros_like(x), np.zeros_like(x)
     for side, sign, near, far in ((1, 1, to_right, to_left), (-1, zone.s, to_left, to_right)):
         gap = 2 - edge - 2 * c if side > 0 else edge

@@ -1,0 +1,386 @@
+"""Stick zones of many loads at once, in SI units: broadcasting, signs, profiles and pressures of one's own, and how
+the solver gets there."""
+
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip.errors import InputError
+from partialslip.halfplane import Contact, contact, contact_of, steady, stick_zone
+from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.punch import Punch
+
+MATERIAL = {"E": 115e9, "nu": 0.32}
+F = 0.5
+HERTZ = {"kind": "hertz", "R": 0.05}
+FLAT = {"kind": "flat-rounded", "R": 0.003, "b": 0.001}
+
+
+def scene(profile, P=600e3):
+    return partialslip.parse_scene(
+        {"name": "s", "material": MATERIAL, "profile": profile, "friction": {"f": F}, "load": {"P": P}}
+    )
+
+
+def tabulated(gap, spacing, count):
+    x = spacing * np.arange(count)
+    return {"kind": "tabulated", "x": x.tolist(), "gap": gap(x).tolist()}
+
+
+def parabola(x):
+    return x**2 / (2 * HERTZ["R"])
+
+
+def flat_rounded(x):
+    return np.maximum(x - FLAT["b"], 0.0) ** 2 / (2 * FLAT["R"])
+
+
+def loads(pressed, Qf, sf):
+    """dQ and dsigma, in SI units, for those scaled by friction."""
+    return 2 * F * pressed.P * np.asarray(Qf), F * pressed.p0 * np.asarray(sf)
+
+
+def scaled(pressed, Qf, sf):
+    """(m, n) as fractions of a."""
+    zones = stick_zone(pressed, F, *loads(pressed, Qf, sf))
+    return np.array([zones.m, zones.n]) / pressed.a
+
+
+PRESSED = contact(scene(HERTZ))
+QF, SF = (values.ravel() for values in np.meshgrid([0.0, 1e-6, 0.1, 0.3, 0.7, 0.95], [0.0, 1e-6, 0.5, 2.0, 4.0, 9.0]))
+
+
+# --- many loads at once
+
+
+@pytest.mark.parametrize("profile", [HERTZ, FLAT])
+def test_many_loads_are_as_one_by_one(profile):
+    pressed = contact(scene(profile))
+    f, Qf, sf = np.array([[[0.2]], [[0.9]]]), np.array([[0.1], [0.4], [0.8]]), np.array([0.0, 0.3, 2.0, 5.0])
+    zones = stick_zone(pressed, f, 2 * f * pressed.P * Qf, f * pressed.p0 * sf)
+    for i, j, k in np.ndindex(2, 3, 4):
+        one = steady.stick_zone(Qf[j, 0], sf[k], pressed.shape)
+        assert zones.centre[i, j, k] == pytest.approx(one.centre * pressed.a, rel=1e-13, abs=1e-16 * pressed.a)
+        assert zones.half_width[i, j, k] == pytest.approx(one.half_width * pressed.a, rel=1e-13)
+        assert zones.s[i, j, k] == one.s
+    assert zones.m.shape == zones.n.shape == zones.half_width.shape == zones.s.shape == (2, 3, 4)
+    assert zones.m == pytest.approx(zones.half_width - zones.centre, abs=0)
+    assert zones.n == pytest.approx(zones.half_width + zones.centre, abs=0)
+
+
+def test_broadcasting():
+    dQ, dsigma = loads(PRESSED, [[0.2], [0.6]], [1.0, 3.0, 5.0])
+    assert stick_zone(PRESSED, F, dQ, dsigma).m.shape == (2, 3)
+    assert stick_zone(PRESSED, [0.5, 0.6, 0.7], dQ, 0.0).m.shape == (2, 3)
+    one = stick_zone(PRESSED, F, dQ[0, 0], dsigma[0])
+    assert one.m.shape == ()
+    assert one.m == pytest.approx(stick_zone(PRESSED, F, dQ, dsigma).m[0, 0], rel=1e-14)
+    assert stick_zone(PRESSED, F, [], 0.0).m.shape == (0,)
+    with pytest.raises(ValueError, match="broadcast"):
+        stick_zone(PRESSED, F, [1.0, 2.0], [1.0, 2.0, 3.0])
+
+
+def test_more_loads_than_go_at_a_time():
+    """Beyond one portion of work the order of the zones stays that of the loads."""
+    Qf, sf = np.full((3, 7000), 0.3), np.linspace(0, 10, 21000).reshape(3, 7000)
+    m, n = scaled(PRESSED, Qf, sf)
+    assert (np.diff(n.ravel()) < 0).all()  # tension moves the right end to the left
+    at = scaled(PRESSED, 0.3, sf[2, 6000])
+    assert (m[2, 6000], n[2, 6000]) == pytest.approx(tuple(at), rel=1e-14)
+
+
+# --- signs and ends
+
+
+@pytest.mark.parametrize("profile", [HERTZ, FLAT])
+def test_turning_one_load_round_mirrors_the_zone(profile):
+    pressed = contact(scene(profile))
+    dQ, dsigma = loads(pressed, QF, SF)
+    base = stick_zone(pressed, F, dQ, dsigma)
+    for sign_Q, sign_sigma in ((-1, -1), (-1, 1), (1, -1)):
+        turned = stick_zone(pressed, F, sign_Q * dQ, sign_sigma * dsigma)
+        same = sign_Q == sign_sigma
+        assert (turned.s == base.s).all()
+        assert (turned.half_width == base.half_width).all()
+        unmoved = (dQ == 0) | (dsigma == 0)  # those are symmetric, whichever the sign
+        assert np.abs(base.centre[unmoved]).max() < 1e-15 * pressed.a
+        m, n = (turned.m, turned.n) if same else (turned.n, turned.m)
+        assert m == pytest.approx(base.m, abs=1e-14 * pressed.a)
+        assert n == pytest.approx(base.n, abs=1e-14 * pressed.a)
+    assert (base.centre[(dQ > 0) & (dsigma > 0)] < 0).all()  # positive loads add up at +a
+
+
+@pytest.mark.parametrize("profile", [HERTZ, FLAT])
+def test_one_load_alone(profile):
+    """Without tension the zone is symmetric and of small tension, without shear symmetric and of large tension, and
+    without either everything sticks."""
+    pressed = contact(scene(profile))
+    sheared = stick_zone(pressed, F, *loads(pressed, [1e-9, 0.2, 0.9], 0.0))
+    assert (sheared.s == 1).all()
+    assert sheared.m == pytest.approx(sheared.n, abs=1e-15 * pressed.a)
+    assert (np.diff(sheared.n) < 0).all()
+    pulled = stick_zone(pressed, F, *loads(pressed, 0.0, [1e-6, 1.0, 10.0, 100.0]))
+    assert (pulled.s == -1).all()
+    assert pulled.m == pytest.approx(pulled.n, abs=1e-15 * pressed.a)
+    assert (np.diff(pulled.n) < 0).all()
+    assert (pulled.n > 0).all()
+    nothing = stick_zone(pressed, F, 0.0, 0.0)
+    assert (nothing.m, nothing.n, nothing.s) == (pressed.a, pressed.a, 1)
+
+
+def test_shear_alone_sticks_over_the_contact_of_the_smaller_load():
+    """Ciavarella and Jaeger: P(c)/P(a) = 1 - dQ/(2 f P), for Hertz (c/a)^2."""
+    Qf = np.array([0.1, 0.5, 0.99])
+    for profile in (HERTZ, FLAT):
+        pressed = contact(scene(profile))
+        zones = stick_zone(pressed, F, *loads(pressed, Qf, 0.0))
+        smaller = [contact(scene(profile, P)).a for P in pressed.P * (1 - Qf)]
+        assert zones.half_width == pytest.approx(smaller, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("f", "dQ", "dsigma", "line"),
+    [
+        (F, 2 * F * PRESSED.P, 0.0, "dQ = 600000"),
+        (F, [1.0, -1e6], [[0.0], [1e8]], r"dQ = -1000000\.0: must be less than 2 f P in size, or the contact slides"),
+        (F, math.nan, 0.0, "dQ = nan: must be finite"),
+        (F, 0.0, [1.0, -math.inf], "dsigma = -inf: must be finite"),
+        (math.inf, 0.0, 0.0, "f = inf: must be finite"),
+        ([0.5, 0.0], 0.0, 0.0, r"f = 0\.0: must be > 0"),
+        (-0.3, 1e3, 0.0, r"f = -0\.3: must be > 0"),
+    ],
+)
+def test_what_is_no_partial_slip_is_refused(f, dQ, dsigma, line):
+    with pytest.raises(InputError, match=f"^{line}") as raised:
+        stick_zone(PRESSED, f, dQ, dsigma)
+    assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize("shape", [Hertz(), Punch(0.5)])
+def test_continuous_through_the_transition(shape):
+    Qf = np.array([1e-3, 0.2, 0.6, 0.95])[:, None]
+    at = steady.transition(Qf, shape)
+    edge_moves = []
+    for near in (1e-4, 1e-6, 1e-8):
+        centre, c, s = steady.stick_zones(Qf, at * (1 + near * np.array([-1, 1])), shape)
+        assert (s == [1, -1]).all()
+        edge_moves.append(max(np.abs(np.diff(centre)).max(), np.abs(np.diff(c)).max()))
+        assert (np.abs(1 + centre - c) < 20 * near).all()
+    assert edge_moves[2] < 1e-6
+    assert edge_moves[1:] == pytest.approx(np.array(edge_moves[:2]) / 100, rel=0.02)  # with a slope: no step
+
+
+def test_units_do_not_matter():
+    """Lengths and stresses in other units: the same fractions of a."""
+    dQ, dsigma = loads(PRESSED, QF, SF)
+    base = stick_zone(PRESSED, F, dQ, dsigma)
+    for L, S in ((1e3, 1e-6), (1e-12, 1e12)):
+        data = {"material": MATERIAL | {"E": 115e9 * S}, "profile": HERTZ | {"R": 0.05 * L}, "friction": {"f": F}}
+        pressed = contact(partialslip.parse_scene({"name": "s", "load": {"P": 600e3 * S * L}} | data))
+        zones = stick_zone(pressed, F, dQ * S * L, dsigma * S)
+        assert pressed.a == pytest.approx(PRESSED.a * L, rel=1e-13)
+        for found, expected in zip(zones[:4], base[:4], strict=True):
+            assert found == pytest.approx(expected * L, rel=1e-11, abs=1e-14 * pressed.a)
+
+
+# --- profiles and pressures of one's own
+
+
+def own_hertz():
+    return contact_of(lambda x: PRESSED.p0 * np.sqrt((PRESSED.a - x) * (PRESSED.a + x)) / PRESSED.a, PRESSED.a)
+
+
+def no_flat():
+    return Contact(PRESSED.a, PRESSED.P, Punch(0.0))
+
+
+def table_of_a_parabola():
+    return contact(scene(tabulated(parabola, PRESSED.a / 7.3, 20)))
+
+
+def uneven_table_of_a_parabola():
+    x = PRESSED.a * np.array([0.0, 0.01, 0.3, 0.35, 0.9, 1.4, 2.0])
+    return contact(scene({"kind": "tabulated", "x": x.tolist(), "gap": parabola(x).tolist()}))
+
+
+@pytest.mark.parametrize("make", [own_hertz, no_flat, table_of_a_parabola, uneven_table_of_a_parabola])
+def test_hertz_by_other_ways(make):
+    """A callable, a flat of no width, and tables of a parabola (which are exact) give Hertz to 12 digits."""
+    pressed = make()
+    assert (pressed.a, pressed.P, pressed.p0) == pytest.approx((PRESSED.a, PRESSED.P, PRESSED.p0), rel=1e-12)
+    x = np.linspace(-1.1, 1.1, 101) * PRESSED.a
+    assert pressed.pressure(x[5:-5]) == pytest.approx(PRESSED.pressure(x[5:-5]), rel=1e-12, abs=1e-7 * PRESSED.p0)
+    assert (pressed.pressure(x[:3]) == 0).all()
+    for name, found, expected in zip(
+        ("m", "n", "centre", "half_width"),
+        stick_zone(pressed, F, *loads(PRESSED, QF, SF)),
+        stick_zone(PRESSED, F, *loads(PRESSED, QF, SF)),
+        strict=False,
+    ):
+        assert np.abs(found - expected).max() <= 1e-12 * PRESSED.a, name
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.25, 0.5])
+def test_a_fine_table_tends_to_the_flat_and_rounded_contact(shift):
+    """Second order in the spacing, wherever the flat ends between the table's points."""
+    exact = contact(scene(FLAT))
+    off = []
+    for number in (64, 128, 256):
+        spacing = FLAT["b"] / (number + shift)
+        pressed = contact(scene(tabulated(flat_rounded, spacing, math.ceil(1.5e-3 / spacing))))
+        zones, expected = (stick_zone(c, F, *loads(exact, 0.3, [0.0, 0.5, 4.0])) for c in (pressed, exact))
+        off.append([pressed.a / exact.a - 1, *(zones.m - expected.m) / exact.a, *(zones.n - expected.n) / exact.a])
+    off = np.abs(off)
+    assert off[-1].max() < 5e-5
+    assert off[:-1] / off[1:] == pytest.approx(4, rel=0.05)
+
+
+def test_a_table_of_pieces_is_the_sum_of_its_punches():
+    """Curvature 1/R up to b, midway between two points, and 3/R beyond: Hertz plus twice the flat and rounded
+    pressure, by load. The chords have the slopes of the middles."""
+    x, b = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4]) * 1e-3, 0.5e-3
+    middles = (x[1:] + x[:-1]) / 2
+    gap = np.concatenate([[0.0], np.cumsum(np.diff(x) * (middles + 2 * np.maximum(middles - b, 0.0)) / 0.05)])
+    pressed = contact(scene({"kind": "tabulated", "x": x.tolist(), "gap": gap.tolist()}, P=1e6))
+    parts = [math.pi / 2, 2 * (math.acos(b / pressed.a) - b / pressed.a * math.sqrt(1 - (b / pressed.a) ** 2))]
+    A = partialslip.scene.Material(**MATERIAL).A
+    assert pressed.a**2 / (A * 0.05) * sum(parts) == pytest.approx(1e6, rel=1e-12)
+    at = np.linspace(-0.99, 0.99, 31)
+    mixed = (parts[0] * Hertz().pressure(at) + parts[1] * Punch(b / pressed.a).pressure(at)) / sum(parts)
+    assert pressed.shape.pressure(at) == pytest.approx(mixed, rel=1e-12)
+
+
+A_QUARTIC = 2e-3
+
+
+def quartic():
+    """p ~ (1 + 2 (x/a)^2) sqrt(1 - (x/a)^2), the pressure under a gap ~ x^4: P = 3/4 pi a, scaled."""
+    return contact_of(lambda x: 3e8 * (1 + 2 * (x / A_QUARTIC) ** 2) * np.sqrt(1 - (x / A_QUARTIC) ** 2), a=A_QUARTIC)
+
+
+def test_quartic_profile():
+    """P ~ a^4; without tension the zone is the contact of the smaller load."""
+    pressed = quartic()
+    assert pytest.approx(3e8 * 0.75 * math.pi * A_QUARTIC, rel=1e-13) == pressed.P
+    Qf = np.array([1e-3, 0.3, 0.9, 0.999])
+    assert stick_zone(pressed, F, *loads(pressed, Qf, 0.0)).half_width == pytest.approx(
+        A_QUARTIC * (1 - Qf) ** 0.25, rel=1e-12
+    )
+
+
+@pytest.mark.parametrize(("Qf", "sf"), [(0.3, 0.5), (0.3, 4.0), (0.8, 30.0)])
+def test_quartic_profile_satisfies_its_consistency_conditions(Qf, sf):
+    pressed = quartic()
+    zone = steady.stick_zone(Qf, sf, pressed.shape)
+    e, c = zone.centre, zone.half_width
+    totals = np.zeros(2)
+    for side, sign in ((1, 1), (-1, -zone.s)):
+
+        def p(angle, side=side):
+            x = e + side * c * mp.cosh(angle)
+            return (1 + 2 * x**2) * mp.sqrt(max((1 - x) * (1 + x), 0)) * 2 / 3
+
+        pieces = mp.linspace(0, mp.acosh((1 - side * e) / c), 6)
+        with mp.workdps(20):
+            totals += sign * np.array(
+                [float(mp.quad(g, pieces)) for g in (p, lambda t, s=side, p=p: p(t) * s * c * mp.cosh(t))]
+            )
+    assert 8 / np.pi * totals[0] == pytest.approx(sf, rel=1e-12)
+    assert 2 / np.pi * totals[1] == pytest.approx(Qf, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("function", "line"),
+    [
+        (lambda x: np.sqrt(1 - x**2) * (1 + 0.1 * x), "must be even"),
+        (lambda x: np.sqrt(1 - x**2) * (x > -0.5), "must be even"),
+        (lambda x: np.sqrt(1 - x**2) * (x**2 - 0.25), "must be > 0 inside the contact"),
+        (lambda x: 0 * x, "must be > 0 inside the contact"),
+        (lambda x: np.where(x > 0.3, np.nan, np.sqrt(1 - x**2)), "must be finite"),
+        (lambda x: np.full_like(x, np.inf), "must be finite"),
+        (lambda x: np.sqrt(1 - x[:-1] ** 2), "must return one value for each point"),
+        (lambda _: 1.0, "must return one value for each point"),
+    ],
+)
+def test_pressures_that_no_contact_has_are_refused(function, line):
+    with pytest.raises(InputError, match=f"^pressure.*{line}") as raised:
+        contact_of(function, a=1.0)
+    assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize("a", [0.0, -1.0, math.nan, math.inf])
+def test_a_half_width_that_no_contact_has_is_refused(a):
+    with pytest.raises(InputError, match=f"^a = {a}: must be finite and > 0"):
+        contact_of(lambda x: np.sqrt(a**2 - x**2), a)
+
+
+@pytest.mark.parametrize(
+    ("x", "gap", "line"),
+    [
+        ([0, 1, 2, 3], [0, 1, 4], r"profile\.gap: must have as many numbers as profile\.x, 4, not 3"),
+        ([1, 2, 3], [0, 1, 4], r"profile\.x\[0\] = 1\.0: must be 0, the middle of the contact"),
+        ([0, 1, 2], [1, 2, 5], r"profile\.gap\[0\] = 1\.0: must be 0, the middle of the contact"),
+        ([0, 2, 1], [0, 1, 4], r"profile\.x\[2\] = 1\.0: must be > 2\.0, the one before it"),
+        ([0, 1, 1], [0, 1, 4], r"profile\.x\[2\] = 1\.0: must be > 1\.0, the one before it"),
+        ([0, 1, 2, 3], [0, 1, 4, 5], r"profile\.gap: must be convex, a slope that never falls: it does at x = 2\.0"),
+        ([0, 1, 2], [0, -1, 4], r"profile\.gap: must be convex, a slope that never falls: it does at x = 0\.0"),
+        ([0, 1, 2], [0, 0, 0], r"profile\.gap: must rise somewhere"),
+        ([0, 1], [0, 1], r"profile\.x"),
+    ],
+)
+def test_tables_that_are_no_profile_are_refused(x, gap, line):
+    with pytest.raises(InputError, match=line) as raised:
+        scene({"kind": "tabulated", "x": x, "gap": gap})
+    assert "\n" not in str(raised.value)
+
+
+def test_a_contact_beyond_its_table_is_refused():
+    table = tabulated(parabola, PRESSED.a / 10, 10)  # ends at 0.9 a
+    with pytest.raises(InputError, match=r"^load\.P = 600000: the contact reaches beyond profile\.x, which ends at "):
+        contact(scene(table))
+    assert contact(scene(table, P=0.8 * PRESSED.P)).a == pytest.approx(math.sqrt(0.8) * PRESSED.a, rel=1e-12)
+
+
+# --- how the two unknowns are found
+
+
+@pytest.mark.parametrize("shape", [Hertz(), Punch(0.5)])
+def test_bracketing_finds_the_same(shape):
+    random = np.random.default_rng(5)
+    Qf, sf = random.random(50), 12 * random.random(50)
+    (edge, c), (other_edge, other_c) = (way(Qf, sf, shape) for way in (steady._solve, steady._bracketed))
+    assert (np.sign(edge) == np.sign(other_edge)).all()
+    assert edge == pytest.approx(other_edge, rel=0, abs=1e-11)
+    assert c == pytest.approx(other_c, rel=1e-11)
+    assert (edge < 0).sum() > 20
+    assert (edge > 0).sum() > 5
+
+
+def test_newton_always_ends_for_hertz(monkeypatch):
+    """20,000 loads, to within 1e-6 of sliding, down to 1e-12 of it, to tensions of 300, and around the transition."""
+
+    def fail(Qf, sf, shape):
+        assert not len(Qf), (Qf, sf, shape)
+        return Qf, sf
+
+    random, count = np.random.default_rng(6), 5000
+    Qf = np.concatenate(
+        [
+            random.random(2 * count),
+            1 - 10 ** random.uniform(-6, 0, count),
+            np.minimum(10 ** random.uniform(-12, 0, count), 1 - 1e-6),
+        ]
+    )
+    wide = random.random(4 * count) < 0.5
+    sf = np.where(wide, 300 * random.random(4 * count), 10 ** random.uniform(-9, math.log10(300), 4 * count))
+    transitions = 8 * Qf / (1 + np.sqrt(1 - Qf))
+    sf[::4] = transitions[::4] * (1 + 1e-9 * random.choice([-1, 1], count))
+    monkeypatch.setattr(steady, "_bracketed", fail)
+    centre, c, s = steady.stick_zones(Qf, sf, Hertz())
+    assert ((c > 0) & (c <= 1) & (centre <= 0) & (centre - c >= -1)).all()
+    apart = np.abs(sf - transitions) > 1e-14  # by more than rounding of the zone's end
+    assert apart.mean() > 0.95
+    assert (s == np.where(sf > transitions, -1, 1))[apart].all()
