@@ -6,12 +6,15 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from partialslip import __version__
 from partialslip.errors import InputError, PartialslipError
 from partialslip.reading import load_scene, shipped_scenes
 from partialslip.run import METHODS, run
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 
 class _Parser(argparse.ArgumentParser):
@@ -73,6 +76,17 @@ def _parser() -> argparse.ArgumentParser:
     runs.add_argument("--json", action="store_true", help="print results.json and nothing else; files only with --out")
     runs.set_defaults(command=_run)
 
+    maps = commands.add_parser(
+        "map",
+        help="draw the stick zones over all loads",
+        epilog="example: partialslip map flat-rounded",
+    )
+    maps.add_argument("scene", nargs="?", metavar="SCENE",
+                      help="a shipped scene or a TOML file, whose profile is mapped and loads marked "
+                      "(default: Hertz)")  # fmt: skip
+    maps.add_argument("--out", metavar="DIR", help="folder for the files (default: results/map, results/NAME-map)")
+    maps.set_defaults(command=_map)
+
     scenes = commands.add_parser("scenes", help="list the shipped scenes")
     scenes.set_defaults(command=_scenes)
     return parser
@@ -89,8 +103,7 @@ def _run(options: argparse.Namespace) -> int:
     for method in methods or []:
         if method not in METHODS:
             raise InputError(f"--with {method!r}: must be of {', '.join(METHODS)}")
-    if options.out == "":
-        raise InputError("--out '': must name a folder")
+    _check_folder(options.out)
     if options.fields and methods and "fem" not in methods:
         raise InputError("--fields: needs the method fem")
     scene = load_scene(options.scene, overrides)
@@ -111,8 +124,37 @@ def _run(options: argparse.Namespace) -> int:
     else:
         console = Console(highlight=False)
         print_run(outcome, console)
-        console.print("written: " + ", ".join(map(str, files)), soft_wrap=True, markup=False)
+        _print_written(files, console)
     return 0 if outcome.passed else 1
+
+
+def _map(options: argparse.Namespace) -> int:
+    _check_folder(options.out)
+    scene = None if options.scene is None else load_scene(options.scene)
+    name = "map" if scene is None else f"{scene.name}-map"
+
+    from rich.console import Console
+
+    from partialslip.report import place, stick_map, write_map
+
+    messages = Console(stderr=True, highlight=False)
+    with messages.status(f"{name} ...") as status:
+        data = stick_map(scene, progress=lambda line: status.update(f"{name}: {line}"))
+        files = write_map(data, Path(options.out) if options.out else Path("results") / name)
+    console = Console(highlight=False)
+    for line in place(data):
+        console.print(line, soft_wrap=True, markup=False)
+    _print_written(files, console)
+    return 0
+
+
+def _check_folder(out: str | None) -> None:
+    if out == "":
+        raise InputError("--out '': must name a folder")
+
+
+def _print_written(files: list[Path], console: "Console") -> None:
+    console.print("written: " + ", ".join(map(str, files)), soft_wrap=True, markup=False)
 
 
 def _scenes(_: argparse.Namespace) -> int:

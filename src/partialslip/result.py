@@ -116,8 +116,8 @@ class Result:
     ``settings`` and ``counts`` say what was built and how much work it was; ``notes`` what a reader must know;
     ``limits`` are loads at which something else begins, where the method knows them: ``dsigma_transition`` (Pa, where
     small tension turns large at this dQ), ``Q_sliding`` (N/m, f P) and ``Q_mean`` (N/m, the largest mean that a steady
-    state can hold). ``slip`` is None where the contact slides as a whole or there is no friction; ``bodies`` is there only where fields
-    inside the bodies were asked for.
+    state can hold). ``slip`` is None where the contact slides as a whole or there is no friction; ``bodies`` is there
+    only where fields inside the bodies were asked for.
     """
 
     method: str

@@ -1,6 +1,7 @@
 """The traction plot: exact line, finite-element markers, stick zone shaded; x/a against q/(f p0)."""
 
 import io
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from partialslip.run import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _MARKERS = 41
 _P_MARKS = {"march": "x", "fem": "+"}
@@ -26,12 +28,17 @@ _STYLE: dict[Any, Any] = {
 
 def traction_svg(run: Run) -> str:
     """The traction plot of a run as SVG."""
+    return svg(lambda figure: draw_tractions(figure.subplots(), run))
+
+
+def svg(draw: Callable[["Figure"], None], size: tuple[float, float] = (7.4, 4.4)) -> str:
+    """What ``draw`` puts on a figure of ``size`` (inches) as SVG, in the style of all figures."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
     with rc_context(_STYLE):
-        figure = Figure(figsize=(7.4, 4.4), layout="constrained")
-        draw_tractions(figure.subplots(), run)
+        figure = Figure(figsize=size, layout="constrained")
+        draw(figure)
         text = io.StringIO()
         figure.savefig(text, format="svg", metadata=dict.fromkeys(("Date", "Creator", "Format", "Type")))
     return text.getvalue()

@@ -1,11 +1,11 @@
-"""The files of a run: whole ones or none, whenever it is stopped."""
+"""Files: whole ones or none, whenever it is stopped; and those of a run."""
 
 import csv
 import io
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -31,6 +31,13 @@ def write_run(run: Run, folder: Path) -> list[Path]:
 
         files["mesh.msh"] = lambda path: write_msh(path, bodies[0])
         files["bodies.vtu"] = lambda path: write_vtu(path, bodies)
+    return write_files(folder, files)
+
+
+def write_files(folder: Path, files: Mapping[str, Callable[[Path], object]]) -> list[Path]:
+    """Write each of ``files``, by name the function that takes the path to write to, into ``folder``. Returns their
+    paths. Raises InputError if the folder cannot be written.
+    """
     for name in files:
         if os.path.isdir(folder / name):
             raise InputError(f"{folder / name}: cannot be written: is a folder")

@@ -1,0 +1,90 @@
+"""Regenerate the figures of theory.md: python docs/figures.py [DIR] (default: docs/figures)."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from partialslip.halfplane import Contact, adhered, hysteresis
+from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.steady import stick_zone
+from partialslip.halfplane.traction import half_range
+from partialslip.report.figure import svg
+from partialslip.report.mapfigure import ends_svg
+from partialslip.report.stickmap import stick_map
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_STYLES = ("-", "--", ":")
+_SIZE = (7.4, 3.8)
+_UNIT = Contact(a=1.0, P=np.pi / 2, shape=Hertz())  # p0 = 1
+
+
+def main(folder: Path) -> None:
+    """Write all figures into ``folder``."""
+    folder.mkdir(parents=True, exist_ok=True)
+    figures = {
+        "adhered": svg(_adhered, _SIZE),
+        "small-tension": svg(lambda figure: _tractions(figure, 0.75, 2.4), _SIZE),
+        "large-tension": svg(lambda figure: _tractions(figure, 0.3, 4.0), _SIZE),
+        "loop": svg(_loops, _SIZE),
+        "ends": ends_svg(stick_map()),
+    }
+    for name, text in figures.items():
+        (folder / f"{name}.svg").write_text(text, "utf-8")
+
+
+def _adhered(figure: "Figure") -> None:
+    """Change of shear if nothing slips (1): shear force alone, no longer singular at -a, and turned round there."""
+    axes = figure.subplots()
+    x = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 803)[1:-1])
+    for (ratio, text), style in zip(((0.0, "0"), (4 / np.pi, "4/π"), (4.0, "4")), _STYLES, strict=True):
+        axes.plot(x, adhered(x, 1.0, 1.0, ratio), color="black", lw=1.4, ls=style, label=f"Δσ a/ΔQ = {text}")
+    axes.set(ylim=(-1.5, 3), ylabel="a Δq/ΔQ")
+    _finish(axes)
+
+
+def _tractions(figure: "Figure", Qf: float, sf: float) -> None:
+    """Shear at both load points, fully reversed, between the bounds that friction sets."""
+    axes, shape = figure.subplots(), Hertz()
+    zone = stick_zone(Qf, sf, shape)
+    m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
+    ends = np.array([-1.0, -m, n, 1.0])
+    crowd = (1 - np.cos(np.linspace(0, np.pi, 101))) / 2
+    x = np.unique(ends[:-1, None] + np.diff(ends)[:, None] * crowd)
+    q, bound = half_range(x, zone, shape), shape.pressure(x)
+    axes.axvspan(-m, n, color="0.88", lw=0, label="stick zone [-m, n]")
+    axes.plot(x, bound, color="0.45", lw=1, ls=":", label="±f p")
+    axes.plot(x, -bound, color="0.45", lw=1, ls=":")
+    axes.plot(x, q, color="black", lw=1.4, label="q2, load point 2")
+    axes.plot(x, -q, color="black", lw=1.4, ls="--", label="q1, load point 1")
+    axes.set(ylabel="q/(f p0)", title=f"ΔQ/(2 f P) = {Qf:g}, Δσ/(f p0) = {sf:g}")
+    axes.title.set_fontsize(10)
+    _finish(axes)
+
+
+def _loops(figure: "Figure") -> None:
+    """Shear force against displacement by slip: A = f = 1, so that the unit of displacement is A f p0 a."""
+    axes = figure.subplots()
+    for Qf, style in zip((0.9, 0.7, 0.5), _STYLES, strict=True):
+        dQ = Qf * np.pi  # 2 f P is pi
+        loop = hysteresis(_UNIT, A=1.0, f=1.0, dQ=dQ, dsigma=dQ)
+        x, Q = loop.displacement - loop.displacement.max() / 2, (loop.Q - dQ / 2) / (np.pi / 2)
+        axes.plot(x, Q, color="black", lw=1.4, ls=style, label=f"ΔQ/(2 f P) = {Qf:g}")
+    axes.axhline(0, color="0.7", lw=0.6, zorder=0)
+    axes.set(xlabel="displacement by slip/(A f p0 a)", ylabel="Q/(f P)", title="Δσ a/ΔQ = 1")
+    axes.title.set_fontsize(10)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+
+
+def _finish(axes: "Axes") -> None:
+    axes.axhline(0, color="0.7", lw=0.6, zorder=0)
+    axes.set(xlabel="x/a", xlim=(-1.04, 1.04))
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if sys.argv[1:] else Path(__file__).parent / "figures")

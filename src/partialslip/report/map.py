@@ -1,0 +1,56 @@
+"""The files of a stick-zone map, and a scene's place on it in words."""
+
+import csv
+import io
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from partialslip.report import rows
+from partialslip.report.files import write_files
+from partialslip.report.mapfigure import ends_svg, map_svg
+from partialslip.report.stickmap import StickMap
+
+
+def write_map(data: StickMap, folder: Path) -> list[Path]:
+    """Write map.svg, ends.svg and map.csv into ``folder``. Returns the files' paths. Raises InputError if the folder
+    cannot be written.
+    """
+    texts = {"map.svg": map_svg(data), "ends.svg": ends_svg(data), "map.csv": map_csv(data)}
+    return write_files(folder, {name: _writer(text) for name, text in texts.items()})
+
+
+def map_csv(data: StickMap) -> str:
+    """The grid's stick zones, one row a point; dQ (N/m) and dsigma (Pa) where there is a scene."""
+    grid = data.grid
+    regime = np.where(grid.s > 0, "small tension", "large tension")
+    regime[(grid.Qf == 0) & (grid.sf == 0)] = "stuck"
+    columns = {"Qf": grid.Qf, "sf": grid.sf}
+    if data.scene and data.pressed:
+        f = data.scene.friction.f
+        columns |= {"dQ": 2 * f * data.pressed.P * grid.Qf, "dsigma": f * data.pressed.p0 * grid.sf}
+    columns |= {"m_over_a": grid.m, "n_over_a": grid.n, "half_width_over_a": grid.half_width}
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\n")
+    writer.writerow([*columns, "regime"])
+    writer.writerows(zip(*(values.ravel().tolist() for values in (*columns.values(), regime)), strict=True))
+    return table.getvalue()
+
+
+def place(data: StickMap) -> list[str]:
+    """Where the scene is on the map, and its limits, in lines of text; none without a scene."""
+    if data.scene is None:
+        return []
+    name, point = data.scene.name, data.point
+    if point is None:
+        return [f"{name}: not on the map: {data.missing}"]
+    exact, ends = point.exact, ", ".join(f"{key} = {rows.value(point.exact, key)}" for key in ("m", "n"))
+    reached = ", which are not reached" if exact.regime == "ratchets" else ""
+    mirrored = " (dQ and dsigma differ in sign: on the map m and n change places)" if point.mirrored else ""
+    limits = rows.limits(exact)
+    return [f"{name}: {exact.regime}, {ends}{reached}{mirrored}", *([limits] if limits else [])]
+
+
+def _writer(text: str) -> Callable[[Path], object]:
+    return lambda path: path.write_text(text, "utf-8")
