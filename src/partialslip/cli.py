@@ -34,7 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code: int = options.command(options)
         sys.stdout.flush()
     except PartialslipError as error:
-        print(f"partialslip: {_one_line(str(error))}", file=sys.stderr)
+        print(f"partialslip: {error}", file=sys.stderr)
         return 2
     except BrokenPipeError:  # whoever read the output has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -43,10 +43,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("partialslip: interrupted", file=sys.stderr)
         return 130
     return code
-
-
-def _one_line(text: str) -> str:
-    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -2,7 +2,11 @@
 
 
 class PartialslipError(Exception):
-    """A problem the user can mend. Its text is one line; the command line prints it and exits with 2."""
+    """A problem the user can mend. Its text is one line, whatever names and values are in it; the command line prints
+    it and exits with 2."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__("".join(c if c.isprintable() else repr(c)[1:-1] for c in text))
 
 
 class InputError(PartialslipError, ValueError):
