@@ -41,10 +41,14 @@ def mean_load_bound(zone: StickZone, shape: Shape) -> float:
     centre, c = zone.centre, zone.half_width
     kinks = [kink for kink in shape.kinks if abs(kink - centre) < c]
     breaks = [math.acos((kink - centre) / c) for kink in kinks]
-    if zone.s < 0:  # dq changes sign on the way from one end to the other
-        breaks.append(
-            brentq(lambda a: float(half_range(np.array([centre + c * math.cos(a)]), zone, shape)[0]), 0, math.pi)
-        )
+    if zone.s < 0:  # dq changes sign on the way from n, where it is p > 0, to -m, where it is -p
+
+        def sign(angle: float) -> float:
+            if angle in (0.0, math.pi):
+                return 1.0 - 2.0 * (angle > 0)
+            return float(half_range(np.array([centre + c * math.cos(angle)]), zone, shape)[0])
+
+        breaks.append(brentq(sign, 0.0, math.pi))
     ends = np.array([0.0, *sorted(breaks), math.pi])
     angle = (ends[1:] + ends[:-1])[:, None] / 2 + np.diff(ends)[:, None] / 2 * _NODES
     weights = np.diff(ends)[:, None] / 2 * _WEIGHTS * np.sin(angle)
