@@ -103,21 +103,27 @@ def _bracketed(Qf: Array, sf: Array, shape: Shape) -> tuple[Array, Array]:
     touching = _touching(Qf, shape)
     edge, c = np.empty_like(Qf), np.empty_like(Qf)
     small = sf <= _at(shape, 0.0, touching).sf
-    for of, search in ((small, _bracketed_small), (~small, _bracketed_large)):
-        if of.any():
-            edge[of], c[of] = search(Qf[of], sf[of], touching[of], shape)
+    if small.any():
+        edge[small], c[small] = _bracketed_small(Qf[small], sf[small], shape)
+    if not small.all():
+        edge[~small], c[~small] = _bracketed_large(Qf[~small], sf[~small], touching[~small], shape)
     return edge, c
 
 
-def _bracketed_small(Qf: Array, sf: Array, touching: Array, shape: Shape) -> tuple[Array, Array]:
-    """At a given half-width the tension fixes the place, and dQ falls as it grows."""
+def _bracketed_small(Qf: Array, sf: Array, shape: Shape) -> tuple[Array, Array]:
+    """At a given half-width the tension fixes the place, and dQ falls as it grows, up to where the zone touches the
+    contact's end."""
 
     def edge(c: Array, sf: Array) -> Array:
         return (1 - c) * _root(lambda way, c, sf: _at(shape, (1 - c) * way, c).sf - sf, 0 * c, 1 + 0 * c, c, sf)
 
-    centred = _root(lambda c, Qf: _at(shape, 1 - c, c).Qf - Qf, _NARROWEST + 0 * Qf, 1 + 0 * Qf, Qf)
-    low, high = np.minimum(centred, touching), np.maximum(centred, touching)
-    c = _root(lambda c, Qf, sf: _at(shape, edge(c, sf), c).Qf - Qf, low, high, Qf, sf)
+    def excess(log_c: Array, Qf: Array, sf: Array) -> Array:
+        c = np.exp(log_c)
+        return _at(shape, edge(c, sf), c).Qf - Qf
+
+    low = math.log(_NARROWEST) + 0 * sf
+    widest = _root(lambda log_c, sf: _at(shape, 0.0, np.exp(log_c)).sf - sf, low, 0 * sf, sf)
+    c = np.exp(_root(excess, low, widest, Qf, sf))
     return edge(c, sf), c
 
 
