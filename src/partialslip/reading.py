@@ -67,6 +67,8 @@ def parse_scene(data: Mapping[str, Any]) -> Scene:
     InputError
         With one line that names the field, its value and what is allowed.
     """
+    if not isinstance(data, Mapping):
+        raise InputError(f"scene = {_shown(data)}: must be a table")
     data = _plain(data)
     for path, value in _leaves(data):
         if isinstance(value, float) and not math.isfinite(value):
@@ -137,6 +139,8 @@ def _plain(value: Any) -> Any:
 def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     if isinstance(value, Mapping):
         for key, child in value.items():
+            if not isinstance(key, str):
+                raise InputError(f"{_join(path, str(key))}: a key must be a string")
             yield from _leaves(child, f"{path}.{key}" if path else str(key))
     elif isinstance(value, (list, tuple)):
         for index, child in enumerate(value):

@@ -158,6 +158,7 @@ def _at(shape: Shape, edge: Array | float, c: Array) -> Conditions:
 
 def _root(function: Callable[..., Array], low: Array, high: Array, *args: Array) -> Array:
     """Where falling functions change sign; an end of the bracket where rounding, or a limit, leaves no change."""
-    found = find_root(function, (low, high), args=args)
+    with np.errstate(invalid="ignore"):  # its own, where an interval has shrunk to rounding
+        found = find_root(function, (low, high), args=args)
     result: Array = np.where(found.success, found.x, np.where(found.f_bracket[1] >= 0, high, low))
     return result

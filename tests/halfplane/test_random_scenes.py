@@ -1,0 +1,431 @@
+"""Random scenes through the exact method: every regime, pressure, sign and unit.
+
+A failure names the number that makes its scene again, by ``drawn``.
+"""
+
+import math
+import re
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip.errors import InputError
+from partialslip.halfplane import Contact, contact, contact_of, stick_zone
+from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.slip import dissipation
+from partialslip.halfplane.steady import StickZone, transition
+from partialslip.halfplane.steady import stick_zone as scaled_zone
+from partialslip.halfplane.traction import half_range, mean_load_bound
+from partialslip.scene import Material
+
+PRESSURES = ("hertz", "flat-rounded", "tabulated", "quartic", "kinked")
+KINDS = (
+    "stuck", "small", "large", "sliding", "ratchets", "narrow", "near-stuck", "transition", "no dQ", "no dsigma",
+    "mean loads", "late", "lost digits",
+)  # fmt: skip
+NARROWEST = 1e-99  # of a: narrower stick zones are not told apart
+TINY, TIGHT, ROUGH = 1e-14, 1e-9, 5e-3  # the last for sums over the points of a result
+
+
+class Loads(NamedTuple):
+    """Changes and means, by the friction: dQ in 2 f P, Q in f P, dsigma and sigma in f p0."""
+
+    Qf: float
+    sf: float
+    Q: float = 0.0
+    sigma: float = 0.0
+
+
+class Answer(NamedTuple):
+    """What there is to look at, in SI units: ``shear`` and ``tension`` are the changes dQ and dsigma, ``mean`` is
+    that of Q, ``levels`` are q1 and q2, and ``slips`` points and the slip there."""
+
+    pressed: Contact
+    f: float
+    shear: float
+    tension: float
+    mean: float
+    regime: str
+    m: float | None
+    n: float | None
+    half_width: float | None
+    x: np.ndarray
+    p: np.ndarray
+    dq: np.ndarray
+    at: Callable
+    limits: dict[str, float]
+    levels: tuple[np.ndarray, ...] = ()
+    slips: tuple[np.ndarray, np.ndarray] | None = None
+    dissipated: float = 0.0
+
+
+def table(random, length):
+    """A convex gap at 6 to 12 points: flat or curved in the middle, straight here and there."""
+    count = random.integers(6, 13)
+    x = np.concatenate([[0.0], np.cumsum(random.uniform(0.2, 1.0, count - 1))])
+    bends = random.exponential(1.0, count - 1) ** random.uniform(0.5, 3) * (random.random(count - 1) > 0.2)
+    bends[-1] += 0.1
+    gap = np.concatenate([[0.0], np.cumsum(np.cumsum(bends) * np.diff(x))]) * 10 ** random.uniform(-5, -1)
+    return {"kind": "tabulated", "x": (x * length).tolist(), "gap": (gap * length).tolist()}
+
+
+def scene_without_shear(random, pressure):
+    length, stress = 10 ** random.uniform(-9, 6), 10 ** random.uniform(-3, 15)
+    material = {"E": stress, "nu": random.uniform(-0.9, 0.4999), "plane": str(random.choice(["strain", "stress"]))}
+    data = {"name": "random", "material": material, "friction": {"f": 10 ** random.uniform(-3, 1)}}
+    A, R = Material(**material).A, length * 10 ** random.uniform(0, 5)
+    if pressure == "hertz":
+        ways = {"P": math.pi * length**2 / (2 * A * R), "a": length, "p0": length / (A * R)}
+        way = str(random.choice(list(ways)))
+        return data | {"profile": {"kind": "hertz", "R": R}, "load": {way: ways[way]}}
+    if pressure == "flat-rounded":
+        flat = random.uniform(0.01, 0.99)
+        psi = math.acos(flat)
+        P = length**2 / (A * R) * (psi - math.sin(psi) * flat)
+        return data | {"profile": {"kind": "flat-rounded", "R": R, "b": flat * length}, "load": {"P": P}}
+    data |= {"profile": table(random, length), "load": {"P": 1.0}}
+    profile = partialslip.parse_scene(data).profile
+    at, steps = profile.curvature_steps()
+    a = at[0] + (profile.reach - at[0]) * random.uniform(0.05, 0.999)
+    psi = np.arccos(np.minimum(at / a, 1.0))
+    return data | {"load": {"P": float(a**2 / (2 * A) * (steps @ (2 * psi - np.sin(2 * psi))))}}
+
+
+def pressed_by(random, pressure):
+    """A contact with a pressure of one's own, as comes from a convex profile."""
+    a, p0, kink = 10 ** random.uniform(-9, 6), 10 ** random.uniform(-3, 15), random.uniform(0.05, 0.95)
+    if pressure == "quartic":
+        return contact_of(lambda x: p0 * (1 + 2 * (x / a) ** 2) * np.sqrt(1 - (x / a) ** 2), a)
+    return contact_of(
+        lambda x: p0 * np.sqrt(1 - (x / a) ** 2) * (1 - 0.3 * np.maximum(np.abs(x / a) - kink, 0.0)), a, [kink * a]
+    )
+
+
+def loads_of(random, kind, shape):
+    """Positive changes."""
+    if kind == "stuck":
+        return Loads(0.0, 0.0, *(random.choice([0.0, 1.0], 2) * random.uniform(-1, 1, 2)).tolist())
+    if kind == "narrow":  # the other way round: the loads of a zone
+        c = 10 ** random.uniform(-8, -1)
+        found = shape.conditions((1 - c) * random.uniform(0.02, 1), c, -1)
+        return Loads(float(found.Qf), float(found.sf))
+    if kind == "near-stuck":
+        Qf = 10 ** random.uniform(-11, -5)
+        return Loads(Qf, Qf * random.uniform(0, 8))
+    if kind == "no dQ":
+        return Loads(0.0, 10 ** random.uniform(-6, 1.5))
+    Qf = {
+        "late": 1 - 10 ** random.uniform(-6, -1),
+        "lost digits": 1 - 10 ** random.uniform(-15.9, -6),
+        "ratchets": random.uniform(0.02, 0.8),
+    }.get(kind, random.random())
+    if kind == "no dsigma":
+        return Loads(Qf, 0.0)
+    at = float(transition(Qf, shape))
+    if kind == "small":
+        return Loads(Qf, at * random.random())
+    if kind == "large":
+        return Loads(Qf, at * (1 + 10 ** random.uniform(-3, 0.5)))
+    if kind == "sliding":
+        over = 1 + 10 ** random.uniform(-6, 2)
+        ways = [(over, at, 0.0), (Qf, 2 * at, over - Qf), (0.0, 1.0, over), (0.0, 0.0, over), (Qf * over, 0.0, over)]
+        return Loads(*ways[random.integers(len(ways))])
+    if kind == "transition":
+        return Loads(Qf, at * (1 + random.choice([0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9, 1e-6, -1e-6])))
+    if kind in ("late", "lost digits"):
+        return Loads(Qf, at * 10 ** random.uniform(-2, 1))
+    if kind == "mean loads":
+        sf, sigma = at * random.choice([random.random(), random.uniform(1.1, 2.5)]), 10 ** random.uniform(-3, 1)
+        return Loads(Qf, sf, random.uniform(-1, 1) * (1 - Qf), sigma)
+    sf = at * random.uniform(1.3, 2.5)
+    bound = mean_load_bound(scaled_zone(Qf, sf, shape), shape)
+    return Loads(Qf, sf, bound + random.uniform(0.2, 0.8) * (1 - Qf - bound), random.uniform(-1, 1))
+
+
+def drawn(number):
+    """Kind, contact, and either the scene's tables or (f, dQ, dsigma)."""
+    random = np.random.default_rng([7, number])
+    pressure, kind = PRESSURES[number % len(PRESSURES)], KINDS[number // len(PRESSURES) % len(KINDS)]
+    data = scene_without_shear(random, pressure) if pressure in PRESSURES[:3] else None
+    pressed = contact(partialslip.parse_scene(data)) if data else pressed_by(random, pressure)
+    loads = loads_of(random, kind, pressed.shape)
+    signs = random.choice([-1.0, 1.0], 3).tolist()
+    f = data["friction"]["f"] if data else 10 ** random.uniform(-3, 1)
+    dQ, dsigma = signs[0] * 2 * f * pressed.P * loads.Qf, signs[1] * f * pressed.p0 * loads.sf
+    if not data:
+        return kind, pressed, (f, dQ, dsigma)
+    Q, sigma = signs[2] * f * pressed.P * loads.Q, f * pressed.p0 * loads.sigma
+    load = {"Q": [Q - dQ / 2, Q + dQ / 2], "sigma": [sigma - dsigma / 2, sigma + dsigma / 2]}
+    return kind, pressed, data | {"load": data["load"] | load}
+
+
+def of_scene(pressed, data):
+    scene = partialslip.parse_scene(data)
+    found = partialslip.run(scene, ["exact"]).results["exact"]
+    load, traction, slip = scene.load, found.traction, found.slip
+    return Answer(
+        pressed, scene.friction.f, load.dQ, load.dsigma, load.Q_mean, found.regime, found.m, found.n,
+        found.stick_half_width, traction.x, traction.p, traction.dq, traction.at, found.limits,
+        () if traction.q1 is None else (traction.q1, traction.q2),
+        (slip.x, slip.slip) if slip else None, slip.dissipated if slip else 0.0,
+    )  # fmt: skip
+
+
+def of_pressure(pressed, f, dQ, dsigma):
+    a, unit = pressed.a, 2 * f * pressed.p0
+    if abs(dQ) >= 2 * f * pressed.P:
+        with pytest.raises(InputError, match=r"^dQ = .* or the contact slides$"):
+            stick_zone(pressed, f, dQ, dsigma)
+        x = np.array([0.0])
+        return Answer(pressed, f, dQ, dsigma, 0.0, "sliding", None, None, None, x, x, x, lambda x: (0 * x, 0 * x), {})
+    found = stick_zone(pressed, f, dQ, dsigma)
+    turn, mirror = (-1 if dQ < 0 else 1), (1 if (dQ < 0) == (dsigma < 0) else -1)
+    zone = StickZone(float(mirror * found.centre / a), float(found.half_width / a), int(found.s))
+
+    def at(x):
+        return pressed.pressure(x), turn * unit * half_range(mirror * x / a, zone, pressed.shape)
+
+    grid = np.cos(np.linspace(math.pi, 0, 401))
+    x = a * np.unique(np.clip([*grid, *(mirror * (zone.centre + zone.half_width * grid))], -1, 1))
+    at_slips, slip, dissipated = dissipation(zone, pressed.shape)
+    regime = "stuck" if dQ == dsigma == 0 else "small tension" if found.s > 0 else "large tension"
+    slips = mirror * a * at_slips[::mirror], turn * a * slip[::mirror]
+    turns = float(transition(abs(dQ) / (2 * f * pressed.P), pressed.shape)) * f * pressed.p0
+    limits = {"dsigma_transition": turns, "Q_mean": mean_load_bound(zone, pressed.shape) * f * pressed.P}
+    return Answer(
+        pressed, f, dQ, dsigma, 0.0, regime, float(found.m), float(found.n),
+        float(found.half_width), x, *at(x), at, limits, (), slips, dissipated,
+    )  # fmt: skip
+
+
+def regimes(answer):
+    """Names that the loads allow: more than one only where rounding, or the sum for the mean load's room, decides."""
+    limit = answer.f * answer.pressed.P
+    Qf, mean = abs(answer.shear) / (2 * limit), abs(answer.mean) / limit
+    if Qf + mean > 1 + 1e-12 or Qf >= 1:
+        return {"sliding"}
+    names = {"sliding"} if Qf + mean > 1 - 1e-12 else set()
+    if answer.shear == answer.tension == 0:
+        return names | {"stuck"}
+    if "dsigma_transition" not in answer.limits:
+        return names
+    turns = answer.limits["dsigma_transition"]
+    beyond, unsure = abs(answer.tension) - turns, TIGHT * turns + TINY * answer.f * answer.pressed.p0
+    tensions = {"small tension"} if beyond < unsure else set()
+    tensions |= {"large tension"} if beyond > -unsure else set()
+    room = room_of(answer)
+    if mean > room - ROUGH and "large tension" in tensions:
+        names |= {"ratchets"}
+    return names | tensions if mean < room + ROUGH else names
+
+
+def loads_at(answer):
+    """sf and Qf, by the consistency conditions, that belong to the stick zone found."""
+    c, centre = answer.half_width / answer.pressed.a, -abs(answer.n - answer.m) / (2 * answer.pressed.a)
+    found = answer.pressed.shape.conditions(1 + centre - c, c, 1 if answer.regime == "small tension" else -1)
+    return float(found.sf), float(found.Qf)
+
+
+def room_of(answer):
+    """Of the mean force, as a fraction of f P."""
+    return 1 - np.trapezoid(np.abs(answer.dq), answer.x) / (2 * answer.f * answer.pressed.P)
+
+
+def complaints(answer):
+    """What is wrong with an answer."""
+    pressed, x, p, dq, m, n = answer.pressed, answer.x, answer.p, answer.dq, answer.m, answer.n
+    a, f, unit = pressed.a, answer.f, 2 * answer.f * pressed.p0
+    limits, slips = answer.limits, answer.slips or ()
+    numbers = (a, pressed.p0, x, p, dq, *answer.levels, *slips, answer.dissipated, *limits.values())
+    if not all(np.isfinite(values).all() for values in numbers):
+        yield "a value that is not finite"
+    if answer.regime not in (allowed := regimes(answer)):
+        yield f"{answer.regime} in place of {allowed}"
+    if answer.regime == "sliding":
+        if (m, n, answer.slips) != (None, None, None):
+            yield "a stick zone where the contact slides"
+        return
+    if not (math.isfinite(m) and math.isfinite(n) and -n <= m <= a * (1 + TIGHT) and abs(n) <= a * (1 + TIGHT)):
+        yield f"-n <= m <= a, |n| <= a: m = {m / a} a, n = {n / a} a"
+    if "Q_mean" in limits and abs(limits["Q_mean"] / (f * pressed.P) - room_of(answer)) > ROUGH:
+        yield f"room for {limits['Q_mean'] / (f * pressed.P)} f P in place of {room_of(answer)}"
+    if isinstance(pressed.shape, Hertz) and "dsigma_transition" in limits:
+        Qf = abs(answer.shear) / (2 * f * pressed.P)
+        turns = 8 * Qf / (1 + math.sqrt(1 - Qf))
+        if abs(limits["dsigma_transition"] / (f * pressed.p0) - turns) > TIGHT * turns + TINY:
+            yield f"transition at {limits['dsigma_transition'] / (f * pressed.p0)} f p0 in place of {turns}"
+    if answer.regime != "stuck" and answer.half_width > NARROWEST * a:
+        sf, Qf = loads_at(answer)
+        off = sf - abs(answer.tension) / (f * pressed.p0), Qf - abs(answer.shear) / (2 * f * pressed.P)
+        if not (abs(off[0]) <= TIGHT * max(sf, 1) and abs(off[1]) <= TIGHT):
+            yield f"sf off by {off[0]}, Qf by {off[1]} at the zone found"
+    side = np.sign(answer.shear) * np.sign(answer.tension)
+    if side * (n - m) > 0 or (side == 0 and abs(n - m) > TIGHT * a):
+        yield f"the stick zone on the wrong side: m = {m / a} a, n = {n / a} a"
+    more = a * np.random.default_rng(0).uniform(-1, 1, 50)
+    for where, pressure, change in ((x, p, dq), (more, *answer.at(more))):
+        over = (np.abs(change) - 2 * f * pressure) / unit
+        if not (pressure >= 0).all():
+            yield f"p = {pressure.min() / pressed.p0} p0"
+        if not (over <= TIGHT).all():
+            yield f"|dq| > 2 f p by {over.max()} of 2 f p0 at {where[over.argmax()] / a} a"
+    if any(np.any(values != 0) for values in answer.at(a * np.array([-1.1, 1.1]))):
+        yield "tractions outside the contact"
+    for name, values, force, of in (("P", p, pressed.P, pressed.P), ("dQ", dq, answer.shear, 2 * f * pressed.P)):
+        if abs(np.trapezoid(values, x) - force) > ROUGH * of:
+            yield f"the resultant is not {name}: {np.trapezoid(values, x) / of} in place of {force / of}"
+    if answer.levels:
+        q1, q2 = answer.levels
+        if max(np.abs(q2 - q1 - dq).max(), (np.abs(q1) - f * p).max(), (np.abs(q2) - f * p).max()) > TIGHT * unit:
+            yield "q1 and q2"
+    if answer.slips and len(answer.slips[0]):
+        where, slip = answer.slips
+        if not (np.diff(where) >= 0).all() or np.abs(where).max() > a * (1 + TIGHT):
+            yield "points of the slip"
+        against = slip * answer.at(where)[1] / unit / (np.abs(slip).max() or 1.0)
+        if not (against >= -TIGHT).all() or answer.dissipated < 0:
+            yield f"slip against dq: {against.min()} at {where[against.argmin()] / a} a"
+
+
+def trials(numbers):
+    """(number, kind, complaint) for each of them."""
+    for number in numbers:
+        kind, pressed, given = drawn(number)
+        try:
+            answer = of_scene(pressed, given) if isinstance(given, dict) else of_pressure(pressed, *given)
+            for complaint in complaints(answer):
+                if kind != "lost digits" or "finite" in complaint:
+                    yield number, kind, complaint
+        except Exception as error:
+            yield number, kind, repr(error)
+
+
+@pytest.mark.parametrize("count", [260, pytest.param(10_000, marks=pytest.mark.slow)])
+def test_random_scenes(count):
+    """Nothing raises, everything is finite, and the paper's inequalities hold."""
+    found = list(trials(range(count)))
+    assert not found, "\n".join(map(str, found))
+
+
+@pytest.mark.parametrize("number", range(9))
+def test_without_friction_any_load_slides(number):
+    random = np.random.default_rng([3, number])
+    data = scene_without_shear(random, PRESSURES[number % 3]) | {"friction": {"f": 0.0}}
+    data["load"] |= {"Q" if random.random() < 0.5 else "sigma": [0.0, random.normal()]}
+    found = partialslip.run(partialslip.parse_scene(data), ["exact"]).results["exact"]
+    assert (found.regime, found.m, found.n, found.slip) == ("sliding", None, None, None)
+    assert np.isfinite(found.traction.p).all()
+
+
+# --- scenes that cannot be
+
+GONE = object()
+WRONG = (math.nan, math.inf, -math.inf, "1e5", "", True, [1.0], {"x": 1.0}, 1e200, -1e-200, 10**400, 1j, b"1")
+WORDS = ("", "x", "Strain", "two\nlines", 3, 1.5, None, True, [], {})
+
+
+def faults(random, data):
+    """By field: values one of which makes the scene wrong there; a third entry is the field that is named instead."""
+    load, profile, minus = data["load"], data["profile"], -(10 ** random.uniform(-9, 9))
+    given = next(key for key in ("P", "a", "p0") if key in load)
+    index = int(random.integers(2))
+    key = "".join(random.choice(list("abcxyzERP_ .`é"), 5))
+    table = str(random.choice(["material", "profile", "friction", "load"]))
+    some = [
+        ("material.E", (*WRONG, None, 0.0, minus, minus, GONE)),
+        ("material.nu", (*WRONG, None, random.uniform(0.5, 9), random.uniform(-9, -0.901), 0.5, GONE)),
+        ("material.plane", WORDS),
+        ("profile.kind", (*WORDS, "wedge", "Hertz", GONE)),
+        ("friction.f", (*WRONG, None, minus, minus, 1000.1, GONE)),
+        (f"load.{given}", (*WRONG, 0.0, minus, minus)),
+        (f"load.{given}", (GONE, None), "load"),
+        *((f"load.{other}", (random.uniform(1, 2),), "load") for other in ("P", "a", "p0") if other != given),
+        ("load.Q", ([], [1.0], 1.0, "ab", None, True, {"x": 1.0}, [0.0] * 1001)),
+        ("load.Q", ([0.0, 1.0, 2.0], np.arange(5.0)), "load.sigma"),
+        ("load.sigma", ([], [1.0], 1.0, "ab", None, [0.0, 1.0, 2.0], np.ones(4), [0.0] * 1001)),
+        (f"load.Q[{index}]", (*WRONG, None)),
+        (f"load.sigma[{index}]", (*WRONG, None)),
+        (str(random.choice(["load.cycles", "load.steps"])), (*WRONG, None, 0, -3, 1.5, 1001)),
+        ("fem", ({"accuracy": minus},), "fem.accuracy"),
+        ("fem", ({"order": 5}, {"order": 2.5}), "fem.order"),
+        ("fem", ({"width": random.uniform(0, 3.9)},), "fem.width"),
+        ("fem", ({"mesh": 1},), "fem.mesh"),
+        ("name", ("", "a/b", ".x", "x" * 101, "two\nlines", 3, None, [], GONE)),
+        ("title", ("two\nlines", "x" * 201, 3, None, [])),
+        (table, ([], "x", 1.0, None, True, GONE)),
+        (f"{table}:{key}", (1.0, "x", None)),
+        (f":{key}", (1.0, {}, [])),
+        (f"{table}:{random.integers(9)}\n{random.integers(9)}", (1.0,)),
+    ]
+    if profile["kind"] != "tabulated":
+        some += [("profile.R", (*WRONG, None, 0.0, minus, GONE))]
+    if profile["kind"] == "hertz":
+        some += [("load.a", (1e99,))] if given == "a" else [("load.p0", (1e99,))] if given == "p0" else []
+        some += [("profile.b", (1.0,))]
+    if profile["kind"] == "flat-rounded":
+        some += [("profile.b", (*WRONG, None, 0.0, minus, GONE))]
+    if profile["kind"] == "tabulated":
+        x, gap = profile["x"], profile["gap"]
+        at = int(random.integers(1, len(x)))
+        some += [
+            ("load.P", (load["P"] * 10 ** random.uniform(4, 20),)),  # wider than the table
+            (
+                "profile.gap",
+                ([0.0] * len(x), [-y for y in gap], gap[::-1], [y**0.4 for y in gap], gap[:-1], [*gap, 1.0]),
+            ),
+            ("profile.gap", ([*gap[:-1], gap[-2] + 0.5 * (gap[-1] - gap[-2])], [*gap[:-1], gap[-2]], None, GONE, 1.0)),
+            ("profile.x", (x[:2], [], 1.0, "ab", None, GONE)),
+            (f"profile.x[{at}]", (*WRONG, None, x[at - 1], -x[at])),
+            (f"profile.gap[{at}]", (*WRONG, None)),
+            (f"profile.{random.choice(['x', 'gap'])}[0]", (minus, 1e-9)),
+            ("profile.R", (1.0,)),
+        ]
+    return some
+
+
+def broken(number):
+    """A scene's tables and the field that is wrong with them."""
+    random = np.random.default_rng([11, number])
+    data = scene_without_shear(random, PRESSURES[number % 3])
+    pressed = contact(partialslip.parse_scene(data))
+    shares = (data["friction"]["f"] * random.uniform(-0.4, 0.4, 4)).tolist()
+    data["load"] |= {"Q": [pressed.P * share for share in shares[:2]]}
+    data["load"] |= {"sigma": [pressed.p0 * share for share in shares[2:]]}
+    some = faults(random, data)
+    place, values, *other = some[random.integers(len(some))]
+    value = values[random.integers(len(values))]
+    path, _, key = place.rpartition(":") if ":" in place else place.rpartition(".")
+    key, _, index = key.partition("[") if ":" not in place else (key, "", "")
+    owner = data[path] if path else data
+    if index:
+        owner, key = owner[key], int(index[:-1])
+    if value is GONE:
+        del owner[key]
+    else:
+        owner[key] = value
+    return data, other[0] if other else place.replace(":", "." if path else "").replace("\n", "\\n")
+
+
+def refusals(numbers):
+    """(number, field, complaint) for scenes that are not refused as they should."""
+    for number in numbers:
+        data, field = broken(number)
+        try:
+            found = partialslip.run(partialslip.parse_scene(data), ["exact"]).results["exact"]
+            yield number, field, f"taken: {found.regime}"
+        except InputError as error:
+            if len(str(error).splitlines()) != 1:
+                yield number, field, f"not one line: {error}"
+            elif not re.match(re.escape(field) + r"(\[\d+\])?( = |: )", str(error)):
+                yield number, field, str(error)
+        except Exception as error:
+            yield number, field, repr(error)
+
+
+def test_random_scenes_that_cannot_be():
+    """Each is refused in one line that begins with the field."""
+    found = list(refusals(range(1000)))
+    assert not found, "\n".join(map(str, found))
