@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from partialslip import compare, load_scene, plan
-from partialslip.compare import CERTIFICATE_BAR, cell_errors, cell_means
+from partialslip.compare import cell_errors, cell_means
 from partialslip.halfplane import solve
-from partialslip.result import Traction
+from partialslip.result import CERTIFICATE_BAR, Traction
 
 CELLS = np.array([-1.1, -0.9, -0.5, 0.1, 0.3, 0.97, 1.2])
 

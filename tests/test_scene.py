@@ -183,9 +183,9 @@ def test_bad_input_is_a_value_error_of_this_package():
 def test_elastic_constants(nu):
     E = 72e9
     strain, stress = (Material(E=E, nu=nu, plane=plane) for plane in ("strain", "stress"))
-    assert strain.mu == stress.mu == pytest.approx(E / (2 * (1 + nu)), rel=1e-15)
-    assert strain.kappa == pytest.approx(3 - 4 * nu, rel=1e-15)
-    assert stress.kappa == pytest.approx((3 - nu) / (1 + nu), rel=1e-15)
+    mu = pytest.approx(E / (2 * (1 + nu)), rel=1e-15)
+    assert strain.bodies == (constants := (mu, pytest.approx(3 - 4 * nu, rel=1e-15)), constants)
+    assert stress.bodies == (constants := (mu, pytest.approx((3 - nu) / (1 + nu), rel=1e-15)), constants)
     assert pytest.approx(4 * (1 - nu**2) / E, rel=1e-14) == strain.A
     assert pytest.approx(4 / E, rel=1e-14) == stress.A
 
@@ -275,10 +275,17 @@ TRUE_IF = {
     "sigma = 0 at every load point": lambda s: s.load.sigma == (0, 0),
     "tension may turn the slip": lambda s: s.load.dsigma != 0 and s.friction.f > 0,
     "without a change of tension": lambda s: s.load.dsigma == 0 and s.friction.f > 0,
-    "mean loads, several cycles or loads out of phase": lambda s: s.load.cycles > 1 or not s.load.fully_reversed,
-    "fully reversed, one cycle": lambda s: s.load.cycles == 1 and s.load.fully_reversed,
-    "the finite block is held by": lambda s: s.fem.far_field == "half-plane",
-    "a plain box": lambda s: s.fem.far_field == "box",
+    "mean loads, several cycles, loads out of phase or coupling": lambda s: (
+        s.load.cycles > 1 or not s.load.fully_reversed or not s.mirrored
+    ),
+    "fully reversed, one cycle": lambda s: s.load.cycles == 1 and s.load.fully_reversed and s.mirrored,
+    "pressure moves the surfaces along x and f = 0.4": lambda s: s.friction.f == 0.4 and not s.mirrored,
+    "the bodies are not mirror images": lambda s: not s.mirrored,
+    "the bodies are mirror images": lambda s: s.mirrored,
+    "a body has a size of its own": lambda s: s.bodies.upper or s.bodies.lower,
+    "the bodies stand for half-planes": lambda s: not (s.bodies.upper or s.bodies.lower),
+    "a block is held by": lambda s: s.fem.far_field == "half-plane" and not (s.bodies.upper and s.bodies.lower),
+    "blocks are held as they are": lambda s: s.fem.far_field == "box" or (s.bodies.upper and s.bodies.lower),
     "fields inside the bodies were not asked": lambda _: True,
 }
 
@@ -286,9 +293,11 @@ TRUE_IF = {
 @pytest.mark.parametrize("sigma", [(0, 0), (0, -1e7), (-1e7, 1e7), (1e7, 1e7)])
 @pytest.mark.parametrize("Q", [(0, 0), (0, 1e4), (-1e4, 1e4), (1e4, 1e4)])
 def test_reasons_are_true_of_the_scene(Q, sigma):
-    for f, cycles, far_field in itertools.product((0, 0.4), (1, 3), ("half-plane", "box")):
+    block = {"width": 0.1, "height": 0.05}
+    all_bodies = ({}, {"upper": block}, {"upper": block, "lower": block})
+    for f, cycles, far_field, bodies in itertools.product((0, 0.4), (1, 3), ("half-plane", "box"), all_bodies):
         load = {"Q": Q, "sigma": sigma, "cycles": cycles}
-        what = scene(load, friction={"f": f}, fem={"far_field": far_field})
+        what = scene(load, friction={"f": f}, fem={"far_field": far_field}, bodies=bodies)
         effects = plan(what)
         for why in (effects.called_for | effects.left_out).values():
             (holds,) = (holds for words, holds in TRUE_IF.items() if why.startswith(words))

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.condensed.zones import apart
+from partialslip.errors import InputError
 from partialslip.result import Clock
 from partialslip_fem.level import Level, Problem, solve_level
 
 _GROWTH = {2: 0.25, 3: 0.5, 4: 0.7}  # element size gained per distance, on the first graded mesh
 _FINER, _CALMER = 8.0, 0.85  # from mesh to mesh: element size at the ends, and growth
 _FIRST = 0.1  # element size of the first mesh, in contact half-widths
+_FILLS = 0.95  # of a finite body's width: as much as the contact line may take
 _FINEST = _FIRST / _FINER**6  # below that rounding takes over
 
 
@@ -33,30 +35,47 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     of the last change is left. ``width`` is the block's half-width in contact half-widths. The first
     contact line is a guess, doubled until the contact does not reach its ends.
     """
-    reach, size, growth = 1.5 + max(problem.kinks, default=0.0), _FIRST, _GROWTH[problem.order]
+    size, growth = _FIRST, _GROWTH[problem.order]
+    reach, limit = 1.5 + max(problem.kinks, default=0.0), _limit(problem)
     meshes, iterations = 0, 0
     while True:
+        reach = min(reach, limit)
         guess = dict.fromkeys(np.linspace(-reach, reach, 16).tolist(), 2 * size * reach)
         level = solve_level(problem, width * reach, (-reach, reach), guess, 1.0, clock)
         meshes, iterations = meshes + 1, iterations + level.iterations
         if level.enclosed:
             break
+        if reach == limit:
+            raise _too_narrow(problem)
         reach *= 2
     while True:
         a = level.half_width
         size, growth = size / _FINER, growth * _CALMER
         sizes = dict.fromkeys(apart([*level.ends.tolist(), *problem.kinks], size * a), size * a)
         margin = (0.1 + 2 * _FINER * size) * a  # of safety, and what the mesh before may have been off by
-        contact = (level.left - margin, level.right + margin)
+        contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
         before, level = level, solve_level(problem, width * a, contact, sizes, growth, clock)
         meshes, iterations = meshes + 1, iterations + level.iterations
         errors = {key: change / 3 for key, change in _changes(before, level).items()}
         progress(
-            f"mesh {meshes}: {level.body.stiffness.shape[0]:,} unknowns, "
+            f"mesh {meshes}: {level.dofs:,} unknowns, "
             f"{', '.join(errors)} known to {max(errors.values()):.1e} a"
         )
         if (max(errors.values()) <= accuracy and level.enclosed) or size <= _FINEST:
             return Adapted(level, errors, meshes, iterations, width)
+
+
+def _limit(problem: Problem) -> float:
+    """How far the contact line may reach: not to the corners of a finite body."""
+    limit = _FILLS * min((part.extent[0] for part in problem.parts if part.extent), default=np.inf)
+    if max(problem.kinks, default=0.0) >= limit:
+        raise _too_narrow(problem)
+    return limit
+
+
+def _too_narrow(problem: Problem) -> InputError:
+    names = " and ".join(f"bodies.{part.name}.width" for part in problem.parts if part.extent)
+    return InputError(f"{names}: must be wider than the contact, which fills more than {_FILLS:.0%} of it")
 
 
 def _changes(before: Level, after: Level) -> dict[str, float]:

@@ -1,32 +1,56 @@
-"""Two mirror-image bodies pressed together, on their condensed compliances.
+"""Two bodies pressed together, on their condensed compliances.
 
 Scaled: lengths by sqrt(A R P), forces by P and displacements by A P, so that nothing depends on units.
 Nodal contact forces are the Lagrange multipliers of the relative displacements of the two surfaces.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
 from partialslip.condensed.bounded import Solution, solve_bounded
+from partialslip.condensed.coupled import Relative
 from partialslip.result import Array
 from partialslip_fem.condensation import Condensed
 from partialslip_fem.elasticity import Body
-from partialslip_fem.farfield import FarField
+from partialslip_fem.mortar import transfer
+from partialslip_meshes import Mesh
 
 
-def relative_compliances(body: Body, condensed: Condensed, far_field: FarField | None) -> tuple[Array, Array]:
-    """Relative displacements, (n, n) along x and along y, of a body and its mirror image under unit forces.
+@dataclass(frozen=True)
+class Half:
+    """One body, meshed below its contact line, and condensed to it. The upper body is the mirror image of that."""
 
-    The two move by the same amount in opposite directions: twice what one does, while what shear does along y,
-    and pressure along x, cancels. ``far_field`` moves the outer boundary; without it the boundary is clamped.
+    mesh: Mesh
+    body: Body
+    condensed: Condensed
+
+
+def relative_compliances(halves: Sequence[Half]) -> Relative:
+    """Relative displacements of the two surfaces, at the nodes of the lower one, under nodal forces there.
+
+    Of the lower and the upper body; of one that is mirrored, that one alone. Mirrored bodies move by the same amount
+    in opposite directions: twice what one does, while what shear does along y, and pressure along x, cancels.
     """
-    compliance = condensed.compliance
-    if far_field:
-        compliance = compliance + condensed.respond(far_field.fields) @ far_field.moments
-    n = len(body.x)
-    # With every moment of the forces in it the compliance is symmetric but for the discretisation of the far
-    # boundary (1e-7 or less). A truncated expansion would not be, and must not be symmetrised.
-    tangential, normal = compliance[:n, :n], compliance[n:, n:]
-    return tangential + tangential.T, normal + normal.T
+    lower = halves[0]
+    n = len(lower.body.x)
+    C = lower.condensed.compliance
+    # With every moment of the forces in the far field the compliance is symmetric but for the discretisation of the
+    # far boundary (1e-7 or less). A truncated expansion would not be, and must not be symmetrised.
+    if len(halves) == 1:
+        return Relative(C[:n, :n] + C[:n, :n].T, C[n:, n:] + C[n:, n:].T, None)
+    upper = halves[1]
+    U, k = upper.condensed.compliance, len(upper.body.x)
+    T = transfer(lower.body, upper.body)
+
+    def total(rows: int, columns: int) -> Array:
+        of_lower = C[rows * n : rows * n + n, columns * n : columns * n + n]
+        of_upper = T @ U[rows * k : rows * k + k, columns * k : columns * k + k] @ T.T
+        return of_lower + of_upper if rows == columns else of_lower - of_upper
+
+    xx, yy = total(0, 0), total(1, 1)
+    return Relative((xx + xx.T) / 2, (yy + yy.T) / 2, (total(0, 1) + total(1, 0).T) / 2)
 
 
 def press(normal: Array, gap: Array, P: float) -> Solution:

@@ -1,5 +1,6 @@
-"""The elastic body: triangles of order 2 to 4 in scikit-fem, scaled so that the pair's compliance A is 1."""
+"""The elastic body: triangles of order 2 to 4 in scikit-fem, scaled by a pair's compliance A."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,10 +30,11 @@ class Body:
     mass : (n, n) sparse matrix
         Integrals of products of their shape functions along the line. Its row sums are the closed Newton-Cotes
         weights, all positive up to order 4, so that nodal forces have the signs of tractions.
-    contact, far, vertices : (2, n), (2, k), (2, v) int arrays
-        Degrees of freedom, along x and along y, of the contact line, the outer boundary and the mesh's points.
-    far_points : (2, k) array
-        Nodes of the outer boundary.
+    contact, held, vertices : (2, n), (2, k), (2, v) int arrays
+        Degrees of freedom, along x and along y, of the contact line, what is held of the outer boundary, and the mesh's
+        points.
+    held_points : (2, k) array
+        Nodes of what is held.
     """
 
     order: int
@@ -40,9 +42,9 @@ class Body:
     x: Array
     mass: sp.csr_matrix
     contact: Indices
-    far: Indices
+    held: Indices
     vertices: Indices
-    far_points: Array
+    held_points: Array
 
 
 @skfem.BilinearForm
@@ -65,8 +67,11 @@ def _product(u, v, _):  # type: ignore[no-untyped-def]
     return u * v
 
 
-def body(mesh: Mesh, kappa: float, order: int) -> Body:
-    """Assemble a body whose Kolosov constant is ``kappa`` (it says plane strain or stress), at compliance A = 1."""
+def body(
+    mesh: Mesh, kappa: float, order: int, compliance: float = 1.0, held: Sequence[str] = ("back", "sides")
+) -> Body:
+    """Assemble a body whose Kolosov constant is ``kappa`` (it says plane strain or stress), and (kappa+1)/(2 mu)
+    ``compliance``; the ``held`` lines of the mesh are to be given displacements."""
     triangles = skfem.MeshTri(mesh.points.T.copy(), mesh.triangles.T.copy())
     element = _ELEMENTS[order]()
     # gradients are of order - 1, and straight triangles have constant Jacobians: this quadrature is exact
@@ -78,23 +83,23 @@ def body(mesh: Mesh, kappa: float, order: int) -> Body:
         in_order: Indices = nodes[np.argsort(basis.doflocs[0, nodes], kind="stable")]
         return in_order
 
-    contact, far = on_line("contact"), on_line("far")
+    contact, outer = on_line("contact"), np.unique(np.concatenate([on_line(name) for name in held]))
     along = skfem.FacetBasis(triangles, element, facets=_facets(triangles, mesh.lines["contact"]))
     return Body(
         order=order,
-        stiffness=_stiffness(basis, kappa),
+        stiffness=_stiffness(basis, kappa, compliance),
         x=basis.doflocs[0, contact],
         mass=_product.assemble(along)[contact][:, contact],
         contact=contact + both,
-        far=far + both,
+        held=outer + both,
         vertices=basis.nodal_dofs[0] + both,
-        far_points=basis.doflocs[:, far],
+        held_points=basis.doflocs[:, outer],
     )
 
 
-def _stiffness(basis: skfem.Basis, kappa: float) -> sp.csr_matrix:
+def _stiffness(basis: skfem.Basis, kappa: float, compliance: float) -> sp.csr_matrix:
     """Plane isotropic elasticity from the three products of scalar gradients: far cheaper than vector elements."""
-    mu = (kappa + 1) / 2
+    mu = (kappa + 1) / (2 * compliance)
     lam = mu * (3 - kappa) / (kappa - 1)
     xx, xy, yy = (form.assemble(basis) for form in (_xx, _xy, _yy))
     across = lam * xy + mu * xy.T

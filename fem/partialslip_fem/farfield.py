@@ -16,15 +16,16 @@ class FarField:
     moments: Array
 
 
-def half_plane(points: Array, x: Array, width: float, kappa: float) -> FarField:
+def half_plane(points: Array, x: Array, width: float, kappa: float, compliance: float = 1.0) -> FarField:
     """The half-plane's displacements at ``points`` (2, k), under forces at ``x`` (n,), in powers of x/width.
 
+    ``kappa`` and ``compliance`` are the body's, as for :func:`partialslip_fem.elasticity.body`.
     ``width`` is the distance of the nearest point; as many powers are taken as leave out less than 1e-15.
     """
     count = math.ceil(math.log(1e15) / math.log(width / np.abs(x).max()))
     powers = (x / width) ** np.arange(count)[:, None]
     zero = np.zeros_like(powers)
-    return FarField(_multipoles(points, kappa, width, count), np.block([[powers, zero], [zero, powers]]))
+    return FarField(compliance * _multipoles(points, kappa, width, count), np.block([[powers, zero], [zero, powers]]))
 
 
 def _multipoles(points: Array, kappa: float, width: float, count: int) -> Array:

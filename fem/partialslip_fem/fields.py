@@ -4,6 +4,7 @@ import numpy as np
 
 from partialslip.result import DeformedBody
 from partialslip_fem.level import Level, Problem
+from partialslip_fem.mortar import transfer
 
 
 def displaced(level: Level, problem: Problem, length: float, unit: float) -> tuple[DeformedBody, DeformedBody]:
@@ -17,31 +18,31 @@ def displaced(level: Level, problem: Problem, length: float, unit: float) -> tup
     length, unit : float
         What lengths and displacements are scaled by, m.
     """
-    body, n = level.body, len(level.body.x)
-    forces = np.zeros((2 * n, 3))  # pressed; sheared at load points 1 and 2
-    forces[n:, 0] = -level.pressing.x
-    history = level.history
-    for column, tangential in enumerate(history.at_ends if history else (), start=1):
-        forces[:n, column] = level.on_line(tangential)
-    far = level.far_field
-    held = far.fields @ (far.moments @ forces) if far else np.zeros((body.far.size, 3))
-    pressed, *sheared = np.moveaxis(level.condensed.displace(forces, held)[body.vertices], -1, 0)
-
-    points = level.mesh.points.T
-    stretch = points * np.array([[1.0], [-(3 - problem.kappa) / (1 + problem.kappa)]])
+    history, line = level.history, level.body
+    ends = zip(history.at_ends, history.bounds, strict=True) if history else ()
+    loads = [(level.on_line(shear), level.on_line(bound) / problem.f) for shear, bound in ends]
+    loads = loads or [(0 * line.x, level.pressing.x)] * 2
     strains = [history.path.cycle[end][1] for end in history.path.ends] if history else [0.0, 0.0]
-    mirror = np.array([[1.0], [-1.0]])
-    lower = [pressed - shear + strain * stretch for shear, strain in zip(sheared, strains, strict=True)]
-    upper = [mirror * (pressed + shear) for shear in sheared]
-    names = ("displacement_1", "displacement_2")
-    mesh = level.mesh
-    return (
-        DeformedBody(
-            "lower", length * mesh.points, mesh.triangles, mesh.lines,
-            {name: unit * u.T for name, u in zip(names, lower, strict=True)},
-        ),
-        DeformedBody(
-            "upper", length * mesh.points * mirror.T, mesh.triangles[:, ::-1], mesh.lines,
-            {name: unit * u.T for name, u in zip(names, upper, strict=True)},
-        ),
-    )  # fmt: skip
+    bodies = []
+    for half, part, way in zip((level.halves * 2)[:2], (problem.parts * 2)[:2], (1, -1), strict=True):
+        # the upper body is the mirror image of one below its contact line, on which q acts the other way round
+        forces = np.array([np.concatenate([-way * shear, -normal]) for shear, normal in loads]).T
+        if half is not level.halves[0]:
+            back = transfer(line, half.body).T
+            forces = np.concatenate([back @ forces[: len(line.x)], back @ forces[len(line.x) :]])
+        moved = np.moveaxis(half.condensed.displace(forces)[half.body.vertices], -1, 0)
+        points, triangles, mirror = half.mesh.points.T, half.mesh.triangles, np.array([[1.0], [way]])
+        if way > 0:
+            stretch = points * np.array([[1.0], [-(3 - part.kappa) / (1 + part.kappa)]])
+            moved = moved + np.multiply.outer(strains, stretch)
+        bodies.append(
+            DeformedBody(
+                "lower" if way > 0 else "upper",
+                length * (points * mirror).T,
+                triangles[:, ::way],
+                half.mesh.lines,
+                {f"displacement_{point}": unit * (u * mirror).T for point, u in enumerate(moved, start=1)},
+            )
+        )
+    lower, upper = bodies
+    return lower, upper

@@ -7,51 +7,79 @@ from typing import Literal
 import numpy as np
 from scipy.interpolate import PPoly
 
+from partialslip.condensed import coupled
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.friction import History, Path, march
 from partialslip.condensed.zones import Zone, left_end, right_end, stick_zone
 from partialslip.result import Array, Clock
 from partialslip_fem.condensation import Condensed
-from partialslip_fem.contact import press, relative_compliances
+from partialslip_fem.contact import Half, press, relative_compliances
 from partialslip_fem.elasticity import Body, Indices, body
-from partialslip_fem.farfield import FarField, half_plane
+from partialslip_fem.factor import Backend
+from partialslip_fem.farfield import half_plane
 from partialslip_fem.recovery import traction
-from partialslip_meshes import Mesh, block
+from partialslip_meshes import block
+
+
+@dataclass(frozen=True)
+class Part:
+    """One of the two bodies: its (kappa+1)/(2 mu) in the pair's A, its half-width and height (None: those of a block
+    that stands for a half-plane), and the size of its elements, relative to what is asked for."""
+
+    name: str
+    kappa: float
+    compliance: float
+    extent: tuple[float, float] | None
+    fineness: float
 
 
 @dataclass(frozen=True)
 class Problem:
     """What is to be solved, scaled: a gap, smooth but for its ``kinks``, and P = 1. Without a ``path`` of loads there
-    is no friction to solve."""
+    is no friction to solve. ``parts`` are the lower and the upper body; of mirror images the lower one alone."""
 
     gap: Callable[[Array], Array]
     kinks: tuple[float, ...]
     f: float
     path: Path | None
-    kappa: float
+    parts: tuple[Part, ...]
     order: int
     far_field: Literal["half-plane", "box"]
+    backend: Backend
 
 
 @dataclass(frozen=True)
 class Level:
-    """The solution on one mesh. ``nodes`` of the contact line are in contact, over [left, right]."""
+    """The solution on one mesh of each body: of the lower one, and, unless that is mirrored, of the upper one.
 
-    mesh: Mesh
-    body: Body
-    condensed: Condensed
-    far_field: FarField | None
+    ``nodes`` of the lower one's contact line are in contact at load point 1 or 2, at 2 it is over [left, right], and
+    the ends at 1 are ``others``, where they differ.
+    """
+
+    halves: tuple[Half, ...]
     nodes: Indices
     pressing: Solution
     history: History | None
     left: float
     right: float
     stick: Zone | None
+    others: tuple[float, ...] = ()
+
+    @property
+    def body(self) -> Body:
+        """The lower body: nodal contact forces are those of its nodes."""
+        return self.halves[0].body
+
+    @property
+    def dofs(self) -> int:
+        """Degrees of freedom."""
+        return sum(half.body.stiffness.shape[0] for half in self.halves)
 
     @property
     def ends(self) -> Array:
-        """Ends of the contact and of the stick zone: where the next mesh is to be fine."""
-        return np.array([self.left, self.right, *((self.stick.left, self.stick.right) if self.stick else ())])
+        """Ends of the contact, at load point 1, too, and of the stick zone: where the next mesh is to be fine."""
+        stick = (self.stick.left, self.stick.right) if self.stick else ()
+        return np.array([self.left, self.right, *stick, *self.others])
 
     @property
     def enclosed(self) -> bool:
@@ -91,41 +119,82 @@ def solve_level(
     growth: float,
     clock: Clock,
 ) -> Level:
-    """Mesh a block of half-width ``width`` (:func:`partialslip_meshes.block`) and solve on it."""
-    with clock.phase("mesh"):
-        mesh = block(width, contact, sizes, growth)
-    with clock.phase("assembly"):
-        half = body(mesh, problem.kappa, problem.order)
-    with clock.phase("factorisation"):
-        condensed = Condensed(half)
-    with clock.phase("far field"):
-        outer = half_plane(half.far_points, half.x, width, problem.kappa) if problem.far_field == "half-plane" else None
-        tangential, normal = relative_compliances(half, condensed, outer)
+    """Mesh the bodies, blocks of half-width ``width`` unless they have an extent of their own, and solve on them.
+
+    ``contact``, ``sizes`` and ``growth`` are as for :func:`partialslip_meshes.block`.
+    """
+    halves = tuple(_half(problem, part, width, contact, sizes, growth, clock) for part in problem.parts)
+    with clock.phase("condensation"):
+        relative = relative_compliances(halves)
     with clock.phase("contact"):
-        pressing = press(normal, problem.gap(half.x), 1.0)
-        nodes = np.flatnonzero(pressing.x > 0)
-        bound = problem.f * pressing.x[nodes]
-        inner = tangential[np.ix_(nodes, nodes)]
-        history = march(inner, half.x[nodes], bound, problem.path) if problem.path else None
-        forces = _cell_forces(half, pressing.x)
-        return Level(
-            mesh, half, condensed, outer, nodes, pressing, history,
-            left=left_end(half.x[:: half.order], forces, half.x[nodes]),
-            right=right_end(half.x[:: half.order], forces, half.x[nodes]),
-            stick=_stick_zone(half, nodes, bound, history) if history else None,
-        )  # fmt: skip
+        line = halves[0].body
+        pressing, history, nodes = _solve(problem, relative, line)
+        left, right = _ends(line, pressing.x)
+        others: tuple[float, ...] = ()
+        if history and len(halves) > 1:
+            at_first = np.zeros(len(line.x))
+            at_first[nodes] = history.bounds[0]
+            others = _ends(line, at_first)
+        stick = _stick_zone(line, nodes, history) if history else None
+        return Level(halves, nodes, pressing, history, left, right, stick, others)
 
 
-def _stick_zone(half: Body, nodes: Indices, bound: Array, history: History) -> Zone:
+def _half(
+    problem: Problem,
+    part: Part,
+    width: float,
+    contact: tuple[float, float],
+    sizes: Mapping[float, float],
+    growth: float,
+    clock: Clock,
+) -> Half:
+    half_width, height = part.extent or (width, width)
+    with clock.phase("mesh"):
+        finer = {x: size * part.fineness for x, size in sizes.items()}
+        mesh = block(half_width, contact, finer, growth * part.fineness, height)
+    with clock.phase("assembly"):
+        held = ("back",) if part.extent else ("back", "sides")
+        half = body(mesh, part.kappa, problem.order, part.compliance, held)
+    far = None
+    if problem.far_field == "half-plane" and not part.extent:
+        with clock.phase("far field"):
+            far = half_plane(half.held_points, half.x, width, part.kappa, part.compliance)
+    with clock.phase("factorisation"):
+        return Half(mesh, half, Condensed(half, far, problem.backend))
+
+
+def _solve(problem: Problem, C: coupled.Relative, line: Body) -> tuple[Solution, History | None, Indices]:
+    """Normal forces, the history of the tangential ones on the nodes in contact, and those nodes."""
+    gap = problem.gap(line.x)
+    if problem.path and C.xy is not None:
+        history, pressing = coupled.march(C, gap, line.x, problem.f, problem.path)
+        nodes = np.flatnonzero(history.bound > 0)
+        return pressing, history.of(nodes), nodes
+    pressing = press(C.yy, gap, 1.0)
+    nodes = np.flatnonzero(pressing.x > 0)
+    if not problem.path:
+        return pressing, None, nodes
+    inner = C.xx[np.ix_(nodes, nodes)]
+    return pressing, march(inner, line.x[nodes], problem.f * pressing.x[nodes], problem.path), nodes
+
+
+def _stick_zone(line: Body, nodes: Indices, history: History) -> Zone:
     def cell_forces(forces: Array) -> Array:
-        on_line = np.zeros(len(half.x))
+        on_line = np.zeros(len(line.x))
         on_line[nodes] = forces
-        return _cell_forces(half, on_line)
+        return _cell_forces(line, on_line)
 
-    return stick_zone(half.x[nodes], bound, history.change, half.x[:: half.order], cell_forces)
+    return stick_zone(line.x[nodes], history.bound, history.change, line.x[:: line.order], cell_forces)
 
 
-def _cell_forces(half: Body, forces: Array) -> Array:
+def _ends(line: Body, normal: Array) -> tuple[float, float]:
+    """Of the contact under nodal normal forces."""
+    forces, touching = _cell_forces(line, normal), line.x[normal > 0]
+    vertices = line.x[:: line.order]
+    return left_end(vertices, forces, touching), right_end(vertices, forces, touching)
+
+
+def _cell_forces(line: Body, forces: Array) -> Array:
     """Integrals over each cell of the contact line of the traction that belongs to nodal forces."""
-    resultant = traction(half, forces).antiderivative()
-    return np.diff(resultant(half.x[:: half.order]))
+    resultant = traction(line, forces).antiderivative()
+    return np.diff(resultant(line.x[:: line.order]))

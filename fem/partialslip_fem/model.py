@@ -12,8 +12,9 @@ from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Result, Slip, Traction
 from partialslip.scene import Scene
 from partialslip_fem.adapt import Adapted, adapt
+from partialslip_fem.factor import default_backend
 from partialslip_fem.fields import displaced
-from partialslip_fem.level import Level, Problem
+from partialslip_fem.level import Level, Part, Problem
 
 _WIDTH = {"half-plane": 16.0, "box": 4096.0}  # in contact half-widths
 _LARGEST_NU = 0.4999999
@@ -21,7 +22,7 @@ _LARGEST_NU = 0.4999999
 
 @one_thread
 def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None) -> Result:
-    """Solve ``scene`` by finite elements: two mirror-image blocks, Lagrange multipliers, Coulomb friction.
+    """Solve ``scene`` by finite elements: two blocks, Lagrange multipliers, Coulomb friction.
 
     Parameters
     ----------
@@ -33,14 +34,17 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
     Raises
     ------
     InputError
-        If the material is all but incompressible: beyond that the stiffness is of rounding only.
+        If a material is all but incompressible (beyond that the stiffness is of rounding only), or the contact does
+        not fit on a finite body.
     MissingLibraryError
-        If gmsh, or a system library that it needs, is not there.
+        If gmsh, a system library that it needs, or the factorisation that is asked for, is not there.
     """
-    if scene.material.plane == "strain" and scene.material.nu > _LARGEST_NU:
-        raise InputError(
-            f"material.nu = {scene.material.nu}: must be <= {_LARGEST_NU} in plane strain by finite elements"
-        )
+    material = scene.material
+    for name, elastic in (("", material), (".upper", material.upper), (".lower", material.lower)):
+        if elastic and material.plane == "strain" and elastic.nu > _LARGEST_NU:
+            raise InputError(
+                f"material{name}.nu = {elastic.nu}: must be <= {_LARGEST_NU} in plane strain by finite elements"
+            )
     clock = Clock()
     width = scene.fem.width or _WIDTH[scene.fem.far_field]
     problem = _scaled(scene, plan)
@@ -51,15 +55,26 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
 def _scaled(scene: Scene, plan: Plan) -> Problem:
     """The scene in lengths of sqrt(A R P), forces of P, displacements of A P."""
     P, A, L = scene.P, scene.material.A, scene.length
+    bodies = (("lower", scene.bodies.lower, scene.fem.lower_size), ("upper", scene.bodies.upper, 1.0))
+    parts = tuple(
+        Part(name, constants.kappa, constants.A / A, (own.width / 2 / L, own.height / L) if own else None, fineness)
+        for (name, own, fineness), constants in zip(bodies, scene.material.bodies, strict=True)
+    )
     return Problem(
         gap=lambda x: scene.profile.gap_at(x * L) / (A * P),
         kinks=tuple(kink / L for kink in scene.profile.kinks),
         f=scene.friction.f,
         path=load_path(scene, plan),
-        kappa=scene.material.kappa,
+        parts=parts[:1] if mirrored(scene) else parts,
         order=scene.fem.order,
         far_field=scene.fem.far_field,
+        backend=scene.fem.factor or default_backend(),
     )
+
+
+def mirrored(scene: Scene) -> bool:
+    """Whether one body, and its mesh, is the mirror image of the other."""
+    return scene.mirrored and scene.fem.lower_size == 1
 
 
 def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock: Clock) -> Result:
@@ -101,17 +116,17 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         cost=clock.cost(),
         slip=Slip(x * L, history.slip * unit, history.dissipated * unit * scene.P) if history else None,
         settings={
-            "bodies": "mirror images, one factored",
+            "bodies": "two, coupled" if len(level.halves) > 1 else "mirror images, one factored",
             "elements": f"P{problem.order}",
-            "far_field": problem.far_field,
-            "block_half_width_over_a": adapted.width,
+            "factorisation": problem.backend,
+            **_extents(problem, adapted.width),
             "accuracy": scene.fem.accuracy,
         },
         counts={
-            "dofs": level.body.stiffness.shape[0],
+            "dofs": level.dofs,
             "contact_nodes": len(level.nodes),
             "meshes": adapted.meshes,
-            "factorizations": adapted.meshes,
+            "factorizations": adapted.meshes * len(level.halves),
             "load_steps": history.load_steps if history else 0,
             "iterations": adapted.iterations,
         },
@@ -120,6 +135,13 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         notes=found.notes + doubts(certified, adapted.errors, scene.fem.accuracy),
         bodies=displaced(level, problem, L, unit) if plan.needs("subsurface") else (),
     )
+
+
+def _extents(problem: Problem, width: float) -> dict[str, str | float]:
+    """What stands for half-planes, and how wide it is."""
+    if all(part.extent for part in problem.parts):
+        return {"far_field": "none, finite bodies"}
+    return {"far_field": problem.far_field, "block_half_width_over_a": width}
 
 
 def _certificate(problem: Problem, level: Level, p0: float) -> dict[str, float]:

@@ -10,20 +10,27 @@ from partialslip_meshes.gmsh import gmsh_session
 from partialslip_meshes.mesh import Mesh
 
 
-def block(width: float, contact: tuple[float, float], sizes: Mapping[float, float], growth: float) -> Mesh:
-    """Mesh the block [-width, width] x [-width, 0].
+def block(
+    width: float,
+    contact: tuple[float, float],
+    sizes: Mapping[float, float],
+    growth: float,
+    height: float | None = None,
+) -> Mesh:
+    """Mesh the block [-width, width] x [-height, 0].
 
     Parameters
     ----------
     width : float
-        Half-width and height of the block.
+        Half-width of the block, and its height if none is given.
     contact : (float, float)
-        Ends of the line "contact" on y = 0; the block's sides and bottom are the line "far".
+        Ends of the line "contact" on y = 0; the block's bottom is the line "back", the other two are its "sides".
     sizes : mapping of float to float
         Points on the contact line, each to become a vertex, and the element size there.
     growth : float
         Element size gained per unit of distance from each point, so that a wide block costs no more than the
         logarithm of its width.
+    height : float, optional
 
     Raises
     ------
@@ -31,19 +38,24 @@ def block(width: float, contact: tuple[float, float], sizes: Mapping[float, floa
         If gmsh, or a system library that it needs, is not there.
     """
     with gmsh_session() as gmsh:
-        lines = _outline(gmsh, width, contact, sizes, growth)
+        lines = _outline(gmsh, width, width if height is None else height, contact, sizes, growth)
         gmsh.model.mesh.generate(2)
         return _collect(gmsh, lines)
 
 
 def _outline(
-    gmsh: ModuleType, width: float, contact: tuple[float, float], sizes: Mapping[float, float], growth: float
+    gmsh: ModuleType,
+    width: float,
+    height: float,
+    contact: tuple[float, float],
+    sizes: Mapping[float, float],
+    growth: float,
 ) -> dict[str, list[int]]:
     """Geometry and size field; returns the curves of each named line."""
     geo, field = gmsh.model.geo, gmsh.model.mesh.field
     on_contact = sorted({*contact, *sizes})
     surface = [geo.addPoint(x, 0, 0) for x in (-width, *on_contact, width)]
-    bottom = [geo.addPoint(x, -width, 0) for x in (-width, width)]
+    bottom = [geo.addPoint(x, -height, 0) for x in (-width, width)]
     loop = [*bottom, *reversed(surface)]
     curves = [geo.addLine(start, end) for start, end in zip(loop, [*loop[1:], loop[0]], strict=True)]
     geo.addPlaneSurface([geo.addCurveLoop(curves)])
@@ -61,7 +73,7 @@ def _outline(
     for other in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
         gmsh.option.setNumber(f"Mesh.{other}", 0)
 
-    return {"contact": curves[3:-2], "far": [*curves[:2], curves[-1]]}
+    return {"contact": curves[3:-2], "back": curves[:1], "sides": [curves[1], curves[-1]]}
 
 
 def _collect(gmsh: ModuleType, lines: Mapping[str, list[int]]) -> Mesh:

@@ -16,7 +16,7 @@ class Mesh:
     triangles : (t, 3) int array
         Corners, counter-clockwise.
     lines : dict of (k, 2) int arrays
-        Named groups of boundary edges; "contact" is the contact line, "far" the outer boundary.
+        Named groups of boundary edges; "contact" is the contact line, "back" the side opposite to it.
     """
 
     points: npt.NDArray[np.float64]

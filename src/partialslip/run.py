@@ -10,7 +10,6 @@ from partialslip.result import Result
 from partialslip.scene import Scene
 
 METHODS = ("exact", "march", "fem")
-DEFAULT = {True: ("exact", "fem"), False: ("march", "fem")}  # by whether the loads are in phase
 Progress = Callable[[str], None]
 
 
@@ -30,9 +29,26 @@ class Run:
         return next((name for name in ("exact", "march") if name in self.results), None)
 
     @property
+    def missed(self) -> tuple[str, ...]:
+        """Bars and certificates that are missed, in words."""
+        return tuple(
+            f"{name}: {what}"
+            for name, result in self.results.items()
+            for what in (self.comparisons[name].missed if name in self.comparisons else result.uncertified)
+        )
+
+    @property
     def passed(self) -> bool:
-        """Whether every comparison is within its bars."""
-        return all(comparison.passed for comparison in self.comparisons.values())
+        """Whether every result is certified and every comparison within its bars."""
+        return not self.missed
+
+
+def default_methods(scene: Scene) -> tuple[str, ...]:
+    """Finite elements, and what they are compared with: the exact method, or march where Q and sigma are out of phase;
+    nothing where the bodies are of different materials."""
+    if not scene.material.alike:
+        return ("fem",)
+    return ("exact", "fem") if scene.load.in_phase else ("march", "fem")
 
 
 def run(
@@ -44,7 +60,7 @@ def run(
     ----------
     scene : Scene
     methods : iterable of str, optional
-        As a rule exact and fem; march and fem where Q and sigma are out of phase, as there is no closed form then.
+        As a rule :func:`default_methods`.
     subsurface : bool
         Whether to solve for the displacements inside the bodies, too (finite elements).
     progress : callable
@@ -53,18 +69,20 @@ def run(
     Raises
     ------
     InputError
-        If a method is unknown, or the exact one is asked for loads out of phase.
+        If a method is unknown, or the exact one is asked for loads out of phase or bodies that are not similar.
     MissingLibraryError
         If finite elements are asked for and gmsh, or a system library that it needs, is not there.
     """
     effects = plan(scene, subsurface=subsurface)
-    chosen = dict.fromkeys(DEFAULT[scene.load.in_phase] if methods is None else methods)
+    chosen = dict.fromkeys(default_methods(scene) if methods is None else methods)
     results = {name: _method(name)(scene, effects, _told_by(name, progress)) for name in chosen}
     outcome = Run(scene, effects, results, {})
     for name, result in results.items():
         if outcome.reference and name != outcome.reference:
             reference = results[outcome.reference]
-            outcome.comparisons[name] = compare(result, reference, scene.friction.f, scene.fem.accuracy)
+            outcome.comparisons[name] = compare(
+                result, reference, scene.friction.f, None if scene.finite else scene.fem.accuracy
+            )
     return outcome
 
 

@@ -5,7 +5,7 @@ Signs: positive ``dQ`` and positive ``dsigma`` add up at x -> +a, so that the st
 
 import itertools
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import msgspec
 import numpy as np
@@ -28,28 +28,53 @@ class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     """A table of a scene file: immutable, and an unknown key is an error."""
 
 
-class Material(Table, frozen=True, kw_only=True):
-    """Linear elastic, isotropic; both bodies. ``E`` in Pa."""
+class Elastic(Table, frozen=True, kw_only=True):
+    """Linear elastic, isotropic. ``E`` in Pa."""
 
     E: Positive
     nu: Annotated[float, msgspec.Meta(ge=-0.9, lt=0.5)]
-    plane: Literal["strain", "stress"] = "strain"
 
-    @property
-    def mu(self) -> float:
-        """Shear modulus E/(2(1+nu)), Pa."""
-        return self.E / (2 * (1 + self.nu))
 
-    @property
-    def kappa(self) -> float:
-        """Kolosov's constant: 3-4nu in plane strain, (3-nu)/(1+nu) in plane stress (paper, eq. (6))."""
-        return 3 - 4 * self.nu if self.plane == "strain" else (3 - self.nu) / (1 + self.nu)
+class Constants(NamedTuple):
+    """Shear modulus, Pa, and Kolosov's constant of a plane body."""
+
+    mu: float
+    kappa: float
 
     @property
     def A(self) -> float:
-        """Compliance of the pair, (kappa+1)/(2 mu), 1/Pa (paper, eq. (5)). A bulk tension difference
-        sigma strains the two surfaces relative to each other by A sigma/4."""
+        """(kappa+1)/(2 mu), 1/Pa: the compliance of a pair of such bodies (paper, eq. (5))."""
         return (self.kappa + 1) / (2 * self.mu)
+
+
+class Material(Elastic, frozen=True, kw_only=True):
+    """``E`` and ``nu`` of both bodies, but for one that has its own."""
+
+    plane: Literal["strain", "stress"] = "strain"
+    upper: Elastic | None = None
+    lower: Elastic | None = None
+
+    @property
+    def alike(self) -> bool:
+        """Whether both bodies are of one material."""
+        return self._constants(self.upper) == self._constants(self.lower)
+
+    @property
+    def bodies(self) -> tuple[Constants, Constants]:
+        """Of the lower and the upper body."""
+        return self._constants(self.lower), self._constants(self.upper)
+
+    @property
+    def A(self) -> float:
+        """Compliance of the pair, the mean of the two bodies' (kappa+1)/(2 mu), 1/Pa (paper, eq. (5)). A bulk tension
+        sigma of the lower body, of compliance A_l, strains the two surfaces relative to each other by A_l sigma/4."""
+        lower, upper = self.bodies
+        return (lower.A + upper.A) / 2
+
+    def _constants(self, own: Elastic | None) -> Constants:
+        """mu = E/(2(1+nu)); kappa = 3-4nu in plane strain, (3-nu)/(1+nu) in plane stress (paper, eq. (6))."""
+        E, nu = (self.E, self.nu) if own is None else (own.E, own.nu)
+        return Constants(E / (2 * (1 + nu)), 3 - 4 * nu if self.plane == "strain" else (3 - nu) / (1 + nu))
 
 
 class Hertz(Table, frozen=True, kw_only=True, tag_field="kind", tag="hertz"):
@@ -238,19 +263,38 @@ class Load(Table, frozen=True, kw_only=True):
         return self.in_phase and Q1 == -Q2 and sigma1 == -sigma2
 
 
+class Block(Table, frozen=True, kw_only=True):
+    """A rectangular body, pressed on in the middle of its face: its ``width`` and ``height``, m. A rigid plate that
+    does not turn holds its back; its sides are free."""
+
+    width: Positive
+    height: Positive
+
+
+class Bodies(Table, frozen=True, kw_only=True):
+    """The bodies that are finite; without a size a body is a half-plane."""
+
+    upper: Block | None = None
+    lower: Block | None = None
+
+
 class Fem(Table, frozen=True, kw_only=True):
     """Settings of the finite-element method.
 
     ``accuracy`` is asked of a, m and n, as a fraction of a (of m and n in marching, too); ``order`` is the
     polynomial order of the triangles; ``far_field`` says what holds the block's outer boundary: the half-plane's
     displacements under the contact tractions, or a clamped ``box``; ``width`` is the block's half-width in contact
-    half-widths.
+    half-widths. Both are of bodies without a size of their own. ``lower_size`` is the size of the lower body's elements
+    in that of the upper body's: with any other than 1 the nodes of the two do not match. ``factor`` names what
+    factors the stiffness: as a rule cholmod, if cvxopt is installed.
     """
 
     accuracy: Annotated[float, msgspec.Meta(ge=1e-8, le=0.1)] = 2e-5
     order: Literal[2, 3, 4] = 4
     far_field: Literal["half-plane", "box"] = "half-plane"
     width: Annotated[float, msgspec.Meta(ge=4, le=1e6)] | None = None
+    lower_size: Annotated[float, msgspec.Meta(ge=0.1, le=10)] = 1.0
+    factor: Literal["superlu", "cholmod"] | None = None
 
 
 class Scene(Table, frozen=True, kw_only=True):
@@ -263,6 +307,7 @@ class Scene(Table, frozen=True, kw_only=True):
     load: Load
     friction: Friction
     title: Annotated[str, msgspec.Meta(pattern=r"^[^\x00-\x1f\x7f]*\Z", max_length=200)] = ""
+    bodies: Bodies = Bodies()
     fem: Fem = Fem()
 
     def __post_init__(self) -> None:
@@ -277,6 +322,16 @@ class Scene(Table, frozen=True, kw_only=True):
             derived = math.nan, math.nan
         if not all(SMALLEST <= value <= LARGEST for value in derived):
             raise InputError(f"load.{given[0]} = {getattr(self.load, given[0])!r}: out of range with this E and R")
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether the two bodies are mirror images of each other."""
+        return self.material.alike and self.bodies.upper == self.bodies.lower
+
+    @property
+    def finite(self) -> bool:
+        """Whether a body is finite."""
+        return self.bodies != Bodies()
 
     @property
     def P(self) -> float:

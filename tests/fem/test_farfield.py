@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from partialslip_fem.condensation import Condensed
-from partialslip_fem.contact import relative_compliances
+from partialslip_fem.contact import Half, relative_compliances
 from partialslip_fem.elasticity import body
 from partialslip_fem.farfield import FarField, half_plane
 from partialslip_meshes import block
@@ -73,15 +73,16 @@ def responses():
     the block held by the half-plane, by the first term of its expansion only, and clamped."""
     result, points = {}, np.linspace(-1, 1, 9)
     for width in (5.0, 10.0, 20.0, 40.0):
-        half = body(block(width, (-1.0, 1.0), dict.fromkeys(points.tolist(), 0.1), 0.25), KAPPA, 4)
-        condensed = Condensed(half)
-        far = half_plane(half.far_points, half.x, width, KAPPA)
+        mesh = block(width, (-1.0, 1.0), dict.fromkeys(points.tolist(), 0.1), 0.25)
+        half = body(mesh, KAPPA, 4)
+        far = half_plane(half.held_points, half.x, width, KAPPA)
         first = [0, far.fields.shape[1] // 2]
         monopole = FarField(far.fields[:, first], far.moments[first])
         forces = half.mass @ ((1 + half.x) * (1 - half.x**2) ** 2)
         nodes = np.searchsorted(half.x, points - 1e-9)
         for name, field in (("half-plane", far), ("monopole", monopole), ("box", None)):
-            moved = [(c @ forces)[nodes] for c in relative_compliances(half, condensed, field)]
+            C = relative_compliances([Half(mesh, half, Condensed(half, field))])
+            moved = [(c @ forces)[nodes] for c in (C.xx, C.yy)]
             result[name, width] = [u - u.mean() for u in moved]
     return result
 

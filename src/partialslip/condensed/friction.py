@@ -3,11 +3,12 @@
 Scaled: lengths by sqrt(A R P), forces by P and displacements by A P, so that nothing depends on units.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from partialslip.condensed.bounded import Solution, solve_bounded
 from partialslip.condensed.zones import Zone
@@ -51,6 +52,8 @@ class History:
         Tangential forces at load points 1 and 2 of the last cycle.
     q1, q2 : (n,) arrays
         The same; where Q and sigma are out of phase the least and the largest ones of that cycle.
+    bounds : two (n,) arrays
+        f times the normal forces at load points 1 and 2.
     slip : (n,) array
         From load point 1 to 2 of the last cycle.
     net_slip : (n,) array
@@ -64,9 +67,27 @@ class History:
     at_ends: tuple[Array, Array]
     q1: Array
     q2: Array
+    bounds: tuple[Array, Array]
     slip: Array
     net_slip: Array
     dissipated: float
+
+    def of(self, nodes: npt.NDArray[np.int64]) -> "History":
+        """That of some of the nodes."""
+        points = [
+            replace(step, x=step.x[nodes], rest=step.rest[nodes], residual=step.residual[nodes]) for step in self.points
+        ]
+        (q1, q2), (bound1, bound2) = self.at_ends, self.bounds
+        arrays = {key: getattr(self, key)[nodes] for key in ("q1", "q2", "slip", "net_slip")}
+        return replace(
+            self, points=points, at_ends=(q1[nodes], q2[nodes]), bounds=(bound1[nodes], bound2[nodes]), **arrays
+        )
+
+    @property
+    def bound(self) -> Array:
+        """The mean of the bounds: half of the range that q has."""
+        result: Array = (self.bounds[0] + self.bounds[1]) / 2
+        return result
 
     @property
     def change(self) -> Array:
@@ -99,7 +120,8 @@ def load_path(scene: Scene, plan: Plan) -> Path | None:
     if not plan.needs("friction") or slides(scene):
         return None
     P, L, load = scene.P, scene.length, scene.load
-    cycle = tuple((Q / P, sigma * L / (4 * P)) for Q, sigma in load.points)
+    of_lower = scene.material.bodies[0].A / scene.material.A
+    cycle = tuple((Q / P, of_lower * sigma * L / (4 * P)) for Q, sigma in load.points)
     return Path(cycle, load.ends, load.in_phase, load.cycles, load.steps)
 
 
@@ -109,10 +131,10 @@ def slides(scene: Scene) -> bool:
 
 
 def march(tangential: Array, x: Array, bound: Array, path: Path) -> History:
-    """Tangential forces along the path, every step of it certified.
+    """Tangential forces along the path at constant pressure, every step of it certified.
 
-    At constant pressure a step is a convex problem: where nothing slips, the relative displacement keeps what it
-    was, so that C (T - T_before) follows the increment of the free relative displacement.
+    A step is then a convex problem: where nothing slips, the relative displacement keeps what it was, so that
+    C (T - T_before) follows the increment of the free relative displacement.
 
     Parameters
     ----------
@@ -124,41 +146,66 @@ def march(tangential: Array, x: Array, bound: Array, path: Path) -> History:
         f times its normal forces.
     path : Path
     """
+
+    def advance(before: Solution, Q: float, stretch: float) -> tuple[Solution, Array]:
+        free = tangential @ before.x + stretch * x
+        return solve_bounded(tangential, free, -bound, bound, Q), bound
+
+    return follow(path, advance, at_rest(len(x)))
+
+
+Advance = Callable[[Solution, float, float], tuple[Solution, Array]]
+
+
+def at_rest(count: int) -> Solution:
+    """No tangential forces."""
+    zero = np.zeros(count)
+    return Solution(zero, zero, zero, 0.0, 0)
+
+
+def follow(path: Path, advance: Advance, before: Solution) -> History:
+    """Go along the path, step by step.
+
+    ``advance`` takes the solution before a step, Q after it and the increment of the free relative strain to the
+    solution after it, whose ``rest`` is the slip, turned round; and f times the normal forces after it.
+    """
     points: list[Solution] = []
-    before, load_before = 0 * x, np.zeros(2)
-    slip, dissipated, least, largest = 0 * x, 0.0, np.inf + x, -np.inf + x
+    load_before, zero = np.zeros(2), 0 * before.x
+    slip, dissipated, least, largest = zero, 0.0, np.inf + zero, -np.inf + zero
     slips: list[Array] = []
+    bounds: list[Array] = []
     for number, load in enumerate(path.loads):
         in_last_cycle = number >= len(path.loads) - len(path.cycle)
         way = []
         for Q, strain in np.linspace(load_before, load, path.substeps + 1)[1:].tolist():
-            free = tangential @ before + (strain - load_before[1]) * x
-            way.append(solve_bounded(tangential, free, -bound, bound, Q))
-            before, load_before = way[-1].x, np.array([Q, strain])
+            before, bound = advance(before, Q, strain - load_before[1])
+            way.append(before)
+            load_before = np.array([Q, strain])
             if in_last_cycle:
-                slip = slip - way[-1].rest
-                dissipated -= float(way[-1].x @ way[-1].rest)
-                least, largest = np.minimum(least, before), np.maximum(largest, before)
+                slip = slip - before.rest
+                dissipated -= float(before.x @ before.rest)
+                least, largest = np.minimum(least, before.x), np.maximum(largest, before.x)
         slips.append(slip)
+        bounds.append(bound)
         points.append(
             Solution(
-                x=before,
-                rest=way[-1].rest,
+                x=before.x,
+                rest=before.rest,
                 residual=np.max([step.residual for step in way], axis=0),
                 imbalance=max(step.imbalance for step in way),
                 iterations=sum(step.iterations for step in way),
             )
         )
-    cycle, slips = points[-len(path.cycle) :], slips[-len(path.cycle) :]
-    first, second = path.ends
+    first, second = (end - len(path.cycle) for end in path.ends)
     if path.in_phase:
-        least, largest = cycle[first].x, cycle[second].x
+        least, largest = points[first].x, points[second].x
     return History(
         path=path,
         points=points,
-        at_ends=(cycle[first].x, cycle[second].x),
+        at_ends=(points[first].x, points[second].x),
         q1=least,
         q2=largest,
+        bounds=(bounds[first], bounds[second]),
         slip=slips[second] - slips[first],
         net_slip=slip,
         dissipated=dissipated,
@@ -191,7 +238,8 @@ def judge(scene: Scene, history: History | None, stick: Zone | None, half_width:
     regime: Regime = "small tension" if stick.signs[0] == stick.signs[1] else "large tension"
     if not load.in_phase:
         regime = "out of phase"
-    added = float(np.abs(history.net_slip).max() / np.abs(history.slip).max())
+    held = (history.bounds[0] > 0) & (history.bounds[1] > 0)  # what opens comes back elsewhere
+    added = float(np.abs(history.net_slip[held]).max() / np.abs(history.slip[held]).max())
     if steady <= _STEADY and added > _RATCHETS:
         regime = "ratchets"
         notes += (

@@ -47,8 +47,12 @@ def contact(scene: Scene) -> Contact:
     Raises
     ------
     InputError
-        If the contact reaches beyond a tabulated profile.
+        If the contact reaches beyond a tabulated profile, or the bodies' materials differ.
     """
+    if not scene.material.alike:
+        raise InputError(
+            "material.upper, material.lower: the bodies differ; exact and march are for similar ones, take fem"
+        )
     A, P, profile = scene.material.A, scene.P, scene.profile
     if isinstance(profile, HertzProfile):
         return Contact(math.sqrt(2 * A * profile.R * P / math.pi), P, Hertz())

@@ -7,6 +7,7 @@ import os
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 from partialslip.errors import InputError
@@ -17,8 +18,9 @@ from partialslip.run import Run
 
 
 def write_run(run: Run, folder: Path) -> list[Path]:
-    """Write results.json, tractions.csv and report.html into ``folder``; mesh.msh and bodies.vtu where fields
-    inside the bodies were asked for. Returns the files' paths. Raises InputError if the folder cannot be written.
+    """Write results.json, tractions.csv and report.html into ``folder``; where fields inside the bodies were asked for,
+    bodies.vtu and mesh.msh, too (lower.msh and upper.msh of bodies that are not mirror images). Returns the files'
+    paths. Raises InputError if the folder cannot be written.
     """
     data = record(run)
     files: dict[str, Callable[[Path], object]] = {
@@ -29,7 +31,8 @@ def write_run(run: Run, folder: Path) -> list[Path]:
     if bodies := next((result.bodies for result in run.results.values() if result.bodies), None):
         from partialslip_meshes.write import write_msh, write_vtu
 
-        files["mesh.msh"] = lambda path: write_msh(path, bodies[0])
+        meshes = {"mesh.msh": bodies[0]} if run.scene.mirrored else {f"{body.name}.msh": body for body in bodies}
+        files |= {name: partial(write_msh, body=body) for name, body in meshes.items()}
         files["bodies.vtu"] = lambda path: write_vtu(path, bodies)
     return write_files(folder, files)
 

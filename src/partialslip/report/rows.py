@@ -25,12 +25,26 @@ def error_rows(run: Run, name: str) -> list[tuple[str, ...]]:
     reference, result, comparison = run.results[run.reference or name], run.results[name], run.comparisons[name]
     rows: list[tuple[str, ...]] = []
     for key, meaning in _MEANING.items():
-        error, bar = getattr(comparison, key), comparison.bars[key]
-        verdict = (
-            ("-", "-", "") if error is None else (f"{error:.1e}", f"{bar:.1e}", "ok" if error <= bar else "MISSED")
-        )
+        verdict = _verdict(getattr(comparison, key), comparison.bars.get(key))
         rows.append((meaning, value(reference, key), value(result, key), *verdict))
     return rows
+
+
+def _verdict(error: float | None, bar: float | None) -> tuple[str, str, str]:
+    if error is None or bar is None:
+        return "-" if error is None else f"{error:.1e}", "-", ""
+    return f"{error:.1e}", f"{bar:.1e}", "ok" if error <= bar else "MISSED"
+
+
+def verdict(run: Run) -> str:
+    """In one line, on the whole run."""
+    if run.missed:
+        return "missed: " + "; ".join(run.missed)
+    if not run.comparisons:
+        return "nothing to compare with"
+    if run.scene.finite:
+        return "finite bodies: their difference from half-planes, without bars"
+    return "all bars met"
 
 
 def value(result: Result, key: str) -> str:

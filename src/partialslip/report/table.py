@@ -26,9 +26,7 @@ def print_run(run: Run, console: Console) -> None:
             "note": "; ".join(result.notes),
         }
         _print_lines(console, name, lines)
-    if run.comparisons:
-        missed = [f"{name}: {what}" for name, comparison in run.comparisons.items() for what in comparison.missed]
-        console.print("missed: " + "; ".join(missed) if missed else "all bars met", style="bold", markup=False)
+    console.print(rows.verdict(run), style="bold", markup=False)
 
 
 def _errors(run: Run, name: str) -> Table:

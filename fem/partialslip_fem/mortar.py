@@ -1,0 +1,41 @@
+"""Mortar: what one body's contact line has to do with another's whose nodes do not match."""
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+
+from partialslip.result import Array
+from partialslip_fem.elasticity import Body, Indices
+
+
+def transfer(onto: Body, other: Body) -> Array:
+    """The L2 projection T of the other body's displacements of the contact line onto a body's, (n, n_other).
+
+    T^T takes nodal forces back: the other body gets those of the same traction. Constants and straight lines are
+    kept by T, so that forces and moments are kept by T^T. On nodes that match T is the identity.
+    """
+    projected: Array = spla.spsolve(onto.mass.tocsc(), _products(onto, other).toarray())
+    return projected
+
+
+def _products(onto: Body, other: Body) -> sp.csr_matrix:
+    """Integrals of products of shape functions of both bodies, on the pieces between the vertices of either."""
+    ends = np.unique(np.concatenate([onto.x[:: onto.order], other.x[:: other.order]]))
+    points, weights = np.polynomial.legendre.leggauss((onto.order + other.order) // 2 + 1)
+    half = np.diff(ends)[:, None] / 2
+    x = (ends[:-1, None] + half * (1 + points)).ravel()
+    rows, left = _shape_functions(onto, x)
+    columns, right = _shape_functions(other, x)
+    values = (half * weights).ravel()[:, None, None] * left[:, :, None] * right[:, None, :]
+    where = (np.broadcast_to(index, values.shape).ravel() for index in (rows[:, :, None], columns[:, None, :]))
+    return sp.coo_array((values.ravel(), tuple(where)), (len(onto.x), len(other.x))).tocsr()
+
+
+def _shape_functions(body: Body, x: Array) -> tuple[Indices, Array]:
+    """Nodes whose shape functions do not vanish at ``x`` (k,), and their values there, (k, order + 1) each."""
+    k, vertices = body.order, body.x[:: body.order]
+    cell = np.clip(np.searchsorted(vertices, x, "right") - 1, 0, len(vertices) - 2)
+    local = (x - vertices[cell]) / np.diff(vertices)[cell]
+    values = np.vander(local, k + 1) @ np.linalg.inv(np.vander(np.linspace(0, 1, k + 1)))
+    nodes: Indices = k * cell[:, None] + np.arange(k + 1)
+    return nodes, values
