@@ -57,10 +57,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         before, level = level, solve_level(problem, width * a, contact, sizes, growth, clock)
         meshes, iterations = meshes + 1, iterations + level.iterations
         errors = {key: change / 3 for key, change in _changes(before, level).items()}
-        progress(
-            f"mesh {meshes}: {level.dofs:,} unknowns, "
-            f"{', '.join(errors)} known to {max(errors.values()):.1e} a"
-        )
+        progress(f"mesh {meshes}: {level.dofs:,} unknowns, {', '.join(errors)} known to {max(errors.values()):.1e} a")
         if (max(errors.values()) <= accuracy and level.enclosed) or size <= _FINEST:
             return Adapted(level, errors, meshes, iterations, width)
 

@@ -74,9 +74,7 @@ class _Cholmod:
     def __init__(self, K: sp.csr_matrix, inner: Indices, last: Indices) -> None:
         self._cvxopt = _import_cvxopt()
         self._n = len(last)
-        self._order = np.asarray(
-            self._cvxopt.amd.order(self._lower(K[inner][:, inner]))
-        ).ravel()
+        self._order = np.asarray(self._cvxopt.amd.order(self._lower(K[inner][:, inner]))).ravel()
         unknowns = np.concatenate([inner[self._order], last])
         # CHOLMOD goes through the elimination tree from its leaves to its root. An entry, zero, between the last of the
         # inner unknowns and the first of the last ones makes all the rest of the tree hang below these.

@@ -129,7 +129,8 @@ def _missed(
     result: Result, reference: Result, errors: dict[str, float | None], bars: dict[str, float]
 ) -> tuple[str, ...]:
     missed = [
-        f"{key}: error {error:.3g} > {bars[key]:.3g}" for key, error in errors.items()
+        f"{key}: error {error:.3g} > {bars[key]:.3g}"
+        for key, error in errors.items()
         if error and error > bars.get(key, np.inf)
     ]
     missed += result.uncertified

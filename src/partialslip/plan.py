@@ -9,7 +9,15 @@ from typing import Literal
 from partialslip.scene import Scene
 
 Effect = Literal[
-    "normal", "friction", "shear", "tension", "opposing-slip", "history", "coupling", "finite-size", "far-field",
+    "normal",
+    "friction",
+    "shear",
+    "tension",
+    "opposing-slip",
+    "history",
+    "coupling",
+    "finite-size",
+    "far-field",
     "subsurface",
 ]
 
