@@ -46,7 +46,7 @@ def run(
     methods : iterable of str, optional
         As a rule exact and fem; march and fem where Q and sigma are out of phase, as there is no closed form then.
     subsurface : bool
-        Whether to solve for the displacements inside the bodies, too (finite elements).
+        Whether to solve for what is inside the bodies, too: displacements (finite elements), stresses (exact).
     progress : callable
         Called with a line of text now and then.
 
