@@ -87,8 +87,8 @@ class Cauchy:
             result[part] = (1 / far).reshape(len(part), -1) @ of_nodes + (1 / (ends - z[part, None])) @ of_ends
             point, panel = np.nonzero(near)
             np.add.at(result, part[point], self._near(z[part][point], v_z[near], panel).T)
-        scaled: Complex = result.T.reshape(2, -1, len(z)) / np.pi
-        return scaled
+        result /= np.pi
+        return result.T.reshape(2, -1, len(z))
 
     def _near(self, z: Complex, v_z: Complex, panel: npt.NDArray[np.int64]) -> Complex:
         """Integrals and derivatives over a panel each, (2 k, pairs).
