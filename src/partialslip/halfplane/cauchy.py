@@ -43,7 +43,7 @@ class Cauchy:
         middles = (breaks[1:] + breaks[:-1]) / 2
         origin = np.concatenate([breaks[:-1], breaks[1:]])
         way = np.repeat([1.0, -1.0], len(middles))
-        # t = origin + way v^2, from the end nearer to the origin to the other: panels share ends to the last digit
+        # t = origin + way v^2; ends are kept as t, so that neighbours share them to the last digit
         todo = np.stack([origin, way, origin, np.concatenate([middles, middles])])
         panels, values, largest = [], [], 0.0
         for level in range(_LEVELS):
