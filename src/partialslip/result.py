@@ -74,6 +74,32 @@ class Slip:
 
 
 @dataclass(frozen=True)
+class SurfaceStress:
+    """Direct stress along the surfaces of the bodies, their bulk tensions included.
+
+    Parameters
+    ----------
+    x : (k,) array
+        Points, ascending, within the contact, at its ends and beyond, m.
+    sigma : (2, 2, k) array
+        sigma_xx by body, lower (which pushes with q against the other, and has the tension) and upper, and by load
+        point, Pa.
+    at : callable
+        ``at(x) -> (2, 2, k)``: the same at any points.
+    """
+
+    x: Array
+    sigma: Array
+    at: Callable[[Array], Array]
+
+    @property
+    def largest(self) -> tuple[float, float]:
+        """Where along the lower body sigma_xx is largest, m, and that, Pa: as a rule at the trailing edge, x = +-a."""
+        highest = self.sigma[0].max(axis=0)
+        return float(self.x[highest.argmax()]), float(highest.max())
+
+
+@dataclass(frozen=True)
 class DeformedBody:
     """A body's mesh and its displacements.
 
@@ -120,7 +146,9 @@ class Result:
     ``limits`` are loads at which something else begins, where the method knows them: ``dsigma_transition`` (Pa, where
     small tension turns large at this dQ), ``Q_sliding`` (N/m, f P) and ``Q_mean`` (N/m, the largest mean that a steady
     state can hold). ``slip`` is None where the contact slides as a whole or there is no friction; ``bodies`` is there
-    only where fields inside the bodies were asked for.
+    only where fields inside the bodies were asked for, and so are ``surface`` and ``stress_at``, from methods that know
+    stresses everywhere (the exact one, at fully reversed loads that do not slide): ``stress_at(x, y) -> (2, 3, k)``, by
+    load point and component xx, yy, xy, Pa, at points (k,) of which y <= 0 are in the lower body.
     """
 
     method: str
@@ -139,6 +167,8 @@ class Result:
     estimate: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     bodies: tuple[DeformedBody, ...] = ()
+    surface: SurfaceStress | None = None
+    stress_at: Callable[[Array, Array], Array] | None = None
 
     @property
     def uncertified(self) -> tuple[str, ...]:

@@ -62,7 +62,7 @@ def run(
     methods : iterable of str, optional
         As a rule :func:`default_methods`.
     subsurface : bool
-        Whether to solve for the displacements inside the bodies, too (finite elements).
+        Whether to solve for what is inside the bodies, too: displacements (finite elements), stresses (exact).
     progress : callable
         Called with a line of text now and then.
 

@@ -18,3 +18,4 @@ from partialslip.halfplane.contact import stick_zone as stick_zone
 from partialslip.halfplane.loop import Loop as Loop
 from partialslip.halfplane.loop import hysteresis as hysteresis
 from partialslip.halfplane.method import solve as solve
+from partialslip.halfplane.stress import Stress as Stress

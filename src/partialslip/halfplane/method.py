@@ -8,12 +8,14 @@ from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.slip import dissipation
 from partialslip.halfplane.steady import StickZone, stick_zone, transition
+from partialslip.halfplane.stress import Stress
 from partialslip.halfplane.traction import half_range, mean_load_bound
 from partialslip.plan import Plan
-from partialslip.result import Array, Clock, Regime, Result, Slip, Traction
+from partialslip.result import Array, Clock, Regime, Result, Slip, SurfaceStress, Traction
 from partialslip.scene import Scene
 
 _POINTS_PER_ZONE = 101
+_BEYOND = 4.0  # surface stresses are reported up to so many half-widths
 
 
 def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None) -> Result:
@@ -51,6 +53,8 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
     x = _sample(np.union1d(breaks, [0.0]))
     p, dq = at(x)
     levels = load.fully_reversed and regime != "sliding"
+    stress = Stress(pressed, f, load.dQ, load.dsigma) if plan.needs("subsurface") and levels else None
+    surface = _surface(stress, np.concatenate([[-_BEYOND * a], breaks, [_BEYOND * a]])) if stress else None
     return Result(
         method="exact",
         a=a,
@@ -64,6 +68,8 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
         settings={"model": "two half-planes, steady state"},
         limits=_limits(scene, pressed, zone) if plan.needs("friction") else {},
         notes=_notes(regime, levels, _turns_round(scene, p0, zone)),
+        surface=surface,
+        stress_at=stress.inside if stress else None,
     )
 
 
@@ -96,6 +102,11 @@ def _slip(scene: Scene, pressed: Contact, zone: StickZone, turn: int, mirror: in
     x, slips, dissipated = dissipation(zone, pressed.shape)
     stress, unit = scene.friction.f * pressed.p0, scene.material.A * scene.friction.f * pressed.p0 * pressed.a
     return Slip(mirror * pressed.a * x[::mirror], turn * unit * slips[::mirror], dissipated * unit * stress * pressed.a)
+
+
+def _surface(stress: Stress, breaks: Array) -> SurfaceStress:
+    x = _sample(breaks)
+    return SurfaceStress(x, stress.surface(x), stress.surface)
 
 
 def _sample(breaks: Array) -> Array:

@@ -14,6 +14,7 @@ from partialslip.halfplane.steady import StickZone
 from partialslip.result import Array
 
 _NODES, _FEWEST = 32, 6  # Gauss points in a slip zone, and in each of its pieces
+_TINY = 1e-300
 
 
 def density(x: Array, zone: StickZone, shape: Shape) -> Array:
@@ -33,12 +34,14 @@ def density(x: Array, zone: StickZone, shape: Shape) -> Array:
         beyond = np.maximum(side * (y - zone.centre) - zone.half_width, 0.0)
         width = 1 - side * zone.centre - zone.half_width
         w = np.sqrt(beyond * (beyond + 2 * zone.half_width))
-        half = np.sqrt(beyond / (beyond + 2 * zone.half_width))
-        ratio = np.minimum(half / np.sqrt(width / (width + 2 * zone.half_width)), 1 - 1e-16)
+        # 2 artanh of the ratio of tanh(theta/2) here and at the contact's end, both all but 1 where the zone is narrow
+        both = np.sqrt(beyond / (beyond + 2 * zone.half_width)) + np.sqrt(width / (width + 2 * zone.half_width))
+        ratio = both**2 * (width + 2 * zone.half_width) * (beyond + 2 * zone.half_width)
+        logarithm = np.log(ratio / (2 * zone.half_width)) - np.log(np.maximum(1 - side * y, _TINY))
         own, other = rules[side], rules[-side]
         smooth = shape.difference(own.t, y[:, None]) @ own.weights
         across = (shape.pressure(other.t) * other.weights / (y[:, None] - other.t)).sum(axis=-1)
-        same = shape.pressure(y) * 2 * np.arctanh(ratio) - side * w * smooth
+        same = shape.pressure(y) * logarithm - side * w * smooth
         result[here] = side * 2 / np.pi * (sign * same - (zone.s if side > 0 else -1) * w * across)
     return result
 
