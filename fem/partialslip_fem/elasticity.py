@@ -33,8 +33,10 @@ class Body:
     contact, held, vertices : (2, n), (2, k), (2, v) int arrays
         Degrees of freedom, along x and along y, of the contact line, what is held of the outer boundary, and the mesh's
         points.
-    held_points : (2, k) array
-        Nodes of what is held.
+    points : (2, N) array
+        All nodes.
+    face : (s,) int array
+        Nodes of the whole side that the contact line is on, from left to right.
     """
 
     order: int
@@ -44,7 +46,20 @@ class Body:
     contact: Indices
     held: Indices
     vertices: Indices
-    held_points: Array
+    points: Array
+    face: Indices
+
+    @property
+    def held_points(self) -> Array:
+        """Nodes of what is held, (2, k)."""
+        result: Array = self.points[:, self.held[0]]
+        return result
+
+    @property
+    def face_x(self) -> Array:
+        """Where the nodes of the face are, (s,)."""
+        result: Array = self.points[0, self.face]
+        return result
 
 
 @skfem.BilinearForm
@@ -72,18 +87,18 @@ def body(
 ) -> Body:
     """Assemble a body whose Kolosov constant is ``kappa`` (it says plane strain or stress), and (kappa+1)/(2 mu)
     ``compliance``; the ``held`` lines of the mesh are to be given displacements."""
-    triangles = skfem.MeshTri(mesh.points.T.copy(), mesh.triangles.T.copy())
-    element = _ELEMENTS[order]()
+    triangles, element = _triangles(mesh), _ELEMENTS[order]()
     # gradients are of order - 1, and straight triangles have constant Jacobians: this quadrature is exact
     basis = skfem.Basis(triangles, element, intorder=2 * (order - 1))
     both = np.array([[0], [basis.N]])
 
-    def on_line(name: str) -> Indices:
-        nodes = basis.get_dofs(_facets(triangles, mesh.lines[name])).flatten()
+    def on_lines(*names: str) -> Indices:
+        lines = np.concatenate([mesh.lines[name] for name in names])
+        nodes = basis.get_dofs(_facets(triangles, lines)).flatten()
         in_order: Indices = nodes[np.argsort(basis.doflocs[0, nodes], kind="stable")]
         return in_order
 
-    contact, outer = on_line("contact"), np.unique(np.concatenate([on_line(name) for name in held]))
+    contact, face, outer = on_lines("contact"), on_lines("contact", "face"), on_lines(*held)
     along = skfem.FacetBasis(triangles, element, facets=_facets(triangles, mesh.lines["contact"]))
     return Body(
         order=order,
@@ -93,8 +108,20 @@ def body(
         contact=contact + both,
         held=outer + both,
         vertices=basis.nodal_dofs[0] + both,
-        held_points=basis.doflocs[:, outer],
+        points=basis.doflocs,
+        face=face,
     )
+
+
+def gradients(mesh: Mesh, order: int, u: Array) -> Array:
+    """Gradients in the middle of the triangles, (c, 2, t), of ``u`` (c, N), given at the nodes."""
+    middle = np.full((2, 1), 1 / 3), np.full(1, 1 / 2)
+    basis = skfem.Basis(_triangles(mesh), _ELEMENTS[order](), quadrature=middle)
+    return np.stack([basis.interpolate(component).grad[..., 0] for component in u])
+
+
+def _triangles(mesh: Mesh) -> skfem.MeshTri:
+    return skfem.MeshTri(mesh.points.T.copy(), mesh.triangles.T.copy())
 
 
 def _stiffness(basis: skfem.Basis, kappa: float, compliance: float) -> sp.csr_matrix:

@@ -63,7 +63,7 @@ class Level:
     left: float
     right: float
     stick: Zone | None
-    others: tuple[float, ...] = ()
+    others: tuple[float, float] | tuple[()] = ()
 
     @property
     def body(self) -> Body:
@@ -80,6 +80,12 @@ class Level:
         """Ends of the contact, at load point 1, too, and of the stick zone: where the next mesh is to be fine."""
         stick = (self.stick.left, self.stick.right) if self.stick else ()
         return np.array([self.left, self.right, *stick, *self.others])
+
+    @property
+    def contact_ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Ends of the contact at load points 1 and 2."""
+        second = self.left, self.right
+        return (self.others or second), second
 
     @property
     def enclosed(self) -> bool:
@@ -130,7 +136,7 @@ def solve_level(
         line = halves[0].body
         pressing, history, nodes = _solve(problem, relative, line)
         left, right = _ends(line, pressing.x)
-        others: tuple[float, ...] = ()
+        others: tuple[float, float] | tuple[()] = ()
         if history and len(halves) > 1:
             at_first = np.zeros(len(line.x))
             at_first[nodes] = history.bounds[0]

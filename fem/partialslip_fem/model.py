@@ -12,9 +12,11 @@ from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Result, Slip, Traction
 from partialslip.scene import Scene
 from partialslip_fem.adapt import Adapted, adapt
+from partialslip_fem.displacements import solve_back
 from partialslip_fem.factor import default_backend
-from partialslip_fem.fields import displaced
+from partialslip_fem.fields import along_surfaces, deformed
 from partialslip_fem.level import Level, Part, Problem
+from partialslip_fem.recovery import inside
 
 _WIDTH = {"half-plane": 16.0, "box": 4096.0}  # in contact half-widths
 _LARGEST_NU = 0.4999999
@@ -92,9 +94,11 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         at1, at2 = level.shear(history.q1), level.shear(history.q2)
         q1, q2, dq = stress * at1(x), stress * at2(x), PPoly(at2.c - at1.c, at2.x)
 
+    moved = solve_back(level, problem) if plan.needs("subsurface") else ()
+
     def at(points: Array) -> tuple[Array, Array]:
         scaled = points / L
-        return stress * _inside(pressure, scaled), stress * _inside(dq, scaled)
+        return stress * inside(pressure, scaled), stress * inside(dq, scaled)
 
     return Result(
         method="fem",
@@ -133,7 +137,8 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         certificate=certified,
         estimate=adapted.errors,
         notes=found.notes + doubts(certified, adapted.errors, scene.fem.accuracy),
-        bodies=displaced(level, problem, L, unit) if plan.needs("subsurface") else (),
+        bodies=tuple(deformed(body, L, unit, stress) for body in moved),
+        surface=along_surfaces(moved, level.contact_ends, L, stress) if moved else None,
     )
 
 
@@ -153,11 +158,3 @@ def _certificate(problem: Problem, level: Level, p0: float) -> dict[str, float]:
         return closed
     slid = certificate(level.history, weights[level.nodes], problem.f, p0)
     return slid | {key: max(closed[key], slid[key]) for key in closed}
-
-
-def _inside(polynomial: PPoly | None, points: Array) -> Array:
-    """Its values, zero off the contact line."""
-    if polynomial is None:
-        return np.zeros_like(points)
-    values: Array = np.nan_to_num(polynomial(points, extrapolate=False), nan=0.0)
-    return values

@@ -1,4 +1,4 @@
-"""Tractions from nodal forces."""
+"""Functions along the contact line from what is known at its nodes."""
 
 import numpy as np
 import scipy.sparse.linalg as spla
@@ -14,9 +14,20 @@ def traction(body: Body, forces: Array) -> PPoly:
     Nodal forces are integrals of the traction times shape functions. Dividing them by the integrals of the shape
     functions gives values that waver by h^2 p''; the mass matrix takes them back exactly, and keeps their resultant.
     """
-    values = spla.spsolve(body.mass.tocsc(), forces)
-    k = body.order
+    return polynomials(body.x, spla.spsolve(body.mass.tocsc(), forces), body.order)
+
+
+def polynomials(x: Array, values: Array, order: int) -> PPoly:
+    """Piecewise polynomials through ``values`` at nodes ``x``, every ``order``-th of which ends a cell."""
+    k, vertices = order, x[::order]
     cells = np.lib.stride_tricks.sliding_window_view(values, k + 1)[::k]
     coefficients = np.linalg.solve(np.vander(np.linspace(0, 1, k + 1)), cells.T)
-    vertices = body.x[::k]
     return PPoly(coefficients / np.diff(vertices) ** np.arange(k, -1, -1)[:, None], vertices)
+
+
+def inside(polynomial: PPoly | None, points: Array) -> Array:
+    """Its values, zero off its cells."""
+    if polynomial is None:
+        return np.zeros_like(points)
+    values: Array = np.nan_to_num(polynomial(points, extrapolate=False), nan=0.0)
+    return values

@@ -24,7 +24,8 @@ def block(
     width : float
         Half-width of the block, and its height if none is given.
     contact : (float, float)
-        Ends of the line "contact" on y = 0; the block's bottom is the line "back", the other two are its "sides".
+        Ends of the line "contact" on y = 0; the rest of that side is the line "face", the block's bottom is its "back",
+        the other two are its "sides".
     sizes : mapping of float to float
         Points on the contact line, each to become a vertex, and the element size there.
     growth : float
@@ -73,7 +74,12 @@ def _outline(
     for other in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
         gmsh.option.setNumber(f"Mesh.{other}", 0)
 
-    return {"contact": curves[3:-2], "back": curves[:1], "sides": [curves[1], curves[-1]]}
+    return {
+        "contact": curves[3:-2],
+        "face": [curves[2], curves[-2]],
+        "back": curves[:1],
+        "sides": [curves[1], curves[-1]],
+    }
 
 
 def _collect(gmsh: ModuleType, lines: Mapping[str, list[int]]) -> Mesh:

@@ -26,15 +26,17 @@ def write_msh(path: Path, body: DeformedBody) -> None:
 
 
 def write_vtu(path: Path, bodies: Sequence[DeformedBody]) -> None:
-    """Write bodies side by side in one file, with their displacements as point data and ``body`` as cell data."""
+    """Write bodies side by side in one file, with their displacements as point data, ``body`` and their stresses as
+    cell data."""
     first = np.cumsum([0, *(len(body.points) for body in bodies)])
     triangles = [body.triangles + start for body, start in zip(bodies, first, strict=False)]
     names = bodies[0].displacements
+    stresses = {name: [np.vstack([body.stresses[name] for body in bodies])] for name in bodies[0].stresses}
     mesh = meshio.Mesh(
         _in_space(np.vstack([body.points for body in bodies])),
         [("triangle", np.vstack(triangles))],
         point_data={name: _in_space(np.vstack([body.displacements[name] for body in bodies])) for name in names},
-        cell_data={"body": [np.repeat(np.arange(len(bodies)), [len(block) for block in triangles])]},
+        cell_data={"body": [np.repeat(np.arange(len(bodies)), [len(block) for block in triangles])]} | stresses,
     )
     meshio.write(path, mesh, file_format="vtu")
 

@@ -1,6 +1,7 @@
 """Error measures between two results, and verdicts against bars. The measures are fixed, so that figures compare
 across versions and codes: see :class:`Comparison`."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,8 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 # Bars on traction errors, in multiples of the accuracy asked of a, m and n.
 P_BAR, Q_BAR = 10.0, 15.0
 
+_NEAR = 3.0  # half-widths: how far stresses inside are compared
+
 
 @dataclass(frozen=True)
 class Comparison:
@@ -20,7 +23,10 @@ class Comparison:
 
     ``a``, ``m``, ``n``: |difference| / a. ``p``, ``q``: relative L2 over the contact of cell averages (each cell's
     mean against the reference's mean over the same cell), q being (q2 - q1)/2. ``*_nodal``: relative L2 of nodal
-    values; ``*_max``: the largest error of a node, in p0 and f p0. ``bars`` are what a, m, n, p and q must not
+    values; ``*_max``: the largest error of a node, in p0 and f p0. Where stresses were asked for and both know them,
+    ``surface`` is the relative L2 error of sigma_xx along both surfaces as averages over those cells, ``largest`` the
+    relative error of its largest value on the lower body, and ``inside`` the relative L2 error of the stresses in the
+    middle of the triangles within 3 a, by area. ``bars`` are what a, m, n, p and q must not
     exceed; ``missed`` says what failed, in words.
     """
 
@@ -33,6 +39,9 @@ class Comparison:
     q_nodal: float | None
     p_max: float
     q_max: float | None
+    surface: float | None
+    largest: float | None
+    inside: float | None
     bars: dict[str, float]
     missed: tuple[str, ...]
 
@@ -75,6 +84,7 @@ def compare(result: Result, reference: Result, f: float, accuracy: float | None)
         q_nodal=_relative(q_off, dq / 2, result.traction.x) if shears else None,
         p_max=float(np.abs(p_off).max() / p0),
         q_max=float(np.abs(q_off).max() / (f * p0)) if shears else None,
+        **_stress_errors(result, reference),  # type: ignore[arg-type]
         bars=bars,
         missed=_missed(result, reference, errors, bars),
     )
@@ -97,27 +107,55 @@ def cell_errors(traction: Traction, reference: Traction) -> tuple[float | None, 
     return p, q
 
 
+def _stress_errors(result: Result, reference: Result) -> dict[str, float | None]:
+    errors: dict[str, float | None] = dict.fromkeys(("surface", "largest", "inside"))
+    cells, a = result.traction.cells, reference.a
+    if result.surface and reference.surface and cells is not None:
+        breaks = np.union1d(result.traction.breaks, reference.traction.breaks)
+        found, true = (_means(each.at, cells, breaks) for each in (result.surface, reference.surface))
+        widths = np.diff(cells)
+        errors["surface"] = float(np.sqrt(((found - true) ** 2 @ widths).sum() / (true**2 @ widths).sum()))
+        (_, largest), (_, truly) = result.surface.largest, reference.surface.largest
+        errors["largest"] = abs(largest - truly) / abs(truly)
+    if result.bodies and reference.stress_at:
+        off, norm = 0.0, 0.0
+        for body in result.bodies:
+            corners = body.points[body.triangles]
+            near = (np.abs(corners.mean(axis=1)) <= _NEAR * a).all(axis=1)
+            (along, across), (x, y) = (
+                np.moveaxis(corners[near, 1:] - corners[near, :1], 0, -1),
+                corners[near].mean(axis=1).T,
+            )
+            areas = np.abs(along[0] * across[1] - along[1] * across[0])
+            truth = reference.stress_at(x, y)
+            values = np.stack([stress[near].T for stress in body.stresses.values()])
+            off, norm = off + float(((values - truth) ** 2 @ areas).sum()), norm + float((truth**2 @ areas).sum())
+        errors["inside"] = float(np.sqrt(off / norm))
+    return errors
+
+
 def cell_means(traction: Traction, cells: Array) -> tuple[Array, Array]:
-    """Means of p and dq over each of the cells with ends ``cells`` (ascending), (c,) each.
+    """Means of p and dq over each of the cells with ends ``cells`` (ascending), (c,) each."""
+    p, dq = _means(lambda x: np.stack(traction.at(x)), cells, traction.breaks)
+    return p, dq
+
+
+def _means(function: Callable[[Array], Array], cells: Array, breaks: Array) -> Array:
+    """Means of ``function`` (k,) -> (..., k) over the cells, (..., c).
 
     Gauss quadrature in an angle over every piece between cell ends and breaks of the traction, which takes square
     roots at the breaks exactly.
     """
-    ends = np.unique(np.concatenate([cells, traction.breaks]))
+    ends = np.unique(np.concatenate([cells, breaks]))
     ends = ends[(ends >= cells[0]) & (ends <= cells[-1])]
     middle, half = (ends[1:] + ends[:-1]) / 2, np.diff(ends) / 2
     angle = np.pi / 2 * (_NODES + 1)
     weights = np.pi / 2 * _WEIGHTS * np.sin(angle)
     points = middle[:, None] - half[:, None] * np.cos(angle)
-    owner = np.searchsorted(cells, middle) - 1
-
-    def mean(values: Array) -> Array:
-        pieces = half * (values.reshape(points.shape) @ weights)
-        result: Array = np.bincount(owner, pieces, len(cells) - 1) / np.diff(cells)
-        return result
-
-    p, dq = traction.at(points.ravel())
-    return mean(p), mean(dq)
+    values = function(points.ravel())
+    pieces = half * (values.reshape(*values.shape[:-1], *points.shape) @ weights)
+    first = np.searchsorted(ends, cells[:-1])
+    return np.add.reduceat(pieces, first, axis=-1) / np.diff(cells)
 
 
 def _relative(error: Array, true: Array, x: Array) -> float:

@@ -113,6 +113,8 @@ class DeformedBody:
         Named groups of boundary edges.
     displacements : dict of (n, 2) arrays
         By name, m.
+    stresses : dict of (t, 3) arrays
+        sigma_xx, sigma_yy and sigma_xy in the middle of the triangles, by name, Pa.
     """
 
     name: str
@@ -120,6 +122,7 @@ class DeformedBody:
     triangles: npt.NDArray[np.int64]
     lines: Mapping[str, npt.NDArray[np.int64]]
     displacements: Mapping[str, Array]
+    stresses: Mapping[str, Array] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

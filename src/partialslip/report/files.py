@@ -10,6 +10,8 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
+import numpy as np
+
 from partialslip.errors import InputError
 from partialslip.report.figure import traction_svg
 from partialslip.report.page import page
@@ -19,7 +21,7 @@ from partialslip.run import Run
 
 def write_run(run: Run, folder: Path) -> list[Path]:
     """Write results.json, tractions.csv and report.html into ``folder``; where fields inside the bodies were asked for,
-    bodies.vtu and mesh.msh, too (lower.msh and upper.msh of bodies that are not mirror images). Returns the files'
+    surface.csv, bodies.vtu and mesh.msh, too (lower.msh and upper.msh of bodies that are not mirror images). Returns the files'
     paths. Raises InputError if the folder cannot be written.
     """
     data = record(run)
@@ -34,6 +36,8 @@ def write_run(run: Run, folder: Path) -> list[Path]:
         meshes = {"mesh.msh": bodies[0]} if run.scene.mirrored else {f"{body.name}.msh": body for body in bodies}
         files |= {name: partial(write_msh, body=body) for name, body in meshes.items()}
         files["bodies.vtu"] = lambda path: write_vtu(path, bodies)
+    if any(result.surface for result in run.results.values()):
+        files["surface.csv"] = lambda path: path.write_text(surface_csv(run), "utf-8")
     return write_files(folder, files)
 
 
@@ -65,6 +69,18 @@ def tractions_csv(run: Run) -> str:
         columns = [traction.x, traction.x / result.a, traction.p, traction.q1, traction.q2, traction.dq]
         listed = [[""] * len(traction.x) if column is None else column.tolist() for column in columns]
         writer.writerows([name, *row] for row in zip(*listed, strict=True))
+    return table.getvalue()
+
+
+def surface_csv(run: Run) -> str:
+    """sigma_xx along the surfaces by every method that knows it, one row a point; SI units."""
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\n")
+    writer.writerow(["method", "x", "x_over_a", "lower_1", "lower_2", "upper_1", "upper_2"])
+    for name, result in run.results.items():
+        if surface := result.surface:
+            columns = np.vstack([surface.x, surface.x / result.a, *surface.sigma[0], *surface.sigma[1]])
+            writer.writerows([name, *row] for row in columns.T.tolist())
     return table.getvalue()
 
 

@@ -13,6 +13,11 @@ _MEANING = {
     "p": "p, pressure",
     "q": "q, shear",
 }
+_STRESSES = {
+    "largest": "sigma_xx, largest",
+    "surface": "sigma_xx, surfaces",
+    "inside": "stresses inside",
+}
 
 
 def headings(run: Run, name: str) -> list[str]:
@@ -21,12 +26,16 @@ def headings(run: Run, name: str) -> list[str]:
 
 
 def error_rows(run: Run, name: str) -> list[tuple[str, ...]]:
-    """Quantity, the reference's value, that of method ``name``, error, bar and verdict, of a, m, n, p and q."""
+    """Quantity, the reference's value, that of method ``name``, error, bar and verdict, of a, m, n, p and q, and of stresses."""
     reference, result, comparison = run.results[run.reference or name], run.results[name], run.comparisons[name]
     rows: list[tuple[str, ...]] = []
     for key, meaning in _MEANING.items():
         verdict = _verdict(getattr(comparison, key), comparison.bars.get(key))
         rows.append((meaning, value(reference, key), value(result, key), *verdict))
+    for key, meaning in _STRESSES.items():
+        if (error := getattr(comparison, key)) is not None:
+            both = (value(each, key) for each in (reference, result))
+            rows.append((meaning, *both, *_verdict(error, None)))
     return rows
 
 
@@ -48,7 +57,11 @@ def verdict(run: Run) -> str:
 
 
 def value(result: Result, key: str) -> str:
-    """A quantity of a result with its unit; of p and q the largest value."""
+    """A quantity of a result with its unit; of p and q the largest value, of fields none."""
+    if key in ("surface", "inside"):
+        return ""
+    if key == "largest":
+        return engineering(result.surface.largest[1], "Pa", 6) if result.surface else ""
     if key in ("m", "n"):
         end = getattr(result, key)
         return "none" if end is None else f"{end / result.a:.7f} a"
