@@ -22,6 +22,7 @@ _COEFFICIENTS = (np.arange(_COUNT) + 0.5)[:, None] * (_VALUES * _WEIGHTS[:, None
 _ENDS = np.polynomial.legendre.legvander(np.array([-1.0, 1.0]), _COUNT - 1) @ _COEFFICIENTS
 _SLOPES = _VALUES[:, :-1] @ np.polynomial.legendre.legder(_COEFFICIENTS)
 _RESOLVED = 1e-13  # last coefficients of a panel, in the largest value
+_SMALL = 1e-9
 _LEVELS = 40
 _NEAR = 3 + 1 / 3  # |zeta - 1| + |zeta + 1| of poles that Gauss's rule does not integrate to rounding
 _AT_ONCE = 2**20  # pairs of points in memory
@@ -45,7 +46,7 @@ class Cauchy:
         way = np.repeat([1.0, -1.0], len(middles))
         # t = origin + way v^2; ends are kept as t, so that neighbours share them to the last digit
         todo = np.stack([origin, way, origin, np.concatenate([middles, middles])])
-        panels, values, largest = [], [], 0.0
+        panels, values, largest, before = [], [], 0.0, np.full(len(origin), np.inf)
         for level in range(_LEVELS):
             middle, half = _in_v(todo)
             t = todo[0, :, None] + todo[1, :, None] * (middle[:, None] + half[:, None] * _NODES) ** 2
@@ -55,6 +56,9 @@ class Cauchy:
             noise = 4 * np.finfo(float).eps * np.ptp(found, axis=-1) / np.abs(todo[3] - todo[2])
             tail = np.abs(found @ _COEFFICIENTS[-2:].T).max(axis=-1)
             rough = (tail > _RESOLVED * largest + noise).any(axis=0) & (level < _LEVELS - 1)
+            # small, and not smaller than in the panel of which it is half: the functions' own rounding
+            size = tail.max(axis=0)
+            rough &= (size > _SMALL * largest) | (size < before / 2)
             panels.append(todo[:, ~rough])
             values.append(found[:, ~rough])
             if not rough.any():
@@ -62,7 +66,7 @@ class Cauchy:
             origin, way, low, high = todo[:, rough]
             between = origin + way * middle[rough] ** 2
             parts = [origin, way, low, between], [origin, way, between, high]
-            todo = np.concatenate([np.stack(part) for part in parts], axis=1)
+            todo, before = np.concatenate([np.stack(part) for part in parts], axis=1), np.tile(size[rough], 2)
         self._panels, self._values = np.concatenate(panels, axis=1), np.concatenate(values, axis=1)
         self._slopes = self._values @ _SLOPES.T
 
