@@ -67,7 +67,7 @@ def _parser() -> argparse.ArgumentParser:
     runs.add_argument("--accuracy", metavar="FRACTION",
                       help="of a, m and n, as a fraction of a; short for --set fem.accuracy=FRACTION")  # fmt: skip
     runs.add_argument("--fields", action="store_true",
-                      help="also solve inside the bodies: stresses compared; surface.csv, mesh.msh, bodies.vtu")  # fmt: skip
+                      help="also stresses: compared, and written to surface.csv, bodies.vtu (and mesh.msh)")  # fmt: skip
     runs.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME)")
     runs.add_argument("--json", action="store_true", help="print results.json and nothing else; files only with --out")
     runs.set_defaults(command=_run)

@@ -21,8 +21,8 @@ from partialslip.run import Run
 
 def write_run(run: Run, folder: Path) -> list[Path]:
     """Write results.json, tractions.csv and report.html into ``folder``; where fields inside the bodies were asked for,
-    surface.csv, bodies.vtu and mesh.msh, too (lower.msh and upper.msh of bodies that are not mirror images). Returns the files'
-    paths. Raises InputError if the folder cannot be written.
+    surface.csv, bodies.vtu and mesh.msh, too (lower.msh and upper.msh of bodies that are not mirror images). Returns
+    the files' paths. Raises InputError if the folder cannot be written.
     """
     data = record(run)
     files: dict[str, Callable[[Path], object]] = {

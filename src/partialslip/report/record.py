@@ -48,7 +48,9 @@ def _method(result: Result) -> dict[str, Any]:
         "slip": {"x": result.slip.x.tolist(), "slip": result.slip.slip.tolist(), "dissipated": result.slip.dissipated}
         if result.slip
         else None,
-        "surface": {"x": result.surface.x.tolist(), "sigma_xx": result.surface.sigma.tolist()} if result.surface else None,
+        "surface": {"x": result.surface.x.tolist(), "sigma_xx": result.surface.sigma.tolist()}
+        if result.surface
+        else None,
         "traction": {key: _listed(getattr(traction, key)) for key in ("x", "p", "q1", "q2", "dq")},
     }
 

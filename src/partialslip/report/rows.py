@@ -26,7 +26,7 @@ def headings(run: Run, name: str) -> list[str]:
 
 
 def error_rows(run: Run, name: str) -> list[tuple[str, ...]]:
-    """Quantity, the reference's value, that of method ``name``, error, bar and verdict, of a, m, n, p and q, and of stresses."""
+    """Quantity, the reference's value, that of method ``name``, error, bar and verdict: a, m, n, p, q and stresses."""
     reference, result, comparison = run.results[run.reference or name], run.results[name], run.comparisons[name]
     rows: list[tuple[str, ...]] = []
     for key, meaning in _MEANING.items():
