@@ -1,7 +1,7 @@
 """One mesh, from its size to the zones found on it. Scaled as in :mod:`partialslip_fem.contact`."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -17,6 +17,7 @@ from partialslip_fem.contact import Half, press, relative_compliances
 from partialslip_fem.elasticity import Body, Indices, body
 from partialslip_fem.factor import Backend
 from partialslip_fem.farfield import half_plane
+from partialslip_fem.mortar import nodal_forces
 from partialslip_fem.recovery import traction
 from partialslip_meshes import block
 
@@ -36,7 +37,7 @@ class Part:
 @dataclass(frozen=True)
 class Problem:
     """What is to be solved, scaled: a gap, smooth but for its ``kinks``, and P = 1. Without a ``path`` of loads there
-    is no friction to solve. ``parts`` are the lower and the upper body; of mirror images the lower one alone."""
+    is no friction to solve; it begins with the tractions p and q of ``start``, if given. ``parts`` are the lower and the upper body; of mirror images the lower one alone."""
 
     gap: Callable[[Array], Array]
     kinks: tuple[float, ...]
@@ -46,6 +47,7 @@ class Problem:
     order: int
     far_field: Literal["half-plane", "box"]
     backend: Backend
+    start: tuple[PPoly, PPoly] | None = None
 
 
 @dataclass(frozen=True)
@@ -171,17 +173,22 @@ def _half(
 
 def _solve(problem: Problem, C: coupled.Relative, line: Body) -> tuple[Solution, History | None, Indices]:
     """Normal forces, the history of the tangential ones on the nodes in contact, and those nodes."""
-    gap = problem.gap(line.x)
-    if problem.path and C.xy is not None:
-        history, pressing = coupled.march(C, gap, line.x, problem.f, problem.path)
+    gap, path, pressed = problem.gap(line.x), problem.path, None
+    if path and problem.start:
+        pressed, before = (nodal_forces(line, traction) for traction in problem.start)
+        path = replace(path, before=before)
+    if path and C.xy is not None:
+        history, pressing = coupled.march(C, gap, line.x, problem.f, path, pressed)
         nodes = np.flatnonzero(history.bound > 0)
         return pressing, history.of(nodes), nodes
     pressing = press(C.yy, gap, 1.0)
     nodes = np.flatnonzero(pressing.x > 0)
-    if not problem.path:
+    if not path:
         return pressing, None, nodes
+    if path.before is not None:
+        path = replace(path, before=path.before[nodes])
     inner = C.xx[np.ix_(nodes, nodes)]
-    return pressing, march(inner, line.x[nodes], problem.f * pressing.x[nodes], problem.path), nodes
+    return pressing, march(inner, line.x[nodes], problem.f * pressing.x[nodes], path), nodes
 
 
 def _stick_zone(line: Body, nodes: Indices, history: History) -> Zone:

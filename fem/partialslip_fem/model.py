@@ -11,6 +11,7 @@ from partialslip.errors import InputError
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Result, Slip, Traction
 from partialslip.scene import Scene
+from partialslip.state import State
 from partialslip_fem.adapt import Adapted, adapt
 from partialslip_fem.displacements import solve_back
 from partialslip_fem.factor import default_backend
@@ -23,7 +24,9 @@ _LARGEST_NU = 0.4999999
 
 
 @one_thread
-def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None) -> Result:
+def solve(
+    scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None, start: State | None = None
+) -> Result:
     """Solve ``scene`` by finite elements: two blocks, Lagrange multipliers, Coulomb friction.
 
     Parameters
@@ -32,6 +35,8 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
         The scene, and which effects it calls for.
     progress : callable, optional
         Called with one line after each mesh.
+    start : State, optional
+        What the path of the loads begins with, instead of bodies without shear.
 
     Raises
     ------
@@ -49,12 +54,12 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
             )
     clock = Clock()
     width = scene.fem.width or _WIDTH[scene.fem.far_field]
-    problem = _scaled(scene, plan)
+    problem = _scaled(scene, plan, start)
     adapted = adapt(problem, scene.fem.accuracy, width, clock, progress)
     return _result(scene, plan, problem, adapted, clock)
 
 
-def _scaled(scene: Scene, plan: Plan) -> Problem:
+def _scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
     """The scene in lengths of sqrt(A R P), forces of P, displacements of A P."""
     P, A, L = scene.P, scene.material.A, scene.length
     bodies = (("lower", scene.bodies.lower, scene.fem.lower_size), ("upper", scene.bodies.upper, 1.0))
@@ -66,11 +71,30 @@ def _scaled(scene: Scene, plan: Plan) -> Problem:
         gap=lambda x: scene.profile.gap_at(x * L) / (A * P),
         kinks=tuple(kink / L for kink in scene.profile.kinks),
         f=scene.friction.f,
-        path=load_path(scene, plan),
+        path=load_path(scene, plan, start),
         parts=parts[:1] if mirrored(scene) else parts,
         order=scene.fem.order,
         far_field=scene.fem.far_field,
         backend=scene.fem.factor or default_backend(),
+        start=tuple(_rescaled(q, L / P, 1 / L) for q in (start.p, start.q)) if start else None,
+    )
+
+
+def _rescaled(polynomials: PPoly, value: float, length: float) -> PPoly:
+    """In units that are so many times smaller."""
+    powers = np.arange(len(polynomials.c) - 1, -1, -1)[:, None]
+    return PPoly(polynomials.c * value / length**powers, polynomials.x * length)
+
+
+def _state(scene: Scene, level: Level) -> State | None:
+    """What the path of the loads ends with."""
+    if not level.history:
+        return None
+    shear, bound = level.history.end
+    p, q = (level.shear(forces) for forces in (bound / scene.friction.f, shear))
+    L = scene.length
+    return State(
+        scene.P, scene.material.A, *scene.load.points[-1], *(_rescaled(each, scene.P / L, L) for each in (p, q))
     )
 
 
@@ -131,6 +155,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
             "contact_nodes": len(level.nodes),
             "meshes": adapted.meshes,
             "factorizations": adapted.meshes * len(level.halves),
+            "cycles": history.cycles if history else 0,
             "load_steps": history.load_steps if history else 0,
             "iterations": adapted.iterations,
         },
@@ -138,6 +163,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         estimate=adapted.errors,
         notes=found.notes + doubts(certified, adapted.errors, scene.fem.accuracy),
         bodies=tuple(deformed(body, L, unit, stress) for body in moved),
+        state=_state(scene, level),
         surface=along_surfaces(moved, level.contact_ends, L, stress) if moved else None,
     )
 

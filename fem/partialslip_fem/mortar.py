@@ -3,9 +3,11 @@
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
+from scipy.interpolate import PPoly
 
 from partialslip.result import Array
 from partialslip_fem.elasticity import Body, Indices
+from partialslip_fem.recovery import inside
 
 
 def transfer(onto: Body, other: Body) -> Array:
@@ -18,17 +20,31 @@ def transfer(onto: Body, other: Body) -> Array:
     return projected
 
 
+def nodal_forces(body: Body, traction: PPoly) -> Array:
+    """Nodal forces, (n,), of a traction given in pieces along the contact line, zero beyond them."""
+    order = (body.order + len(traction.c)) // 2 + 1
+    x, weights = _rule(np.clip(np.union1d(body.x[:: body.order], traction.x), body.x[0], body.x[-1]), order)
+    nodes, values = _shape_functions(body, x)
+    products = (weights * inside(traction, x))[:, None] * values
+    return np.bincount(nodes.ravel(), products.ravel(), len(body.x)).astype(float)
+
+
 def _products(onto: Body, other: Body) -> sp.csr_matrix:
     """Integrals of products of shape functions of both bodies, on the pieces between the vertices of either."""
     ends = np.unique(np.concatenate([onto.x[:: onto.order], other.x[:: other.order]]))
-    points, weights = np.polynomial.legendre.leggauss((onto.order + other.order) // 2 + 1)
-    half = np.diff(ends)[:, None] / 2
-    x = (ends[:-1, None] + half * (1 + points)).ravel()
+    x, weights = _rule(ends, (onto.order + other.order) // 2 + 1)
     rows, left = _shape_functions(onto, x)
     columns, right = _shape_functions(other, x)
-    values = (half * weights).ravel()[:, None, None] * left[:, :, None] * right[:, None, :]
+    values = weights[:, None, None] * left[:, :, None] * right[:, None, :]
     where = (np.broadcast_to(index, values.shape).ravel() for index in (rows[:, :, None], columns[:, None, :]))
     return sp.coo_array((values.ravel(), tuple(where)), (len(onto.x), len(other.x))).tocsr()
+
+
+def _rule(ends: Array, count: int) -> tuple[Array, Array]:
+    """Points and weights of Gauss's rule on every piece."""
+    points, weights = np.polynomial.legendre.leggauss(count)
+    half = np.diff(ends)[:, None] / 2
+    return (ends[:-1, None] + half * (1 + points)).ravel(), (half * weights).ravel()
 
 
 def _shape_functions(body: Body, x: Array) -> tuple[Indices, Array]:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from partialslip import __version__
 from partialslip.errors import InputError, PartialslipError
 from partialslip.reading import load_scene, shipped_scenes
-from partialslip.run import METHODS, run
+from partialslip.run import METHODS, Run, run
+from partialslip.state import State, load_state
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -68,6 +69,10 @@ def _parser() -> argparse.ArgumentParser:
                       help="of a, m and n, as a fraction of a; short for --set fem.accuracy=FRACTION")  # fmt: skip
     runs.add_argument("--fields", action="store_true",
                       help="also stresses: compared, and written to surface.csv, bodies.vtu (and mesh.msh)")  # fmt: skip
+    runs.add_argument("--start", metavar="FILE",
+                      help="begin with the state that FILE holds, instead of without shear")  # fmt: skip
+    runs.add_argument("--save", metavar="FILE",
+                      help="write the state that the path ends with to FILE, .npz (of fem, else of march)")  # fmt: skip
     runs.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME)")
     runs.add_argument("--json", action="store_true", help="print results.json and nothing else; files only with --out")
     runs.set_defaults(command=_run)
@@ -103,18 +108,26 @@ def _run(options: argparse.Namespace) -> int:
     if options.fields and methods and "fem" not in methods:
         raise InputError("--fields: needs the method fem")
     scene = load_scene(options.scene, overrides)
+    start = load_state(options.start) if options.start is not None else None
 
     from rich.console import Console
 
-    from partialslip.report import print_run, record, write_run
+    from partialslip.report import print_run, record, write_files, write_run
 
     messages = Console(stderr=True, highlight=False)
     with messages.status(f"{scene.name} ...") as status:
         outcome = run(
-            scene, methods, subsurface=options.fields, progress=lambda line: status.update(f"{scene.name}: {line}")
+            scene,
+            methods,
+            subsurface=options.fields,
+            progress=lambda line: status.update(f"{scene.name}: {line}"),
+            start=start,
         )
         folder = Path(options.out) if options.out else None if options.json else Path("results") / scene.name
         files = write_run(outcome, folder) if folder else []
+        if options.save is not None:
+            save = Path(options.save)
+            files += write_files(save.parent, {save.name: _state(outcome).save})
     if options.json:
         print(json.dumps(record(outcome), indent=1, allow_nan=False))
     else:
@@ -122,6 +135,14 @@ def _run(options: argparse.Namespace) -> int:
         print_run(outcome, console)
         _print_written(files, console)
     return 0 if outcome.passed else 1
+
+
+def _state(outcome: Run) -> State:
+    """The one to save."""
+    for name in ("fem", "march"):
+        if name in outcome.results and (state := outcome.results[name].state):
+            return state
+    raise InputError("--save: no method has followed a path of loads with friction; take march or fem")
 
 
 def _map(options: argparse.Namespace) -> int:

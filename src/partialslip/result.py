@@ -10,6 +10,8 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from partialslip.state import State
+
 try:
     import resource
 except ImportError:  # Windows
@@ -170,6 +172,7 @@ class Result:
     estimate: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     bodies: tuple[DeformedBody, ...] = ()
+    state: State | None = None
     surface: SurfaceStress | None = None
     stress_at: Callable[[Array, Array], Array] | None = None
 

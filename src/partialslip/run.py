@@ -8,6 +8,7 @@ from partialslip.errors import InputError
 from partialslip.plan import Plan, plan
 from partialslip.result import Result
 from partialslip.scene import Scene
+from partialslip.state import State
 
 METHODS = ("exact", "march", "fem")
 Progress = Callable[[str], None]
@@ -52,7 +53,12 @@ def default_methods(scene: Scene) -> tuple[str, ...]:
 
 
 def run(
-    scene: Scene, methods: Iterable[str] | None = None, *, subsurface: bool = False, progress: Progress = lambda _: None
+    scene: Scene,
+    methods: Iterable[str] | None = None,
+    *,
+    subsurface: bool = False,
+    progress: Progress = lambda _: None,
+    start: State | None = None,
 ) -> Run:
     """Solve ``scene`` by each of ``methods`` ("exact", "march", "fem") and compare.
 
@@ -65,17 +71,23 @@ def run(
         Whether to solve for what is inside the bodies, too: displacements (finite elements), stresses (exact).
     progress : callable
         Called with a line of text now and then.
+    start : State, optional
+        What the path of the loads begins with (:attr:`Result.state`, :func:`partialslip.load_state`); otherwise bodies
+        without shear.
 
     Raises
     ------
     InputError
-        If a method is unknown, or the exact one is asked for loads out of phase or bodies that are not similar.
+        If a method is unknown, ``start`` is of another P or other materials, or the exact method is asked for loads
+        out of phase or bodies that are not similar.
     MissingLibraryError
         If finite elements are asked for and gmsh, or a system library that it needs, is not there.
     """
+    if start:
+        start.check(scene)
     effects = plan(scene, subsurface=subsurface)
     chosen = dict.fromkeys(default_methods(scene) if methods is None else methods)
-    results = {name: _method(name)(scene, effects, _told_by(name, progress)) for name in chosen}
+    results = {name: _method(name)(scene, effects, _told_by(name, progress), start) for name in chosen}
     outcome = Run(scene, effects, results, {})
     for name, result in results.items():
         if outcome.reference and name != outcome.reference:
@@ -90,7 +102,7 @@ def _told_by(name: str, progress: Progress) -> Progress:
     return lambda line: progress(f"{name}: {line}")
 
 
-def _method(name: str) -> Callable[[Scene, Plan, Progress], Result]:
+def _method(name: str) -> Callable[[Scene, Plan, Progress, State | None], Result]:
     """A method by its name, imported now: finite elements bring much along."""
     if name == "exact":
         from partialslip.halfplane.method import solve as solve_exactly

@@ -14,7 +14,7 @@ import numpy.typing as npt
 import scipy.linalg as la
 
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
-from partialslip.condensed.friction import History, Path, at_rest, follow
+from partialslip.condensed.friction import History, Path, follow, resting
 from partialslip.result import Array
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
@@ -121,7 +121,9 @@ class _Step:
         return p, q, opening, rest, scale
 
 
-def march(C: Relative, gap: Array, x: Array, f: float, path: Path) -> tuple[History, Solution]:
+def march(
+    C: Relative, gap: Array, x: Array, f: float, path: Path, pressed: Array | None = None
+) -> tuple[History, Solution]:
     """Press the bodies together and go along the path; the history, and the normal forces at load point 2 with the
     residuals of all steps.
 
@@ -135,9 +137,11 @@ def march(C: Relative, gap: Array, x: Array, f: float, path: Path) -> tuple[Hist
     f : float
         Coefficient of friction.
     path : Path
+    pressed : (n,) array, optional
+        Normal forces where the path does not begin with bodies apart.
     """
     xy = C.xy if C.xy is not None else 0 * C.xx
-    done = [(at_rest(len(x)), at_rest(len(x)))]
+    done = [(resting(0 * x if pressed is None else pressed), resting(0 * x if path.before is None else path.before))]
     cycle = len(path.cycle) * path.substeps
 
     def advance(before: Solution, Q: float, stretch: float, P: float = 1.0) -> tuple[Solution, Array]:
@@ -148,7 +152,7 @@ def march(C: Relative, gap: Array, x: Array, f: float, path: Path) -> tuple[Hist
         return sheared, f * pressed.x
 
     q = done[0][1]
-    for P in np.linspace(0, 1, path.substeps + 1)[1:].tolist():
+    for P in np.linspace(0, 1, path.substeps + 1)[1:].tolist() if pressed is None else ():
         q, _ = advance(q, 0.0, 0.0, P)
     history = follow(path, advance, q)
     last, _ = done[-cycle:][(path.ends[1] + 1) * path.substeps - 1]

@@ -3,9 +3,9 @@
 Scaled: lengths by sqrt(A R P), forces by P and displacements by A P, so that nothing depends on units.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,9 @@ from partialslip.condensed.zones import Zone
 from partialslip.plan import Plan
 from partialslip.result import Array, Regime
 from partialslip.scene import Scene
+from partialslip.state import State
 
+_REPEATS = 1e-13  # change of a node's q in a cycle, in the sum of |q|, that is rounding
 _STEADY = 1e-6  # change of q in a cycle, in f p0, that counts as none
 _RATCHETS = 1e-3  # net slip of a cycle, in the slip of half a cycle, that counts where q has settled
 
@@ -24,7 +26,8 @@ _RATCHETS = 1e-3  # net slip of a cycle, in the slip of half a cycle, that count
 class Path:
     """Where the loads go: (Q, relative strain of the surfaces due to bulk tension) at the points of a cycle, scaled.
 
-    ``ends`` are the indices of load points 1 and 2, the extremes of the cycle.
+    ``ends`` are the indices of load points 1 and 2, the extremes of the cycle. The path begins at ``begin``, with the
+    tangential forces ``before`` (n,); without those there are none.
     """
 
     cycle: tuple[tuple[float, float], ...]
@@ -32,11 +35,8 @@ class Path:
     in_phase: bool
     cycles: int
     substeps: int
-
-    @property
-    def loads(self) -> tuple[tuple[float, float], ...]:
-        """The load points in turn: the last one, and then the cycle again and again."""
-        return (self.cycle[-1], *(self.cycle * self.cycles))
+    begin: tuple[float, float] = (0.0, 0.0)
+    before: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -60,6 +60,8 @@ class History:
         What the last cycle has added to the slip: in a steady state nothing.
     dissipated : float
         Work against friction over the last cycle.
+    end : two (n,) arrays
+        Tangential forces, and f times the normal forces, at the end of the path.
     """
 
     path: Path
@@ -71,17 +73,17 @@ class History:
     slip: Array
     net_slip: Array
     dissipated: float
+    end: tuple[Array, Array]
 
     def of(self, nodes: npt.NDArray[np.int64]) -> "History":
         """That of some of the nodes."""
         points = [
             replace(step, x=step.x[nodes], rest=step.rest[nodes], residual=step.residual[nodes]) for step in self.points
         ]
-        (q1, q2), (bound1, bound2) = self.at_ends, self.bounds
-        arrays = {key: getattr(self, key)[nodes] for key in ("q1", "q2", "slip", "net_slip")}
-        return replace(
-            self, points=points, at_ends=(q1[nodes], q2[nodes]), bounds=(bound1[nodes], bound2[nodes]), **arrays
-        )
+        fields: dict[str, Any] = {key: getattr(self, key)[nodes] for key in ("q1", "q2", "slip", "net_slip")} | {
+            key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "bounds", "end")
+        }
+        return replace(self, points=points, **fields)
 
     @property
     def bound(self) -> Array:
@@ -94,6 +96,11 @@ class History:
         """q2 - q1."""
         result: Array = self.q2 - self.q1
         return result
+
+    @property
+    def cycles(self) -> int:
+        """Cycles followed."""
+        return len(self.points) // len(self.path.cycle)
 
     @property
     def load_steps(self) -> int:
@@ -115,14 +122,15 @@ class Verdict(NamedTuple):
     notes: tuple[str, ...]
 
 
-def load_path(scene: Scene, plan: Plan) -> Path | None:
-    """The path of the loads, scaled; None where there is no friction to solve."""
+def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | None:
+    """The path of the loads, from ``start`` if there is one, scaled; None where there is no friction to solve."""
     if not plan.needs("friction") or slides(scene):
         return None
     P, L, load = scene.P, scene.length, scene.load
     of_lower = scene.material.bodies[0].A / scene.material.A
-    cycle = tuple((Q / P, of_lower * sigma * L / (4 * P)) for Q, sigma in load.points)
-    return Path(cycle, load.ends, load.in_phase, load.cycles, load.steps)
+    begins = (start.Q, start.sigma) if start else (0.0, 0.0)
+    begin, *cycle = ((Q / P, of_lower * sigma * L / (4 * P)) for Q, sigma in (begins, *load.points))
+    return Path(tuple(cycle), load.ends, load.in_phase, load.cycles, load.steps, begin)
 
 
 def slides(scene: Scene) -> bool:
@@ -151,64 +159,76 @@ def march(tangential: Array, x: Array, bound: Array, path: Path) -> History:
         free = tangential @ before.x + stretch * x
         return solve_bounded(tangential, free, -bound, bound, Q), bound
 
-    return follow(path, advance, at_rest(len(x)))
+    return follow(path, advance, resting(0 * x if path.before is None else path.before))
 
 
 Advance = Callable[[Solution, float, float], tuple[Solution, Array]]
 
 
-def at_rest(count: int) -> Solution:
-    """No tangential forces."""
-    zero = np.zeros(count)
-    return Solution(zero, zero, zero, 0.0, 0)
+def resting(forces: Array) -> Solution:
+    """A solution that is only its tangential ``forces`` (n,)."""
+    zero = 0 * forces
+    return Solution(forces, zero, zero, 0.0, 0)
 
 
 def follow(path: Path, advance: Advance, before: Solution) -> History:
-    """Go along the path, step by step.
+    """Go along the path, step by step: to its last load point, and then cycle after cycle, until one has changed
+    nothing (what comes then is that cycle again) or all of them are done.
 
     ``advance`` takes the solution before a step, Q after it and the increment of the free relative strain to the
     solution after it, whose ``rest`` is the slip, turned round; and f times the normal forces after it.
     """
-    points: list[Solution] = []
-    load_before, zero = np.zeros(2), 0 * before.x
-    slip, dissipated, least, largest = zero, 0.0, np.inf + zero, -np.inf + zero
-    slips: list[Array] = []
-    bounds: list[Array] = []
-    for number, load in enumerate(path.loads):
-        in_last_cycle = number >= len(path.loads) - len(path.cycle)
-        way = []
-        for Q, strain in np.linspace(load_before, load, path.substeps + 1)[1:].tolist():
-            before, bound = advance(before, Q, strain - load_before[1])
-            way.append(before)
-            load_before = np.array([Q, strain])
-            if in_last_cycle:
-                slip = slip - before.rest
-                dissipated -= float(before.x @ before.rest)
-                least, largest = np.minimum(least, before.x), np.maximum(largest, before.x)
-        slips.append(slip)
-        bounds.append(bound)
-        points.append(
-            Solution(
-                x=before.x,
-                rest=before.rest,
-                residual=np.max([step.residual for step in way], axis=0),
-                imbalance=max(step.imbalance for step in way),
-                iterations=sum(step.iterations for step in way),
-            )
-        )
-    first, second = (end - len(path.cycle) for end in path.ends)
-    if path.in_phase:
-        least, largest = points[first].x, points[second].x
+    went, load = _go(path, advance, before, np.array(path.begin), path.cycle[-1:])
+    points = [_certified(went[0])]
+    for _ in range(path.cycles):
+        went, load = _go(path, advance, points[-1], load, path.cycle)
+        points += [_certified(way) for way in went]
+        if np.abs(points[-1].x - points[-1 - len(went)].x).max() <= _REPEATS * np.abs(points[-1].x).sum():
+            break
+    steps = [step for way in went for step, _ in way]
+    ends = [way[-1] for way in went]
+    slips = np.cumsum([sum(-step.rest for step, _ in way) for way in went], axis=0)
+    (q1, bound1), (q2, bound2) = ((ends[end][0].x, ends[end][1]) for end in path.ends)
+    forces = np.array([step.x for step in steps])
     return History(
         path=path,
         points=points,
-        at_ends=(points[first].x, points[second].x),
-        q1=least,
-        q2=largest,
-        bounds=(bounds[first], bounds[second]),
-        slip=slips[second] - slips[first],
-        net_slip=slip,
-        dissipated=dissipated,
+        at_ends=(q1, q2),
+        q1=q1 if path.in_phase else forces.min(axis=0),
+        q2=q2 if path.in_phase else forces.max(axis=0),
+        bounds=(bound1, bound2),
+        slip=slips[path.ends[1]] - slips[path.ends[0]],
+        net_slip=slips[-1],
+        dissipated=-sum(float(step.x @ step.rest) for step in steps),
+        end=(ends[-1][0].x, ends[-1][1]),
+    )
+
+
+_Way = list[tuple[Solution, Array]]
+
+
+def _go(
+    path: Path, advance: Advance, before: Solution, load: Array, points: Sequence[tuple[float, float]]
+) -> tuple[list[_Way], Array]:
+    """From ``load`` to each of ``points`` in turn: the steps on the way to each, and where that ends."""
+    ways: list[_Way] = []
+    for point in points:
+        ways.append([])
+        for Q, strain in np.linspace(load, point, path.substeps + 1)[1:].tolist():
+            before, bound = advance(before, Q, strain - load[1])
+            ways[-1].append((before, bound))
+            load = np.array([Q, strain])
+    return ways, load
+
+
+def _certified(way: _Way) -> Solution:
+    """The last solution of a way, with the residuals of all of it."""
+    steps = [step for step, _ in way]
+    return replace(
+        steps[-1],
+        residual=np.max([step.residual for step in steps], axis=0),
+        imbalance=max(step.imbalance for step in steps),
+        iterations=sum(step.iterations for step in steps),
     )
 
 

@@ -5,9 +5,10 @@ ends of the contact and of the stick zone that it finds itself; each step is a c
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.interpolate import PPoly
 
 from partialslip.condensed.friction import History, Path, certificate, doubts, judge, load_path, march
 from partialslip.condensed.threads import one_thread
@@ -17,6 +18,7 @@ from partialslip.halfplane.contact import Contact, contact
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Result, Slip, Traction
 from partialslip.scene import Scene
+from partialslip.state import State
 
 # Errors of m and n fall at least fivefold from mesh to mesh, so that a quarter of the last change bounds the rest.
 _MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # cell size at the ends (in a), and growth
@@ -33,7 +35,9 @@ class _Level:
 
 
 @one_thread
-def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None) -> Result:
+def solve(
+    scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None, start: State | None = None
+) -> Result:
     """Solve ``scene`` by marching through its load history, as two elastically similar half-planes.
 
     Parameters
@@ -42,10 +46,12 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
         The scene, and which effects it calls for.
     progress : callable, optional
         Called with one line after each mesh.
+    start : State, optional
+        What the path of the loads begins with, instead of bodies without shear.
     """
     clock = Clock()
     pressed = contact(scene)
-    path = load_path(scene, plan)
+    path = load_path(scene, plan, start)
     ends = [-1.0, 1.0, *(kink / pressed.a for kink in scene.profile.kinks if abs(kink) < pressed.a)]
     level: _Level | None = None
     errors: dict[str, float] = {}
@@ -53,7 +59,7 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
     for size, growth in _MESHES:
         found = [level.stick.left, level.stick.right] if level and level.stick else []
         points = np.sort(apart([*ends, *found], size))
-        before, level = level, _solve_level(scene, pressed, path, graded(points, size, growth), clock)
+        before, level = level, _solve_level(scene, pressed, path, start, graded(points, size, growth), clock)
         meshes, iterations = meshes + 1, iterations + (level.history.iterations if level.history else 0)
         if level.stick is None:
             break
@@ -67,12 +73,18 @@ def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: 
     return _result(scene, pressed, level, errors, {"meshes": meshes, "iterations": iterations}, clock)
 
 
-def _solve_level(scene: Scene, pressed: Contact, path: Path | None, vertices: Array, clock: Clock) -> _Level:
+def _solve_level(
+    scene: Scene, pressed: Contact, path: Path | None, start: State | None, vertices: Array, clock: Clock
+) -> _Level:
     normal = forces(pressed.shape, vertices)
     if not path:
         return _Level(vertices, normal, None, None)
     x = (vertices[1:] + vertices[:-1]) / 2
     bound = scene.friction.f * normal
+    if start:
+        resultant, known = start.q.antiderivative(), start.q.x
+        before = np.diff(resultant(np.clip(vertices * pressed.a, known[0], known[-1]))) / scene.P
+        path = replace(path, before=before)
     with clock.phase("compliance"):
         tangential = compliance(vertices / 2)  # a change of length is a rigid shift, which is free
     with clock.phase("contact"):
@@ -114,10 +126,25 @@ def _result(
             cells=level.vertices * a,
         ),
         cost=clock.cost(),
+        state=_state(scene, level, a) if history else None,
         slip=Slip(x * a, history.slip * unit, history.dissipated * unit * P) if history else None,
         settings={"model": "two half-planes, exact pressure, cells of constant shear", "accuracy": scene.fem.accuracy},
-        counts={"cells": len(x), "load_steps": history.load_steps if history else 0, **counts},
+        counts={
+            "cells": len(x),
+            "cycles": history.cycles if history else 0,
+            "load_steps": history.load_steps if history else 0,
+            **counts,
+        },
         certificate=certified,
         estimate=errors,
         notes=found.notes + doubts(certified, errors, scene.fem.accuracy),
     )
+
+
+def _state(scene: Scene, level: _Level, a: float) -> State:
+    """What the path of the loads ends with."""
+    assert level.history
+    shear, bound = level.history.end
+    stress = scene.P / (a * np.diff(level.vertices))
+    p, q = (PPoly((stress * forces)[None], a * level.vertices) for forces in (bound / scene.friction.f, shear))
+    return State(scene.P, scene.material.A, *scene.load.points[-1], p, q)

@@ -13,22 +13,25 @@ from partialslip.halfplane.traction import half_range, mean_load_bound
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Regime, Result, Slip, SurfaceStress, Traction
 from partialslip.scene import Scene
+from partialslip.state import State
 
 _POINTS_PER_ZONE = 101
 _BEYOND = 4.0  # surface stresses are reported up to so many half-widths
 
 
-def solve(scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None) -> Result:
+def solve(
+    scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None, start: State | None = None
+) -> Result:
     """Solve ``scene`` exactly, as two elastically similar half-planes in the steady state; SI units.
 
-    It is done before there is any ``progress`` to tell.
+    It is done before there is any ``progress`` to tell; and a steady state does not remember its ``start``.
 
     Raises
     ------
     InputError
         If Q and sigma are out of phase: there is no closed form.
     """
-    del progress
+    del progress, start
     clock = Clock()
     f, load = scene.friction.f, scene.load
     if not load.in_phase:

@@ -1,5 +1,6 @@
 """What people see of a run: the terminal table, the files, the traction plot and the page; and the stick-zone map."""
 
+from partialslip.report.files import write_files as write_files
 from partialslip.report.files import write_run as write_run
 from partialslip.report.map import place as place
 from partialslip.report.map import write_map as write_map

@@ -1,0 +1,96 @@
+"""Saved states: to stop in the middle of a path and go on is not to stop."""
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip import InputError, load_scene, load_state, run
+from partialslip.cli import main
+
+MEAN = ("load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]", "fem.accuracy=1e-3")
+
+
+def solved(method, cycles, start=None, extra=()):
+    scene = load_scene("hertz-large-tension", [*MEAN, f"load.cycles={cycles}", *extra])
+    return run(scene, [method], start=start).results[method]
+
+
+@pytest.mark.parametrize(("method", "off"), [("fem", 1e-7), ("march", 1e-6)])
+def test_going_on_is_not_having_stopped(method, off, tmp_path):
+    """But for what the meshes differ by: each run makes its own."""
+    whole, first = solved(method, 5), solved(method, 2)
+    first.state.save(tmp_path / "state.npz")
+    rest = solved(method, 3, load_state(tmp_path / "state.npz"))
+    assert (rest.m, rest.n) == pytest.approx((whole.m, whole.n), abs=off * whole.a)
+    x = np.linspace(-0.9, 0.9, 19) * whole.a
+    q = [np.interp(x, result.traction.x, result.traction.q1) for result in (whole, rest)]
+    assert q[1] == pytest.approx(q[0], abs=1e-4 * whole.p0)
+    assert abs(first.m - whole.m) > 1e-6 * whole.a  # it does matter where one stops
+
+
+def test_coupled_bodies_go_on():
+    """Their pressure is remembered, too: bodies that are apart at first would be pressed together once more."""
+    extra = ("material.upper.E=720e9", "material.upper.nu=0.3", "fem.accuracy=1e-2")
+    whole, first = solved("fem", 3, extra=extra), solved("fem", 1, extra=extra)
+    rest = solved("fem", 2, first.state, extra)
+    assert (rest.a, rest.m, rest.n) == pytest.approx((whole.a, whole.m, whole.n), abs=2e-3 * whole.a)
+    assert rest.counts["load_steps"] == 5
+
+
+def test_a_state_of_one_method_starts_another():
+    start = solved("march", 2).state
+    assert solved("fem", 3, start).m == pytest.approx(solved("fem", 5).m, rel=1e-4)
+
+
+def test_steady_cycles_are_not_repeated():
+    scene = load_scene("hertz-large-tension", ["load.cycles=200", "fem.accuracy=1e-2"])
+    for result in run(scene, ["march", "fem"]).results.values():
+        assert result.counts["cycles"] == 1
+        assert result.counts["load_steps"] == 3
+
+
+def test_without_the_start_it_is_another_history():
+    """Deliberate fault: the tractions forgotten, the loads kept."""
+    from dataclasses import replace
+
+    start = solved("march", 2).state
+    forgotten = replace(start, q=type(start.q)(0 * start.q.c, start.q.x))
+    assert abs(solved("march", 1, forgotten).m - solved("march", 3).m) > 1e-4 * solved("march", 3).a
+
+
+def test_another_load_or_material_is_refused():
+    start = solved("march", 1).state
+    for other, what in (("load.p0=401e6", "P = "), ("material.E=73e9", "P = ")):
+        with pytest.raises(InputError, match=rf"^state: is of {what}"):
+            run(load_scene("hertz-large-tension", [other]), ["march"], start=start)
+    P = start.P
+    harder = load_scene("fretting-aluminium", [f"load.P={P}", "load.Q=[-1e4, 1e4]", "material.E=73e9"])
+    with pytest.raises(InputError, match=r"^state: is of A = "):
+        run(harder, ["march"], start=start)
+
+
+def test_on_the_command_line(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    common = ["run", "hertz-large-tension", "--with", "march", "--set", "load.Q=[31415.9, 219911.5]"]
+    assert main([*common, "--save", "half.npz"]) == 0
+    assert "half.npz" in capsys.readouterr().out
+    assert main([*common, "--start", "half.npz", "--out", "rest"]) == 0
+    assert (tmp_path / "rest" / "results.json").exists()
+
+
+@pytest.mark.parametrize("content", [b"", b"PK", b"not a state", None])
+def test_broken_files(tmp_path, capsys, content):
+    path = tmp_path / "broken.npz"
+    if content is None:
+        np.savez(path, loads=np.ones(4), cells=np.array([0.0, 1.0]), p=np.ones((1, 3)), q=np.ones((1, 1)))
+    else:
+        path.write_bytes(content)
+    with pytest.raises(InputError, match="not a state that partialslip has saved"):
+        load_state(path)
+    assert main(["run", "hertz-shear", "--with", "march", "--start", str(path)]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_missing_file(tmp_path):
+    with pytest.raises(InputError, match="cannot be read"):
+        partialslip.load_state(tmp_path / "none.npz")
