@@ -71,6 +71,24 @@ def test_unbounded_is_a_linear_solve():
     assert solution.iterations <= 3
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_sides_and_a_start_from_them(seed):
+    """Each side is held by its bound, a start from the answer is the answer at once, and any start ends there."""
+    random = np.random.default_rng([1, seed])
+    n = int(random.integers(1, 80))
+    C, g, bound = compliance(n, random), random.standard_normal(n), random.random(n)
+    total = random.uniform(-1, 1) * 0.99 * bound.sum()
+    cold = check(C, g, -bound, bound, total)
+    assert np.array_equal(cold.sides[cold.sides != 0], np.sign(cold.x)[cold.sides != 0])
+    assert (np.abs(cold.x) == bound)[cold.sides != 0].all()
+    again = solve_bounded(C, g, -bound, bound, total, cold.sides)
+    assert again.iterations <= 2 <= cold.iterations
+    anywhere = solve_bounded(C, g, -bound, bound, total, random.integers(-1, 2, n).astype(np.int8))
+    for other in (again, anywhere):
+        assert other.x == pytest.approx(cold.x, abs=1e-11)
+        assert np.array_equal(other.sides, cold.sides)
+
+
 @pytest.mark.parametrize("scale", [1e-12, 1e12])
 def test_independent_of_units(scale):
     random = np.random.default_rng(11)

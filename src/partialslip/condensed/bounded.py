@@ -8,6 +8,8 @@ import scipy.linalg as la
 
 from partialslip.result import Array
 
+Sides = npt.NDArray[np.int8]
+
 _EPS = float(np.finfo(float).eps)
 
 
@@ -15,9 +17,10 @@ _EPS = float(np.finfo(float).eps)
 class Solution:
     """Multipliers ``x`` and what certifies them.
 
-    ``rest`` (n,) is C x - g - shift: zero between the bounds, what a bound holds back elsewhere. ``residual`` (n,) is
-    the distance of each multiplier from its augmented projection, ``imbalance`` that of the sum from the total, both
-    in units of x; ``iterations`` counts the faces solved.
+    ``rest`` (n,) is C x - g - shift: zero between the bounds, what a bound holds back elsewhere, at the lower one
+    never negative and at the upper one never positive. ``residual`` (n,) is the distance of each multiplier from its
+    augmented projection, ``imbalance`` that of the sum from the total, both in units of x; ``iterations`` counts the
+    faces solved.
     """
 
     x: Array
@@ -26,8 +29,13 @@ class Solution:
     imbalance: float
     iterations: int
 
+    @property
+    def sides(self) -> Sides:
+        """Which bound holds each member back, (n,): -1 the lower, 0 neither, 1 the upper."""
+        return (-np.sign(self.rest)).astype(np.int8)
 
-def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float) -> Solution:
+
+def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, start: Sides | None = None) -> Solution:
     """Minimise x.C x/2 - g.x over lower <= x <= upper with sum(x) = total.
 
     The multiplier of the sum is a rigid shift. With it the conditions read, for r = C x - g - shift and any
@@ -43,9 +51,11 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float) 
         ``upper`` may be infinite.
     total : float
         Between sum(lower) and sum(upper).
+    start : (n,) int8 array, optional
+        Sides to begin with, those of a problem like this one (:attr:`Solution.sides`); otherwise all are free.
     """
-    pivoting = _BlockPivoting(C, g, lower, upper)
-    low, high, shift = -np.inf, np.inf, pivoting.shift_if_all_free(total)
+    pivoting = _BlockPivoting(C, g, lower, upper, start)
+    low, high, shift = -np.inf, np.inf, pivoting.first_shift(total)
     while True:
         x, r, slope = pivoting.solve(shift)
         excess = float(x.sum() - total)
@@ -61,7 +71,7 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float) 
         shift = following
     x = np.clip(x, lower, upper)  # but for rounding it is within
     residual = np.abs(x - np.clip(x - r / np.diag(C), lower, upper))
-    rest = np.where((x > lower) & (x < upper), 0.0, r)
+    rest = np.clip(r, np.where(x < upper, 0.0, -np.inf), np.where(x > lower, 0.0, np.inf))
     return Solution(x, rest, residual, abs(excess), pivoting.iterations)
 
 
@@ -75,15 +85,17 @@ class _BlockPivoting:
     conditions is in the solution's residual.
     """
 
-    def __init__(self, C: Array, g: Array, lower: Array, upper: Array) -> None:
+    def __init__(self, C: Array, g: Array, lower: Array, upper: Array, start: Sides | None) -> None:
         self._C, self._g, self._lower, self._upper = C, g, lower, upper
         self._diagonal = np.diag(C).copy()
         self._side = np.zeros(len(g), dtype=np.int8)  # -1 at the lower bound, 0 free, +1 at the upper
+        if start is not None and (start == 0).any():
+            self._side[:] = start
         self._factored: npt.NDArray[np.bool_] | None = None
         self.iterations = 0
 
-    def shift_if_all_free(self, total: float) -> float:
-        """The shift that gives the total without bounds: where to begin."""
+    def first_shift(self, total: float) -> float:
+        """The shift that gives the total with the sides to begin with."""
         at_zero, slope = self._face(0.0)
         return float((total - at_zero.sum()) / slope)
 
