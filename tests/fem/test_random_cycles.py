@@ -89,6 +89,7 @@ def cycle(random, kind):
         once = 2 * np.pi * np.arange(random.integers(3, 9))
         angle = once / len(once) + random.uniform(0, 6), once / len(once)
     Q = signs[2] * mean * (1 - Qf) + signs[0] * Qf * np.cos(angle[0])
+    Q *= min(1.0, (1 - 1e-12) / max(np.abs(Q).max(), 1e-300))  # short of sliding but for rounding
     return Q, signs[3] * sigma + signs[1] * sf / 2 * np.cos(angle[1])
 
 
