@@ -40,8 +40,9 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, 
 
     The multiplier of the sum is a rigid shift. With it the conditions read, for r = C x - g - shift and any
     rho > 0: x is the projection of the augmented multiplier x - rho r onto the bounds. At a given shift they are
-    solved by block pivoting, which ends for every positive definite C; sum(x) grows with the shift, piecewise
-    linearly, so that a bracketed Newton iteration ends at its root.
+    solved by block pivoting, which ends for every positive definite C. Their sum(x) grows with the shift, piecewise
+    linearly: a Newton step ends at the root or leaves its piece towards the root, so that the bracket shuts that piece
+    out, and there are finitely many.
 
     Parameters
     ----------
@@ -82,7 +83,8 @@ class _BlockPivoting:
     rounds, only the last of them does (Murty's rule), until it falls. That cannot cycle (Judice and Pires 1994)
     but by rounding, where a member sits exactly on its bound and neither side is right to the last digit: if a
     partition comes back, or 10 n rounds of that rule bring nothing, more counts as rounding. What is left of the
-    conditions is in the solution's residual.
+    conditions is in the solution's residual. It always ends: the number falls at most n times, and in between what
+    counts as rounding grows until all members are free and none can be told to be wrong.
     """
 
     def __init__(self, C: Array, g: Array, lower: Array, upper: Array, start: Sides | None) -> None:

@@ -6,10 +6,12 @@ function of x whose root is the end. Forces are far better than nodal values her
 last elements hardly touches them.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from partialslip.result import Array
 
@@ -38,7 +40,8 @@ def stick_zone(x: Array, bound: Array, change: Array, vertices: Array, cell_forc
     cell_forces : callable
         Takes forces of the nodes in contact to integrals over the cells.
     """
-    sticks = np.flatnonzero(2 * bound - np.abs(change) > _STICKS * bound)
+    room = (2 * bound - np.abs(change)) / bound
+    sticks = _around(int(np.argmax(room)), x, room > _STICKS, vertices)
     signs = (1 if change[0] > 0 else -1), (1 if change[-1] > 0 else -1)
     if len(sticks) == 0:  # a stick zone smaller than a cell: it is where the slip turns round
         turn = int(np.argmax(np.sign(change) != np.sign(change[0])))
@@ -47,6 +50,22 @@ def stick_zone(x: Array, bound: Array, change: Array, vertices: Array, cell_forc
     left = left_end(vertices, cell_forces(2 * bound - signs[0] * change), x[sticks])
     right = right_end(vertices, cell_forces(2 * bound - signs[1] * change), x[sticks])
     return Zone(left, max(right, left), signs)
+
+
+def _around(most: int, x: Array, sticks: npt.NDArray[np.bool_], vertices: Array) -> npt.NDArray[np.int64]:
+    """Nodes that stick around the one with the ``most`` room, up to the first cell on either side that slips.
+
+    The stick zone is one interval. Where there is hardly any room (close to sliding), what the elements cannot resolve
+    leaves a node here and there short of its bound, and they are not part of it.
+    """
+    before, after = (np.searchsorted(vertices, x, side) for side in ("left", "right"))  # a vertex is in two cells
+    slips = np.ones(len(vertices) + 1, dtype=bool)
+    slips[before[sticks]] = slips[after[sticks]] = False
+    slips[[0, -1]] = True  # there is nothing beyond the line
+    ends = np.flatnonzero(slips)
+    last = np.searchsorted(ends, after[most])
+    result: npt.NDArray[np.int64] = np.flatnonzero(sticks & (after > ends[last - 1]) & (before < ends[last]))
+    return result
 
 
 def apart(ends: list[float], size: float) -> list[float]:
@@ -68,7 +87,7 @@ def right_end(vertices: Array, forces: Array, inside: Array) -> float:
     forces : (c,) array
         Integral of the traction that vanishes at the end, over each cell.
     inside : (n,) array
-        Nodes inside the zone, ascending: the end is not far beyond the last one.
+        Nodes inside the zone, ascending: the end is less than a cell and its neighbour beyond the last one.
     """
     last = np.searchsorted(vertices, inside[-1])  # the first vertex at or beyond the last node
     x = vertices[:last][::-1]
@@ -80,7 +99,7 @@ def right_end(vertices: Array, forces: Array, inside: Array) -> float:
     near, far = inside[-1], vertices[min(last + 1, len(vertices) - 1)]
     if len(x) >= 3 and (force > 0).all():
         roots = _roots(x, force ** (2 / 3))
-        between = roots[(roots > x[0]) & (roots < far + (far - x[0]))]
+        between = roots[(roots > x[0]) & (roots < far)]
         if len(between):
             return float(between.min())
     return float((near + max(near, vertices[last])) / 2)
@@ -92,10 +111,16 @@ def left_end(vertices: Array, forces: Array, inside: Array) -> float:
 
 
 def _roots(x: Array, y: Array) -> Array:
-    """Real roots of the quadratic through (x, y), in the sense of relative least squares."""
+    """Real roots of the quadratic through (x, y), in the sense of relative least squares.
+
+    Without cancellation: y is all but linear where the zone ends like a square root.
+    """
     scale = x[0] - x[-1]
     t = (x - x[0]) / scale
-    polynomial = np.polynomial.polynomial
-    roots = polynomial.polyroots(polynomial.polyfit(t, y, 2, w=1 / y))
-    real: Array = x[0] + scale * roots.real[np.abs(roots.imag) < 1e-12]
-    return real
+    c, b, a = np.polynomial.polynomial.polyfit(t, y, 2, w=1 / y).tolist()
+    square = b**2 - 4 * a * c
+    q = -(b + math.copysign(math.sqrt(max(square, 0.0)), b)) / 2
+    if square < 0 or q == 0:
+        return np.empty(0)
+    roots: Array = x[0] + scale * np.array([c / q, q / a] if a else [c / q])
+    return roots

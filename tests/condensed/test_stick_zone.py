@@ -1,0 +1,66 @@
+"""The stick zone from tangential forces on functions known in closed form, and what must not be taken for it."""
+
+import numpy as np
+import pytest
+
+from partialslip.condensed import zones
+from partialslip.condensed.zones import right_end, stick_zone
+
+VERTICES = np.linspace(-1, 1, 81)
+X = (VERTICES[1:] + VERTICES[:-1]) / 2
+BOUND = np.full(len(X), 0.025)
+
+
+def room(left, right, depth=1.0):
+    """Integrals over the cells of ``depth`` sqrt((right - x)(x - left)): what 2 f p - |dq| leaves in a zone."""
+    centre, c = (left + right) / 2, (right - left) / 2
+    t = np.clip((VERTICES - centre) / c, -1, 1)
+    return np.diff(depth * c**2 / 2 * (t * np.sqrt(1 - t**2) + np.arcsin(t)))
+
+
+def read(room, signs=(1, 1)):
+    turn = np.where(X < 0, *signs)
+    return stick_zone(X, BOUND, turn * (2 * BOUND - room), VERTICES, lambda forces: forces)
+
+
+@pytest.mark.parametrize("depth", [1.0, 1e-3, 1e-7])
+@pytest.mark.parametrize(("left", "right"), [(-0.31, 0.52), (-0.9, -0.2), (0.013, 0.777)])
+def test_ends_are_found_however_little_room_there_is(left, right, depth):
+    zone = read(room(left, right, depth))
+    assert (zone.left, zone.right) == pytest.approx((left, right), abs=0.025 / 25)
+    assert zone.signs == (1, 1)
+
+
+@pytest.mark.parametrize("stray", [-0.9, 0.71, 0.9875])
+def test_a_node_short_of_its_bound_elsewhere_is_no_stick_zone(stray, monkeypatch):
+    """Deliberate fault: from the first to the last node that sticks, wherever they are."""
+    some = room(-0.31, 0.52, 1e-4)
+    some[np.abs(X - stray).argmin()] += 1e-8 * BOUND[0]
+    zone = read(some)
+    assert (zone.left, zone.right) == pytest.approx((-0.31, 0.52), abs=0.025 / 25)
+    monkeypatch.setattr(zones, "_around", lambda *args: np.flatnonzero(args[2]))
+    wrong = read(some)
+    assert max(abs(wrong.left + 0.31), abs(wrong.right - 0.52)) > 0.1
+
+
+def test_the_end_is_not_where_all_nodes_of_a_cell_slip():
+    """Room that does not fade like a square root: the root of its fit lies two cells beyond the last that sticks."""
+    vertices, nodes = np.array([0.0, 0.3, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1]), np.linspace(0, 0.79, 40)
+    beyond = np.where(vertices < 0.75, np.maximum(1.05 - vertices, 0) ** 1.5, 0)
+    assert 0.79 <= right_end(vertices, -np.diff(beyond), nodes) < 0.9
+    sharp = np.maximum(0.83 - vertices, 0) ** 1.5
+    assert right_end(vertices, -np.diff(sharp), nodes) == pytest.approx(0.83, abs=1e-9)
+
+
+def test_a_zone_smaller_than_a_cell_is_where_the_slip_turns_round():
+    zone = read(0 * X, signs=(-1, 1))
+    assert zone.left == zone.right == pytest.approx(0, abs=0.025)
+    assert zone.signs == (-1, 1)
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+def test_a_zone_at_the_end_of_the_line(side):
+    """The first mesh may be too short for the contact: what sticks at its end is not lost."""
+    zone = read(room(*sorted((side * 1.2, side * 0.4))))
+    assert side * (zone.right if side > 0 else zone.left) == pytest.approx(1, abs=0.05)
+    assert side * (zone.left if side > 0 else zone.right) == pytest.approx(0.4, abs=0.025 / 25)

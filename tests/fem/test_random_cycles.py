@@ -1,0 +1,258 @@
+"""Random cycles of load by finite elements: every load step converges, and its conditions hold on other grounds.
+
+A failure names the number that makes its scene again, by ``drawn``.
+"""
+
+import math
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip.condensed import friction
+from partialslip.condensed.bounded import Solution
+from partialslip.halfplane import contact
+from partialslip.scene import Material
+from partialslip_fem import adapt
+
+PROFILES = ("hertz", "flat-rounded", "tabulated")
+KINDS = ("any", "near-stuck", "near-sliding", "mean loads", "late", "transition", "no dQ", "no dsigma", "out of phase")
+CERTIFIED = 1e-10  # in f p0, and in f P
+OPTIMAL = 1e-13  # gap of a load step, in the size of what cancels in it
+FINEST = 1e-4  # in a: beyond it a zone that fades away asks for meshes of minutes, not for more of the load steps
+
+
+class Step(NamedTuple):
+    """A load step: C, g, lower, upper and total, and the answer."""
+
+    problem: tuple
+    solution: Solution
+
+
+def gap_of_table(random):
+    """A convex gap at 6 to 12 points: flat or curved in the middle, straight here and there."""
+    count = random.integers(6, 13)
+    x = np.concatenate([[0.0], np.cumsum(random.uniform(0.2, 1.0, count - 1))])
+    bends = random.exponential(1.0, count - 1) ** random.uniform(0.5, 3) * (random.random(count - 1) > 0.2)
+    bends[-1] += 0.1
+    return x, np.concatenate([[0.0], np.cumsum(np.cumsum(bends) * np.diff(x))]) * 10 ** random.uniform(-5, -1)
+
+
+def pressed(random, profile):
+    """A scene without tangential loads."""
+    length, stress = 10 ** random.uniform(-6, 3), 10 ** random.uniform(3, 12)
+    material = {"E": stress, "nu": random.uniform(-0.5, 0.499), "plane": str(random.choice(["strain", "stress"]))}
+    data = {"name": "random", "material": material, "friction": {"f": 10 ** random.uniform(-3, 1)}}
+    A, R = Material(**material).A, length * 10 ** random.uniform(0, 5)
+    if profile == "hertz":
+        return data | {"profile": {"kind": "hertz", "R": R}, "load": {"a": length}}
+    if profile == "flat-rounded":
+        flat = random.uniform(0.01, 0.95)
+        psi = math.acos(flat)
+        P = length**2 / (A * R) * (psi - math.sin(psi) * flat)
+        return data | {"profile": {"kind": "flat-rounded", "R": R, "b": flat * length}, "load": {"P": P}}
+    x, gap = gap_of_table(random)
+    data |= {"profile": {"kind": "tabulated", "x": (x * length).tolist(), "gap": (gap * length).tolist()}}
+    at, steps = partialslip.parse_scene(data | {"load": {"P": 1.0}}).profile.curvature_steps()
+    a = at[0] + (x[-1] * length - at[0]) * random.uniform(0.1, 0.99)
+    psi = np.arccos(np.minimum(at / a, 1.0))
+    return data | {"load": {"P": float(a**2 / (2 * A) * (steps @ (2 * psi - np.sin(2 * psi))))}}
+
+
+def cycle(random, kind):
+    """Q in f P and sigma in f p0 at the load points."""
+    Qf = {
+        "near-stuck": 10 ** random.uniform(-9, -2),
+        "near-sliding": 1 - 10 ** random.uniform(-9, -3),
+        "late": 1 - 10 ** random.uniform(-4, -1),
+        "no dQ": 0.0,
+    }.get(kind, random.random() * 0.9999)
+    sf = random.choice([random.uniform(0, 10), 10 ** random.uniform(-6, 1)])
+    if kind == "near-stuck":
+        sf = Qf * random.uniform(0, 8)
+    if kind == "transition":
+        sf = 8 * (1 - math.sqrt(1 - Qf)) * (1 + random.choice([-1, 0, 1]) * 10 ** random.uniform(-12, -1))
+    if kind == "no dsigma":
+        sf = 0.0
+    signs = random.choice([-1.0, 1.0], 4)
+    mean = random.choice([0.0, random.random(), 1 - 10 ** random.uniform(-9, -1)])
+    sigma = random.choice([0.0, 10 ** random.uniform(-2, 1)])
+    if kind == "mean loads":
+        mean, sigma = random.random(), random.uniform(0, 10)
+    if kind == "near-sliding":
+        mean = mean * (random.random() < 0.5)
+    angle = np.array([np.pi, 0.0]), np.array([np.pi, 0.0])
+    if kind == "out of phase":
+        once = 2 * np.pi * np.arange(random.integers(3, 9))
+        angle = once / len(once) + random.uniform(0, 6), once / len(once)
+    Q = signs[2] * mean * (1 - Qf) + signs[0] * Qf * np.cos(angle[0])
+    Q *= min(1.0, (1 - 1e-12) / max(np.abs(Q).max(), 1e-300))  # short of sliding but for rounding
+    return Q, signs[3] * sigma + signs[1] * sf / 2 * np.cos(angle[1])
+
+
+def drawn(number):
+    """Kind of loads, and the scene's tables."""
+    random = np.random.default_rng([13, number])
+    kind, profile = KINDS[number % len(KINDS)], PROFILES[number // len(KINDS) % len(PROFILES)]
+    data = pressed(random, profile)
+    scene = partialslip.parse_scene(data)
+    p0 = scene.P / contact(scene).a * 2 / np.pi
+    f = data["friction"]["f"]
+    Q, sigma = cycle(random, kind)
+    data["load"] |= {"Q": (f * scene.P * Q).tolist(), "sigma": (f * p0 * sigma).tolist()}
+    data["load"] |= {"cycles": int(random.integers(1, 6)), "steps": int(random.integers(1, 5))}
+    far_field = "box" if random.random() < 0.25 else "half-plane"
+    order, accuracy = int(random.choice([2, 3, 4])), float(10 ** random.uniform(-3, -2))
+    return kind, data | {"fem": {"order": order, "far_field": far_field, "accuracy": accuracy}}
+
+
+@contextmanager
+def recorded():
+    """The load steps that are solved meanwhile."""
+    steps, original, finest = [], friction.solve_bounded, adapt._FINEST
+
+    def recording(*problem):
+        steps.append(Step(problem[:5], original(*problem)))
+        return steps[-1].solution
+
+    friction.solve_bounded, adapt._FINEST = recording, FINEST
+    try:
+        yield steps
+    finally:
+        friction.solve_bounded, adapt._FINEST = original, finest
+
+
+def duality_gap(C, g, lower, upper, total, x):
+    """(C x - g).(x - y) for the feasible y that makes most of it, by the size of its terms.
+
+    Never negative, it bounds the square of x's distance from the minimiser in the norm of C, and knows nothing of
+    shifts, sides or faces: y fills the members up in the order of their gradients until it has the total.
+    """
+    gradient = C @ x - g
+    gradient -= np.median(gradient)  # a rigid shift does no work
+    order = np.argsort(gradient)
+    room = (upper - lower)[order]
+    y = np.empty_like(x)
+    y[order] = lower[order] + np.clip(total - lower.sum() - (np.cumsum(room) - room), 0, room)
+    size = (C @ np.abs(x) + np.abs(g - g.mean())) @ (np.abs(x) + np.abs(y))
+    return float(gradient @ (x - y) / size)
+
+
+def contact_line(traction, order):
+    """Nodes of the contact line, and its mass matrix, for elements of ``order`` on the cells of a result."""
+    k, cells = order, traction.cells
+    local = np.linspace(0, 1, k + 1)
+    at, weights = np.polynomial.legendre.leggauss(k + 1)
+    shapes = np.vander((at + 1) / 2) @ np.linalg.inv(np.vander(local))
+    mass = shapes.T @ (weights[:, None] / 2 * shapes)
+    sizes = np.diff(cells)
+    nodes = np.append((cells[:-1, None] + sizes[:, None] * local[:-1]).ravel(), cells[-1])
+    total = np.zeros((len(nodes), len(nodes)))
+    rows = k * np.arange(len(sizes))[:, None, None] + np.arange(k + 1)[:, None]
+    np.add.at(total, (rows, rows.swapaxes(1, 2)), sizes[:, None, None] * mass)
+    return nodes, total
+
+
+def forces(traction, order):
+    """Nodal forces in contact, N, T1 and T2, from a result's tractions alone."""
+    nodes, mass = contact_line(traction, order)
+    inside = np.abs(nodes[:, None] - traction.x).argmin(axis=0)
+    outside = np.setdiff1d(np.arange(len(nodes)), inside)
+    N = mass @ traction.at(nodes)[0]
+
+    def shear(q):  # what lies outside carries no force: its tractions follow
+        line = np.zeros(len(nodes))
+        line[inside] = q
+        line[outside] = np.linalg.solve(mass[np.ix_(outside, outside)], -(mass @ line)[outside])
+        return (mass @ line)[inside]
+
+    return N[inside], shear(traction.q1), shear(traction.q2)
+
+
+def complaints(scene, result, steps):
+    """What is wrong with a result of finite elements and its load steps."""
+    certificate, f = result.certificate, scene.friction.f
+    if not steps:
+        yield "nothing was solved"
+    if not (certificate["kkt"] <= CERTIFIED and certificate["equilibrium"] <= CERTIFIED):
+        yield f"certificate {certificate}"
+    for C, g, lower, upper, total, x in ((*step.problem, step.solution.x) for step in steps):
+        if not ((x >= lower).all() and (x <= upper).all() and abs(x.sum() - total) <= CERTIFIED * upper.sum()):
+            yield "out of bounds"
+        if not abs(gap := duality_gap(C, g, lower, upper, total, x)) <= OPTIMAL:
+            yield f"a better answer by {gap}"
+    if result.stick_half_width == 0 and not any("smaller than an element" in note for note in result.notes):
+        yield "no stick zone, and nothing is said"
+    N, T1, T2 = forces(result.traction, scene.fem.order)
+    unit = CERTIFIED * f * scene.P
+    if abs(N.sum() / scene.P - 1) > CERTIFIED or not (N > -CERTIFIED * scene.P).all():
+        yield f"sum of N {N.sum() / scene.P} P, least {N.min() / scene.P}"
+    for T in (T1, T2):
+        if not (np.abs(T) <= f * N + unit).all():
+            yield f"|T| - f N up to {(np.abs(T) - f * N).max() / unit * CERTIFIED} f P"
+    if not scene.load.in_phase:
+        return  # least and largest T over a cycle, not those of load points
+    for T, (Q, _) in zip((T1, T2), (scene.load.points[end] for end in scene.load.ends), strict=True):
+        if abs(T.sum() - Q) > unit:
+            yield f"sum of T {T.sum()} in place of {Q}"
+    if scene.load.steps == 1 and len(scene.load.points) == 2:
+        slip = result.slip.slip
+        held = slip != 0
+        if not (np.abs(T2 - np.sign(slip) * f * N)[held] <= unit).all():
+            yield "slip where q is not on the bound, or against it"
+        if not (T2 * slip >= 0).all():
+            yield "slip against q"
+
+
+def trials(numbers):
+    """(number, kind, scene, result, load steps) of each of them, or in place of the last two what was raised."""
+    for number in numbers:
+        kind, data = drawn(number)
+        scene = partialslip.parse_scene(data)
+        with recorded() as steps:
+            try:
+                yield number, kind, scene, partialslip.run(scene, ["fem"]).results["fem"], steps
+            except Exception as error:
+                yield number, kind, scene, repr(error), []
+
+
+@pytest.mark.parametrize("count", [5, pytest.param(200, marks=pytest.mark.slow)])
+def test_random_cycles(count):
+    found = [
+        (number, kind, complaint)
+        for number, kind, scene, result, steps in trials(range(count))
+        for complaint in ([result] if isinstance(result, str) else complaints(scene, result, steps))
+    ]
+    assert not found, "\n".join(map(str, found))
+
+
+@pytest.fixture(scope="module")
+def solved():
+    scene = partialslip.load_scene("hertz-large-tension", ["fem.accuracy=1e-2"])
+    with recorded() as steps:
+        return scene, partialslip.run(scene, ["fem"]).results["fem"], steps
+
+
+def test_without_a_fault_nothing_is_wrong(solved):
+    assert not list(complaints(*solved))
+
+
+def test_a_node_that_sticks_too_long_is_seen(solved):
+    """Deliberate fault: one member that slips is kept from its bound by a millionth of it."""
+    scene, result, steps = solved
+    step = steps[-1]
+    x, sides = step.solution.x.copy(), step.solution.sides
+    one, other = np.flatnonzero(sides)[len(x) // 8], np.flatnonzero(sides == 0)[0]
+    x[one], x[other] = x[one] * (1 - 1e-6), x[other] + 1e-6 * x[one]
+    wrong = [step._replace(solution=replace(step.solution, x=x))]
+    assert "a better answer" in next(complaints(scene, result, wrong))
+
+
+def test_slip_in_the_stick_zone_is_seen(solved):
+    """Deliberate fault: slip all over the contact, as from a stick that creeps."""
+    scene, result, steps = solved
+    crept = replace(result, slip=replace(result.slip, slip=result.slip.slip + 1e-6 * np.abs(result.slip.slip).max()))
+    assert any("slip" in complaint for complaint in complaints(scene, crept, steps))
