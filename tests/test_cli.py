@@ -109,7 +109,7 @@ def test_run_with_finite_elements(both):
 
 
 def test_fields_read_back(both):
-    assert names(both.folder) == sorted([*FILES, "bodies.vtu", "mesh.msh"])
+    assert names(both.folder) == sorted([*FILES, "bodies.vtu", "mesh.msh", "surface.csv"])
     with contextlib.redirect_stdout(io.StringIO()):
         mesh, bodies = (meshio.read(both.folder / name) for name in ("mesh.msh", "bodies.vtu"))
     assert {"triangle", "line"} <= mesh.cells_dict.keys()

@@ -30,7 +30,7 @@ def test_going_on_is_not_having_stopped(method, off, tmp_path):
 
 def test_coupled_bodies_go_on():
     """Their pressure is remembered, too: bodies that are apart at first would be pressed together once more."""
-    extra = ("material.upper.E=720e9", "material.upper.nu=0.3", "fem.accuracy=1e-2")
+    extra = ("material.upper.E=720e9", "material.upper.nu=0.3", "load.Q=[2e4, 8e4]", "fem.accuracy=1e-2")
     whole, first = solved("fem", 3, extra=extra), solved("fem", 1, extra=extra)
     rest = solved("fem", 2, first.state, extra)
     assert (rest.a, rest.m, rest.n) == pytest.approx((whole.a, whole.m, whole.n), abs=2e-3 * whole.a)

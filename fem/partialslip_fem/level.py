@@ -37,7 +37,8 @@ class Part:
 @dataclass(frozen=True)
 class Problem:
     """What is to be solved, scaled: a gap, smooth but for its ``kinks``, and P = 1. Without a ``path`` of loads there
-    is no friction to solve; it begins with the tractions p and q of ``start``, if given. ``parts`` are the lower and the upper body; of mirror images the lower one alone."""
+    is no friction to solve; it begins with the tractions p and q of ``start``, if given. ``parts`` are the lower and
+    the upper body; of mirror images the lower one alone."""
 
     gap: Callable[[Array], Array]
     kinks: tuple[float, ...]

@@ -110,7 +110,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     p0 = 2 / (np.pi * level.half_width)
     unit = scene.material.A * scene.P  # of displacement
     certified = _certificate(problem, level, p0)
-    found = judge(scene, level.history, level.stick, level.half_width, certified.get("steady", 0.0))
+    found = judge(scene, level.history, level.stick, level.half_width)
 
     q1, q2, dq = np.zeros_like(x), np.zeros_like(x), None
     history = level.history

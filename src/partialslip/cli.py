@@ -68,7 +68,7 @@ def _parser() -> argparse.ArgumentParser:
     runs.add_argument("--accuracy", metavar="FRACTION",
                       help="of a, m and n, as a fraction of a; short for --set fem.accuracy=FRACTION")  # fmt: skip
     runs.add_argument("--fields", action="store_true",
-                      help="also stresses: compared, and written to surface.csv, bodies.vtu (and mesh.msh)")  # fmt: skip
+                      help="also stresses: compared, and written to surface.csv and bodies.vtu")  # fmt: skip
     runs.add_argument("--start", metavar="FILE",
                       help="begin with the state that FILE holds, instead of without shear")  # fmt: skip
     runs.add_argument("--save", metavar="FILE",

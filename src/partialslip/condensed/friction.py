@@ -18,7 +18,7 @@ from partialslip.scene import Scene
 from partialslip.state import State
 
 _REPEATS = 1e-13  # change of a node's q in a cycle, in the sum of |q|, that is rounding
-_STEADY = 1e-6  # change of q in a cycle, in f p0, that counts as none
+_STEADY = 1e-6  # change of q from cycle to cycle, in its range or in f p0, that counts as none
 _RATCHETS = 1e-3  # net slip of a cycle, in the slip of half a cycle, that counts where q has settled
 
 
@@ -98,6 +98,19 @@ class History:
         return result
 
     @property
+    def repeats(self) -> bool:
+        """Whether the last cycle has changed next to nothing of q, in what q changes by over half a cycle."""
+        changed = np.abs(self.points[-1].x - self.points[-1 - len(self.path.cycle)].x)
+        return bool(changed.max() <= _STEADY * np.abs(self.change).max())
+
+    @property
+    def ratchets(self) -> float:
+        """The largest net slip of the last cycle, in the largest slip of half a cycle."""
+        held = (self.bounds[0] > 0) & (self.bounds[1] > 0)  # what opens comes back elsewhere
+        half = float(np.abs(self.slip[held]).max())
+        return float(np.abs(self.net_slip[held]).max()) / half if half > 0 else 0.0
+
+    @property
     def cycles(self) -> int:
         """Cycles followed."""
         return len(self.points) // len(self.path.cycle)
@@ -157,7 +170,7 @@ def march(tangential: Array, x: Array, bound: Array, path: Path) -> History:
 
     def advance(before: Solution, Q: float, stretch: float) -> tuple[Solution, Array]:
         free = tangential @ before.x + stretch * x
-        return solve_bounded(tangential, free, -bound, bound, Q), bound
+        return solve_bounded(tangential, free, -bound, bound, Q, before.sides), bound
 
     return follow(path, advance, resting(0 * x if path.before is None else path.before))
 
@@ -214,6 +227,7 @@ def _go(
     ways: list[_Way] = []
     for point in points:
         ways.append([])
+        before = resting(before.x)  # the loads turn: what slips now says nothing of what will
         for Q, strain in np.linspace(load, point, path.substeps + 1)[1:].tolist():
             before, bound = advance(before, Q, strain - load[1])
             ways[-1].append((before, bound))
@@ -243,9 +257,9 @@ def certificate(history: History, weights: Array, f: float, p0: float) -> dict[s
     }
 
 
-def judge(scene: Scene, history: History | None, stick: Zone | None, half_width: float, steady: float) -> Verdict:
+def judge(scene: Scene, history: History | None, stick: Zone | None, half_width: float) -> Verdict:
     """What it means that the stick zone of ``scene`` has been found to be ``stick`` (None: there was no friction to
-    solve), in a contact of ``half_width``; lengths in any one unit. ``steady`` is the certificate's."""
+    solve), in a contact of ``half_width``; lengths in any one unit."""
     load = scene.load
     if slides(scene):
         note = "the contact slides: |Q| >= f P at a load point; there is no steady partial slip"
@@ -258,12 +272,11 @@ def judge(scene: Scene, history: History | None, stick: Zone | None, half_width:
     regime: Regime = "small tension" if stick.signs[0] == stick.signs[1] else "large tension"
     if not load.in_phase:
         regime = "out of phase"
-    held = (history.bounds[0] > 0) & (history.bounds[1] > 0)  # what opens comes back elsewhere
-    added = float(np.abs(history.net_slip[held]).max() / np.abs(history.slip[held]).max())
-    if steady <= _STEADY and added > _RATCHETS:
+    if history.repeats and history.ratchets > _RATCHETS:
         regime = "ratchets"
         notes += (
-            f"tractions repeat, slip does not: every cycle adds up to {added:.1g} times the slip of half a cycle",
+            "tractions repeat, slip does not: every cycle adds up to "
+            f"{history.ratchets:.1g} times the slip of half a cycle",
         )
     return Verdict(regime, (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, notes)
 

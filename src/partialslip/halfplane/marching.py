@@ -98,7 +98,7 @@ def _result(
 ) -> Result:
     P, a, p0, widths, history = scene.P, pressed.a, pressed.p0, np.diff(level.vertices), level.history
     certified = certificate(history, widths, scene.friction.f, 2 / np.pi) if history else {}
-    found = judge(scene, history, level.stick, 1.0, certified.get("steady", 0.0))
+    found = judge(scene, history, level.stick, 1.0)
     x = (level.vertices[1:] + level.vertices[:-1]) / 2
     q1, q2 = (P / a * force / widths for force in (history.q1, history.q2)) if history else (0 * x, 0 * x)
     unit = scene.material.A * P  # of displacement
