@@ -9,7 +9,7 @@ from partialslip.condensed.zones import apart
 from partialslip.result import Clock
 from partialslip_fem.level import Level, Problem, solve_level
 
-_GROWTH = {2: 0.25, 3: 0.5, 4: 0.7}  # element size gained per distance, on the first graded mesh
+_GROWTH = {1: 0.1, 2: 0.25, 3: 0.5, 4: 0.7}  # element size gained per distance, on the first graded mesh
 _FINER, _CALMER = 8.0, 0.85  # from mesh to mesh: element size at the ends, and growth
 _FIRST = 0.1  # element size of the first mesh, in contact half-widths
 _FINEST = _FIRST / _FINER**6  # below that rounding takes over

@@ -1,4 +1,4 @@
-"""The elastic body: triangles of order 2 to 4 in scikit-fem, scaled so that the pair's compliance A is 1."""
+"""The elastic body: triangles of order 1 to 4 in scikit-fem, scaled so that the pair's compliance A is 1."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ import skfem
 from partialslip.result import Array
 from partialslip_meshes import Mesh
 
-_ELEMENTS = {2: skfem.ElementTriP2, 3: skfem.ElementTriP3, 4: skfem.ElementTriP4}
+_ELEMENTS = {1: skfem.ElementTriP1, 2: skfem.ElementTriP2, 3: skfem.ElementTriP3, 4: skfem.ElementTriP4}
 Indices = npt.NDArray[np.int64]
 
 
