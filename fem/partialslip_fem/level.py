@@ -94,6 +94,11 @@ def solve_level(
     """Mesh a block of half-width ``width`` (:func:`partialslip_meshes.block`) and solve on it."""
     with clock.phase("mesh"):
         mesh = block(width, contact, sizes, growth)
+    return solve_on(mesh, problem, width, clock)
+
+
+def solve_on(mesh: Mesh, problem: Problem, width: float, clock: Clock) -> Level:
+    """Solve on a mesh of the block of half-width ``width``."""
     with clock.phase("assembly"):
         half = body(mesh, problem.kappa, problem.order)
     with clock.phase("factorisation"):

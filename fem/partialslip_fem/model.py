@@ -111,7 +111,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
             "dofs": level.body.stiffness.shape[0],
             "contact_nodes": len(level.nodes),
             "meshes": adapted.meshes,
-            "factorizations": adapted.meshes,
+            "factorizations": adapted.factorizations,
             "load_steps": history.load_steps if history else 0,
             "iterations": adapted.iterations,
         },

@@ -49,7 +49,7 @@ def test_work_is_counted(large, monkeypatch):
     original = condensation.spla.splu
     monkeypatch.setattr(condensation.spla, "splu", lambda *args, **kw: calls.append(1) or original(*args, **kw))
     again = fem("hertz-large-tension")
-    assert len(calls) == again.counts["factorizations"] == again.counts["meshes"] == large.counts["meshes"]
+    assert len(calls) == again.counts["factorizations"] == 2 * again.counts["meshes"] - 1  # twice: estimate
     assert again.counts == large.counts
     assert again.counts["load_steps"] == 3
 
