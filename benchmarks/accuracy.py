@@ -146,7 +146,7 @@ def cost(accuracies: tuple[float, ...] = (1e-3, 2e-5, 1e-6, 1e-7)) -> None:
 def floor() -> None:
     """What more unknowns and finer ends still bring, on meshes graded to the exact ends."""
     for name in HERTZ:
-        for growth, size in ((0.35, 1e-7), (0.25, 1e-7), (0.2, 3e-8)):
+        for growth, size in ((0.35, 1e-7), (0.25, 1e-7), (0.2, 1e-7)):
             count, found = on_mesh(name, 4, dict.fromkeys(ends(name) + 0.4 * size, size), growth)
             print(f"{name:20} growth {growth:<5} size {size:g} a: {count:8} unknowns {figures(found)}", flush=True)
 

@@ -147,7 +147,7 @@ def test_the_good_scene_is_good(tmp_path, capsys):
         ("cycles =", "cycles = 1.5", "load.cycles = 1.5: must be a whole number"),
         ("cycles =", "cycles = 1000000000", "load.cycles = 1000000000: must be <= 1000"),
         # finite elements
-        ("accuracy =", "accuracy = 0", "fem.accuracy = 0: must be >= 1e-08"),
+        ("accuracy =", "accuracy = 0", "fem.accuracy = 0: must be >= 1e-09"),
         ("accuracy =", "accuracy = 1", "fem.accuracy = 1: must be <= 0.1"),
         ("order =", "order = 0", "fem.order = 0: must be one of 1, 2, 3, 4"),
         ("order =", "order = 5", "fem.order = 5: must be one of 1, 2, 3, 4"),
@@ -265,7 +265,7 @@ def test_bad_setting(rejected, setting, expected):
         (["run", "hertz-shear", "--with", ""], "--with '': must be of exact, march, fem"),
         (["run", "hertz-shear", "--with", "exact,"], "--with '': must be of exact, march, fem"),
         ([*SHIPPED, "--accuracy", "fine"], "--accuracy 'fine': must be a number"),
-        ([*SHIPPED, "--accuracy", "0"], "fem.accuracy = 0.0: must be >= 1e-08"),
+        ([*SHIPPED, "--accuracy", "0"], "fem.accuracy = 0.0: must be >= 1e-09"),
         ([*SHIPPED, "--accuracy", "nan"], "fem.accuracy = nan: must be finite"),
         ([*SHIPPED, "--accuracy", ""], "--accuracy '': must be a number"),
         ([*SHIPPED, "--fields"], "--fields: needs the method fem"),
