@@ -1,5 +1,6 @@
 """Mesh after mesh, each fine where the one before it found the ends of the contact and of the stick zone."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -8,58 +9,96 @@ import numpy as np
 from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
 from partialslip.result import Clock
+from partialslip_fem.estimate import AT_END, end_errors, neighbour, smooth_errors
 from partialslip_fem.level import Level, Problem, solve_level
 
-_GROWTH = {2: 0.25, 3: 0.5, 4: 0.7}  # element size gained per distance, on the first graded mesh
-_FINER, _CALMER = 8.0, 0.85  # from mesh to mesh: element size at the ends, and growth
-_FIRST = 0.1  # element size of the first mesh, in contact half-widths
+_FIRST, _ROUGH = 0.1, 1.0  # element size of the first mesh, in its contact line's half-width; and growth
+_FINER = 16.0  # from mesh to mesh at most: element size at the ends
+_SMOOTH, _GROWTH = 2.8, 0.7  # away from the ends errors are about (growth/2.8)^(2 order); the largest growth
+_CALMER = (0.4, 0.85)  # of growth, where that was not so
+_AIM, _BAR = 0.5, 0.9  # of the accuracy: estimates are right within a factor of two as a rule
+_ENDS = 0.2  # share of what is aimed at that the elements at the ends may take
+_FINEST = 1e-7  # element size at the ends, in contact half-widths; below, rounding takes over
+_BESIDE = 0.01  # element size at an end, in contact half-widths, beyond which the mesh is only good for finding it
+_MOST = 200_000  # unknowns
+_SHARES = {"p": 0.1, "q": 1 / 15}  # of the accuracy asked: tractions may be off by 10 and 15 times as much
 _FILLS = 0.95  # of a finite body's width: as much as the contact line may take
-_FINEST = _FIRST / _FINER**6  # below that rounding takes over
 
 
 @dataclass(frozen=True)
 class Adapted:
-    """The last level, what its ends may still be off by (in contact half-widths), and the work of all levels."""
+    """The last level, what it may still be off by (ends in contact half-widths, tractions relative), and the work of
+    all levels."""
 
     level: Level
     errors: dict[str, float]
     meshes: int
+    factorizations: int
     iterations: int
     width: float
 
 
 def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progress: Callable[[str], None]) -> Adapted:
-    """Refine until the ends are known to ``accuracy``, by the estimate of two successive meshes.
+    """Refine until the ends are known to ``accuracy``, by the estimates of :mod:`partialslip_fem.estimate`.
 
-    From mesh to mesh errors of the ends fall at least fourfold (6 to 10 times for P4), so that no more than a third
-    of the last change is left. ``width`` is the block's half-width in contact half-widths. The first
-    contact line is a guess, doubled until the contact does not reach its ends.
+    Errors of elements of order k fall with the 2 k-th power of their growth away from the ends, which gives the growth
+    that the next mesh needs. What costs a second solution is estimated only where the elements at the ends are small
+    enough. ``width`` is the block's half-width in contact half-widths. The first contact line is a guess, doubled
+    until the contact does not reach its ends.
     """
-    size, growth = _FIRST, _GROWTH[problem.order]
-    reach, limit = 1.5 + max(problem.kinks, default=0.0), _limit(problem)
-    meshes, iterations = 0, 0
+    bodies, order = len(problem.parts), problem.order
+    level, meshes = _first(problem, width, clock)
+    solved, iterations, before, bar = meshes, level.iterations, np.inf, _BAR * accuracy
+    size, goal = _FIRST, float(np.clip(_ENDS * _AIM * accuracy / AT_END[order], _FINEST, _BESIDE / 2))
+    finer = (size / goal) ** (1 / math.ceil(math.log(size / goal, _FINER)))
+    least = _growth(_AIM * accuracy / 2, order)
+    limit = _limit(problem)
     while True:
-        reach = min(reach, limit)
-        guess = dict.fromkeys(np.linspace(-reach, reach, 16).tolist(), 2 * size * reach)
-        level = solve_level(problem, width * reach, (-reach, reach), guess, 1.0, clock)
-        meshes, iterations = meshes + 1, iterations + level.iterations
+        size = max(size / finer, _FINEST)
+        growth = max(least, _growth(size, order)) if size > 1.01 * goal else least
+        a = level.half_width
+        sizes = dict.fromkeys(apart([*level.ends.tolist(), *problem.kinks], size * a), size * a)
+        margin = (0.1 + 2 * finer * size) * a  # of safety, and what the mesh before may have been off by
+        contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
+        level = solve_level(problem, width * a, contact, sizes, growth, clock)
+        meshes, solved, iterations = meshes + 1, solved + 1, iterations + level.iterations
+        local = size + growth * np.abs(level.ends[:, None] - [*sizes]).min(axis=1) / a
+        errors = at_ends = end_errors(level, local)
+        known, calmer = np.inf, 1.0
+        found = f"mesh {meshes}: {level.dofs:,} unknowns"
+        good = level.enclosed and local.max() <= _BESIDE
+        if (good and _worst(at_ends) <= bar) or size <= _FINEST or level.dofs > _MOST:
+            other = neighbour(level, problem, width * a, clock)
+            solved, iterations = solved + 1, iterations + other.iterations
+            smooth = smooth_errors(level, other)
+            errors = {key: error + at_ends[key] for key, error in smooth.items()}
+            known = _worst(errors)
+            calmer = float(np.clip((3 * _worst(smooth) / bar) ** (-0.5 / order), *_CALMER))
+            found += f", {', '.join(errors)} known to {known:.1e} a"
+        progress(found)
+        if (good and known <= bar) or known > before / 2 or level.dofs > _MOST * calmer**2:
+            return Adapted(level, errors, meshes, solved * bodies, iterations, width)
+        if known < np.inf:
+            before, least, finer = known, least * calmer, max(min(finer, 3 * _worst(at_ends) / bar), 1.0)
+
+
+def _first(problem: Problem, width: float, clock: Clock) -> tuple[Level, int]:
+    """A level on a mesh that is fine all over a contact line which the contact does not fill, and how many it took."""
+    reach, limit, meshes = 1.5 + max(problem.kinks, default=0.0), _limit(problem), 0
+    while True:
+        reach, meshes = min(reach, limit), meshes + 1
+        guess = dict.fromkeys(np.linspace(-reach, reach, 16).tolist(), 2 * _FIRST * reach)
+        level = solve_level(problem, width * reach, (-reach, reach), guess, _ROUGH, clock)
         if level.enclosed:
-            break
+            return level, meshes
         if reach == limit:
             raise _too_narrow(problem)
         reach *= 2
-    while True:
-        a = level.half_width
-        size, growth = size / _FINER, growth * _CALMER
-        sizes = dict.fromkeys(apart([*level.ends.tolist(), *problem.kinks], size * a), size * a)
-        margin = (0.1 + 2 * _FINER * size) * a  # of safety, and what the mesh before may have been off by
-        contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
-        before, level = level, solve_level(problem, width * a, contact, sizes, growth, clock)
-        meshes, iterations = meshes + 1, iterations + level.iterations
-        errors = {key: change / 3 for key, change in _changes(before, level).items()}
-        progress(f"mesh {meshes}: {level.dofs:,} unknowns, {', '.join(errors)} known to {max(errors.values()):.1e} a")
-        if (max(errors.values()) <= accuracy and level.enclosed) or size <= _FINEST:
-            return Adapted(level, errors, meshes, iterations, width)
+
+
+def _growth(error: float, order: int) -> float:
+    """That of a mesh on which errors away from the ends are about as large as that."""
+    return float(min(_SMOOTH * error ** (0.5 / order), _GROWTH))
 
 
 def _limit(problem: Problem) -> float:
@@ -75,10 +114,6 @@ def _too_narrow(problem: Problem) -> InputError:
     return InputError(f"{names}: must be wider than the contact, which fills more than {_FILLS:.0%} of it")
 
 
-def _changes(before: Level, after: Level) -> dict[str, float]:
-    """Changes of a, m and n in contact half-widths."""
-    changes = {"a": abs(after.half_width - before.half_width) / after.half_width}
-    if before.stick and after.stick:
-        changes["m"] = abs(after.stick.left - before.stick.left) / after.half_width
-        changes["n"] = abs(after.stick.right - before.stick.right) / after.half_width
-    return changes
+def _worst(errors: dict[str, float]) -> float:
+    """As an error of an end."""
+    return max(error * _SHARES.get(key, 1.0) for key, error in errors.items())

@@ -1,4 +1,4 @@
-"""The elastic body: triangles of order 2 to 4 in scikit-fem, scaled by a pair's compliance A."""
+"""The elastic body: triangles of order 1 to 4 in scikit-fem, scaled by a pair's compliance A."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ import skfem
 from partialslip.result import Array
 from partialslip_meshes import Mesh
 
-_ELEMENTS = {2: skfem.ElementTriP2, 3: skfem.ElementTriP3, 4: skfem.ElementTriP4}
+_ELEMENTS = {1: skfem.ElementTriP1, 2: skfem.ElementTriP2, 3: skfem.ElementTriP3, 4: skfem.ElementTriP4}
 Indices = npt.NDArray[np.int64]
 
 

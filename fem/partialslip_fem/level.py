@@ -1,6 +1,6 @@
 """One mesh, from its size to the zones found on it. Scaled as in :mod:`partialslip_fem.contact`."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -19,7 +19,7 @@ from partialslip_fem.factor import Backend
 from partialslip_fem.farfield import half_plane
 from partialslip_fem.mortar import nodal_forces
 from partialslip_fem.recovery import traction
-from partialslip_meshes import block
+from partialslip_meshes import Mesh, block
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,18 @@ def solve_level(
 
     ``contact``, ``sizes`` and ``growth`` are as for :func:`partialslip_meshes.block`.
     """
-    halves = tuple(_half(problem, part, width, contact, sizes, growth, clock) for part in problem.parts)
+    meshes = []
+    for part in problem.parts:
+        half_width, height = part.extent or (width, width)
+        with clock.phase("mesh"):
+            finer = {x: size * part.fineness for x, size in sizes.items()}
+            meshes.append(block(half_width, contact, finer, growth * part.fineness, height))
+    return solve_on(meshes, problem, width, clock)
+
+
+def solve_on(meshes: Sequence[Mesh], problem: Problem, width: float, clock: Clock) -> Level:
+    """Solve on meshes of the bodies, in the order of the problem's parts; ``width`` as for :func:`solve_level`."""
+    halves = tuple(_half(*pair, problem, width, clock) for pair in zip(meshes, problem.parts, strict=True))
     with clock.phase("condensation"):
         relative = relative_compliances(halves)
     with clock.phase("contact"):
@@ -148,19 +159,7 @@ def solve_level(
         return Level(halves, nodes, pressing, history, left, right, stick, others)
 
 
-def _half(
-    problem: Problem,
-    part: Part,
-    width: float,
-    contact: tuple[float, float],
-    sizes: Mapping[float, float],
-    growth: float,
-    clock: Clock,
-) -> Half:
-    half_width, height = part.extent or (width, width)
-    with clock.phase("mesh"):
-        finer = {x: size * part.fineness for x, size in sizes.items()}
-        mesh = block(half_width, contact, finer, growth * part.fineness, height)
+def _half(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) -> Half:
     with clock.phase("assembly"):
         held = ("back",) if part.extent else ("back", "sides")
         half = body(mesh, part.kappa, problem.order, part.compliance, held)

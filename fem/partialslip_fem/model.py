@@ -154,7 +154,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
             "dofs": level.dofs,
             "contact_nodes": len(level.nodes),
             "meshes": adapted.meshes,
-            "factorizations": adapted.meshes * len(level.halves),
+            "factorizations": adapted.factorizations,
             "cycles": history.cycles if history else 0,
             "load_steps": history.load_steps if history else 0,
             "iterations": adapted.iterations,

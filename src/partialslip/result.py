@@ -146,7 +146,8 @@ class Result:
     The stick zone [-m, n] is kept as its centre (n - m)/2 and half-width (n + m)/2, because n + m cancels when
     it is tiny; both are None where nothing sticks (``regime`` says "sliding").
     ``certificate`` holds residuals in units of f p0 (of p0 for the normal problem) and equilibrium relative to
-    the load; ``estimate`` the method's own estimate of its errors in a, m and n, as fractions of a;
+    the load; ``estimate`` the method's own estimate of its errors in a, m and n, as fractions of a, and by finite
+    elements in p and q, too (relative L2 of cell averages);
     ``settings`` and ``counts`` say what was built and how much work it was; ``notes`` what a reader must know;
     ``limits`` are loads at which something else begins, where the method knows them: ``dsigma_transition`` (Pa, where
     small tension turns large at this dQ), ``Q_sliding`` (N/m, f P) and ``Q_mean`` (N/m, the largest mean that a steady

@@ -19,7 +19,7 @@ Positive = Annotated[float, msgspec.Meta(gt=0)]
 SMALLEST, LARGEST = 1e-100, 1e100
 
 _ROUGH = 1e-9  # changes of slope and curvature in a table, in the largest one, that are taken for rounding
-_SHARP = 0.5
+_SHARP = 0.05
 
 Array = npt.NDArray[np.float64]
 
@@ -158,7 +158,7 @@ class Tabulated(Table, frozen=True, kw_only=True, tag_field="kind", tag="tabulat
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Where the gap is not smooth, m: where its curvature steps by more than half of the largest one."""
+        """Where the gap is not smooth, m: where its curvature steps by more than a twentieth of the largest one."""
         at, steps = self.curvature_steps()
         sharp = at[(np.abs(steps) > _SHARP * np.cumsum(steps).max()) & (at > 0)]
         return (*(-sharp[::-1]).tolist(), *sharp.tolist())
@@ -289,8 +289,8 @@ class Fem(Table, frozen=True, kw_only=True):
     factors the stiffness: as a rule cholmod, if cvxopt is installed.
     """
 
-    accuracy: Annotated[float, msgspec.Meta(ge=1e-8, le=0.1)] = 2e-5
-    order: Literal[2, 3, 4] = 4
+    accuracy: Annotated[float, msgspec.Meta(ge=1e-9, le=0.1)] = 2e-5
+    order: Literal[1, 2, 3, 4] = 4
     far_field: Literal["half-plane", "box"] = "half-plane"
     width: Annotated[float, msgspec.Meta(ge=4, le=1e6)] | None = None
     lower_size: Annotated[float, msgspec.Meta(ge=0.1, le=10)] = 1.0

@@ -7,7 +7,7 @@ from partialslip import load_scene, plan
 from partialslip.compare import cell_means
 from partialslip_fem import condensation, solve
 
-COARSE = "fem.accuracy=1e-2"
+COARSE = "fem.accuracy=1e-3"
 
 
 def fem(name, *overrides, subsurface=False):
@@ -29,8 +29,9 @@ def test_equilibrium(large):
     assert max(large.certificate.values()) < 1e-10
 
 
-def test_shear_in_the_slip_zones_is_at_the_bound(large):
+def test_shear_in_the_slip_zones_is_at_the_bound():
     """q = f p on the right and -f p on the left, away from the square roots at the ends of the zones."""
+    large = fem("hertz-large-tension", "fem.accuracy=1e-5")
     x, traction, f = large.traction.x / large.a, large.traction, load_scene("hertz-large-tension").friction.f
     right = (x > large.n / large.a + 0.1) & (x < 0.98)
     left = (x < -large.m / large.a - 0.1) & (x > -0.98)
@@ -49,7 +50,7 @@ def test_work_is_counted(large, monkeypatch):
     original = condensation.factor
     monkeypatch.setattr(condensation, "factor", lambda *args: calls.append(1) or original(*args))
     again = fem("hertz-large-tension")
-    assert len(calls) == again.counts["factorizations"] == again.counts["meshes"] == large.counts["meshes"]
+    assert len(calls) == again.counts["factorizations"] == again.counts["meshes"] + 1  # the last: estimate
     assert again.counts == large.counts
     assert again.counts["load_steps"] == 3
 
@@ -117,7 +118,7 @@ def test_mean_loads_reach_the_steady_range_cycle_by_cycle():
     for cycles in (1, 2, 5, 12):
         result = fem("hertz-large-tension", *overrides, f"load.cycles={cycles}")
         steady.append(result.certificate["steady"])
-        assert any("not steady" in note for note in result.notes) == (steady[-1] > 1e-2)
+        assert any("not steady" in note for note in result.notes) == (steady[-1] > 1e-3)
         off.append(max(abs(result.m / result.a - exact_m), abs(result.n / result.a - exact_n)))
     assert steady[0] > 1e-2 > steady[2] > steady[3]
     assert steady[3] < 1e-4

@@ -61,7 +61,7 @@ def test_similar_half_planes_as_two_coupled_bodies():
     scene = load_scene("hertz-large-tension", [COARSE, "fem.lower_size=1.3"])
     outcome = partialslip.run(scene)
     assert outcome.comparisons["fem"].passed
-    assert outcome.results["fem"].counts["factorizations"] == 2 * outcome.results["fem"].counts["meshes"]
+    assert outcome.results["fem"].counts["factorizations"] == 2 * (outcome.results["fem"].counts["meshes"] + 1)
 
 
 def test_different_materials_that_do_not_couple():
@@ -94,11 +94,10 @@ def test_every_step_is_certified(different):
 
 
 def test_matching_and_not_matching_agree(different):
-    """But for the discretisation, which the estimates know."""
+    """But for the discretisation: well within the accuracy that was asked of both."""
     matching = fem(*BLOCKS, *STIFF, "load.cycles=6")
     for key in ("a", "m", "n"):
-        error = different.estimate[key] + matching.estimate[key]
-        assert abs(getattr(matching, key) - getattr(different, key)) < 3 * error * matching.a
+        assert getattr(matching, key) == pytest.approx(getattr(different, key), abs=3e-4 * matching.a)
 
 
 def test_swap_of_bodies():

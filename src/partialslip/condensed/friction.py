@@ -284,8 +284,9 @@ def judge(scene: Scene, history: History | None, stick: Zone | None, half_width:
 def doubts(certificate: Mapping[str, float], errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:
     """Notes on an accuracy that was not reached, and on q that still changed in the last cycle."""
     notes: tuple[str, ...] = ()
-    if max(errors.values(), default=0.0) > accuracy:
-        known = ", ".join(f"{key} {error:.1e}" for key, error in errors.items())
+    ends = {key: error for key, error in errors.items() if key in ("a", "m", "n")}
+    if max(ends.values(), default=0.0) > accuracy:
+        known = ", ".join(f"{key} {error:.1e}" for key, error in ends.items())
         notes += (f"accuracy {accuracy:g} not reached: the ends are known to {known} a",)
     if (change := certificate.get("steady", 0.0)) > max(accuracy, _STEADY):
         notes += (f"not steady: q changed by {change:.1e} f p0 in the last cycle; take more of them (load.cycles)",)

@@ -1,0 +1,64 @@
+"""What a level is off by, from its own mesh: by solving there once more with elements of a neighbouring order.
+
+Away from the ends of zones the solution is smooth, and on meshes graded to the ends errors fall with the order k like
+r^(2 k), r depending on the mesh: ends of zones and means of tractions converge like the energy, whose prefactor is
+about one in the units used here. Errors of orders k and k - 1 are therefore r^(2 k) and r^(2 (k-1)), and the
+difference d between the two is the latter: d^(k/(k-1)) is left of order k. Against the order above, d itself is.
+
+At an end itself, where tractions are square roots, the order does not matter; the size of the element does.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.interpolate import PPoly
+
+from partialslip.result import Array, Clock
+from partialslip_fem.level import Level, Problem, solve_on
+
+# The order below costs least, but where it locks (P2 and P1 towards nu = 0.5) its errors say nothing.
+_NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3}
+
+# What an end, p and q are off by, measured as multiples of the size of the element that the end lies in.
+AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.0025}
+_TRACTIONS = {"p": 8.0, "q": 25.0}  # of that
+
+
+def neighbour(level: Level, problem: Problem, width: float, clock: Clock) -> Level:
+    """The solution on the same mesh that the errors of ``level`` are estimated by."""
+    return solve_on(
+        [half.mesh for half in level.halves], replace(problem, order=_NEIGHBOUR[problem.order]), width, clock
+    )
+
+
+def smooth_errors(level: Level, other: Level) -> dict[str, float]:
+    """Errors of a, m, n (in contact half-widths), p and q (relative L2 of cell averages), but for those of the
+    elements at the ends; ``other`` is the neighbour."""
+    order = level.body.order
+    return {key: change ** (order / min(order, other.body.order)) for key, change in _changes(level, other).items()}
+
+
+def end_errors(level: Level, sizes: Array) -> dict[str, float]:
+    """What the elements at the ends add; ``sizes`` are those that the ends lie in, in contact half-widths and in the
+    order of ``level.ends``."""
+    off = AT_END[level.body.order] * sizes
+    errors = {"a": float(off[:2].mean()), **{key: float(off.max()) * times for key, times in _TRACTIONS.items()}}
+    return errors | (dict(zip("mn", off[2:4].tolist(), strict=True)) if level.stick else {})
+
+
+def _changes(level: Level, other: Level) -> dict[str, float]:
+    a = level.half_width
+    changes = {"a": abs(other.half_width - a) / a, "p": _apart(level.pressure(), other.pressure())}
+    if level.stick and other.stick and level.history and other.history:
+        changes["m"] = abs(other.stick.left - level.stick.left) / a
+        changes["n"] = abs(other.stick.right - level.stick.right) / a
+        changes["q"] = _apart(level.shear(level.history.change), other.shear(other.history.change))
+    return {key: changes[key] for key in ("a", "m", "n", "p", "q") if key in changes}
+
+
+def _apart(traction: PPoly, other: PPoly) -> float:
+    """Relative L2 difference of their means over the cells."""
+    widths = np.diff(traction.x)
+    force, otherwise = (np.diff(each.antiderivative()(traction.x)) for each in (traction, other))
+    norm = np.sum(force**2 / widths)
+    return float(np.sqrt(np.sum((otherwise - force) ** 2 / widths) / norm)) if norm > 0 else 0.0

@@ -1,0 +1,73 @@
+"""The estimate against the true error, on scenes of both regimes; the estimate itself never sees the exact solution."""
+
+import pytest
+
+import partialslip
+from partialslip_fem import adapt, estimate
+
+SCENES = [
+    ("hertz-small-tension", "load.sigma=[-150e6, 150e6]"),
+    ("hertz-small-tension", "material.nu=0.45"),
+    ("hertz-large-tension", "load.Q=[-9e4, 9e4]"),
+    ("hertz-large-tension", "load.sigma=[6e8, -6e8]"),
+    ("flat-rounded", "friction.f=0.6"),
+]
+
+
+def ratio(name, *overrides):
+    """Estimate over true error, each the largest of a, m and n, and the share of the accuracy that was asked."""
+    scene = partialslip.load_scene(name, overrides)
+    outcome = partialslip.run(scene)
+    fem, found = outcome.results["fem"], outcome.comparisons["fem"]
+    true, known = max(found.a, found.m, found.n), max(fem.estimate[key] for key in "amn")
+    return known / true, true / scene.fem.accuracy
+
+
+@pytest.mark.parametrize("scene", SCENES[2:4], ids=lambda scene: scene[1])
+def test_estimate_is_right_within_a_factor_of_3(scene):
+    known, share = ratio(*scene, "fem.accuracy=2e-5")
+    assert 1 / 3 < known < 3
+    assert share < 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("accuracy", ["1e-3", "1e-5", "1e-6", "1e-7"])
+@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene[1])
+def test_estimate_is_right_at_every_accuracy(scene, accuracy):
+    known, share = ratio(*scene, f"fem.accuracy={accuracy}")
+    assert 1 / 3 < known < 3
+    assert share < 1
+
+
+def test_difference_of_the_orders_is_not_the_error(monkeypatch):
+    """Deliberate fault: what P3 is off by, taken for what P4 is off by."""
+    true = estimate._changes
+    monkeypatch.setattr(estimate, "_changes", lambda level, other: {k: d**0.75 for k, d in true(level, other).items()})
+    known, _ = ratio(*SCENES[2], "fem.accuracy=1e-3")
+    assert known > 3
+
+
+def test_elements_at_the_ends_are_counted(monkeypatch):
+    """Deliberate fault: without them, a mesh coarse at the ends is taken for a good one."""
+    monkeypatch.setattr(adapt, "_BESIDE", 0.06)
+    monkeypatch.setattr(adapt, "_ENDS", 1e6)
+    honest, _ = ratio(*SCENES[2], "fem.accuracy=1e-2")
+    monkeypatch.setattr(adapt, "end_errors", lambda *_: dict.fromkeys("amnpq", 0.0))
+    known, _ = ratio(*SCENES[2], "fem.accuracy=1e-2")
+    assert known < 1 / 3 < honest
+
+
+def test_a_difference_of_tractions_is_relative_to_the_first():
+    scene = partialslip.load_scene("hertz-shear", ["load.Q=[0, 0]", "fem.accuracy=1e-2"])
+    fem = partialslip.run(scene, ["fem"]).results["fem"]
+    assert fem.estimate.keys() == {"a", "p"}  # neither shear nor a stick zone to estimate
+    assert 0 < fem.estimate["p"] < 0.1
+
+
+@pytest.mark.slow
+def test_locked_elements_stop_where_meshes_bring_nothing():
+    """Instead of refining without end, and it is said that the accuracy is not reached."""
+    overrides = ["fem.order=1", "material.nu=0.4999", "fem.accuracy=1e-3"]
+    fem = partialslip.run(partialslip.load_scene("hertz-small-tension", overrides), ["fem"]).results["fem"]
+    assert max(fem.estimate[key] for key in "amn") > 1e-2
+    assert any("not reached" in note for note in fem.notes)
