@@ -67,7 +67,7 @@ def _outline(
         distance = field.add("Distance")
         field.setNumbers(distance, "PointsList", [surface[1 + on_contact.index(x)]])
         grades.append(field.add("MathEval"))
-        field.setString(grades[-1], "F", f"{size!r} + {growth!r} * F{distance}")
+        field.setString(grades[-1], "F", f"{float(size)!r} + {float(growth)!r} * F{distance}")
     smallest = field.add("Min")
     field.setNumbers(smallest, "FieldsList", grades)
     field.setAsBackgroundMesh(smallest)

@@ -1,0 +1,70 @@
+"""What a whole cycle costs in factorisations: python benchmarks/condensation.py [--growth 0.25] [--size 1e-5]."""
+
+import argparse
+import time
+
+import numpy as np
+
+from partialslip import load_scene, plan
+from partialslip.condensed.threads import one_thread
+from partialslip_fem import level
+from partialslip_fem.condensation import Condensed
+from partialslip_fem.contact import Half, relative_compliances
+from partialslip_fem.elasticity import body
+from partialslip_fem.factor import factor
+from partialslip_fem.farfield import half_plane
+from partialslip_fem.model import _scaled
+from partialslip_meshes import block
+
+WIDTH = 16.0
+BACKENDS = ("superlu", "cholmod")
+
+
+@one_thread
+def main() -> None:
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--growth", type=float, default=0.25, help="element size gained per distance")
+    options.add_argument("--size", type=float, default=1e-5, help="element size at the ends of the zones, in a")
+    options.add_argument("--repeats", type=int, default=3)
+    chosen = options.parse_args()
+
+    scene = load_scene("hertz-large-tension")
+    problem = _scaled(scene, plan(scene))
+    a, (part,) = np.sqrt(2 / np.pi), problem.parts
+    ends = {a * end: a * chosen.size for end in (-1, -0.803853, 0.294929, 1)}
+    mesh = block(WIDTH * a, (-1.1 * a, 1.1 * a), ends, chosen.growth)
+    assembly, half = _timed(lambda: body(mesh, part.kappa, 4))
+    unknowns = half.stiffness.shape[0]
+    print(f"{unknowns:,} unknowns, {len(half.x)} nodes on the contact line; assembly {assembly:.2f} CPU s")
+    contact, held = half.contact.ravel(), half.held.ravel()
+    inner = np.setdiff1d(np.arange(unknowns), np.concatenate([contact, held]))
+
+    for backend in BACKENDS:
+        ratios = []
+        for _ in range(chosen.repeats):
+            once, _kept = _timed(lambda backend=backend: factor(half.stiffness, inner, contact, backend))
+            del _kept
+
+            def rest(backend: str = backend) -> level.Level:
+                far = half_plane(half.held_points, half.x, WIDTH * a, part.kappa)
+                whole = Half(mesh, half, Condensed(half, far, backend))
+                relative = relative_compliances([whole])
+                return level._solve(problem, relative, half)
+
+            all_of_it, (_, history, _) = _timed(rest)
+            ratios.append((all_of_it / once, once, all_of_it))
+        ratio, once, all_of_it = sorted(ratios)[len(ratios) // 2]
+        print(
+            f"{backend}: ordering and one factorisation {once:.2f} CPU s, all after assembly {all_of_it:.2f} CPU s "
+            f"({history.load_steps} load steps): ratio {ratio:.2f} (median of {chosen.repeats})"
+        )
+
+
+def _timed(function):
+    start = time.process_time()
+    result = function()
+    return time.process_time() - start, result
+
+
+if __name__ == "__main__":
+    main()
