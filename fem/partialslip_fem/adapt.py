@@ -46,9 +46,9 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     enough. ``width`` is the block's half-width in contact half-widths. The first contact line is a guess, doubled
     until the contact does not reach its ends.
     """
-    bodies, order = len(problem.parts), problem.order
-    level, meshes = _first(problem, width, clock)
-    solved, iterations, before, bar = meshes, level.iterations, np.inf, _BAR * accuracy
+    order = problem.order
+    level, meshes, factored = _first(problem, width, clock)
+    iterations, before, bar = level.iterations, np.inf, _BAR * accuracy
     size, goal = _FIRST, float(np.clip(_ENDS * _AIM * accuracy / AT_END[order], _FINEST, _BESIDE / 2))
     finer = (size / goal) ** (1 / math.ceil(math.log(size / goal, _FINER)))
     least = _growth(_AIM * accuracy / 2, order)
@@ -61,7 +61,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         margin = (0.1 + 2 * finer * size) * a  # of safety, and what the mesh before may have been off by
         contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
         level = solve_level(problem, width * a, contact, sizes, growth, clock)
-        meshes, solved, iterations = meshes + 1, solved + 1, iterations + level.iterations
+        meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         local = size + growth * np.abs(level.ends[:, None] - [*sizes]).min(axis=1) / a
         errors = at_ends = end_errors(level, local)
         known, calmer = np.inf, 1.0
@@ -69,7 +69,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         good = level.enclosed and local.max() <= _BESIDE
         if (good and _worst(at_ends) <= bar) or size <= _FINEST or level.dofs > _MOST:
             other = neighbour(level, problem, width * a, clock)
-            solved, iterations = solved + 1, iterations + other.iterations
+            factored, iterations = factored + other.factored, iterations + other.iterations
             smooth = smooth_errors(level, other)
             errors = {key: error + at_ends[key] for key, error in smooth.items()}
             known = _worst(errors)
@@ -77,20 +77,43 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
             found += f", {', '.join(errors)} known to {known:.1e} a"
         progress(found)
         if (good and known <= bar) or known > before / 2 or level.dofs > _MOST * calmer**2:
-            return Adapted(level, errors, meshes, solved * bodies, iterations, width)
+            return Adapted(level, errors, meshes, factored, iterations, width)
         if known < np.inf:
             before, least, finer = known, least * calmer, max(min(finer, 3 * _worst(at_ends) / bar), 1.0)
 
 
-def _first(problem: Problem, width: float, clock: Clock) -> tuple[Level, int]:
-    """A level on a mesh that is fine all over a contact line which the contact does not fill, and how many it took."""
-    reach, limit, meshes = 1.5 + max(problem.kinks, default=0.0), _limit(problem), 0
+def uniform(problem: Problem, size: float, width: float, clock: Clock) -> Adapted:
+    """Solve on one mesh of elements of ``size``, in contact half-widths, all along the contact line.
+
+    It does not depend on friction and shear, so that they can change without another factorisation. Nothing is refined,
+    and no error estimated.
+    """
+    rough, meshes, factored = _first(problem, width, clock, keep=True)
+    growth = _growth(size / 10, problem.order)  # what is deeper is not to be worse
+    a = float(f"{rough.half_width:.2g}")  # loads and profiles that differ by little share a mesh
+    reach, limit, iterations = 1.25 * max(-rough.left, rough.right), _limit(problem), rough.iterations
     while True:
-        reach, meshes = min(reach, limit), meshes + 1
-        guess = dict.fromkeys(np.linspace(-reach, reach, 16).tolist(), 2 * _FIRST * reach)
-        level = solve_level(problem, width * reach, (-reach, reach), guess, _ROUGH, clock)
+        reach = min(float(f"{reach:.2g}"), limit)
+        level = solve_level(problem, width * a, (-reach, reach), {}, growth, clock, size * a, keep=True)
+        meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         if level.enclosed:
-            return level, meshes
+            return Adapted(level, {}, meshes, factored, iterations, width)
+        if reach == limit:
+            raise _too_narrow(problem)
+        reach *= 1.5
+
+
+def _first(problem: Problem, width: float, clock: Clock, keep: bool = False) -> tuple[Level, int, int]:
+    """A level on a mesh that is fine all over a contact line which the contact does not fill, and how many meshes and
+    factorisations that took."""
+    reach, limit, meshes, factored = 1.5 + max(problem.kinks, default=0.0), _limit(problem), 0, 0
+    while True:
+        reach = min(reach, limit)
+        guess = dict.fromkeys(np.linspace(-reach, reach, 16).tolist(), 2 * _FIRST * reach)
+        level = solve_level(problem, width * reach, (-reach, reach), guess, _ROUGH, clock, keep=keep)
+        meshes, factored = meshes + 1, factored + level.factored
+        if level.enclosed:
+            return level, meshes, factored
         if reach == limit:
             raise _too_narrow(problem)
         reach *= 2

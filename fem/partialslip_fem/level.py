@@ -56,10 +56,11 @@ class Level:
     """The solution on one mesh of each body: of the lower one, and, unless that is mirrored, of the upper one.
 
     ``nodes`` of the lower one's contact line are in contact at load point 1 or 2, at 2 it is over [left, right], and
-    the ends at 1 are ``others``, where they differ.
+    the ends at 1 are ``others``, where they differ. ``factored`` counts the factorisations made for it.
     """
 
     halves: tuple[Half, ...]
+    factored: int
     nodes: Indices
     pressing: Solution
     history: History | None
@@ -120,6 +121,10 @@ class Level:
         return result
 
 
+_KEPT = 2  # sets of bodies: those of a rough mesh, and of the uniform one made from it
+_kept: dict[tuple[object, ...], tuple[Half, ...]] = {}
+
+
 def solve_level(
     problem: Problem,
     width: float,
@@ -127,23 +132,40 @@ def solve_level(
     sizes: Mapping[float, float],
     growth: float,
     clock: Clock,
+    along: float | None = None,
+    keep: bool = False,
 ) -> Level:
     """Mesh the bodies, blocks of half-width ``width`` unless they have an extent of their own, and solve on them.
 
-    ``contact``, ``sizes`` and ``growth`` are as for :func:`partialslip_meshes.block`.
+    ``contact``, ``sizes``, ``growth`` and ``along`` are as for :func:`partialslip_meshes.block`. With ``keep`` the
+    condensed bodies are kept for other loads, friction and profiles on the same mesh.
     """
+    kind = (problem.parts, problem.order, problem.far_field, problem.backend)
+    key = (*kind, width, contact, tuple(sizes.items()), growth, along)
+    if keep and key in _kept:
+        return _level(problem, _kept[key], 0, clock)
     meshes = []
     for part in problem.parts:
         half_width, height = part.extent or (width, width)
         with clock.phase("mesh"):
             finer = {x: size * part.fineness for x, size in sizes.items()}
-            meshes.append(block(half_width, contact, finer, growth * part.fineness, height))
-    return solve_on(meshes, problem, width, clock)
+            everywhere = None if along is None else along * part.fineness
+            meshes.append(block(half_width, contact, finer, growth * part.fineness, height, everywhere))
+    level = solve_on(meshes, problem, width, clock)
+    if keep:
+        _kept[key] = level.halves
+        for oldest in list(_kept)[:-_KEPT]:
+            del _kept[oldest]
+    return level
 
 
 def solve_on(meshes: Sequence[Mesh], problem: Problem, width: float, clock: Clock) -> Level:
     """Solve on meshes of the bodies, in the order of the problem's parts; ``width`` as for :func:`solve_level`."""
     halves = tuple(_half(*pair, problem, width, clock) for pair in zip(meshes, problem.parts, strict=True))
+    return _level(problem, halves, len(halves), clock)
+
+
+def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clock) -> Level:
     with clock.phase("condensation"):
         relative = relative_compliances(halves)
     with clock.phase("contact"):
@@ -156,7 +178,7 @@ def solve_on(meshes: Sequence[Mesh], problem: Problem, width: float, clock: Cloc
             at_first[nodes] = history.bounds[0]
             others = _ends(line, at_first)
         stick = _stick_zone(line, nodes, history) if history else None
-        return Level(halves, nodes, pressing, history, left, right, stick, others)
+        return Level(halves, factored, nodes, pressing, history, left, right, stick, others)
 
 
 def _half(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) -> Half:

@@ -12,7 +12,7 @@ from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Result, Slip, Traction
 from partialslip.scene import Scene
 from partialslip.state import State
-from partialslip_fem.adapt import Adapted, adapt
+from partialslip_fem.adapt import Adapted, adapt, uniform
 from partialslip_fem.displacements import solve_back
 from partialslip_fem.factor import default_backend
 from partialslip_fem.fields import along_surfaces, deformed
@@ -55,7 +55,10 @@ def solve(
     clock = Clock()
     width = scene.fem.width or _WIDTH[scene.fem.far_field]
     problem = _scaled(scene, plan, start)
-    adapted = adapt(problem, scene.fem.accuracy, width, clock, progress)
+    if scene.fem.size is None:
+        adapted = adapt(problem, scene.fem.accuracy, width, clock, progress)
+    else:
+        adapted = uniform(problem, scene.fem.size, width, clock)
     return _result(scene, plan, problem, adapted, clock)
 
 
@@ -148,7 +151,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
             "elements": f"P{problem.order}",
             "factorisation": problem.backend,
             **_extents(problem, adapted.width),
-            "accuracy": scene.fem.accuracy,
+            **({"accuracy": scene.fem.accuracy} if scene.fem.size is None else {"element_size_over_a": scene.fem.size}),
         },
         counts={
             "dofs": level.dofs,

@@ -16,6 +16,7 @@ def block(
     sizes: Mapping[float, float],
     growth: float,
     height: float | None = None,
+    along: float | None = None,
 ) -> Mesh:
     """Mesh the block [-width, width] x [-height, 0].
 
@@ -32,6 +33,8 @@ def block(
         Element size gained per unit of distance from each point, so that a wide block costs no more than the
         logarithm of its width.
     height : float, optional
+    along : float, optional
+        Element size all along the contact line, from where it grows likewise.
 
     Raises
     ------
@@ -39,7 +42,7 @@ def block(
         If gmsh, or a system library that it needs, is not there.
     """
     with gmsh_session() as gmsh:
-        lines = _outline(gmsh, width, width if height is None else height, contact, sizes, growth)
+        lines = _outline(gmsh, width, width if height is None else height, contact, sizes, growth, along)
         gmsh.model.mesh.generate(2)
         return _collect(gmsh, lines)
 
@@ -51,6 +54,7 @@ def _outline(
     contact: tuple[float, float],
     sizes: Mapping[float, float],
     growth: float,
+    along: float | None,
 ) -> dict[str, list[int]]:
     """Geometry and size field; returns the curves of each named line."""
     geo, field = gmsh.model.geo, gmsh.model.mesh.field
@@ -68,6 +72,11 @@ def _outline(
         field.setNumbers(distance, "PointsList", [surface[1 + on_contact.index(x)]])
         grades.append(field.add("MathEval"))
         field.setString(grades[-1], "F", f"{float(size)!r} + {float(growth)!r} * F{distance}")
+    if along is not None:
+        middle, half = (contact[0] + contact[1]) / 2, (contact[1] - contact[0]) / 2
+        beyond = f"(abs(x - ({middle!r})) - {half!r})"
+        grades.append(field.add("MathEval"))
+        field.setString(grades[-1], "F", f"{along!r} + {growth!r} * sqrt(y^2 + ({beyond} + abs{beyond})^2 / 4)")
     smallest = field.add("Min")
     field.setNumbers(smallest, "FieldsList", grades)
     field.setAsBackgroundMesh(smallest)

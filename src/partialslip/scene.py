@@ -285,8 +285,9 @@ class Fem(Table, frozen=True, kw_only=True):
     polynomial order of the triangles; ``far_field`` says what holds the block's outer boundary: the half-plane's
     displacements under the contact tractions, or a clamped ``box``; ``width`` is the block's half-width in contact
     half-widths. Both are of bodies without a size of their own. ``lower_size`` is the size of the lower body's elements
-    in that of the upper body's: with any other than 1 the nodes of the two do not match. ``factor`` names what
-    factors the stiffness: as a rule cholmod, if cvxopt is installed.
+    in that of the upper body's: with any other than 1 the nodes of the two do not match. ``size`` asks for one mesh of
+    that element size, in contact half-widths, all along the contact, instead of refinement to an accuracy. ``factor``
+    names what factors the stiffness: as a rule cholmod, if cvxopt is installed.
     """
 
     accuracy: Annotated[float, msgspec.Meta(ge=1e-9, le=0.1)] = 2e-5
@@ -294,6 +295,7 @@ class Fem(Table, frozen=True, kw_only=True):
     far_field: Literal["half-plane", "box"] = "half-plane"
     width: Annotated[float, msgspec.Meta(ge=4, le=1e6)] | None = None
     lower_size: Annotated[float, msgspec.Meta(ge=0.1, le=10)] = 1.0
+    size: Annotated[float, msgspec.Meta(ge=1e-4, le=0.5)] | None = None
     factor: Literal["superlu", "cholmod"] | None = None
 
 

@@ -51,9 +51,9 @@ def verdict(run: Run) -> str:
         return "missed: " + "; ".join(run.missed)
     if not run.comparisons:
         return "nothing to compare with"
-    if run.scene.finite:
-        return "finite bodies: their difference from half-planes, without bars"
-    return "all bars met"
+    if run.judged:
+        return "all bars met"
+    return f"no bars: {'finite bodies' if run.scene.finite else 'the element size was given'}"
 
 
 def value(result: Result, key: str) -> str:

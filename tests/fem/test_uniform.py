@@ -1,0 +1,64 @@
+"""One mesh of a given element size: of the order that the ends allow, and kept while only the loads change."""
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip import InputError, load_scene
+from partialslip_fem import condensation, level
+
+
+def solved(*overrides, name="hertz-large-tension"):
+    outcome = partialslip.run(load_scene(name, overrides))
+    return outcome.results["fem"], outcome.comparisons["fem"]
+
+
+@pytest.mark.parametrize("order", [1, 2, 4])
+def test_square_roots_at_the_ends_make_errors_fall_like_h(order):
+    """The worst of a, m and n scatters with where in an element the ends lie: a slope over a factor of 16."""
+    errors = []
+    for size in (0.32, 0.02):
+        found = solved(f"fem.size={size}", f"fem.order={order}")[1]
+        errors.append(max(found.a, found.m, found.n))
+    assert np.log(errors[0] / errors[1]) / np.log(16) > 0.7
+
+
+def test_elements_are_of_that_size():
+    fem, _ = solved("fem.size=0.05")
+    widths = np.diff(fem.traction.cells) / fem.a
+    assert 0.03 < widths.min() < widths.max() < 0.06
+    assert fem.estimate == {}
+    assert fem.settings["element_size_over_a"] == 0.05
+
+
+def test_factored_once_for_all_loads(monkeypatch):
+    calls = []
+    original = condensation.factor
+    monkeypatch.setattr(condensation, "factor", lambda *args: calls.append(1) or original(*args))
+    level._kept.clear()
+    scenes = [("fem.size=0.04", f"friction.f={f}", f"load.Q=[{-Q}, {Q}]") for f in (0.4, 0.6) for Q in (5e4, 9e4)]
+    results = [solved(*scene)[0] for scene in scenes]
+    assert len(calls) == 2  # the rough mesh, and the uniform one
+    assert [result.counts["factorizations"] for result in results] == [2, 0, 0, 0]
+    level._kept.clear()
+    afresh = solved(*scenes[-1])[0]
+    assert (afresh.a, afresh.m, afresh.n) == (results[-1].a, results[-1].m, results[-1].n)
+
+
+def test_another_material_is_another_factorisation():
+    first = solved("fem.size=0.04")[0]
+    other = solved("fem.size=0.04", "material.nu=0.2")[0]
+    assert other.counts["factorizations"] == 2
+    assert first.traction.q2 is not None
+
+
+def test_no_bars_and_no_verdict():
+    _, found = solved("fem.size=0.2", "fem.order=1")
+    assert found.bars == {}
+    assert found.passed
+
+
+@pytest.mark.parametrize("size", ["0", "1", "-0.1", "nan", "small"])
+def test_impossible_sizes_are_refused(size):
+    with pytest.raises(InputError, match=r"fem\.size = "):
+        load_scene("hertz-shear", [f"fem.size={size}"])
