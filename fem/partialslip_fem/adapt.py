@@ -9,7 +9,7 @@ import numpy as np
 from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
 from partialslip.result import Clock
-from partialslip_fem.estimate import AT_END, end_errors, neighbour, smooth_errors
+from partialslip_fem.estimate import end_errors, neighbour, smooth_errors
 from partialslip_fem.level import Level, Problem, solve_level
 
 _FIRST, _ROUGH = 0.1, 1.0  # element size of the first mesh, in its contact line's half-width; and growth
@@ -17,7 +17,7 @@ _FINER = 16.0  # from mesh to mesh at most: element size at the ends
 _SMOOTH, _GROWTH = 2.8, 0.7  # away from the ends errors are about (growth/2.8)^(2 order); the largest growth
 _CALMER = (0.4, 0.85)  # of growth, where that was not so
 _AIM, _BAR = 0.5, 0.9  # of the accuracy: estimates are right within a factor of two as a rule
-_ENDS = 0.2  # share of what is aimed at that the elements at the ends may take
+_ENDS = 0.33  # share of what is aimed at that the elements at the ends may take
 _FINEST = 1e-7  # element size at the ends, in contact half-widths; below, rounding takes over
 _BESIDE = 0.01  # element size at an end, in contact half-widths, beyond which the mesh is only good for finding it
 _MOST = 200_000  # unknowns
@@ -49,11 +49,14 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     order = problem.order
     level, meshes, factored = _first(problem, width, clock)
     iterations, before, bar = level.iterations, np.inf, _BAR * accuracy
-    size, goal = _FIRST, float(np.clip(_ENDS * _AIM * accuracy / AT_END[order], _FINEST, _BESIDE / 2))
-    finer = (size / goal) ** (1 / math.ceil(math.log(size / goal, _FINER)))
+    size, finer = _FIRST, _FINER
     least = _growth(_AIM * accuracy / 2, order)
     limit = _limit(problem)
     while True:
+        goal = _ENDS * _AIM * accuracy / _worst(end_errors(level, np.ones(4)))
+        goal = min(max(goal, _FINEST), _BESIDE / 2)
+        if size > 1.01 * goal:
+            finer = (size / goal) ** (1 / math.ceil(math.log(size / goal, _FINER)))
         size = max(size / finer, _FINEST)
         growth = max(least, _growth(size, order)) if size > 1.01 * goal else least
         a = level.half_width

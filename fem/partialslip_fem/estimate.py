@@ -21,7 +21,7 @@ _NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3}
 
 # What an end, p and q are off by, measured as multiples of the size of the element that the end lies in.
 AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.0025}
-_TRACTIONS = {"p": 8.0, "q": 25.0}  # of that
+_TRACTIONS = {"p": 8.0, "q": 25.0}  # of that in Hertz contacts, in proportion to :func:`_steepness` in others
 
 
 def neighbour(level: Level, problem: Problem, width: float, clock: Clock) -> Level:
@@ -42,8 +42,22 @@ def end_errors(level: Level, sizes: Array) -> dict[str, float]:
     """What the elements at the ends add; ``sizes`` are those that the ends lie in, in contact half-widths and in the
     order of ``level.ends``."""
     off = AT_END[level.body.order] * sizes
-    errors = {"a": float(off[:2].mean()), **{key: float(off.max()) * times for key, times in _TRACTIONS.items()}}
+    most = float(off.max()) * max(_steepness(level), 1.0)
+    errors = {"a": float(off[:2].mean()), **{key: most * times for key, times in _TRACTIONS.items()}}
     return errors | (dict(zip("mn", off[2:4].tolist(), strict=True)) if level.stick else {})
+
+
+def _steepness(level: Level) -> float:
+    """The factor of the square root of the distance from an end that p begins with, over the RMS of p, as a multiple of
+    that of a Hertz contact; the larger one of the two ends. It is taken from the force on the cell the end lies in and
+    the one beside it."""
+    p, ends = level.pressure(), np.array([level.left, level.right])
+    force = p.antiderivative()
+    rms = np.sqrt(np.sum(np.diff(force(p.x)) ** 2 / np.diff(p.x)) / (2 * level.half_width))
+    cells = np.clip(np.searchsorted(p.x, ends) - 1, 1, len(p.x) - 3)
+    inside = p.x[cells + np.array([2, -1])]
+    forces = np.abs(force(p.x[[0, -1]]) - force(inside))
+    return float(np.max(1.5 * forces / np.abs(inside - ends) ** 1.5) * np.sqrt(level.half_width / 3) / rms)
 
 
 def _changes(level: Level, other: Level) -> dict[str, float]:

@@ -52,7 +52,7 @@ def test_elements_at_the_ends_are_counted(monkeypatch):
     monkeypatch.setattr(adapt, "_BESIDE", 0.06)
     monkeypatch.setattr(adapt, "_ENDS", 1e6)
     honest, _ = ratio(*SCENES[2], "fem.accuracy=1e-2")
-    monkeypatch.setattr(adapt, "end_errors", lambda *_: dict.fromkeys("amnpq", 0.0))
+    monkeypatch.setattr(adapt, "end_errors", lambda *_: dict.fromkeys("amnpq", 1e-12))
     known, _ = ratio(*SCENES[2], "fem.accuracy=1e-2")
     assert known < 1 / 3 < honest
 
