@@ -1,59 +1,22 @@
-"""The command line. Exit codes: 0 fine, 1 a bar missed, 2 bad input (one line on stderr)."""
+"""partialslip run: solve a scene, compare the methods, write the report."""
 
 import argparse
 import json
-import os
-import sys
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING
 
-from partialslip import __version__
-from partialslip.errors import InputError, PartialslipError
-from partialslip.reading import load_scene, shipped_scenes
+from partialslip.cli.common import check_folder, print_written
+from partialslip.errors import InputError
+from partialslip.reading import load_scene
 from partialslip.run import METHODS, Run, run
 from partialslip.state import State, load_state
 
 if TYPE_CHECKING:
-    from rich.console import Console
+    from partialslip.cli.common import Commands
 
 
-class _Parser(argparse.ArgumentParser):
-    """Errors in one line, like all others; no abbreviations."""
-
-    def __init__(self, **settings: Any) -> None:
-        super().__init__(allow_abbrev=False, **settings)
-
-    def error(self, message: str) -> NoReturn:
-        raise InputError(f"{message} (see {self.prog} --help)")
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; returns the exit code."""
-    try:
-        options = _parser().parse_args(arguments)
-        code: int = options.command(options)
-        sys.stdout.flush()
-    except PartialslipError as error:
-        print(f"partialslip: {error}", file=sys.stderr)
-        return 2
-    except BrokenPipeError:  # whoever read the output has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
-    except KeyboardInterrupt:
-        print("partialslip: interrupted", file=sys.stderr)
-        return 130
-    return code
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
-        prog="partialslip",
-        description="How right is a frictional contact calculation? Exact solution and finite elements, side by side.",
-    )
-    parser.add_argument("--version", action="version", version=f"partialslip {__version__}")
-    commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
-
+def add(commands: "Commands") -> None:
+    """Add the command to the parser."""
     runs = commands.add_parser(
         "run",
         help="solve a scene, compare the methods, write the report",
@@ -77,21 +40,6 @@ def _parser() -> argparse.ArgumentParser:
     runs.add_argument("--json", action="store_true", help="print results.json and nothing else; files only with --out")
     runs.set_defaults(command=_run)
 
-    maps = commands.add_parser(
-        "map",
-        help="draw the stick zones over all loads",
-        epilog="example: partialslip map flat-rounded",
-    )
-    maps.add_argument("scene", nargs="?", metavar="SCENE",
-                      help="a shipped scene or a TOML file, whose profile is mapped and loads marked "
-                      "(default: Hertz)")  # fmt: skip
-    maps.add_argument("--out", metavar="DIR", help="folder for the files (default: results/map, results/NAME-map)")
-    maps.set_defaults(command=_map)
-
-    scenes = commands.add_parser("scenes", help="list the shipped scenes")
-    scenes.set_defaults(command=_scenes)
-    return parser
-
 
 def _run(options: argparse.Namespace) -> int:
     overrides = [*options.overrides]
@@ -104,7 +52,7 @@ def _run(options: argparse.Namespace) -> int:
     for method in methods or []:
         if method not in METHODS:
             raise InputError(f"--with {method!r}: must be of {', '.join(METHODS)}")
-    _check_folder(options.out)
+    check_folder(options.out)
     if options.fields and methods and "fem" not in methods:
         raise InputError("--fields: needs the method fem")
     scene = load_scene(options.scene, overrides)
@@ -133,7 +81,7 @@ def _run(options: argparse.Namespace) -> int:
     else:
         console = Console(highlight=False)
         print_run(outcome, console)
-        _print_written(files, console)
+        print_written(files, console)
     return 0 if outcome.passed else 1
 
 
@@ -143,40 +91,3 @@ def _state(outcome: Run) -> State:
         if name in outcome.results and (state := outcome.results[name].state):
             return state
     raise InputError("--save: no method has followed a path of loads with friction; take march or fem")
-
-
-def _map(options: argparse.Namespace) -> int:
-    _check_folder(options.out)
-    scene = None if options.scene is None else load_scene(options.scene)
-    name = "map" if scene is None else f"{scene.name}-map"
-
-    from rich.console import Console
-
-    from partialslip.report import place, stick_map, write_map
-
-    messages = Console(stderr=True, highlight=False)
-    with messages.status(f"{name} ...") as status:
-        data = stick_map(scene, progress=lambda line: status.update(f"{name}: {line}"))
-        files = write_map(data, Path(options.out) if options.out else Path("results") / name)
-    console = Console(highlight=False)
-    for line in place(data):
-        console.print(line, soft_wrap=True, markup=False)
-    _print_written(files, console)
-    return 0
-
-
-def _check_folder(out: str | None) -> None:
-    if out == "":
-        raise InputError("--out '': must name a folder")
-
-
-def _print_written(files: list[Path], console: "Console") -> None:
-    console.print("written: " + ", ".join(map(str, files)), soft_wrap=True, markup=False)
-
-
-def _scenes(_: argparse.Namespace) -> int:
-    scenes = shipped_scenes()
-    width = max(map(len, scenes))
-    for name, title in scenes.items():
-        print(f"{name:{width}}  {title}")
-    return 0

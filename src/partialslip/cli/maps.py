@@ -1,0 +1,45 @@
+"""partialslip map: draw the stick zones over all loads."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from partialslip.cli.common import check_folder, print_written
+from partialslip.reading import load_scene
+
+if TYPE_CHECKING:
+    from partialslip.cli.common import Commands
+
+
+def add(commands: "Commands") -> None:
+    """Add the command to the parser."""
+    maps = commands.add_parser(
+        "map",
+        help="draw the stick zones over all loads",
+        epilog="example: partialslip map flat-rounded",
+    )
+    maps.add_argument("scene", nargs="?", metavar="SCENE",
+                      help="a shipped scene or a TOML file, whose profile is mapped and loads marked "
+                      "(default: Hertz)")  # fmt: skip
+    maps.add_argument("--out", metavar="DIR", help="folder for the files (default: results/map, results/NAME-map)")
+    maps.set_defaults(command=_map)
+
+
+def _map(options: argparse.Namespace) -> int:
+    check_folder(options.out)
+    scene = None if options.scene is None else load_scene(options.scene)
+    name = "map" if scene is None else f"{scene.name}-map"
+
+    from rich.console import Console
+
+    from partialslip.report import place, stick_map, write_map
+
+    messages = Console(stderr=True, highlight=False)
+    with messages.status(f"{name} ...") as status:
+        data = stick_map(scene, progress=lambda line: status.update(f"{name}: {line}"))
+        files = write_map(data, Path(options.out) if options.out else Path("results") / name)
+    console = Console(highlight=False)
+    for line in place(data):
+        console.print(line, soft_wrap=True, markup=False)
+    print_written(files, console)
+    return 0
