@@ -8,7 +8,7 @@ import numpy as np
 
 from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
-from partialslip.result import Clock
+from partialslip.result import Array, Clock
 from partialslip_fem.estimate import end_errors, neighbour, smooth_errors
 from partialslip_fem.level import Level, Problem, solve_level
 
@@ -53,7 +53,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     least = _growth(_AIM * accuracy / 2, order)
     limit = _limit(problem)
     while True:
-        goal = _ENDS * _AIM * accuracy / _worst(end_errors(level, np.ones(4)))
+        goal = _ENDS * _AIM * accuracy / _worst(end_errors(level, np.ones(4), np.full(4, np.inf)))
         goal = min(max(goal, _FINEST), _BESIDE / 2)
         if size > 1.01 * goal:
             finer = (size / goal) ** (1 / math.ceil(math.log(size / goal, _FINER)))
@@ -66,7 +66,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         level = solve_level(problem, width * a, contact, sizes, growth, clock)
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         local = size + growth * np.abs(level.ends[:, None] - [*sizes]).min(axis=1) / a
-        errors = at_ends = end_errors(level, local)
+        errors = at_ends = end_errors(level, local, _gaps(level, problem))
         known, calmer = np.inf, 1.0
         found = f"mesh {meshes}: {level.dofs:,} unknowns"
         good = level.enclosed and local.max() <= _BESIDE
@@ -81,8 +81,10 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         progress(found)
         if (good and known <= bar) or known > before / 2 or level.dofs > _MOST * calmer**2:
             return Adapted(level, errors, meshes, factored, iterations, width)
+        if size <= 1.01 * goal:
+            finer = min(max(3 * _worst(at_ends) / bar, 1.0), _FINER)
         if known < np.inf:
-            before, least, finer = known, least * calmer, max(min(finer, 3 * _worst(at_ends) / bar), 1.0)
+            before, least = known, least * calmer
 
 
 def uniform(problem: Problem, size: float, width: float, clock: Clock) -> Adapted:
@@ -120,6 +122,16 @@ def _first(problem: Problem, width: float, clock: Clock, keep: bool = False) -> 
         if reach == limit:
             raise _too_narrow(problem)
         reach *= 2
+
+
+def _gaps(level: Level, problem: Problem) -> Array:
+    """From each end the distance to the next one, or to a kink, in contact half-widths."""
+    kinks = np.array(problem.kinks)
+    points = np.concatenate([level.ends, kinks, -kinks])
+    apart = np.abs(level.ends[:, None] - points)
+    np.fill_diagonal(apart, np.inf)
+    nearest: Array = np.maximum(apart.min(axis=1), np.finfo(float).tiny) / level.half_width
+    return nearest
 
 
 def _growth(error: float, order: int) -> float:

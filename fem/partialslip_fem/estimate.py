@@ -5,7 +5,9 @@ r^(2 k), r depending on the mesh: ends of zones and means of tractions converge 
 about one in the units used here. Errors of orders k and k - 1 are therefore r^(2 k) and r^(2 (k-1)), and the
 difference d between the two is the latter: d^(k/(k-1)) is left of order k. Against the order above, d itself is.
 
-At an end itself, where tractions are square roots, the order does not matter; the size of the element does.
+At an end itself, where tractions are square roots, the order does not matter; the size of the element does. So does
+the distance to the next end, or kink of the profile, over which tractions are square roots: ends of the stick zone are
+fitted to some elements beside them.
 """
 
 from dataclasses import replace
@@ -20,7 +22,9 @@ from partialslip_fem.level import Level, Problem, solve_on
 _NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3}
 
 # What an end, p and q are off by, measured as multiples of the size of the element that the end lies in.
-AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.0025}
+AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002}
+_FIT = 5.0  # of what an end of the stick zone is off by where elements are not small beside the distance to the next
+_SIDE = 0.5  # of the size of its element: an end is not off by more
 _TRACTIONS = {"p": 8.0, "q": 25.0}  # of that in Hertz contacts, in proportion to :func:`_steepness` in others
 
 
@@ -38,13 +42,14 @@ def smooth_errors(level: Level, other: Level) -> dict[str, float]:
     return {key: change ** (order / min(order, other.body.order)) for key, change in _changes(level, other).items()}
 
 
-def end_errors(level: Level, sizes: Array) -> dict[str, float]:
-    """What the elements at the ends add; ``sizes`` are those that the ends lie in, in contact half-widths and in the
-    order of ``level.ends``."""
+def end_errors(level: Level, sizes: Array, gaps: Array) -> dict[str, float]:
+    """What the elements at the ends add; ``sizes`` are those that the ends lie in, and ``gaps`` the distances to the
+    next end or kink, in contact half-widths and in the order of ``level.ends``."""
     off = AT_END[level.body.order] * sizes
     most = float(off.max()) * max(_steepness(level), 1.0)
     errors = {"a": float(off[:2].mean()), **{key: most * times for key, times in _TRACTIONS.items()}}
-    return errors | (dict(zip("mn", off[2:4].tolist(), strict=True)) if level.stick else {})
+    fitted = off + np.minimum(_FIT * (sizes / gaps) ** 2, _SIDE) * sizes
+    return errors | (dict(zip("mn", fitted[2:4].tolist(), strict=True)) if level.stick else {})
 
 
 def _steepness(level: Level) -> float:
