@@ -1,0 +1,138 @@
+"""The price list: what finite elements of some accuracy will cost, fitted to a ledger of measured cases.
+
+CPU seconds are taken as exp(start) + points bodies exp(each + growth log10(1/accuracy)) (1 + step steps): elements
+crowd about ``points``, the ends of the contact and of the stick zone and the kinks of the profile, and ``steps`` load
+steps are made beyond the first.
+"""
+
+import json
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from importlib import resources
+from typing import Any
+
+import msgspec
+import numpy as np
+from scipy.optimize import least_squares
+
+from partialslip.errors import InputError
+from partialslip.plan import plan
+from partialslip.reading import parse_scene
+from partialslip.result import Array
+from partialslip.scene import Scene
+
+_FINEST, _COARSEST = 1e-7, 1e-2
+
+
+@dataclass(frozen=True)
+class Price:
+    """What a setting is expected to cost."""
+
+    order: int
+    accuracy: float
+    cpu_s: float
+
+
+class Prices(msgspec.Struct, frozen=True, kw_only=True):
+    """A fitted cost model.
+
+    ``orders`` holds start, each and growth by element order; ``step`` what a load step adds; ``spread`` the factor
+    within which nine of ten cases of the fit are; ``machine`` what it was measured on.
+    """
+
+    orders: dict[str, tuple[float, float, float]]
+    step: float
+    spread: float
+    machine: str
+
+    def price(self, scene: Scene, accuracy: float, order: int) -> Price:
+        """The CPU seconds of ``order`` at ``accuracy``, of the method fem."""
+        start, each, growth = self.orders[str(order)]
+        points, steps = _features(scene)
+        return Price(order, accuracy, _seconds(start, each, growth, self.step, points, steps, math.log10(1 / accuracy)))
+
+    def cheapest(self, scene: Scene, accuracy: float) -> Price:
+        """The least price of ``accuracy``."""
+        return min((self.price(scene, accuracy, int(order)) for order in self.orders), key=lambda price: price.cpu_s)
+
+    def best(self, scene: Scene, budget: float) -> Price:
+        """The best accuracy to be had for ``budget`` CPU seconds.
+
+        Raises
+        ------
+        InputError
+            If even 1e-2 costs more.
+        """
+        least = self.cheapest(scene, _COARSEST)
+        if least.cpu_s > budget:
+            raise InputError(
+                f"--budget {budget:g}s: finite elements take {least.cpu_s:.2g} s for {_COARSEST:g}, "
+                "which is the least; the exact method alone (--with exact) takes hundredths of a second"
+            )
+        accuracies = np.geomspace(_COARSEST, _FINEST, 101)
+        return min(
+            (price for asked in accuracies.tolist() if (price := self.cheapest(scene, asked)).cpu_s <= budget),
+            key=lambda price: price.accuracy,
+        )
+
+
+def load_prices() -> Prices:
+    """The shipped price list."""
+    text = (resources.files("partialslip") / "study" / "prices.json").read_text("utf-8")
+    return msgspec.json.decode(text, type=Prices)
+
+
+def fit(entries: Iterable[Mapping[str, Any]], machine: str) -> Prices:
+    """The price list of the adapted finite elements in a ledger.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than ten.
+    """
+    cases = []
+    for entry in entries:
+        if "error" not in entry and "fem" in entry["methods"] and entry["scene"]["fem"].get("size") is None:
+            scene = parse_scene(entry["scene"])
+            points, steps = _features(scene)
+            found = entry["methods"]["fem"]["cost"]["cpu_s"]
+            cases.append((scene.fem.order, points, steps, math.log10(1 / scene.fem.accuracy), found))
+    if len(cases) < 10:
+        raise InputError(f"a price list needs at least 10 measured cases of adapted finite elements, not {len(cases)}")
+    order, sizes, extra, digits, seconds = (np.array(column) for column in zip(*cases, strict=True))
+    orders, number = np.unique(order, return_inverse=True)
+
+    def off(parameters: Array) -> Array:
+        start, each, growth = (column[number] for column in parameters[:-1].reshape(3, -1))
+        predicted = _seconds(start, each, growth, np.exp(parameters[-1]), sizes, extra, digits)
+        ratio: Array = np.log(predicted / seconds)
+        return ratio
+
+    guess = np.repeat([math.log(0.3), math.log(0.02), 0.5], len(orders))
+    solution = least_squares(off, [*guess, math.log(0.01)], loss="soft_l1", f_scale=0.3)
+    fitted = solution.x[:-1].reshape(3, -1).T.tolist()
+    return Prices(
+        orders={str(each): tuple(row) for each, row in zip(orders.tolist(), fitted, strict=True)},
+        step=math.exp(solution.x[-1]),
+        spread=float(np.exp(np.quantile(np.abs(off(solution.x)), 0.9))),
+        machine=machine,
+    )
+
+
+def to_json(prices: Prices) -> str:
+    """As :func:`load_prices` reads it."""
+    return json.dumps(msgspec.to_builtins(prices), indent=1) + "\n"
+
+
+def _seconds(start: Any, each: Any, growth: Any, step: Any, points: Any, steps: Any, digits: Any) -> Any:
+    return np.exp(start) + points * np.exp(each + growth * digits) * (1 + step * steps)
+
+
+def _features(scene: Scene) -> tuple[float, float]:
+    """Points that elements crowd about, in all bodies, and load steps beyond the first."""
+    effects, load = plan(scene), scene.load
+    friction, bodies = effects.needs("friction"), 2 if effects.needs("coupling") else 1
+    ends = 2 + 2 * friction + len(scene.profile.kinks)
+    steps = load.cycles * len(load.points) * load.steps if effects.needs("history") else 0
+    return float(bodies * ends), float(steps)
