@@ -73,7 +73,7 @@ def plan(scene: Scene, *, subsurface: bool = False, start: bool = False) -> Plan
     left_out: dict[Effect, str] = {}
     for effect, (needed, why, why_not) in decided.items():
         choice = forced.get(effect)
-        if needed or choice:
+        if needed if choice is None else choice:
             called_for[effect] = why if needed and (not choice or own[effect][0]) else f"forced on, though {why_not}"
         else:
             off = choice is False and own[effect][0]
@@ -123,7 +123,7 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
     if not (tangential or coupled):
         no_friction = "no tangential load acts"
     elif f == 0:
-        no_friction = "f = 0: no traction can hold a tangential load"
+        no_friction = "f = 0: no traction holds the surfaces along x"
     else:
         no_friction = "|Q| >= f P at a load point: the contact slides, and nothing is left to find"
     small = _small_tension(scene)

@@ -23,15 +23,16 @@ from partialslip.scene import Scene
 SCHEMA = "partialslip/effects/1"
 SIZE = 0.02  # of elements, in contact half-widths, where the scene gives none
 CHANGES = ("a", "m", "n", "q", "q2")
-COSTS = ("cpu_s", "unknowns", "multipliers", "iterations", "factorizations", "load_steps", "back_solves")
-_REPEATS = 2  # the best CPU time of
-_COSTS_SHOWN = {
+COSTS = {
     "cpu_s": "CPU s",
     "unknowns": "unknowns",
     "multipliers": "multipliers",
     "iterations": "iterations",
-    "factorizations": "factorisations",
+    "factorizations": "factored",
+    "load_steps": "steps",
+    "back_solves": "back-solves",
 }
+_REPEATS = 2  # the best CPU time of
 
 
 @dataclass(frozen=True)
@@ -100,7 +101,9 @@ def _entry(scene: Scene, own: Plan, result: Result, effect: Effect) -> Entry:
     try:
         other = _measured(turned)
     except InputError as refusal:
-        alone = {key: (cost, None) if on else (None, cost) for key, cost in _costs(result).items()}
+        alone: dict[str, tuple[float | None, float | None]] = {
+            key: (cost, None) if on else (None, cost) for key, cost in _costs(result).items()
+        }
         return Entry(effect, on, why, str(refusal), {}, alone)
     with_it, without = (result, other) if on else (other, result)
     costs = {key: (cost, _costs(without)[key]) for key, cost in _costs(with_it).items()}
@@ -145,10 +148,11 @@ def _apart(on: Result, off: Result) -> float | None:
 def _costs(result: Result) -> dict[str, float | None]:
     counts = result.counts
     own: dict[str, float | None] = {
-        key: counts[key] for key in ("iterations", "factorizations", "load_steps", "back_solves")
+        "cpu_s": result.cost.cpu_s,
+        "unknowns": counts["dofs"],
+        "multipliers": counts["normal_unknowns"] + counts["tangential_unknowns"],
     }
-    multipliers = counts["normal_unknowns"] + counts["tangential_unknowns"]
-    return {"cpu_s": result.cost.cpu_s, "unknowns": counts["dofs"], "multipliers": multipliers, **own}
+    return own | {key: counts[key] for key in COSTS if key in counts}
 
 
 def changes_table(study: EffectStudy) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
@@ -161,11 +165,18 @@ def changes_table(study: EffectStudy) -> tuple[tuple[str, ...], list[tuple[str, 
 
 
 def costs_table(study: EffectStudy) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Headings and rows: what each effect costs, on/off; in brackets what the plan does not build."""
-    rows = [
-        (entry.effect, *(_pair(entry.costs[key], entry.called_for) for key in _COSTS_SHOWN)) for entry in study.entries
-    ]
-    return ("on/off", *_COSTS_SHOWN.values()), rows
+    """Headings and rows: what the scene costs as planned, and with each effect turned over."""
+    rows = [("as planned", *map(_digits, _costs(study.result).values()))]
+    for entry in study.entries:
+        if not entry.refused:
+            turned = [costs[entry.called_for] for costs in entry.costs.values()]
+            rows.append((turned_over(entry), *map(_digits, turned)))
+    return ("", *COSTS.values()), rows
+
+
+def turned_over(entry: Entry) -> str:
+    """What is different where an effect is not as the scene has it."""
+    return f"{'without' if entry.called_for else 'with'} {entry.effect}"
 
 
 def change(entry: Entry, key: str) -> str:
@@ -174,10 +185,8 @@ def change(entry: Entry, key: str) -> str:
     return "-" if value is None else "0" if value == 0 else f"{value:.1e}"
 
 
-def _pair(costs: tuple[float | None, float | None], on: bool) -> str:
-    texts = ["-" if cost is None else f"{cost:,}" if isinstance(cost, int) else f"{cost:.2f}" for cost in costs]
-    texts[on] = f"({texts[on]})"
-    return "/".join(texts)
+def _digits(cost: float | None) -> str:
+    return "-" if cost is None else f"{cost:,}" if isinstance(cost, int) else f"{cost:.2f}"
 
 
 def notes(study: EffectStudy) -> list[str]:

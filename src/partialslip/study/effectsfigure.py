@@ -32,10 +32,10 @@ def effects_svg(study: EffectStudy) -> str:
 
 
 def _draw_changes(axes: "Axes", study: EffectStudy) -> None:
-    for key, (mark, fill) in _MARKS.items():
-        found = [(row, entry.changes.get(key)) for row, entry in enumerate(study.entries)]
+    for place, (key, (mark, fill)) in enumerate(_MARKS.items(), start=-2):
+        found = [(row + 0.14 * place, entry.changes.get(key)) for row, entry in enumerate(study.entries)]
         known = [(max(value, _LEAST), row) for row, value in found if value is not None]
-        axes.plot(*zip(*known, strict=True), mark, mfc=fill, mec="black", ms=6, ls="", label=key, clip_on=False)
+        axes.plot(*zip(*known, strict=True), mark, mfc=fill, mec="black", ms=5, ls="", label=key, clip_on=False)
     for row, entry in enumerate(study.entries):
         axes.axhline(row, color="0.9", lw=0.6, zorder=0)
         if entry.refused:
@@ -46,10 +46,12 @@ def _draw_changes(axes: "Axes", study: EffectStudy) -> None:
 
 
 def _draw_costs(axes: "Axes", study: EffectStudy) -> None:
-    for number, (state, fill) in enumerate((("CPU on", "black"), ("CPU off", "white"))):
-        costs = [(row, entry.costs["cpu_s"][number]) for row, entry in enumerate(study.entries)]
-        rows, values = zip(*((row, cost) for row, cost in costs if cost is not None), strict=True)
-        places = [row + (number - 0.5) * 0.36 for row in rows]
-        axes.barh(places, values, 0.36, color=fill, edgecolor="black", lw=0.8, label=state)
-    axes.axvline(study.result.cost.cpu_s, color="black", lw=0.8, ls=":", label="as planned")
+    for called_for, label, fill in ((True, "without it", "white"), (False, "with it", "0.6")):
+        turned = {
+            row: entry.costs["cpu_s"][called_for] or 0.0
+            for row, entry in enumerate(study.entries)
+            if entry.called_for is called_for and not entry.refused
+        }
+        axes.barh([*turned], [*turned.values()], 0.5, color=fill, edgecolor="black", lw=0.8, label=label)
+    axes.axvline(study.result.cost.cpu_s, color="black", lw=1, ls="--", label="as planned")
     axes.set(xlabel="CPU s")
