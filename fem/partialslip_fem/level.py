@@ -39,7 +39,7 @@ class Problem:
     """What is to be solved, scaled: a gap, smooth but for its ``kinks``, and P = 1. Without a ``path`` of loads there
     is no friction to solve; it begins with the tractions p and q of ``start``, if given. ``parts`` are the lower and
     the upper body; of mirror images the lower one alone. Only if they are ``coupled`` do pressure and shear act across.
-    """
+    ``inside`` says whether what is inside them will be asked for."""
 
     gap: Callable[[Array], Array]
     kinks: tuple[float, ...]
@@ -51,6 +51,7 @@ class Problem:
     backend: Backend
     start: tuple[PPoly, PPoly] | None = None
     coupled: bool = True
+    inside: bool = True
 
 
 @dataclass(frozen=True)
@@ -149,7 +150,7 @@ def solve_level(
     ``contact``, ``sizes``, ``growth`` and ``along`` are as for :func:`partialslip_meshes.block`. With ``keep`` the
     condensed bodies are kept for other loads, friction and profiles on the same mesh.
     """
-    kind = (problem.parts, problem.order, problem.far_field, problem.backend, problem.path is None)
+    kind = (problem.parts, problem.order, problem.far_field, problem.backend, problem.path is None, problem.inside)
     key = (*kind, width, contact, tuple(sizes.items()), growth, along)
     if keep and key in _kept:
         return _level(problem, _kept[key], 0, clock)
@@ -199,7 +200,7 @@ def _half(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) 
         with clock.phase("far field"):
             far = half_plane(half.held_points, half.x, width, part.kappa, part.compliance)
     with clock.phase("factorisation"):
-        return Half(mesh, half, Condensed(half, far, problem.backend, shear=problem.path is not None))
+        return Half(mesh, half, Condensed(half, far, problem.backend, problem.path is not None, problem.inside))
 
 
 def _solve(problem: Problem, C: coupled.Relative, line: Body) -> tuple[Solution, History | None, Indices]:

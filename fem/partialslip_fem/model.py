@@ -80,6 +80,7 @@ def _scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         backend=scene.fem.factor or default_backend(),
         start=tuple(_rescaled(q, L / P, 1 / L) for q in (start.p, start.q)) if start else None,
         coupled=plan.needs("coupling"),
+        inside=plan.needs("subsurface"),
     )
 
 
