@@ -270,7 +270,7 @@ def test_opposing_slip_is_left_out_where_tension_is_small(Qf):
 REFUSED = {
     "effects.normal=false": "without pressure there is no contact; must be true",
     "effects.friction=true friction.f=0.01": "the contact slides",
-    "effects.shear=true friction.f=0": "f = 0",
+    "effects.friction=true friction.f=0": "f = 0",
     "effects.opposing-slip=false load.sigma=[-1e9,1e9]": "large tension",
     "effects.history=false load.sigma=[0,1e8,0] load.Q=[0,1e4,1e4]": "out of phase",
     "effects.history=false material.upper.E=400e9 material.upper.nu=0.3 load.Q=[-1e5,1e5]": "depends on the path",
@@ -289,6 +289,12 @@ def test_what_cannot_be_forced_is_refused_in_one_line(settings, capsys, tmp_path
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert REFUSED[settings] in line
     assert "effects" in line
+
+
+def test_what_is_called_for_may_be_forced_on():
+    """Shear that makes the contact slide is called for, though friction is not."""
+    scene = load_scene("hertz-shear", ["friction.f=0.01", "effects.shear=true", "effects.normal=true"])
+    assert partialslip.run(scene, ["exact"]).results["exact"].regime == "sliding"
 
 
 def test_fields_that_are_asked_for_are_not_left_out():

@@ -143,8 +143,8 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
                     "Q1 = -Q2 and sigma1 = -sigma2: half a cycle tells the whole" if friction else no_friction),
         "coupling": (not scene.mirrored,
                      "the bodies are not mirror images: pressure moves them along x, and shear opens the gap",
-                     "the bodies are mirror images: what pressure and shear do across cancels, and one is factored for "
-                     "both"),
+                     "the bodies are mirror images: what pressure and shear do across cancels"
+                     + (", and one is factored for both" if scene.fem.lower_size == 1 else "")),
         "finite-size": (scene.finite, "a body has a size of its own", "the bodies stand for half-planes"),
         "far-field": (scene.fem.far_field == "half-plane" and None in (scene.bodies.upper, scene.bodies.lower),
                       "a block is held by the displacements of the half-plane it stands for",
@@ -196,7 +196,7 @@ def _refuse(scene: Scene, forced: dict[Effect, bool], own: _Decisions) -> None:
     tangential: tuple[Effect, ...] = ("friction", "shear", "tension")
     reasons: list[tuple[Effect, bool, str]] = [
         ("normal", "normal" in off, "without pressure there is no contact"),
-        *((each, each in on and scene.slides, own["friction"][2]) for each in tangential),
+        *((each, each in on and scene.slides and not own[each][0], own["friction"][2]) for each in tangential),
         ("opposing-slip", "opposing-slip" in off and not scene.load.in_phase,
          "Q and sigma are out of phase, and slip turns round"),
         ("history", "history" in off and own["history"][0] and (coupled or not scene.load.in_phase),

@@ -157,7 +157,7 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | No
     of_lower = scene.material.bodies[0].A / scene.material.A
     begins = (start.Q, start.sigma) if start else (0.0, 0.0)
     begin, *cycle = ((Q / P, of_lower * sigma * L / (4 * P)) for Q, sigma in (begins, *load.points))
-    half = not plan.needs("history")
+    half = start is None and not plan.needs("history")
     return Path(tuple(cycle), load.ends, load.in_phase, load.cycles, load.steps, begin, half=half)
 
 
