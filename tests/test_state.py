@@ -43,7 +43,7 @@ def test_a_state_of_one_method_starts_another():
 
 
 def test_steady_cycles_are_not_repeated():
-    scene = load_scene("hertz-large-tension", ["load.cycles=200", "fem.accuracy=1e-2"])
+    scene = load_scene("hertz-large-tension", ["load.cycles=200", "effects.history=true", "fem.accuracy=1e-2"])
     for result in run(scene, ["march", "fem"]).results.values():
         assert result.counts["cycles"] == 1
         assert result.counts["load_steps"] == 3

@@ -38,7 +38,8 @@ class Part:
 class Problem:
     """What is to be solved, scaled: a gap, smooth but for its ``kinks``, and P = 1. Without a ``path`` of loads there
     is no friction to solve; it begins with the tractions p and q of ``start``, if given. ``parts`` are the lower and
-    the upper body; of mirror images the lower one alone."""
+    the upper body; of mirror images the lower one alone. Only if they are ``coupled`` do pressure and shear act across.
+    ``inside`` says whether what is inside them will be asked for."""
 
     gap: Callable[[Array], Array]
     kinks: tuple[float, ...]
@@ -49,6 +50,8 @@ class Problem:
     far_field: Literal["half-plane", "box"]
     backend: Backend
     start: tuple[PPoly, PPoly] | None = None
+    coupled: bool = True
+    inside: bool = True
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,8 @@ class Level:
     """The solution on one mesh of each body: of the lower one, and, unless that is mirrored, of the upper one.
 
     ``nodes`` of the lower one's contact line are in contact at load point 1 or 2, at 2 it is over [left, right], and
-    the ends at 1 are ``others``, where they differ. ``factored`` counts the factorisations made for it.
+    the ends at 1 are ``others``, where they differ. ``factored`` counts the factorisations made for it; pressure and
+    shear are solved together where bodies are ``coupled``.
     """
 
     halves: tuple[Half, ...]
@@ -68,6 +72,7 @@ class Level:
     right: float
     stick: Zone | None
     others: tuple[float, float] | tuple[()] = ()
+    coupled: bool = False
 
     @property
     def body(self) -> Body:
@@ -125,6 +130,11 @@ _KEPT = 2  # sets of bodies: those of a rough mesh, and of the uniform one made 
 _kept: dict[tuple[object, ...], tuple[Half, ...]] = {}
 
 
+def forget() -> None:
+    """Drop the bodies that are kept."""
+    _kept.clear()
+
+
 def solve_level(
     problem: Problem,
     width: float,
@@ -140,7 +150,7 @@ def solve_level(
     ``contact``, ``sizes``, ``growth`` and ``along`` are as for :func:`partialslip_meshes.block`. With ``keep`` the
     condensed bodies are kept for other loads, friction and profiles on the same mesh.
     """
-    kind = (problem.parts, problem.order, problem.far_field, problem.backend)
+    kind = (problem.parts, problem.order, problem.far_field, problem.backend, problem.path is None, problem.inside)
     key = (*kind, width, contact, tuple(sizes.items()), growth, along)
     if keep and key in _kept:
         return _level(problem, _kept[key], 0, clock)
@@ -167,18 +177,18 @@ def solve_on(meshes: Sequence[Mesh], problem: Problem, width: float, clock: Cloc
 
 def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clock) -> Level:
     with clock.phase("condensation"):
-        relative = relative_compliances(halves)
+        relative = relative_compliances(halves, problem.coupled)
     with clock.phase("contact"):
         line = halves[0].body
         pressing, history, nodes = _solve(problem, relative, line)
         left, right = _ends(line, pressing.x)
         others: tuple[float, float] | tuple[()] = ()
-        if history and len(halves) > 1:
+        if history and relative.xy is not None:
             at_first = np.zeros(len(line.x))
             at_first[nodes] = history.bounds[0]
             others = _ends(line, at_first)
         stick = _stick_zone(line, nodes, history) if history else None
-        return Level(halves, factored, nodes, pressing, history, left, right, stick, others)
+        return Level(halves, factored, nodes, pressing, history, left, right, stick, others, relative.xy is not None)
 
 
 def _half(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) -> Half:
@@ -190,7 +200,7 @@ def _half(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) 
         with clock.phase("far field"):
             far = half_plane(half.held_points, half.x, width, part.kappa, part.compliance)
     with clock.phase("factorisation"):
-        return Half(mesh, half, Condensed(half, far, problem.backend))
+        return Half(mesh, half, Condensed(half, far, problem.backend, problem.path is not None, problem.inside))
 
 
 def _solve(problem: Problem, C: coupled.Relative, line: Body) -> tuple[Solution, History | None, Indices]:
@@ -209,6 +219,7 @@ def _solve(problem: Problem, C: coupled.Relative, line: Body) -> tuple[Solution,
         return pressing, None, nodes
     if path.before is not None:
         path = replace(path, before=path.before[nodes])
+    assert C.xx is not None
     inner = C.xx[np.ix_(nodes, nodes)]
     return pressing, march(inner, line.x[nodes], problem.f * pressing.x[nodes], path), nodes
 

@@ -5,12 +5,12 @@ from collections.abc import Callable
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.condensed.friction import certificate, doubts, judge, load_path
+from partialslip.condensed.friction import History, certificate, doubts, judge, load_path
 from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Result, Slip, Traction
-from partialslip.scene import Scene
+from partialslip.scene import WIDTHS, Scene
 from partialslip.state import State
 from partialslip_fem.adapt import Adapted, adapt, uniform
 from partialslip_fem.displacements import solve_back
@@ -19,7 +19,6 @@ from partialslip_fem.fields import along_surfaces, deformed
 from partialslip_fem.level import Level, Part, Problem
 from partialslip_fem.recovery import inside
 
-_WIDTH = {"half-plane": 16.0, "box": 4096.0}  # in contact half-widths
 _LARGEST_NU = 0.4999999
 
 
@@ -53,7 +52,7 @@ def solve(
                 f"material{name}.nu = {elastic.nu}: must be <= {_LARGEST_NU} in plane strain by finite elements"
             )
     clock = Clock()
-    width = scene.fem.width or _WIDTH[scene.fem.far_field]
+    width = scene.fem.width or WIDTHS[scene.fem.far_field]
     problem = _scaled(scene, plan, start)
     if scene.fem.size is None:
         adapted = adapt(problem, scene.fem.accuracy, width, clock, progress)
@@ -75,11 +74,13 @@ def _scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         kinks=tuple(kink / L for kink in scene.profile.kinks),
         f=scene.friction.f,
         path=load_path(scene, plan, start),
-        parts=parts[:1] if mirrored(scene) else parts,
+        parts=parts[:1] if scene.fem.lower_size == 1 and not plan.needs("coupling") and scene.mirrored else parts,
         order=scene.fem.order,
         far_field=scene.fem.far_field,
         backend=scene.fem.factor or default_backend(),
         start=tuple(_rescaled(q, L / P, 1 / L) for q in (start.p, start.q)) if start else None,
+        coupled=plan.needs("coupling"),
+        inside=plan.needs("subsurface"),
     )
 
 
@@ -101,11 +102,6 @@ def _state(scene: Scene, level: Level) -> State | None:
     )
 
 
-def mirrored(scene: Scene) -> bool:
-    """Whether one body, and its mesh, is the mirror image of the other."""
-    return scene.mirrored and scene.fem.lower_size == 1
-
-
 def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock: Clock) -> Result:
     level, L, stress = adapted.level, scene.length, scene.P / scene.length
     pressure = level.pressure()
@@ -121,7 +117,9 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         at1, at2 = level.shear(history.q1), level.shear(history.q2)
         q1, q2, dq = stress * at1(x), stress * at2(x), PPoly(at2.c - at1.c, at2.x)
 
+    made = _factorizations(level)
     moved = solve_back(level, problem) if plan.needs("subsurface") else ()
+    extra = {"back_solves": len(moved), "factorizations": adapted.factorizations + _factorizations(level) - made}
 
     def at(points: Array) -> tuple[Array, Array]:
         scaled = points / L
@@ -147,21 +145,13 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         cost=clock.cost(),
         slip=Slip(x * L, history.slip * unit, history.dissipated * unit * scene.P) if history else None,
         settings={
-            "bodies": "two, coupled" if len(level.halves) > 1 else "mirror images, one factored",
+            "bodies": _bodies(level, problem),
             "elements": f"P{problem.order}",
             "factorisation": problem.backend,
             **_extents(problem, adapted.width),
             **({"accuracy": scene.fem.accuracy} if scene.fem.size is None else {"element_size_over_a": scene.fem.size}),
         },
-        counts={
-            "dofs": level.dofs,
-            "contact_nodes": len(level.nodes),
-            "meshes": adapted.meshes,
-            "factorizations": adapted.factorizations,
-            "cycles": history.cycles if history else 0,
-            "load_steps": history.load_steps if history else 0,
-            "iterations": adapted.iterations,
-        },
+        counts=_counts(level, adapted, extra),
         certificate=certified,
         estimate=adapted.errors,
         notes=found.notes + doubts(certified, adapted.errors, scene.fem.accuracy),
@@ -169,6 +159,47 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         state=_state(scene, level),
         surface=along_surfaces(moved, level.contact_ends, L, stress) if moved else None,
     )
+
+
+def _bodies(level: Level, problem: Problem) -> str:
+    if len(level.halves) == 1:
+        return "mirror images, one factored"
+    return "two, coupled" if problem.coupled else "two, not coupled"
+
+
+def _factorizations(level: Level) -> int:
+    return sum(half.condensed.factorizations for half in level.halves)
+
+
+def _counts(level: Level, adapted: Adapted, extra: dict[str, int]) -> dict[str, int]:
+    """Work: meshes, factorisations and iterations (faces solved) of all meshes, all else on the last one. Multipliers
+    are ``normal`` and ``tangential`` ``unknowns``, ``columns`` those of the compliances that hold them; iterations of
+    either are changes of what touches, and of what sticks, after the first linear solve."""
+    history, pressing = level.history, level.pressing
+    both = history and level.coupled
+    return {
+        "dofs": level.dofs,
+        "contact_nodes": len(level.nodes),
+        "bodies": len(level.halves),
+        "normal_unknowns": len(level.body.x),
+        "tangential_unknowns": (len(level.body.x) if both else len(level.nodes)) if history else 0,
+        "columns": sum(half.condensed.columns for half in level.halves),
+        "far_field_columns": sum(half.condensed.far_columns for half in level.halves),
+        "meshes": adapted.meshes,
+        "cycles": history.cycles if history else 0,
+        "load_steps": history.load_steps if history else 0,
+        "normal_solves": history.load_steps + _pressing_steps(history) if history and both else 1,
+        "normal_iterations": 0 if both else pressing.changes,
+        "friction_iterations": (pressing.changes if both else history.changes) if history else 0,
+        "opposing_nodes": history.opposing if history else 0,
+        "iterations": adapted.iterations,
+        **extra,
+    }
+
+
+def _pressing_steps(history: History) -> int:
+    """Steps that press coupled bodies together, before the loads of the path."""
+    return history.path.substeps if history.path.before is None else 0
 
 
 def _extents(problem: Problem, width: float) -> dict[str, str | float]:

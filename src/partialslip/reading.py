@@ -199,7 +199,7 @@ def _allowed(what: str, kind: Any) -> str:
 
 def _fields(kind: Any) -> dict[str, Any]:
     tables = isinstance(kind, type) and issubclass(kind, Table)
-    return {field.name: field.type for field in msgspec.structs.fields(kind)} if tables else {}
+    return {field.encode_name: field.type for field in msgspec.structs.fields(kind)} if tables else {}
 
 
 def _keys(kind: Any) -> list[str]:

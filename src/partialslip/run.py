@@ -3,21 +3,24 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+from msgspec.structs import replace
+
 from partialslip.compare import Comparison, compare
 from partialslip.errors import InputError
-from partialslip.plan import Plan, plan
+from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
-from partialslip.scene import Scene
+from partialslip.scene import Effects, Scene
 from partialslip.state import State
 
 METHODS = ("exact", "march", "fem")
+ALL_EFFECTS = "all effects"
 Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class Run:
     """A scene, its plan, the results by method, and the comparisons of all others with the reference: the exact one,
-    or, where there is none, the march's."""
+    or, where there is none, the march's; with :data:`ALL_EFFECTS` where some that matter have been forced off."""
 
     scene: Scene
     plan: Plan
@@ -27,13 +30,13 @@ class Run:
     @property
     def reference(self) -> str | None:
         """The method that the others are compared with."""
-        return next((name for name in ("exact", "march") if name in self.results), None)
+        return next((name for name in (ALL_EFFECTS, "exact", "march") if name in self.results), None)
 
     @property
     def judged(self) -> bool:
-        """Whether errors have bars: half-planes are no truth for finite bodies, and a mesh of a given element size is
-        as good as it is."""
-        return not self.scene.finite and self.scene.fem.size is None
+        """Whether errors have bars: half-planes are no truth for finite bodies, a mesh of a given element size is as
+        good as it is, and of effects that are forced off errors are what they are worth."""
+        return not self.scene.finite and self.scene.fem.size is None and not self.plan.missing
 
     @property
     def missed(self) -> tuple[str, ...]:
@@ -84,16 +87,24 @@ def run(
     Raises
     ------
     InputError
-        If a method is unknown, ``start`` is of another P or other materials, or the exact method is asked for loads
-        out of phase or bodies that are not similar.
+        If a method is unknown, ``start`` is of another P or other materials, the exact method is asked for loads
+        out of phase or bodies that are not similar, or an effect is forced off that the scene cannot do without.
     MissingLibraryError
         If finite elements are asked for and gmsh, or a system library that it needs, is not there.
     """
     if start:
         start.check(scene)
-    effects = plan(scene, subsurface=subsurface)
+    effects = plan(scene, subsurface=subsurface, start=start is not None)
     chosen = dict.fromkeys(default_methods(scene) if methods is None else methods)
-    results = {name: _method(name)(scene, effects, _told_by(name, progress), start) for name in chosen}
+    tasks = {name: (name, reduced(scene), effects) for name in chosen}
+    if effects.missing:
+        whole = replace(scene, effects=Effects())
+        tasks[ALL_EFFECTS] = _best(whole), whole, plan(whole, subsurface=subsurface, start=start is not None)
+    results = {
+        name: _method(method)(what, its, _told_by(name, progress), start) for name, (method, what, its) in tasks.items()
+    }
+    for result in results.values():
+        effects.accept(result.regime)
     outcome = Run(scene, effects, results, {})
     for name, result in results.items():
         if outcome.reference and name != outcome.reference:
@@ -101,6 +112,11 @@ def run(
             accuracy = scene.fem.accuracy if outcome.judged else None
             outcome.comparisons[name] = compare(result, reference, scene.friction.f, accuracy)
     return outcome
+
+
+def _best(scene: Scene) -> str:
+    """The method that knows most of ``scene``: what is missing is measured by it."""
+    return "fem" if scene.finite else default_methods(scene)[0]
 
 
 def _told_by(name: str, progress: Progress) -> Progress:

@@ -18,6 +18,8 @@ Positive = Annotated[float, msgspec.Meta(gt=0)]
 # Numbers are zero or within these magnitudes, so that products and squares of a few of them stay finite.
 SMALLEST, LARGEST = 1e-100, 1e100
 
+WIDTHS = {"half-plane": 16.0, "box": 4096.0}  # half-widths of a block in contact half-widths, as a rule
+
 _ROUGH = 1e-9  # changes of slope and curvature in a table, in the largest one, that are taken for rounding
 _SHARP = 0.05
 
@@ -299,6 +301,21 @@ class Fem(Table, frozen=True, kw_only=True):
     factor: Literal["superlu", "cholmod"] | None = None
 
 
+class Effects(Table, frozen=True, kw_only=True, rename="kebab"):
+    """Effects that are forced on (true) or off (false), whatever the scene calls for; see :mod:`partialslip.plan`."""
+
+    normal: bool | None = None
+    friction: bool | None = None
+    shear: bool | None = None
+    tension: bool | None = None
+    opposing_slip: bool | None = None
+    history: bool | None = None
+    coupling: bool | None = None
+    finite_size: bool | None = None
+    far_field: bool | None = None
+    subsurface: bool | None = None
+
+
 class Scene(Table, frozen=True, kw_only=True):
     """A whole scene file. See the README for the format; :func:`partialslip.load_scene` reads one, and
     :func:`partialslip.parse_scene` makes one from nested tables. Both check it, the constructor does not."""
@@ -311,6 +328,7 @@ class Scene(Table, frozen=True, kw_only=True):
     title: Annotated[str, msgspec.Meta(pattern=r"^[^\x00-\x1f\x7f]*\Z", max_length=200)] = ""
     bodies: Bodies = Bodies()
     fem: Fem = Fem()
+    effects: Effects = Effects()
 
     def __post_init__(self) -> None:
         given = [key for key in ("P", "a", "p0") if getattr(self.load, key) is not None]
@@ -334,6 +352,11 @@ class Scene(Table, frozen=True, kw_only=True):
     def finite(self) -> bool:
         """Whether a body is finite."""
         return self.bodies != Bodies()
+
+    @property
+    def slides(self) -> bool:
+        """Whether friction cannot carry Q: no forces within the bound could sum to it."""
+        return max(abs(Q) for Q, _ in self.load.points) >= self.friction.f * self.P
 
     @property
     def P(self) -> float:

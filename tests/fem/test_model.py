@@ -40,7 +40,8 @@ def test_shear_in_the_slip_zones_is_at_the_bound():
     assert np.all(np.abs(traction.q2) <= f * traction.p + 0.02 * f * large.p0)
 
 
-def test_reversed_loads_reverse_the_traction(large):
+def test_reversed_loads_reverse_the_traction():
+    large = fem("hertz-large-tension", "effects.history=true")
     assert large.traction.q1 == pytest.approx(-large.traction.q2, abs=1e-9 * large.p0)
     assert large.certificate["steady"] < 1e-9
 
@@ -52,7 +53,7 @@ def test_work_is_counted(large, monkeypatch):
     again = fem("hertz-large-tension")
     assert len(calls) == again.counts["factorizations"] == again.counts["meshes"] + 1  # the last: estimate
     assert again.counts == large.counts
-    assert again.counts["load_steps"] == 3
+    assert again.counts["load_steps"] == 1  # half a cycle
 
 
 @pytest.mark.parametrize(("length", "stress"), [(1e3, 1e-6), (1e-12, 1e12), (1e12, 1.0)])

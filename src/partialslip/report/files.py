@@ -59,6 +59,15 @@ def write_files(folder: Path, files: Mapping[str, Callable[[Path], object]]) -> 
     return [folder / name for name in files]
 
 
+def write_texts(folder: Path, texts: Mapping[str, str]) -> list[Path]:
+    """Write files of UTF-8 text, by name, as :func:`write_files` does."""
+
+    def writer(text: str) -> Callable[[Path], object]:
+        return lambda path: path.write_text(text, "utf-8")
+
+    return write_files(folder, {name: writer(text) for name, text in texts.items()})
+
+
 def tractions_csv(run: Run) -> str:
     """Tractions of every method, one row a point; SI units, empty where a method does not determine a value."""
     table = io.StringIO()

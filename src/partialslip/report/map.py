@@ -2,13 +2,12 @@
 
 import csv
 import io
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from partialslip.report import rows
-from partialslip.report.files import write_files
+from partialslip.report.files import write_texts
 from partialslip.report.mapfigure import ends_svg, map_svg
 from partialslip.report.stickmap import StickMap
 
@@ -18,7 +17,7 @@ def write_map(data: StickMap, folder: Path) -> list[Path]:
     cannot be written.
     """
     texts = {"map.svg": map_svg(data), "ends.svg": ends_svg(data), "map.csv": map_csv(data)}
-    return write_files(folder, {name: _writer(text) for name, text in texts.items()})
+    return write_texts(folder, texts)
 
 
 def map_csv(data: StickMap) -> str:
@@ -50,7 +49,3 @@ def place(data: StickMap) -> list[str]:
     mirrored = " (dQ and dsigma differ in sign: on the map m and n change places)" if point.mirrored else ""
     limits = rows.limits(exact)
     return [f"{name}: {exact.regime}, {ends}{reached}{mirrored}", *([limits] if limits else [])]
-
-
-def _writer(text: str) -> Callable[[Path], object]:
-    return lambda path: path.write_text(text, "utf-8")

@@ -24,6 +24,7 @@ def record(run: Run, *, curves: bool = True) -> dict[str, Any]:
         "plan": {
             "called_for": list(run.plan.called_for),
             "left_out": list(run.plan.left_out),
+            "missing": list(run.plan.missing),
             "reasons": {**run.plan.called_for, **run.plan.left_out},
         },
         "methods": {name: _method(result, curves) for name, result in run.results.items()},
