@@ -122,7 +122,7 @@ class _Step:
 
 
 def march(
-    C: Relative, gap: Array, x: Array, f: float, path: Path, pressed: Array | None = None
+    C: Relative, gap: Array, stretch: Array, f: float, path: Path, pressed: Array | None = None
 ) -> tuple[History, Solution]:
     """Press the bodies together and go along the path; the history, and the normal forces at load point 2 with the
     residuals of all steps.
@@ -132,8 +132,10 @@ def march(
     Parameters
     ----------
     C : Relative
-    gap, x : (n,) arrays
-        Gap before loading, and where it is.
+    gap : (n,) array
+        Gap before loading.
+    stretch : (2, n) array
+        Displacements of the lower surface, along x and y, under the tension that strains a long body by 1.
     f : float
         Coefficient of friction.
     path : Path
@@ -141,11 +143,16 @@ def march(
         Normal forces where the path does not begin with bodies apart.
     """
     xy = C.xy if C.xy is not None else 0 * C.xx
-    done = [(resting(0 * x if pressed is None else pressed), resting(0 * x if path.before is None else path.before))]
+    done = [
+        (resting(0 * gap if pressed is None else pressed), resting(0 * gap if path.before is None else path.before))
+    ]
     cycle = len(path.cycle) * path.substeps
+    gap = gap - path.begin[1] * stretch[1]
 
-    def advance(before: Solution, Q: float, stretch: float, P: float = 1.0) -> tuple[Solution, Array]:
-        kept = C.xx @ before.x + xy @ done[-1][0].x + stretch * x
+    def advance(before: Solution, Q: float, strain: float, P: float = 1.0) -> tuple[Solution, Array]:
+        nonlocal gap
+        gap = gap - strain * stretch[1]
+        kept = C.xx @ before.x + xy @ done[-1][0].x + strain * stretch[0]
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the step before, and this one a cycle ago
         pressed, sheared = _solve(_Step(C.xx, C.yy, xy, f, P, gap, Q, kept), starts)
         done.append((replace(pressed, residual=np.maximum(pressed.residual, sheared.residual / f)), sheared))
