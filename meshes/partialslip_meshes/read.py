@@ -20,8 +20,9 @@ Indices = npt.NDArray[np.int64]
 
 FORMATS = (".msh", ".inp", ".med", ".vtu")
 NAMES = ("contact", "face", "back", "left", "right")
-_CORNERS = {"triangle": 3, "triangle6": 3, "triangle7": 3, "quad": 4, "quad8": 4, "quad9": 4}
-_BESIDE = ("vertex", "line", "line3")  # cells that may be there, too
+_BESIDE = {"vertex": 1, "line": 2, "line3": 3}  # nodes of cells that may be there, too
+_NODES = {"triangle": 3, "triangle6": 6, "triangle7": 7, "quad": 4, "quad8": 8, "quad9": 9} | _BESIDE
+_LARGEST = 1e30
 _FLAT = 1e-12  # area of an element, in its longest side's square, that is none
 _OFF = 1e-4  # of the contact line's length, that it may be off its shape
 _MIDDLE = 0.25  # of a side, that its middle node may be off the middle
@@ -100,7 +101,7 @@ def _refusal(name: str, path: str) -> Refuse:
 def _load(name: str, path: str, refuse: Refuse) -> meshio.Mesh:
     if Path(path).suffix.lower() not in FORMATS:
         refuse(f"must be a file {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
-    said = io.StringIO()
+    said, damaged = io.StringIO(), "it is damaged, or of another format"
     try:
         with open(path, "rb"):
             pass
@@ -109,18 +110,19 @@ def _load(name: str, path: str, refuse: Refuse) -> meshio.Mesh:
             return meshio.read(path)
     except ModuleNotFoundError as error:
         raise MissingLibraryError(f"{name}: {error.name} is missing; pip install partialslip[med]") from None
-    except (OSError, ValueError) as error:
-        refuse(f"cannot be read: {getattr(error, 'strerror', None) or 'it is damaged, or of another format'}")
+    except OSError as error:
+        refuse(f"cannot be read: {error.strerror or damaged}")
     except (Exception, SystemExit):
-        refuse("cannot be read: it is damaged, or of another format")
+        why = said.getvalue().partition("Error:")[0].strip() or damaged
+        refuse(f"cannot be read: {' '.join(why.split())}")
 
 
 def _in_plane(points: Array, refuse: Refuse) -> Array:
     points = np.asarray(points, dtype=float)
-    if points.ndim != 2 or not len(points):
+    if points.ndim != 2 or not len(points) or points.shape[1] not in (2, 3):
         refuse("must have nodes")
-    if wrong := int((~np.isfinite(points).all(axis=1)).sum()):
-        refuse(f"must have finite coordinates; {wrong} nodes have none")
+    if wrong := int((~(np.abs(points) < _LARGEST).all(axis=1)).sum()):
+        refuse(f"must have coordinates that are finite and less than {_LARGEST:g}; {wrong} nodes have others")
     if np.ptp(points, axis=0)[2:].max(initial=0.0) > _OFF * np.ptp(points[:, :2]):
         refuse("must lie in a plane z = const")
     return points[:, :2]
@@ -128,16 +130,20 @@ def _in_plane(points: Array, refuse: Refuse) -> Array:
 
 def _triangles(found: meshio.Mesh, points: Array, refuse: Refuse) -> Indices:
     """Corners of all elements, quadrilaterals split along their shorter diagonal."""
-    if unknown := sorted({block.type for block in found.cells} - {*_CORNERS, *_BESIDE}):
+    if unknown := sorted({block.type for block in found.cells} - {*_NODES}):
         refuse(f"must have triangles and quadrilaterals, linear or quadratic, not {', '.join(unknown)}")
     parts = [np.empty((0, 3), dtype=np.int64)]
     for block in found.cells:
         cells = np.asarray(block.data, dtype=np.int64)
-        if cells.size and not (cells.min() >= 0 and cells.max() < len(points)):
+        if not cells.size:
+            continue
+        if not (cells.min() >= 0 and cells.max() < len(points)):
             refuse("its elements name nodes that are not there")
+        if cells.shape[1:] != (_NODES[block.type],):
+            refuse("its elements do not have as many nodes as their type")
         if block.type in _BESIDE:
             continue
-        count = _CORNERS[block.type]
+        count = 3 if block.type.startswith("triangle") else 4
         ring = points[cells[:, :count]]
         sides = np.roll(ring, -1, axis=1) - ring
         if cells.shape[1] >= 2 * count:
@@ -192,9 +198,8 @@ def _lines(found: meshio.Mesh, boundary: Indices, refuse: Refuse) -> Iterator[tu
         nodes = np.zeros(len(found.points), dtype=bool)
         for some in _nodes_of(found, name):
             nodes[some] = True
-        listed = _among(np.sort(edges, axis=1), known)
-        if len(edges) > len(np.unique(np.sort(edges, axis=1), axis=0)) or listed.sum() < len(edges):
-            refuse(f"its group {name!r} must have edges of the boundary, each once")
+        if not _among(np.sort(edges, axis=1), known).all():
+            refuse(f"its group {name!r} must have edges of the boundary only")
         yield name, boundary[_among(known, np.sort(edges, axis=1)) | nodes[boundary].all(axis=1)]
 
 
