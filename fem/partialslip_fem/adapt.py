@@ -23,7 +23,7 @@ _BESIDE = 0.01  # element size at an end, in contact half-widths, beyond which t
 _MOST = 200_000  # unknowns
 _SHARES = {"p": 0.1, "q": 1 / 15}  # of the accuracy asked: tractions may be off by 10 and 15 times as much
 _FILLS = 0.95  # of a finite body's width: as much as the contact line may take
-_ROUNDING = 0.5  # of the accuracy: how far a round face may be from its elements, in contact half-widths
+_ROUNDING = 0.25  # of the accuracy: how far a round face may be from its elements, and the ends off for that
 _FEWEST = 4  # elements of a mesh as it is that must lie in the contact
 
 
@@ -54,6 +54,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     size, finer = _FIRST, _FINER
     least = _growth(_AIM * accuracy / 2, order)
     limit = _limit(problem)
+    rounding = _ROUNDING * accuracy if any(part.face for part in problem.parts) else 0.0
     while True:
         goal = _ENDS * _AIM * accuracy / _worst(end_errors(level, np.ones(4)))
         goal = min(max(goal, _FINEST), _BESIDE / 2)
@@ -65,10 +66,12 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         sizes = dict.fromkeys(apart([*level.ends.tolist(), *problem.kinks], size * a), size * a)
         margin = (0.1 + 2 * finer * size) * a  # of safety, and what the mesh before may have been off by
         contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
-        level = solve_level(problem, width * a, contact, sizes, growth, clock, rounding=_ROUNDING * accuracy)
+        level = solve_level(problem, width * a, contact, sizes, growth, clock, rounding=rounding)
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         local = size + growth * np.abs(level.ends[:, None] - [*sizes]).min(axis=1) / a
-        errors = at_ends = end_errors(level, local)
+        errors = at_ends = {
+            key: error + rounding * (key in ("a", "m", "n")) for key, error in end_errors(level, local).items()
+        }
         known, calmer = np.inf, 1.0
         found = f"mesh {meshes}: {level.dofs:,} unknowns"
         good = level.enclosed and local.max() <= _BESIDE

@@ -120,9 +120,7 @@ def body(
         in_order: Indices = nodes[np.argsort(basis.doflocs[0, nodes], kind="stable")]
         return in_order
 
-    bound = np.concatenate([mesh.lines[name] for names in held for name in names])
     line = mesh.lines["contact"]
-    line = line[~np.isin(line, bound).any(axis=1)]  # what is held bears no contact
     contact, face = on(line), on(np.concatenate([line, mesh.lines.get("face", line)]))
     along_x, along_y = (on(np.concatenate([mesh.lines[name] for name in names])) for names in held)
     along = skfem.FacetBasis(triangles, element, facets=_facets(triangles, line))

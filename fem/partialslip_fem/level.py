@@ -12,6 +12,7 @@ from partialslip.condensed import coupled
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.friction import History, Path, march
 from partialslip.condensed.zones import Zone, left_end, right_end, stick_zone
+from partialslip.errors import InputError
 from partialslip.result import Array, Clock
 from partialslip.scene import Profile
 from partialslip_fem.condensation import Condensed
@@ -144,10 +145,8 @@ class Level:
 
     @property
     def enclosed(self) -> bool:
-        """Whether the contact ends within the contact lines of both bodies."""
-        starts, ends = zip(*(half.body.x[[0, -1]] for half in self.halves), strict=True)
-        touching = self.body.x[self.pressing.x > 0]
-        return bool(max(starts) < touching[0] and touching[-1] < min(ends))
+        """Whether the contact ends within the contact line."""
+        return bool(self.pressing.x[0] == 0 == self.pressing.x[-1])
 
     @property
     def half_width(self) -> float:
@@ -174,6 +173,7 @@ class Level:
         return result
 
 
+_ROUNDING = 1e-9  # of a contact line's length
 _KEPT = 2  # sets of bodies: those of a rough mesh, and of the uniform one made from it
 _kept: dict[tuple[object, ...], tuple[Half, ...]] = {}
 
@@ -212,6 +212,18 @@ def solve_level(
     return level
 
 
+def _opposite(mesh: Mesh, other: Mesh) -> Mesh:
+    """The mesh, with what lies opposite the other's contact line for its own."""
+    line, ends = mesh.lines["contact"], other.points[other.lines["contact"], 0]
+    x, room = mesh.points[line, 0], _ROUNDING * np.ptp(ends)
+    line = line[((x >= ends.min() - room) & (x <= ends.max() + room)).all(axis=1)]
+    if not len(line):
+        raise InputError(
+            "bodies.lower, bodies.upper: the contact lines must lie opposite each other; is their unit right?"
+        )
+    return replace(mesh, lines=mesh.lines | {"contact": line})
+
+
 def _block(
     part: Part,
     width: float,
@@ -233,6 +245,8 @@ def _block(
 
 def solve_on(meshes: Sequence[Mesh], problem: Problem, width: float, clock: Clock) -> Level:
     """Solve on meshes of the bodies, in the order of the problem's parts; ``width`` as for :func:`solve_level`."""
+    if len(meshes) > 1 and any(part.mesh for part in problem.parts):
+        meshes = [_opposite(*meshes), *meshes[1:]]
     halves = tuple(_half(*pair, problem, width, clock) for pair in zip(meshes, problem.parts, strict=True))
     return _level(problem, halves, len(halves), clock)
 

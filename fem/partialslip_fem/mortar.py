@@ -14,8 +14,8 @@ def transfer(onto: Body, other: Body) -> Array:
     """The L2 projection T of the other body's displacements of the contact line onto a body's, (n, n_other).
 
     T^T takes nodal forces back: the other body gets those of the same traction. Constants and straight lines are
-    kept by T, so that forces and moments are kept by T^T. On nodes that match T is the identity. Beyond the other
-    line's ends, where nothing can touch, its displacements are taken for zero.
+    kept by T, so that forces and moments are kept by T^T. On nodes that match T is the identity. The
+    other line may be longer.
     """
     projected: Array = spla.spsolve(onto.mass.tocsc(), _products(onto, other).toarray())
     return projected

@@ -55,7 +55,7 @@ def read(
     face : callable, optional
         How far the contact line lies back at x, in the lengths that come out; without it the line is flat.
     needed : sequence of str
-        Lines that must be there besides the contact line.
+        Lines that must be there besides the contact line, of which what touches them is left out.
 
     Raises
     ------
@@ -76,6 +76,8 @@ def read(
     every = np.concatenate(list(lines.values()))
     if len(np.unique(every, axis=0)) < len(every):
         refuse(f"an edge is in two of the groups {', '.join(lines)}")
+    bound = np.concatenate([lines[key] for key in needed])
+    lines["contact"] = lines["contact"][~np.isin(lines["contact"], bound).any(axis=1)]
     below = _below(points, lines["contact"], refuse)
     if not below:
         points, corners = points * [1, -1], corners[:, ::-1]
