@@ -197,6 +197,8 @@ def _allowed(what: str, kind: Any) -> str:
         return bound[1]
     if what == "Number out of range":
         return f"of a size from {SMALLEST} to {LARGEST}"
+    if "`str` of length >=" in what:
+        return "a name"
     if "of length <=" in what:
         return f"at most {what.split()[-1]} characters"
     if "regex" in what and "\\x00" in what:
