@@ -66,7 +66,7 @@ def check(ledger: Ledger) -> None:
         ratios.append(cost / price.cpu_s)
         reached.append(worst <= price.accuracy)
         print(
-            f"{entry['scene']['name']:12} {entry['scene']['profile']['kind']:12} P{price.order} asked {price.accuracy:.1e} "
+            f"{entry['scene']['name']:10} {entry['scene']['profile']['kind']:12} P{price.order} {price.accuracy:.1e} "
             f"found {worst:.1e}  predicted {price.cpu_s:5.2f} s, took {cost:5.2f} s, ratio {ratios[-1]:.2f}"
         )
     within = sum(0.5 <= ratio <= 2 for ratio in ratios)

@@ -14,8 +14,9 @@ class Condensed:
     The stiffness is factored once with the contact last, so that its Schur complement is read off the factor's
     last rows. ``compliance`` (2n, 2n) is its inverse: displacements of the contact line, first all along x,
     then all along y, under unit nodal forces there. Without ``shear`` there are none along x: it is (n, n), all along
-    y. ``far_field`` moves what is held of the outer boundary; without it that is clamped. Unless what is ``inside`` is
-    to be solved back for, the factor is not kept.
+    y. ``far_field`` moves what is held of the outer boundary; without it that is clamped. ``pulled`` (2 N,), of a body
+    that bears a tension, are all displacements under a unit of that. Unless what is ``inside`` is to be solved back
+    for, the factor is not kept.
     """
 
     def __init__(
@@ -26,15 +27,20 @@ class Condensed:
         shear: bool = True,
         inside: bool = True,
     ) -> None:
-        contact, held = body.contact[0 if shear else 1 :].ravel(), body.held.ravel()
+        contact, held = body.contact[0 if shear else 1 :].ravel(), body.held
         inner = np.ones(body.stiffness.shape[0], dtype=bool)
         inner[contact] = inner[held] = False
         self._free, self._held, self._n = np.concatenate([np.flatnonzero(inner), contact]), held, len(contact)
         self._to_held = body.stiffness[self._free][:, held]
         self._far = far_field.along_y if far_field and not shear else far_field
         self._factor: Factor | None = factor(body.stiffness, np.flatnonzero(inner), contact, backend)
+        # first, as reading the Schur complement may use the factor up
+        self.pulled: Array | None = None
+        if body.pull is not None:
+            self.pulled = np.zeros(len(body.pull))
+            self.pulled[self._free] = self._factor.solve(body.pull[self._free, None])[:, 0]
         moved: Array | float = 0.0
-        if self._far:  # first, as reading the Schur complement may use the factor up
+        if self._far:
             fields = self._solve(np.zeros((self._n, self.far_columns)), self._far.fields)[-self._n :]
             moved = fields @ self._far.moments
         self.compliance = self._factor.inverse_of_schur() + moved

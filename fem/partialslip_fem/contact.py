@@ -26,6 +26,23 @@ class Half:
     body: Body
     condensed: Condensed
 
+    @property
+    def stretched(self) -> Array:
+        """Displacements of all nodes, (2, N), under the tension whose uniform strain of a long body would be 1: that
+        strain, but for a body that is pulled at its end."""
+        result: Array = self.body.points * np.array([[1.0], [-(3 - self.body.kappa) / (1 + self.body.kappa)]])
+        if self.condensed.pulled is not None:
+            result = 4 / self.body.compliance * self.condensed.pulled.reshape(2, -1)
+        return result
+
+    @property
+    def stretch(self) -> Array:
+        """Those of the contact line, (2, n)."""
+        if self.condensed.pulled is None:
+            return np.array([self.body.x, 0 * self.body.x])
+        result: Array = self.stretched[:, self.body.contact[0]]
+        return result
+
 
 def relative_compliances(halves: Sequence[Half], coupled: bool = True) -> Relative:
     """Relative displacements of the two surfaces, at the nodes of the lower one, under nodal forces there; what shear

@@ -1,11 +1,13 @@
 """The finite-element method: scene and plan in, result out."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.condensed.friction import History, certificate, doubts, judge, load_path
+from partialslip.bodies import Body
+from partialslip.condensed.friction import History, certificate, doubts, judge, load_path, lower_strain
 from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
 from partialslip.plan import Plan
@@ -16,8 +18,9 @@ from partialslip_fem.adapt import Adapted, adapt, uniform
 from partialslip_fem.displacements import solve_back
 from partialslip_fem.factor import default_backend
 from partialslip_fem.fields import along_surfaces, deformed
-from partialslip_fem.level import Level, Part, Problem
+from partialslip_fem.level import Face, Level, Part, Problem
 from partialslip_fem.recovery import inside
+from partialslip_meshes import read
 
 _LARGEST_NU = 0.4999999
 
@@ -53,8 +56,9 @@ def solve(
             )
     clock = Clock()
     width = scene.fem.width or WIDTHS[scene.fem.far_field]
-    problem = _scaled(scene, plan, start)
-    if scene.fem.size is None:
+    with clock.phase("mesh"):
+        problem = _scaled(scene, plan, start)
+    if scene.fem.size is None and not scene.meshed:
         adapted = adapt(problem, scene.fem.accuracy, width, clock, progress)
     else:
         adapted = uniform(problem, scene.fem.size, width, clock)
@@ -64,13 +68,11 @@ def solve(
 def _scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
     """The scene in lengths of sqrt(A R P), forces of P, displacements of A P."""
     P, A, L = scene.P, scene.material.A, scene.length
-    bodies = (("lower", scene.bodies.lower, scene.fem.lower_size), ("upper", scene.bodies.upper, 1.0))
-    parts = tuple(
-        Part(name, constants.kappa, constants.A / A, (own.width / 2 / L, own.height / L) if own else None, fineness)
-        for (name, own, fineness), constants in zip(bodies, scene.material.bodies, strict=True)
-    )
+    sides = (("lower", scene.bodies.lower, scene.fem.lower_size), ("upper", scene.bodies.upper, 1.0))
+    kinds = zip(sides, scene.material.bodies, strict=True)
+    parts = tuple(_part(Part(name, own.kappa, own.A / A, size), body, scene) for (name, body, size), own in kinds)
     return Problem(
-        gap=lambda x: scene.profile.gap_at(x * L) / (A * P),
+        gap=lambda x: scene.gap_at(x * L) / (A * P),
         kinks=tuple(kink / L for kink in scene.profile.kinks),
         f=scene.friction.f,
         path=load_path(scene, plan, start),
@@ -81,6 +83,25 @@ def _scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         start=tuple(_rescaled(q, L / P, 1 / L) for q in (start.p, start.q)) if start else None,
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
+        strain=lower_strain(scene, scene.load.points[scene.load.ends[1]][1]),
+    )
+
+
+def _part(plain: Part, body: Body | None, scene: Scene) -> Part:
+    """The part, which would stand for a half-plane, as the body that it is."""
+    if not body:
+        return plain
+    L, holder = scene.length, body.holder
+    face = Face(scene.profile, L) if body.kind == "pad" else None
+    part = replace(plain, face=face, support=body.support, pulled=body.pulled)
+    if body.mesh is not None:
+        needed = {line for lines in part.held for line in lines} | ({"right"} if body.pulled else set())
+        field = f"bodies.{part.name}.mesh"
+        return replace(part, mesh=read(field, body.mesh, (body.unit or 1.0) / L, face, sorted(needed)))
+    return replace(
+        part,
+        extent=((body.width or 0.0) / 2 / L, (body.height or 0.0) / L),
+        holder=(holder.width / 2 / L, holder.height / L) if holder else None,
     )
 
 
@@ -149,7 +170,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
             "elements": f"P{problem.order}",
             "factorisation": problem.backend,
             **_extents(problem, adapted.width),
-            **({"accuracy": scene.fem.accuracy} if scene.fem.size is None else {"element_size_over_a": scene.fem.size}),
+            **_fineness(scene, problem),
         },
         counts=_counts(level, adapted, extra),
         certificate=certified,
@@ -204,9 +225,18 @@ def _pressing_steps(history: History) -> int:
 
 def _extents(problem: Problem, width: float) -> dict[str, str | float]:
     """What stands for half-planes, and how wide it is."""
-    if all(part.extent for part in problem.parts):
+    if all(part.finite for part in problem.parts):
         return {"far_field": "none, finite bodies"}
     return {"far_field": problem.far_field, "block_half_width_over_a": width}
+
+
+def _fineness(scene: Scene, problem: Problem) -> dict[str, str | float]:
+    """What the size of the elements follows."""
+    if all(part.mesh for part in problem.parts):
+        return {"meshes": "as given"}
+    if scene.fem.size is not None:
+        return {"element_size_over_a": scene.fem.size}
+    return {"meshes": "of the size of the given one"} if scene.meshed else {"accuracy": scene.fem.accuracy}
 
 
 def _certificate(problem: Problem, level: Level, p0: float) -> dict[str, float]:

@@ -123,7 +123,9 @@ def test_third_law_and_moment_balance():
             forces = np.concatenate([T.T @ part for part in np.split(forces, 2)])
         u = half.condensed.displace(forces[:, None])
         reactions = half.body.stiffness @ u[:, 0]
-        contact, back = (reactions[dofs] * [[1.0], [way]] for dofs in (half.body.contact, half.body.held))
+        contact, back = (
+            reactions[dofs] * [[1.0], [way]] for dofs in (half.body.contact, half.body.held.reshape(2, -1))
+        )
         y = way * half.body.held_points[1]
         felt.append([*contact.sum(axis=1), half.body.x @ contact[1]])
         held = [*back.sum(axis=1), half.body.held_points[0] @ back[1] - y @ back[0]]

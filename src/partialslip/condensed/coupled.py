@@ -123,7 +123,7 @@ class _Step:
 
 
 def march(
-    C: Relative, gap: Array, x: Array, f: float, path: Path, pressed: Array | None = None
+    C: Relative, gap: Array, stretch: Array, f: float, path: Path, pressed: Array | None = None
 ) -> tuple[History, Solution]:
     """Press the bodies together and go along the path; the history, and the normal forces at load point 2 with the
     residuals of all steps.
@@ -133,8 +133,10 @@ def march(
     Parameters
     ----------
     C : Relative
-    gap, x : (n,) arrays
-        Gap before loading, and where it is.
+    gap : (n,) array
+        Gap before loading.
+    stretch : (2, n) array
+        Displacements of the lower surface, along x and y, under the tension that strains a long body by 1.
     f : float
         Coefficient of friction.
     path : Path
@@ -143,11 +145,16 @@ def march(
     """
     assert C.xx is not None
     xx, xy = C.xx, C.xy if C.xy is not None else 0 * C.xx
-    done = [(resting(0 * x if pressed is None else pressed), resting(0 * x if path.before is None else path.before))]
+    done = [
+        (resting(0 * gap if pressed is None else pressed), resting(0 * gap if path.before is None else path.before))
+    ]
     cycle = len(path.cycle) * path.substeps
+    gap = gap - path.begin[1] * stretch[1]
 
-    def advance(before: Solution, Q: float, stretch: float, P: float = 1.0) -> tuple[Solution, Array]:
-        kept = xx @ before.x + xy @ done[-1][0].x + stretch * x
+    def advance(before: Solution, Q: float, strain: float, P: float = 1.0) -> tuple[Solution, Array]:
+        nonlocal gap
+        gap = gap - strain * stretch[1]
+        kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0]
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the step before, and this one a cycle ago
         pressed, sheared = _solve(_Step(xx, C.yy, xy, f, P, gap, Q, kept), starts)
         done.append((replace(pressed, residual=np.maximum(pressed.residual, sheared.residual / f)), sheared))

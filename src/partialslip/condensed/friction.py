@@ -153,15 +153,19 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | No
     """The path of the loads, from ``start`` if there is one, scaled; None where there is no friction to solve."""
     if not plan.needs("friction"):
         return None
-    P, L, load = scene.P, scene.length, scene.load
-    of_lower = scene.material.bodies[0].A / scene.material.A
+    P, load = scene.P, scene.load
     begins = (start.Q, start.sigma) if start else (0.0, 0.0)
-    begin, *cycle = ((Q / P, of_lower * sigma * L / (4 * P)) for Q, sigma in (begins, *load.points))
+    begin, *cycle = ((Q / P, lower_strain(scene, sigma)) for Q, sigma in (begins, *load.points))
     half = start is None and not plan.needs("history")
     return Path(tuple(cycle), load.ends, load.in_phase, load.cycles, load.steps, begin, half=half)
 
 
-def march(tangential: Array, x: Array, bound: Array, path: Path) -> History:
+def lower_strain(scene: Scene, sigma: float) -> float:
+    """Of a long body under the tension ``sigma``, scaled."""
+    return scene.material.bodies[0].A / scene.material.A * sigma * scene.length / (4 * scene.P)
+
+
+def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> History:
     """Tangential forces along the path at constant pressure, every step of it certified.
 
     A step is then a convex problem: where nothing slips, the relative displacement keeps what it was, so that
@@ -171,18 +175,18 @@ def march(tangential: Array, x: Array, bound: Array, path: Path) -> History:
     ----------
     tangential : (n, n) array
         Relative compliance C of what is in contact.
-    x : (n,) array
-        Where it is.
+    stretch : (n,) array
+        Displacements of the lower surface along x under the tension that strains it by 1: where it is.
     bound : (n,) array
         f times its normal forces.
     path : Path
     """
 
-    def advance(before: Solution, Q: float, stretch: float) -> tuple[Solution, Array]:
-        free = tangential @ before.x + stretch * x
+    def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
+        free = tangential @ before.x + strain * stretch
         return solve_bounded(tangential, free, -bound, bound, Q, before.sides), bound
 
-    return follow(path, advance, resting(0 * x if path.before is None else path.before))
+    return follow(path, advance, resting(0 * bound if path.before is None else path.before))
 
 
 Advance = Callable[[Solution, float, float], tuple[Solution, Array]]

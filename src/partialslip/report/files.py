@@ -5,7 +5,7 @@ import io
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -68,29 +68,34 @@ def write_texts(folder: Path, texts: Mapping[str, str]) -> list[Path]:
     return write_files(folder, {name: writer(text) for name, text in texts.items()})
 
 
+def csv_text(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """A table as the text of a CSV file."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows(rows)
+    return text.getvalue()
+
+
 def tractions_csv(run: Run) -> str:
     """Tractions of every method, one row a point; SI units, empty where a method does not determine a value."""
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    writer.writerow(["method", "x", "x_over_a", "p", "q1", "q2", "dq"])
+    rows: list[list[object]] = []
     for name, result in run.results.items():
         traction = result.traction
         columns = [traction.x, traction.x / result.a, traction.p, traction.q1, traction.q2, traction.dq]
         listed = [[""] * len(traction.x) if column is None else column.tolist() for column in columns]
-        writer.writerows([name, *row] for row in zip(*listed, strict=True))
-    return table.getvalue()
+        rows += [[name, *row] for row in zip(*listed, strict=True)]
+    return csv_text(["method", "x", "x_over_a", "p", "q1", "q2", "dq"], rows)
 
 
 def surface_csv(run: Run) -> str:
     """sigma_xx along the surfaces by every method that knows it, one row a point; SI units."""
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    writer.writerow(["method", "x", "x_over_a", "lower_1", "lower_2", "upper_1", "upper_2"])
+    rows: list[list[object]] = []
     for name, result in run.results.items():
         if surface := result.surface:
             columns = np.vstack([surface.x, surface.x / result.a, *surface.sigma[0], *surface.sigma[1]])
-            writer.writerows([name, *row] for row in columns.T.tolist())
-    return table.getvalue()
+            rows += [[name, *row] for row in columns.T.tolist()]
+    return csv_text(["method", "x", "x_over_a", "lower_1", "lower_2", "upper_1", "upper_2"], rows)
 
 
 @contextmanager

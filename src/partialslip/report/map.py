@@ -1,13 +1,11 @@
 """The files of a stick-zone map, and a scene's place on it in words."""
 
-import csv
-import io
 from pathlib import Path
 
 import numpy as np
 
 from partialslip.report import rows
-from partialslip.report.files import write_texts
+from partialslip.report.files import csv_text, write_texts
 from partialslip.report.mapfigure import ends_svg, map_svg
 from partialslip.report.stickmap import StickMap
 
@@ -30,11 +28,8 @@ def map_csv(data: StickMap) -> str:
         f = data.scene.friction.f
         columns |= {"dQ": 2 * f * data.pressed.P * grid.Qf, "dsigma": f * data.pressed.p0 * grid.sf}
     columns |= {"m_over_a": grid.m, "n_over_a": grid.n, "half_width_over_a": grid.half_width}
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    writer.writerow([*columns, "regime"])
-    writer.writerows(zip(*(values.ravel().tolist() for values in (*columns.values(), regime)), strict=True))
-    return table.getvalue()
+    values = (column.ravel().tolist() for column in (*columns.values(), regime))
+    return csv_text([*columns, "regime"], zip(*values, strict=True))
 
 
 def place(data: StickMap) -> list[str]:

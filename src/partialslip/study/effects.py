@@ -3,8 +3,6 @@
 All on one element size along the contact, so that an effect is not mixed up with another mesh.
 """
 
-import csv
-import io
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -16,6 +14,7 @@ from msgspec.structs import replace
 from partialslip.compare import cell_errors
 from partialslip.errors import InputError
 from partialslip.plan import Effect, Plan, plan, reduced
+from partialslip.report.files import csv_text
 from partialslip.report.rows import engineering
 from partialslip.result import Result
 from partialslip.scene import Scene
@@ -206,15 +205,19 @@ def heading(study: EffectStudy) -> str:
 
 def effects_csv(study: EffectStudy) -> str:
     """The ledger, one row an effect; fractions, CPU seconds and counts, empty where there is nothing."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     costs = [f"{key}_{state}" for key in COSTS for state in ("on", "off")]
-    writer.writerow(["effect", "called_for", *(f"change_{key}" for key in CHANGES), *costs, "why", "refused"])
-    for entry in study.entries:
-        changes = [entry.changes.get(key) for key in CHANGES]
-        both = [cost for key in COSTS for cost in entry.costs[key]]
-        writer.writerow([entry.effect, entry.called_for, *changes, *both, entry.why, entry.refused])
-    return text.getvalue()
+    rows = [
+        [
+            entry.effect,
+            entry.called_for,
+            *(entry.changes.get(key) for key in CHANGES),
+            *(cost for key in COSTS for cost in entry.costs[key]),
+            entry.why,
+            entry.refused,
+        ]
+        for entry in study.entries
+    ]
+    return csv_text(["effect", "called_for", *(f"change_{key}" for key in CHANGES), *costs, "why", "refused"], rows)
 
 
 def effects_record(study: EffectStudy) -> dict[str, Any]:
