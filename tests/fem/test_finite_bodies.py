@@ -133,7 +133,7 @@ def right():
 @pytest.fixture(scope="module")
 def rig():
     scene = load_scene(SCENE, [COARSE, *RIG])
-    problem = model._scaled(scene, plan(scene))
+    problem = model._scaled(scene, plan(scene, subsurface=True))
     return scene, problem, adapt.adapt(problem, 1e-4, 16.0, Clock(), lambda _: None).level
 
 

@@ -113,7 +113,7 @@ def test_swap_of_bodies():
 def test_third_law_and_moment_balance():
     """What each body's own stiffness says that it feels at its contact nodes, and what its back holds against it."""
     scene = load_scene("hertz-large-tension", [COARSE, *BLOCKS, *STIFF, FINER, "load.cycles=3"])
-    problem = model._scaled(scene, plan(scene))
+    problem = model._scaled(scene, plan(scene, subsurface=True))
     found = adapt.adapt(problem, 1e-3, 16.0, Clock(), lambda _: None).level
     shear, T = found.on_line(found.history.at_ends[1]), transfer(*(half.body for half in found.halves))
     felt = []
