@@ -68,6 +68,8 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
         level = solve_level(problem, width * a, contact, sizes, growth, clock, rounding=rounding)
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
+        if not level.enclosed and max(-level.left, level.right) >= limit:
+            raise _too_narrow(problem)
         local = size + growth * np.abs(level.ends[:, None] - [*sizes]).min(axis=1) / a
         errors = at_ends = {
             key: error + rounding * (key in ("a", "m", "n"))

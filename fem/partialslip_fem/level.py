@@ -155,6 +155,13 @@ class Level:
         return bool(self.pressing.x[0] == 0 == self.pressing.x[-1])
 
     @property
+    def pieces(self) -> int:
+        """Of the contact, an element or more apart."""
+        touching = np.lib.stride_tricks.sliding_window_view(self.pressing.x > 0, self.body.order + 1)
+        cells = touching[:: self.body.order].any(axis=1)
+        return int((np.diff(cells.astype(np.int8), prepend=0) == 1).sum())
+
+    @property
     def half_width(self) -> float:
         """Contact half-width."""
         return (self.right - self.left) / 2

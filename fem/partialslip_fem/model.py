@@ -175,7 +175,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         counts=_counts(level, adapted, extra),
         certificate=certified,
         estimate=adapted.errors,
-        notes=found.notes + doubts(certified, adapted.errors, scene.fem.accuracy),
+        notes=found.notes + _apart(level) + doubts(certified, adapted.errors, scene.fem.accuracy),
         bodies=tuple(deformed(body, L, unit, stress) for body in moved),
         state=_state(scene, level),
         surface=along_surfaces(moved, level.contact_ends, L, stress) if moved else None,
@@ -228,6 +228,13 @@ def _extents(problem: Problem, width: float) -> dict[str, str | float]:
     if all(part.finite for part in problem.parts):
         return {"far_field": "none, finite bodies"}
     return {"far_field": problem.far_field, "block_half_width_over_a": width}
+
+
+def _apart(level: Level) -> tuple[str, ...]:
+    """A note on a contact that is not in one piece."""
+    if level.pieces == 1:
+        return ()
+    return (f"the contact is in {level.pieces} pieces: a, m and n are of the outermost ends",)
 
 
 def _fineness(scene: Scene, problem: Problem) -> dict[str, str | float]:

@@ -291,6 +291,21 @@ def test_a_pulled_specimen_that_can_bend_moves_the_contact(monkeypatch):
     assert np.abs(moved).max() > 10 * np.abs(bent()).max()
 
 
+def test_a_plate_that_bends_off_is_told():
+    """Held at its sides, a thin plate lifts off the middle of a flat with round corners."""
+    plate = "bodies.upper={width=8e-3, height=1e-3, support='sides'}"
+    result = fem(plate, "load.P=60e3", "friction.f=0", name="flat-rounded")
+    assert "the contact is in 2 pieces: a, m and n are of the outermost ends" in result.notes
+    assert result.traction.p[np.abs(result.traction.x) < 0.3 * result.a].max(initial=0) == 0
+
+
+def test_a_plate_that_lies_down_is_refused():
+    """At once: a contact that fills the line is not refined."""
+    plate = "bodies.upper={kind='pad', width=20.8e-3, height=1.46e-3, support='sides'}"
+    with pytest.raises(partialslip.InputError, match=r"bodies.upper.width: must be wider than the contact"):
+        fem(plate)
+
+
 # deliberate faults
 
 
