@@ -26,11 +26,7 @@ SHIPPED = Path(partialslip.__file__).parent / "study" / "prices.json"
 
 
 def case(seed: int, accuracy: float, order: int) -> Case:
-    """Every third scene goes through several cycles of several steps."""
-    scene = random_scene(seed, accuracy)
-    history = {"cycles": 2 + seed % 2, "steps": 1 + seed % 4} if seed % 3 == 0 else {}
-    data: dict[str, Any] = msgspec.to_builtins(scene)
-    data["load"] |= history
+    data: dict[str, Any] = msgspec.to_builtins(random_scene(seed, accuracy))
     data["fem"]["order"] = order
     return Case(partialslip.parse_scene(data), ("exact", "fem"), {"seed": seed})
 

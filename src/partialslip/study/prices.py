@@ -1,8 +1,8 @@
 """The price list: what finite elements of some accuracy will cost, fitted to a ledger of measured cases.
 
-CPU seconds are taken as exp(start) + points bodies exp(each + growth log10(1/accuracy)) (1 + step steps): elements
-crowd about ``points``, the ends of the contact and of the stick zone and the kinks of the profile, and ``steps`` load
-steps are made beyond the first.
+CPU seconds are taken as exp(start) + points exp(each + growth log10(1/accuracy)): elements crowd about ``points``, in
+each body the ends of the contact and of the stick zone and the kinks of the profile. That is for few load steps; long
+paths, and bodies that are not mirror images, cost more in the contact itself.
 """
 
 import json
@@ -27,30 +27,36 @@ _FINEST, _COARSEST = 1e-7, 1e-2
 
 @dataclass(frozen=True)
 class Price:
-    """What a setting is expected to cost."""
+    """What a setting of the finite elements is expected to cost, in CPU seconds of the method."""
 
     order: int
     accuracy: float
     cpu_s: float
 
+    @property
+    def overrides(self) -> list[str]:
+        """The setting, as :func:`partialslip.load_scene` takes it."""
+        return [f"fem.order={self.order}", f"fem.accuracy={self.accuracy!r}"]
+
+    def __str__(self) -> str:
+        return f"P{self.order} at {self.accuracy:.1e} a: {self.cpu_s:.2g} CPU s"
+
 
 class Prices(msgspec.Struct, frozen=True, kw_only=True):
     """A fitted cost model.
 
-    ``orders`` holds start, each and growth by element order; ``step`` what a load step adds; ``spread`` the factor
-    within which nine of ten cases of the fit are; ``machine`` what it was measured on.
+    ``orders`` holds start, each and growth by element order; ``spread`` is the factor within which nine of ten cases of
+    the fit are; ``machine`` what it was measured on.
     """
 
     orders: dict[str, tuple[float, float, float]]
-    step: float
     spread: float
     machine: str
 
     def price(self, scene: Scene, accuracy: float, order: int) -> Price:
         """The CPU seconds of ``order`` at ``accuracy``, of the method fem."""
-        start, each, growth = self.orders[str(order)]
-        points, steps = _features(scene)
-        return Price(order, accuracy, _seconds(start, each, growth, self.step, points, steps, math.log10(1 / accuracy)))
+        seconds = _seconds(*self.orders[str(order)], _points(scene), math.log10(1 / accuracy))
+        return Price(order, accuracy, float(seconds))
 
     def cheapest(self, scene: Scene, accuracy: float) -> Price:
         """The least price of ``accuracy``."""
@@ -95,27 +101,24 @@ def fit(entries: Iterable[Mapping[str, Any]], machine: str) -> Prices:
     for entry in entries:
         if "error" not in entry and "fem" in entry["methods"] and entry["scene"]["fem"].get("size") is None:
             scene = parse_scene(entry["scene"])
-            points, steps = _features(scene)
             found = entry["methods"]["fem"]["cost"]["cpu_s"]
-            cases.append((scene.fem.order, points, steps, math.log10(1 / scene.fem.accuracy), found))
+            cases.append((scene.fem.order, _points(scene), math.log10(1 / scene.fem.accuracy), found))
     if len(cases) < 10:
         raise InputError(f"a price list needs at least 10 measured cases of adapted finite elements, not {len(cases)}")
-    order, sizes, extra, digits, seconds = (np.array(column) for column in zip(*cases, strict=True))
+    order, sizes, digits, seconds = (np.array(column) for column in zip(*cases, strict=True))
     orders, number = np.unique(order, return_inverse=True)
 
     def off(parameters: Array) -> Array:
-        start, each, growth = (column[number] for column in parameters[:-1].reshape(3, -1))
-        predicted = _seconds(start, each, growth, np.exp(parameters[-1]), sizes, extra, digits)
-        ratio: Array = np.log(predicted / seconds)
+        start, each, growth = (column[number] for column in parameters.reshape(3, -1))
+        ratio: Array = np.log(_seconds(start, each, growth, sizes, digits) / seconds)
         return ratio
 
     guess = np.repeat([math.log(0.3), math.log(0.02), 0.5], len(orders))
-    solution = least_squares(off, [*guess, math.log(0.01)], loss="soft_l1", f_scale=0.3)
-    fitted = solution.x[:-1].reshape(3, -1).T.tolist()
+    found = least_squares(off, guess, loss="soft_l1", f_scale=0.3).x
+    rows = found.reshape(3, -1).T.tolist()
     return Prices(
-        orders={str(each): tuple(row) for each, row in zip(orders.tolist(), fitted, strict=True)},
-        step=math.exp(solution.x[-1]),
-        spread=float(np.exp(np.quantile(np.abs(off(solution.x)), 0.9))),
+        orders={str(each): tuple(row) for each, row in zip(orders.tolist(), rows, strict=True)},
+        spread=float(np.exp(np.quantile(np.abs(off(found)), 0.9))),
         machine=machine,
     )
 
@@ -125,14 +128,12 @@ def to_json(prices: Prices) -> str:
     return json.dumps(msgspec.to_builtins(prices), indent=1) + "\n"
 
 
-def _seconds(start: Any, each: Any, growth: Any, step: Any, points: Any, steps: Any, digits: Any) -> Any:
-    return np.exp(start) + points * np.exp(each + growth * digits) * (1 + step * steps)
+def _seconds(start: Any, each: Any, growth: Any, points: Any, digits: Any) -> Any:
+    return np.exp(start) + points * np.exp(each + growth * digits)
 
 
-def _features(scene: Scene) -> tuple[float, float]:
-    """Points that elements crowd about, in all bodies, and load steps beyond the first."""
-    effects, load = plan(scene), scene.load
-    friction, bodies = effects.needs("friction"), 2 if effects.needs("coupling") else 1
-    ends = 2 + 2 * friction + len(scene.profile.kinks)
-    steps = load.cycles * len(load.points) * load.steps if effects.needs("history") else 0
-    return float(bodies * ends), float(steps)
+def _points(scene: Scene) -> float:
+    """Points that elements crowd about, in all bodies."""
+    effects = plan(scene)
+    bodies = 2 if effects.needs("coupling") else 1
+    return float(bodies * (2 + 2 * effects.needs("friction") + len(scene.profile.kinks)))
