@@ -6,9 +6,8 @@ from scipy.interpolate import CubicSpline
 
 import partialslip
 from partialslip import load_scene, plan
-from partialslip.condensed import coupled
 from partialslip.result import Clock
-from partialslip_fem import adapt, level, model, solve
+from partialslip_fem import adapt, model, solve
 from partialslip_fem.elasticity import body
 from partialslip_fem.mortar import transfer
 from partialslip_meshes import block
@@ -142,17 +141,6 @@ def test_bodies_meet(different):
     assert np.ptp(change[1] - change[0]) < 1e-2 * scale
     apart = (u["upper"][1] - u["lower"][1])[:, 1] + scene.profile.gap_at(x)
     assert np.ptp(apart) < 1e-2 * scene.profile.gap_at(np.array([different.a]))[0]
-
-
-def test_coupling_of_the_wrong_sign_is_seen(monkeypatch):
-    """Deliberate fault: the bodies' own coupling added where it is to be subtracted."""
-    right = fem(*STIFF, "load.cycles=3")
-    true = level.relative_compliances
-    monkeypatch.setattr(
-        level, "relative_compliances", lambda halves: coupled.Relative((C := true(halves)).xx, C.yy, -C.xy)
-    )
-    wrong = fem(*STIFF, "load.cycles=3")
-    assert abs(wrong.a - right.a) > 1e-2 * right.a
 
 
 def test_friction_acts_while_the_bodies_are_pressed():
