@@ -38,14 +38,14 @@ def again(scene, *settings):
     return load_scene(scene.name, [*given, *settings])
 
 
-def sound(result, scene):
-    """What must hold of any answer."""
+def sound(result, scene, element=0.0):
+    """What must hold of any answer; a coarse mesh has a contact that is off the middle by less than an ``element``."""
     unit = scene.material.A * (scene.friction.f * result.p0 * result.a) ** 2
     assert result.certificate["kkt"] <= CLOSED
     assert result.certificate["equilibrium"] <= CLOSED
     assert result.slip.dissipated >= -1e-10 * unit
     if result.m is not None and scene.load.dQ:
-        assert -1 <= -result.m / result.a <= result.n / result.a <= 1
+        assert -1 - element <= -result.m / result.a <= result.n / result.a <= 1 + element
 
 
 @given(scenes())
@@ -97,7 +97,7 @@ def test_coarse_finite_elements_close_every_step_of_any_path(scene, mesh):
     order, size = mesh
     scene = again(scene, f"fem.order={order}", f"fem.size={size}")
     result = solved("fem", scene)
-    sound(result, scene)
+    sound(result, scene, size)
     N, *T = forces(result.traction, order)
     unit = CLOSED * scene.friction.f * scene.P
     for force in T:
