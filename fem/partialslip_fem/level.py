@@ -282,6 +282,9 @@ def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clo
             at_first[nodes] = history.bounds[0]
             others = _ends(line, at_first)
         stick = _stick_zone(line, nodes, history) if history else None
+        if stick:  # of both contacts, whatever a coarse mesh makes of its ends
+            at_left, at_right = others or (left, right)
+            stick = replace(stick, left=max(stick.left, left, at_left), right=min(stick.right, right, at_right))
         return Level(halves, factored, nodes, pressing, history, left, right, stick, others, relative.xy is not None)
 
 

@@ -71,10 +71,11 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, 
         if following in (low, high, shift) or not np.isfinite(following):
             break  # the sum cannot come closer to the total in this arithmetic
         shift = following
-    x = np.clip(x, lower, upper)  # but for rounding it is within
+    found, x = x, np.clip(x, lower, upper)  # but for rounding it is within; whatever the clip does is to be certified
+    r = r + C @ (x - found)
     residual = np.abs(x - np.clip(x - r / np.diag(C), lower, upper))
     rest = np.clip(r, np.where(x < upper, 0.0, -np.inf), np.where(x > lower, 0.0, np.inf))
-    return Solution(x, rest, residual, abs(excess), pivoting.iterations, pivoting.changes)
+    return Solution(x, rest, residual, abs(float(x.sum()) - total), pivoting.iterations, pivoting.changes)
 
 
 class _BlockPivoting:
