@@ -70,8 +70,8 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
         cost=clock.cost(),
         settings={
             "read": "means over cells" if samples.cells is not None else "values at points",
-            "spacing_over_a": float(np.median(np.diff(x[inside]))) / a,
-            "noise_over_p0": noise(p[inside], x[inside]) / p0,
+            "spacing_over_a": _rounded(float(np.median(np.diff(x[inside]))) / a),
+            "noise_over_p0": _rounded(noise(p[inside], x[inside]) / p0),
         },
         counts={"points": len(x), "contact_nodes": last - first + 1},
         estimate=uncertainty,
@@ -154,3 +154,7 @@ def _resultant(column: str, found: float, load: float, name: str) -> list[str]:
     looks = {-1.0: ": turned round?", 0.5: ": of half a cycle?", 2.0: ": twice too much?", 1e-6: ": in MPa?"}
     guess = next((text for value, text in looks.items() if abs(ratio / value - 1) < 0.1), "")
     return [f"{column} adds up to {ratio:.3g} of the scene's {name}{guess}"]
+
+
+def _rounded(number: float) -> float:
+    return float(f"{number:.3g}")
