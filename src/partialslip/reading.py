@@ -179,7 +179,9 @@ def _allowed(what: str, kind: Any) -> str:
             repr(table.__struct_config__.tag) for table in get_args(Scene.__annotations__["profile"])
         )
     if what.startswith("Invalid enum value"):
-        words = [word for option in (kind, *get_args(kind)) for word in get_args(option) if isinstance(word, (str, int))]
+        words = [
+            word for option in (kind, *get_args(kind)) for word in get_args(option) if isinstance(word, (str, int))
+        ]
         return "one of " + ", ".join(map(repr, words))
     if length := re.fullmatch(r"Expected `array` of length (>=|<=) (\d+)", what):
         return f"an array of at {'least' if length[1] == '>=' else 'most'} {length[2]} numbers"
