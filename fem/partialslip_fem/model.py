@@ -20,6 +20,8 @@ from partialslip_fem.level import Level, Part, Problem
 from partialslip_fem.recovery import inside
 
 _WIDTH = {"half-plane": 16.0, "box": 4096.0}  # in contact half-widths
+_SIZES = 1e-2, 1e6  # of finite bodies, in sqrt(A R P)
+_SLENDER = 1e3  # of height to width
 _LARGEST_NU = 0.4999999
 
 
@@ -41,8 +43,8 @@ def solve(
     Raises
     ------
     InputError
-        If a material is all but incompressible (beyond that the stiffness is of rounding only), or the contact does
-        not fit on a finite body.
+        If a material is all but incompressible (beyond that the stiffness is of rounding only), the contact does
+        not fit on a finite body, or a size of that is out of all proportion.
     MissingLibraryError
         If gmsh, a system library that it needs, or the factorisation that is asked for, is not there.
     """
@@ -52,6 +54,7 @@ def solve(
             raise InputError(
                 f"material{name}.nu = {elastic.nu}: must be <= {_LARGEST_NU} in plane strain by finite elements"
             )
+    _check_sizes(scene)
     clock = Clock()
     width = scene.fem.width or _WIDTH[scene.fem.far_field]
     problem = _scaled(scene, plan, start)
@@ -60,6 +63,17 @@ def solve(
     else:
         adapted = uniform(problem, scene.fem.size, width, clock)
     return _result(scene, plan, problem, adapted, clock)
+
+
+def _check_sizes(scene: Scene) -> None:
+    """That rounding swallows neither the contact in the mesher, nor a slender body's stiffness."""
+    for name, own in (("lower", scene.bodies.lower), ("upper", scene.bodies.upper)):
+        for key, size in (("width", own.width), ("height", own.height)) if own else ():
+            if not _SIZES[0] <= size / scene.length <= _SIZES[1]:
+                low, high = (share * scene.length for share in _SIZES)
+                raise InputError(f"bodies.{name}.{key} = {size}: must be from {low:.2g} to {high:.2g} in this contact")
+        if own and own.height > _SLENDER * own.width:
+            raise InputError(f"bodies.{name}.height = {own.height}: must be <= {_SLENDER:g} times bodies.{name}.width")
 
 
 def _scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:

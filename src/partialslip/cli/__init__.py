@@ -31,6 +31,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except PartialslipError as error:
         print(f"partialslip: {error}", file=sys.stderr)
         return 2
+    except MemoryError:
+        print("partialslip: not enough memory: ask for less accuracy, or larger elements", file=sys.stderr)
+        return 2
     except BrokenPipeError:  # whoever read the output has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
