@@ -22,6 +22,8 @@ from partialslip_fem.level import Face, Level, Part, Problem
 from partialslip_fem.recovery import inside
 from partialslip_meshes import read
 
+_SIZES = 1e-2, 1e6  # of finite bodies, in sqrt(A R P)
+_SLENDER = 1e3  # of height to width
 _LARGEST_NU = 0.4999999
 
 
@@ -43,8 +45,8 @@ def solve(
     Raises
     ------
     InputError
-        If a material is all but incompressible (beyond that the stiffness is of rounding only), or the contact does
-        not fit on a finite body.
+        If a material is all but incompressible (beyond that the stiffness is of rounding only), the contact does
+        not fit on a finite body, or a size of that is out of all proportion.
     MissingLibraryError
         If gmsh, a system library that it needs, or the factorisation that is asked for, is not there.
     """
@@ -54,6 +56,7 @@ def solve(
             raise InputError(
                 f"material{name}.nu = {elastic.nu}: must be <= {_LARGEST_NU} in plane strain by finite elements"
             )
+    _check_sizes(scene)
     clock = Clock()
     width = scene.fem.width or WIDTHS[scene.fem.far_field]
     with clock.phase("mesh"):
@@ -63,6 +66,17 @@ def solve(
     else:
         adapted = uniform(problem, scene.fem.size, width, clock)
     return _result(scene, plan, problem, adapted, clock)
+
+
+def _check_sizes(scene: Scene) -> None:
+    """That rounding swallows neither the contact in the mesher, nor a slender body's stiffness."""
+    for name, own in (("lower", scene.bodies.lower), ("upper", scene.bodies.upper)):
+        for key, size in (("width", own.width), ("height", own.height)) if own else ():
+            if size is not None and not _SIZES[0] <= size / scene.length <= _SIZES[1]:
+                low, high = (share * scene.length for share in _SIZES)
+                raise InputError(f"bodies.{name}.{key} = {size}: must be from {low:.2g} to {high:.2g} in this contact")
+        if own and own.height and own.width and own.height > _SLENDER * own.width:
+            raise InputError(f"bodies.{name}.height = {own.height}: must be <= {_SLENDER:g} times bodies.{name}.width")
 
 
 def _scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:

@@ -20,23 +20,25 @@ Progress = Callable[[str], None]
 @dataclass(frozen=True)
 class Run:
     """A scene, its plan, the results by method, and the comparisons of all others with the reference: the exact one,
-    or, where there is none, the march's; with :data:`ALL_EFFECTS` where some that matter have been forced off."""
+    or, where there is none, the march's, or else that of the finite elements; with :data:`ALL_EFFECTS` where some that
+    matter have been forced off. ``accuracy`` is the bar for a, m and n, as a fraction of a; None if there are no
+    bars."""
 
     scene: Scene
     plan: Plan
     results: dict[str, Result]
     comparisons: dict[str, Comparison]
+    accuracy: float | None = None
 
     @property
     def reference(self) -> str | None:
         """The method that the others are compared with."""
-        return next((name for name in (ALL_EFFECTS, "exact", "march") if name in self.results), None)
+        return next((name for name in (ALL_EFFECTS, *METHODS) if name in self.results), None)
 
     @property
     def judged(self) -> bool:
-        """Whether errors have bars: half-planes are no truth for finite bodies, a mesh of a given element size is as
-        good as it is, and of effects that are forced off errors are what they are worth."""
-        return not self.scene.finite and self.scene.fem.size is None and not self.plan.missing
+        """Whether errors have bars."""
+        return self.accuracy is not None
 
     @property
     def missed(self) -> tuple[str, ...]:
@@ -105,11 +107,18 @@ def run(
     }
     for result in results.values():
         effects.accept(result.regime)
-    outcome = Run(scene, effects, results, {})
+    # half-planes are no truth for finite bodies, a mesh of a given element size is as good as it is, and of effects
+    # that are forced off errors are what they are worth
+    judged = not scene.finite and scene.fem.size is None and not effects.missing
+    return compared(scene, effects, results, scene.fem.accuracy if judged else None)
+
+
+def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: float | None) -> Run:
+    """Results with their comparisons; ``accuracy`` is the bar for a, m and n (fractions of a), None for no bars."""
+    outcome = Run(scene, plan, results, {}, accuracy)
     for name, result in results.items():
         if outcome.reference and name != outcome.reference:
             reference = results[outcome.reference]
-            accuracy = scene.fem.accuracy if outcome.judged else None
             outcome.comparisons[name] = compare(result, reference, scene.friction.f, accuracy)
     return outcome
 

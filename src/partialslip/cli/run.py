@@ -53,6 +53,8 @@ def _run(options: argparse.Namespace) -> int:
         if method not in METHODS:
             raise InputError(f"--with {method!r}: must be of {', '.join(METHODS)}")
     check_folder(options.out)
+    if options.save == "":
+        raise InputError("--save '': must name a file")
     if options.fields and methods and "fem" not in methods:
         raise InputError("--fields: needs the method fem")
     scene = load_scene(options.scene, options.overrides)
@@ -76,11 +78,12 @@ def _run(options: argparse.Namespace) -> int:
             progress=lambda line: status.update(f"{scene.name}: {line}"),
             start=start,
         )
-        folder = Path(options.out) if options.out else None if options.json else Path("results") / scene.name
-        files = write_run(outcome, folder) if folder else []
+        files = []
         if options.save is not None:
             save = Path(options.save)
             files += write_files(save.parent, {save.name: _state(outcome).save})
+        folder = Path(options.out) if options.out else None if options.json else Path("results") / scene.name
+        files += write_run(outcome, folder) if folder else []
     if options.json:
         print(json.dumps(record(outcome), indent=1, allow_nan=False))
     else:

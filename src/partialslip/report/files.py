@@ -1,6 +1,7 @@
 """Files: whole ones or none, whenever it is stopped; and those of a run."""
 
 import csv
+import glob
 import io
 import json
 import os
@@ -17,6 +18,11 @@ from partialslip.report.figure import traction_svg
 from partialslip.report.page import page
 from partialslip.report.record import record
 from partialslip.run import Run
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
 
 
 def write_run(run: Run, folder: Path) -> list[Path]:
@@ -100,16 +106,46 @@ def surface_csv(run: Run) -> str:
 
 @contextmanager
 def _replacing(path: Path) -> Iterator[Path]:
-    """A path beside ``path`` to write to, which takes its place when the block ends well."""
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
-    os.close(handle)
+    """A path beside ``path`` to write to, which takes its place when the block ends well. What a write that was killed
+    has left there goes."""
+    beginning, ending = f".{path.stem}-", f".partial{path.suffix}"
+    for left in path.parent.glob(glob.escape(beginning) + "*" + glob.escape(ending)):
+        _unlink_if_free(left)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=beginning, suffix=ending)
     beside = Path(name)
     try:
+        _lock(handle)
         yield beside
         beside.chmod(0o666 & ~_umask())
+        os.fsync(handle)  # its content must be there before its name is
         beside.replace(path)
     finally:
+        os.close(handle)
         beside.unlink(missing_ok=True)
+
+
+def _lock(handle: int) -> bool:
+    """Whether the file is now locked to this process; the lock ends with the process, however that ends."""
+    if fcntl is None:
+        return False
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:  # another one's, or no locks here
+        return False
+    return True
+
+
+def _unlink_if_free(path: Path) -> None:
+    """Remove a file that no process writes any more."""
+    try:
+        handle = os.open(path, os.O_RDWR)
+    except OSError:
+        return
+    try:
+        if _lock(handle):
+            path.unlink(missing_ok=True)
+    finally:
+        os.close(handle)
 
 
 def _umask() -> int:

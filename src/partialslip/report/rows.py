@@ -56,7 +56,8 @@ def verdict(run: Run) -> str:
         return "all bars met"
     if run.plan.missing:
         return f"no bars: forced off: {', '.join(run.plan.missing)}; the errors are what that is worth"
-    return f"no bars: {'finite bodies' if run.scene.finite else 'the element size was given'}"
+    reasons = {"finite bodies": run.scene.finite, "the element size was given": run.scene.fem.size is not None}
+    return "no bars: " + next((why for why, applies in reasons.items() if applies), "none were asked for")
 
 
 def effects(plan: Plan) -> list[tuple[str, str, str]]:

@@ -44,7 +44,7 @@ def _errors(run: Run, name: str) -> Table:
 def _table(headings: Sequence[str], cells: Iterable[Sequence[str]], words: Container[int]) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for number, heading in enumerate(headings):
-        table.add_column(heading, justify="left" if number in words else "right", no_wrap=True)
+        table.add_column(Text(heading), justify="left" if number in words else "right", no_wrap=True)
     for row in cells:
         table.add_row(*row)
     return table
