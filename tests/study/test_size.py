@@ -108,7 +108,7 @@ def test_blocks_come_near_the_half_plane_with_the_square_of_their_size(tmp_path)
     with ThreadPoolExecutor(1) as executor:
         sweep(cases, ledger, executor)
     sizes = size.along(axis, ledger)
-    for quantity in ("a", "p0"):
+    for quantity in ("a", "m"):
         assert size.law(sizes, quantity).k == pytest.approx(2, abs=0.3)
 
 

@@ -20,7 +20,7 @@ from partialslip.run import run
 from partialslip.scene import Scene
 from partialslip.study.case import Case
 
-QUANTITIES = ("a", "p0", "m", "n", "q")
+QUANTITIES = ("a", "p", "m", "n", "q")
 LEVELS = (0.05, 0.01, 0.001)
 _COARSER = 8.0  # accuracy of the second mesh, in the first's
 _CLEAR = 10.0  # an error of size counts where it is so many times that of the mesh
@@ -120,8 +120,8 @@ def _put(data: dict[str, Any], path: list[str], value: float, key: str) -> None:
 class Sizes:
     """A sweep along one axis.
 
-    ``size`` (k,), in a or as swept; ``off`` (k,) by quantity: what the body changes, a and p0 relative, m and n in a, q
-    in the relative L2 norm; ``mesh`` (k,): what of it may be due to the mesh.
+    ``size`` (k,), in a or as swept; ``off`` (k,) by quantity: what the body changes: a and the largest p relative, m
+    and n in a, q in the relative L2 norm; ``mesh`` (k,): what of it may be due to the mesh.
     """
 
     name: str
@@ -158,7 +158,7 @@ def along(axis: Axis, entries: Iterable[Mapping[str, Any]]) -> Sizes:
         rough = _off(coarse[size]) if size in coarse else {}
         for quantity in QUANTITIES:
             off[quantity].append(abs(found.get(quantity, np.nan)))
-            known = estimate.get("a" if quantity == "p0" else quantity, np.nan)
+            known = estimate.get(quantity, np.nan)
             changed = abs(rough.get(quantity, np.nan) - found.get(quantity, np.nan))
             mesh[quantity].append(float(np.fmax(known, 0.0 if math.isnan(changed) else changed / _COARSER)))
     return Sizes(
@@ -171,7 +171,7 @@ def along(axis: Axis, entries: Iterable[Mapping[str, Any]]) -> Sizes:
 
 def _off(entry: Mapping[str, Any]) -> dict[str, float]:
     fem, exact, comparison = entry["methods"]["fem"], entry["methods"]["exact"], entry["comparison"]["fem"]
-    found = {key: fem[key] / exact[key] - 1 for key in ("a", "p0")}
+    found = {"a": fem["a"] / exact["a"] - 1, "p": fem["p_max"] / exact["p_max"] - 1}
     for key in ("m", "n"):
         if fem[key] is not None and exact[key] is not None:
             found[key] = (fem[key] - exact[key]) / exact["a"]
@@ -221,7 +221,7 @@ def grid(axes: Sequence[Axis], entries: Iterable[Mapping[str, Any]], quantity: s
 
 def table(axes: Sequence[Axis], entries: Iterable[Mapping[str, Any]]) -> tuple[list[str], list[list[Any]]]:
     """Headings and rows for a CSV file: one row a case."""
-    figures = ("a", "p0", "m", "n", "regime")
+    figures = ("a", "p_max", "m", "n", "regime")
     head = [*(each.name for each in axes), "coarser", *figures, *(f"change of {key}" for key in QUANTITIES)]
     head += ["dofs", "cpu_s", "error"]
     rows = []
