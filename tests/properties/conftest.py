@@ -7,5 +7,5 @@ _SLOW = [HealthCheck.too_slow]
 settings.register_profile(
     "quick", derandomize=True, deadline=None, max_examples=20, database=None, suppress_health_check=_SLOW
 )
-settings.register_profile("thorough", deadline=None, max_examples=2000, database=None, suppress_health_check=_SLOW)
+settings.register_profile("thorough", deadline=None, max_examples=500, database=None, suppress_health_check=_SLOW)
 settings.load_profile("quick")
