@@ -22,7 +22,8 @@ from partialslip_fem.level import Face, Level, Part, Problem
 from partialslip_fem.recovery import inside
 from partialslip_meshes import read
 
-_SIZES = 1e-2, 1e6  # of finite bodies, in sqrt(A R P)
+_SIZES = 1e-2, 1e5  # of finite bodies, in sqrt(A R P)
+_FLATTEST = 1e9  # profile, likewise
 _SLENDER = 1e3  # of height to width
 _LARGEST_NU = 0.4999999
 
@@ -70,6 +71,8 @@ def solve(
 
 def _check_sizes(scene: Scene) -> None:
     """That rounding swallows neither the contact in the mesher, nor a slender body's stiffness."""
+    if max(scene.profile.kinks, default=0.0) > _FLATTEST * scene.length:
+        raise InputError(f"load.P = {scene.P:g}: must press the contact beyond its flat")
     for name, own in (("lower", scene.bodies.lower), ("upper", scene.bodies.upper)):
         for key, size in (("width", own.width), ("height", own.height)) if own else ():
             if size is not None and not _SIZES[0] <= size / scene.length <= _SIZES[1]:

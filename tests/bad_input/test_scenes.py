@@ -250,6 +250,12 @@ def test_bodies_out_of_all_proportion(rejected, key, size):
     assert f"bodies.upper.{key} = {float(size)!r}: must be from " in message
 
 
+@pytest.mark.parametrize("method", ["exact", "march", "fem"])
+def test_a_flat_that_is_hardly_pressed(rejected, method):
+    text = GOOD.replace('"hertz"', '"flat-rounded"\nb = 1e20').replace("p0 =", "P =")
+    assert "must press the contact beyond its flat" in rejected(text, ["run", "bench.toml", "--with", method])
+
+
 def test_a_tower(rejected):
     text = f"{GOOD}[bodies.lower]\nwidth = 0.02\nheight = 100.0\n"
     assert "bodies.lower.height = 100.0: must be <= 1000 times" in rejected(text, ["run", "bench.toml"])

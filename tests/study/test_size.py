@@ -104,11 +104,12 @@ def test_what_the_mesh_is_off_by_is_no_law():
 
 def test_blocks_come_near_the_half_plane_with_the_square_of_their_size(tmp_path):
     axis = size.axis("bodies.*.width+bodies.*.height=16a..128a:4")
-    cases, ledger = size.cases(scene(), [axis], meshes=1), Ledger(tmp_path / "ledger.jsonl")
+    cases, ledger = size.cases(scene(accuracy=1e-5), [axis], meshes=1), Ledger(tmp_path / "ledger.jsonl")
     with ThreadPoolExecutor(1) as executor:
         sweep(cases, ledger, executor)
     sizes = size.along(axis, ledger)
     for quantity in ("a", "m"):
+        assert max(sizes.mesh[quantity]) < 1e-5
         assert size.law(sizes, quantity).k == pytest.approx(2, abs=0.3)
 
 
