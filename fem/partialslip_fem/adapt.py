@@ -54,6 +54,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     size, finer = _FIRST, _FINER
     least = _growth(_AIM * accuracy / 2, order)
     limit = _limit(problem)
+    coarsest = max(part.fineness for part in problem.parts)  # what is not finer than that is to be fine enough
     rounding = _ROUNDING * accuracy if any(part.face for part in problem.parts) else 0.0
     while True:
         goal = _ENDS * _AIM * accuracy / _worst(end_errors(level, np.ones(4), np.full(4, np.inf)))
@@ -63,10 +64,10 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         size = max(size / finer, _FINEST)
         growth = max(least, _growth(size, order)) if size > 1.01 * goal else least
         a = level.half_width
-        sizes = dict.fromkeys(apart([*level.ends.tolist(), *problem.kinks], size * a), size * a)
+        sizes = dict.fromkeys(apart([*level.ends.tolist(), *problem.kinks], size * a), size * a / coarsest)
         margin = (0.1 + 2 * finer * size) * a  # of safety, and what the mesh before may have been off by
         contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
-        level = solve_level(problem, width * a, contact, sizes, growth, clock, rounding=rounding)
+        level = solve_level(problem, width * a, contact, sizes, growth / coarsest, clock, rounding=rounding)
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         if not level.enclosed and max(-level.left, level.right) >= limit:
             raise _too_narrow(problem)

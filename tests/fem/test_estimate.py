@@ -1,5 +1,6 @@
 """The estimate against the true error, on scenes of both regimes; the estimate itself never sees the exact solution."""
 
+import numpy as np
 import pytest
 
 import partialslip
@@ -73,3 +74,26 @@ def test_locked_elements_stop_where_meshes_bring_nothing():
     fem = partialslip.run(partialslip.load_scene("hertz-small-tension", overrides), ["fem"]).results["fem"]
     assert max(fem.estimate[key] for key in "amn") > 1e-2
     assert any("not reached" in note for note in fem.notes)
+
+
+def test_estimate_knows_of_the_coarser_body():
+    """Where nodes do not match, elements of both bodies are as small, and grow as little, as the accuracy needs."""
+    scene = partialslip.load_scene("hertz-large-tension", ["fem.lower_size=2", "fem.accuracy=1e-3"])
+    outcome = partialslip.run(scene)
+    found, known = outcome.comparisons["fem"], outcome.results["fem"].estimate
+    assert all(getattr(found, key) <= 3 * known[key] for key in ("a", "m", "n", "p", "q"))
+    assert max(known[key] for key in "amn") <= 1e-3
+
+
+@pytest.mark.parametrize(("name", "steep"), [("hertz-shear", 1.0), ("flat-rounded", None)])
+def test_how_steeply_pressure_begins_is_found(monkeypatch, name, steep):
+    """As a multiple of Hertz's; corners near the ends of the contact make it steep."""
+    levels, true = [], adapt.end_errors
+    monkeypatch.setattr(adapt, "end_errors", lambda level, *rest: levels.append(level) or true(level, *rest))
+    exact = partialslip.run(partialslip.load_scene(name, ["fem.accuracy=1e-3"])).results["exact"]
+    a, x = exact.a, exact.a * np.sin(np.linspace(0, np.pi / 2, 2001))
+    p, _ = exact.traction.at(x)
+    root, _ = exact.traction.at(np.array([a * (1 - 1e-7)]))
+    known = root[0] / np.sqrt(1e-7) / np.sqrt(np.trapezoid(p**2, x) / a) / np.sqrt(3)
+    assert known == pytest.approx(steep or 8.1, rel=0.02)
+    assert estimate._steepness(levels[-1]) == pytest.approx(known, rel=0.02)
