@@ -1,4 +1,4 @@
-"""Recipe: a block below the line y = 0, graded towards points on its contact line."""
+"""Recipes: a block below the line y = 0, graded towards its contact line or points on it."""
 
 from collections.abc import Mapping
 from types import ModuleType
@@ -7,7 +7,10 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip_meshes.gmsh import gmsh_session
-from partialslip_meshes.mesh import Mesh
+from partialslip_meshes.mesh import Mesh, QuadMesh
+
+# triangles with right angles, paired, and what is left over split so that no triangle is
+_ALL_QUADS = {"Algorithm": 8, "RecombineAll": 1, "RecombinationAlgorithm": 3}
 
 
 def block(
@@ -44,7 +47,19 @@ def block(
     with gmsh_session() as gmsh:
         lines = _outline(gmsh, width, width if height is None else height, contact, sizes, growth, along)
         gmsh.model.mesh.generate(2)
-        return _collect(gmsh, lines)
+        return Mesh(*_collect(gmsh, lines, 3))
+
+
+def quad_block(width: float, contact: tuple[float, float], sizes: Mapping[float, float], growth: float,
+               along: float | None = None) -> QuadMesh:  # fmt: skip
+    """Mesh the block [-width, width] x [-width, 0] with quadrilaterals only; parameters and what is raised as for
+    :func:`block`."""
+    with gmsh_session() as gmsh:
+        lines = _outline(gmsh, width, width, contact, sizes, growth, along)
+        for option, value in _ALL_QUADS.items():
+            gmsh.option.setNumber(f"Mesh.{option}", value)
+        gmsh.model.mesh.generate(2)
+        return QuadMesh(*_collect(gmsh, lines, 4))
 
 
 def _outline(
@@ -91,8 +106,10 @@ def _outline(
     }
 
 
-def _collect(gmsh: ModuleType, lines: Mapping[str, list[int]]) -> Mesh:
-    """Arrays of the mesh in gmsh, with the nodes numbered from zero."""
+def _collect(
+    gmsh: ModuleType, lines: Mapping[str, list[int]], corners: int
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], dict[str, npt.NDArray[np.int64]]]:
+    """Points, elements of so many corners, and named lines of the mesh in gmsh, with the nodes numbered from zero."""
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     number[tags] = np.arange(len(tags))
@@ -102,8 +119,8 @@ def _collect(gmsh: ModuleType, lines: Mapping[str, list[int]]) -> Mesh:
         result: npt.NDArray[np.int64] = number[nodes[0].reshape(-1, corners)]
         return result
 
-    return Mesh(
-        points=np.ascontiguousarray(coordinates.reshape(-1, 3)[:, :2]),
-        triangles=cells(2, -1, 3),
-        lines={name: np.vstack([cells(1, curve, 2) for curve in curves]) for name, curves in lines.items()},
+    return (
+        np.ascontiguousarray(coordinates.reshape(-1, 3)[:, :2]),
+        cells(2, -1, corners),
+        {name: np.vstack([cells(1, curve, 2) for curve in curves]) for name, curves in lines.items()},
     )
