@@ -179,10 +179,11 @@ def _allowed(what: str, kind: Any) -> str:
             repr(table.__struct_config__.tag) for table in get_args(Scene.__annotations__["profile"])
         )
     if what.startswith("Invalid enum value"):
-        return "one of " + ", ".join(map(repr, get_args(kind)))
+        words = [word for option in (kind, *get_args(kind)) for word in get_args(option) if isinstance(word, (str, int))]
+        return "one of " + ", ".join(map(repr, words))
     if length := re.fullmatch(r"Expected `array` of length (>=|<=) (\d+)", what):
         return f"an array of at {'least' if length[1] == '>=' else 'most'} {length[2]} numbers"
-    if wrong := re.fullmatch(r"Expected `([a-z]+)(?: \| null)?`, got `([a-z]+)`", what):
+    if wrong := re.fullmatch(r"Expected `([a-z]+)(?: \| null)?`, got `(?:datetime\.)?([a-z]+)`", what):
         return f"{_KINDS.get(wrong[1], wrong[1])}, not {_KINDS.get(wrong[2], wrong[2])}"
     if bound := re.fullmatch(r"Expected `(?:float|int)(?: \| null)?` (.*)", what):
         return bound[1]

@@ -17,23 +17,24 @@ Progress = Callable[[str], None]
 @dataclass(frozen=True)
 class Run:
     """A scene, its plan, the results by method, and the comparisons of all others with the reference: the exact one,
-    or, where there is none, the march's."""
+    or, where there is none, the march's, or else that of the finite elements. ``accuracy`` is the bar for a, m and n,
+    as a fraction of a; None if there are no bars."""
 
     scene: Scene
     plan: Plan
     results: dict[str, Result]
     comparisons: dict[str, Comparison]
+    accuracy: float | None = None
 
     @property
     def reference(self) -> str | None:
         """The method that the others are compared with."""
-        return next((name for name in ("exact", "march") if name in self.results), None)
+        return next((name for name in METHODS if name in self.results), None)
 
     @property
     def judged(self) -> bool:
-        """Whether errors have bars: half-planes are no truth for finite bodies, and a mesh of a given element size is
-        as good as it is."""
-        return not self.scene.finite and self.scene.fem.size is None
+        """Whether errors have bars."""
+        return self.accuracy is not None
 
     @property
     def missed(self) -> tuple[str, ...]:
@@ -94,11 +95,17 @@ def run(
     effects = plan(scene, subsurface=subsurface)
     chosen = dict.fromkeys(default_methods(scene) if methods is None else methods)
     results = {name: _method(name)(scene, effects, _told_by(name, progress), start) for name in chosen}
-    outcome = Run(scene, effects, results, {})
+    # half-planes are no truth for finite bodies, and a mesh of a given element size is as good as it is
+    judged = not scene.finite and scene.fem.size is None
+    return compared(scene, effects, results, scene.fem.accuracy if judged else None)
+
+
+def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: float | None) -> Run:
+    """Results with their comparisons; ``accuracy`` is the bar for a, m and n (fractions of a), None for no bars."""
+    outcome = Run(scene, plan, results, {}, accuracy)
     for name, result in results.items():
         if outcome.reference and name != outcome.reference:
             reference = results[outcome.reference]
-            accuracy = scene.fem.accuracy if outcome.judged else None
             outcome.comparisons[name] = compare(result, reference, scene.friction.f, accuracy)
     return outcome
 

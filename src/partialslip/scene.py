@@ -211,7 +211,8 @@ class Load(Table, frozen=True, kw_only=True):
     steps: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 1
 
     def __post_init__(self) -> None:
-        if len(self.Q) != len(self.sigma) and any(self.Q) and any(self.sigma):
+        others = [values for values in (self.Q, self.sigma) if any(values) or len(values) > 2]
+        if len(self.Q) != len(self.sigma) and len(others) > 1:
             raise InputError(f"load.sigma: must have as many numbers as load.Q, {len(self.Q)}, not {len(self.sigma)}")
 
     @property

@@ -36,8 +36,9 @@ def add(commands: "Commands") -> None:
                          help="bodies K times stiffer, gap K times flatter: the same tractions, but no effects of "
                          "sloping surfaces, which the half-plane does not know (default: 1)")  # fmt: skip
     exports.add_argument("--ends", metavar="X,...",
-                         help="points on the contact, in contact half-widths, where elements are ten times finer: "
+                         help="points on the contact, in contact half-widths, towards which elements get finer: "
                          "--ends=-1,-0.8,0.2,1")  # fmt: skip
+    exports.add_argument("--fine", metavar="H", help="size of the elements there (default: a tenth of --size)")
     exports.add_argument("--penalty", action="store_true",
                          help="calculix: contact by penalties, instead of mortar elements")  # fmt: skip
     exports.add_argument("-o", "--out", metavar="FILE", help="(default: results/NAME.inp or .msh)")
@@ -58,9 +59,10 @@ def _export(options: argparse.Namespace) -> int:
     )
     width = None if options.width is None else _number(options.width, "--width", 4, 1e6)
     ends = [_number(end, "--ends", -1.1, 1.1) for end in options.ends.split(",")] if options.ends else []
+    fine = None if options.fine is None else _number(options.fine, "--fine", 1e-6, size)
     scene = load_scene(options.scene)
     write = export(
-        scene, options.to, size=size, width=width, growth=growth, stiffer=stiffer, ends=ends, penalty=options.penalty
+        scene, options.to, size=size, width=width, growth=growth, stiffer=stiffer, ends=ends, fine=fine, penalty=options.penalty
     )
     path = Path(options.out) if options.out else Path("results") / f"{scene.name}{FORMATS[options.to]}"
     print_written(write_files(path.parent, {path.name: write}), Console(highlight=False))

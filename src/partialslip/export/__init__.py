@@ -23,6 +23,7 @@ def export(
     growth: float = GROWTH,
     stiffer: float = 1.0,
     ends: Sequence[float] = (),
+    fine: float | None = None,
     penalty: bool = False,
 ) -> Callable[[Path], None]:
     """A function that writes ``scene`` for another code to the path that it is given: both bodies meshed, and, for
@@ -34,7 +35,7 @@ def export(
         Of half-planes of one material.
     to : str
         "calculix", "abaqus" or "gmsh", one of :data:`FORMATS`.
-    size, width, growth, stiffer, ends
+    size, width, growth, stiffer, ends, fine
         As for :func:`partialslip.export.model.model`.
     penalty : bool
         Whether contact in CalculiX is to be by penalties from surface to surface, instead of mortar elements.
@@ -50,7 +51,7 @@ def export(
         raise InputError(f"export to {to!r}: must be one of {', '.join(FORMATS)}")
     if penalty and to != "calculix":
         raise InputError(f"penalty: only for calculix, not for {to}")
-    made = model(scene, size, width, growth, stiffer, ends)
+    made = model(scene, size, width, growth, stiffer, ends, fine)
     if to == "gmsh":
         from partialslip_meshes.write import write_quads
 

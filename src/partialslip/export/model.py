@@ -140,8 +140,8 @@ def model(
     if any(abs(Q) >= f * P for Q, _ in scene.load.points if Q) or (f == 0 and scene.load.dsigma):
         raise InputError(f"load.Q: must be within f P = {f * P:g}; beyond it the contact slides and has no equilibrium")
     pressed = contact(scene)
-    a, wide = pressed.a, width if width is not None else _WIDE / np.sqrt(size)
-    points = dict.fromkeys(ends, fine if fine is not None else size / 10)
+    a, points = pressed.a, dict.fromkeys(ends, fine if fine is not None else size / 10)
+    wide = width if width is not None else _WIDE / min([size, *points.values()]) ** 0.5
 
     def mesh(fineness: float) -> QuadMesh:
         sizes = {x: least * fineness for x, least in points.items()}

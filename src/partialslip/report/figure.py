@@ -52,7 +52,7 @@ def draw_tractions(axes: "Axes", run: Run) -> None:
         axes.axvspan(-reference.m / a, reference.n / a, color="0.88", lw=0, label="stick zone [-m, n]")
     shears = bool(reference.traction.dq.any())
     for name, result in run.results.items():
-        traction = result.traction
+        traction, name = result.traction, name.replace("$", r"\$")
         if traction.cells is None:
             x, p, q = traction.x, traction.p, traction.dq / 2
             axes.plot(x / a, p / p0, color="0.45", lw=1, ls="--", label=f"p/p0, {name}")
@@ -62,12 +62,12 @@ def draw_tractions(axes: "Axes", run: Run) -> None:
         else:
             x = _spread(result)
             p, dq = traction.at(x)
-            axes.plot(x / a, p / p0, _P_MARKS[name], ms=6, color="black", ls="", label=f"p/p0, {name}")
+            axes.plot(x / a, p / p0, _P_MARKS.get(name, "x"), ms=6, color="black", ls="", label=f"p/p0, {name}")
             if shears:
                 axes.plot(
                     x / a,
                     dq / 2 / (f * p0),
-                    _Q_MARKS[name],
+                    _Q_MARKS.get(name, "s"),
                     mfc="white",
                     mec="black",
                     ms=4.5,

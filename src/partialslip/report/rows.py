@@ -53,7 +53,8 @@ def verdict(run: Run) -> str:
         return "nothing to compare with"
     if run.judged:
         return "all bars met"
-    return f"no bars: {'finite bodies' if run.scene.finite else 'the element size was given'}"
+    reasons = {"finite bodies": run.scene.finite, "the element size was given": run.scene.fem.size is not None}
+    return "no bars: " + next((why for why, applies in reasons.items() if applies), "none were asked for")
 
 
 def value(result: Result, key: str) -> str:

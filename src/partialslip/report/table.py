@@ -32,7 +32,7 @@ def print_run(run: Run, console: Console) -> None:
 def _errors(run: Run, name: str) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for number, heading in enumerate(rows.headings(run, name)):
-        table.add_column(heading, justify="left" if number in (0, 5) else "right", no_wrap=True)
+        table.add_column(Text(heading), justify="left" if number in (0, 5) else "right", no_wrap=True)
     for row in rows.error_rows(run, name):
         table.add_row(*row)
     return table
