@@ -61,8 +61,17 @@ def _export(options: argparse.Namespace) -> int:
     ends = [_number(end, "--ends", -1.1, 1.1) for end in options.ends.split(",")] if options.ends else []
     fine = None if options.fine is None else _number(options.fine, "--fine", 1e-6, size)
     scene = load_scene(options.scene)
-    settings = {"size": size, "width": width, "growth": growth, "stiffer": stiffer, "ends": ends, "fine": fine}
-    write = export(scene, options.to, **settings, penalty=options.penalty)
+    write = export(
+        scene,
+        options.to,
+        size=size,
+        width=width,
+        growth=growth,
+        stiffer=stiffer,
+        ends=ends,
+        fine=fine,
+        penalty=options.penalty,
+    )
     path = Path(options.out) if options.out else Path("results") / f"{scene.name}{FORMATS[options.to]}"
     print_written(write_files(path.parent, {path.name: write}), Console(highlight=False))
     return 0

@@ -5,9 +5,9 @@ from functools import partial
 from pathlib import Path
 
 from partialslip.errors import InputError
-from partialslip.export.abaqus import abaqus
-from partialslip.export.calculix import calculix
-from partialslip.export.model import GROWTH, SIZE, model
+from partialslip.export.abaqus import abaqus_deck
+from partialslip.export.calculix import calculix_deck
+from partialslip.export.model import GROWTH, SIZE, modelled
 from partialslip.scene import Scene
 
 # Formats, and the endings of their files.
@@ -36,7 +36,7 @@ def export(
     to : str
         "calculix", "abaqus" or "gmsh", one of :data:`FORMATS`.
     size, width, growth, stiffer, ends, fine
-        As for :func:`partialslip.export.model.model`.
+        As for :func:`partialslip.export.model.modelled`.
     penalty : bool
         Whether contact in CalculiX is to be by penalties from surface to surface, instead of mortar elements.
 
@@ -51,12 +51,14 @@ def export(
         raise InputError(f"export to {to!r}: must be one of {', '.join(FORMATS)}")
     if penalty and to != "calculix":
         raise InputError(f"penalty: only for calculix, not for {to}")
-    made = model(scene, size, width, growth, stiffer, ends, fine)
+    made = modelled(scene, size, width, growth, stiffer, ends, fine)
     if to == "gmsh":
         from partialslip_meshes.write import write_quads
 
         return partial(write_quads, bodies={part.name: part.mesh for part in made.parts})
-    lines = abaqus(scene, made) if to == "abaqus" else calculix(scene, made, "penalty" if penalty else "mortar")
+    lines = (
+        abaqus_deck(scene, made) if to == "abaqus" else calculix_deck(scene, made, "penalty" if penalty else "mortar")
+    )
     deck = "\n".join(lines) + "\n"
     return lambda path: _write(path, deck)
 

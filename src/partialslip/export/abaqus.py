@@ -8,7 +8,6 @@ _RESULTS = """\
 *CONTACT PRINT, SLAVE=LOWER_FACE, MASTER=UPPER_FACE, FREQUENCY=1000
 CSTRESS
 CDISP
-CFORCE
 *OUTPUT, FIELD, FREQUENCY=1000
 *NODE OUTPUT
 U, RF
@@ -17,7 +16,7 @@ CSTRESS, CDISP, CFORCE
 *END STEP"""
 
 
-def abaqus(scene: Scene, model: Model) -> list[str]:
+def abaqus_deck(scene: Scene, model: Model) -> list[str]:
     """Lines of the deck: CPE4, small sliding from surface to surface, hard contact enforced directly, and friction by
     Lagrange multipliers. Contact stresses and nodal contact forces are printed to the .dat file and written to the
     .odb at the end of each step."""

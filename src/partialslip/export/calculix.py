@@ -32,7 +32,7 @@ def length_unit(model: Model) -> tuple[str, float]:
     return next(((name, unit) for name, unit in _UNITS.items() if model.a >= 100 * unit), ("nm", _UNITS["nm"]))
 
 
-def calculix(scene: Scene, model: Model, contact: Contact = "mortar") -> list[str]:
+def calculix_deck(scene: Scene, model: Model, contact: Contact = "mortar") -> list[str]:
     """Lines of the deck, of a slice as thick as an element is wide along the contact.
 
     Contact is that of mortar elements, or of penalties from surface to surface. Results are in the .frd file (contact

@@ -100,7 +100,7 @@ class Model:
         return replace(self, parts=parts, steps=tuple(steps), a=self.a / length, size=self.size / length)
 
 
-def model(
+def modelled(
     scene: Scene,
     size: float = SIZE,
     width: float | None = None,
