@@ -7,10 +7,10 @@ from partialslip.export.calculix import length_unit
 from partialslip.export.model import modelled
 
 _MORTAR, _PENALTY = "C3D8, mortar", "C3D8, surface-to-surface penalty"
-_UNIFORM = ((0.1, 0.2), (0.05, 0.2), (0.025, 0.2), (0.0125, 0.2))
+_UNIFORM = ((0.1, 0.2), (0.05, 0.2), (0.025, 0.2), (0.0125, 0.1))
 SETTINGS = (
     *(Setting(_MORTAR, size, growth, None, False) for size, growth in _UNIFORM),
-    Setting(f"{_MORTAR}, graded to the ends", 0.05, 0.2, 0.01, False),
+    Setting(f"{_MORTAR}, graded to the ends", 0.05, 0.1, 0.01, False),
     Setting(_PENALTY, 0.025, 0.2, None, True),
 )
 

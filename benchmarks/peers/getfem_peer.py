@@ -17,7 +17,7 @@ from setting import Setting
 _CONTACT, _OUTER, _UPPER = 2, (4, 5), 6
 _HELD = 100
 
-_ENDS = ((0.1, 0.3, 0.01), (0.1, 0.3, 0.003), (0.1, 0.3, 0.001), (0.05, 0.2, 0.0003))
+_ENDS = ((0.1, 0.3, 0.01), (0.1, 0.3, 0.003), (0.1, 0.3, 0.001), (0.05, 0.2, 0.0003), (0.05, 0.2, 0.0001))
 SETTINGS = (
     *(
         Setting("Q1/P1", size, growth, None, 1)
@@ -61,7 +61,8 @@ def main(mesh_file, parameters_file, csv_file, order):
     gf.util_trace_level(0)
     with open(parameters_file) as file:
         scene = json.load(file)
-    a, p0, f = scene["a"], scene["p0"], scene["f"]  # lengths in a, stresses in p0
+    # lengths in a, stresses in p0 and displacements in p0 a/E, so that Newton's residual means the same for p and q
+    a, p0, f, nu = (scene[key] for key in ("a", "p0", "f", "nu"))
 
     mesh = gf.Mesh("import", "gmsh", mesh_file)
     mesh.del_convex(mesh.region(_UPPER)[0])
@@ -74,9 +75,8 @@ def main(mesh_file, parameters_file, csv_file, order):
     inside, line = gf.MeshIm(mesh, 2 * order), gf.MeshIm(mesh, 2 * order + 3)
 
     model = gf.Model("real")
-    E, nu = scene["E"] / p0, scene["nu"]
-    model.add_initialized_data("lame", [E * nu / ((1 + nu) * (1 - 2 * nu))])
-    model.add_initialized_data("mu", [E / (2 * (1 + nu))])
+    model.add_initialized_data("lame", [nu / ((1 + nu) * (1 - 2 * nu))])
+    model.add_initialized_data("mu", [1 / (2 * (1 + nu))])
     for u in ("u", "v"):  # lower, and upper in the mirror
         model.add_fem_variable(u, displacement)
         model.add_isotropic_linearized_elasticity_brick(inside, u, "lame", "mu")
@@ -88,14 +88,15 @@ def main(mesh_file, parameters_file, csv_file, order):
     model.add_initialized_data("loads", [0.0, 0.0])
     model.add_initialized_data("strain", [0.0])
     model.add_initialized_data("f", [f])
-    model.add_initialized_data("R", [scene["R"] / a])
-    model.add_initialized_data("r", [E])
+    curvature = a / scene["R"] * scene["E"] / p0
+    model.add_initialized_data("curvature", [curvature])
+    model.add_initialized_data("r", [1.0])
     for name in ("u0", "v0"):  # as the step before left them
         model.add_fem_data(name, displacement)
     model.add_initialized_data("moved0", [0.0])
     model.add_initialized_data("strain0", [0.0])
 
-    model.add_macro("gap", "(sqr(X(1))/(2*R) - u(2) - v(2) - approach)")
+    model.add_macro("gap", "(curvature*sqr(X(1))/2 - u(2) - v(2) - approach)")
     model.add_macro("slip", "(u(1) - u0(1) - v(1) + v0(1) + (strain - strain0)*X(1) + shift - moved0)")
     model.add_macro("pressing", "pos_part(p - r*gap)")
     model.add_macro("pushing", "(q + r*slip)")
@@ -111,11 +112,11 @@ def main(mesh_file, parameters_file, csv_file, order):
     x, y = traction.basic_dof_nodes()
     nodes = np.flatnonzero((y == 0) & (np.abs(x) < 1.2 + 1e-9))
     nodes = nodes[np.argsort(x[nodes])]
-    model.set_variable("approach", [0.5 * a / scene["R"]])
+    model.set_variable("approach", [0.5 * curvature])
     iterations, tractions = 0, []
     for P, Q, sigma in scene["steps"]:
         model.set_variable("loads", [P / (p0 * a), Q / (p0 * a)])
-        model.set_variable("strain", [sigma / p0 * (1 - nu**2) / E])
+        model.set_variable("strain", [sigma / p0 * (1 - nu**2)])
         iterations += model.solve("max_res", 1e-9, "max_iter", 200, "lsearch", "simplest", "alpha min", 0.8)[0]
         for name, before in (("u", "u0"), ("v", "v0"), ("shift", "moved0"), ("strain", "strain0")):
             model.set_variable(before, model.variable(name))

@@ -126,8 +126,8 @@ def modelled(
         Both bodies so many times stiffer, and the gap so many times flatter: in linear elasticity no traction changes,
         while what the slope of the surfaces does beyond it goes.
     ends : sequence of float
-        Points on the contact line, in a, towards which the elements get finer: down to ``fine`` (a), by default a
-        tenth of ``size``.
+        Points on the contact line, in a, towards which the elements get finer, as they do towards kinks of the gap:
+        down to ``fine`` (a), by default a tenth of ``size``.
 
     Raises
     ------
@@ -140,7 +140,9 @@ def modelled(
     if any(abs(Q) >= f * P for Q, _ in scene.load.points if Q) or (f == 0 and scene.load.dsigma):
         raise InputError(f"load.Q: must be within f P = {f * P:g}; beyond it the contact slides and has no equilibrium")
     pressed = contact(scene)
-    a, points = pressed.a, dict.fromkeys(ends, fine if fine is not None else size / 10)
+    a = pressed.a
+    kinks = [kink / a for kink in scene.profile.kinks if abs(kink) < _REACH * a]
+    points = dict.fromkeys([*ends, *kinks], fine if fine is not None else size / 10)
     wide = width if width is not None else _WIDE / min([size, *points.values()]) ** 0.5
 
     def mesh(fineness: float) -> QuadMesh:
