@@ -311,10 +311,17 @@ HOW = {"size": 0.05, "growth": 0.2, "stiffer": STIFFER}
 
 @pytest.mark.slow
 @needs_ccx
-@pytest.mark.parametrize("name", ["hertz-small-tension", "hertz-large-tension", "flat-rounded"])
-def test_calculix_runs_it(name, tmp_path):
-    """Elements of 0.05 a: errors of their size squared in a, m and n, and of a few per cent in tractions."""
-    found = computed(load_scene(name), tmp_path, **HOW)
+@pytest.mark.parametrize(
+    ("name", "ends"),
+    [
+        ("hertz-small-tension", ()),
+        ("hertz-large-tension", ()),
+        ("flat-rounded", (-1.0, -0.974, 0.425, 1.0)),  # pressure falls from 2 p0 to nothing within 0.07 a
+    ],
+)
+def test_calculix_runs_it(name, ends, tmp_path):
+    """Elements of 0.05 a: errors of less than half of them in a, m and n, and of a few per cent in tractions."""
+    found = computed(load_scene(name), tmp_path, **HOW, ends=ends)
     assert max(found.a, found.m, found.n) < 0.02
     assert found.p < 0.02
     assert found.q < 0.05
