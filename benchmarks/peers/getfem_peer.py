@@ -14,7 +14,7 @@ import time
 from setting import Setting
 
 # physical groups of an exported mesh, in the order they are written: of the lower body, but for the last
-_CONTACT, _OUTER, _UPPER = 2, (4, 5), 6
+_CONTACT, _OUTER, _UPPER = 2, (4, 5, 6), 7
 _HELD = 100
 
 _ENDS = ((0.1, 0.3, 0.01), (0.1, 0.3, 0.003), (0.1, 0.3, 0.001), (0.05, 0.2, 0.0003), (0.05, 0.2, 0.0001))

@@ -48,7 +48,7 @@ def end_errors(level: Level, sizes: Array, gaps: Array) -> dict[str, float]:
     off = AT_END[level.body.order] * sizes
     most = float(off.max()) * max(_steepness(level), 1.0)
     errors = {"a": float(off[:2].mean()), **{key: most * times for key, times in _TRACTIONS.items()}}
-    fitted = off + np.minimum(_FIT * (sizes / gaps) ** 2, _SIDE) * sizes
+    fitted = off + np.minimum(_FIT * np.minimum(sizes / gaps, 1.0) ** 2, _SIDE) * sizes
     return errors | (dict(zip("mn", fitted[2:4].tolist(), strict=True)) if level.stick else {})
 
 

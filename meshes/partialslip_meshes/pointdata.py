@@ -4,7 +4,6 @@ cannot."""
 import contextlib
 import io
 import warnings
-from collections.abc import Mapping
 from pathlib import Path
 
 import meshio
@@ -13,7 +12,8 @@ import numpy.typing as npt
 
 from partialslip.errors import InputError
 
-FORMATS: Mapping[str, list[str]] = meshio.extension_to_filetypes
+# Of the endings that meshio knows, those of formats with point data; its readers of others may not come to an end.
+FORMATS = {".vtu", ".vtk", ".xdmf", ".xmf", ".msh", ".med", ".e", ".exo", ".ex2"}
 
 
 def read_point_data(path: Path) -> tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]:
@@ -48,6 +48,5 @@ def _read(path: Path) -> meshio.Mesh:
     except ImportError as error:
         raise InputError(f"{path}: cannot be read without the package {error.name}") from None
     except (Exception, SystemExit) as error:
-        what = FORMATS.get(path.suffix.lower(), ["?"])[0]
         reason = " ".join(str(error).split())[:100] if not isinstance(error, SystemExit) else ""
-        raise InputError(f"{path}: cannot be read as {what}{f': {reason}' if reason else ''}") from None
+        raise InputError(f"{path}: cannot be read{f': {reason}' if reason else ''}") from None

@@ -3,22 +3,26 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+from msgspec.structs import replace
+
 from partialslip.compare import Comparison, compare
 from partialslip.errors import InputError
-from partialslip.plan import Plan, plan
+from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
-from partialslip.scene import Scene
+from partialslip.scene import Effects, Scene
 from partialslip.state import State
 
 METHODS = ("exact", "march", "fem")
+ALL_EFFECTS = "all effects"
 Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class Run:
     """A scene, its plan, the results by method, and the comparisons of all others with the reference: the exact one,
-    or, where there is none, the march's, or else that of the finite elements. ``accuracy`` is the bar for a, m and n,
-    as a fraction of a; None if there are no bars."""
+    or, where there is none, the march's, or else that of the finite elements; with :data:`ALL_EFFECTS` where some that
+    matter have been forced off. ``accuracy`` is the bar for a, m and n, as a fraction of a; None if there are no
+    bars."""
 
     scene: Scene
     plan: Plan
@@ -29,7 +33,7 @@ class Run:
     @property
     def reference(self) -> str | None:
         """The method that the others are compared with."""
-        return next((name for name in METHODS if name in self.results), None)
+        return next((name for name in (ALL_EFFECTS, *METHODS) if name in self.results), None)
 
     @property
     def judged(self) -> bool:
@@ -85,18 +89,27 @@ def run(
     Raises
     ------
     InputError
-        If a method is unknown, ``start`` is of another P or other materials, or the exact method is asked for loads
-        out of phase or bodies that are not similar.
+        If a method is unknown, ``start`` is of another P or other materials, the exact method is asked for loads
+        out of phase or bodies that are not similar, or an effect is forced off that the scene cannot do without.
     MissingLibraryError
         If finite elements are asked for and gmsh, or a system library that it needs, is not there.
     """
     if start:
         start.check(scene)
-    effects = plan(scene, subsurface=subsurface)
+    effects = plan(scene, subsurface=subsurface, start=start is not None)
     chosen = dict.fromkeys(default_methods(scene) if methods is None else methods)
-    results = {name: _method(name)(scene, effects, _told_by(name, progress), start) for name in chosen}
-    # half-planes are no truth for finite bodies, and a mesh of a given element size is as good as it is
-    judged = not scene.finite and scene.fem.size is None
+    tasks = {name: (name, reduced(scene), effects) for name in chosen}
+    if effects.missing:
+        whole = replace(scene, effects=Effects())
+        tasks[ALL_EFFECTS] = _best(whole), whole, plan(whole, subsurface=subsurface, start=start is not None)
+    results = {
+        name: _method(method)(what, its, _told_by(name, progress), start) for name, (method, what, its) in tasks.items()
+    }
+    for result in results.values():
+        effects.accept(result.regime)
+    # half-planes are no truth for finite bodies, a mesh of a given element size is as good as it is, and of effects
+    # that are forced off errors are what they are worth
+    judged = not scene.finite and scene.fem.size is None and not effects.missing
     return compared(scene, effects, results, scene.fem.accuracy if judged else None)
 
 
@@ -108,6 +121,11 @@ def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: flo
             reference = results[outcome.reference]
             outcome.comparisons[name] = compare(result, reference, scene.friction.f, accuracy)
     return outcome
+
+
+def _best(scene: Scene) -> str:
+    """The method that knows most of ``scene``: what is missing is measured by it."""
+    return "fem" if scene.finite else default_methods(scene)[0]
 
 
 def _told_by(name: str, progress: Progress) -> Progress:

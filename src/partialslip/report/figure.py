@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from partialslip.result import Array, Result
-from partialslip.run import Run
+from partialslip.run import ALL_EFFECTS, Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _MARKERS = 41
-_P_MARKS = {"march": "x", "fem": "+"}
-_Q_MARKS = {"march": "s", "fem": "o"}
+_P_MARKS = {"march": "x", "fem": "+", ALL_EFFECTS: "1"}
+_Q_MARKS = {"march": "s", "fem": "o", ALL_EFFECTS: "D"}
 _STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",  # text stays text
     "svg.hashsalt": "partialslip",  # the same run gives the same file

@@ -16,17 +16,18 @@ SCHEMA = "partialslip/result/1"
 _PACKAGES = ("partialslip", "numpy", "scipy", "scikit-fem", "gmsh", "meshio")
 
 
-def record(run: Run) -> dict[str, Any]:
-    """Everything a run found, as numbers, strings, lists and tables; SI units."""
+def record(run: Run, *, curves: bool = True) -> dict[str, Any]:
+    """Everything a run found, as numbers, strings, lists and tables; SI units; with ``curves``, or without."""
     return {
         "schema": SCHEMA,
         "scene": msgspec.to_builtins(run.scene),
         "plan": {
             "called_for": list(run.plan.called_for),
             "left_out": list(run.plan.left_out),
+            "missing": list(run.plan.missing),
             "reasons": {**run.plan.called_for, **run.plan.left_out},
         },
-        "methods": {name: _method(result) for name, result in run.results.items()},
+        "methods": {name: _method(result, curves) for name, result in run.results.items()},
         "comparison": {name: _comparison(comparison) for name, comparison in run.comparisons.items()},
         "versions": versions(),
     }
@@ -37,14 +38,24 @@ def versions() -> dict[str, str]:
     return {"python": platform.python_version(), **{package: version(package) for package in _PACKAGES}}
 
 
-def _method(result: Result) -> dict[str, Any]:
-    traction = result.traction
+def _method(result: Result, curves: bool) -> dict[str, Any]:
+    return _figures(result) | (_curves(result) if curves else {})
+
+
+def _figures(result: Result) -> dict[str, Any]:
     return {
         **{key: getattr(result, key) for key in ("a", "p0", "regime", "m", "n", "stick_half_width", "stick_centre")},
+        "p_max": float(result.traction.p.max()),
         **{key: result.counts[key] for key in ("dofs", "contact_nodes") if key in result.counts},
         **{key: dict(getattr(result, key)) for key in ("settings", "counts", "limits", "certificate", "estimate")},
         "notes": list(result.notes),
         "cost": asdict(result.cost),
+    }
+
+
+def _curves(result: Result) -> dict[str, Any]:
+    traction = result.traction
+    return {
         "slip": {"x": result.slip.x.tolist(), "slip": result.slip.slip.tolist(), "dissipated": result.slip.dissipated}
         if result.slip
         else None,

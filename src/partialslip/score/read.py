@@ -62,7 +62,7 @@ def _point_data(file: Path) -> dict[str, Array]:
     from partialslip_meshes.pointdata import FORMATS, read_point_data
 
     if file.suffix.lower() not in FORMATS:
-        raise InputError(f"{file}: must end in .csv, .frd, .dat, .vtu, .xdmf or another ending that meshio knows")
+        raise InputError(f"{file}: must end in .csv, .frd, .dat or {', '.join(sorted(FORMATS))}")
     try:
         with file.open("rb"):
             pass

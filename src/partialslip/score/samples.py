@@ -69,7 +69,7 @@ def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float,
         p, shears = p / np.diff(cells), shears / np.diff(cells)
     touching = np.count_nonzero(p > 0)
     if touching < FEWEST:
-        hint = ": all but none; pressure must be positive" if p.min(initial=0) < 0 else ""
+        hint = "; pressure must be positive" if p.min(initial=0) < 0 else ""
         raise InputError(f"{origin}: {normal} > 0 at {touching} points: must be at least {FEWEST}{hint}")
     if len(tangential) == 2:
         return Samples(x, p, shears[1] - shears[0], shears[0], shears[1], cells)

@@ -1,0 +1,83 @@
+"""One case of a study: a scene solved by some methods, as figures without curves, here or in a process of its own."""
+
+import hashlib
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from partialslip.errors import InputError, PartialslipError
+from partialslip.reading import parse_scene
+from partialslip.report import record, write_run
+from partialslip.run import run
+from partialslip.scene import Scene
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene, the methods to solve it by, and ``labels`` that say which point of the study it is."""
+
+    scene: Scene
+    methods: tuple[str, ...]
+    labels: Mapping[str, str | float] = field(default_factory=dict)
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """It as plain data, of which it can be made again."""
+        return {"scene": msgspec.to_builtins(self.scene), "methods": list(self.methods), "labels": dict(self.labels)}
+
+    @property
+    def key(self) -> str:
+        """The same for the same case only."""
+        return hashlib.sha256(json.dumps(self.data, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def solve(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Solve a case given as :attr:`Case.data`; its figures, or ``error``: what cannot be solved, in one line."""
+    try:
+        outcome = run(parse_scene(data["scene"]), data["methods"])
+    except PartialslipError as error:
+        return {**data, "error": str(error)}
+    return {**data, **record(outcome, curves=False)}
+
+
+def solve_apart(case: Case) -> dict[str, Any]:
+    """Solve ``case`` in a new process; also ``process``: the CPU seconds (in all, and of writing the report), wall
+    seconds and peak memory (MB) of that process, start and imports included. Raises PartialslipError if it dies."""
+    command = [sys.executable, "-m", "partialslip.study.case"]
+    began = time.perf_counter()
+    done = subprocess.run(command, input=json.dumps(case.data), capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        last = (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1]
+        raise PartialslipError(f"{case.scene.name} {dict(case.labels)}: the process died: {last}")
+    found: dict[str, Any] = json.loads(done.stdout)
+    found["process"]["wall_s"] = time.perf_counter() - began
+    return found
+
+
+def _main() -> None:
+    data = json.load(sys.stdin)
+    scene = parse_scene(data["scene"])
+    try:
+        outcome = run(scene, data["methods"])
+    except InputError as error:
+        print(json.dumps({**data, "error": str(error), "process": {"cpu_s": time.process_time()}}))
+        return
+    found = record(outcome, curves=False)
+    cpu = time.process_time()
+    with tempfile.TemporaryDirectory() as folder:
+        write_run(outcome, Path(folder))
+    costs = {"cpu_s": cpu, "report_cpu_s": time.process_time() - cpu}
+    costs["peak_rss_mb"] = max(result.cost.peak_rss_mb or 0.0 for result in outcome.results.values())
+    print(json.dumps({**data, **found, "process": costs}, allow_nan=False))
+
+
+if __name__ == "__main__":
+    _main()
