@@ -70,10 +70,10 @@ def main():
         for setting in runner.SETTINGS:
             least = setting.fine or setting.size
             label = f"{setting.name}, growth {setting.growth:g}"
-            if chosen.only not in label:
-                continue
             if before := done.get((name, label, least)):
                 ends = before["ends"]
+                continue
+            if chosen.only not in label:
                 continue
             with tempfile.TemporaryDirectory() as folder:
                 try:
