@@ -1,4 +1,4 @@
-"""Recipe: a block below its face, flat or round, graded towards points on its contact line; and its holder."""
+"""Recipes: a block below its face, flat or round, graded towards points on its contact line; and its holder."""
 
 from collections.abc import Callable, Mapping
 from types import ModuleType
@@ -7,7 +7,10 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip_meshes.gmsh import gmsh_session
-from partialslip_meshes.mesh import Mesh
+from partialslip_meshes.mesh import Mesh, QuadMesh
+
+# triangles with right angles, paired, and what is left over split so that no triangle is
+_ALL_QUADS = {"Algorithm": 8, "RecombineAll": 1, "RecombinationAlgorithm": 3}
 
 _CORNER = 0.02  # element size at a corner of the holder that stresses concentrate in, in the block's half-width
 
@@ -57,11 +60,23 @@ def block(
     with gmsh_session() as gmsh:
         lines = _outline(gmsh, (width, height), holder, contact, sizes, growth, along, facets)
         gmsh.model.mesh.generate(2)
-        mesh = _collect(gmsh, lines)
+        mesh = Mesh(*_collect(gmsh, lines, 3))
     if face:
         x, y = mesh.points.T
         mesh.points[:, 1] -= face(np.clip(x, -width, width)) * np.maximum(1 + y / height, 0.0)
     return mesh
+
+
+def quad_block(width: float, contact: tuple[float, float], sizes: Mapping[float, float], growth: float,
+               along: float | None = None) -> QuadMesh:  # fmt: skip
+    """Mesh the block [-width, width] x [-width, 0] with quadrilaterals only; parameters and what is raised as for
+    :func:`block`."""
+    with gmsh_session() as gmsh:
+        lines = _outline(gmsh, (width, width), None, contact, sizes, growth, along, None)
+        for option, value in _ALL_QUADS.items():
+            gmsh.option.setNumber(f"Mesh.{option}", value)
+        gmsh.model.mesh.generate(2)
+        return QuadMesh(*_collect(gmsh, lines, 4))
 
 
 def _outline(
@@ -127,8 +142,10 @@ def _outline(
     }
 
 
-def _collect(gmsh: ModuleType, lines: Mapping[str, list[int]]) -> Mesh:
-    """Arrays of the mesh in gmsh, with the nodes numbered from zero."""
+def _collect(
+    gmsh: ModuleType, lines: Mapping[str, list[int]], corners: int
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], dict[str, npt.NDArray[np.int64]]]:
+    """Points, elements of so many corners, and named lines of the mesh in gmsh, with the nodes numbered from zero."""
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     number[tags] = np.arange(len(tags))
@@ -138,8 +155,8 @@ def _collect(gmsh: ModuleType, lines: Mapping[str, list[int]]) -> Mesh:
         result: npt.NDArray[np.int64] = number[nodes[0].reshape(-1, corners)]
         return result
 
-    return Mesh(
-        points=np.ascontiguousarray(coordinates.reshape(-1, 3)[:, :2]),
-        triangles=cells(2, -1, 3),
-        lines={name: np.vstack([cells(1, curve, 2) for curve in curves]) for name, curves in lines.items()},
+    return (
+        np.ascontiguousarray(coordinates.reshape(-1, 3)[:, :2]),
+        cells(2, -1, corners),
+        {name: np.vstack([cells(1, curve, 2) for curve in curves]) for name, curves in lines.items()},
     )

@@ -23,3 +23,12 @@ class Mesh:
     points: npt.NDArray[np.float64]
     triangles: npt.NDArray[np.int64]
     lines: dict[str, npt.NDArray[np.int64]]
+
+
+@dataclass(frozen=True)
+class QuadMesh:
+    """Straight-sided quadrilaterals: ``quads`` (k, 4), counter-clockwise; otherwise as :class:`Mesh`."""
+
+    points: npt.NDArray[np.float64]
+    quads: npt.NDArray[np.int64]
+    lines: dict[str, npt.NDArray[np.int64]]

@@ -1,6 +1,6 @@
 """Writing bodies through meshio."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import meshio
@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.result import DeformedBody
+from partialslip_meshes.mesh import QuadMesh
 
 
 def write_msh(path: Path, body: DeformedBody) -> None:
@@ -23,6 +24,28 @@ def write_msh(path: Path, body: DeformedBody) -> None:
         field_data=groups,
     )
     meshio.write(path, mesh, file_format="gmsh22", binary=True)  # meshio writes broken ASCII under NumPy 2
+
+
+def write_quads(path: Path, bodies: Mapping[str, QuadMesh]) -> None:
+    """Write meshes of bodies into one file for gmsh, readable as text: by the body's name its quadrilaterals are a
+    physical group, and each of its lines is one as "body-line"."""
+    first = np.cumsum([0, *(len(mesh.points) for mesh in bodies.values())])
+    blocks: list[tuple[str, npt.NDArray[np.int64]]] = []
+    groups: dict[str, npt.NDArray[np.int64]] = {}
+    for start, (name, mesh) in zip(first.tolist(), bodies.items(), strict=False):
+        groups[name] = np.array([len(groups) + 1, 2])
+        blocks.append(("quad", mesh.quads + start))
+        for line, edges in mesh.lines.items():
+            groups[f"{name}-{line}"] = np.array([len(groups) + 1, 1])
+            blocks.append(("line", edges + start))
+    numbers = [np.full(len(block), number) for number, (_, block) in enumerate(blocks, start=1)]
+    mesh = meshio.Mesh(
+        _in_space(np.vstack([mesh.points for mesh in bodies.values()])),
+        blocks,
+        cell_data={"gmsh:physical": numbers, "gmsh:geometrical": numbers},
+        field_data=groups,
+    )
+    meshio.write(path, mesh, file_format="gmsh22", binary=False)
 
 
 def write_vtu(path: Path, bodies: Sequence[DeformedBody]) -> None:

@@ -1,0 +1,87 @@
+"""partialslip export: a scene as a model for another code."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from partialslip.cli.common import print_written
+from partialslip.errors import InputError
+from partialslip.reading import load_scene
+
+if TYPE_CHECKING:
+    from partialslip.cli.common import Commands
+
+_TO = ("calculix", "abaqus", "gmsh")
+
+
+def add(commands: "Commands") -> None:
+    """Add the command to the parser."""
+    exports = commands.add_parser(
+        "export",
+        help="write a scene as a model for another code",
+        epilog="example: partialslip export hertz-small-tension --to calculix --size 0.025 -o hertz.inp",
+    )
+    exports.add_argument("scene", metavar="SCENE", help="a shipped scene or a TOML file")
+    exports.add_argument("--to", required=True, choices=_TO,
+                         help="calculix, abaqus: a deck with contact and load steps, ready to run; gmsh: the meshes of "
+                         "both bodies")  # fmt: skip
+    exports.add_argument("--size", metavar="H", default="0.05",
+                         help="of the elements along the contact, in contact half-widths (default: 0.05)")  # fmt: skip
+    exports.add_argument("--growth", metavar="G", default="0.1",
+                         help="element size gained per unit of distance from the contact (default: 0.1)")  # fmt: skip
+    exports.add_argument("--width", metavar="W",
+                         help="of the blocks on either side of the contact, in contact half-widths (default: wide "
+                         "enough for --size)")  # fmt: skip
+    exports.add_argument("--stiffer", metavar="K", default="1",
+                         help="bodies K times stiffer, gap K times flatter: the same tractions, but no effects of "
+                         "sloping surfaces, which the half-plane does not know (default: 1)")  # fmt: skip
+    exports.add_argument("--ends", metavar="X,...",
+                         help="points on the contact, in contact half-widths, towards which elements get finer: "
+                         "--ends=-1,-0.8,0.2,1")  # fmt: skip
+    exports.add_argument("--fine", metavar="H", help="size of the elements there (default: a tenth of --size)")
+    exports.add_argument("--penalty", action="store_true",
+                         help="calculix: contact by penalties, instead of mortar elements")  # fmt: skip
+    exports.add_argument("-o", "--out", metavar="FILE", help="(default: results/NAME.inp or .msh)")
+    exports.set_defaults(command=_export)
+
+
+def _export(options: argparse.Namespace) -> int:
+    from rich.console import Console
+
+    from partialslip.export import FORMATS, export
+    from partialslip.report import write_files
+
+    if options.out == "":
+        raise InputError("--out '': must name a file")
+    size, growth, stiffer = (
+        _number(getattr(options, name), f"--{name}", least, most)
+        for name, least, most in (("size", 1e-4, 0.5), ("growth", 0.01, 1.0), ("stiffer", 1.0, 1e4))
+    )
+    width = None if options.width is None else _number(options.width, "--width", 4, 1e6)
+    ends = [_number(end, "--ends", -1.1, 1.1) for end in options.ends.split(",")] if options.ends else []
+    fine = None if options.fine is None else _number(options.fine, "--fine", 1e-6, size)
+    scene = load_scene(options.scene)
+    write = export(
+        scene,
+        options.to,
+        size=size,
+        width=width,
+        growth=growth,
+        stiffer=stiffer,
+        ends=ends,
+        fine=fine,
+        penalty=options.penalty,
+    )
+    path = Path(options.out) if options.out else Path("results") / f"{scene.name}{FORMATS[options.to]}"
+    print_written(write_files(path.parent, {path.name: write}), Console(highlight=False))
+    return 0
+
+
+def _number(text: str, option: str, least: float, most: float) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = float("nan")
+    if not least <= number <= most:
+        raise InputError(f"{option} {text!r}: must be a number from {least:g} to {most:g}")
+    return number

@@ -1,0 +1,67 @@
+"""Exporting a scene as a model for other codes."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+
+from partialslip.errors import InputError
+from partialslip.export.abaqus import abaqus_deck
+from partialslip.export.calculix import calculix_deck
+from partialslip.export.model import GROWTH, SIZE, modelled
+from partialslip.scene import Scene
+
+# Formats, and the endings of their files.
+FORMATS = {"calculix": ".inp", "abaqus": ".inp", "gmsh": ".msh"}
+
+
+def export(
+    scene: Scene,
+    to: str,
+    *,
+    size: float = SIZE,
+    width: float | None = None,
+    growth: float = GROWTH,
+    stiffer: float = 1.0,
+    ends: Sequence[float] = (),
+    fine: float | None = None,
+    penalty: bool = False,
+) -> Callable[[Path], None]:
+    """A function that writes ``scene`` for another code to the path that it is given: both bodies meshed, and, for
+    calculix and abaqus, contact and load steps, ready to run.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of half-planes of one material.
+    to : str
+        "calculix", "abaqus" or "gmsh", one of :data:`FORMATS`.
+    size, width, growth, stiffer, ends, fine
+        As for :func:`partialslip.export.model.modelled`.
+    penalty : bool
+        Whether contact in CalculiX is to be by penalties from surface to surface, instead of mortar elements.
+
+    Raises
+    ------
+    InputError
+        If ``to`` is no format, or the scene cannot be exported.
+    MissingLibraryError
+        If gmsh, or a system library that it needs, is not there.
+    """
+    if to not in FORMATS:
+        raise InputError(f"export to {to!r}: must be one of {', '.join(FORMATS)}")
+    if penalty and to != "calculix":
+        raise InputError(f"penalty: only for calculix, not for {to}")
+    made = modelled(scene, size, width, growth, stiffer, ends, fine)
+    if to == "gmsh":
+        from partialslip_meshes.write import write_quads
+
+        return partial(write_quads, bodies={part.name: part.mesh for part in made.parts})
+    lines = (
+        abaqus_deck(scene, made) if to == "abaqus" else calculix_deck(scene, made, "penalty" if penalty else "mortar")
+    )
+    deck = "\n".join(lines) + "\n"
+    return lambda path: _write(path, deck)
+
+
+def _write(path: Path, deck: str) -> None:
+    path.write_text(deck, "ascii")

@@ -1,0 +1,35 @@
+"""Abaqus/Standard: plane strain, one unit of depth, so that forces are those per unit depth."""
+
+from partialslip.export.deck import bodies, heading, load_step, tied
+from partialslip.export.model import Model
+from partialslip.scene import Scene
+
+_RESULTS = """\
+*CONTACT PRINT, SLAVE=LOWER_FACE, MASTER=UPPER_FACE, FREQUENCY=1000
+CSTRESS
+CDISP
+*OUTPUT, FIELD, FREQUENCY=1000
+*NODE OUTPUT
+U, RF
+*CONTACT OUTPUT
+CSTRESS, CDISP, CFORCE
+*END STEP"""
+
+
+def abaqus_deck(scene: Scene, model: Model) -> list[str]:
+    """Lines of the deck: CPE4, small sliding from surface to surface, hard contact enforced directly, and friction by
+    Lagrange multipliers. Contact stresses and nodal contact forces are printed to the .dat file and written to the
+    .odb at the end of each step."""
+    lines = ["*HEADING", scene.name, *heading(scene, model, "Abaqus deck, SI units")]
+    blocks, (lower, upper) = bodies(model, "CPE4", "\n1.,")
+    lines += [*blocks, "*SURFACE INTERACTION, NAME=INTERFACE", "1."]
+    lines += ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD, DIRECT"]
+    if model.f:
+        lines += ["*FRICTION, LAGRANGE", f"{model.f:.12e}"]
+    lines += ["*CONTACT PAIR, INTERACTION=INTERFACE, TYPE=SURFACE TO SURFACE, SMALL SLIDING"]
+    lines += ["LOWER_FACE, UPPER_FACE"]  # slave, master
+    held, frame = model.parts[0].outer + lower, model.parts[1].outer + upper
+    lines += ["** the upper body's outer boundary is a rigid frame, moved by its first node", *tied(frame)]
+    for number in range(len(model.steps)):
+        lines += [*load_step(model, number, int(frame[0]), held, 1.0), _RESULTS]
+    return lines

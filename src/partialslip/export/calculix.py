@@ -1,0 +1,79 @@
+"""CalculiX: one layer of bricks, held in plane strain."""
+
+from typing import Literal
+
+from partialslip.export.deck import bodies, heading, load_step, sheeted, tied
+from partialslip.export.model import Model
+from partialslip.scene import Scene
+
+Contact = Literal["mortar", "penalty"]
+
+# In E/a: pressure over overlap of penalties, and shear over slip where it sticks. Version 2.20 does not converge with
+# penalties much stiffer than these or, worse, does with q off by 16 %; mortar elements take any, and 1e3 moves ends by
+# 1e-4 a.
+_NORMAL = 1e3
+_STICK = {"mortar": 1e5, "penalty": 1e2}
+
+# Version 2.20 finds a wrong contact between mortar elements of less than about one unit of length, and says nothing:
+# a is off by 30 % at a = 1e-3 units, by 0.2 % at 1. The unit is the largest of these in which a is 100 or more.
+_UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
+
+_RESULTS = """\
+*NODE FILE, FREQUENCY=1000
+U
+*CONTACT FILE, FREQUENCY=1000
+CDIS, CSTR
+*NODE PRINT, NSET=LOWER_CONTACT, FREQUENCY=1000
+RF
+*NODE PRINT, NSET=UPPER_CONTACT, FREQUENCY=1000
+RF
+*END STEP"""
+
+
+def length_unit(model: Model) -> tuple[str, float]:
+    """The deck's unit of length, and that in m."""
+    return next(((name, unit) for name, unit in _UNITS.items() if model.a >= 100 * unit), ("nm", _UNITS["nm"]))
+
+
+def calculix_deck(scene: Scene, model: Model, contact: Contact = "mortar") -> list[str]:
+    """Lines of the deck, of a slice as thick as an element is wide along the contact.
+
+    Contact is that of mortar elements, or of penalties from surface to surface. Results are in the .frd file (contact
+    stresses CONTACT of the lower body's nodes, displacements) and the .dat file (forces RF of the nodes of both contact
+    lines), of each step's last increment.
+    """
+    name, unit = length_unit(model)
+    lines = heading(scene, model, "CalculiX deck")
+    model = model.in_unit(unit)
+    thickness = model.size
+    lines += [
+        f"** in N, {name} and N/{name}^2, a slice of thickness {thickness:.12e} {name}. The results are scored by",
+        f"** partialslip score {scene.name} JOB.frd --factors {unit:g},{unit**-2:g},{unit**-2:g}",
+    ]
+    blocks, starts = bodies(model, "C3D8", "", thickness)
+    held, frame = (
+        sheeted(part.outer, len(part.mesh.points), 2) + start for part, start in zip(model.parts, starts, strict=True)
+    )
+    lines += [*blocks, *_contact(model, contact)]
+    lines += ["** the upper body's outer boundary is a rigid frame, moved by its first node", *tied(frame)]
+    for number in range(len(model.steps)):
+        lines += load_step(model, number, int(frame[0]), held, thickness, "LOWER, 3, 3\nUPPER, 3, 3")
+        lines += [_RESULTS]
+    return lines
+
+
+def _contact(model: Model, contact: Contact) -> list[str]:
+    unit = model.parts[1].E / model.a
+    lines = ["*SURFACE INTERACTION, NAME=INTERFACE"]
+    if contact == "mortar":
+        kind, behavior = "MORTAR", ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD"]
+    else:
+        kind, behavior = (
+            "SURFACE TO SURFACE",
+            ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{_NORMAL * unit:.6e}"],
+        )
+    lines += behavior
+    if model.f:
+        lines += ["*FRICTION", f"{model.f:.12e}, {_STICK[contact] * unit:.6e}"]
+    lines += [f"*CONTACT PAIR, INTERACTION=INTERFACE, TYPE={kind}", "LOWER_FACE, UPPER_FACE"]  # slave, master
+    return lines

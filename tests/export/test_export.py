@@ -1,0 +1,347 @@
+"""Exported decks and meshes: what is in them is the scene. With CalculiX at hand (slow): what it makes of them, too."""
+
+import shutil
+import subprocess
+from itertools import pairwise
+
+import meshio
+import numpy as np
+import pytest
+
+from partialslip import load_scene
+from partialslip.cli import main
+from partialslip.errors import InputError
+from partialslip.export import FORMATS, export
+from partialslip.export import model as models
+from partialslip.export.calculix import length_unit
+from partialslip.export.model import modelled
+from partialslip.score import score
+
+SCENE, SIZE, GROWTH, STIFFER = "hertz-large-tension", 0.1, 0.4, 100.0
+UNIT = 1e-6  # of length in CalculiX's deck, a = 1 mm
+# corners of the sides of a brick, in the numbering of Abaqus and CalculiX
+BRICK = {"S3": (0, 4, 5, 1), "S4": (1, 5, 6, 2), "S5": (2, 6, 7, 3), "S6": (3, 7, 4, 0)}
+SQUARE = {"S1": (0, 1), "S2": (1, 2), "S3": (2, 3), "S4": (3, 0)}
+
+
+class Deck:
+    """Keyword blocks of an input deck, in order: the keyword with its parameters, and its lines of fields."""
+
+    def __init__(self, path):
+        self.blocks = []
+        for line in path.read_text("ascii").splitlines():
+            if line.startswith("**"):
+                continue
+            assert all(len(word) <= 20 for word in line.split(",") if not line.startswith("*"))
+            if line.startswith("*"):
+                self.blocks.append((line, []))
+            else:
+                self.blocks[-1][1].append([word.strip() for word in line.split(",")])
+
+    def rows(self, start):
+        return [row for keyword, rows in self.blocks if keyword.startswith(start) for row in rows]
+
+    def table(self, start, kind=float):
+        return np.array(self.rows(start), dtype=kind)
+
+    def members(self, name):
+        return np.concatenate([np.array(row, dtype=int) for row in self.rows(f"*NSET, NSET={name}")])
+
+    def steps(self):
+        """Of each step the last displacements and forces put on nodes, by (node, component)."""
+        steps = []
+        for keyword, rows in self.blocks:
+            if keyword.startswith("*STEP"):
+                steps.append(({}, {}))
+            elif keyword.startswith("*BOUNDARY"):
+                put = [row for row in rows if row[0].isdigit()]
+                steps[-1][0].update({(int(row[0]), int(row[1])): float((*row, "0")[3]) for row in put})
+            elif keyword.startswith("*CLOAD"):
+                steps[-1][1].update({(int(row[0]), int(row[1])): float(row[2]) for row in rows})
+        return steps
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return load_scene(SCENE)
+
+
+@pytest.fixture(scope="module")
+def made(scene):
+    return modelled(scene, SIZE, growth=GROWTH, stiffer=STIFFER)
+
+
+@pytest.fixture(scope="module")
+def files(scene, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("export")
+    paths = {to: folder / f"{to}{ending}" for to, ending in FORMATS.items()}
+    for to, path in paths.items():
+        export(scene, to, size=SIZE, growth=GROWTH, stiffer=STIFFER)(path)
+    return paths
+
+
+@pytest.fixture(scope="module", params=["calculix", "abaqus"])
+def deck(request, files):
+    """A deck, its unit of length in m, its thickness in that unit, and the sides of its elements."""
+    if request.param == "calculix":
+        return Deck(files["calculix"]), UNIT, SIZE * 1e-3 / UNIT, BRICK
+    return Deck(files["abaqus"]), 1.0, 1.0, SQUARE
+
+
+def places(deck):
+    nodes = deck.table("*NODE, NSET=")
+    result = np.full((int(nodes[:, 0].max()) + 1, nodes.shape[1] - 1), np.nan)
+    result[nodes[:, 0].astype(int)] = nodes[:, 1:]
+    return result
+
+
+def test_elements_are_sound(deck):
+    """Counter-clockwise, every node used, the bodies' area that of the blocks; bricks lie upon themselves."""
+    deck, unit, thickness, sides = deck
+    points, area = places(deck), 0.0
+    for body in ("LOWER", "UPPER"):
+        elements = deck.table(next(k for k, _ in deck.blocks if k.startswith("*ELEMENT") and k.endswith(body)), int)
+        bottom = points[elements[:, 1:5], :2]
+        if sides is BRICK:
+            top = points[elements[:, 5:]]
+            assert np.array_equal(top[..., :2], bottom)
+            assert np.allclose(top[..., 2] - points[elements[:, 1:5], 2], thickness)
+        x, y = np.moveaxis(bottom, -1, 0)
+        corners = [np.roll(x, -i - 1, 1) - np.roll(x, -i, 1) for i in (0, 1)]
+        rises = [np.roll(y, -i - 1, 1) - np.roll(y, -i, 1) for i in (0, 1)]
+        assert (corners[0] * rises[1] - rises[0] * corners[1] > 0).all()
+        area += ((x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1)).sum() / 2) * unit**2
+        numbers = deck.table(f"*NODE, NSET={body}")[:, 0].astype(int)
+        assert set(elements[:, 1:].ravel()) == set(numbers)
+    wide = 50 / np.sqrt(SIZE) * 1e-3
+    assert area == pytest.approx(2 * 2 * wide**2, rel=1e-6)
+
+
+def gap_error(x, y, scene):
+    """How much the surface differs from the flattened profile, but for a shift, relative to the gap."""
+    gap = scene.profile.gap_at(x) / STIFFER
+    return np.ptp(y - gap) / np.ptp(gap)
+
+
+def test_gap_is_the_profile(deck, scene):
+    """Between the surfaces, but for the approach of the bodies and the flattening; the lower one is flat."""
+    deck, unit, _, _ = deck
+    points = places(deck) * unit
+    lower, upper = (points[deck.members(f"{body}_CONTACT")] for body in ("LOWER", "UPPER"))
+    assert not lower[:, 1].any()
+    assert gap_error(*upper[:, :2].T, scene) < 1e-9
+    assert np.ptp(upper[:, 1]) == pytest.approx(1.2e-3**2 / (2 * 0.05) / STIFFER, rel=1e-9)
+    assert np.allclose(np.unique(lower[:, 0].round(12)), np.unique(upper[:, 0].round(12)), atol=1e-11)
+
+
+def test_fault_gap_not_flattened_with_the_bodies(scene, monkeypatch):
+    """Bodies stiffer but not the gap flatter, which would be another contact: the check sees it."""
+    true = models._upper
+    monkeypatch.setattr(models, "_upper", lambda mesh, scene, a, _: true(mesh, scene, a, 1.0))
+    upper = modelled(scene, SIZE, growth=GROWTH, stiffer=STIFFER).parts[1]
+    assert gap_error(*upper.mesh.points[upper.contact].T, scene) > 1
+
+
+def test_surfaces_are_the_contact_lines(deck):
+    deck, unit, _, sides = deck
+    points = places(deck)
+    elements = {row[0]: row[1:] for row in deck.table("*ELEMENT", int).tolist()}
+    for body in ("LOWER", "UPPER"):
+        faces = deck.rows(f"*SURFACE, NAME={body}_FACE")
+        nodes = np.array([[elements[int(element)][corner] for corner in sides[side]] for element, side in faces])
+        assert set(nodes.ravel()) == set(deck.members(f"{body}_CONTACT"))
+        assert np.ptp(points[nodes][..., 0], axis=1).sum() * unit == pytest.approx(2.4e-3, rel=1e-9)
+
+
+def test_loads_are_those_of_the_path(deck, scene):
+    """Pressed by P alone; then P stays, and Q and the bulk strain are those of the last load point, of 1 and of 2."""
+    deck, unit, thickness, _ = deck
+    points, steps = places(deck), deck.steps()
+    last, first, second = scene.load.points[-1], *scene.load.points
+    assert len(steps) == 4
+    frame, outer = int(deck.members("UPPER_OUTER")[0]), deck.members("LOWER_OUTER")
+    assert steps[0][0][frame, 1] == 0  # held along x, until there is contact
+    E, nu = scene.material.E * STIFFER, scene.material.nu
+    for number, ((moved, forces), (Q, sigma)) in enumerate(zip(steps, ((0, 0), last, first, second), strict=True)):
+        assert {node for node, _ in forces} == {frame}
+        assert forces[frame, 2] / (thickness * unit) == pytest.approx(-scene.P, rel=1e-9)
+        if number:
+            assert (frame, 1) not in moved
+            assert forces[frame, 1] / (thickness * unit) == pytest.approx(-Q, rel=1e-9)
+        u = np.array([[moved[node, component] for component in (1, 2)] for node in outer.tolist()])
+        strain = np.array([(u[:, i] @ points[outer, i]) / (points[outer, i] @ points[outer, i]) for i in (0, 1)])
+        assert np.allclose(u, points[outer, :2] * strain, rtol=1e-9, atol=1e-9 * np.abs(u).max())
+        stretched, across = E / ((1 + nu) * (1 - 2 * nu)) * np.array([[1 - nu, nu], [nu, 1 - nu]]) @ strain
+        assert stretched == pytest.approx(sigma, rel=1e-9)
+        assert abs(across) < 1e-9 * abs(sigma) + 1e-9
+
+
+def test_steps_of_cycles_and_of_plane_stress():
+    """Every cycle goes through all load points; plane stress is plane strain of a material of the same A and mu."""
+    scene = load_scene(SCENE, ["load.cycles=2", "load.steps=3", "material.plane='stress'"])
+    made = modelled(scene, 0.5, growth=1.0)
+    points = scene.load.points
+    assert [(step.Q, step.sigma) for step in made.steps] == [(0, 0), points[1], *points, *points]
+    assert made.substeps == 3
+    for part in made.parts:
+        assert 2 * (1 - part.nu**2) / part.E == pytest.approx(scene.material.A / 2, rel=1e-12)
+        assert part.E / (1 + part.nu) == pytest.approx(scene.material.E / (1 + scene.material.nu), rel=1e-12)
+
+
+def test_without_shear_it_is_pressed_only():
+    scene = load_scene("hertz-shear", ["load.Q=[0, 0]"])
+    assert [step.name for step in modelled(scene, 0.5, growth=1.0).steps] == ["press"]
+
+
+def test_frame_is_rigid(deck):
+    """Every other node of the upper body's outer boundary is tied to its first, along x and y."""
+    deck, *_ = deck
+    first, *others = deck.members("UPPER_OUTER").tolist()
+    tied = {
+        (row[0], row[1]) for keyword, (_, row) in deck_equations(deck) if row[2:] == ["1.", str(first), row[1], "-1."]
+    }
+    assert tied == {(str(node), component) for node in others for component in "12"}
+
+
+def deck_equations(deck):
+    return [block for block in deck.blocks if block[0] == "*EQUATION"]
+
+
+def test_units_change_nothing(made):
+    """Stress over stiffness, and lengths over a, are what they were."""
+    other = made.in_unit(UNIT)
+    assert length_unit(made) == ("um", UNIT)
+    for before, after in zip(made.parts, other.parts, strict=True):
+        assert np.allclose(after.mesh.points * UNIT, before.mesh.points, rtol=1e-14)
+    strains = [step.P / (each.a * each.parts[0].E) for each in (made, other) for step in each.steps]
+    assert strains == pytest.approx(strains[:1] * len(strains), rel=1e-12)
+    for step, same in zip(made.steps, other.steps, strict=True):
+        assert np.allclose(other.bulk(same) * UNIT, made.bulk(step), rtol=1e-12)
+        assert abs(same.Q * step.P - step.Q * same.P) <= 1e-12 * step.P * same.P
+
+
+def test_finer_towards_given_points(scene):
+    """Element sizes there, and no coarser than asked for anywhere else on the line."""
+    ends = (-1.0, -0.8, 0.3, 1.0)
+    lower, upper = modelled(scene, SIZE, growth=0.3, ends=ends, fine=0.005).parts
+    for part in (lower, upper):
+        x = np.unique(part.mesh.points[part.contact, 0]) / 1e-3
+        width = np.array([after - before for before, after in pairwise(x)])
+        for end in ends:
+            assert 0.0025 < width[np.searchsorted(x, end - 1e-9)] < 0.01
+        assert width.max() < 1.5 * SIZE
+
+
+def test_abaqus_deck_is_read_by_others(files, made, tmp_path):
+    """By meshio, which knows CPE4 under its plane-stress name only."""
+    path = tmp_path / "deck.inp"
+    path.write_text(files["abaqus"].read_text("ascii").replace("CPE4", "CPS4"), "ascii")
+    read = meshio.read(path)
+    for part, block in zip(made.parts, read.cells_dict["quad"].reshape(2, -1, 4), strict=True):
+        assert len(block) == len(part.mesh.quads)
+    assert {"LOWER_OUTER", "LOWER_CONTACT", "UPPER_OUTER", "UPPER_CONTACT"} <= set(read.point_sets)
+
+
+def test_gmsh_file(files, made):
+    """Both bodies, with their lines as physical groups."""
+    read = meshio.read(files["gmsh"])
+    for part in made.parts:
+        for name, kind, wanted in [(part.name, "quad", part.mesh.quads), *(
+            (f"{part.name}-{line}", "line", edges) for line, edges in part.mesh.lines.items()
+        )]:  # fmt: skip
+            number = read.field_data[name][0]
+            found = read.cells_dict[kind][read.cell_data_dict["gmsh:physical"][kind] == number]
+            ends, start = read.points[found][..., :2], part.mesh.points[wanted]
+            assert np.allclose(ends, start, rtol=1e-12, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("override", "said"),
+    [
+        ("bodies.upper={width=0.01, height=0.01}", "bodies"),
+        ("load.Q=[-400e3, 400e3]", "load.Q"),
+        ("material.upper={E=1e9, nu=0.3}", "material.upper"),
+    ],
+)
+def test_what_cannot_be_exported(override, said):
+    with pytest.raises(InputError, match=said):
+        export(load_scene(SCENE, [override]), "abaqus")
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--to", "abaqus", "--size", "0"], "--size '0'"),
+        (["--to", "abaqus", "--size", "x"], "--size 'x'"),
+        (["--to", "ansys"], "ansys"),
+        (["--to", "gmsh", "--penalty"], "penalty"),
+        (["--to", "gmsh", "--ends=0,2"], "--ends '2'"),
+        (["--to", "gmsh", "--out", ""], "--out"),
+        ([], "--to"),
+    ],
+)
+def test_bad_options(options, said, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["export", SCENE, *options]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    assert said in err
+    assert not list(tmp_path.iterdir())
+
+
+def test_command(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["export", SCENE, "--to", "calculix", "--size", "0.5", "--growth", "1"]) == 0
+    assert "hertz-large-tension.inp" in capsys.readouterr().out
+    assert (tmp_path / "results" / f"{SCENE}.inp").is_file()
+
+
+def computed(scene, folder, **how):
+    """What CalculiX makes of the exported deck, scored."""
+    export(scene, "calculix", **how)(folder / "job.inp")
+    subprocess.run(["ccx", "job"], cwd=folder, check=True, capture_output=True, timeout=600)
+    file, (_, unit) = folder / "job.frd", length_unit(modelled(scene, **how))
+    return score(scene, file, factors=(unit, unit**-2, unit**-2)).comparisons[file.name]
+
+
+needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed")
+HOW = {"size": 0.05, "growth": 0.2, "stiffer": STIFFER}
+
+
+@pytest.mark.slow
+@needs_ccx
+@pytest.mark.parametrize(
+    ("name", "ends"),
+    [
+        ("hertz-small-tension", ()),
+        ("hertz-large-tension", ()),
+        ("flat-rounded", (-1.0, -0.974, 0.425, 1.0)),  # pressure falls from 2 p0 to nothing within 0.07 a
+    ],
+)
+def test_calculix_runs_it(name, ends, tmp_path):
+    """Elements of 0.05 a: errors of less than half of them in a, m and n, and of a few per cent in tractions."""
+    found = computed(load_scene(name), tmp_path, **HOW, ends=ends)
+    assert max(found.a, found.m, found.n) < 0.02
+    assert found.p < 0.02
+    assert found.q < 0.05
+
+
+@pytest.mark.slow
+@needs_ccx
+def test_fault_tension_of_the_wrong_sign(tmp_path, monkeypatch):
+    """The deck's tension turned round: the scored result must say so."""
+    true = models._steps
+    monkeypatch.setattr(models, "_steps", lambda scene: tuple(s._replace(sigma=-s.sigma) for s in true(scene)))
+    found = computed(load_scene("hertz-small-tension"), tmp_path, **HOW)
+    assert min(found.m, found.n) > 0.1
+    assert found.q > 0.1
+
+
+@pytest.mark.slow
+@needs_ccx
+def test_slopes_are_what_stiffer_bodies_take_away(tmp_path):
+    """With the scene's own stiffness a/R = 0.02, which moves the ends by a fraction of that."""
+    scene = load_scene("hertz-small-tension")
+    flat, sloping = (computed(scene, tmp_path, **HOW | {"stiffer": K}) for K in (100.0, 1.0))
+    assert 5e-4 < abs(sloping.n - flat.n) < 0.02
