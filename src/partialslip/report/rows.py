@@ -99,6 +99,7 @@ def slip(result: Result) -> str:
 
 def engineering(number: float, unit: str, digits: int) -> str:
     """A number with the SI prefix that suits it, where there is one."""
+    number = float(f"{number:.12g}")  # 1 - 1e-16 is 1, not 1000 thousandths
     for exponent, prefix in ((9, "G"), (6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ"), (-9, "n")):
         if 1 <= abs(number) / 10.0**exponent < 1000:
             return f"{number / 10.0**exponent:.{digits}g} {prefix}{unit}"
