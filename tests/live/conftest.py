@@ -1,15 +1,25 @@
 """A real browser for tests of the live page: headless Chromium, told by its own protocol over a pipe."""
 
 import base64
+import contextlib
 import itertools
 import json
 import os
 import shutil
 import subprocess
+import sys
 
 import pytest
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+# the protocol's pipes are file descriptors 3 and 4
+_AT_3_AND_4 = """
+import fcntl, os, sys
+pipes = [fcntl.fcntl(int(pipe), fcntl.F_DUPFD, 10) for pipe in sys.argv[1:3]]
+for number, pipe in zip((3, 4), pipes):
+    os.dup2(pipe, number)
+os.execv(sys.argv[3], sys.argv[3:])
+"""
 
 
 class Browser:
@@ -19,9 +29,9 @@ class Browser:
         down, self._to = os.pipe()
         self._from, up = os.pipe()
         command = [
-            *("sh", "-c", f'exec "$0" "$@" 3<&{down} 4>&{up}', program, "--headless", "--no-sandbox", "--disable-gpu"),
+            *(sys.executable, "-c", _AT_3_AND_4, str(down), str(up), program, "--headless", "--no-sandbox"),
             *("--remote-debugging-pipe", f"--user-data-dir={profile}", "--no-first-run", "--disable-extensions"),
-            *("--disable-background-networking", "--disable-dev-shm-usage", "--force-color-profile=srgb"),
+            *("--disable-background-networking", "--disable-dev-shm-usage", "--disable-gpu"),
         ]
         with open(profile.parent / "browser.log", "w") as log:
             self._process = subprocess.Popen(command, pass_fds=(down, up), stdout=log, stderr=log)
@@ -29,6 +39,9 @@ class Browser:
         os.close(up)
         self._ids, self._unread, self._session = itertools.count(1), b"", None
         self.errors, self.asked = [], []
+
+    def attach(self):
+        """Open the tab."""
         target = self.send("Target.createTarget", url="about:blank")["targetId"]
         self._session = self.send("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Network", "Log"):
@@ -112,6 +125,6 @@ def browser(tmp_path_factory):
     program = next(filter(None, map(shutil.which, BROWSERS)), None)
     if not program:
         pytest.skip(f"no browser: none of {', '.join(BROWSERS)} is installed")
-    browser = Browser(program, tmp_path_factory.mktemp("browser") / "profile")
-    yield browser
-    browser.close()
+    with contextlib.closing(Browser(program, tmp_path_factory.mktemp("browser") / "profile")) as browser:
+        browser.attach()
+        yield browser

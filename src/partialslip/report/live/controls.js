@@ -61,7 +61,8 @@ const page = (() => {
   function numbers({ zone, f, m, n, q, Qf, bound }) {
     const none = ["none", ""], length = (at) => engineering(at * a, "m", 6), turns = hertz.transition(Qf);
     const table = { m: none, n: none, width: none, q: none, turns: none, mean: none };
-    table.slides = ["2 f P", engineering(2 * f * P, "N/m", 6)];
+    const mean = Math.min(Math.abs(scene.Q_mean) / (f * P), 1);
+    table.slides = [`${+(1 - mean).toFixed(5)} \u00b7 2 f P`, engineering((1 - mean) * 2 * f * P, "N/m", 6)];
     if (Qf < 1) table.turns = [`${turns.toFixed(5)} f p0`, engineering(turns * f * p0, "Pa", 6)];
     if (!zone) return table;
     const width = 2 * zone.c;
@@ -159,5 +160,5 @@ const page = (() => {
     layOut();
   }).observe(by("map").parentNode);
 
-  return { answer: () => answer(loads), change };
+  return { answer: () => answer(loads), loads: () => loads };
 })();
