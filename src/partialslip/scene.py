@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
+from partialslip import views
 from partialslip.errors import InputError
 
 Positive = Annotated[float, msgspec.Meta(gt=0)]
@@ -324,6 +325,9 @@ class Scene(Table, frozen=True, kw_only=True):
             derived = math.nan, math.nan
         if not all(SMALLEST <= value <= LARGEST for value in derived):
             raise InputError(f"load.{given[0]} = {getattr(self.load, given[0])!r}: out of range with this E and R")
+
+    def _repr_html_(self) -> str:
+        return views.html(self)
 
     @property
     def mirrored(self) -> bool:

@@ -63,11 +63,10 @@ def tractions_csv(run: Run) -> str:
     """Tractions of every method, one row a point; SI units, empty where a method does not determine a value."""
     table = io.StringIO()
     writer = csv.writer(table, lineterminator="\n")
-    writer.writerow(["method", "x", "x_over_a", "p", "q1", "q2", "dq"])
+    writer.writerow(["method", *next(iter(run.results.values())).columns])
     for name, result in run.results.items():
-        traction = result.traction
-        columns = [traction.x, traction.x / result.a, traction.p, traction.q1, traction.q2, traction.dq]
-        listed = [[""] * len(traction.x) if column is None else column.tolist() for column in columns]
+        columns = result.columns.values()
+        listed = [[""] * len(result.traction.x) if column is None else column.tolist() for column in columns]
         writer.writerows([name, *row] for row in zip(*listed, strict=True))
     return table.getvalue()
 
