@@ -145,6 +145,7 @@ const figures = (() => {
       event.preventDefault();
       drag(event);
     };
+    handle.addEventListener("touchstart", (event) => event.preventDefault(), { passive: false });  // do not scroll
     svg.onpointermove = (event) => { if (svg.hasPointerCapture(event.pointerId)) drag(event); };
     handle.onkeydown = (event) => {
       const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
