@@ -62,7 +62,7 @@ const page = (() => {
     const none = ["none", ""], length = (at) => engineering(at * a, "m", 6), turns = hertz.transition(Qf);
     const table = { m: none, n: none, width: none, q: none, turns: none, mean: none };
     const mean = Math.min(Math.abs(scene.Q_mean) / (f * P), 1);
-    table.slides = [`${+(1 - mean).toFixed(5)} \u00b7 2 f P`, engineering((1 - mean) * 2 * f * P, "N/m", 6)];
+    table.slides = [mean ? `${+(1 - mean).toFixed(5)} \u00b7 2 f P` : "2 f P", engineering((1 - mean) * 2 * f * P, "N/m", 6)];
     if (Qf < 1) table.turns = [`${turns.toFixed(5)} f p0`, engineering(turns * f * p0, "Pa", 6)];
     if (!zone) return table;
     const width = 2 * zone.c;
