@@ -113,7 +113,7 @@ def test_fields_read_back(both):
     with contextlib.redirect_stdout(io.StringIO()):
         mesh, bodies = (meshio.read(both.folder / name) for name in ("mesh.msh", "bodies.vtu"))
     assert {"triangle", "line"} <= mesh.cells_dict.keys()
-    assert mesh.field_data.keys() >= {"contact", "face", "back", "sides"}
+    assert mesh.field_data.keys() >= {"contact", "face", "back", "left", "right"}
     assert set(bodies.cell_data["body"][0].tolist()) == {0, 1}
     assert {values.shape for values in bodies.point_data.values()} == {bodies.points.shape}
     for displacements in bodies.point_data.values():

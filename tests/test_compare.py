@@ -69,6 +69,7 @@ def test_scaled_pressure_is_measured_as_such(exact):
     assert comparison.missed == ("p: error 0.01 > 0.001",)
 
 
+@pytest.mark.fault
 def test_perturbation_that_keeps_the_resultant_is_seen(exact):
     """Deliberate fault: shear moved from one side to the other, sum unchanged."""
     moved = with_cells(exact, q_added=lambda x: 2e6 * np.sin(2 * np.pi * x) * (np.abs(x) < 1))

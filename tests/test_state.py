@@ -1,4 +1,4 @@
-"""Saved states: to stop in the middle of a path and go on is not to stop."""
+"""Saved states: what they hold, and what is refused. To stop and go on is not to stop: see `tests/invariances`."""
 
 import numpy as np
 import pytest
@@ -15,47 +15,16 @@ def solved(method, cycles, start=None, extra=()):
     return run(scene, [method], start=start).results[method]
 
 
-@pytest.mark.parametrize(("method", "off"), [("fem", 1e-7), ("march", 1e-6)])
-def test_going_on_is_not_having_stopped(method, off, tmp_path):
-    """But for what the meshes differ by: each run makes its own."""
-    whole, first = solved(method, 5), solved(method, 2)
-    first.state.save(tmp_path / "state.npz")
-    rest = solved(method, 3, load_state(tmp_path / "state.npz"))
-    assert (rest.m, rest.n) == pytest.approx((whole.m, whole.n), abs=off * whole.a)
-    x = np.linspace(-0.9, 0.9, 19) * whole.a
-    q = [np.interp(x, result.traction.x, result.traction.q1) for result in (whole, rest)]
-    assert q[1] == pytest.approx(q[0], abs=1e-4 * whole.p0)
-    assert abs(first.m - whole.m) > 1e-6 * whole.a  # it does matter where one stops
-
-
-def test_coupled_bodies_go_on():
-    """Their pressure is remembered, too: bodies that are apart at first would be pressed together once more."""
-    extra = ("material.upper.E=720e9", "material.upper.nu=0.3", "load.Q=[2e4, 8e4]", "fem.accuracy=1e-2")
-    whole, first = solved("fem", 3, extra=extra), solved("fem", 1, extra=extra)
-    rest = solved("fem", 2, first.state, extra)
-    assert (rest.a, rest.m, rest.n) == pytest.approx((whole.a, whole.m, whole.n), abs=2e-3 * whole.a)
-    assert rest.counts["load_steps"] == 5
-
-
 def test_a_state_of_one_method_starts_another():
     start = solved("march", 2).state
     assert solved("fem", 3, start).m == pytest.approx(solved("fem", 5).m, rel=1e-4)
 
 
 def test_steady_cycles_are_not_repeated():
-    scene = load_scene("hertz-large-tension", ["load.cycles=200", "fem.accuracy=1e-2"])
+    scene = load_scene("hertz-large-tension", ["load.cycles=200", "effects.history=true", "fem.accuracy=1e-2"])
     for result in run(scene, ["march", "fem"]).results.values():
         assert result.counts["cycles"] == 1
         assert result.counts["load_steps"] == 3
-
-
-def test_without_the_start_it_is_another_history():
-    """Deliberate fault: the tractions forgotten, the loads kept."""
-    from dataclasses import replace
-
-    start = solved("march", 2).state
-    forgotten = replace(start, q=type(start.q)(0 * start.q.c, start.q.x))
-    assert abs(solved("march", 1, forgotten).m - solved("march", 3).m) > 1e-4 * solved("march", 3).a
 
 
 def test_another_load_or_material_is_refused():

@@ -10,7 +10,7 @@ from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
 from partialslip_fem.estimate import end_errors, neighbour, smooth_errors
-from partialslip_fem.level import Level, Problem, solve_level
+from partialslip_fem.level import Level, Part, Problem, solve_level
 
 _FIRST, _ROUGH = 0.1, 1.0  # element size of the first mesh, in its contact line's half-width; and growth
 _FINER = 16.0  # from mesh to mesh at most: element size at the ends
@@ -23,6 +23,8 @@ _BESIDE = 0.005  # element size at an end, in contact half-widths, beyond which 
 _MOST = 200_000  # unknowns
 _SHARES = {"p": 0.1, "q": 1 / 15}  # of the accuracy asked: tractions may be off by 10 and 15 times as much
 _FILLS = 0.95  # of a finite body's width: as much as the contact line may take
+_ROUNDING = 0.25  # of the accuracy: how far a round face may be from its elements, and the ends off for that
+_FEWEST = 4  # elements of a mesh as it is that must lie in the contact
 
 
 @dataclass(frozen=True)
@@ -52,6 +54,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     size, finer = _FIRST, _FINER
     least = _growth(_AIM * accuracy / 2, order)
     limit = _limit(problem)
+    rounding = _ROUNDING * accuracy if any(part.face for part in problem.parts) else 0.0
     while True:
         goal = _ENDS * _AIM * accuracy / _worst(end_errors(level, np.ones(4), np.full(4, np.inf)))
         goal = min(max(goal, _FINEST), _BESIDE / 2)
@@ -63,10 +66,15 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         sizes = dict.fromkeys(apart([*level.ends.tolist(), *problem.kinks], size * a), size * a)
         margin = (0.1 + 2 * finer * size) * a  # of safety, and what the mesh before may have been off by
         contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
-        level = solve_level(problem, width * a, contact, sizes, growth, clock)
+        level = solve_level(problem, width * a, contact, sizes, growth, clock, rounding=rounding)
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
+        if not level.enclosed and max(-level.left, level.right) >= limit:
+            raise _too_narrow(problem)
         local = size + growth * np.abs(level.ends[:, None] - [*sizes]).min(axis=1) / a
-        errors = at_ends = end_errors(level, local, _gaps(level, problem))
+        errors = at_ends = {
+            key: error + rounding * (key in ("a", "m", "n"))
+            for key, error in end_errors(level, local, _gaps(level, problem)).items()
+        }
         known, calmer = np.inf, 1.0
         found = f"mesh {meshes}: {level.dofs:,} unknowns"
         good = level.enclosed and local.max() <= _BESIDE
@@ -87,16 +95,21 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
             before, least = known, least * calmer
 
 
-def uniform(problem: Problem, size: float, width: float, clock: Clock) -> Adapted:
-    """Solve on one mesh of elements of ``size``, in contact half-widths, all along the contact line.
+def uniform(problem: Problem, size: float | None, width: float, clock: Clock) -> Adapted:
+    """Solve on one mesh of elements of ``size``, in contact half-widths, all along the contact line; without a size, on
+    meshes that are given, and on one whose elements are as large as theirs in the contact.
 
     It does not depend on friction and shear, so that they can change without another factorisation. Nothing is refined,
     and no error estimated.
     """
-    rough, meshes, factored = _first(problem, width, clock, keep=True)
+    level, meshes, factored = _first(problem, width, clock, keep=True)
+    iterations, sizes = level.iterations, _sizes_given(problem, level)
+    if all(part.mesh for part in problem.parts):
+        return Adapted(level, {}, meshes, factored, iterations, width)
+    size = size or min(sizes) / level.half_width
     growth = _growth(size / 10, problem.order)  # what is deeper is not to be worse
-    a = float(f"{rough.half_width:.2g}")  # loads and profiles that differ by little share a mesh
-    reach, limit, iterations = 1.25 * max(-rough.left, rough.right), _limit(problem), rough.iterations
+    a = float(f"{level.half_width:.2g}")  # loads and profiles that differ by little share a mesh
+    reach, limit = 1.25 * max(-level.left, level.right), _limit(problem)
     while True:
         reach = min(float(f"{reach:.2g}"), limit)
         level = solve_level(problem, width * a, (-reach, reach), {}, growth, clock, size * a, keep=True)
@@ -106,6 +119,22 @@ def uniform(problem: Problem, size: float, width: float, clock: Clock) -> Adapte
         if reach == limit:
             raise _too_narrow(problem)
         reach *= 1.5
+
+
+def _sizes_given(problem: Problem, level: Level) -> list[float]:
+    """Mean sizes of the elements in the contact of meshes that are given."""
+    sizes = []
+    for part, half in zip(problem.parts, level.halves, strict=True):
+        vertices = half.body.x[:: half.body.order]
+        inside = vertices[(vertices > level.left) & (vertices < level.right)]
+        if part.mesh and len(inside) <= _FEWEST:
+            raise InputError(
+                f"bodies.{part.name}.mesh: must have more than {_FEWEST} elements in the contact, not {len(inside) + 1}"
+                f"; is bodies.{part.name}.unit right?"
+            )
+        if part.mesh:
+            sizes.append(float(np.diff(inside).mean()))
+    return sizes
 
 
 def _first(problem: Problem, width: float, clock: Clock, keep: bool = False) -> tuple[Level, int, int]:
@@ -141,15 +170,23 @@ def _growth(error: float, order: int) -> float:
 
 def _limit(problem: Problem) -> float:
     """How far the contact line may reach: not to the corners of a finite body."""
-    limit = _FILLS * min((part.extent[0] for part in problem.parts if part.extent), default=np.inf)
+    limit = min(_reach(part) for part in problem.parts)
     if max(problem.kinks, default=0.0) >= limit:
         raise _too_narrow(problem)
     return limit
 
 
+def _reach(part: Part) -> float:
+    if part.mesh:
+        return float(np.abs(part.mesh.points[part.mesh.lines["contact"], 0]).max())
+    return _FILLS * part.extent[0] if part.extent else np.inf
+
+
 def _too_narrow(problem: Problem) -> InputError:
-    names = " and ".join(f"bodies.{part.name}.width" for part in problem.parts if part.extent)
-    return InputError(f"{names}: must be wider than the contact, which fills more than {_FILLS:.0%} of it")
+    names = (f"bodies.{part.name}.{'mesh' if part.mesh else 'width'}" for part in problem.parts if part.finite)
+    return InputError(
+        f"{' and '.join(names)}: must be wider than the contact, which fills more than {_FILLS:.0%} of it"
+    )
 
 
 def _worst(errors: dict[str, float]) -> float:

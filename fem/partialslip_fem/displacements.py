@@ -42,10 +42,9 @@ def solve_back(level: Level, problem: Problem) -> tuple[Moved, Moved]:
         if half is not level.halves[0]:
             back = transfer(line, half.body).T
             forces = np.concatenate([back @ forces[: len(line.x)], back @ forces[len(line.x) :]])
-        u = half.condensed.displace(forces).T.reshape(2, 2, -1)
+        u = half.condensed.displace(forces[-half.condensed.columns :]).T.reshape(2, 2, -1)
         if way > 0:
-            stretch = half.body.points * np.array([[1.0], [-(3 - part.kappa) / (1 + part.kappa)]])
-            u = u + np.multiply.outer(strains, stretch)
+            u = u + np.multiply.outer(strains, half.stretched)
         bodies.append(Moved(half, part, way, u, pressures))
     lower, upper = bodies
     return lower, upper

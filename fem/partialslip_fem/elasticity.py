@@ -23,23 +23,30 @@ class Body:
     ----------
     order : int
         Of the elements' polynomials.
+    kappa, compliance : float
+        Kolosov's constant, which says plane strain or stress, and (kappa+1)/(2 mu).
     stiffness : (2 N, 2 N) sparse matrix
         Degrees of freedom are the displacements of all nodes along x, then those along y.
     x : (n,) array
         Nodes on the contact line, ascending; between two corners lie ``order`` - 1 evenly spaced ones.
     mass : (n, n) sparse matrix
-        Integrals of products of their shape functions along the line. Its row sums are the closed Newton-Cotes
+        Integrals over x of products of their shape functions. Its row sums are the closed Newton-Cotes
         weights, all positive up to order 4, so that nodal forces have the signs of tractions.
-    contact, held, vertices : (2, n), (2, k), (2, v) int arrays
-        Degrees of freedom, along x and along y, of the contact line, what is held of the outer boundary, and the mesh's
-        points.
+    contact, vertices : (2, n), (2, v) int arrays
+        Degrees of freedom, along x and along y, of the contact line and the mesh's points.
+    held : (k,) int array
+        Degrees of freedom that are held, first those along x.
     points : (2, N) array
         All nodes.
     face : (s,) int array
         Nodes of the whole side that the contact line is on, from left to right.
+    pull : (2 N,) array or None
+        Nodal forces of a unit tension on the right side, where that is pulled.
     """
 
     order: int
+    kappa: float
+    compliance: float
     stiffness: sp.csr_matrix
     x: Array
     mass: sp.csr_matrix
@@ -48,11 +55,12 @@ class Body:
     vertices: Indices
     points: Array
     face: Indices
+    pull: Array | None = None
 
     @property
     def held_points(self) -> Array:
-        """Nodes of what is held, (2, k)."""
-        result: Array = self.points[:, self.held[0]]
+        """Nodes of what is held along x, (2, h)."""
+        result: Array = self.points[:, self.held[self.held < self.points.shape[1]]]
         return result
 
     @property
@@ -78,38 +86,61 @@ def _yy(u, v, _):  # type: ignore[no-untyped-def]
 
 
 @skfem.BilinearForm
-def _product(u, v, _):  # type: ignore[no-untyped-def]
-    return u * v
+def _product(u, v, w):  # type: ignore[no-untyped-def]
+    return u * v * np.abs(w.n[1])
+
+
+@skfem.LinearForm
+def _tension(v, w):  # type: ignore[no-untyped-def]
+    return v * w.n[0]
+
+
+Held = tuple[Sequence[str], Sequence[str]]
+ALL_AROUND = ("back", "left", "right")
 
 
 def body(
-    mesh: Mesh, kappa: float, order: int, compliance: float = 1.0, held: Sequence[str] = ("back", "sides")
+    mesh: Mesh,
+    kappa: float,
+    order: int,
+    compliance: float = 1.0,
+    held: Held = (ALL_AROUND, ALL_AROUND),
+    pulled: bool = False,
 ) -> Body:
     """Assemble a body whose Kolosov constant is ``kappa`` (it says plane strain or stress), and (kappa+1)/(2 mu)
-    ``compliance``; the ``held`` lines of the mesh are to be given displacements."""
+    ``compliance``; the lines of the mesh that are ``held`` along x, and along y, are to be given displacements. With
+    ``pulled`` the right side bears a load."""
     triangles, element = _triangles(mesh), _ELEMENTS[order]()
     # gradients are of order - 1, and straight triangles have constant Jacobians: this quadrature is exact
     basis = skfem.Basis(triangles, element, intorder=2 * (order - 1))
     both = np.array([[0], [basis.N]])
 
-    def on_lines(*names: str) -> Indices:
-        lines = np.concatenate([mesh.lines[name] for name in names])
+    def on(lines: Indices) -> Indices:
         nodes = basis.get_dofs(_facets(triangles, lines)).flatten()
         in_order: Indices = nodes[np.argsort(basis.doflocs[0, nodes], kind="stable")]
         return in_order
 
-    contact, face, outer = on_lines("contact"), on_lines("contact", "face"), on_lines(*held)
-    along = skfem.FacetBasis(triangles, element, facets=_facets(triangles, mesh.lines["contact"]))
+    line = mesh.lines["contact"]
+    contact, face = on(line), on(np.concatenate([line, mesh.lines.get("face", line)]))
+    along_x, along_y = (on(np.concatenate([mesh.lines[name] for name in names])) for names in held)
+    along = skfem.FacetBasis(triangles, element, facets=_facets(triangles, line))
+    pull = None
+    if pulled:
+        end = skfem.FacetBasis(triangles, element, facets=_facets(triangles, mesh.lines["right"]))
+        pull = np.concatenate([_tension.assemble(end), np.zeros(basis.N)])
     return Body(
         order=order,
+        kappa=kappa,
+        compliance=compliance,
         stiffness=_stiffness(basis, kappa, compliance),
         x=basis.doflocs[0, contact],
         mass=_product.assemble(along)[contact][:, contact],
         contact=contact + both,
-        held=outer + both,
+        held=np.concatenate([along_x, basis.N + along_y]),
         vertices=basis.nodal_dofs[0] + both,
         points=basis.doflocs,
         face=face,
+        pull=pull,
     )
 
 

@@ -22,7 +22,9 @@ _SYMMETRIC = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
 
 class Factor(Protocol):
-    """A factor of a symmetric positive definite matrix that kept n chosen unknowns last."""
+    """A factor of a symmetric positive definite matrix that kept n chosen unknowns last; ``made`` so many times."""
+
+    made: int
 
     def inverse_of_schur(self) -> Array:
         """(n, n): the inverse of the Schur complement onto the last unknowns."""
@@ -55,6 +57,7 @@ class _SuperLU:
         self._n, self._order = len(last), np.argsort(ordered.perm_c)
         unknowns = np.concatenate([inner[self._order], last])
         self._factor = spla.splu(K[unknowns][:, unknowns].tocsc(), permc_spec="NATURAL", **_SYMMETRIC)
+        self.made = 1
 
     def inverse_of_schur(self) -> Array:
         n, first = self._n, len(self._order)
@@ -73,7 +76,7 @@ class _SuperLU:
 class _Cholmod:
     def __init__(self, K: sp.csr_matrix, inner: Indices, last: Indices) -> None:
         self._cvxopt = _import_cvxopt()
-        self._n = len(last)
+        self._n, self.made = len(last), 0
         self._order = np.asarray(self._cvxopt.amd.order(self._lower(K[inner][:, inner]))).ravel()
         unknowns = np.concatenate([inner[self._order], last])
         # CHOLMOD goes through the elimination tree from its leaves to its root. An entry, zero, between the last of the
@@ -106,6 +109,7 @@ class _Cholmod:
         try:
             factored = cholmod.symbolic(self._matrix, p=as_it_is)
             cholmod.numeric(self._matrix, factored)
+            self.made += 1
         finally:
             del cholmod.options["nmethods"]
         return factored

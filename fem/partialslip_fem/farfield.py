@@ -15,6 +15,12 @@ class FarField:
     fields: Array
     moments: Array
 
+    @property
+    def along_y(self) -> "FarField":
+        """That of forces along y alone: ``fields`` (2 k, t) and ``moments`` (t, n)."""
+        count, nodes = (size // 2 for size in self.moments.shape)
+        return FarField(self.fields[:, count:], self.moments[count:, nodes:])
+
 
 def half_plane(points: Array, x: Array, width: float, kappa: float, compliance: float = 1.0) -> FarField:
     """The half-plane's displacements at ``points`` (2, k), under forces at ``x`` (n,), in powers of x/width.

@@ -20,7 +20,9 @@ def along_surfaces(
 
     With the strain e of the surface and the pressure p on it, of a body of compliance A = (kappa+1)/(2 mu),
 
-        sigma_xx = (4/A) e - (3-kappa)/(kappa+1) p.
+        sigma_xx = (4/A) e - (3-kappa)/(kappa+1) p,
+
+    and beyond the body nothing.
 
     Parameters
     ----------
@@ -40,7 +42,8 @@ def along_surfaces(
         x = np.asarray(points, float) / length
         sigma = [
             [
-                4 / body.part.compliance * u(x, 1) - (3 - body.part.kappa) / (body.part.kappa + 1) * inside(p, x)
+                4 / body.part.compliance * inside(u.derivative(), x)
+                - (3 - body.part.kappa) / (body.part.kappa + 1) * inside(p, x)
                 for u, p in zip(of_body, body.pressures, strict=True)
             ]
             for body, of_body in zip(bodies, moved, strict=True)

@@ -1,5 +1,6 @@
 """One mesh, from its size to the zones found on it. Scaled as in :mod:`partialslip_fem.contact`."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -11,34 +12,86 @@ from partialslip.condensed import coupled
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.friction import History, Path, march
 from partialslip.condensed.zones import Zone, left_end, right_end, stick_zone
+from partialslip.errors import InputError
 from partialslip.result import Array, Clock
+from partialslip.scene import Profile
 from partialslip_fem.condensation import Condensed
 from partialslip_fem.contact import Half, press, relative_compliances
-from partialslip_fem.elasticity import Body, Indices, body
+from partialslip_fem.elasticity import ALL_AROUND, Body, Held, Indices, body
 from partialslip_fem.factor import Backend
 from partialslip_fem.farfield import half_plane
 from partialslip_fem.mortar import nodal_forces
 from partialslip_fem.recovery import traction
 from partialslip_meshes import Mesh, block
 
+Support = Literal["clamped", "roller", "sides"]
+_HELD: dict[Support, Held] = {
+    "clamped": (("back",), ("back",)),
+    "roller": (("left", "right"), ("back",)),
+    "sides": (("left", "right"), ("left", "right")),
+}
+
+
+@dataclass(frozen=True)
+class Face:
+    """How far a pad's face lies back at x, in lengths of ``length`` (m)."""
+
+    profile: Profile
+    length: float
+
+    def __call__(self, x: Array) -> Array:
+        result: Array = self.profile.face_at(x * self.length) / self.length
+        return result
+
+    @property
+    def radius(self) -> float:
+        """Of its curvature."""
+        return self.profile.R / self.length
+
 
 @dataclass(frozen=True)
 class Part:
-    """One of the two bodies: its (kappa+1)/(2 mu) in the pair's A, its half-width and height (None: those of a block
-    that stands for a half-plane), and the size of its elements, relative to what is asked for."""
+    """One of the two bodies: its (kappa+1)/(2 mu) in the pair's A; and the size of its elements, relative to what is
+    asked for.
+
+    It is a block with half-widths and heights ``extent`` and ``holder``, and ``face`` if that is not flat; or a
+    ``mesh``; without either, a block that stands for a half-plane.
+    """
 
     name: str
     kappa: float
     compliance: float
-    extent: tuple[float, float] | None
-    fineness: float
+    fineness: float = 1.0
+    extent: tuple[float, float] | None = None
+    holder: tuple[float, float] | None = None
+    face: Face | None = None
+    mesh: Mesh | None = None
+    support: Support = "clamped"
+    pulled: bool = False
+
+    @property
+    def finite(self) -> bool:
+        """Whether it stands for itself."""
+        return self.extent is not None or self.mesh is not None
+
+    @property
+    def held(self) -> Held:
+        """Lines that are held along x, and along y."""
+        if not self.finite:
+            return ALL_AROUND, ALL_AROUND
+        along_x, along_y = (
+            [line for line in lines if line != "right" or not self.pulled] for lines in _HELD[self.support]
+        )
+        return along_x, along_y
 
 
 @dataclass(frozen=True)
 class Problem:
     """What is to be solved, scaled: a gap, smooth but for its ``kinks``, and P = 1. Without a ``path`` of loads there
-    is no friction to solve; it begins with the tractions p and q of ``start``, if given. ``parts`` are the lower and
-    the upper body; of mirror images the lower one alone."""
+    is no friction to solve, and ``strain`` is due to the tension at load point 2; the path begins with the tractions p
+    and q of ``start``, if given. ``parts`` are the lower and the upper body; of mirror images the lower one alone. Only
+    if they are ``coupled`` do pressure and shear act across. ``inside`` says whether what is inside them will be asked
+    for."""
 
     gap: Callable[[Array], Array]
     kinks: tuple[float, ...]
@@ -49,6 +102,9 @@ class Problem:
     far_field: Literal["half-plane", "box"]
     backend: Backend
     start: tuple[PPoly, PPoly] | None = None
+    coupled: bool = True
+    inside: bool = True
+    strain: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -56,7 +112,8 @@ class Level:
     """The solution on one mesh of each body: of the lower one, and, unless that is mirrored, of the upper one.
 
     ``nodes`` of the lower one's contact line are in contact at load point 1 or 2, at 2 it is over [left, right], and
-    the ends at 1 are ``others``, where they differ. ``factored`` counts the factorisations made for it.
+    the ends at 1 are ``others``, where they differ. ``factored`` counts the factorisations made for it; pressure and
+    shear are solved together where bodies are ``coupled``.
     """
 
     halves: tuple[Half, ...]
@@ -68,6 +125,7 @@ class Level:
     right: float
     stick: Zone | None
     others: tuple[float, float] | tuple[()] = ()
+    coupled: bool = False
 
     @property
     def body(self) -> Body:
@@ -97,6 +155,13 @@ class Level:
         return bool(self.pressing.x[0] == 0 == self.pressing.x[-1])
 
     @property
+    def pieces(self) -> int:
+        """Of the contact, an element or more apart."""
+        touching = np.lib.stride_tricks.sliding_window_view(self.pressing.x > 0, self.body.order + 1)
+        cells = touching[:: self.body.order].any(axis=1)
+        return int((np.diff(cells.astype(np.int8), prepend=0) == 1).sum())
+
+    @property
     def half_width(self) -> float:
         """Contact half-width."""
         return (self.right - self.left) / 2
@@ -121,8 +186,14 @@ class Level:
         return result
 
 
+_ROUNDING = 1e-9  # of a contact line's length
 _KEPT = 2  # sets of bodies: those of a rough mesh, and of the uniform one made from it
 _kept: dict[tuple[object, ...], tuple[Half, ...]] = {}
+
+
+def forget() -> None:
+    """Drop the bodies that are kept."""
+    _kept.clear()
 
 
 def solve_level(
@@ -134,23 +205,23 @@ def solve_level(
     clock: Clock,
     along: float | None = None,
     keep: bool = False,
+    rounding: float | None = None,
 ) -> Level:
-    """Mesh the bodies, blocks of half-width ``width`` unless they have an extent of their own, and solve on them.
+    """Mesh the bodies, blocks of half-width ``width`` unless they have an extent or a mesh of their own, and solve on
+    them.
 
-    ``contact``, ``sizes``, ``growth`` and ``along`` are as for :func:`partialslip_meshes.block`. With ``keep`` the
+    ``contact``, ``sizes``, ``growth`` and ``along`` are as for :func:`partialslip_meshes.block`. ``rounding`` is how
+    far a round face may be from its elements' straight sides, in half-widths of the contact line. With ``keep`` the
     condensed bodies are kept for other loads, friction and profiles on the same mesh.
     """
-    kind = (problem.parts, problem.order, problem.far_field, problem.backend)
-    key = (*kind, width, contact, tuple(sizes.items()), growth, along)
+    kind = (problem.parts, problem.order, problem.far_field, problem.backend, problem.path is None, problem.inside)
+    key = (*kind, width, contact, tuple(sizes.items()), growth, along, rounding)
     if keep and key in _kept:
         return _level(problem, _kept[key], 0, clock)
     meshes = []
     for part in problem.parts:
-        half_width, height = part.extent or (width, width)
         with clock.phase("mesh"):
-            finer = {x: size * part.fineness for x, size in sizes.items()}
-            everywhere = None if along is None else along * part.fineness
-            meshes.append(block(half_width, contact, finer, growth * part.fineness, height, everywhere))
+            meshes.append(part.mesh or _block(part, width, contact, sizes, growth, along, rounding))
     level = solve_on(meshes, problem, width, clock)
     if keep:
         _kept[key] = level.halves
@@ -159,58 +230,95 @@ def solve_level(
     return level
 
 
+def _opposite(mesh: Mesh, other: Mesh) -> Mesh:
+    """The mesh, with what lies opposite the other's contact line for its own."""
+    line, ends = mesh.lines["contact"], other.points[other.lines["contact"], 0]
+    x, room = mesh.points[line, 0], _ROUNDING * np.ptp(ends)
+    line = line[((x >= ends.min() - room) & (x <= ends.max() + room)).all(axis=1)]
+    if not len(line):
+        raise InputError(
+            "bodies.lower, bodies.upper: the contact lines must lie opposite each other; is their unit right?"
+        )
+    return replace(mesh, lines=mesh.lines | {"contact": line})
+
+
+def _block(
+    part: Part,
+    width: float,
+    contact: tuple[float, float],
+    sizes: Mapping[float, float],
+    growth: float,
+    along: float | None,
+    rounding: float | None,
+) -> Mesh:
+    half_width, height = part.extent or (width, width)
+    finer = {x: size * part.fineness for x, size in sizes.items()}
+    everywhere = None if along is None else along * part.fineness
+    facets = None
+    if part.face and rounding:  # a chord of length c is c^2/(8 R) from its arc; what that does falls with the distance
+        facets = math.sqrt(8 * rounding * part.face.radius / (contact[1] - contact[0]) * 2)
+    shape = (part.holder, part.face, facets)
+    return block(half_width, contact, finer, growth * part.fineness, height, everywhere, *shape)
+
+
 def solve_on(meshes: Sequence[Mesh], problem: Problem, width: float, clock: Clock) -> Level:
     """Solve on meshes of the bodies, in the order of the problem's parts; ``width`` as for :func:`solve_level`."""
+    if len(meshes) > 1 and any(part.mesh for part in problem.parts):
+        meshes = [_opposite(*meshes), *meshes[1:]]
     halves = tuple(_half(*pair, problem, width, clock) for pair in zip(meshes, problem.parts, strict=True))
     return _level(problem, halves, len(halves), clock)
 
 
 def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clock) -> Level:
     with clock.phase("condensation"):
-        relative = relative_compliances(halves)
+        relative = relative_compliances(halves, problem.coupled)
     with clock.phase("contact"):
         line = halves[0].body
-        pressing, history, nodes = _solve(problem, relative, line)
+        pressing, history, nodes = _solve(problem, relative, halves[0])
         left, right = _ends(line, pressing.x)
         others: tuple[float, float] | tuple[()] = ()
-        if history and len(halves) > 1:
+        if history and relative.xy is not None:
             at_first = np.zeros(len(line.x))
             at_first[nodes] = history.bounds[0]
             others = _ends(line, at_first)
         stick = _stick_zone(line, nodes, history) if history else None
-        return Level(halves, factored, nodes, pressing, history, left, right, stick, others)
+        if stick:  # of both contacts, whatever a coarse mesh makes of its ends
+            at_left, at_right = others or (left, right)
+            stick = replace(stick, left=max(stick.left, left, at_left), right=min(stick.right, right, at_right))
+        return Level(halves, factored, nodes, pressing, history, left, right, stick, others, relative.xy is not None)
 
 
 def _half(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) -> Half:
     with clock.phase("assembly"):
-        held = ("back",) if part.extent else ("back", "sides")
-        half = body(mesh, part.kappa, problem.order, part.compliance, held)
+        half = body(mesh, part.kappa, problem.order, part.compliance, part.held, part.pulled)
     far = None
-    if problem.far_field == "half-plane" and not part.extent:
+    if problem.far_field == "half-plane" and not part.finite:
         with clock.phase("far field"):
             far = half_plane(half.held_points, half.x, width, part.kappa, part.compliance)
     with clock.phase("factorisation"):
-        return Half(mesh, half, Condensed(half, far, problem.backend))
+        return Half(mesh, half, Condensed(half, far, problem.backend, problem.path is not None, problem.inside))
 
 
-def _solve(problem: Problem, C: coupled.Relative, line: Body) -> tuple[Solution, History | None, Indices]:
+def _solve(problem: Problem, C: coupled.Relative, lower: Half) -> tuple[Solution, History | None, Indices]:
     """Normal forces, the history of the tangential ones on the nodes in contact, and those nodes."""
+    line, stretch = lower.body, lower.stretch
     gap, path, pressed = problem.gap(line.x), problem.path, None
     if path and problem.start:
         pressed, before = (nodal_forces(line, traction) for traction in problem.start)
         path = replace(path, before=before)
     if path and C.xy is not None:
-        history, pressing = coupled.march(C, gap, line.x, problem.f, path, pressed)
+        history, pressing = coupled.march(C, gap, stretch, problem.f, path, pressed)
         nodes = np.flatnonzero(history.bound > 0)
         return pressing, history.of(nodes), nodes
-    pressing = press(C.yy, gap, 1.0)
+    pressing = press(C.yy, gap if path else gap - problem.strain * stretch[1], 1.0)
     nodes = np.flatnonzero(pressing.x > 0)
     if not path:
         return pressing, None, nodes
     if path.before is not None:
         path = replace(path, before=path.before[nodes])
+    assert C.xx is not None
     inner = C.xx[np.ix_(nodes, nodes)]
-    return pressing, march(inner, line.x[nodes], problem.f * pressing.x[nodes], path), nodes
+    return pressing, march(inner, stretch[0][nodes], problem.f * pressing.x[nodes], path), nodes
 
 
 def _stick_zone(line: Body, nodes: Indices, history: History) -> Zone:

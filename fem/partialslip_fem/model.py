@@ -1,25 +1,30 @@
 """The finite-element method: scene and plan in, result out."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.condensed.friction import certificate, doubts, judge, load_path
+from partialslip.bodies import Body
+from partialslip.condensed.friction import History, certificate, doubts, judge, load_path, lower_strain
 from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Result, Slip, Traction
-from partialslip.scene import Scene
+from partialslip.scene import WIDTHS, Scene
 from partialslip.state import State
 from partialslip_fem.adapt import Adapted, adapt, uniform
 from partialslip_fem.displacements import solve_back
 from partialslip_fem.factor import default_backend
 from partialslip_fem.fields import along_surfaces, deformed
-from partialslip_fem.level import Level, Part, Problem
+from partialslip_fem.level import Face, Level, Part, Problem
 from partialslip_fem.recovery import inside
+from partialslip_meshes import read
 
-_WIDTH = {"half-plane": 16.0, "box": 4096.0}  # in contact half-widths
+_SIZES = 1e-2, 1e5  # of finite bodies, in sqrt(A R P)
+_FLATTEST = 1e9  # profile, likewise
+_SLENDER = 1e3  # of height to width
 _LARGEST_NU = 0.4999999
 
 
@@ -41,8 +46,8 @@ def solve(
     Raises
     ------
     InputError
-        If a material is all but incompressible (beyond that the stiffness is of rounding only), or the contact does
-        not fit on a finite body.
+        If a material is all but incompressible (beyond that the stiffness is of rounding only), the contact does
+        not fit on a finite body, or a size of that is out of all proportion.
     MissingLibraryError
         If gmsh, a system library that it needs, or the factorisation that is asked for, is not there.
     """
@@ -52,34 +57,68 @@ def solve(
             raise InputError(
                 f"material{name}.nu = {elastic.nu}: must be <= {_LARGEST_NU} in plane strain by finite elements"
             )
+    _check_sizes(scene)
     clock = Clock()
-    width = scene.fem.width or _WIDTH[scene.fem.far_field]
-    problem = _scaled(scene, plan, start)
-    if scene.fem.size is None:
+    width = scene.fem.width or WIDTHS[scene.fem.far_field]
+    with clock.phase("mesh"):
+        problem = _scaled(scene, plan, start)
+    if scene.fem.size is None and not scene.meshed:
         adapted = adapt(problem, scene.fem.accuracy, width, clock, progress)
     else:
         adapted = uniform(problem, scene.fem.size, width, clock)
     return _result(scene, plan, problem, adapted, clock)
 
 
+def _check_sizes(scene: Scene) -> None:
+    """That rounding swallows neither the contact in the mesher, nor a slender body's stiffness."""
+    if max(scene.profile.kinks, default=0.0) > _FLATTEST * scene.length:
+        raise InputError(f"load.P = {scene.P:g}: must press the contact beyond its flat")
+    for name, own in (("lower", scene.bodies.lower), ("upper", scene.bodies.upper)):
+        for key, size in (("width", own.width), ("height", own.height)) if own else ():
+            if size is not None and not _SIZES[0] <= size / scene.length <= _SIZES[1]:
+                low, high = (share * scene.length for share in _SIZES)
+                raise InputError(f"bodies.{name}.{key} = {size}: must be from {low:.2g} to {high:.2g} in this contact")
+        if own and own.height and own.width and own.height > _SLENDER * own.width:
+            raise InputError(f"bodies.{name}.height = {own.height}: must be <= {_SLENDER:g} times bodies.{name}.width")
+
+
 def _scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
     """The scene in lengths of sqrt(A R P), forces of P, displacements of A P."""
     P, A, L = scene.P, scene.material.A, scene.length
-    bodies = (("lower", scene.bodies.lower, scene.fem.lower_size), ("upper", scene.bodies.upper, 1.0))
-    parts = tuple(
-        Part(name, constants.kappa, constants.A / A, (own.width / 2 / L, own.height / L) if own else None, fineness)
-        for (name, own, fineness), constants in zip(bodies, scene.material.bodies, strict=True)
-    )
+    sides = (("lower", scene.bodies.lower, scene.fem.lower_size), ("upper", scene.bodies.upper, 1.0))
+    kinds = zip(sides, scene.material.bodies, strict=True)
+    parts = tuple(_part(Part(name, own.kappa, own.A / A, size), body, scene) for (name, body, size), own in kinds)
     return Problem(
-        gap=lambda x: scene.profile.gap_at(x * L) / (A * P),
+        gap=lambda x: scene.gap_at(x * L) / (A * P),
         kinks=tuple(kink / L for kink in scene.profile.kinks),
         f=scene.friction.f,
         path=load_path(scene, plan, start),
-        parts=parts[:1] if mirrored(scene) else parts,
+        parts=parts[:1] if scene.fem.lower_size == 1 and not plan.needs("coupling") and scene.mirrored else parts,
         order=scene.fem.order,
         far_field=scene.fem.far_field,
         backend=scene.fem.factor or default_backend(),
         start=tuple(_rescaled(q, L / P, 1 / L) for q in (start.p, start.q)) if start else None,
+        coupled=plan.needs("coupling"),
+        inside=plan.needs("subsurface"),
+        strain=lower_strain(scene, scene.load.points[scene.load.ends[1]][1]),
+    )
+
+
+def _part(plain: Part, body: Body | None, scene: Scene) -> Part:
+    """The part, which would stand for a half-plane, as the body that it is."""
+    if not body:
+        return plain
+    L, holder = scene.length, body.holder
+    face = Face(scene.profile, L) if body.kind == "pad" else None
+    part = replace(plain, face=face, support=body.support, pulled=body.pulled)
+    if body.mesh is not None:
+        needed = {line for lines in part.held for line in lines} | ({"right"} if body.pulled else set())
+        field = f"bodies.{part.name}.mesh"
+        return replace(part, mesh=read(field, body.mesh, (body.unit or 1.0) / L, face, sorted(needed)))
+    return replace(
+        part,
+        extent=((body.width or 0.0) / 2 / L, (body.height or 0.0) / L),
+        holder=(holder.width / 2 / L, holder.height / L) if holder else None,
     )
 
 
@@ -101,11 +140,6 @@ def _state(scene: Scene, level: Level) -> State | None:
     )
 
 
-def mirrored(scene: Scene) -> bool:
-    """Whether one body, and its mesh, is the mirror image of the other."""
-    return scene.mirrored and scene.fem.lower_size == 1
-
-
 def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock: Clock) -> Result:
     level, L, stress = adapted.level, scene.length, scene.P / scene.length
     pressure = level.pressure()
@@ -121,7 +155,9 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         at1, at2 = level.shear(history.q1), level.shear(history.q2)
         q1, q2, dq = stress * at1(x), stress * at2(x), PPoly(at2.c - at1.c, at2.x)
 
+    made = _factorizations(level)
     moved = solve_back(level, problem) if plan.needs("subsurface") else ()
+    extra = {"back_solves": len(moved), "factorizations": adapted.factorizations + _factorizations(level) - made}
 
     def at(points: Array) -> tuple[Array, Array]:
         scaled = points / L
@@ -147,35 +183,84 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         cost=clock.cost(),
         slip=Slip(x * L, history.slip * unit, history.dissipated * unit * scene.P) if history else None,
         settings={
-            "bodies": "two, coupled" if len(level.halves) > 1 else "mirror images, one factored",
+            "bodies": _bodies(level, problem),
             "elements": f"P{problem.order}",
             "factorisation": problem.backend,
             **_extents(problem, adapted.width),
-            **({"accuracy": scene.fem.accuracy} if scene.fem.size is None else {"element_size_over_a": scene.fem.size}),
+            **_fineness(scene, problem),
         },
-        counts={
-            "dofs": level.dofs,
-            "contact_nodes": len(level.nodes),
-            "meshes": adapted.meshes,
-            "factorizations": adapted.factorizations,
-            "cycles": history.cycles if history else 0,
-            "load_steps": history.load_steps if history else 0,
-            "iterations": adapted.iterations,
-        },
+        counts=_counts(level, adapted, extra),
         certificate=certified,
         estimate=adapted.errors,
-        notes=found.notes + doubts(certified, adapted.errors, scene.fem.accuracy),
+        notes=found.notes + _apart(level) + doubts(certified, adapted.errors, scene.fem.accuracy),
         bodies=tuple(deformed(body, L, unit, stress) for body in moved),
         state=_state(scene, level),
         surface=along_surfaces(moved, level.contact_ends, L, stress) if moved else None,
     )
 
 
+def _bodies(level: Level, problem: Problem) -> str:
+    if len(level.halves) == 1:
+        return "mirror images, one factored"
+    return "two, coupled" if problem.coupled else "two, not coupled"
+
+
+def _factorizations(level: Level) -> int:
+    return sum(half.condensed.factorizations for half in level.halves)
+
+
+def _counts(level: Level, adapted: Adapted, extra: dict[str, int]) -> dict[str, int]:
+    """Work: meshes, factorisations and iterations (faces solved) of all meshes, all else on the last one. Multipliers
+    are ``normal`` and ``tangential`` ``unknowns``, ``columns`` those of the compliances that hold them; iterations of
+    either are changes of what touches, and of what sticks, after the first linear solve."""
+    history, pressing = level.history, level.pressing
+    both = history and level.coupled
+    return {
+        "dofs": level.dofs,
+        "contact_nodes": len(level.nodes),
+        "bodies": len(level.halves),
+        "normal_unknowns": len(level.body.x),
+        "tangential_unknowns": (len(level.body.x) if both else len(level.nodes)) if history else 0,
+        "columns": sum(half.condensed.columns for half in level.halves),
+        "far_field_columns": sum(half.condensed.far_columns for half in level.halves),
+        "meshes": adapted.meshes,
+        "cycles": history.cycles if history else 0,
+        "load_steps": history.load_steps if history else 0,
+        "normal_solves": history.load_steps + _pressing_steps(history) if history and both else 1,
+        "normal_iterations": 0 if both else pressing.changes,
+        "friction_iterations": (pressing.changes if both else history.changes) if history else 0,
+        "opposing_nodes": history.opposing if history else 0,
+        "iterations": adapted.iterations,
+        **extra,
+    }
+
+
+def _pressing_steps(history: History) -> int:
+    """Steps that press coupled bodies together, before the loads of the path."""
+    return history.path.substeps if history.path.before is None else 0
+
+
 def _extents(problem: Problem, width: float) -> dict[str, str | float]:
     """What stands for half-planes, and how wide it is."""
-    if all(part.extent for part in problem.parts):
+    if all(part.finite for part in problem.parts):
         return {"far_field": "none, finite bodies"}
     return {"far_field": problem.far_field, "block_half_width_over_a": width}
+
+
+def _apart(level: Level) -> tuple[str, ...]:
+    """A note on a contact that is not in one piece."""
+    if level.pieces == 1:
+        return ()
+    return (f"the contact is in {level.pieces} pieces: a, m and n are of the outermost ends",)
+
+
+def _fineness(scene: Scene, problem: Problem) -> dict[str, str | float]:
+    """What the size of the elements follows."""
+    if all(part.mesh for part in problem.parts):
+        return {"meshes": "as given"}
+    if scene.fem.size is not None:
+        return {"element_size_over_a": scene.fem.size}
+    return {"meshes": "of the size of the given one"} if scene.meshed else {"accuracy": scene.fem.accuracy}
 
 
 def _certificate(problem: Problem, level: Level, p0: float) -> dict[str, float]:

@@ -14,7 +14,8 @@ def transfer(onto: Body, other: Body) -> Array:
     """The L2 projection T of the other body's displacements of the contact line onto a body's, (n, n_other).
 
     T^T takes nodal forces back: the other body gets those of the same traction. Constants and straight lines are
-    kept by T, so that forces and moments are kept by T^T. On nodes that match T is the identity.
+    kept by T, so that forces and moments are kept by T^T. On nodes that match T is the identity. The
+    other line may be longer.
     """
     projected: Array = spla.spsolve(onto.mass.tocsc(), _products(onto, other).toarray())
     return projected
@@ -31,7 +32,8 @@ def nodal_forces(body: Body, traction: PPoly) -> Array:
 
 def _products(onto: Body, other: Body) -> sp.csr_matrix:
     """Integrals of products of shape functions of both bodies, on the pieces between the vertices of either."""
-    ends = np.unique(np.concatenate([onto.x[:: onto.order], other.x[:: other.order]]))
+    ends = np.union1d(onto.x[:: onto.order], other.x[:: other.order])
+    ends = ends[(ends >= max(onto.x[0], other.x[0])) & (ends <= min(onto.x[-1], other.x[-1]))]
     x, weights = _rule(ends, (onto.order + other.order) // 2 + 1)
     rows, left = _shape_functions(onto, x)
     columns, right = _shape_functions(other, x)

@@ -1,4 +1,5 @@
-"""Meshes: gmsh recipes, and writing through meshio. The only package that imports either."""
+"""Meshes: gmsh recipes, and reading and writing through meshio. The only package that imports either."""
 
 from partialslip_meshes.blocks import block as block
 from partialslip_meshes.mesh import Mesh as Mesh
+from partialslip_meshes.read import read as read

@@ -1,6 +1,6 @@
-"""Recipe: a block below the line y = 0, graded towards points on its contact line."""
+"""Recipe: a block below its face, flat or round, graded towards points on its contact line; and its holder."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import ModuleType
 
 import numpy as np
@@ -8,6 +8,8 @@ import numpy.typing as npt
 
 from partialslip_meshes.gmsh import gmsh_session
 from partialslip_meshes.mesh import Mesh
+
+_CORNER = 0.02  # element size at a corner of the holder that stresses concentrate in, in the block's half-width
 
 
 def block(
@@ -17,6 +19,9 @@ def block(
     growth: float,
     height: float | None = None,
     along: float | None = None,
+    holder: tuple[float, float] | None = None,
+    face: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]] | None = None,
+    facets: float | None = None,
 ) -> Mesh:
     """Mesh the block [-width, width] x [-height, 0].
 
@@ -25,8 +30,8 @@ def block(
     width : float
         Half-width of the block, and its height if none is given.
     contact : (float, float)
-        Ends of the line "contact" on y = 0; the rest of that side is the line "face", the block's bottom is its "back",
-        the other two are its "sides".
+        Ends of the line "contact" on y = 0; the rest of that side is the line "face", the bottom, of the holder if
+        there is one, is the "back", the sides beside it are "left" and "right", and all else "flanks".
     sizes : mapping of float to float
         Points on the contact line, each to become a vertex, and the element size there.
     growth : float
@@ -35,59 +40,90 @@ def block(
     height : float, optional
     along : float, optional
         Element size all along the contact line, from where it grows likewise.
+    holder : (float, float), optional
+        Half-width and height of a block below the first one, and one piece with it.
+    face : callable, optional
+        How far the side y = 0 is to lie back at x instead, from 0 to less than the height.
+    facets : float, optional
+        The largest element size on that side, in the distance from the middle of the contact line or half of that
+        line's length, whichever is larger.
 
     Raises
     ------
     MissingLibraryError
         If gmsh, or a system library that it needs, is not there.
     """
+    height = width if height is None else height
     with gmsh_session() as gmsh:
-        lines = _outline(gmsh, width, width if height is None else height, contact, sizes, growth, along)
+        lines = _outline(gmsh, (width, height), holder, contact, sizes, growth, along, facets)
         gmsh.model.mesh.generate(2)
-        return _collect(gmsh, lines)
+        mesh = _collect(gmsh, lines)
+    if face:
+        x, y = mesh.points.T
+        mesh.points[:, 1] -= face(np.clip(x, -width, width)) * np.maximum(1 + y / height, 0.0)
+    return mesh
 
 
 def _outline(
     gmsh: ModuleType,
-    width: float,
-    height: float,
+    size: tuple[float, float],
+    holder: tuple[float, float] | None,
     contact: tuple[float, float],
     sizes: Mapping[float, float],
     growth: float,
     along: float | None,
+    facets: float | None,
 ) -> dict[str, list[int]]:
     """Geometry and size field; returns the curves of each named line."""
     geo, field = gmsh.model.geo, gmsh.model.mesh.field
+    width, height = size
     on_contact = sorted({*contact, *sizes})
-    surface = [geo.addPoint(x, 0, 0) for x in (-width, *on_contact, width)]
-    bottom = [geo.addPoint(x, -height, 0) for x in (-width, width)]
-    loop = [*bottom, *reversed(surface)]
+    # corners of the right side, from the back to the face
+    corners = [(width, -height), (width, 0.0)]
+    if holder:
+        foot = (holder[0], -height)
+        corners = [(holder[0], -height - holder[1]), *([foot] if foot != corners[0] else []), *corners]
+    right = [geo.addPoint(x, y, 0) for x, y in corners]
+    left = [geo.addPoint(-x, y, 0) for x, y in corners]
+    surface = [left[-1], *(geo.addPoint(x, 0, 0) for x in on_contact), right[-1]]
+    loop = [*right, *reversed(surface[1:-1]), *reversed(left)]
     curves = [geo.addLine(start, end) for start, end in zip(loop, [*loop[1:], loop[0]], strict=True)]
     geo.addPlaneSurface([geo.addCurveLoop(curves)])
     geo.synchronize()
 
+    starts = {surface[1 + on_contact.index(x)]: size for x, size in sizes.items()}
+    if holder and holder[0] != width:
+        starts |= {side[1 if holder[0] < width else 2]: _CORNER * width for side in (left, right)}
     grades = []
-    for x, size in sizes.items():
+    for point, size_there in starts.items():
         distance = field.add("Distance")
-        field.setNumbers(distance, "PointsList", [surface[1 + on_contact.index(x)]])
+        field.setNumbers(distance, "PointsList", [point])
         grades.append(field.add("MathEval"))
-        field.setString(grades[-1], "F", f"{float(size)!r} + {float(growth)!r} * F{distance}")
+        field.setString(grades[-1], "F", f"{float(size_there)!r} + {float(growth)!r} * F{distance}")
+    middle, half = (contact[0] + contact[1]) / 2, (contact[1] - contact[0]) / 2
+    beyond = f"(abs(x - ({middle!r})) - {half!r})"
     if along is not None:
-        middle, half = (contact[0] + contact[1]) / 2, (contact[1] - contact[0]) / 2
-        beyond = f"(abs(x - ({middle!r})) - {half!r})"
         grades.append(field.add("MathEval"))
         field.setString(grades[-1], "F", f"{along!r} + {growth!r} * sqrt(y^2 + ({beyond} + abs{beyond})^2 / 4)")
+    if facets is not None:
+        grades.append(field.add("MathEval"))
+        field.setString(
+            grades[-1], "F", f"{facets!r} * ({half!r} + ({beyond} + abs{beyond}) / 2) + {growth!r} * abs(y)"
+        )
     smallest = field.add("Min")
     field.setNumbers(smallest, "FieldsList", grades)
     field.setAsBackgroundMesh(smallest)
     for other in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
         gmsh.option.setNumber(f"Mesh.{other}", 0)
 
+    up = len(corners) - 1  # curves of a side
     return {
-        "contact": curves[3:-2],
-        "face": [curves[2], curves[-2]],
-        "back": curves[:1],
-        "sides": [curves[1], curves[-1]],
+        "contact": curves[up + 1 : -up - 2],
+        "face": [curves[up], curves[-up - 2]],
+        "back": curves[-1:],
+        "left": [curves[-2]],
+        "right": curves[:1],
+        **({"flanks": [*curves[1:up], *curves[-up - 1 : -2]]} if up > 1 else {}),
     }
 
 

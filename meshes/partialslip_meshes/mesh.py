@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mesh:
     """Straight-sided triangles.
 
@@ -16,7 +16,8 @@ class Mesh:
     triangles : (t, 3) int array
         Corners, counter-clockwise.
     lines : dict of (k, 2) int arrays
-        Named groups of boundary edges; "contact" is the contact line, "back" the side opposite to it.
+        Named groups of boundary edges; "contact" is the contact line, "back" the side opposite to it, "left" and
+        "right" are those beside it.
     """
 
     points: npt.NDArray[np.float64]

@@ -25,6 +25,7 @@ from partialslip.result import Traction as Traction
 from partialslip.run import Run as Run
 from partialslip.run import run as run
 from partialslip.scene import Scene as Scene
+from partialslip.score import score as score
 from partialslip.state import State as State
 from partialslip.state import load_state as load_state
 

@@ -1,12 +1,17 @@
 """The plan: which effects a scene calls for and which it leaves out, each with its reason in words.
 
-Methods read the plan and build only what it calls for.
+Methods read the plan and build only what it calls for. A scene's ``[effects]`` force some on or off.
 """
 
-from dataclasses import dataclass
-from typing import Literal
+import math
+from dataclasses import dataclass, field
+from typing import Any, Literal
 
-from partialslip.scene import Scene
+import msgspec
+from msgspec.structs import replace
+
+from partialslip.errors import InputError
+from partialslip.scene import WIDTHS, Bodies, Effects, Friction, Hertz, Scene
 
 Effect = Literal[
     "normal",
@@ -20,50 +25,189 @@ Effect = Literal[
     "far-field",
     "subsurface",
 ]
+_Decisions = dict[Effect, tuple[bool, str, str]]  # whether it is needed; why, if it is; why not, if it is not
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Effects by name, with the reason why each is called for or left out."""
+    """Effects by name, with the reason why each is called for or left out. ``missing`` are those that the scene calls
+    for and its ``[effects]`` force off."""
 
     called_for: dict[Effect, str]
     left_out: dict[Effect, str]
+    missing: dict[Effect, str] = field(default_factory=dict)
 
     def needs(self, effect: Effect) -> bool:
         """Whether the scene calls for ``effect``."""
         return effect in self.called_for
 
+    def accept(self, regime: str) -> None:
+        """Raise InputError if the ``regime`` of a result cannot be without an effect that has been forced off."""
+        if "opposing-slip" in self.missing and regime == "large tension":
+            raise InputError(
+                "effects.opposing-slip = false: tension turns the slip at one end round (large tension); must be true"
+            )
 
-def plan(scene: Scene, *, subsurface: bool = False) -> Plan:
-    """Decide which effects ``scene`` calls for; ``subsurface`` asks for fields inside the bodies."""
-    load, f = scene.load, scene.friction.f
-    Q, sigma = zip(*load.points, strict=True)
-    tangential = any(Q) or any(sigma)
-    friction = f > 0 and (tangential or not scene.mirrored)
-    why = f"tangential loads act and f = {f:g}" if tangential else f"pressure moves the surfaces along x and f = {f:g}"
-    no_friction = "f = 0: no traction can hold a tangential load" if tangential else "no tangential load acts"
-    decisions: list[tuple[Effect, bool, str, str]] = [
-        ("normal", True, "two bodies are pressed together by a constant P", ""),
-        ("friction", friction, why, no_friction),
-        ("shear", any(Q), f"Q goes between {min(Q):g} and {max(Q):g} N/m", "Q = 0 at every load point"),
-        ("tension", any(sigma), f"sigma goes between {min(sigma):g} and {max(sigma):g} Pa",
-         "sigma = 0 at every load point"),
-        ("opposing-slip", friction and load.dsigma != 0, "tension may turn the slip at one end of the contact",
-         "without a change of tension both ends slip the same way in the steady state" if friction else no_friction),
-        ("history", friction and (not load.fully_reversed or load.cycles > 1 or not scene.mirrored),
-         "mean loads, several cycles, loads out of phase or coupling: what is locked in depends on the path",
-         "fully reversed, one cycle: nothing is locked in" if friction else no_friction),
-        ("coupling", not scene.mirrored,
-         "the bodies are not mirror images: pressure moves them along x, and shear opens the gap",
-         "the bodies are mirror images: what pressure and shear do across cancels, and one is factored for both"),
-        ("finite-size", scene.finite, "a body has a size of its own", "the bodies stand for half-planes"),
-        ("far-field", scene.fem.far_field == "half-plane" and None in (scene.bodies.upper, scene.bodies.lower),
-         "a block is held by the displacements of the half-plane it stands for",
-         "blocks are held as they are: no half-plane around them"),
-        ("subsurface", subsurface, "fields inside the bodies were asked for",
-         "fields inside the bodies were not asked for"),
-    ]  # fmt: skip
-    return Plan(
-        called_for={effect: why for effect, needed, why, _ in decisions if needed},
-        left_out={effect: why for effect, needed, _, why in decisions if not needed},
+
+def plan(scene: Scene, *, subsurface: bool = False, start: bool = False) -> Plan:
+    """Decide which effects ``scene`` calls for.
+
+    Parameters
+    ----------
+    scene : Scene
+    subsurface : bool
+        Whether fields inside the bodies are asked for.
+    start : bool
+        Whether the path of the loads goes on from a state.
+
+    Raises
+    ------
+    InputError
+        If an effect is forced off without which there is no answer, or forced on where there is nothing to build.
+    """
+    own = _decide(replace(scene, effects=Effects()), subsurface, start)
+    forced = _forced(scene)
+    _refuse(scene, forced, own)
+    decided = _decide(reduced(scene), subsurface, start)
+    called_for: dict[Effect, str] = {}
+    left_out: dict[Effect, str] = {}
+    for effect, (needed, why, why_not) in decided.items():
+        choice = forced.get(effect)
+        if needed if choice is None else choice:
+            called_for[effect] = why if needed and (not choice or own[effect][0]) else f"forced on, though {why_not}"
+        else:
+            off = choice is False and own[effect][0]
+            left_out[effect] = f"forced off, though {own[effect][1]}" if off else why_not
+    missing = {effect: why for effect, (needed, why, _) in own.items() if needed and forced.get(effect) is False}
+    return Plan(called_for, left_out, missing)
+
+
+def reduced(scene: Scene) -> Scene:
+    """What methods are to solve: ``scene`` without the friction, loads and sizes that its ``[effects]`` force off.
+
+    Without history the mean loads are left out, too: what remains is fully reversed. Without the far field a block is
+    clamped as it is.
+    """
+    effects, load, fem = scene.effects, scene.load, scene.fem
+    if effects.shear is False:
+        load = replace(load, Q=(0.0,) * len(load.Q))
+    if effects.tension is False:
+        load = replace(load, sigma=(0.0,) * len(load.sigma))
+    if effects.history is False:
+        Q, sigma = load.dQ / 2, load.dsigma / 2
+        load = replace(load, Q=(-Q, Q), sigma=(-sigma, sigma), cycles=1, steps=1)
+    if effects.far_field is not None:
+        width = fem.width or WIDTHS["half-plane"]
+        fem = replace(fem, far_field="half-plane" if effects.far_field else "box", width=width)
+    return replace(
+        scene,
+        load=load,
+        fem=fem,
+        friction=Friction(f=0.0) if effects.friction is False else scene.friction,
+        bodies=Bodies() if effects.finite_size is False else scene.bodies,
     )
+
+
+def _forced(scene: Scene) -> dict[Effect, bool]:
+    return {effect: on for effect, on in msgspec.to_builtins(scene.effects).items() if on is not None}
+
+
+def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
+    """What ``scene`` calls for, loads that are forced on and forced coupling included."""
+    load, f, forced = scene.load, scene.friction.f, _forced(scene)
+    Q, sigma = zip(*load.points, strict=True)
+    coupled = forced.get("coupling", not scene.mirrored)
+    tangential = any(Q) or any(sigma) or forced.get("shear", False) or forced.get("tension", False)
+    friction = forced.get("friction", tangential or coupled) and not scene.slides
+    why = f"tangential loads act and f = {f:g}" if tangential else f"pressure moves the surfaces along x and f = {f:g}"
+    if not (tangential or coupled):
+        no_friction = "no tangential load acts"
+    elif f == 0:
+        no_friction = "f = 0: no traction holds the surfaces along x"
+    else:
+        no_friction = "|Q| >= f P at a load point: the contact slides, and nothing is left to find"
+    small = _small_tension(scene)
+    opposing = "tension may turn the slip at one end of the contact"
+    history = _why_history(scene, coupled, start)
+    return {
+        "normal": (True, "two bodies are pressed together by a constant P", ""),
+        "friction": (friction, why, no_friction),
+        "shear": (any(Q), f"Q goes between {min(Q):g} and {max(Q):g} N/m", "Q = 0 at every load point"),
+        "tension": (any(sigma), f"sigma goes between {min(sigma):g} and {max(sigma):g} Pa",
+                    "sigma = 0 at every load point: the problem is symmetric in x up to sign"),
+        "opposing-slip": (friction and (coupled or (load.dsigma != 0 and not small)),
+                          "pressure drags the ends of the contact opposite ways" if coupled else opposing,
+                          no_friction if not friction else small or
+                          "without a change of tension both ends slip the same way in the steady state"),
+        "history": (friction and bool(history), history,
+                    "Q1 = -Q2 and sigma1 = -sigma2: half a cycle tells the whole" if friction else no_friction),
+        "coupling": (not scene.mirrored,
+                     "the bodies are not mirror images: pressure moves them along x, and shear opens the gap",
+                     "the bodies are mirror images: what pressure and shear do across cancels"
+                     + (", and one is factored for both" if scene.fem.lower_size == 1 else "")),
+        "finite-size": (scene.finite, "a body has a size of its own", "the bodies stand for half-planes"),
+        "far-field": (scene.fem.far_field == "half-plane" and None in (scene.bodies.upper, scene.bodies.lower),
+                      "a block is held by the displacements of the half-plane it stands for",
+                      "blocks are held as they are: no half-plane around them"),
+        "subsurface": (subsurface, "fields inside the bodies were asked for",
+                       "fields inside the bodies were not asked for"),
+    }  # fmt: skip
+
+
+def _why_history(scene: Scene, coupled: bool, start: bool) -> str:
+    """Why what is locked in depends on the path; empty where it does not.
+
+    On one step from load point 1 to 2 the shear changes by twice that of the first loading (Masing's rule): the
+    conditions of the one are those of the other, doubled. On a gradual way slip may turn round in between.
+    """
+    load = scene.load
+    if start:
+        return "the path goes on from a state"
+    if coupled:
+        return "pressure and shear move the surfaces together: what they lock in depends on the path"
+    if not load.in_phase:
+        return "Q and sigma are out of phase: what is locked in depends on the path"
+    if not load.fully_reversed:
+        return "mean loads act: what the first cycles lock in depends on the path"
+    if load.steps > 1 or len(load.points) > 2:
+        return "the way between load points 1 and 2 is gradual: slip may turn round on it"
+    return ""
+
+
+def _small_tension(scene: Scene) -> str:
+    """Why tension turns no slip round, where that is known beforehand: of Hertz contacts of half-planes (paper, eq.
+    (23)), and on a gradual way only up to where the adhered contact would begin to slip opposite ways."""
+    load, f = scene.load, scene.friction.f
+    if not isinstance(scene.profile, Hertz) or scene.finite or not scene.mirrored or scene.slides:
+        return ""
+    p0 = math.sqrt(2 / math.pi) * scene.P / scene.length  # 2 P/(pi a), a^2 = 2 A R P/pi
+    Qf, sf = abs(load.dQ) / (2 * f * scene.P), abs(load.dsigma) / (f * p0)
+    at_once = load.steps == 1 and len(load.points) == 2
+    if not load.in_phase or sf == 0 or sf >= (8 * (1 - math.sqrt(1 - Qf)) if at_once else 4 * Qf):
+        return ""
+    return "tension is small: both ends of a Hertz contact slip the same way"
+
+
+def _refuse(scene: Scene, forced: dict[Effect, bool], own: _Decisions) -> None:
+    """Raise InputError where a forced effect leaves nothing to solve, or nothing to build."""
+    off = {effect for effect, on in forced.items() if not on}
+    on = {effect for effect, on in forced.items() if on}
+    coupled = "coupling" in on or (not scene.mirrored and "coupling" not in off)
+    tangential: tuple[Effect, ...] = ("friction", "shear", "tension")
+    reasons: list[tuple[Effect, bool, str]] = [
+        ("normal", "normal" in off, "without pressure there is no contact"),
+        *((each, each in on and scene.slides and not own[each][0], own["friction"][2]) for each in tangential),
+        ("opposing-slip", "opposing-slip" in off and not scene.load.in_phase,
+         "Q and sigma are out of phase, and slip turns round"),
+        ("history", "history" in off and own["history"][0] and (coupled or not scene.load.in_phase),
+         own["history"][1]),
+        ("history", "history" in off and own["history"][1].startswith("the path goes on"), own["history"][1]),
+        ("finite-size", "finite-size" in on and not scene.finite, "bodies.upper and bodies.lower have no size"),
+        ("far-field", "far-field" in on and None not in (scene.bodies.upper, scene.bodies.lower),
+         "both bodies are finite: there is no half-plane around them"),
+        ("subsurface", "subsurface" in off and own["subsurface"][0], own["subsurface"][1]),
+    ]  # fmt: skip
+    for effect, refused, why in reasons:
+        if refused:
+            choice: Any = str(forced[effect]).lower()
+            raise InputError(f"effects.{effect} = {choice}: {why}; must be {str(not forced[effect]).lower()}")

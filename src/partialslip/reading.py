@@ -53,6 +53,7 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
     data = _parse(_text(scene), str(scene))
     for override in overrides:
         _override(data, override)
+    _find_meshes(data, scene)
     try:
         return parse_scene(data)
     except InputError as error:
@@ -128,6 +129,14 @@ def _override(data: dict[str, Any], override: str) -> None:
     data[keys[-1]] = parsed
 
 
+def _find_meshes(data: dict[str, Any], scene: str | Path) -> None:
+    """Paths of meshes are relative to the scene's file."""
+    bodies = data.get("bodies")
+    for body in bodies.values() if isinstance(bodies, dict) else ():
+        if isinstance(body, dict) and isinstance(mesh := body.get("mesh"), str) and mesh:
+            body["mesh"] = str(Path(scene).parent / mesh)
+
+
 def _plain(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {key: _plain(child) for key, child in value.items()}
@@ -170,7 +179,7 @@ def _table(kind: Any, value: Any) -> Any:
     """The table that is meant, where a key ``kind`` chooses between several."""
     tables = [table for table in get_args(kind) if isinstance(table, type) and issubclass(table, Table)]
     tag = value.get("kind") if isinstance(value, Mapping) else None
-    return next((table for table in tables if table.__struct_config__.tag == tag), kind)
+    return next((table for table in tables if len(tables) == 1 or table.__struct_config__.tag == tag), kind)
 
 
 def _allowed(what: str, kind: Any) -> str:
@@ -179,15 +188,20 @@ def _allowed(what: str, kind: Any) -> str:
             repr(table.__struct_config__.tag) for table in get_args(Scene.__annotations__["profile"])
         )
     if what.startswith("Invalid enum value"):
-        return "one of " + ", ".join(map(repr, get_args(kind)))
+        words = [
+            word for option in (kind, *get_args(kind)) for word in get_args(option) if isinstance(word, (str, int))
+        ]
+        return "one of " + ", ".join(map(repr, words))
     if length := re.fullmatch(r"Expected `array` of length (>=|<=) (\d+)", what):
         return f"an array of at {'least' if length[1] == '>=' else 'most'} {length[2]} numbers"
-    if wrong := re.fullmatch(r"Expected `([a-z]+)(?: \| null)?`, got `([a-z]+)`", what):
+    if wrong := re.fullmatch(r"Expected `([a-z]+)(?: \| null)?`, got `(?:datetime\.)?([a-z]+)`", what):
         return f"{_KINDS.get(wrong[1], wrong[1])}, not {_KINDS.get(wrong[2], wrong[2])}"
     if bound := re.fullmatch(r"Expected `(?:float|int)(?: \| null)?` (.*)", what):
         return bound[1]
     if what == "Number out of range":
         return f"of a size from {SMALLEST} to {LARGEST}"
+    if "`str` of length >=" in what:
+        return "a name"
     if "of length <=" in what:
         return f"at most {what.split()[-1]} characters"
     if "regex" in what and "\\x00" in what:
@@ -199,7 +213,7 @@ def _allowed(what: str, kind: Any) -> str:
 
 def _fields(kind: Any) -> dict[str, Any]:
     tables = isinstance(kind, type) and issubclass(kind, Table)
-    return {field.name: field.type for field in msgspec.structs.fields(kind)} if tables else {}
+    return {field.encode_name: field.type for field in msgspec.structs.fields(kind)} if tables else {}
 
 
 def _keys(kind: Any) -> list[str]:

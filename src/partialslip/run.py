@@ -6,43 +6,47 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
+from msgspec.structs import replace
 
 from partialslip import views
 from partialslip.compare import Comparison, compare
 from partialslip.errors import InputError
 from partialslip.frame import frame
-from partialslip.plan import Plan, plan
+from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
-from partialslip.scene import Scene
+from partialslip.scene import Effects, Scene
 from partialslip.state import State
 
 if TYPE_CHECKING:
     from partialslip.frame import DataFrame
 
 METHODS = ("exact", "march", "fem")
+ALL_EFFECTS = "all effects"
 Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class Run:
     """A scene, its plan, the results by method, and the comparisons of all others with the reference: the exact one,
-    or, where there is none, the march's."""
+    or, where there is none, the march's, or else that of the finite elements; with :data:`ALL_EFFECTS` where some that
+    matter have been forced off. ``accuracy`` is the bar for a, m and n, as a fraction of a; None if there are no
+    bars."""
 
     scene: Scene
     plan: Plan
     results: dict[str, Result]
     comparisons: dict[str, Comparison]
+    accuracy: float | None = None
 
     @property
     def reference(self) -> str | None:
         """The method that the others are compared with."""
-        return next((name for name in ("exact", "march") if name in self.results), None)
+        return next((name for name in (ALL_EFFECTS, *METHODS) if name in self.results), None)
 
     @property
     def judged(self) -> bool:
-        """Whether errors have bars: half-planes are no truth for finite bodies, and a mesh of a given element size is
-        as good as it is."""
-        return not self.scene.finite and self.scene.fem.size is None
+        """Whether errors have bars."""
+        return self.accuracy is not None
 
     @property
     def missed(self) -> tuple[str, ...]:
@@ -127,23 +131,43 @@ def run(
     Raises
     ------
     InputError
-        If a method is unknown, ``start`` is of another P or other materials, or the exact method is asked for loads
-        out of phase or bodies that are not similar.
+        If a method is unknown, ``start`` is of another P or other materials, the exact method is asked for loads
+        out of phase or bodies that are not similar, or an effect is forced off that the scene cannot do without.
     MissingLibraryError
         If finite elements are asked for and gmsh, or a system library that it needs, is not there.
     """
     if start:
         start.check(scene)
-    effects = plan(scene, subsurface=subsurface)
+    effects = plan(scene, subsurface=subsurface, start=start is not None)
     chosen = dict.fromkeys(default_methods(scene) if methods is None else methods)
-    results = {name: _method(name)(scene, effects, _told_by(name, progress), start) for name in chosen}
-    outcome = Run(scene, effects, results, {})
+    tasks = {name: (name, reduced(scene), effects) for name in chosen}
+    if effects.missing:
+        whole = replace(scene, effects=Effects())
+        tasks[ALL_EFFECTS] = _best(whole), whole, plan(whole, subsurface=subsurface, start=start is not None)
+    results = {
+        name: _method(method)(what, its, _told_by(name, progress), start) for name, (method, what, its) in tasks.items()
+    }
+    for result in results.values():
+        effects.accept(result.regime)
+    # half-planes are no truth for finite bodies, a mesh of a given element size is as good as it is, and of effects
+    # that are forced off errors are what they are worth
+    judged = not scene.finite and scene.fem.size is None and not effects.missing
+    return compared(scene, effects, results, scene.fem.accuracy if judged else None)
+
+
+def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: float | None) -> Run:
+    """Results with their comparisons; ``accuracy`` is the bar for a, m and n (fractions of a), None for no bars."""
+    outcome = Run(scene, plan, results, {}, accuracy)
     for name, result in results.items():
         if outcome.reference and name != outcome.reference:
             reference = results[outcome.reference]
-            accuracy = scene.fem.accuracy if outcome.judged else None
             outcome.comparisons[name] = compare(result, reference, scene.friction.f, accuracy)
     return outcome
+
+
+def _best(scene: Scene) -> str:
+    """The method that knows most of ``scene``: what is missing is measured by it."""
+    return "fem" if scene.finite else default_methods(scene)[0]
 
 
 def _told_by(name: str, progress: Progress) -> Progress:

@@ -12,21 +12,22 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip import views
+from partialslip.bodies import Bodies as Bodies
+from partialslip.bodies import Body as Body
 from partialslip.errors import InputError
-
-Positive = Annotated[float, msgspec.Meta(gt=0)]
+from partialslip.table import Positive
+from partialslip.table import Table as Table
 
 # Numbers are zero or within these magnitudes, so that products and squares of a few of them stay finite.
 SMALLEST, LARGEST = 1e-100, 1e100
 
+WIDTHS = {"half-plane": 16.0, "box": 4096.0}  # half-widths of a block in contact half-widths, as a rule
+
 _ROUGH = 1e-9  # changes of slope and curvature in a table, in the largest one, that are taken for rounding
 _SHARP = 0.05
+_STEEPEST = 0.9  # sine of the angle to which a pad's round face may go
 
 Array = npt.NDArray[np.float64]
-
-
-class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """A table of a scene file: immutable, and an unknown key is an error."""
 
 
 class Elastic(Table, frozen=True, kw_only=True):
@@ -93,6 +94,15 @@ class Hertz(Table, frozen=True, kw_only=True, tag_field="kind", tag="hertz"):
         result: Array = x**2 / (2 * self.R)
         return result
 
+    @property
+    def widest(self) -> float:
+        """Half-width of the widest pad of this shape, m."""
+        return _STEEPEST * self.R
+
+    def face_at(self, x: Array) -> Array:
+        """How far a pad of this shape, a cylinder, lies back at ``x`` (m), m."""
+        return _arc(x, self.R)
+
 
 class FlatRounded(Table, frozen=True, kw_only=True, tag_field="kind", tag="flat-rounded"):
     """A flat of half-width ``b`` (m) with corners of radius ``R`` (m): undeformed gap (|x| - b)^2/(2R) beyond it."""
@@ -114,6 +124,15 @@ class FlatRounded(Table, frozen=True, kw_only=True, tag_field="kind", tag="flat-
         """Gap before loading at ``x`` (m), m."""
         result: Array = np.maximum(np.abs(x) - self.b, 0.0) ** 2 / (2 * self.R)
         return result
+
+    @property
+    def widest(self) -> float:
+        """Half-width of the widest pad of this shape, m."""
+        return self.b + _STEEPEST * self.R
+
+    def face_at(self, x: Array) -> Array:
+        """How far a pad of this shape, whose corners are arcs, lies back at ``x`` (m), m."""
+        return _arc(np.maximum(np.abs(x) - self.b, 0.0), self.R)
 
     def curvature_steps(self) -> tuple[Array, Array]:
         """Where the gap's curvature steps up (|x|, m), and by how much (1/m)."""
@@ -171,6 +190,15 @@ class Tabulated(Table, frozen=True, kw_only=True, tag_field="kind", tag="tabulat
         result: Array = beyond**2 @ steps / 2
         return result
 
+    @property
+    def widest(self) -> float:
+        """Half-width of the widest pad of this shape, m."""
+        return self.reach
+
+    def face_at(self, x: Array) -> Array:
+        """How far a pad of this shape lies back at ``x`` (m), m."""
+        return self.gap_at(x)
+
     def curvature_steps(self) -> tuple[Array, Array]:
         """Where the gap's curvature steps (|x|, m), and by how much (1/m)."""
         x = np.array(self.x)
@@ -180,6 +208,13 @@ class Tabulated(Table, frozen=True, kw_only=True, tag_field="kind", tag="tabulat
         steps = np.diff(curvatures, prepend=0.0)
         real = np.abs(steps) > _ROUGH * curvatures.max()
         return middles[:-1][real], steps[real]
+
+
+def _arc(x: Array, R: float) -> Array:
+    """R - sqrt(R^2 - x^2), without cancellation; not a number beyond the circle."""
+    with np.errstate(invalid="ignore"):
+        result: Array = x**2 / (R + np.sqrt(R**2 - x**2))
+    return result
 
 
 Profile = Hertz | FlatRounded | Tabulated
@@ -212,7 +247,8 @@ class Load(Table, frozen=True, kw_only=True):
     steps: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 1
 
     def __post_init__(self) -> None:
-        if len(self.Q) != len(self.sigma) and any(self.Q) and any(self.sigma):
+        others = [values for values in (self.Q, self.sigma) if any(values) or len(values) > 2]
+        if len(self.Q) != len(self.sigma) and len(others) > 1:
             raise InputError(f"load.sigma: must have as many numbers as load.Q, {len(self.Q)}, not {len(self.sigma)}")
 
     @property
@@ -264,21 +300,6 @@ class Load(Table, frozen=True, kw_only=True):
         return self.in_phase and Q1 == -Q2 and sigma1 == -sigma2
 
 
-class Block(Table, frozen=True, kw_only=True):
-    """A rectangular body, pressed on in the middle of its face: its ``width`` and ``height``, m. A rigid plate that
-    does not turn holds its back; its sides are free."""
-
-    width: Positive
-    height: Positive
-
-
-class Bodies(Table, frozen=True, kw_only=True):
-    """The bodies that are finite; without a size a body is a half-plane."""
-
-    upper: Block | None = None
-    lower: Block | None = None
-
-
 class Fem(Table, frozen=True, kw_only=True):
     """Settings of the finite-element method.
 
@@ -300,6 +321,21 @@ class Fem(Table, frozen=True, kw_only=True):
     factor: Literal["superlu", "cholmod"] | None = None
 
 
+class Effects(Table, frozen=True, kw_only=True, rename="kebab"):
+    """Effects that are forced on (true) or off (false), whatever the scene calls for; see :mod:`partialslip.plan`."""
+
+    normal: bool | None = None
+    friction: bool | None = None
+    shear: bool | None = None
+    tension: bool | None = None
+    opposing_slip: bool | None = None
+    history: bool | None = None
+    coupling: bool | None = None
+    finite_size: bool | None = None
+    far_field: bool | None = None
+    subsurface: bool | None = None
+
+
 class Scene(Table, frozen=True, kw_only=True):
     """A whole scene file. See the README for the format; :func:`partialslip.load_scene` reads one, and
     :func:`partialslip.parse_scene` makes one from nested tables. Both check it, the constructor does not."""
@@ -312,6 +348,7 @@ class Scene(Table, frozen=True, kw_only=True):
     title: Annotated[str, msgspec.Meta(pattern=r"^[^\x00-\x1f\x7f]*\Z", max_length=200)] = ""
     bodies: Bodies = Bodies()
     fem: Fem = Fem()
+    effects: Effects = Effects()
 
     def __post_init__(self) -> None:
         given = [key for key in ("P", "a", "p0") if getattr(self.load, key) is not None]
@@ -325,6 +362,15 @@ class Scene(Table, frozen=True, kw_only=True):
             derived = math.nan, math.nan
         if not all(SMALLEST <= value <= LARGEST for value in derived):
             raise InputError(f"load.{given[0]} = {getattr(self.load, given[0])!r}: out of range with this E and R")
+        for name, body in self.bodies:
+            if body.kind == "pad" and body.width is not None and body.height is not None:
+                self._check_pad(name, body.width, body.height)
+
+    def _check_pad(self, name: str, width: float, height: float) -> None:
+        if not width <= 2 * self.profile.widest:
+            raise InputError(f"{name}.width = {width}: must be <= {2 * self.profile.widest}, as the profile is")
+        if not (edge := float(self.profile.face_at(np.array(width / 2)))) <= _STEEPEST * height:
+            raise InputError(f"{name}.height = {height}: must be > {edge / _STEEPEST:g}, as its face goes back so far")
 
     def _repr_html_(self) -> str:
         return views.html(self)
@@ -338,6 +384,20 @@ class Scene(Table, frozen=True, kw_only=True):
     def finite(self) -> bool:
         """Whether a body is finite."""
         return self.bodies != Bodies()
+
+    @property
+    def slides(self) -> bool:
+        """Whether friction cannot carry Q: no forces within the bound could sum to it."""
+        return max(abs(Q) for Q, _ in self.load.points) >= self.friction.f * self.P
+
+    @property
+    def meshed(self) -> bool:
+        """Whether a body's mesh is given."""
+        return any(body.mesh is not None for _, body in self.bodies)
+
+    def gap_at(self, x: Array) -> Array:
+        """Gap before loading at ``x`` (m), m: the profile's, and of a pad the true distance of its face."""
+        return self.profile.face_at(x) if self.bodies.pad else self.profile.gap_at(x)
 
     @property
     def P(self) -> float:

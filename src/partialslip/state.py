@@ -11,6 +11,7 @@ from partialslip.errors import InputError
 from partialslip.scene import Array, Scene
 
 _ARRAYS = ("loads", "cells", "p", "q")
+_HELD = 1e-6  # relative to P, how far a solver may be from equilibrium
 _SAME = 1e-9  # relative difference of P and A that is rounding
 
 
@@ -55,11 +56,11 @@ def load_state(path: str | Path) -> State:
     Raises
     ------
     InputError
-        If the file cannot be read, or holds no state.
+        If the file cannot be read, or holds no state, or tractions that are not in equilibrium with the loads.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
-            arrays = {name: np.asarray(file[name], float) for name in _ARRAYS}
+        with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            arrays = {name: file[name].astype(float, casting="safe") for name in _ARRAYS}
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
     except (KeyError, ValueError, EOFError, AttributeError, TypeError, zipfile.BadZipFile):
@@ -68,10 +69,16 @@ def load_state(path: str | Path) -> State:
     if not _sound(loads, cells, p, q):
         raise InputError(f"{path}: not a state that partialslip has saved")
     P, A, Q, sigma = loads.tolist()
-    return State(P, A, Q, sigma, PPoly(p, cells), PPoly(q, cells))
+    state = State(P, A, Q, sigma, PPoly(p, cells), PPoly(q, cells))
+    held = [float(traction.integrate(cells[0], cells[-1])) for traction in (state.p, state.q)]
+    if not np.allclose(held, (P, Q), rtol=0.0, atol=_HELD * abs(P)):
+        raise InputError(f"{path}: its tractions hold P = {held[0]:g} and Q = {held[1]:g}, not {P:g} and {Q:g}")
+    return state
 
 
 def _sound(loads: Array, cells: Array, *coefficients: Array) -> bool:
-    shapes = all(c.ndim == 2 and c.shape[0] >= 1 and c.shape[1] == len(cells) - 1 for c in coefficients)
-    finite = all(np.isfinite(array).all() for array in (loads, cells, *coefficients))
-    return loads.shape == (4,) and cells.ndim == 1 and shapes and finite and bool((np.diff(cells) > 0).all())
+    if not all(np.isfinite(array).all() for array in (loads, cells, *coefficients)):
+        return False
+    line = cells.ndim == 1 and len(cells) > 1 and cells[0] < 0 < cells[-1] and bool((np.diff(cells) > 0).all())
+    shapes = line and all(c.ndim == 2 and len(c) >= 1 and c.shape[1] == len(cells) - 1 for c in coefficients)
+    return loads.shape == (4,) and shapes

@@ -39,6 +39,7 @@ def test_estimate_is_right_at_every_accuracy(scene, accuracy):
     assert share < 1
 
 
+@pytest.mark.fault
 def test_difference_of_the_orders_is_not_the_error(monkeypatch):
     """Deliberate fault: what P3 is off by, taken for what P4 is off by."""
     true = estimate._changes
@@ -47,6 +48,7 @@ def test_difference_of_the_orders_is_not_the_error(monkeypatch):
     assert known > 3
 
 
+@pytest.mark.fault
 def test_elements_at_the_ends_are_counted(monkeypatch):
     """Deliberate fault: without them, a mesh coarse at the ends is taken for a good one."""
     monkeypatch.setattr(adapt, "_BESIDE", 0.06)

@@ -40,7 +40,8 @@ def test_shear_in_the_slip_zones_is_at_the_bound():
     assert np.all(np.abs(traction.q2) <= f * traction.p + 0.02 * f * large.p0)
 
 
-def test_reversed_loads_reverse_the_traction(large):
+def test_reversed_loads_reverse_the_traction():
+    large = fem("hertz-large-tension", "effects.history=true")
     assert large.traction.q1 == pytest.approx(-large.traction.q2, abs=1e-9 * large.p0)
     assert large.certificate["steady"] < 1e-9
 
@@ -52,31 +53,7 @@ def test_work_is_counted(large, monkeypatch):
     again = fem("hertz-large-tension")
     assert len(calls) == again.counts["factorizations"] == again.counts["meshes"] + 1  # the last: estimate
     assert again.counts == large.counts
-    assert again.counts["load_steps"] == 3
-
-
-@pytest.mark.parametrize(("length", "stress"), [(1e3, 1e-6), (1e-12, 1e12), (1e12, 1.0)])
-def test_independent_of_units(large, length, stress):
-    scene = load_scene("hertz-large-tension")
-    Q, sigma = scene.load.Q[1] * length * stress, scene.load.sigma[1] * stress
-    scaled = fem(
-        "hertz-large-tension",
-        f"material.E={scene.material.E * stress}", f"profile.R={scene.profile.R * length}",
-        f"load.p0={400e6 * stress}", f"load.Q=[{-Q}, {Q}]", f"load.sigma=[{-sigma}, {sigma}]",
-    )  # fmt: skip
-    assert scaled.counts["iterations"] == pytest.approx(large.counts["iterations"], abs=8)  # ties fall either way
-    for key in ("m", "n"):
-        assert getattr(scaled, key) / scaled.a == pytest.approx(getattr(large, key) / large.a, abs=1e-8)
-    assert scaled.p0 == pytest.approx(large.p0 * stress, rel=1e-8)
-
-
-def test_signs_of_the_loads_mirror_the_zone(large):
-    scene = load_scene("hertz-large-tension")
-    Q, sigma = scene.load.Q[1], scene.load.sigma[1]
-    both = fem("hertz-large-tension", f"load.Q=[{Q}, {-Q}]", f"load.sigma=[{sigma}, {-sigma}]")
-    assert (both.m, both.n) == pytest.approx((large.m, large.n), rel=1e-9)
-    one = fem("hertz-large-tension", f"load.Q=[{Q}, {-Q}]")  # its meshes are not mirror images
-    assert (one.m, one.n) == pytest.approx((large.n, large.m), abs=1e-3 * large.a)
+    assert again.counts["load_steps"] == 1  # half a cycle
 
 
 def test_plane_stress_is_plane_strain_of_another_material():
@@ -123,17 +100,6 @@ def test_mean_loads_reach_the_steady_range_cycle_by_cycle():
     assert steady[0] > 1e-3 > steady[2] > steady[3]
     assert steady[3] < 1e-4
     assert off[3] < 5e-4
-
-
-def test_stick_zone_from_flags_of_one_instant_would_be_wrong():
-    """Deliberate fault: with a mean load nodes rest on the bound without slipping any more; flags at load point 2
-    see a far smaller zone than the range does."""
-    result = fem("hertz-large-tension", "load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]", "load.cycles=12")
-    traction = result.traction
-    below = 0.5 * traction.p - np.abs(traction.q2) > 1e-3 * 0.5 * result.p0
-    flagged = traction.x[below].max() / result.a
-    assert result.n / result.a == pytest.approx(0.3706, abs=1e-3)
-    assert flagged < 0
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.49, 0.4999])

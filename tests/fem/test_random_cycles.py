@@ -240,6 +240,7 @@ def test_without_a_fault_nothing_is_wrong(solved):
     assert not list(complaints(*solved))
 
 
+@pytest.mark.fault
 def test_a_node_that_sticks_too_long_is_seen(solved):
     """Deliberate fault: one member that slips is kept from its bound by a millionth of it."""
     scene, result, steps = solved
@@ -251,6 +252,7 @@ def test_a_node_that_sticks_too_long_is_seen(solved):
     assert "a better answer" in next(complaints(scene, result, wrong))
 
 
+@pytest.mark.fault
 def test_slip_in_the_stick_zone_is_seen(solved):
     """Deliberate fault: slip all over the contact, as from a stick that creeps."""
     scene, result, steps = solved

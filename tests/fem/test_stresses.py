@@ -34,6 +34,7 @@ def test_errors_fall_with_the_accuracy_asked(run):
     assert fine.largest < coarse.largest / 5
 
 
+@pytest.mark.fault
 def test_trailing_edge_without_the_fit_is_far_off(run, monkeypatch):
     """Deliberate fault: the largest value taken from the elements' own polynomials."""
     monkeypatch.setattr(fields, "_strain_beyond", lambda u, end, side: float(u(end + side * 1e-12, 1)))

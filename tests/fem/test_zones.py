@@ -70,6 +70,7 @@ def test_resultant_is_kept(half):
     assert traction(half, forces).integrate(-1.2, 1.2) == pytest.approx(forces.sum(), rel=1e-12)
 
 
+@pytest.mark.fault
 def test_dividing_by_weights_would_waver(half):
     """Deliberate fault: nodal forces over the integrals of their shape functions, off by h^2 p''."""
     smooth = np.cos(2 * half.x)

@@ -88,15 +88,6 @@ def test_scenes_without_friction_to_solve():
     assert sliding.counts["load_steps"] == 0
 
 
-def test_units_do_not_matter():
-    base = marched("fretting-aluminium", ROUGH)
-    scaled = marched(
-        "fretting-aluminium", ROUGH, "material.E=72.1e-3", "profile.R=10e9", "load.P=135750",
-        "load.Q=[-38750.0, 38750.0]", "load.sigma=[-100e-6, 100e-6]",
-    )  # fmt: skip
-    assert (scaled.m / scaled.a, scaled.n / scaled.a) == pytest.approx((base.m / base.a, base.n / base.a), abs=1e-9)
-
-
 TURNS = [(0.3, 1.0, False), (0.4, 4.03, False), (0.5, 2.8, True), (0.75, 4.5, True)]
 
 

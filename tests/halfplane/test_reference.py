@@ -229,6 +229,7 @@ def modulus_for_parameter(monkeypatch):
     monkeypatch.setattr(hertz, "ellipe", lambda parameter: right(np.sqrt(parameter)))
 
 
+@pytest.mark.fault
 @pytest.mark.parametrize("fault", [dropped_sign, modulus_for_parameter])
 def test_a_fault_in_the_conditions_is_caught(fault, monkeypatch):
     """Deliberate faults: large tension is off by far more than the last digits, small tension is right."""

@@ -205,6 +205,7 @@ def test_loop_of_the_public_api(Qf, sf, shape):
     assert area == pytest.approx(energy, rel=2e-9)
 
 
+@pytest.mark.fault
 def test_an_end_that_answers_the_wrong_way_is_caught(monkeypatch):
     """Deliberate fault: the slip zone across pushes with the other sign. The loops then have another area."""
     right = slip_module._kernels

@@ -67,6 +67,7 @@ def test_elliptic_forms_are_the_integrals(centre, c):
     assert Qf == pytest.approx(expected_Qf, abs=1e-14)
 
 
+@pytest.mark.fault
 def test_chi_is_the_modulus():
     """Deliberate fault: chi taken for the parameter k^2, as libraries take it, misses the integrals by percents."""
     c, edge = 0.5, 0.3

@@ -305,6 +305,7 @@ def test_only_where_asked_for_and_known():
 # --- deliberate faults
 
 
+@pytest.mark.fault
 def test_poles_near_a_panel_left_to_its_rule_are_caught(monkeypatch):
     monkeypatch.setattr(cauchy, "_NEAR", 0.0)
     x = np.linspace(-0.9, 0.9, 19)
@@ -312,6 +313,7 @@ def test_poles_near_a_panel_left_to_its_rule_are_caught(monkeypatch):
     assert np.abs(found - mcewen(x, 1e-3)).max() > 1e-2
 
 
+@pytest.mark.fault
 def test_the_change_taken_for_the_load_point_is_caught(monkeypatch):
     monkeypatch.setattr(stress_module, "half_range", lambda *args: 2 * half_range(*args))
     edge = scaled(Hertz(), 0.5, 0.0).surface(np.array([1.0]))[0, 1, 0]

@@ -34,7 +34,7 @@ def test_fills_the_block_once(mesh):
 
 
 def test_lines(mesh):
-    contact, *far = (mesh.points[mesh.lines[name]] for name in ("contact", "back", "sides"))
+    contact, *far = (mesh.points[mesh.lines[name]] for name in ("contact", "back", "left", "right"))
     far = np.vstack(far)
     lengths = {
         name: np.linalg.norm(np.diff(ends, axis=1), axis=-1).sum() for name, ends in (("c", contact), ("f", far))
@@ -102,11 +102,11 @@ def test_msh_is_read_back_by_meshio_and_gmsh(bodies, tmp_path):
     back = meshio.read(path)
     assert back.points[:, :2] == pytest.approx(bodies[0].points)
     assert back.cells_dict["triangle"].tolist() == bodies[0].triangles.tolist()
-    assert set(back.field_data) == {"lower", "contact", "face", "back", "sides"}
+    assert set(back.field_data) == {"lower", "contact", "face", "back", "left", "right"}
     with gmsh_session() as gmsh:
         gmsh.open(str(path))
         names = {gmsh.model.getPhysicalName(*group) for group in gmsh.model.getPhysicalGroups()}
-        assert names == {"lower", "contact", "face", "back", "sides"}
+        assert names == {"lower", "contact", "face", "back", "left", "right"}
         assert len(gmsh.model.mesh.getNodes()[0]) == len(bodies[0].points)
 
 

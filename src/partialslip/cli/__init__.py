@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from partialslip import __version__
-from partialslip.cli import maps, page, run
+from partialslip.cli import maps, page, run, score, study
 from partialslip.errors import InputError, PartialslipError
 from partialslip.reading import shipped_scenes
 
@@ -31,6 +31,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except PartialslipError as error:
         print(f"partialslip: {error}", file=sys.stderr)
         return 2
+    except MemoryError:
+        print("partialslip: not enough memory: ask for less accuracy, or larger elements", file=sys.stderr)
+        return 2
     except BrokenPipeError:  # whoever read the output has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
@@ -48,7 +51,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"partialslip {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
 
-    for command in (run, maps, page):
+    for command in (run, maps, page, study, score):
         command.add(commands)
 
     scenes = commands.add_parser("scenes", help="list the shipped scenes")

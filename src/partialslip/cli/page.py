@@ -35,10 +35,9 @@ def _page(options: argparse.Namespace) -> int:
 
     from rich.console import Console
 
-    from partialslip.report import live_page, write_files
+    from partialslip.report import live_page, write_texts
 
-    text = live_page(scene)
     folder = Path(options.out) if options.out else Path("results") / f"{scene.name}-page"
-    files = write_files(folder, {"page.html": lambda path: path.write_text(text, "utf-8")})
+    files = write_texts(folder, {"page.html": live_page(scene)})
     print_written(files, Console(highlight=False))
     return 0

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,8 @@ from partialslip.state import State, load_state
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
+    from partialslip.scene import Scene
+    from partialslip.study.prices import Price
 
 
 def add(commands: "Commands") -> None:
@@ -29,7 +32,10 @@ def add(commands: "Commands") -> None:
     runs.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
                       help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
     runs.add_argument("--accuracy", metavar="FRACTION",
-                      help="of a, m and n, as a fraction of a; short for --set fem.accuracy=FRACTION")  # fmt: skip
+                      help="of a, m and n, as a fraction of a: fem takes the elements that reach it for the least, by "
+                      "the price list, unless --set fem.order says which")  # fmt: skip
+    runs.add_argument("--budget", metavar="SECONDS",
+                      help="CPU seconds, e.g. 5s: fem takes the best accuracy to be had for that")  # fmt: skip
     runs.add_argument("--fields", action="store_true",
                       help="also stresses: compared, and written to surface.csv and bodies.vtu")  # fmt: skip
     runs.add_argument("--start", metavar="FILE",
@@ -42,20 +48,19 @@ def add(commands: "Commands") -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    overrides = [*options.overrides]
-    if options.accuracy is not None:
-        try:
-            overrides.append(f"fem.accuracy={float(options.accuracy)!r}")
-        except ValueError:
-            raise InputError(f"--accuracy {options.accuracy!r}: must be a number, for example 1e-4") from None
     methods = None if options.methods is None else [method.strip() for method in options.methods.split(",")]
     for method in methods or []:
         if method not in METHODS:
             raise InputError(f"--with {method!r}: must be of {', '.join(METHODS)}")
     check_folder(options.out)
+    if options.save == "":
+        raise InputError("--save '': must name a file")
     if options.fields and methods and "fem" not in methods:
         raise InputError("--fields: needs the method fem")
-    scene = load_scene(options.scene, overrides)
+    scene = load_scene(options.scene, options.overrides)
+    price = _price(options, scene)
+    if price:
+        scene = load_scene(options.scene, [*price.overrides, *options.overrides])
     start = load_state(options.start) if options.start is not None else None
 
     from rich.console import Console
@@ -63,6 +68,8 @@ def _run(options: argparse.Namespace) -> int:
     from partialslip.report import print_run, record, write_files, write_run
 
     messages = Console(stderr=True, highlight=False)
+    if price:
+        messages.print(f"{price}, predicted", soft_wrap=True, markup=False)
     with messages.status(f"{scene.name} ...") as status:
         outcome = run(
             scene,
@@ -71,18 +78,47 @@ def _run(options: argparse.Namespace) -> int:
             progress=lambda line: status.update(f"{scene.name}: {line}"),
             start=start,
         )
-        folder = Path(options.out) if options.out else None if options.json else Path("results") / scene.name
-        files = write_run(outcome, folder) if folder else []
+        files = []
         if options.save is not None:
             save = Path(options.save)
             files += write_files(save.parent, {save.name: _state(outcome).save})
+        folder = Path(options.out) if options.out else None if options.json else Path("results") / scene.name
+        files += write_run(outcome, folder) if folder else []
     if options.json:
         print(json.dumps(record(outcome), indent=1, allow_nan=False))
     else:
         console = Console(highlight=False)
         print_run(outcome, console)
+        if price and "fem" in outcome.results:
+            took = outcome.results["fem"].cost.cpu_s
+            console.print(f"{price}, predicted; {took:.2g} CPU s, actual", soft_wrap=True, markup=False)
         print_written(files, console)
     return 0 if outcome.passed else 1
+
+
+def _price(options: argparse.Namespace, scene: "Scene") -> "Price | None":
+    """What --accuracy or --budget asks for."""
+    if options.accuracy is None and options.budget is None:
+        return None
+    if options.accuracy is not None and options.budget is not None:
+        raise InputError("--budget: not together with --accuracy")
+    from partialslip.study.prices import load_prices
+
+    prices = load_prices()
+    if options.accuracy is not None:
+        try:
+            accuracy = float(options.accuracy)
+        except ValueError:
+            raise InputError(f"--accuracy {options.accuracy!r}: must be a number, for example 1e-4") from None
+        check = load_scene(options.scene, [*options.overrides, f"fem.accuracy={accuracy!r}"])
+        return prices.cheapest(check, accuracy)
+    try:
+        budget = float(options.budget.removesuffix("s"))
+    except ValueError:
+        budget = 0.0
+    if not 0 < budget < math.inf:
+        raise InputError(f"--budget {options.budget!r}: must be seconds, more than 0, for example 5s")
+    return prices.best(scene, budget)
 
 
 def _state(outcome: Run) -> State:

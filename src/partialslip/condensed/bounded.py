@@ -20,7 +20,7 @@ class Solution:
     ``rest`` (n,) is C x - g - shift: zero between the bounds, what a bound holds back elsewhere, at the lower one
     never negative and at the upper one never positive. ``residual`` (n,) is the distance of each multiplier from its
     augmented projection, ``imbalance`` that of the sum from the total, both in units of x; ``iterations`` counts the
-    faces solved.
+    faces solved, and ``changes`` how often members changed sides: never where a linear solve was all that it took.
     """
 
     x: Array
@@ -28,6 +28,7 @@ class Solution:
     residual: Array
     imbalance: float
     iterations: int
+    changes: int = 0
 
     @property
     def sides(self) -> Sides:
@@ -70,10 +71,11 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, 
         if following in (low, high, shift) or not np.isfinite(following):
             break  # the sum cannot come closer to the total in this arithmetic
         shift = following
-    x = np.clip(x, lower, upper)  # but for rounding it is within
+    found, x = x, np.clip(x, lower, upper)  # but for rounding it is within; whatever the clip does is to be certified
+    r = r + C @ (x - found)
     residual = np.abs(x - np.clip(x - r / np.diag(C), lower, upper))
     rest = np.clip(r, np.where(x < upper, 0.0, -np.inf), np.where(x > lower, 0.0, np.inf))
-    return Solution(x, rest, residual, abs(excess), pivoting.iterations)
+    return Solution(x, rest, residual, abs(float(x.sum()) - total), pivoting.iterations, pivoting.changes)
 
 
 class _BlockPivoting:
@@ -94,7 +96,7 @@ class _BlockPivoting:
         if start is not None and (start == 0).any():
             self._side[:] = start
         self._factored: npt.NDArray[np.bool_] | None = None
-        self.iterations = 0
+        self.iterations = self.changes = 0
 
     def first_shift(self, total: float) -> float:
         """The shift that gives the total with the sides to begin with."""
@@ -106,6 +108,7 @@ class _BlockPivoting:
         steps = np.where(self._side == (-1 if more else 1), np.abs(r), np.inf)
         nearest = int(np.argmin(steps))
         self._side[nearest] = 0
+        self.changes += 1
         return float(steps[nearest] if more else -steps[nearest])
 
     def solve(self, shift: float) -> tuple[Array, Array, float]:
@@ -132,6 +135,7 @@ class _BlockPivoting:
                     rounding *= 16
                     seen.clear()
                 seen.add(partition)
+            self.changes += 1
             self._side[wrong] = np.where(self._side[wrong] == 0, wanted[wrong], 0)
 
     def _face(self, shift: float) -> tuple[Array, float]:

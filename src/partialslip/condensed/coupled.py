@@ -23,9 +23,10 @@ _PATIENCE = 4  # iterations without progress before another way is taken
 
 @dataclass(frozen=True)
 class Relative:
-    """Relative compliances (n, n) of two bodies' contact nodes; ``xy`` is None where it vanishes."""
+    """Relative compliances (n, n) of two bodies' contact nodes; ``xy`` is None where it vanishes or is left out, and
+    so is ``xx`` without friction."""
 
-    xx: Array
+    xx: Array | None
     yy: Array
     xy: Array | None
 
@@ -79,7 +80,7 @@ class _Step:
                 p_left = np.abs(p_new - np.maximum(pushed, 0.0)) + np.abs(p_new - p_in)
                 q_left = np.where(touch, np.abs(q_new - np.clip(augmented, -bound, bound)), zero)
                 return (
-                    Solution(p_in, p_rest, p_left, p_off, iteration),
+                    Solution(p_in, p_rest, p_left, p_off, iteration, iteration - 1),
                     Solution(q_in, q_rest, q_left, q_off, 0),
                 )
             wrong = int((touches != touch).sum() + (slips != slip).sum())
@@ -122,7 +123,7 @@ class _Step:
 
 
 def march(
-    C: Relative, gap: Array, x: Array, f: float, path: Path, pressed: Array | None = None
+    C: Relative, gap: Array, stretch: Array, f: float, path: Path, pressed: Array | None = None
 ) -> tuple[History, Solution]:
     """Press the bodies together and go along the path; the history, and the normal forces at load point 2 with the
     residuals of all steps.
@@ -132,22 +133,30 @@ def march(
     Parameters
     ----------
     C : Relative
-    gap, x : (n,) arrays
-        Gap before loading, and where it is.
+    gap : (n,) array
+        Gap before loading.
+    stretch : (2, n) array
+        Displacements of the lower surface, along x and y, under the tension that strains a long body by 1.
     f : float
         Coefficient of friction.
     path : Path
     pressed : (n,) array, optional
         Normal forces where the path does not begin with bodies apart.
     """
-    xy = C.xy if C.xy is not None else 0 * C.xx
-    done = [(resting(0 * x if pressed is None else pressed), resting(0 * x if path.before is None else path.before))]
+    assert C.xx is not None
+    xx, xy = C.xx, C.xy if C.xy is not None else 0 * C.xx
+    done = [
+        (resting(0 * gap if pressed is None else pressed), resting(0 * gap if path.before is None else path.before))
+    ]
     cycle = len(path.cycle) * path.substeps
+    gap = gap - path.begin[1] * stretch[1]
 
-    def advance(before: Solution, Q: float, stretch: float, P: float = 1.0) -> tuple[Solution, Array]:
-        kept = C.xx @ before.x + xy @ done[-1][0].x + stretch * x
+    def advance(before: Solution, Q: float, strain: float, P: float = 1.0) -> tuple[Solution, Array]:
+        nonlocal gap
+        gap = gap - strain * stretch[1]
+        kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0]
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the step before, and this one a cycle ago
-        pressed, sheared = _solve(_Step(C.xx, C.yy, xy, f, P, gap, Q, kept), starts)
+        pressed, sheared = _solve(_Step(xx, C.yy, xy, f, P, gap, Q, kept), starts)
         done.append((replace(pressed, residual=np.maximum(pressed.residual, sheared.residual / f)), sheared))
         return sheared, f * pressed.x
 
@@ -161,6 +170,7 @@ def march(
         residual=np.max([pressed.residual for pressed, _ in done], axis=0),
         imbalance=max(pressed.imbalance for pressed, _ in done),
         iterations=sum(pressed.iterations for pressed, _ in done),
+        changes=sum(pressed.changes + sheared.changes for pressed, sheared in done),
     )
 
 
@@ -168,19 +178,20 @@ def _solve(step: _Step, starts: Sequence[tuple[Solution, Solution]]) -> tuple[So
     """Newton's iteration on all of the conditions, from the partitions of what may be near, until one is its own. If
     none is, a sweep of the fixed point, which contracts for all but the largest friction, brings a better one; if that
     does not help, either, rounding has stopped the sweeps."""
-    iterations, least, chances = 0, np.inf, _PATIENCE
+    iterations, changes, least, chances = 0, 0, np.inf, _PATIENCE
     while chances > 0:
         for p, q in reversed(starts):
             if (p.x > 0).any() and (together := step.newton(p, q)):
                 p, q = together
-                return p, replace(q, iterations=iterations)
+                return p, replace(q, iterations=iterations, changes=changes)
         p, q = step.sweep(*starts[0])
         starts = [(p, q)]
         iterations += p.iterations + q.iterations
+        changes += p.changes + q.changes
         left = float(p.residual.max())
         chances = _PATIENCE if left < least else chances - 1
         least = min(left, least)
-    return replace(p, iterations=0), replace(q, iterations=iterations)
+    return replace(p, iterations=0, changes=0), replace(q, iterations=iterations, changes=changes)
 
 
 def _spread(values: Array, where: npt.NDArray[np.int64], count: int) -> Array:

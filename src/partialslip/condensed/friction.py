@@ -19,6 +19,7 @@ from partialslip.state import State
 
 _REPEATS = 1e-13  # change of a node's q in a cycle, in the sum of |q|, that is rounding
 _STEADY = 1e-6  # change of q from cycle to cycle, in its range or in f p0, that counts as none
+_SLIPS = 1e-9  # what is missing of the bound, relative, that is rounding
 _RATCHETS = 1e-3  # net slip of a cycle, in the slip of half a cycle, that counts where q has settled
 
 
@@ -27,7 +28,8 @@ class Path:
     """Where the loads go: (Q, relative strain of the surfaces due to bulk tension) at the points of a cycle, scaled.
 
     ``ends`` are the indices of load points 1 and 2, the extremes of the cycle. The path begins at ``begin``, with the
-    tangential forces ``before`` (n,); without those there are none.
+    tangential forces ``before`` (n,); without those there are none. Of one that is fully reversed, in one step, from
+    nothing on, ``half`` a cycle will do: the first loading.
     """
 
     cycle: tuple[tuple[float, float], ...]
@@ -37,6 +39,7 @@ class Path:
     substeps: int
     begin: tuple[float, float] = (0.0, 0.0)
     before: Array | None = None
+    half: bool = False
 
 
 @dataclass(frozen=True)
@@ -62,6 +65,8 @@ class History:
         Work against friction over the last cycle.
     end : two (n,) arrays
         Tangential forces, and f times the normal forces, at the end of the path.
+    load_steps : int
+        Steps solved.
     """
 
     path: Path
@@ -74,6 +79,7 @@ class History:
     net_slip: Array
     dissipated: float
     end: tuple[Array, Array]
+    load_steps: int
 
     def of(self, nodes: npt.NDArray[np.int64]) -> "History":
         """That of some of the nodes."""
@@ -112,18 +118,26 @@ class History:
 
     @property
     def cycles(self) -> int:
-        """Cycles followed."""
-        return len(self.points) // len(self.path.cycle)
+        """Cycles followed; none where the first loading tells the whole."""
+        return 0 if self.path.half else len(self.points) // len(self.path.cycle)
 
     @property
-    def load_steps(self) -> int:
-        """Steps solved."""
-        return len(self.points) * self.path.substeps
+    def opposing(self) -> int:
+        """Nodes that slip against the others from load point 1 to 2."""
+        held = self.bound > 0
+        slips = np.abs(self.change[held]) >= (2 - _SLIPS) * self.bound[held]
+        ways = np.sign(self.change[held][slips])
+        return int(min((ways > 0).sum(), (ways < 0).sum()))
 
     @property
     def iterations(self) -> int:
         """Faces solved."""
         return sum(step.iterations for step in self.points)
+
+    @property
+    def changes(self) -> int:
+        """How often what sticks and what slips had to be changed: never where linear solves did."""
+        return sum(step.changes for step in self.points)
 
 
 class Verdict(NamedTuple):
@@ -137,21 +151,21 @@ class Verdict(NamedTuple):
 
 def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | None:
     """The path of the loads, from ``start`` if there is one, scaled; None where there is no friction to solve."""
-    if not plan.needs("friction") or slides(scene):
+    if not plan.needs("friction"):
         return None
-    P, L, load = scene.P, scene.length, scene.load
-    of_lower = scene.material.bodies[0].A / scene.material.A
+    P, load = scene.P, scene.load
     begins = (start.Q, start.sigma) if start else (0.0, 0.0)
-    begin, *cycle = ((Q / P, of_lower * sigma * L / (4 * P)) for Q, sigma in (begins, *load.points))
-    return Path(tuple(cycle), load.ends, load.in_phase, load.cycles, load.steps, begin)
+    begin, *cycle = ((Q / P, lower_strain(scene, sigma)) for Q, sigma in (begins, *load.points))
+    half = start is None and not plan.needs("history")
+    return Path(tuple(cycle), load.ends, load.in_phase, load.cycles, load.steps, begin, half=half)
 
 
-def slides(scene: Scene) -> bool:
-    """Whether friction cannot carry Q: no forces within the bound could sum to it."""
-    return max(abs(Q) for Q, _ in scene.load.points) >= scene.friction.f * scene.P
+def lower_strain(scene: Scene, sigma: float) -> float:
+    """Of a long body under the tension ``sigma``, scaled."""
+    return scene.material.bodies[0].A / scene.material.A * sigma * scene.length / (4 * scene.P)
 
 
-def march(tangential: Array, x: Array, bound: Array, path: Path) -> History:
+def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> History:
     """Tangential forces along the path at constant pressure, every step of it certified.
 
     A step is then a convex problem: where nothing slips, the relative displacement keeps what it was, so that
@@ -161,18 +175,18 @@ def march(tangential: Array, x: Array, bound: Array, path: Path) -> History:
     ----------
     tangential : (n, n) array
         Relative compliance C of what is in contact.
-    x : (n,) array
-        Where it is.
+    stretch : (n,) array
+        Displacements of the lower surface along x under the tension that strains it by 1: where it is.
     bound : (n,) array
         f times its normal forces.
     path : Path
     """
 
-    def advance(before: Solution, Q: float, stretch: float) -> tuple[Solution, Array]:
-        free = tangential @ before.x + stretch * x
+    def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
+        free = tangential @ before.x + strain * stretch
         return solve_bounded(tangential, free, -bound, bound, Q, before.sides), bound
 
-    return follow(path, advance, resting(0 * x if path.before is None else path.before))
+    return follow(path, advance, resting(0 * bound if path.before is None else path.before))
 
 
 Advance = Callable[[Solution, float, float], tuple[Solution, Array]]
@@ -186,13 +200,15 @@ def resting(forces: Array) -> Solution:
 
 def follow(path: Path, advance: Advance, before: Solution) -> History:
     """Go along the path, step by step: to its last load point, and then cycle after cycle, until one has changed
-    nothing (what comes then is that cycle again) or all of them are done.
+    nothing (what comes then is that cycle again) or all of them are done. Half a cycle is the first of these steps.
 
     ``advance`` takes the solution before a step, Q after it and the increment of the free relative strain to the
     solution after it, whose ``rest`` is the slip, turned round; and f times the normal forces after it.
     """
     went, load = _go(path, advance, before, np.array(path.begin), path.cycle[-1:])
     points = [_certified(went[0])]
+    if path.half:
+        return _reversed(path, points[0], went[0][0][1])
     for _ in range(path.cycles):
         went, load = _go(path, advance, points[-1], load, path.cycle)
         points += [_certified(way) for way in went]
@@ -214,6 +230,26 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
         net_slip=slips[-1],
         dissipated=-sum(float(step.x @ step.rest) for step in steps),
         end=(ends[-1][0].x, ends[-1][1]),
+        load_steps=len(points) * path.substeps,
+    )
+
+
+def _reversed(path: Path, first: Solution, bound: Array) -> History:
+    """The cycle that a first loading to load point 2 tells: on the way from 1 to 2 all is doubled (Masing's rule)."""
+    forces, slip = first.x, -2 * first.rest
+    way = replace(first, rest=2 * first.rest, iterations=0, changes=0)
+    return History(
+        path=path,
+        points=[first, replace(way, x=-forces, rest=-way.rest), way],
+        at_ends=(-forces, forces),
+        q1=-forces,
+        q2=forces,
+        bounds=(bound, bound),
+        slip=slip,
+        net_slip=0 * slip,
+        dissipated=2 * float(forces @ slip),
+        end=(forces, bound),
+        load_steps=1,
     )
 
 
@@ -243,25 +279,29 @@ def _certified(way: _Way) -> Solution:
         residual=np.max([step.residual for step in steps], axis=0),
         imbalance=max(step.imbalance for step in steps),
         iterations=sum(step.iterations for step in steps),
+        changes=sum(step.changes for step in steps),
     )
 
 
 def certificate(history: History, weights: Array, f: float, p0: float) -> dict[str, float]:
     """``kkt``: residuals as tractions, in f p0; ``equilibrium``: of Q, relative to f P; ``steady``: change of q between
-    the last two visits of the last load point, in f p0. ``weights`` (n,) turn tractions into forces."""
+    the last two visits of the last load point, in f p0, where a whole cycle has been followed. ``weights`` (n,) turn
+    tractions into forces."""
     held, points = weights * f * p0, history.points
-    return {
+    closed = {
         "kkt": max(float((step.residual / held).max()) for step in points),
         "equilibrium": max(step.imbalance for step in points) / f,
-        "steady": float((np.abs(points[-1].x - points[-1 - len(history.path.cycle)].x) / held).max()),
     }
+    if history.path.half:
+        return closed
+    return closed | {"steady": float((np.abs(points[-1].x - points[-1 - len(history.path.cycle)].x) / held).max())}
 
 
 def judge(scene: Scene, history: History | None, stick: Zone | None, half_width: float) -> Verdict:
     """What it means that the stick zone of ``scene`` has been found to be ``stick`` (None: there was no friction to
     solve), in a contact of ``half_width``; lengths in any one unit."""
     load = scene.load
-    if slides(scene):
+    if scene.slides:
         note = "the contact slides: |Q| >= f P at a load point; there is no steady partial slip"
         return Verdict("sliding", None, None, (note,))
     if history is None or stick is None or (load.dQ == 0 and load.dsigma == 0):  # nothing changes: all of it sticks

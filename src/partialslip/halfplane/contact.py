@@ -19,6 +19,8 @@ from partialslip.result import Array
 from partialslip.scene import Hertz as HertzProfile
 from partialslip.scene import Scene
 
+_HARDLY = 1e-9  # of its flat: by less than that rounding says how much wider a contact is
+
 
 @dataclass(frozen=True)
 class Contact:
@@ -47,7 +49,7 @@ def contact(scene: Scene) -> Contact:
     Raises
     ------
     InputError
-        If the contact reaches beyond a tabulated profile, or the bodies' materials differ.
+        If the contact reaches beyond a tabulated profile, or hardly beyond its flat, or the bodies' materials differ.
     """
     if not scene.material.alike:
         raise InputError(
@@ -69,7 +71,10 @@ def contact(scene: Scene) -> Contact:
         return float(((inner + beyond) * math.sqrt(1 / (2 * A * P))) ** 2 * (steps @ punch_force(psi(beyond)))) - 1
 
     scale = math.log(max(inner, scene.length))
-    low, high = scale - 120.0, (math.log(reach - inner) if reach < math.inf else scale + 120.0)
+    low = math.log(_HARDLY * inner) if inner > 0 else scale - 120.0
+    if excess(low) > 0:
+        raise InputError(f"load.P = {P:g}: must press the contact beyond its flat, by more than {_HARDLY:g} of that")
+    high = math.log(reach - inner) if reach < math.inf else scale + 120.0
     if excess(high) < 0:
         raise InputError(f"load.P = {P:g}: the contact reaches beyond profile.x, which ends at {reach:g}")
     beyond = math.exp(brentq(excess, low, high, xtol=1e-15, rtol=8.9e-16))

@@ -131,8 +131,11 @@ def _result(
         settings={"model": "two half-planes, exact pressure, cells of constant shear", "accuracy": scene.fem.accuracy},
         counts={
             "cells": len(x),
+            "tangential_unknowns": len(x) if history else 0,
             "cycles": history.cycles if history else 0,
             "load_steps": history.load_steps if history else 0,
+            "friction_iterations": history.changes if history else 0,
+            "opposing_nodes": history.opposing if history else 0,
             **counts,
         },
         certificate=certified,

@@ -69,7 +69,7 @@ def solve(
         cost=clock.cost(),
         slip=_slip(scene, pressed, zone, turn, mirror) if zone and regime not in ("stuck", "ratchets") else None,
         settings={"model": "two half-planes, steady state"},
-        limits=_limits(scene, pressed, zone) if plan.needs("friction") else {},
+        limits=_limits(scene, pressed, zone) if plan.needs("friction") or (scene.slides and f > 0) else {},
         notes=_notes(regime, levels, _turns_round(scene, p0, zone)),
         surface=surface,
         stress_at=stress.inside if stress else None,
@@ -79,10 +79,10 @@ def solve(
 def _steady_state(scene: Scene, plan: Plan, pressed: Contact) -> tuple[Regime, StickZone | None]:
     """Regime and stick zone (scaled, for positive dQ and dsigma; None where the contact slides)."""
     f, load, limit = scene.friction.f, scene.load, scene.friction.f * scene.P
-    if plan.needs("friction") and (abs(load.dQ) >= 2 * limit or max(abs(Q) for Q, _ in load.points) >= limit):
+    if scene.slides:
         return "sliding", None
     if not plan.needs("friction"):
-        return ("sliding", None) if f == 0 else ("stuck", StickZone(0.0, 1.0, 1))
+        return "stuck", StickZone(0.0, 1.0, 1)
     if load.dQ == 0 and load.dsigma == 0:
         return "stuck", StickZone(0.0, 1.0, 1)
     zone = stick_zone(abs(load.dQ) / (2 * limit), abs(load.dsigma) / (f * pressed.p0), pressed.shape)

@@ -125,7 +125,7 @@ def rule_between(ends: Array, edge: Array | float, c: Array | float, side: int) 
     return Rule(np.clip(t, -1.0, 1.0), points, (half * _WEIGHTS).reshape(points.shape))
 
 
-def _double_exponential(count: int) -> tuple[Array, Array, Array]:
+def double_exponential(count: int) -> tuple[Array, Array, Array]:
     """Nodes in (-1, 1), their distances from 1, and weights of the tanh-sinh rule."""
     k = np.linspace(-3.2, 3.2, count)
     u = np.pi / 2 * np.sinh(k)
@@ -133,4 +133,4 @@ def _double_exponential(count: int) -> tuple[Array, Array, Array]:
     return np.tanh(u), 2 / (1 + np.exp(2 * u)), weights
 
 
-_NODES, _TO_END, _WEIGHTS = _double_exponential(81)
+_NODES, _TO_END, _WEIGHTS = double_exponential(81)

@@ -5,12 +5,12 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-from partialslip.halfplane.shape import Shape
+from partialslip.halfplane.shape import Shape, double_exponential
 from partialslip.halfplane.steady import StickZone
 from partialslip.result import Array
 
 _AT_ONCE = 2**22  # pairs of points in memory
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(60)
+_NODES, _, _WEIGHTS = double_exponential(81)  # kinks of p are logarithms
 
 
 def half_range(x: Array, zone: StickZone, shape: Shape) -> Array:

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from partialslip.result import Array, Result
-from partialslip.run import Run
+from partialslip.run import ALL_EFFECTS, Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _MARKERS = 41
-_P_MARKS = {"march": "x", "fem": "+"}
-_Q_MARKS = {"march": "s", "fem": "o"}
+_P_MARKS = {"march": "x", "fem": "+", ALL_EFFECTS: "1"}
+_Q_MARKS = {"march": "s", "fem": "o", ALL_EFFECTS: "D"}
 _STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",  # text stays text
     "svg.hashsalt": "partialslip",  # the same run gives the same file
@@ -60,7 +60,7 @@ def draw_tractions(axes: "Axes", results: Mapping[str, Result], f: float | None 
         axes.axvspan(-reference.m / a, reference.n / a, color="0.88", lw=0, label="stick zone [-m, n]")
     shears = bool(reference.traction.dq.any())
     for name, result in results.items():
-        traction = result.traction
+        traction, name = result.traction, name.replace("$", r"\$")
         if traction.cells is None:
             x, p, q = traction.x, traction.p, traction.dq / 2
             axes.plot(x / a, p / p0, color="0.45", lw=1, ls="--", label=f"p/p0, {name}")
@@ -71,12 +71,12 @@ def draw_tractions(axes: "Axes", results: Mapping[str, Result], f: float | None 
         else:
             x = _spread(result)
             p, dq = traction.at(x)
-            axes.plot(x / a, p / p0, _P_MARKS[name], ms=6, color="black", ls="", label=f"p/p0, {name}")
+            axes.plot(x / a, p / p0, _P_MARKS.get(name, "x"), ms=6, color="black", ls="", label=f"p/p0, {name}")
             if shears:
                 axes.plot(
                     x / a,
                     dq / 2 / unit,
-                    _Q_MARKS[name],
+                    _Q_MARKS.get(name, "s"),
                     mfc="white",
                     mec="black",
                     ms=4.5,

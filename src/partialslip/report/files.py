@@ -1,11 +1,12 @@
 """Files: whole ones or none, whenever it is stopped; and those of a run."""
 
 import csv
+import glob
 import io
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -17,6 +18,11 @@ from partialslip.report.figure import traction_svg
 from partialslip.report.page import page
 from partialslip.report.record import record
 from partialslip.run import Run
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
 
 
 def write_run(run: Run, folder: Path) -> list[Path]:
@@ -59,42 +65,86 @@ def write_files(folder: Path, files: Mapping[str, Callable[[Path], object]]) -> 
     return [folder / name for name in files]
 
 
+def write_texts(folder: Path, texts: Mapping[str, str]) -> list[Path]:
+    """Write files of UTF-8 text, by name, as :func:`write_files` does."""
+
+    def writer(text: str) -> Callable[[Path], object]:
+        return lambda path: path.write_text(text, "utf-8")
+
+    return write_files(folder, {name: writer(text) for name, text in texts.items()})
+
+
+def csv_text(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """A table as the text of a CSV file."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows(rows)
+    return text.getvalue()
+
+
 def tractions_csv(run: Run) -> str:
     """Tractions of every method, one row a point; SI units, empty where a method does not determine a value."""
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    writer.writerow(["method", *next(iter(run.results.values())).columns])
+    rows: list[list[object]] = []
     for name, result in run.results.items():
         columns = result.columns.values()
         listed = [[""] * len(result.traction.x) if column is None else column.tolist() for column in columns]
-        writer.writerows([name, *row] for row in zip(*listed, strict=True))
-    return table.getvalue()
+        rows += [[name, *row] for row in zip(*listed, strict=True)]
+    return csv_text(["method", *next(iter(run.results.values())).columns], rows)
 
 
 def surface_csv(run: Run) -> str:
     """sigma_xx along the surfaces by every method that knows it, one row a point; SI units."""
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    writer.writerow(["method", "x", "x_over_a", "lower_1", "lower_2", "upper_1", "upper_2"])
+    rows: list[list[object]] = []
     for name, result in run.results.items():
         if surface := result.surface:
             columns = np.vstack([surface.x, surface.x / result.a, *surface.sigma[0], *surface.sigma[1]])
-            writer.writerows([name, *row] for row in columns.T.tolist())
-    return table.getvalue()
+            rows += [[name, *row] for row in columns.T.tolist()]
+    return csv_text(["method", "x", "x_over_a", "lower_1", "lower_2", "upper_1", "upper_2"], rows)
 
 
 @contextmanager
 def _replacing(path: Path) -> Iterator[Path]:
-    """A path beside ``path`` to write to, which takes its place when the block ends well."""
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
-    os.close(handle)
+    """A path beside ``path`` to write to, which takes its place when the block ends well. What a write that was killed
+    has left there goes."""
+    beginning, ending = f".{path.stem}-", f".partial{path.suffix}"
+    for left in path.parent.glob(glob.escape(beginning) + "*" + glob.escape(ending)):
+        _unlink_if_free(left)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=beginning, suffix=ending)
     beside = Path(name)
     try:
+        _lock(handle)
         yield beside
         beside.chmod(0o666 & ~_umask())
+        os.fsync(handle)  # its content must be there before its name is
         beside.replace(path)
     finally:
+        os.close(handle)
         beside.unlink(missing_ok=True)
+
+
+def _lock(handle: int) -> bool:
+    """Whether the file is now locked to this process; the lock ends with the process, however that ends."""
+    if fcntl is None:
+        return False
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:  # another one's, or no locks here
+        return False
+    return True
+
+
+def _unlink_if_free(path: Path) -> None:
+    """Remove a file that no process writes any more."""
+    try:
+        handle = os.open(path, os.O_RDWR)
+    except OSError:
+        return
+    try:
+        if _lock(handle):
+            path.unlink(missing_ok=True)
+    finally:
+        os.close(handle)
 
 
 def _umask() -> int:

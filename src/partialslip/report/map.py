@@ -1,14 +1,11 @@
 """The files of a stick-zone map, and a scene's place on it in words."""
 
-import csv
-import io
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from partialslip.report import rows
-from partialslip.report.files import write_files
+from partialslip.report.files import csv_text, write_texts
 from partialslip.report.mapfigure import ends_svg, map_svg
 from partialslip.report.stickmap import StickMap
 
@@ -18,7 +15,7 @@ def write_map(data: StickMap, folder: Path) -> list[Path]:
     cannot be written.
     """
     texts = {"map.svg": map_svg(data), "ends.svg": ends_svg(data), "map.csv": map_csv(data)}
-    return write_files(folder, {name: _writer(text) for name, text in texts.items()})
+    return write_texts(folder, texts)
 
 
 def map_csv(data: StickMap) -> str:
@@ -31,11 +28,8 @@ def map_csv(data: StickMap) -> str:
         f = data.scene.friction.f
         columns |= {"dQ": 2 * f * data.pressed.P * grid.Qf, "dsigma": f * data.pressed.p0 * grid.sf}
     columns |= {"m_over_a": grid.m, "n_over_a": grid.n, "half_width_over_a": grid.half_width}
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    writer.writerow([*columns, "regime"])
-    writer.writerows(zip(*(values.ravel().tolist() for values in (*columns.values(), regime)), strict=True))
-    return table.getvalue()
+    values = (column.ravel().tolist() for column in (*columns.values(), regime))
+    return csv_text([*columns, "regime"], zip(*values, strict=True))
 
 
 def place(data: StickMap) -> list[str]:
@@ -50,7 +44,3 @@ def place(data: StickMap) -> list[str]:
     mirrored = " (dQ and dsigma differ in sign: on the map m and n change places)" if point.mirrored else ""
     limits = rows.limits(exact)
     return [f"{name}: {exact.regime}, {ends}{reached}{mirrored}", *([limits] if limits else [])]
-
-
-def _writer(text: str) -> Callable[[Path], object]:
-    return lambda path: path.write_text(text, "utf-8")

@@ -24,6 +24,7 @@ def record(run: Run, *, curves: bool = True) -> dict[str, Any]:
         "plan": {
             "called_for": list(run.plan.called_for),
             "left_out": list(run.plan.left_out),
+            "missing": list(run.plan.missing),
             "reasons": {**run.plan.called_for, **run.plan.left_out},
         },
         "methods": {name: _method(result, curves) for name, result in run.results.items()},
@@ -44,6 +45,7 @@ def _method(result: Result, curves: bool) -> dict[str, Any]:
 def _figures(result: Result) -> dict[str, Any]:
     return {
         **{key: getattr(result, key) for key in ("a", "p0", "regime", "m", "n", "stick_half_width", "stick_centre")},
+        "p_max": float(result.traction.p.max()),
         **{key: result.counts[key] for key in ("dofs", "contact_nodes") if key in result.counts},
         **{key: dict(getattr(result, key)) for key in ("settings", "counts", "limits", "certificate", "estimate")},
         "notes": list(result.notes),

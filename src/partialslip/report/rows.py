@@ -3,6 +3,7 @@
 import numpy as np
 
 from partialslip.compare import Comparison
+from partialslip.plan import Plan
 from partialslip.result import Result
 from partialslip.run import Run
 
@@ -63,7 +64,20 @@ def verdict(run: Run) -> str:
         return "nothing to compare with"
     if run.judged:
         return "all bars met"
-    return f"no bars: {'finite bodies' if run.scene.finite else 'the element size was given'}"
+    if run.plan.missing:
+        return f"no bars: forced off: {', '.join(run.plan.missing)}; the errors are what that is worth"
+    reasons = {"finite bodies": run.scene.finite, "the element size was given": run.scene.fem.size is not None}
+    return "no bars: " + next((why for why, applies in reasons.items() if applies), "none were asked for")
+
+
+def effects(plan: Plan) -> list[tuple[str, str, str]]:
+    """Whether it is called for or left out (in the first row of either), effect, and why."""
+    groups = {"called for": plan.called_for, "left out": plan.left_out}
+    return [
+        (title if number == 0 else "", effect, why)
+        for title, group in groups.items()
+        for number, (effect, why) in enumerate(group.items())
+    ]
 
 
 def value(result: Result, key: str) -> str:
@@ -139,8 +153,8 @@ def facts(result: Result, compared: bool = False) -> dict[str, str]:
 
 
 def work(result: Result) -> str:
-    """What was built and counted."""
-    counts = ", ".join(f"{count:,} {name.replace('_', ' ')}" for name, count in result.counts.items())
+    """What was built and counted, but for what was not."""
+    counts = ", ".join(f"{count:,} {name.replace('_', ' ')}" for name, count in result.counts.items() if count)
     settings = ", ".join(f"{name.replace('_', ' ')} {setting(choice)}" for name, choice in result.settings.items())
     return "; ".join(part for part in (settings, counts) if part)
 

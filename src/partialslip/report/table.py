@@ -1,5 +1,7 @@
 """The terminal's view of a run."""
 
+from collections.abc import Container, Iterable, Sequence
+
 from rich import box
 from rich.console import Console
 from rich.table import Table
@@ -17,14 +19,24 @@ def print_run(run: Run, console: Console) -> None:
         console.print(_errors(run, name))
     for name, result in run.results.items():
         _print_lines(console, name, rows.facts(result, compared=bool(run.comparisons)))
+    _print_effects(console, run)
     console.print(rows.verdict(run), style="bold", markup=False)
 
 
+def print_table(console: Console, headings: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> None:
+    """Print ``rows`` under ``headings``; the first ``left`` columns are of words, the others of numbers."""
+    console.print(_table(headings, rows, set(range(left))))
+
+
 def _errors(run: Run, name: str) -> Table:
+    return _table(rows.headings(run, name), rows.error_rows(run, name), {0, 5})
+
+
+def _table(headings: Sequence[str], cells: Iterable[Sequence[str]], words: Container[int]) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
-    for number, heading in enumerate(rows.headings(run, name)):
-        table.add_column(heading, justify="left" if number in (0, 5) else "right", no_wrap=True)
-    for row in rows.error_rows(run, name):
+    for number, heading in enumerate(headings):
+        table.add_column(Text(heading), justify="left" if number in words else "right", no_wrap=True)
+    for row in cells:
         table.add_row(*row)
     return table
 
@@ -33,4 +45,11 @@ def _print_lines(console: Console, name: str, lines: dict[str, str]) -> None:
     grid = Table.grid(padding=(0, 2))
     for number, (key, text) in enumerate(lines.items()):
         grid.add_row(name if number == 0 else "", key, Text(text))
+    console.print(grid)
+
+
+def _print_effects(console: Console, run: Run) -> None:
+    grid = Table.grid(padding=(0, 2))
+    for row in rows.effects(run.plan):
+        grid.add_row(*map(Text, row))
     console.print(grid)

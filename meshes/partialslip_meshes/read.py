@@ -1,0 +1,273 @@
+"""Reading a body's mesh, made by another tool, through meshio; what cannot be meant is refused in one line."""
+
+import contextlib
+import io
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import NoReturn
+
+import meshio
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from partialslip.errors import InputError, MissingLibraryError
+from partialslip_meshes.mesh import Mesh
+
+Array = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+FORMATS = (".msh", ".inp", ".med", ".vtu")
+NAMES = ("contact", "face", "back", "left", "right")
+_BESIDE = {"vertex": 1, "line": 2, "line3": 3}  # nodes of cells that may be there, too
+_NODES = {"triangle": 3, "triangle6": 6, "triangle7": 7, "quad": 4, "quad8": 8, "quad9": 9} | _BESIDE
+_LARGEST = 1e30
+_FLAT = 1e-12  # area of an element, in its longest side's square, that is none
+_OFF = 1e-4  # of the contact line's length, that it may be off its shape
+_MIDDLE = 0.25  # of a side, that its middle node may be off the middle
+_FEWEST = 4  # elements of a contact line
+
+
+def read(
+    name: str,
+    path: str,
+    unit: float = 1.0,
+    face: Callable[[Array], Array] | None = None,
+    needed: Sequence[str] = ("back",),
+) -> Mesh:
+    """Read the mesh of a body, and lay it below the line y = 0 that its contact line then touches.
+
+    Triangles and quadrilaterals, which are split; of quadratic ones the corners. Elements may be numbered either way
+    round, the body may lie on either side of its contact line, and nodes without elements are left out. Lines of the
+    boundary are the groups ``contact``, ``back``, ``left``, ``right`` and ``face`` (optional: what of the surface is
+    beside the contact line), in upper or lower case, of edges or of nodes: physical groups (.msh), sets (.inp), groups
+    (.med), or cell or point data that are not zero there (any format).
+
+    Parameters
+    ----------
+    name : str
+        The field that names the file.
+    path : str
+        Its suffix says the format: .msh, .inp, .med or .vtu.
+    unit : float
+        What the lengths in the file are to be multiplied by.
+    face : callable, optional
+        How far the contact line lies back at x, in the lengths that come out; without it the line is flat.
+    needed : sequence of str
+        Lines that must be there besides the contact line, of which what touches them is left out.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or the mesh cannot be that of a body.
+    MissingLibraryError
+        If h5py is missing, which .med files need.
+    """
+    refuse = _refusal(name, path)
+    found = _load(name, path, refuse)
+    points = _in_plane(found.points, refuse) * unit
+    corners = _ccw(points, _triangles(found, points, refuse), refuse)
+    boundary = _boundary(corners, len(points), refuse)
+    lines = {key: edges for key, edges in _lines(found, boundary, refuse) if len(edges)}
+    for key in ("contact", *needed):
+        if key not in lines:
+            refuse(f"must have a group {key!r} of edges or nodes of its boundary")
+    every = np.concatenate(list(lines.values()))
+    if len(np.unique(every, axis=0)) < len(every):
+        refuse(f"an edge is in two of the groups {', '.join(lines)}")
+    bound = np.concatenate([lines[key] for key in needed])
+    lines["contact"] = lines["contact"][~np.isin(lines["contact"], bound).any(axis=1)]
+    below = _below(points, lines["contact"], refuse)
+    if not below:
+        points, corners = points * [1, -1], corners[:, ::-1]
+    _lay(points, lines["contact"], face, refuse)
+    used, numbers = np.unique(corners, return_inverse=True)
+    place = np.full(len(points), -1)
+    place[used] = np.arange(len(used))
+    return Mesh(
+        np.ascontiguousarray(points[used]), numbers.reshape(-1, 3), {key: place[edges] for key, edges in lines.items()}
+    )
+
+
+Refuse = Callable[[str], NoReturn]
+
+
+def _refusal(name: str, path: str) -> Refuse:
+    def refuse(why: str) -> NoReturn:
+        raise InputError(f"{name} = {path!r}: {why}")
+
+    return refuse
+
+
+def _load(name: str, path: str, refuse: Refuse) -> meshio.Mesh:
+    if Path(path).suffix.lower() not in FORMATS:
+        refuse(f"must be a file {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
+    said, damaged = io.StringIO(), "it is damaged, or of another format"
+    try:
+        with open(path, "rb"):
+            pass
+        # meshio says what is wrong on the terminal, and exits
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), np.errstate(all="ignore"):
+            return meshio.read(path)
+    except ModuleNotFoundError as error:
+        raise MissingLibraryError(f"{name}: {error.name} is missing; pip install partialslip[med]") from None
+    except OSError as error:
+        refuse(f"cannot be read: {error.strerror or damaged}")
+    except (Exception, SystemExit):
+        why = said.getvalue().partition("Error:")[0].strip() or damaged
+        refuse(f"cannot be read: {' '.join(why.split())}")
+
+
+def _in_plane(points: Array, refuse: Refuse) -> Array:
+    points = np.asarray(points, dtype=float)
+    if points.ndim != 2 or not len(points) or points.shape[1] not in (2, 3):
+        refuse("must have nodes")
+    if wrong := int((~(np.abs(points) < _LARGEST).all(axis=1)).sum()):
+        refuse(f"must have coordinates that are finite and less than {_LARGEST:g}; {wrong} nodes have others")
+    if np.ptp(points, axis=0)[2:].max(initial=0.0) > _OFF * np.ptp(points[:, :2]):
+        refuse("must lie in a plane z = const")
+    return points[:, :2]
+
+
+def _triangles(found: meshio.Mesh, points: Array, refuse: Refuse) -> Indices:
+    """Corners of all elements, quadrilaterals split along their shorter diagonal."""
+    if unknown := sorted({block.type for block in found.cells} - {*_NODES}):
+        refuse(f"must have triangles and quadrilaterals, linear or quadratic, not {', '.join(unknown)}")
+    parts = [np.empty((0, 3), dtype=np.int64)]
+    for block in found.cells:
+        cells = np.asarray(block.data, dtype=np.int64)
+        if not cells.size:
+            continue
+        if not (cells.min() >= 0 and cells.max() < len(points)):
+            refuse("its elements name nodes that are not there")
+        if cells.shape[1:] != (_NODES[block.type],):
+            refuse("its elements do not have as many nodes as their type")
+        if block.type in _BESIDE:
+            continue
+        count = 3 if block.type.startswith("triangle") else 4
+        ring = points[cells[:, :count]]
+        sides = np.roll(ring, -1, axis=1) - ring
+        if cells.shape[1] >= 2 * count:
+            off = points[cells[:, count : 2 * count]] - (ring + sides / 2)
+            if (np.linalg.norm(off, axis=-1) > _MIDDLE * np.linalg.norm(sides, axis=-1)).any():
+                refuse("nodes of quadratic elements must be in order: corners, then middles of the sides")
+        corners = cells[:, :count]
+        if count == 4:
+            turns = _cross(sides, np.roll(sides, -1, axis=1))
+            if not ((turns > 0).all(axis=1) | (turns < 0).all(axis=1)).all():
+                refuse("nodes of quadrilaterals must be in order around convex ones")
+            short = np.linalg.norm(ring[:, 2] - ring[:, 0], axis=1) <= np.linalg.norm(ring[:, 3] - ring[:, 1], axis=1)
+            turned = np.where(short[:, None], corners, np.roll(corners, -1, axis=1))
+            corners = np.concatenate([turned[:, [0, 1, 2]], turned[:, [0, 2, 3]]])
+        parts.append(corners)
+    return np.concatenate(parts)
+
+
+def _ccw(points: Array, corners: Indices, refuse: Refuse) -> Indices:
+    """The triangles, all counter-clockwise."""
+    if not len(corners):
+        refuse("must have triangles or quadrilaterals")
+    sides = np.roll(points[corners], -1, axis=1) - points[corners]
+    areas, longest = _cross(sides[:, 0], sides[:, 1]), np.linalg.norm(sides, axis=-1).max(axis=1)
+    if empty := int((np.abs(areas) <= _FLAT * longest**2).sum()):
+        refuse(f"must have elements with an area; {empty} have none")
+    return np.where((areas > 0)[:, None], corners, corners[:, ::-1])
+
+
+def _boundary(corners: Indices, count: int, refuse: Refuse) -> Indices:
+    """Edges of one triangle only, with the body on their left, (b, 2)."""
+    edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    there, back = edges @ [count, 1], edges @ [1, count]
+    order = np.argsort(there)
+    if folded := int((np.diff(there[order]) == 0).sum()):
+        refuse(f"must have elements beside each other; at {folded} edges two are on the same side")
+    place = np.minimum(np.searchsorted(there, back, sorter=order), len(edges) - 1)
+    shared = there[order[place]] == back
+    beside, other = (number[shared] % len(corners) for number in (np.arange(len(edges)), order[place]))
+    graph = coo_array((np.ones(len(beside)), (beside, other)), shape=(len(corners), len(corners)))
+    if (pieces := connected_components(graph)[0]) > 1:
+        refuse(f"must be one piece, connected by common nodes, not {pieces}")
+    result: Indices = edges[~shared]
+    return result
+
+
+def _lines(found: meshio.Mesh, boundary: Indices, refuse: Refuse) -> Iterator[tuple[str, Indices]]:
+    """Edges of the boundary that are in each group."""
+    known = np.sort(boundary, axis=1)
+    for name in NAMES:
+        edges = np.concatenate([np.empty((0, 2), dtype=np.int64), *_edges_of(found, name)])
+        nodes = np.zeros(len(found.points), dtype=bool)
+        for some in _nodes_of(found, name):
+            nodes[some] = True
+        if not _among(np.sort(edges, axis=1), known).all():
+            refuse(f"its group {name!r} must have edges of the boundary only")
+        yield name, boundary[_among(known, np.sort(edges, axis=1)) | nodes[boundary].all(axis=1)]
+
+
+def _edges_of(found: meshio.Mesh, name: str) -> Iterator[Indices]:
+    """Of a group of line cells, however the format names it."""
+    ids = {int(number[0]) for key, number in found.field_data.items() if key.lower() == name and len(number) == 2}
+    families = {number for number, keys in getattr(found, "cell_tags", {}).items() if name in map(str.lower, keys)}
+    data = {key.lower(): values for key, values in found.cell_data.items()}
+    sets = {key.lower(): members for key, members in found.cell_sets.items()}
+    for block, cells in enumerate(found.cells):
+        if not cells.type.startswith("line"):
+            continue
+        ends = np.asarray(cells.data, dtype=np.int64)[:, :2]
+        for key, wanted in (("gmsh:physical", ids), ("cell_tags", families)):
+            if key in data and wanted:
+                yield ends[np.isin(data[key][block], list(wanted))]
+        if name in data:
+            yield ends[np.asarray(data[name][block]).reshape(len(ends), -1).any(axis=1)]
+        if name in sets and sets[name][block] is not None:
+            yield ends[np.asarray(sets[name][block], dtype=np.int64)]
+
+
+def _nodes_of(found: meshio.Mesh, name: str) -> Iterator[Indices]:
+    """Of a group of nodes, however the format names it."""
+    families = [number for number, keys in getattr(found, "point_tags", {}).items() if name in map(str.lower, keys)]
+    for key, values in found.point_data.items():
+        if key == "point_tags" and families:
+            yield np.flatnonzero(np.isin(values, families))
+        elif key.lower() == name:
+            yield np.flatnonzero(np.asarray(values).reshape(len(found.points), -1).any(axis=1))
+    for key, members in found.point_sets.items():
+        if key.lower() == name:
+            yield np.asarray(members, dtype=np.int64)
+
+
+def _below(points: Array, contact: Indices, refuse: Refuse) -> bool:
+    """Whether the body lies below its contact line."""
+    if len(contact) < _FEWEST:
+        refuse(f"its group 'contact' must have at least {_FEWEST} edges, not {len(contact)}")
+    ways = np.sign(np.diff(points[contact, 0], axis=1))
+    nodes = np.unique(contact)
+    chain = nodes[np.argsort(points[nodes, 0])]
+    pairs = np.sort(np.column_stack([chain[:-1], chain[1:]]), axis=1)
+    if (ways != ways[0]).any() or not _among(pairs, np.sort(contact, axis=1)).all() or len(pairs) != len(contact):
+        refuse("its group 'contact' must be one line from left to right, with the body on one side of it")
+    return bool(ways[0] < 0)
+
+
+def _lay(points: Array, contact: Indices, face: Callable[[Array], Array] | None, refuse: Refuse) -> None:
+    """Shift the points, so that the foremost of the contact line is at y = 0."""
+    x, y = points[np.unique(contact)].T
+    height = y + (face(x) if face else 0.0)
+    off = np.ptp(height) / np.ptp(x)
+    if not off <= _OFF:
+        shape = "of the profile's shape (or kind 'block')" if face else "flat (or kind 'pad')"
+        refuse(f"its contact line must be {shape}; it is off by {off:.2g} of its length, about x = 0")
+    points[:, 1] -= np.median(height)
+
+
+def _among(edges: Indices, others: Indices) -> npt.NDArray[np.bool_]:
+    """Which edges are among the others; ends sorted."""
+    count = max(edges.max(initial=0), others.max(initial=0)) + 1
+    found: npt.NDArray[np.bool_] = np.isin(edges @ [count, 1], others @ [count, 1])
+    return found
+
+
+def _cross(a: Array, b: Array) -> Array:
+    result: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return result

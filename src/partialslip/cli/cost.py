@@ -1,0 +1,107 @@
+"""partialslip study cost: errors against CPU seconds."""
+
+import argparse
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from partialslip.cli.common import check_folder, print_written
+from partialslip.errors import InputError
+from partialslip.reading import load_scene
+
+if TYPE_CHECKING:
+    from partialslip.cli.common import Commands
+    from partialslip.study.cost import Point
+
+
+def add(topics: "Commands") -> None:
+    """Add the topic to the parser."""
+    cost = topics.add_parser(
+        "cost",
+        help="what accuracy costs: a ladder of settings of every method, each in a process of its own",
+        epilog="example: partialslip study cost hertz-large-tension --repeats 1; stopped, it goes on where it was",
+    )
+    cost.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
+    cost.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
+                      help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
+    cost.add_argument("--repeats", type=int, default=3, metavar="N", help="of each setting, for medians (default: 3)")
+    cost.add_argument("--peers", metavar="FILE", help="other codes' results, JSON lines, for the same diagram")
+    cost.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-cost)")
+    cost.set_defaults(command=_cost)
+
+
+def _cost(options: argparse.Namespace) -> int:
+    check_folder(options.out)
+    if options.repeats < 1:
+        raise InputError(f"--repeats {options.repeats}: must be >= 1")
+    scene = load_scene(options.scene, options.overrides)
+
+    from rich.console import Console
+
+    from partialslip.report import print_table, write_texts
+    from partialslip.report.files import csv_text
+    from partialslip.study import cost
+    from partialslip.study.costfigure import errors_svg, phases_svg
+    from partialslip.study.ledger import Ledger
+
+    peers = cost.read_peers(Path(options.peers), scene.name) if options.peers is not None else []
+    name = f"{scene.name}-cost"
+    folder = Path(options.out) if options.out else Path("results") / name
+    ledger = Ledger(folder / "ledger.jsonl")
+    messages = Console(stderr=True, highlight=False)
+    with messages.status(f"{name} ...") as status:
+        found = cost.measure(
+            scene, ledger, options.repeats, lambda done, of, what: status.update(f"{name}: {done} of {of}, {what}")
+        )
+    texts = {
+        "cost.csv": csv_text(*cost.table([*found, *peers])),
+        "cost.svg": errors_svg(found, peers, f"{scene.name}: error against cost"),
+        "phases.svg": phases_svg(found, f"{scene.name}: where the time goes"),
+    }
+    files = [ledger.path, *write_texts(folder, texts)]
+    console = Console(highlight=False)
+    console.print(f"{scene.name}: what accuracy costs, medians of {options.repeats}", style="bold", markup=False)
+    best = {id(point) for point in cost.front(found)}
+    head = ["series", "setting", *cost.KEYS, "unknowns", "CPU s", "process", "MB", "front"]
+    rows = [_row(point, id(point) in best) for point in [*found, *peers]]
+    print_table(console, head, rows, left=2)
+    slopes = cost.slopes(found)
+    print_table(
+        console,
+        ["exponent against unknowns", "m, n", "q", "CPU"],
+        [[series, *(_number(value, ".2f") for value in of.values())] for series, of in slopes.items()],
+        left=1,
+    )
+    for line in _against(found, peers):
+        console.print(line, soft_wrap=True, markup=False)
+    print_written(files, console)
+    return 0
+
+
+def _row(point: "Point", front: bool) -> list[str]:
+    errors = [_number(point.errors.get(key, math.nan), ".1e") for key in ("a", "m", "n", "p", "q")]
+    costs = [f"{point.cpu_s:.3g}", f"{point.process_s:.2f}", f"{point.peak_rss_mb:.0f}"]
+    unknowns = f"{point.counts['dofs']:,}" if "dofs" in point.counts else ""
+    return [point.series, point.setting, *errors, unknowns, *costs, "*" if front else ""]
+
+
+def _number(value: float, form: str) -> str:
+    return "" if math.isnan(value) else format(value, form)
+
+
+def _against(found: "list[Point]", peers: "list[Point]") -> list[str]:
+    """How the finite elements here do beside each peer."""
+    from partialslip.study.cost import against
+
+    ours = [point for point in found if point.series.startswith("P")]
+    lines = []
+    for series in dict.fromkeys(point.series for point in peers):
+        theirs = [point for point in peers if point.series == series]
+        for key in ("m", "n", "q"):
+            if any(key in point.errors for point in theirs):
+                ratio = {name: f"{value:.2g}" for name, value in against(ours, theirs, key).items()}
+                lines.append(
+                    f"{series}, {key}: its best error {ratio['error']} takes {ratio['cpu']} of its CPU here (whole "
+                    f"process {ratio['process']}); in its CPU, {ratio['error at its cpu']} of its error"
+                )
+    return lines

@@ -1,0 +1,56 @@
+"""partialslip study effects: what each effect of a scene is worth, and what it costs."""
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from partialslip.cli.common import check_folder, print_written
+from partialslip.reading import load_scene
+
+if TYPE_CHECKING:
+    from partialslip.cli.common import Commands
+
+
+def add(topics: "Commands") -> None:
+    """Add the topic to the parser."""
+    effects = topics.add_parser(
+        "effects",
+        help="each effect on and off: what it changes and what it costs",
+        epilog="example: partialslip study effects fretting-aluminium --set fem.size=0.05",
+    )
+    effects.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
+    effects.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
+                         help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
+    effects.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-effects)")
+    effects.set_defaults(command=_effects)
+
+
+def _effects(options: argparse.Namespace) -> int:
+    check_folder(options.out)
+    scene = load_scene(options.scene, options.overrides)
+
+    from rich.console import Console
+
+    from partialslip.report import print_table, write_texts
+    from partialslip.study import effects
+    from partialslip.study.effectsfigure import effects_svg
+
+    messages = Console(stderr=True, highlight=False)
+    name = f"{scene.name}-effects"
+    with messages.status(f"{name} ...") as status:
+        study = effects.study_effects(scene, lambda line: status.update(f"{name}: {line}"))
+    texts = {
+        "effects.json": json.dumps(effects.effects_record(study), indent=1, allow_nan=False) + "\n",
+        "effects.csv": effects.effects_csv(study),
+        "effects.svg": effects_svg(study),
+    }
+    files = write_texts(Path(options.out) if options.out else Path("results") / name, texts)
+    console = Console(highlight=False)
+    console.print(effects.heading(study), style="bold", markup=False)
+    print_table(console, *effects.changes_table(study), left=2)
+    print_table(console, *effects.costs_table(study))
+    for line in effects.notes(study):
+        console.print(line, soft_wrap=True, markup=False)
+    print_written(files, console)
+    return 0

@@ -1,0 +1,111 @@
+"""partialslip score: somebody else's results against a scene."""
+
+import argparse
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+from partialslip.cli.common import check_folder, print_written
+from partialslip.errors import InputError
+from partialslip.reading import load_scene
+from partialslip.run import METHODS
+from partialslip.score import score
+from partialslip.score.csvfile import template
+
+if TYPE_CHECKING:
+    from partialslip.cli.common import Commands
+
+_T = TypeVar("_T")
+
+
+def add(commands: "Commands") -> None:
+    """Add the command to the parser."""
+    scores = commands.add_parser(
+        "score",
+        help="score somebody else's tractions for a scene",
+        epilog="example: partialslip score fretting-aluminium --template > mine.csv, fill it in, "
+        "partialslip score fretting-aluminium mine.csv",
+    )
+    scores.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
+    scores.add_argument("file", metavar="FILE", nargs="?",
+                        help="tractions: .csv (x, p, dq), .frd or .dat of CalculiX, .vtu, .xdmf, ...")  # fmt: skip
+    scores.add_argument("--template", action="store_true", help="print a table to fill in, and nothing else")
+    scores.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
+                        help="change a setting of the scene; may be repeated")  # fmt: skip
+    scores.add_argument("--factors", metavar="X,P,Q", default="1,1,1",
+                        help="multiply x, p and q by these: 1e-3,1e6,1e6 for mm and MPa; -1 turns round")  # fmt: skip
+    scores.add_argument("--order", metavar="1|2", default="1",
+                        help="of the elements that nodal forces (columns Fn, Ft) are from (default: 1)")  # fmt: skip
+    scores.add_argument("--at", metavar="I,J",
+                        help="of CalculiX: which contact results are load points 1 and 2, counted from 1 (default: at "
+                        "the ends of the last steps)")  # fmt: skip
+    scores.add_argument("--with", dest="reference", metavar="METHOD", choices=METHODS,
+                        help="compare with exact, march or fem (default: the first that knows the scene)")  # fmt: skip
+    scores.add_argument("--bar", metavar="FRACTION",
+                        help="what errors of a, m and n may be, of a (p 10, q 15 times that); else code 1")  # fmt: skip
+    scores.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-FILE)")
+    scores.add_argument("--json", action="store_true", help="print results.json, nothing else; files only with --out")
+    scores.set_defaults(command=_score)
+
+
+def _score(options: argparse.Namespace) -> int:
+    check_folder(options.out)
+    factors = _numbers(options.factors, float, "--factors", "three numbers, for example 1e-3,1e6,1e6", 3)
+    at = () if options.at is None else _numbers(options.at, int, "--at", "two whole numbers, for example 3,4", 2)
+    bar = None if options.bar is None else _numbers(options.bar, float, "--bar", "a number > 0", 1)[0]
+    if bar is not None and not 0 < bar < float("inf"):
+        raise InputError(f"--bar {options.bar}: must be a number > 0")
+    if not all(0 < abs(factor) < float("inf") for factor in factors):
+        raise InputError(f"--factors {options.factors}: must be finite and not zero")
+    if options.order not in ("1", "2"):
+        raise InputError(f"--order {options.order}: must be 1 or 2")
+    scene = load_scene(options.scene, options.overrides)
+    if options.template:
+        if options.file is not None:
+            raise InputError(f"--template {options.file}: must go without a file")
+        from partialslip.halfplane import contact
+
+        sys.stdout.write(template(scene, contact(scene).a))
+        return 0
+    if options.file is None:
+        raise InputError("FILE: missing; --template prints one to fill in")
+
+    from rich.console import Console
+
+    from partialslip.report import print_run, record, write_run
+
+    file = Path(options.file)
+    messages = Console(stderr=True, highlight=False)
+    with messages.status(f"{scene.name} ...") as status:
+        outcome = score(
+            scene,
+            file,
+            bar=bar,
+            reference=options.reference,
+            factors=(factors[0], factors[1], factors[2]),
+            order=int(options.order),
+            at=(at[0], at[1]) if at else None,
+            progress=lambda line: status.update(f"{scene.name}: {line}"),
+        )
+        name = f"{scene.name}-{file.stem}"
+        folder = Path(options.out) if options.out else None if options.json else Path("results") / name
+        files = write_run(outcome, folder) if folder else []
+    if options.json:
+        print(json.dumps(record(outcome), indent=1, allow_nan=False))
+    else:
+        console = Console(highlight=False)
+        print_run(outcome, console)
+        print_written(files, console)
+    return 0 if outcome.passed else 1
+
+
+def _numbers(text: str, kind: Callable[[str], _T], option: str, wanted: str, count: int) -> tuple[_T, ...]:
+    try:
+        numbers = tuple(kind(word) for word in text.split(","))
+    except ValueError:
+        numbers = ()
+    if len(numbers) != count:
+        raise InputError(f"{option} {text}: must be {wanted}")
+    return numbers

@@ -1,0 +1,105 @@
+"""partialslip study size: when is a body a half-plane?"""
+
+import argparse
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from partialslip.cli.common import check_folder, print_written
+from partialslip.errors import InputError
+from partialslip.reading import load_scene
+
+if TYPE_CHECKING:
+    from partialslip.cli.common import Commands
+    from partialslip.study.size import Law
+
+
+def add(topics: "Commands") -> None:
+    """Add the topic to the parser."""
+    size = topics.add_parser(
+        "size",
+        help="when is a body a half-plane? a sweep over sizes, or over anything else in a scene",
+        epilog="example: partialslip study size block.toml --over bodies.*.width+bodies.*.height=4a..256a; stopped, it "
+        "goes on where it was",
+    )
+    size.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
+    size.add_argument("--over", action="append", required=True, metavar="KEY[+KEY]=VALUES",
+                      help="4a,8a,16a or 4a..256a (equal ratios) or 4a..256a:13, in contact half-widths of the "
+                      "half-plane, or without a as in the scene; twice for a map")  # fmt: skip
+    size.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
+                      help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
+    size.add_argument("--processes", type=int, metavar="N", help="at once on this machine (default: its cores)")
+    size.add_argument("--cluster", metavar="ADDRESS", help="of a Dask scheduler, whose workers solve instead")
+    size.add_argument("--one-mesh", action="store_true", help="no second, coarser mesh of each size")
+    size.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-size)")
+    size.set_defaults(command=_size)
+
+
+def _size(options: argparse.Namespace) -> int:
+    check_folder(options.out)
+    if options.processes is not None and options.processes < 1:
+        raise InputError(f"--processes {options.processes}: must be >= 1")
+    if len(options.over) > 2:
+        raise InputError("--over: at most twice")
+    scene = load_scene(options.scene, options.overrides)
+
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+    from partialslip.report import print_table, write_texts
+    from partialslip.report.files import csv_text
+    from partialslip.study import size
+    from partialslip.study.ledger import Ledger
+    from partialslip.study.sizefigure import grid_svg, size_svg
+    from partialslip.study.sweep import sweep, workers
+
+    axes = [size.axis(text) for text in options.over]
+    cases = size.cases(scene, axes, 1 if options.one_mesh else 2)
+    folder = Path(options.out) if options.out else Path("results") / f"{scene.name}-size"
+    ledger = Ledger(folder / "ledger.jsonl")
+    columns = (TextColumn(f"{scene.name}-size"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[left]}"))
+    messages = Console(stderr=True, highlight=False)
+    with Progress(*columns, console=messages, transient=True) as bar:
+        task = bar.add_task("", total=len(cases), left="")
+
+        def progress(done: int, total: int, left: float) -> None:
+            bar.update(task, completed=done, total=total, left="" if math.isnan(left) else f"{left:.0f} s left")
+
+        with workers(options.cluster, options.processes) as executor:
+            sweep(cases, ledger, executor, progress)
+    entries = [ledger[case.key] for case in cases]
+    console = Console(highlight=False)
+    texts = {"cases.csv": csv_text(*size.table(axes, entries))}
+    unit = "in contact half-widths" if axes[0].in_a else "as in the scene"
+    if len(axes) == 1:
+        sizes = size.along(axes[0], entries)
+        laws = [law for quantity in size.QUANTITIES if (law := size.law(sizes, quantity))]
+        texts["size.svg"] = size_svg(sizes, laws, scene.name, unit)
+        console.print(f"{scene.name}: change from the half-plane, over {axes[0].name} {unit}", style="bold")
+        head = ["", *(f"{value:.4g}" for value in sizes.size)]
+        rows = [[quantity, *(_number(value) for value in sizes.off[quantity])] for quantity in size.QUANTITIES]
+        rows += [[f"{quantity}, mesh", *(_number(v) for v in sizes.mesh[quantity])] for quantity in size.QUANTITIES]
+        print_table(console, head, rows)
+        if laws:
+            needed = [f"size for {level:.1%}" for level in size.LEVELS]
+            print_table(console, ["law C size^-k", "C", "k", "95 %", "points", *needed], [_law(law) for law in laws])
+    else:
+        for quantity in size.QUANTITIES:
+            grid = size.grid(axes, entries, quantity)
+            names = tuple(f"{each.name}{', in a' if each.in_a else ''}" for each in axes)
+            texts[f"map-{quantity}.svg"] = grid_svg(*grid, (names[0], names[1]), f"{scene.name}: change of {quantity}")
+    failed = [entry for entry in entries if "error" in entry]
+    for entry in failed:
+        labels = ", ".join(f"{key} {value}" for key, value in entry["labels"].items())
+        console.print(f"not solved: {labels}: {entry['error']}", soft_wrap=True, markup=False)
+    print_written([ledger.path, *write_texts(folder, texts)], console)
+    return 1 if failed else 0
+
+
+def _number(value: float) -> str:
+    return "" if math.isnan(value) else f"{value:.1e}"
+
+
+def _law(law: "Law") -> list[str]:
+    bounds = f"{law.bounds[0]:.2f} to {law.bounds[1]:.2f}"
+    return [law.quantity, f"{law.C:.3g}", f"{law.k:.2f}", bounds, str(law.points), *(f"{s:.3g}" for s in law.needed)]

@@ -1,0 +1,65 @@
+"""Scoring somebody else's results against a scene's exact solution."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from partialslip.errors import InputError
+from partialslip.run import METHODS, Run, compared, run
+from partialslip.scene import Scene
+from partialslip.score.method import scored
+from partialslip.score.read import read
+
+
+def score(
+    scene: Scene,
+    file: str | Path,
+    *,
+    bar: float | None = None,
+    reference: str | None = None,
+    factors: tuple[float, float, float] = (1.0, 1.0, 1.0),
+    order: int = 1,
+    at: tuple[int, int] | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Run:
+    """Compare the tractions in ``file`` with those of ``scene``. The result in the run has the file's name.
+
+    Parameters
+    ----------
+    scene : Scene
+    file : str or Path
+        A table (.csv) with a header line: x (m); p (Pa), or Fn (N per m of depth) of nodes; and one of dq = q2 - q1,
+        q = dq/2, q1 and q2, or of dFt, Ft, Ft1 and Ft2. Or CalculiX's .frd, or .dat with the .frd beside it; or a
+        format of meshio's with p and dq, q, or q1 and q2 as point data.
+    bar : float, optional
+        What errors of a, m and n may be, as fractions of a; p and q have 10 and 15 times that. Otherwise no bars.
+    reference : str, optional
+        The method to compare with. As a rule exact; march where Q and sigma are out of phase; fem for bodies of
+        different materials or of a size.
+    factors : (float, float, float)
+        By which x, p (Fn), and q (Ft) are multiplied: for other units, and other signs.
+    order : int
+        Of the elements that nodal forces are from, 1 or 2.
+    at : (int, int), optional
+        Of CalculiX's contact results, counted from 1, those of load points 1 and 2; as a rule those at the ends of the
+        last steps.
+    progress : callable
+        Called with a line of text now and then.
+
+    Raises
+    ------
+    InputError
+        With one line that says what is wrong.
+    """
+    file = Path(file)
+    name = "".join(c if c.isprintable() else "?" for c in file.name)
+    if reference is None:
+        halfplanes = scene.material.alike and not scene.finite
+        reference = ("exact" if scene.load.in_phase else "march") if halfplanes else "fem"
+    if reference not in METHODS:
+        raise InputError(f"reference {reference!r}: must be one of {', '.join(METHODS)}")
+    result = scored(scene, read(file, scene, factors, order, at), name, str(file))
+    outcome = run(scene, [reference], progress=progress)
+    if outcome.results[reference].regime == "ratchets":  # of slip that adds up, tractions say nothing
+        result = replace(result, regime="ratchets")
+    return compared(scene, outcome.plan, outcome.results | {name: result}, bar)

@@ -1,0 +1,82 @@
+"""Reading somebody else's results, by the ending of the file's name."""
+
+from pathlib import Path
+
+import numpy as np
+
+from partialslip.errors import InputError
+from partialslip.scene import Array, Scene
+from partialslip.score.calculix import read_dat, read_frd
+from partialslip.score.csvfile import NORMAL, SHEARS, read_csv
+from partialslip.score.samples import Samples, samples
+
+_LARGEST = 1_000_000_000  # bytes
+_FLAT = 0.05  # of the points' extent along x: what they may lie apart across it
+
+
+def read(
+    file: Path,
+    scene: Scene,
+    factors: tuple[float, float, float] = (1.0, 1.0, 1.0),
+    order: int = 1,
+    at: tuple[int, int] | None = None,
+) -> Samples:
+    """Tractions from ``file``: .csv, .frd or .dat (CalculiX), or a format of meshio's with point data p and dq, q, or
+    q1 and q2. Parameters as of :func:`partialslip.score`.
+
+    Raises
+    ------
+    InputError
+        With one line that says what is wrong.
+    """
+    origin, suffix = str(file), file.suffix.lower()
+    load = scene.load
+    ends = (*load.ends, len(load.points))
+    if at is not None and suffix not in (".frd", ".dat"):
+        raise InputError(f"--at {at[0]},{at[1]}: only for .frd and .dat files")
+    if suffix == ".csv":
+        columns = read_csv(text(file), origin)
+    elif suffix == ".frd":
+        columns = read_frd(text(file), origin, at, ends)
+    elif suffix == ".dat":
+        columns = read_dat(text(file), text(file.with_suffix(".frd")), origin, at, ends)
+    else:
+        columns = _point_data(file)
+    return samples(columns, origin, factors, order)
+
+
+def text(file: Path) -> str:
+    """The text of ``file``. Raises InputError if there is none."""
+    try:
+        if (size := file.stat().st_size) > _LARGEST:
+            raise InputError(f"{file}: {size} bytes: must be at most {_LARGEST}")
+        return file.read_text("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{file}: not UTF-8 text (byte {error.start})") from None
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise InputError(f"{file}: cannot be read: {reason}") from None
+
+
+def _point_data(file: Path) -> dict[str, Array]:
+    from partialslip_meshes.pointdata import FORMATS, read_point_data
+
+    if file.suffix.lower() not in FORMATS:
+        raise InputError(f"{file}: must end in .csv, .frd, .dat or {', '.join(sorted(FORMATS))}")
+    try:
+        with file.open("rb"):
+            pass
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise InputError(f"{file}: cannot be read: {reason}") from None
+    points, data = read_point_data(file)
+    shears = [shear for shear in SHEARS if set(shear) <= set(data) and shear[0].startswith(("q", "dq"))]
+    if NORMAL[0] not in data or len(shears) != 1:
+        shown = ", ".join(map(repr, data))[:100] or "none"
+        raise InputError(f"{file}: point data {shown}: must have p, and one of dq, q, or q1 and q2")
+    columns = [points[:, 0], *(data[name] for name in ("p", *shears[0]))]
+    known = np.isfinite(np.stack(columns[1:])).all(axis=0)
+    x, across = points[known, 0], points[known, 1:]
+    if len(x) and np.ptp(across[:, 0]) > _FLAT * np.ptp(x):
+        raise InputError(f"{file}: points with p lie {np.ptp(across[:, 0]):.3g} m apart across x: must be on one line")
+    return dict(zip(("x", "p", *shears[0]), (column[known] for column in columns), strict=True))

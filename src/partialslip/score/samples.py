@@ -1,0 +1,110 @@
+"""Somebody else's tractions: what a file of results comes down to."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from partialslip.errors import InputError
+from partialslip.scene import LARGEST, SMALLEST, Array
+
+FEWEST = 6  # points in contact: fewer tell nothing of where it ends
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Tractions along the contact line, from outside.
+
+    Parameters
+    ----------
+    x : (n,) array
+        Points, ascending, m.
+    p, dq : (n,) arrays
+        Pressure, and the change q2 - q1 of shear traction between load points 1 and 2, Pa.
+    q1, q2 : (n,) arrays or None
+        Shear traction at the load points, Pa, where it is known.
+    cells : (n + 1,) array or None
+        Where p and dq are means over cells (nodal forces over their widths): their ends, m. None: values at points.
+    """
+
+    x: Array
+    p: Array
+    dq: Array
+    q1: Array | None = None
+    q2: Array | None = None
+    cells: Array | None = None
+
+
+def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float, float], order: int) -> Samples:
+    """Make samples from columns by name.
+
+    Parameters
+    ----------
+    columns : dict of (n,) arrays
+        x and p, or Fn for nodal normal forces per unit depth; and one of: dq; q, half of that; q1 and q2; dFt; Ft;
+        Ft1 and Ft2. Points in any order; of several at one x, as of a mesh with a depth, the mean is taken.
+    origin : str
+        Where they are from, for messages.
+    factors : (float, float, float)
+        By which x, tractions (or forces) along the normal, and those along the tangent, are multiplied: for units and
+        signs.
+    order : int
+        Of the elements that nodal forces are from: 1, or 2 with every second node in the middle of an edge.
+
+    Raises
+    ------
+    InputError
+        If there are too few of them, or they are no numbers.
+    """
+    x, *rest = (columns[name] for name in columns)
+    normal, tangential = next(iter([name for name in columns if name != "x"])), [*columns][2:]
+    values = np.stack([x * factors[0], rest[0] * factors[1], *(column * factors[2] for column in rest[1:])])
+    _check(values, [*columns], origin)
+    values = _merged(values)
+    x, p, shears = values[0], values[1], values[2:]
+    cells = None
+    if normal == "Fn":
+        if order == 2 and len(x) % 2 == 0:
+            raise InputError(f"{origin}: {len(x)} nodes: of elements of order 2 it must be an odd number")
+        cells = _cells(x, order)
+        p, shears = p / np.diff(cells), shears / np.diff(cells)
+    touching = np.count_nonzero(p > 0)
+    if touching < FEWEST:
+        hint = "; pressure must be positive" if p.min(initial=0) < 0 else ""
+        raise InputError(f"{origin}: {normal} > 0 at {touching} points: must be at least {FEWEST}{hint}")
+    if len(tangential) == 2:
+        return Samples(x, p, shears[1] - shears[0], shears[0], shears[1], cells)
+    half = tangential[0] in ("q", "Ft")
+    dq = 2 * shears[0] if half else shears[0]
+    return Samples(x, p, dq, -dq / 2 if half else None, dq / 2 if half else None, cells)
+
+
+def _check(values: Array, names: list[str], origin: str) -> None:
+    for name, column in zip(names, values, strict=True):
+        size = np.abs(column)
+        wrong = ~np.isfinite(column) | (size > LARGEST) | ((size > 0) & (size < SMALLEST))
+        if wrong.any():
+            value = column[wrong.argmax()]
+            raise InputError(f"{origin}: {name} = {value:g}: must be zero or of a size from {SMALLEST} to {LARGEST}")
+
+
+def _merged(values: Array) -> Array:
+    """Rows of ``values`` by ascending first row; where that repeats, to rounding, the mean of the columns."""
+    values = values[:, np.argsort(values[0], kind="stable")]
+    x = values[0]
+    new = np.concatenate([[True], np.diff(x) > 1e-7 * np.ptp(x)]) if len(x) else np.zeros(0, bool)
+    if not new.any():
+        return values
+    first = np.flatnonzero(new)
+    merged: Array = np.add.reduceat(values, first, axis=1) / np.diff(np.append(first, len(x)))
+    return merged
+
+
+def _cells(x: Array, order: int) -> Array:
+    """Ends of the parts of the line that belong to nodes: as wide as the integrals of their shape functions."""
+    if order == 1:
+        inner = (x[1:] + x[:-1]) / 2
+    else:
+        widths = np.diff(x[::2])
+        inner = np.sort(np.concatenate([x[:-1:2] + widths / 6, x[2::2] - widths / 6]))
+    cells: Array = np.concatenate([[x[0]], inner, [x[-1]]])
+    return cells

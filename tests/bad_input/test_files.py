@@ -1,0 +1,298 @@
+"""Bad files: tables and results to score, meshes, saved states; and the arguments that go with them."""
+
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+from partialslip import load_scene, run
+
+FIXTURES = Path(__file__).parents[1] / "score"
+COARSE = ("--set", "fem.accuracy=0.1")
+FRD, DAT = (FIXTURES / f"calculix.{ending}" for ending in ("frd", "dat"))
+X = np.linspace(-1.1e-3, 1.1e-3, 23)
+P = 4e8 * np.sqrt(np.maximum(1 - (X / 1e-3) ** 2, 0))
+TABLE = "x,p,dq\n" + "".join(f"{x!r},{p!r},{p / 4!r}\n" for x, p in np.column_stack([X, P]).tolist())
+
+
+def lines(text, **changes):
+    """``text`` with the lines of the numbers given changed, L3="..." being the third."""
+    every = text.splitlines()
+    for number, new in changes.items():
+        every[int(number[1:]) - 1] = new
+    return "\n".join(every) + "\n"
+
+
+TABLES = [
+    ("", "empty: must have a header line"),
+    ("# nothing\n", "empty: must have a header line"),
+    ("\n\n", "empty: must have a header line"),
+    ("x,p,dq\n", "p > 0 at 0 points: must be at least 6"),
+    (TABLE.partition("\n")[2], "must be x; p or Fn; and one of dq"),
+    (TABLE.replace("x,p,dq", "x,p"), "columns 'x', 'p': must be x; p or Fn"),
+    (TABLE.replace("x,p,dq", "x,p,tau"), "columns 'x', 'p', 'tau': must be"),
+    (TABLE.replace("x,p,dq", "X,P,DQ"), "columns 'X', 'P', 'DQ': must be"),
+    (TABLE.replace("x,p,dq", "x,p,dFt"), "columns p and dFt: must be both tractions or both forces"),
+    (TABLE.replace("x,p,dq", "x,Fn,q"), "columns Fn and q: must be both tractions or both forces"),
+    (TABLE.replace("x,p,dq", "x,x,dq"), "column 'x': must be there once, not 2 times"),
+    (TABLE.replace("x,p,dq", "x,p,q1"), "columns 'x', 'p', 'q1': must be"),
+    (TABLE.replace("x,p,dq", "x p dq"), "columns 'x p dq': must be"),
+    (TABLE.replace("\n", ",1\n").replace("x,p,dq,1", "x,p,dq,q"), "'dq', 'q': must be"),
+    (lines(TABLE, L3="1,2"), "line 3: must have 3 fields"),
+    (lines(TABLE, L3="1,2,3,4"), "line 3: must have 3 fields"),
+    (lines(TABLE, L4="a,2,3"), "line 4: x = 'a': must be a number"),
+    (lines(TABLE, L4="1e-4,,3"), "line 4: p = '': must be a number"),
+    (lines(TABLE, L4="1e-4,1 2,3"), "line 4: p = '1 2': must be a number"),
+    (lines(TABLE, L4="1e-4,0x10,3"), "line 4: p = '0x10': must be a number"),
+    (lines(TABLE, L4='1e-4,"1,3'), "line 4: p = '\"1': must be a number"),
+    (lines(TABLE, L4="nan,1,3"), "x = nan: must be zero or of a size"),
+    (lines(TABLE, L4="1e-4,inf,3"), "p = inf: must be zero or of a size"),
+    (lines(TABLE, L4="1e-4,1,-inf"), "dq = -inf: must be zero or of a size"),
+    (lines(TABLE, L4="1e-4,1e200,3"), "p = 1e+200: must be zero or of a size"),
+    (lines(TABLE, L4="1e-4,1e-200,3"), "p = 1e-200: must be zero or of a size"),
+    (TABLE.replace("\n", "\n#"), "p > 0 at 0 points"),
+    (lines(TABLE, L1="x,p,dq")[:150], ""),
+    ("x,p,dq\n" + "0,1e8,0\n" * 50, "p > 0 at 1 points"),
+    (
+        "x,p,dq\n" + "".join(f"{x!r},{-p!r},0\n" for x, p in zip(X.tolist(), P.tolist(), strict=True)),
+        "pressure must be positive",
+    ),
+    ("x,p,dq\n" + "".join(f"{x!r},0,0\n" for x in X.tolist()), "p > 0 at 0 points"),
+    ("x,p,dq\n" + "".join(f"{i},{i % 2 * 1e8},0\n" for i in range(60)), "stand out from its noise"),
+    ("x,Fn,dFt\n" + "".join(f"{i},{1 + i % 2 * 1e8},0\n" for i in range(60)), "another order (--order)"),
+    ("x,p,dq\n1e-3,1e8,0\n2e-3,1e8,0\n", "p > 0 at 2 points: must be at least 6"),
+    ("x,p,dq\n" + "\x00" * 99, "line 2: must have 3 fields"),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), TABLES)
+def test_tables(rejected, tmp_path, text, expected):
+    (tmp_path / "t.csv").write_text(text, "utf-8")
+    message = rejected(None, ["score", "hertz-shear", "t.csv"])
+    assert message.startswith("partialslip: t.csv: ")
+    assert expected in message
+
+
+@pytest.mark.parametrize("content", [b"\xff\xfe" + TABLE.encode("utf-16-le"), b"\x80" * 50, b"x,p,dq\n\xe4,1,2\n"])
+@pytest.mark.parametrize("name", ["t.csv", "t.frd", "t.dat"])
+def test_no_text(rejected, tmp_path, content, name):
+    (tmp_path / name).write_bytes(content)
+    assert "not UTF-8 text" in rejected(None, ["score", "hertz-shear", name])
+
+
+@pytest.mark.parametrize("name", ["t.csv", "t.frd", "t.dat", "t.vtu", "t.xdmf", "t.msh", "t.med", "t.vtk", "nul\0.csv",
+                                  "two\nlines.csv", "x" * 300 + ".csv", "none/t.csv", "nul\0.vtu"])  # fmt: skip
+def test_no_file(rejected, tmp_path, name):
+    assert "cannot be read" in rejected(None, ["score", "hertz-shear", name])
+    if "\0" not in name and len(name) < 100 and "/" not in name:
+        (tmp_path / name).mkdir()
+        assert "cannot be read" in rejected(None, ["score", "hertz-shear", name])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["score"], "SCENE"),
+        (["score", "hertz-shear"], "FILE: missing"),
+        (["score", "hertz-sheer", "t.csv"], "did you mean 'hertz-shear'?"),
+        (["score", "hertz-shear", "t.csv", "u.csv"], "u.csv"),
+        (["score", "hertz-shear", "t.csv", "--template"], "--template t.csv: must go without a file"),
+        (["score", "hertz-shear", "t.doc"], "must end in .csv, .frd, .dat"),
+        (["score", "hertz-shear", "t"], "must end in .csv, .frd, .dat"),
+        (["score", "hertz-shear", ""], "must end in .csv, .frd, .dat"),
+        (["score", "hertz-shear", "t.csv", "--factors", "1"], "--factors 1: must be three numbers"),
+        (["score", "hertz-shear", "t.csv", "--factors", "1,1,x"], "--factors 1,1,x: must be three numbers"),
+        (["score", "hertz-shear", "t.csv", "--factors", "1,1,nan"], "--factors 1,1,nan: must be finite and not zero"),
+        (["score", "hertz-shear", "t.csv", "--factors", "1,0,1"], "--factors 1,0,1: must be finite and not zero"),
+        (["score", "hertz-shear", "t.csv", "--factors", "1,1e200,1"], "must be zero or of a size"),
+        (["score", "hertz-shear", "t.csv", "--factors", "1,1e-300,1"], "must be zero or of a size"),
+        (["score", "hertz-shear", "t.csv", "--factors", "1,-1,1"], "pressure must be positive"),
+        (["score", "hertz-shear", "t.csv", "--order", "3"], "--order 3: must be 1 or 2"),
+        (["score", "hertz-shear", "t.csv", "--at", "1,2"], "--at 1,2: only for .frd and .dat files"),
+        (["score", "hertz-shear", "t.frd", "--at", "1"], "--at 1: must be two whole numbers"),
+        (["score", "hertz-shear", "t.frd", "--at", "1,x"], "--at 1,x: must be two whole numbers"),
+        (["score", "hertz-shear", "t.frd", "--at", "0,1"], "--at 0,1: t.frd has contact results 1 to 2"),
+        (["score", "hertz-shear", "t.frd", "--at", "1,3"], "--at 1,3: t.frd has contact results 1 to 2"),
+        (["score", "hertz-shear", "t.csv", "--bar", "0"], "--bar 0: must be a number > 0"),
+        (["score", "hertz-shear", "t.csv", "--bar", "-1"], "--bar -1: must be a number > 0"),
+        (["score", "hertz-shear", "t.csv", "--bar", "nan"], "--bar nan: must be a number > 0"),
+        (["score", "hertz-shear", "t.csv", "--bar", "x"], "--bar x: must be a number > 0"),
+        (["score", "hertz-shear", "t.csv", "--with", "bem"], "bem"),
+        (["score", "hertz-shear", "t.csv", "--out", ""], "must name a folder"),
+        (["score", "hertz-shear", "t.csv", "--out", "t.csv"], "--out t.csv: cannot be written"),
+        (["score", "hertz-shear", "t.csv", "--set", "load.P=1"], "load: exactly one of P, a, p0"),
+        (["score", "hertz-shear", "--template", "--set", "load.p0=0"], "load.p0 = 0: must be > 0"),
+        (["score", "hertz-shear", "--template", "--set", "material.upper.E=1e9", "--set", "material.upper.nu=0.3"],
+         "the bodies differ"),
+        (["score", "hertz-shear", "q.frd", "--set", "load.Q=[1e5,0,-1e5]"], "must be of the 3 of a cycle"),
+    ],
+)  # fmt: skip
+def test_arguments(rejected, tmp_path, arguments, expected):
+    (tmp_path / "t.csv").write_text(TABLE, "utf-8")
+    for name in ("t.frd", "q.frd"):
+        (tmp_path / name).write_bytes(FRD.read_bytes())
+    assert expected in rejected(None, arguments)
+
+
+def swapped(old, new, count=-1):
+    return lambda text: text.replace(old, new, count)
+
+
+FRDS = {
+    "empty": (lambda _: "", "no nodes (2C) in it"),
+    "another file": (lambda _: TABLE, "no nodes (2C) in it"),
+    "without nodes": (swapped("    2C", "    7C"), "no nodes (2C) in it"),
+    "without contact": (swapped("CONTACT", "STRESS "), "no contact stresses in it"),
+    "without shear": (swapped("CSHEAR1", "CSHARE1"), "must have CPRESS and CSHEAR1"),
+    "one load point": (lambda text: text[: text.rindex("    1PSTEP")] + " 9999\n", "contact results of 1 steps"),
+    "breaks off": (lambda text: text[: text.rindex(" -3")], "breaks off in the block"),
+    "stars": (lambda text: text[: text.rindex(" -1") + 13] + "*" * 72 + "\n -3\n", "not rows of 6 numbers"),
+    "nan": (lambda text: text[: text.rindex(" -1") + 37] + "         NaN" * 4 + "\n -3\n", ""),
+    "step of no number": (swapped("    1PSTEP", "    1PSTEP  x"), ""),
+    "no step number": (lambda text: text.replace("    1PSTEP", "    1PSTEP x\n"), "'x': must be a whole number"),
+    "other nodes": (lambda text: text[: text.rindex(" -1")] + " -3\n", "not of the same nodes"),
+    "no pressure": (lambda text: "".join(x for x in text.splitlines(True) if len(x) < 80), "p > 0 at 0 points"),
+}
+
+
+@pytest.mark.parametrize("fault", FRDS)
+def test_frd(rejected, tmp_path, fault):
+    spoil, expected = FRDS[fault]
+    good = FRD.read_text("utf-8")
+    (tmp_path / "t.frd").write_text(spoil(good), "utf-8")
+    if expected:
+        assert expected in rejected(None, ["score", "hertz-shear", "t.frd"])
+
+
+DATS = {
+    "empty": (lambda _: "", "no contact stresses in it"),
+    "another file": (lambda _: TABLE, "no contact stresses in it"),
+    "words": (swapped("E+08", "E+ 8", 1), "not rows of 5 numbers"),
+    "stars": (swapped("E+07", "****", 1), "not rows of 5 numbers"),
+    "another element": (swapped("      540 ", "      999 "), ""),
+    "one load point": (lambda text: text[: text.rindex(" contact stress")], "contact results of 1 steps"),
+    "nodes": (swapped("(slave element+face", "(slave node"), "not rows of 4 numbers"),
+    "no such face": (lambda text: text.replace("          3 ", "          9 "), "face 9 of element"),
+}
+
+
+@pytest.mark.parametrize("fault", DATS)
+def test_dat(rejected, tmp_path, fault):
+    spoil, expected = DATS[fault]
+    (tmp_path / "t.frd").write_bytes(FRD.read_bytes())
+    (tmp_path / "t.dat").write_text(spoil(DAT.read_text("utf-8")), "utf-8")
+    if expected:
+        assert expected in rejected(None, ["score", "hertz-shear", "t.dat"])
+
+
+def test_dat_without_its_mesh(rejected, tmp_path):
+    (tmp_path / "t.dat").write_bytes(DAT.read_bytes())
+    assert "t.frd: cannot be read: No such file" in rejected(None, ["score", "hertz-shear", "t.dat"])
+    (tmp_path / "t.frd").write_text(FRD.read_text("utf-8").replace("    3C", "    7C"), "utf-8")
+    assert "has no elements" in rejected(None, ["score", "hertz-shear", "t.dat"])
+    (tmp_path / "t.frd").write_text("    2C\n -3\n    3C\n -3\n", "utf-8")
+    assert "is not in the .frd file beside it" in rejected(None, ["score", "hertz-shear", "t.dat"])
+
+
+MESHES = {
+    "no data": ({}, "point data none: must have p"),
+    "no shear": ({"p": P}, "point data 'p': must have p, and one of dq"),
+    "too much shear": ({"p": P, "q": P, "dq": P}, "must have p, and one of dq"),
+    "vectors": ({"p": np.stack([P] * 3, axis=1), "dq": P}, "point data 'dq': must have p"),
+    "all nan": ({"p": np.full(23, np.nan), "dq": P}, "p > 0 at 0 points"),
+    "infinite": ({"p": np.full(23, np.inf), "dq": P}, ""),
+    "pulled": ({"p": -P, "dq": P}, "pressure must be positive"),
+    "few": ({"p": np.where(np.abs(X) < 1.5e-4, P, 0), "dq": P}, "must be at least 6"),
+}
+
+
+def mesh(data, y=0.0):
+    points = np.column_stack([X, y + 0 * X, 0 * X])
+    return meshio.Mesh(points, [("line", np.column_stack([np.arange(22), np.arange(1, 23)]))], point_data=data)
+
+
+@pytest.mark.parametrize("fault", MESHES)
+@pytest.mark.parametrize("ending", ["vtu", "vtk"])
+def test_meshes(rejected, tmp_path, fault, ending):
+    data, expected = MESHES[fault]
+    with np.errstate(invalid="ignore"):
+        meshio.write(tmp_path / f"t.{ending}", mesh(data))
+    if ending == "vtu" or fault != "vectors":
+        assert expected in rejected(None, ["score", "hertz-shear", f"t.{ending}"])
+
+
+def test_a_mesh_that_is_no_line(rejected, tmp_path):
+    meshio.write(tmp_path / "t.vtu", mesh({"p": P, "dq": P}, y=np.arange(23) * 1e-4))
+    assert "apart across x: must be on one line" in rejected(None, ["score", "hertz-shear", "t.vtu"])
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"<VTKFile", b"<?xml version='1.0'?><VTKFile/>", b"\x00" * 64, TABLE.encode()]
+)
+@pytest.mark.parametrize("ending", ["vtu", "vtk", "xdmf", "xmf", "msh", "med", "e", "exo", "ex2", "VTU"])
+def test_no_mesh(rejected, tmp_path, content, ending):
+    (tmp_path / f"t.{ending}").write_bytes(content)
+    rejected(None, ["score", "hertz-shear", f"t.{ending}"])
+
+
+@pytest.fixture(scope="module")
+def state(tmp_path_factory):
+    """A good state, as its arrays."""
+    path = tmp_path_factory.mktemp("state") / "state.npz"
+    run(load_scene("hertz-shear"), ["march"]).results["march"].state.save(path)
+    with np.load(path) as file:
+        return dict(file)
+
+
+STATES = {
+    "no loads": lambda s: {key: s[key] for key in s if key != "loads"},
+    "three loads": lambda s: s | {"loads": s["loads"][:3]},
+    "nan load": lambda s: s | {"loads": s["loads"] * np.nan},
+    "no cells": lambda s: s | {"cells": s["cells"][:0]},
+    "one cell end": lambda s: s | {"cells": s["cells"][:1], "q": s["q"][:, :0], "p": s["p"][:, :0]},
+    "cells turned round": lambda s: s | {"cells": s["cells"][::-1]},
+    "a cell twice": lambda s: s | {"cells": np.append(s["cells"][:-1], s["cells"][-2])},
+    "nan cell": lambda s: s | {"cells": np.append(s["cells"][:-1], np.nan)},
+    "cells are one number": lambda s: s | {"cells": np.float64(1.0)},
+    "all are one number": lambda s: dict.fromkeys(s, np.float64(1.0)),
+    "cells in two directions": lambda s: s | {"cells": np.stack([s["cells"]] * 2)},
+    "p of fewer cells": lambda s: s | {"p": s["p"][:, 1:]},
+    "p without powers": lambda s: s | {"p": s["p"][:0]},
+    "q as a list": lambda s: s | {"q": s["q"][0]},
+    "infinite q": lambda s: s | {"q": s["q"] + np.inf},
+    "complex q": lambda s: s | {"q": s["q"] + 1j},
+    "words": lambda s: s | {"q": np.array(["a", "b"])},
+    "objects": lambda s: s | {"q": np.array([{}, []], dtype=object)},
+    "dates": lambda s: s | {"loads": np.array(["2020-01-01"] * 4, dtype="datetime64[D]")},
+    "of another P": lambda s: s | {"loads": s["loads"] * [2, 1, 1, 1]},
+    "of another A": lambda s: s | {"loads": s["loads"] * [1, 2, 1, 1]},
+    "q beyond the bound": lambda s: s | {"q": s["q"] + 10 * s["p"].max()},
+    "elsewhere": lambda s: s | {"cells": s["cells"] + 1.0},
+    "of another size": lambda s: s | {"cells": s["cells"] * 1e-6},
+}
+
+
+@pytest.mark.parametrize("fault", STATES)
+def test_states(rejected, tmp_path, state, fault):
+    np.savez(tmp_path / "s.npz", **STATES[fault](state))
+    rejected(None, ["run", "hertz-shear", "--with", "march", "--start", "s.npz"])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["--start", "none.npz"], "none.npz: cannot be read"),
+        (["--start", ""], "cannot be read"),
+        (["--start", "."], "cannot be read"),
+        (["--start", "nul\0"], "nul"),
+        (["--save", ""], "--save '': must name a file"),
+        (["--save", "."], "is a folder"),
+        (["--save", "nul\0.npz"], "cannot be written"),
+        (["--save", "bench.toml/s.npz"], "cannot be written"),
+        (["--save", "s.npz", "--with", "exact"], "no method has followed a path"),
+    ],
+)
+def test_places_of_states(rejected, arguments, expected):
+    """Not even the results are written where the state cannot be."""
+    assert expected in rejected("", ["run", "hertz-shear", "--with", "march", *COARSE, *arguments])

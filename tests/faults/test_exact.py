@@ -1,0 +1,87 @@
+"""Faults of the exact side and of what compares: a wrong truth must not pass for one, either."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip.compare import compare
+from partialslip.halfplane import hertz, method, steady
+from partialslip.halfplane import traction as exact_traction
+from partialslip.halfplane.hertz import Hertz
+
+LARGE = "hertz-large-tension"
+
+
+@pytest.mark.fault
+def test_sign_of_x_instead_of_the_slip_zones(monkeypatch, sound, red):
+    """sgn(x) breaks down where the stick zone lies beside the middle: here it ends at n < 0."""
+    scene, true = sound(LARGE, "load.sigma=[-1e9, 1e9]"), exact_traction.half_range
+
+    def by_x(x, zone, shape):
+        slips = np.abs(x - zone.centre) > zone.half_width
+        return np.where(slips, np.sign(x) * np.abs(true(x, zone, shape)), true(x, zone, shape))
+
+    monkeypatch.setattr(method, "half_range", by_x)
+    red.comparison("q", scene)
+
+
+@pytest.mark.fault
+def test_both_ends_taken_to_slip_the_same_way(monkeypatch, sound, red):
+    scene, true = sound(LARGE), Hertz.conditions
+    monkeypatch.setattr(Hertz, "conditions", lambda self, edge, c, s: true(self, edge, c, np.abs(s)))
+    red.comparison("m", scene)
+
+
+@pytest.mark.fault
+def test_modulus_for_the_parameter(monkeypatch, sound, red):
+    """chi where the library asks for chi^2, in E alone."""
+    scene, true = sound(LARGE), hertz.ellipe
+    monkeypatch.setattr(hertz, "ellipe", lambda parameter: true(np.sqrt(parameter)))
+    red.comparison("n", scene)
+
+
+@pytest.mark.fault
+def test_moment_about_the_middle_without_its_term(monkeypatch, sound, red):
+    """The second condition has moments about the stick zone's centre; about x = 0 a term of dsigma belongs to it."""
+    scene, true = sound(LARGE), steady._at
+
+    def about_the_middle(shape, edge, c):
+        at = true(shape, edge, c)
+        return at._replace(Qf=at.Qf + (np.abs(edge) + c - 1) * at.sf / 4)
+
+    monkeypatch.setattr(steady, "_at", about_the_middle)
+    red.comparison("n", scene)
+
+
+@pytest.mark.fault
+def test_mean_load_bounded_by_gross_sliding_alone(monkeypatch, red):
+    """A mean load beyond what a steady state of large tension can hold: exact and march disagree."""
+    scene = partialslip.load_scene(
+        LARGE, ["load.Q=[69115, 257610]", "load.sigma=[2e8, 1e9]", "load.cycles=30", "fem.accuracy=1e-3"]
+    )
+    outcome = partialslip.run(scene, ["exact", "march"])
+    assert {result.regime for result in outcome.results.values()} == {"ratchets"}
+    assert outcome.passed
+    monkeypatch.setattr(method, "mean_load_bound", lambda *_: 1 - 0.3)
+    found = partialslip.run(scene, ["exact", "march"]).comparisons["march"]
+    assert any(what.startswith("regime: ratchets") for what in found.missed)
+    red("compare: m", found.m, found.bars["m"])
+
+
+@pytest.mark.fault
+def test_traction_perturbed_with_its_resultant_kept(sound, red):
+    """A tenth of f p0 and less moved from one side to the other: Q cannot tell."""
+    scene = sound(LARGE)
+    results = partialslip.run(scene).results
+    fem, exact = results["fem"], results["exact"]
+    true = fem.traction.at
+
+    def moved(x):
+        p, dq = true(x)
+        return p, dq + 0.2 * scene.friction.f * fem.p0 * np.sin(np.pi * x / fem.a) * (np.abs(x) < fem.a)
+
+    found = compare(replace(fem, traction=replace(fem.traction, at=moved)), exact, scene.friction.f, 1e-3)
+    assert "q" in {what.split(":")[0] for what in found.missed}
+    red("compare: q", found.q, found.bars["q"])

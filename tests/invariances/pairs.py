@@ -1,0 +1,432 @@
+"""One scene solved twice, the second time in another guise, and how far the two answers are apart.
+
+Units, directions, names of bodies, what stretches both, steps, stops, places and numbering must not matter.
+"""
+
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise, product
+from pathlib import Path
+from typing import Any, NamedTuple
+from unittest.mock import patch
+
+import numpy as np
+
+from partialslip import halfplane, load_scene, load_state, plan
+from partialslip.compare import Q_BAR, cell_means
+from partialslip.condensed import coupled
+from partialslip.halfplane import marching
+from partialslip.result import Array, Clock, Result
+from partialslip.scene import Scene
+from partialslip_fem import level, model
+from partialslip_fem.adapt import Adapted
+from partialslip_fem.contact import Half
+from partialslip_fem.level import Problem
+from partialslip_fem.mortar import transfer
+from partialslip_meshes import Mesh, block
+
+METHODS = {"exact": halfplane.solve, "march": marching.solve, "fem": model.solve}
+SIZE = "fem.size=0.05"
+MEAN = ("load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]")  # 0.1 .. 0.7 f P, 1 .. 5 f p0
+CIRCLE = ("load.Q=[15e4, 0, -15e4, 0]", "load.sigma=[2e8, 6e8, 2e8, -2e8]")
+UNLIKE = (
+    "material.upper.E=728e9", "material.upper.nu=0.2", "bodies.upper.width=16e-3", "bodies.upper.height=4e-3",
+)  # fmt: skip
+SCENES = {
+    "small tension": ("hertz-small-tension",),
+    "large tension": ("hertz-large-tension",),
+    "flat and rounded": ("flat-rounded",),
+    "mean loads": ("hertz-large-tension", *MEAN, "load.cycles=2"),
+    "out of phase": ("hertz-large-tension", *CIRCLE, "load.cycles=2"),
+    "unlike bodies": ("hertz-large-tension", *UNLIKE, "load.cycles=2", "load.steps=2"),
+}
+POINTS = np.sin(np.linspace(-1, 1, 202)[1:-1] * np.pi / 2)
+CELLS = np.linspace(-1, 1, 41)  # of the contact: means over them are of no mesh
+
+
+class Answer(NamedTuple):
+    """Ends a, m and n; pressure at points x; q at load points 1 and 2, or half of its change where that is all, or its
+    ``extremes``."""
+
+    ends: Array
+    x: Array
+    p: Array
+    q: Array
+    extremes: bool = False
+
+    def mirrored(self) -> "Answer":
+        """Of the mirror image: q is turned round as x is."""
+        there = self.turned()
+        return there._replace(ends=self.ends[[0, 2, 1]], x=-self.x[::-1], p=self.p[::-1], q=there.q[:, ::-1])
+
+    def turned(self) -> "Answer":
+        """With q turned round."""
+        return self._replace(q=-self.q[::-1] if self.extremes else -self.q)
+
+    def scaled(self, length: float, stress: float) -> "Answer":
+        """In units that are so many times larger."""
+        return self._replace(ends=self.ends / length, x=self.x / length, p=self.p / stress, q=self.q / stress)
+
+    def moved(self, shift: float) -> "Answer":
+        """Moved along x."""
+        return self._replace(ends=self.ends + np.array([0, -shift, shift]), x=self.x + shift)
+
+
+class Apart(NamedTuple):
+    """The worst disagreement: of tractions, in p0 (pressure) and f p0 (shear), and of a, m and n, in a."""
+
+    traction: float
+    ends: float
+
+
+def same(answer: Answer) -> Answer:
+    """As it is."""
+    return answer
+
+
+def answer(result: Result, means: bool = False) -> Answer:
+    """A result's, at the nodes or cells in contact; of the exact method at any points; or as means over cells."""
+    traction, ends = result.traction, np.array([result.a, result.m, result.n], float)
+    if means:
+        p, dq = cell_means(traction, CELLS * result.a)
+        return Answer(ends, (CELLS[1:] + CELLS[:-1]) / 2 * result.a, p, dq[None] / 2)
+    if result.method == "exact":
+        p, dq = traction.at(POINTS * result.a)
+        return Answer(ends, POINTS * result.a, p, dq[None] / 2)
+    q = [traction.q1, traction.q2] if traction.q1 is not None else [traction.dq / 2]
+    return Answer(ends, traction.x, traction.p, np.array(q), result.regime == "out of phase")
+
+
+def apart(one: Answer, other: Answer, f: float) -> Apart:
+    a, p0 = one.ends[0], one.p.max()
+    assert one.x.shape == other.x.shape
+    assert np.abs(other.x - one.x).max() < 1e-3 * a
+    tractions = np.abs(other.p - one.p).max() / p0, np.abs(other.q - one.q).max() / (f * p0)
+    return Apart(float(max(tractions)), float(np.abs(other.ends - one.ends).max() / a))
+
+
+def scene_of(kind: str, *overrides: str) -> Scene:
+    name, *settings = SCENES[kind]
+    return load_scene(name, [*settings, *overrides])
+
+
+def loads(Q: Any, sigma: Any) -> tuple[str, ...]:
+    """Settings."""
+    return tuple(f"load.{key}={np.asarray(values, float).tolist()}" for key, values in (("Q", Q), ("sigma", sigma)))
+
+
+def times(scene: Scene, Q: float = 1.0, sigma: float = 1.0) -> tuple[str, ...]:
+    """Settings of the scene's loads, times so much."""
+    return loads(*(np.array(scene.load.points) * [Q, sigma]).T)
+
+
+@contextmanager
+def guise(mesh: Callable[..., Mesh] = block, *patches: Any, own: bool = False) -> Iterator[None]:
+    """Meshes made by ``mesh``, and other patches. Unless every run is to make its ``own`` meshes, march takes its first
+    one only, and finite elements are to be of :data:`SIZE`."""
+    with ExitStack() as stack:
+        if not own:
+            stack.enter_context(patch.object(marching, "_MESHES", ((1e-3, 0.1),)))
+        stack.enter_context(patch.object(level, "block", mesh))
+        stack.enter_context(patch.dict(level._kept, clear=True))
+        for each in patches:
+            stack.enter_context(each)
+        yield
+
+
+def solved(method: str, scene: Scene, start: Any = None) -> Result:
+    return METHODS[method](scene, plan(scene), start=start)
+
+
+def compared(
+    method: str,
+    scene: Scene,
+    other: Scene,
+    bring_back: Callable[[Answer], Answer] = same,
+    mesh: Callable[..., Mesh] = block,
+    *patches: Any,
+    own: bool = False,
+) -> Apart:
+    """How far ``other``, solved in a guise and brought back, is from ``scene``."""
+    with guise(own=own):
+        one = answer(solved(method, scene), own)
+    with guise(mesh, *patches, own=own):
+        return apart(one, bring_back(answer(solved(method, other), own)), scene.friction.f)
+
+
+# -- scenes in another guise ------------------------------------------------------------------------------------------
+
+
+def in_units(scene: Scene, length: float, stress: float) -> tuple[str, ...]:
+    """Settings of the same scene in units that are so many times smaller."""
+    material, profile, upper, load = scene.material, scene.profile, scene.bodies.upper, scene.load
+    given = next(key for key in ("P", "a", "p0") if getattr(load, key) is not None)
+    values = {
+        "material.E": material.E * stress,
+        "profile.R": profile.R * length,
+        f"load.{given}": getattr(load, given) * {"P": length * stress, "a": length, "p0": stress}[given],
+    }
+    if hasattr(profile, "b"):
+        values["profile.b"] = profile.b * length
+    if material.upper:
+        values["material.upper.E"] = material.upper.E * stress
+    if upper:
+        values |= {"bodies.upper.width": upper.width * length, "bodies.upper.height": upper.height * length}
+    return (*(f"{key}={value}" for key, value in values.items()), *times(scene, length * stress, stress))
+
+
+def units(length: float, stress: float, method: str, kind: str, *settings: str, own: bool = False) -> Apart:
+    scene = scene_of(kind, *settings)
+    other = scene_of(kind, *settings, *in_units(scene, length, stress))
+    return compared(method, scene, other, lambda found: found.scaled(length, stress), own=own)
+
+
+def in_the_mirror(
+    width: float, contact: tuple[float, float], sizes: dict[float, float], growth: float, *rest: Any
+) -> Mesh:
+    """The mirror image of a block's mesh."""
+    mesh = block(width, (-contact[1], -contact[0]), {-x: size for x, size in sizes.items()}, growth, *rest)
+    return Mesh(mesh.points * [-1, 1], mesh.triangles[:, ::-1], mesh.lines)
+
+
+def mirror(method: str, kind: str, *settings: str, own: bool = False) -> Apart:
+    """x -> -x: Q is turned round, sigma is not."""
+    scene = scene_of(kind, *settings)
+    other = scene_of(kind, *settings, *times(scene, Q=-1))
+    return compared(method, scene, other, Answer.mirrored, block if own else in_the_mirror, own=own)
+
+
+def swap(method: str, kind: str, *settings: str, own: bool = False) -> Apart:
+    """Upside down: the lower body is the upper one, which drags the other the other way. Of bodies that are alike that
+    is to turn both loads round.
+
+    The tension stays with the lower body, where it takes so much more of it to strain another material as much.
+    """
+    scene = scene_of(kind, *settings)
+    lower, upper = scene.material.bodies
+    other = [*settings, *times(scene, Q=-1, sigma=-lower.A / upper.A)]
+    name, *before = SCENES[kind]
+    if own_upper := scene.material.upper:
+        before = [setting.replace("bodies.upper", "bodies.lower") for setting in before]
+        other += [f"material.{key}={getattr(own_upper, key)}" for key in ("E", "nu")]
+        other += [f"material.upper.{key}={getattr(scene.material, key)}" for key in ("E", "nu")]
+    return compared(method, scene, load_scene(name, [*before, *other]), Answer.turned, own=own)
+
+
+def substeps(steps: int, method: str, kind: str, *settings: str) -> Apart:
+    """From load point to load point in one step, or in several."""
+    scene = scene_of(kind, *settings, "load.steps=1")
+    return compared(method, scene, scene_of(kind, *settings, f"load.steps={steps}"))
+
+
+def the_first_mesh() -> Any:
+    """The finite elements of the first run in all that follow: where unlike bodies touch depends on the loads, too."""
+    true_uniform = model.uniform
+    first: list[Adapted] = []
+
+    def uniform(problem: Problem, size: float, width: float, clock: Clock) -> Adapted:
+        if not first:
+            first.append(true_uniform(problem, size, width, clock))
+        return replace(first[0], level=level._level(problem, first[0].level.halves, 0, clock))
+
+    return patch.object(model, "uniform", uniform)
+
+
+def restart(method: str, kind: str, *settings: str, own: bool = False) -> Apart:
+    """Two cycles in steps of a third; saved to a file at the first load point and after every step of the cycle that
+    follows, and read from there. Where each makes its ``own`` meshes, two stops will do: the second in mid-cycle."""
+    whole = scene_of(kind, *settings, "load.cycles=2", "load.steps=3")
+    corners = [np.array(point) for point in (whole.load.points[-1], *whole.load.points)]
+    stops = [before + (after - before) * part / 3 for before, after in pairwise(corners) for part in (1, 2, 3)]
+    with guise(block, *([] if own else [the_first_mesh()]), own=own), tempfile.TemporaryDirectory() as folder:
+        one, file = answer(solved(method, whole), own), Path(folder) / "state.npz"
+        state, steps = None, 3
+        for Q, sigma in [corners[0], *(stops[2:6:3] if own else stops)] if method != "exact" else []:
+            there = (*loads([Q] * 2, [sigma] * 2), "load.cycles=1", f"load.steps={steps}")
+            solved(method, scene_of(kind, *settings, *there), state).state.save(file)
+            state, steps = load_state(file), 3 if own else 1
+        rest = solved(method, scene_of(kind, *settings, "load.cycles=1", "load.steps=3"), state)
+        return apart(one, answer(rest, own), whole.friction.f)
+
+
+def little_friction(f: float, method: str, kind: str, *settings: str) -> Apart:
+    """With loads in proportion to f, all is in proportion to it: as f goes to 0 nothing breaks down."""
+    scene = scene_of(kind, *settings)
+    part = f / scene.friction.f
+    other = scene_of(kind, *settings, f"friction.f={f}", *times(scene, part, part))
+    return compared(method, scene, other, lambda found: found._replace(q=found.q / part))
+
+
+def without_friction(f: float, method: str, kind: str, *settings: str) -> Apart:
+    """Contact and pressure with hardly any friction are those without."""
+    scene = scene_of(kind, *settings)
+    some = scene_of(kind, *settings, f"friction.f={f}", *times(scene, f / scene.friction.f, f / scene.friction.f))
+    none = scene_of(kind, *settings, "friction.f=0")
+    with guise():
+        one, other = (answer(solved(method, each)) for each in (none, some))
+    one, other = (found._replace(ends=found.ends[:1], q=0 * found.p) for found in (one, other))
+    return apart(one, other, 1.0)
+
+
+# -- problems in another guise ----------------------------------------------------------------------------------------
+
+
+def common_tension(tension: float, kind: str, *settings: str) -> Apart:
+    """Both bodies stretched alike, by so many times what the scene's tension does to the lower one: what their finite
+    elements, whose nodes do not match, say of the way their surfaces move is added to what the surfaces do."""
+    scene = scene_of(kind, "fem.lower_size=0.7", *settings)
+    true_compliances, true_march = level.relative_compliances, coupled.march
+    moved: list[Array] = []
+
+    def compliances(halves: tuple[Half, ...]) -> coupled.Relative:
+        lower, upper = (
+            stretched(half, part.kappa)
+            for half, part in zip(halves, model._scaled(scene, plan(scene)).parts, strict=True)
+        )
+        moved[:] = [lower - transfer(halves[0].body, halves[1].body) @ upper]
+        return true_compliances(halves)
+
+    def march(C: Any, gap: Array, x: Array, *rest: Any) -> Any:
+        return true_march(C, gap, x + tension * moved[0], *rest)
+
+    patches = patch.object(level, "relative_compliances", compliances), patch.object(coupled, "march", march)
+    return compared("fem", scene, scene, same, block, *patches)
+
+
+def stretched(half: Half, kappa: float) -> Array:
+    """How the contact line's nodes move along x when the body, held at its sides and back, is stretched by one."""
+    held = (half.body.held_points * [[1.0], [-(3 - kappa) / (1 + kappa)]]).reshape(-1, 1)
+    moved = half.condensed._solve(np.zeros((half.body.contact.size, 1)), held)
+    result: Array = moved[-half.body.contact.size :, 0][: len(half.body.x)]
+    return result
+
+
+def shifted(shift: float, approach: float, method: str, kind: str, *settings: str) -> Apart:
+    """All that is there moved along x, by so many lengths of the problem, and the bodies apart before they meet."""
+    scene = scene_of(kind, *settings)
+    true_march, true_uniform = marching.march, model.uniform
+
+    def march(C: Array, x: Array, *rest: Any) -> Any:
+        return true_march(C, x + shift, *rest)
+
+    def uniform(problem: Problem, size: float, width: float, clock: Clock) -> Adapted:
+        here = true_uniform(problem, size, width, clock)
+        meshes = [replace(half.mesh, points=half.mesh.points + np.array([shift, 0])) for half in here.level.halves]
+        there = replace(problem, gap=lambda x: problem.gap(x - shift) + approach)
+        return replace(here, level=level.solve_on(meshes, there, here.level.halves[0].mesh.points.max(), clock))
+
+    patches = patch.object(marching, "march", march), patch.object(model, "uniform", uniform)
+    back = -shift * scene.length if method == "fem" else 0.0
+    return compared(method, scene, scene, lambda found: found.moved(back), block, *patches)
+
+
+def shuffled(seed: int, *args: Any) -> Mesh:
+    """A block's mesh, its points, triangles, their corners and the edges of its lines in any order."""
+    rng, mesh = np.random.default_rng(seed), block(*args)
+    order = rng.permutation(len(mesh.points))
+    number = np.argsort(order)
+    triangles = rng.permutation(number[mesh.triangles])
+    turns = (np.arange(3) + rng.integers(3, size=(len(triangles), 1))) % 3
+    lines = {name: rng.permuted(rng.permutation(number[line]), axis=1) for name, line in mesh.lines.items()}
+    return Mesh(mesh.points[order], np.take_along_axis(triangles, turns, axis=1), lines)
+
+
+def reordered(seed: int, method: str, kind: str, *settings: str) -> Apart:
+    """Nodes, elements and cells in any order."""
+    true_march = marching.march
+
+    def march(C: Array, x: Array, bound: Array, path: Any) -> Any:
+        order = np.random.default_rng(seed).permutation(len(x))
+        return true_march(C[np.ix_(order, order)], x[order], bound[order], path).of(np.argsort(order))
+
+    scene = scene_of(kind, *settings)
+    return compared(method, scene, scene, same, partial(shuffled, seed), patch.object(marching, "march", march))
+
+
+def many_loads(seed: int) -> Apart:
+    """Stick zones of many loads at once, in any order."""
+    rng = np.random.default_rng(seed)
+    pressed, order = halfplane.contact(scene_of("large tension")), rng.permutation(2000)
+    dQ, dsigma = rng.uniform(-1.9, 1.9, 2000) * pressed.P, rng.uniform(-9, 9, 2000) * pressed.p0
+    one = halfplane.stick_zone(pressed, 1.0, dQ, dsigma)
+    other = halfplane.stick_zone(pressed, 1.0, dQ[order], dsigma[order])
+    ends = (np.abs(getattr(one, key)[order] - getattr(other, key)).max() / pressed.a for key in ("m", "n"))
+    return Apart(0.0, float(max(ends)))
+
+
+# -- all of them ------------------------------------------------------------------------------------------------------
+
+IN_PHASE = ("small tension", "large tension", "flat and rounded", "mean loads")
+ALIKE = (*IN_PHASE, "out of phase")
+ROUNDING = {"exact": 1e-12, "march": 1e-11, "fem": 1e-9}  # compliances of fem are known to 1e-12 or so
+ACCURACY = 1e-3
+_QUICK = {  # of the scenes of a pair of fem's, the one that is no slow test; as a rule the one of mean loads
+    "mirror": "unlike bodies",
+    "swap of bodies": "unlike bodies",
+    "order of nodes and elements": "unlike bodies",
+    "restart": "out of phase",
+}
+_UNITS = {"mm, MPa": (1e3, 1e-6), "1e12": (1e12, 1e12), "1e-12": (1e-12, 1e-12), "1e12 m, 1e-12 Pa": (1e12, 1e-12)}
+
+
+class Trial(NamedTuple):
+    """A pair to solve, what it may be apart by, and whether it is one for on demand: another like it is not."""
+
+    invariance: str
+    method: str
+    kind: str
+    run: Callable[[], Apart]
+    bars: Apart
+    slow: bool = False
+
+
+def trials() -> Iterator[Trial]:
+    """Of every method, in scenes for which it is so: on one mesh, where rounding is all that is left; and on meshes
+    that each run makes for itself."""
+    pairs: dict[str, tuple[Callable[..., Apart], tuple[str, ...]]] = {
+        **{f"units: {name}": (partial(units, *factors), tuple(SCENES)) for name, factors in _UNITS.items()},
+        "mirror": (mirror, tuple(SCENES)),
+        "swap of bodies": (swap, tuple(SCENES)),
+        "7 sub-steps": (partial(substeps, 7), IN_PHASE[:3]),
+        "50 sub-steps": (partial(substeps, 50), IN_PHASE[:3]),
+        "restart": (restart, tuple(SCENES)),
+        "f = 1e-9, loads in proportion": (partial(little_friction, 1e-9), ALIKE),
+        "f = 1e-9, no friction": (partial(without_friction, 1e-9), tuple(SCENES)),
+        "rigid shift": (partial(shifted, 0.0123, 0.1), tuple(SCENES)),
+        "order of nodes and elements": (partial(reordered, 1), tuple(SCENES)),
+    }
+    for name, (run, kinds) in pairs.items():
+        for method, bar in ROUNDING.items():
+            bar = 1e-8 if name == "f = 1e-9, no friction" else bar  # ten times f
+            for kind in kinds:
+                if not _has(method, kind) or (
+                    method == "exact" and name in ("rigid shift", "order of nodes and elements")
+                ):
+                    continue
+                slow = method == "fem" and kind != _QUICK.get(name, kinds[:4][-1])
+                yield Trial(name, method, kind, partial(run, method, kind, SIZE), Apart(bar, bar), slow)
+    yield Trial("order of nodes and elements", "exact", "large tension", partial(many_loads, 1), Apart(0.0, 0.0))
+    for kind in ALIKE:  # what cancels is ten times as large
+        run = partial(common_tension, 10.0, kind, SIZE)
+        yield Trial("common tension", "fem", kind, run, Apart(1e-8, 1e-8), kind != "mean loads")
+    own: dict[str, tuple[Callable[..., Apart], tuple[str, ...]]] = {
+        "units: mm, MPa": (partial(units, 1e3, 1e-6), ("large tension", "mean loads")),
+        "mirror": (mirror, ("large tension", "mean loads")),
+        "swap of bodies": (swap, ("unlike bodies",)),
+        "restart": (restart, ("large tension", "mean loads")),
+    }
+    bars = Apart(Q_BAR * ACCURACY, ACCURACY)
+    for name, (run, kinds) in own.items():
+        for method, kind in product(("march", "fem"), kinds):
+            if _has(method, kind):
+                asked = partial(run, method, kind, f"fem.accuracy={ACCURACY}", own=True)
+                slow = method == "fem" and kind != "large tension"
+                yield Trial(f"{name}; own meshes", method, kind, asked, bars, slow)
+
+
+def _has(method: str, kind: str) -> bool:
+    """Half-planes are alike; there is a closed form for loads in phase."""
+    return kind in {"exact": IN_PHASE, "march": ALIKE, "fem": tuple(SCENES)}[method]

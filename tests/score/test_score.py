@@ -1,0 +1,243 @@
+"""Somebody else's results: what is read from tractions that are known, coarse, noisy or wrong."""
+
+import io
+import json
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip import load_scene, run, score
+from partialslip.cli import main
+
+SCENES = ("hertz-shear", "hertz-small-tension", "hertz-large-tension", "fretting-aluminium", "flat-rounded")
+FIXTURES = Path(__file__).parent
+
+
+@pytest.fixture(scope="module")
+def exact():
+    scenes = {name: load_scene(name) for name in SCENES}
+    return {name: (scene, run(scene, ["exact"]).results["exact"]) for name, scene in scenes.items()}
+
+
+def sampled(result, count, reach=1.1, shift=0.0):
+    """Points, off the middle by an odd amount, and the exact tractions there."""
+    x = reach * result.a * np.linspace(-1, 1.003, count) + shift
+    return np.column_stack([x, *result.traction.at(x)])
+
+
+def written(path, table, names="x,p,dq"):
+    np.savetxt(path, table, delimiter=",", header=names, comments="")
+    return path
+
+
+def errors(scene, path, **settings):
+    outcome = score(scene, path, **settings)
+    return outcome.results[path.name], outcome.comparisons[path.name]
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_errors_fall_with_the_spacing(exact, tmp_path, name):
+    """p and q by first order in L2, as lines between points are near square roots; a, m and n far below the spacing."""
+    scene, result = exact[name]
+    found = [errors(scene, written(tmp_path / "t.csv", sampled(result, n)))[1] for n in (81, 321, 1281)]
+    for key, order in (("p", 0.9), ("q", 0.9)):
+        coarse, fine = getattr(found[0], key), getattr(found[2], key)
+        assert np.log(coarse / fine) / np.log(16) > order
+    for key in ("a", "m", "n"):
+        assert [getattr(c, key) for c in found] < [0.25 * 2.2 / 80] * 3
+        assert getattr(found[1], key) < 0.002 * 2.2 / 320
+        assert getattr(found[2], key) < 0.002 * 2.2 / 1280
+    assert all(c.passed for c in found)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_ends_from_twenty_points(exact, tmp_path, name):
+    """A spacing of a ninth of a: ends to a fifth of that; the flat's corner, where p bends within one, to half."""
+    scene, result = exact[name]
+    _, comparison = errors(scene, written(tmp_path / "t.csv", sampled(result, 20)))
+    part = 0.5 if name == "flat-rounded" else 0.2
+    assert max(comparison.a, comparison.m, comparison.n) < part * 2.2 / 19
+
+
+@pytest.mark.parametrize("name", SCENES[:4])
+def test_noise_is_seen_and_told(exact, tmp_path, name):
+    """One percent of p0 and of f p0 at every point: ends to a tenth of a spacing or so, and the estimate tells."""
+    scene, result = exact[name]
+    random = np.random.default_rng(3)
+    off, told = [], []
+    for _ in range(10):
+        table = sampled(result, 80)
+        table[:, 1:] += 0.01 * result.p0 * random.standard_normal((80, 2)) * [1, 2 * scene.friction.f]
+        found, comparison = errors(scene, written(tmp_path / "t.csv", table))
+        off += [comparison.a, comparison.m, comparison.n]
+        told += [found.estimate[key] for key in "amn"]
+    spacing = 2.2 / 79
+    assert np.median(off) < 0.15 * spacing
+    assert max(off) < 2 * spacing
+    assert 0.3 < np.median(told) / np.median(off) < 10
+    assert found.settings["noise_over_p0"] == pytest.approx(0.01, rel=0.6)
+
+
+def test_all_ways_of_writing_the_same(exact, tmp_path):
+    scene, result = exact["fretting-aluminium"]
+    x, p, dq = sampled(result, 81).T
+    tables = {
+        "x,p,dq": (x, p, dq),
+        "x,p,q": (x, p, dq / 2),
+        "X, x,p,q1,q2": (x, x, p, -dq / 2, dq / 2),
+        "p,x,other,dq": (p, x, 0 * x, dq),
+    }
+    ends = []
+    for names, columns in tables.items():
+        found, comparison = errors(scene, written(tmp_path / "t.csv", np.column_stack(columns), names))
+        ends.append((found.a, found.m, found.n, comparison.p, comparison.q))
+    order = np.random.default_rng(0).permutation(81)
+    text = "\n".join(f"{a!r};\t{b!r} ; {c!r}  # point" for a, b, c in np.column_stack([x, p, dq])[order].tolist())
+    (tmp_path / "t.csv").write_text(f"# a comment\n\n x; p; dq\n{text}\n", "utf-8")
+    found, comparison = errors(scene, tmp_path / "t.csv")
+    ends.append((found.a, found.m, found.n, comparison.p, comparison.q))
+    units = written(tmp_path / "t.csv", np.column_stack([x * 1e3, -p / 1e6, dq / 1e6]))
+    found, comparison = errors(scene, units, factors=(1e-3, -1e6, 1e6))
+    ends.append((found.a, found.m, found.n, comparison.p, comparison.q))
+    for other in ends[1:]:
+        assert other == pytest.approx(ends[0], rel=1e-9)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_nodal_forces(exact, tmp_path, order):
+    """Integrals of the tractions times shape functions, by quadrature in an angle; what they add up to is kept."""
+    scene, result = exact["hertz-large-tension"]
+    x = 1.1 * result.a * np.linspace(-1, 1, 81)
+    t = result.a * -np.cos((np.arange(20000) + 0.5) * np.pi / 20000)
+    weights = result.a * np.sin((np.arange(20000) + 0.5) * np.pi / 20000) * np.pi / 20000
+    cell = np.clip(np.searchsorted(x[::order], t) - 1, 0, 80 // order - 1)
+    s = (t - x[::order][cell]) / (order * (x[1] - x[0]))
+    shapes = [1 - s, s] if order == 1 else [(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)]
+    forces = np.zeros((2, 81))
+    for local, shape in enumerate(shapes):
+        for row, traction in zip(forces, result.traction.at(t), strict=True):
+            np.add.at(row, order * cell + local, shape * traction * weights)
+    path = written(tmp_path / "t.csv", np.column_stack([x, *forces]), "x,Fn,dFt")
+    found, comparison = errors(scene, path, order=order)
+    widths = np.diff(found.traction.cells)
+    assert found.traction.p @ widths == pytest.approx(scene.P, rel=1e-5)
+    assert max(comparison.a, comparison.m, comparison.n) < 0.15 * 2.2 / 80
+    assert comparison.p < 0.02
+    if order == 2:  # deliberate fault: taken for elements of order 1
+        with pytest.raises(partialslip.InputError, match="another order"):
+            score(scene, path)
+
+
+@pytest.mark.parametrize("ending", ["vtu", "vtk", "xdmf"])
+def test_meshes(exact, tmp_path, ending):
+    """A body with a line of elements along its contact, which alone is read; and points without values."""
+    scene, result = exact["fretting-aluminium"]
+    x, p, dq = sampled(result, 81).T
+    points = np.concatenate([np.column_stack([x, 0 * x, 0 * x]), [[0.0, -1e-3, 0]]])
+    cells = [("triangle", np.column_stack([np.arange(80), np.arange(1, 81), np.full(80, 81)]))]
+    cells.append(("line", np.column_stack([np.arange(80), np.arange(1, 81)])))
+    data = {"p": np.append(p, 7.0), "dq": np.append(dq, 0.0), "u": points}
+    path = tmp_path / f"t.{ending}"
+    if ending == "xdmf":
+        pytest.importorskip("h5py")
+    settings = {"data_format": "XML"} if ending == "xdmf" else {}
+    meshio.write(path, meshio.Mesh(points, cells, point_data=data), **settings)
+    found, comparison = errors(scene, path)
+    same, expected = errors(scene, written(tmp_path / "t.csv", np.column_stack([x, p, dq])))
+    assert (found.a, found.m, comparison.q) == pytest.approx((same.a, same.m, expected.q), rel=1e-6)
+
+
+@pytest.mark.parametrize(("ending", "off"), [("frd", 0.1), ("dat", 0.25)])
+def test_calculix(ending, off):
+    """From a run of CalculiX 2.20 (elements of 0.16 a, surface-to-surface, blocks of 16 a): ends to part of an
+    element."""
+    scene = load_scene("hertz-shear")
+    found, comparison = errors(scene, FIXTURES / f"calculix.{ending}")
+    assert found.regime == "small tension"
+    assert max(comparison.a, comparison.m, comparison.n) < off * 0.1625
+    assert comparison.p < 0.12
+    chosen, _ = errors(scene, FIXTURES / f"calculix.{ending}", at=(1, 2))
+    assert chosen.m == found.m
+    turned, opposite = errors(scene, FIXTURES / f"calculix.{ending}", at=(2, 1))
+    assert turned.traction.dq == pytest.approx(-found.traction.dq)
+    assert opposite.q > 1.9
+    assert any("turned round?" in note for note in turned.notes)
+
+
+FAULTS = {
+    "shifted by half a cell": (lambda t, h: t + np.array([h / 2, 0, 0]), "m n p q", "middle"),
+    "q of the other sign": (lambda t, _: t * [1, 1, -1], "q", "turned round?"),
+    "half a cycle": (lambda t, _: t * [1, 1, 0.5], "m n q", "half a cycle?"),
+    "without the right half": (lambda t, _: t[: len(t) // 2], "a p q", "of the scene's P"),
+    "a hole": (lambda t, _: np.delete(t, slice(12, 26), axis=0), "p q", ""),
+    "p and q exchanged": (lambda t, _: np.column_stack([t[:, 0], t[:, 2], t[:, 1]]), "p q", ""),
+    "mirrored": (lambda t, _: t * [-1, 1, 1], "m n q", ""),
+    "pressure scaled": (lambda t, _: t * [1, 1.1, 1], "p", "of the scene's P"),
+    "in MPa": (lambda t, _: t * [1, 1e-6, 1e-6], "p q", "in MPa?"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_faults_are_seen(exact, tmp_path, fault):
+    """Deliberate faults, against bars that the faultless table meets."""
+    scene, result = exact["fretting-aluminium"]
+    table = sampled(result, 161)
+    good = errors(scene, written(tmp_path / "t.csv", table), bar=5e-4)[1]
+    assert good.passed
+    spoil, seen, note = FAULTS[fault]
+    found, comparison = errors(scene, written(tmp_path / "t.csv", spoil(table, table[1, 0] - table[0, 0])), bar=5e-4)
+    missed = {what.split(":")[0] for what in comparison.missed}
+    assert set(seen.split()) <= missed
+    assert note in " ".join(found.notes)
+
+
+def test_other_references(tmp_path):
+    """March where loads are out of phase; the finite elements where bodies are of a size."""
+    scene = load_scene("hertz-shear", ["load.Q=[0, 1e5, 0, -1e5]", "load.sigma=[1e8, 0, -1e8, 0]", "load.cycles=2"])
+    march = run(scene, ["march"]).results["march"]
+    table = np.column_stack([march.traction.x, march.traction.p, march.traction.dq])
+    outcome = score(scene, written(tmp_path / "t.csv", table), bar=1e-2)
+    assert (outcome.reference, outcome.passed) == ("march", True)
+    block = "{width = 0.02, height = 0.02}"
+    finite = load_scene("hertz-shear", [f"bodies.upper={block}", f"bodies.lower={block}", "fem.accuracy=1e-2"])
+    fem = run(finite, ["fem"]).results["fem"]
+    table = np.column_stack([fem.traction.x, fem.traction.p, fem.traction.dq])
+    outcome = score(finite, written(tmp_path / "t.csv", table), bar=2e-2)
+    assert (outcome.reference, outcome.passed) == ("fem", True)
+
+
+def test_on_the_command_line(exact, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    _, result = exact["hertz-shear"]
+    written(tmp_path / "$a_[red]$.csv", sampled(result, 161))
+    assert main(["score", "hertz-shear", "$a_[red]$.csv"]) == 0
+    printed = capsys.readouterr().out
+    assert "$a_[red]$.csv" in printed
+    assert "no bars: none were asked for" in printed
+    folder = tmp_path / "results" / "hertz-shear-$a_[red]$"
+    assert sorted(path.name for path in folder.iterdir()) == ["report.html", "results.json", "tractions.csv"]
+    assert "p/p0, $a_[red]$.csv" in (folder / "report.html").read_text("utf-8")
+    record = json.loads((folder / "results.json").read_text("utf-8"))
+    assert record["comparison"]["$a_[red]$.csv"]["m"] < 1e-6
+    for bar, code in (("2e-3", 0), ("1e-5", 1)):
+        assert main(["score", "hertz-shear", "$a_[red]$.csv", "--bar", bar, "--json"]) == code
+        assert json.loads(capsys.readouterr().out)["methods"].keys() == {"exact", "$a_[red]$.csv"}
+
+
+def test_template_is_filled_in_and_scored(exact, tmp_path, capsys):
+    scene, result = exact["flat-rounded"]
+    assert main(["score", "flat-rounded", "--template"]) == 0
+    table = capsys.readouterr().out
+    x = np.loadtxt(io.StringIO(table), delimiter=",", comments=["#", "x"])[:, 0]
+    assert x[0] < -1.05 * result.a
+    assert x[-1] > 1.05 * result.a
+    (tmp_path / "empty.csv").write_text(table, "utf-8")
+    with pytest.raises(partialslip.InputError, match=r"p > 0 at 0 points"):
+        score(scene, tmp_path / "empty.csv")
+    head = table[: table.index("x,p,dq")]
+    rows = "".join(f"{a!r},{b!r},{c!r}\n" for a, b, c in np.column_stack([x, *result.traction.at(x)]).tolist())
+    (tmp_path / "full.csv").write_text(f"{head}x,p,dq\n{rows}", "utf-8")
+    assert errors(scene, tmp_path / "full.csv")[1].n < 1e-3

@@ -1,0 +1,64 @@
+"""A ledger keeps what was finished, whatever ends the study."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+import partialslip
+from partialslip.study.ledger import Ledger
+
+
+def test_entries_are_there_again(tmp_path):
+    ledger = Ledger(tmp_path / "new" / "ledger.jsonl")
+    ledger.add("one", {"found": 1.5})
+    ledger.add("two", {"found": 2.5})
+    again = Ledger(ledger.path)
+    assert len(again) == 2
+    assert "one" in again
+    assert again["two"]["found"] == 2.5
+    assert again["two"]["made"]["versions"]["numpy"]
+
+
+def test_a_torn_last_line_is_dropped_and_written_over(tmp_path):
+    path = tmp_path / "ledger.jsonl"
+    Ledger(path).add("one", {"found": 1})
+    whole = path.read_bytes()
+    path.write_bytes(whole + b'{"key": "two", "fou')
+    ledger = Ledger(path)
+    assert len(ledger) == 1
+    assert path.read_bytes() == whole
+    ledger.add("two", {"found": 2})
+    assert [entry["key"] for entry in Ledger(path)] == ["one", "two"]
+
+
+@pytest.mark.parametrize("line", ["[1, 2]", "{}", "not JSON", '"text"', "\x00"])
+def test_what_is_no_ledger_is_refused(tmp_path, line):
+    path = tmp_path / "ledger.jsonl"
+    path.write_text(line + "\n", "utf-8")
+    with pytest.raises(partialslip.InputError, match=r"line 1: must be an entry"):
+        Ledger(path)
+
+
+def test_a_killed_writer_leaves_whole_lines(tmp_path):
+    """kill -9 in the middle of many entries: every line that is there is one, and the study can go on."""
+    path = tmp_path / "ledger.jsonl"
+    code = (
+        "import sys, itertools, pathlib\nfrom partialslip.study.ledger import Ledger\n"
+        "ledger = Ledger(pathlib.Path(sys.argv[1]))\n"
+        "for n in itertools.count(): ledger.add(str(n), {'text': 'x' * 5000})\n"
+    )
+    writer = subprocess.Popen([sys.executable, "-c", code, str(path)])
+    while not path.exists() or path.stat().st_size < 100_000:
+        time.sleep(0.01)
+        assert writer.poll() is None
+    os.kill(writer.pid, signal.SIGKILL)
+    writer.wait()
+    ledger = Ledger(path)
+    assert [entry["key"] for entry in ledger] == [str(n) for n in range(len(ledger))]
+    ledger.add("last", {})
+    assert all(json.loads(line) for line in path.read_text("utf-8").splitlines())

@@ -1,0 +1,154 @@
+"""Sweeps: what is swept over, what is solved once, and the law that the sizes follow."""
+
+import json
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip.study import size
+from partialslip.study.case import Case, solve
+from partialslip.study.ledger import Ledger
+from partialslip.study.sweep import sweep, workers
+
+BLOCKS = {"upper": {"width": 1.0, "height": 1.0}, "lower": {"width": 1.0, "height": 1.0}}
+
+
+def scene(**fem):
+    data = {
+        "name": "blocks", "material": {"E": 72e9, "nu": 0.3}, "profile": {"kind": "hertz", "R": 0.02},
+        "friction": {"f": 0.4}, "load": {"a": 1e-3, "Q": [-3e4, 3e4], "sigma": [-3e7, 3e7]}, "bodies": BLOCKS,
+        "fem": {"accuracy": 1e-3, **fem},
+    }  # fmt: skip
+    return partialslip.parse_scene(data)
+
+
+@pytest.mark.parametrize(
+    ("text", "values", "in_a"),
+    [
+        ("load.P=1e5,2e5", (1e5, 2e5), False),
+        ("bodies.*.width=4a..64a:5", (4.0, 8.0, 16.0, 32.0, 64.0), True),
+        ("fem.order=2,3", (2.0, 3.0), False),
+    ],
+)
+def test_axes_are_read(text, values, in_a):
+    axis = size.axis(text)
+    assert axis.values == pytest.approx(values, rel=1e-11)
+    assert axis.in_a is in_a
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "load.P", "load.P=", "=1,2", "load.P=1..", "load.P=2..1", "load.P=0..1", "load.P=1..2..3", "load.P=1a,2",
+     "load.P=one", "load.P=1..2:1", "load.P=1..2:x", "load.P=1,2:3", "load.P+=1,2", "load.P=1..1e999"],
+)  # fmt: skip
+def test_bad_axes_are_refused_in_one_line(text):
+    with pytest.raises(partialslip.InputError, match="--over"):
+        size.axis(text)
+
+
+def test_stars_stand_for_every_table_and_a_for_the_half_planes_half_width():
+    cases = size.cases(scene(), [size.axis("bodies.*.width+bodies.*.height=4a,16a")])
+    assert len(cases) == 4
+    widths = [case.scene.bodies.lower.width for case in cases]
+    assert widths == pytest.approx([4e-3, 4e-3, 16e-3, 16e-3])
+    assert cases[0].scene.bodies.upper.height == pytest.approx(4e-3)
+    assert [case.scene.fem.accuracy for case in cases[:2]] == [1e-3, 8e-3]
+    with pytest.raises(partialslip.InputError, match="not in the scene"):
+        size.cases(scene(), [size.axis("bodies.*.depth=1,2")])
+
+
+def test_a_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
+    """What is in the ledger is not solved again; what cannot be solved is told, and does not stop the rest."""
+    path, solved = tmp_path / "ledger.jsonl", []
+    cases = [Case(scene(), ("exact",), {"number": number}) for number in range(6)]
+    broken = Case(scene(), ("nothing",), {"number": 6})
+
+    def counted(data):
+        solved.append(data["labels"]["number"])
+        return solve(data)
+
+    monkeypatch.setattr("partialslip.study.sweep.solve", counted)
+    with ThreadPoolExecutor(1) as executor:
+        sweep(cases[:4], Ledger(path), executor)
+        seen = []
+        sweep([*cases, broken], Ledger(path), executor, lambda *at: seen.append(at[:2]))
+    assert solved == [0, 1, 2, 3, 4, 5, 6]
+    assert seen == [(4, 7), (5, 7), (6, 7), (7, 7)]
+    assert "nothing" in Ledger(path)[broken.key]["error"]
+
+
+def test_the_law_of_made_up_sizes_is_found():
+    x = np.geomspace(4, 256, 9)
+    off = 0.3 * x**-2.0
+    known = size.Sizes("W", x, dict.fromkeys(size.QUANTITIES, off), dict.fromkeys(size.QUANTITIES, 1e-3 * off))
+    law = size.law(known, "m")
+    assert law.k == pytest.approx(2, abs=1e-9)
+    assert pytest.approx(0.3) == law.C
+    assert law.needed == pytest.approx([4.0, 30**0.5, 300**0.5])
+
+
+def test_what_the_mesh_is_off_by_is_no_law():
+    """Deliberate fault: sizes at which the mesh is as bad as the size would turn the order round."""
+    x = np.geomspace(4, 1024, 9)
+    off = 0.3 * x**-2.0 + 1e-4
+    honest = size.Sizes("W", x, {"m": off}, {"m": np.full(9, 1e-4)})
+    blind = size.Sizes("W", x, {"m": off}, {"m": np.zeros(9)})
+    assert size.law(honest, "m").k == pytest.approx(2, abs=0.1)
+    assert size.law(blind, "m").k < 1
+
+
+def test_blocks_come_near_the_half_plane_with_the_square_of_their_size(tmp_path):
+    axis = size.axis("bodies.*.width+bodies.*.height=16a..128a:4")
+    cases, ledger = size.cases(scene(accuracy=1e-5), [axis], meshes=1), Ledger(tmp_path / "ledger.jsonl")
+    with ThreadPoolExecutor(1) as executor:
+        sweep(cases, ledger, executor)
+    sizes = size.along(axis, ledger)
+    for quantity in ("a", "m"):
+        assert max(sizes.mesh[quantity]) < 1e-5
+        assert size.law(sizes, quantity).k == pytest.approx(2, abs=0.3)
+
+
+def test_a_dask_cluster_goes_on_where_a_worker_is_killed(tmp_path):
+    pytest.importorskip("distributed")
+    file, folder = tmp_path / "scheduler.json", ["--local-directory", str(tmp_path)]
+
+    def start(what, *options):
+        command = [sys.executable, "-m", f"distributed.cli.dask_{what}", "--scheduler-file", str(file), *options]
+        return subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.DEVNULL)
+
+    cases = [Case(scene(), ("exact",), {"number": number}) for number in range(40)]
+    ledger, done = Ledger(tmp_path / "ledger.jsonl"), []
+    scheduler = start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
+    crew = [start("worker", "--no-nanny", "--nthreads", "1", "--no-dashboard", *folder) for _ in range(2)]
+    try:
+        for _ in range(600):
+            if file.exists() and file.read_text():
+                break
+            time.sleep(0.05)
+        address = json.loads(file.read_text())["address"]
+
+        def kill(count, *_):
+            done.append(count)
+            if count == 10:
+                crew[0].kill()
+
+        with workers(address) as executor:
+            sweep(cases, ledger, executor, kill)
+    finally:
+        for process in (*crew, scheduler):
+            process.kill()
+            process.wait()
+    assert done == list(range(41))
+    assert {entry["labels"]["number"] for entry in ledger} == set(range(40))
+    assert len(ledger.path.read_text().splitlines()) == 40  # nothing twice
+
+
+def test_no_scheduler_is_one_line():
+    pytest.importorskip("distributed")
+    with pytest.raises(partialslip.InputError, match="--cluster"), workers("tcp://127.0.0.1:9"):
+        pass

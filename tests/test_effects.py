@@ -1,0 +1,398 @@
+"""Only what a scene calls for is built, which counted work shows; what is left out would not have changed the answer;
+and what it cannot do without is not left out unseen."""
+
+import itertools
+import json
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip import InputError, load_scene, plan
+from partialslip.cli import main
+from partialslip.condensed import friction
+from partialslip.halfplane import marching
+from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.steady import transition
+from partialslip.plan import reduced
+from partialslip_fem import condensation, forget, level, model
+
+SIZE = "fem.size=0.1"
+BLOCKS = ("bodies.lower.width=30e-3", "bodies.lower.height=10e-3", "bodies.upper.width=20e-3",
+          "bodies.upper.height=20e-3")  # fmt: skip
+STIFF = ("material.upper.E=400e9", "material.upper.nu=0.25")
+MEAN = ("load.Q=[-5e4, 1.5e5]", "load.cycles=3")
+SMALLER = "load.Q=[-1e5, 1e5]"  # of the stiffer pair, which p0 = 400 MPa presses with less
+LARGE = "load.sigma=[-1e9, 1e9]"
+EQUAL = ("bodies.lower.width=30e-3", "bodies.lower.height=10e-3", "bodies.upper.width=30e-3",
+         "bodies.upper.height=10e-3")  # fmt: skip
+
+# From frictionless Hertz to two different finite bodies with mean loads and stresses inside.
+SIX = {
+    "frictionless": (("friction.f=0", "load.Q=[0, 0]"), False),
+    "shear": ((), False),
+    "large tension": ((LARGE,), False),
+    "mean loads, small tension": ((*MEAN, "load.sigma=[0, 1e8]"), False),
+    "unlike half-planes": ((*STIFF, SMALLER), False),
+    "everything": ((*STIFF, *BLOCKS, *MEAN, LARGE), True),
+}
+
+# What is counted of an effect, as a number that is zero if it is left out.
+WORK = {
+    "friction": lambda counts: counts["tangential_unknowns"] + counts["load_steps"] + counts["friction_iterations"],
+    "opposing-slip": lambda counts: counts["opposing_nodes"],
+    "history": lambda counts: counts["cycles"],
+    "coupling": lambda counts: counts["bodies"] - 1 + counts["normal_solves"] - 1,
+    "far-field": lambda counts: counts["far_field_columns"],
+    "subsurface": lambda counts: counts["back_solves"],
+}
+
+
+def fem(*overrides, name="hertz-shear", subsurface=False):
+    """By finite elements, with what the scene's effects force."""
+    forget()
+    scene = load_scene(name, [SIZE, *overrides])
+    return model.solve(reduced(scene), plan(scene, subsurface=subsurface))
+
+
+def march(*overrides, name="hertz-shear"):
+    scene = load_scene(name, ["fem.accuracy=1e-2", *overrides])
+    return marching.solve(reduced(scene), plan(scene))
+
+
+def assert_same(result, other, off=1e-10):
+    """a, m and n in a, p in p0 and q in the larger bound."""
+    assert (other.a, other.m, other.n) == pytest.approx((result.a, result.m, result.n), abs=off * result.a)
+    for key in ("p", "q1", "q2"):
+        mine, its = getattr(result.traction, key), getattr(other.traction, key)
+        assert its == pytest.approx(mine, abs=10 * off * result.p0), key
+
+
+@pytest.fixture
+def spied(monkeypatch):
+    """How often what is costly is really done."""
+    calls = dict.fromkeys(("factor", "half_plane", "press", "march", "coupled", "displace"), 0)
+
+    def spy(owner, name, key):
+        true = getattr(owner, name)
+
+        def counted(*args, **kwargs):
+            calls[key] += 1
+            return true(*args, **kwargs)
+
+        monkeypatch.setattr(owner, name, counted)
+
+    spy(condensation, "factor", "factor")
+    spy(level, "half_plane", "half_plane")
+    spy(level, "press", "press")
+    spy(level, "march", "march")
+    spy(level.coupled, "march", "coupled")
+    spy(condensation.Condensed, "displace", "displace")
+    return calls
+
+
+@pytest.mark.parametrize("name", SIX)
+def test_left_out_effects_count_zero(name, spied):
+    overrides, subsurface = SIX[name]
+    scene = load_scene("hertz-shear", [SIZE, *overrides])
+    effects, counts = plan(scene, subsurface=subsurface), fem(*overrides, subsurface=subsurface).counts
+    for effect, work in WORK.items():
+        if not effects.needs(effect):
+            assert work(counts) == 0, effect
+        elif effect != "opposing-slip":  # it may come to nothing
+            assert work(counts) > 0, effect
+    bodies, meshes, friction = counts["bodies"], counts["meshes"], effects.needs("friction")
+    assert counts["columns"] % (bodies * (2 if friction else 1)) == 0
+    if bodies == 1:
+        assert counts["columns"] == counts["normal_unknowns"] * (2 if friction else 1)
+    assert spied == {
+        "factor": bodies * meshes,
+        "half_plane": bodies * meshes if effects.needs("far-field") else 0,
+        "press": 0 if effects.needs("coupling") else meshes,
+        "march": meshes if friction and not effects.needs("coupling") else 0,
+        "coupled": meshes if effects.needs("coupling") else 0,
+        "displace": 2 if subsurface else 0,
+    }
+
+
+def test_work_of_the_cheapest_and_the_fullest():
+    cheap, full = (fem(*overrides, subsurface=inside).counts for overrides, inside in (SIX["shear"], SIX["everything"]))
+    assert (cheap["cycles"], cheap["load_steps"], cheap["normal_solves"]) == (0, 1, 1)
+    assert full["load_steps"] == 1 + 2 * full["cycles"] > 3
+    assert full["normal_solves"] == full["load_steps"] + 1  # one to press them together
+    assert fem(LARGE).counts["opposing_nodes"] > 0
+    assert full["factorizations"] - 2 * full["meshes"] in (0, 2)  # CHOLMOD's are taken apart, and made again
+    assert cheap["factorizations"] == cheap["meshes"]
+
+
+def test_shear_columns_that_nobody_needs_are_noticed(monkeypatch):
+    """Deliberate fault."""
+    true = level.Condensed
+    monkeypatch.setattr(level, "Condensed", lambda *args: true(*args[:3]))
+    counts = fem(*SIX["frictionless"][0]).counts
+    assert counts["columns"] == 2 * counts["normal_unknowns"]
+
+
+HALF = {"shear": (), "large tension": (LARGE,), "cycles": ("load.cycles=7",), "equal blocks": (*EQUAL, LARGE),
+        "tension alone": ("load.Q=[0, 0]", LARGE)}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("method", "which"),
+    [(fem, which) for which in HALF] + [(march, which) for which in HALF if which != "equal blocks"],
+)
+def test_half_a_cycle_tells_the_whole(method, which):
+    half, whole = method(*HALF[which]), method(*HALF[which], "effects.history=true")
+    assert (half.counts["load_steps"], whole.counts["load_steps"]) == (1, 3)
+    assert_same(half, whole)
+    assert half.slip.slip == pytest.approx(whole.slip.slip, abs=1e-9 * np.abs(whole.slip.slip).max())
+    assert half.slip.dissipated == pytest.approx(whole.slip.dissipated, rel=1e-9)
+
+
+def test_half_a_cycle_tells_the_whole_of_any_body():
+    """Masing's rule of one step needs nothing of the bodies but a symmetric positive definite compliance."""
+    rng = np.random.default_rng(6)
+    for _ in range(100):
+        n = int(rng.integers(3, 25))
+        root, x = rng.normal(size=(n, n)), np.sort(rng.uniform(-1, 1, n))
+        C, bound = root @ root.T + 0.1 * np.eye(n), rng.uniform(0.01, 1, n)
+        Q, strain = rng.uniform(-1, 1) * bound.sum(), 10.0 ** rng.uniform(-2, 2) * rng.normal()
+        whole = friction.Path(((-Q, -strain), (Q, strain)), (0, 1), True, 1, 1)
+        one, other = (friction.march(C, x, bound, path) for path in (replace(whole, half=True), whole))
+        assert one.q1 == pytest.approx(other.q1, abs=1e-9)
+        assert one.q2 == pytest.approx(other.q2, abs=1e-9)
+        assert one.slip == pytest.approx(other.slip, abs=1e-9 * max(np.abs(other.slip).max(), 1))
+        assert one.dissipated == pytest.approx(other.dissipated, rel=1e-8, abs=1e-9)
+
+
+def test_half_a_cycle_of_mean_loads_is_another_answer():
+    """Deliberate fault, but for the change of q, which is that of the steady state."""
+    half, whole = fem(*MEAN, "effects.history=false"), fem(*MEAN)
+    assert half.traction.dq == pytest.approx(whole.traction.dq, abs=1e-6 * whole.p0)
+    assert np.abs(half.traction.q2 - whole.traction.q2).max() > 0.05 * whole.p0
+
+
+def test_a_gradual_way_is_followed():
+    """Slip turns round on it: Masing's rule would be wrong."""
+    assert fem("load.steps=3", "load.Q=[-3e4, 3e4]", LARGE).counts["load_steps"] == 9
+
+
+@pytest.mark.parametrize("load", [(), (LARGE,)])
+def test_mirror_images_as_two_coupled_bodies(load):
+    one, two = fem(*load), fem(*load, "effects.coupling=true")
+    assert (one.counts["bodies"], two.counts["bodies"]) == (1, 2)
+    assert two.counts["normal_solves"] == 1 + two.counts["load_steps"]
+    assert_same(one, two)
+
+
+def test_mirror_images_meshed_differently_are_alike_to_their_errors():
+    """Nodes of two meshes do not match: the answer is that of one body but for the discretisation, 2e-3 a at that size
+    (orders of convergence are in tests/fem)."""
+    one, two = fem(), fem("fem.lower_size=0.8", "effects.coupling=true")
+    assert (two.a, two.m, two.n) == pytest.approx((one.a, one.m, one.n), abs=4e-3 * one.a)
+
+
+def test_no_friction_without_a_load_along_x():
+    none, solved = fem("load.Q=[0, 0]"), fem("load.Q=[0, 0]", "effects.friction=true")
+    assert (none.counts["tangential_unknowns"], solved.counts["load_steps"]) == (0, 1)
+    assert solved.traction.q2 is not None
+    assert not solved.traction.q2.any()
+    assert_same(none, solved)
+
+
+def test_pressure_does_not_need_the_shear_columns():
+    alone, with_shear = fem("friction.f=0"), fem()
+    assert alone.regime == "sliding"
+    assert alone.a == pytest.approx(with_shear.a, rel=1e-10)
+    assert alone.traction.p == pytest.approx(with_shear.traction.p, abs=1e-9 * with_shear.p0)
+
+
+def test_what_slides_is_not_iterated():
+    for result in (fem("friction.f=0.01"), march("friction.f=0.01")):
+        assert result.regime == "sliding"
+        assert result.counts["friction_iterations"] == result.counts["load_steps"] == 0
+    assert fem("friction.f=0.01").counts["columns"] == fem("friction.f=0").counts["columns"]
+
+
+def test_what_sticks_as_a_whole_is_one_linear_solve():
+    """The slip zones are far smaller than an element: no node slips."""
+    stuck = fem("friction.f=1000", "load.Q=[-1, 1]")
+    assert stuck.counts["friction_iterations"] == 0
+    assert stuck.counts["load_steps"] == 1
+
+
+def test_stresses_inside_change_nothing_on_the_surface():
+    without, with_them = fem(), fem(subsurface=True)
+    assert_same(without, with_them, 1e-14)
+    assert with_them.counts["back_solves"] == 2
+    assert not without.bodies
+
+
+def test_frictionless_bodies_have_stresses_inside():
+    """Solved back without shear columns: the same as with friction that has nothing to do."""
+    without, with_it = fem("load.Q=[0, 0]", subsurface=True), fem("load.Q=[0, 0]", "effects.friction=true",
+                                                                 subsurface=True)  # fmt: skip
+    for body, other in zip(without.bodies, with_it.bodies, strict=True):
+        assert other.stresses["stress_2"] == pytest.approx(body.stresses["stress_2"], abs=1e-9 * without.p0)
+
+
+def test_finite_bodies_have_no_far_field_and_large_ones_need_none():
+    """Of a block of 200 contact half-widths the size is worth (1/200)^2, and so is the far field, on one mesh. Blocks
+    and half-planes are of different meshes: there it is what the elements leave, 1e-3 a at that size."""
+    size = ("bodies.lower.width=0.4", "bodies.lower.height=0.2", "bodies.upper.width=0.4", "bodies.upper.height=0.2")
+    block, plane = fem(*size), fem(*size, "effects.finite-size=false")
+    assert (block.counts["far_field_columns"], plane.counts["far_field_columns"] > 0) == (0, True)
+    assert (block.a, block.m, block.n) == pytest.approx((plane.a, plane.m, plane.n), abs=1e-3 * plane.a)
+    far, box = fem("fem.width=200"), fem("fem.width=200", "effects.far-field=false")
+    assert (box.a, box.m, box.n) == pytest.approx((far.a, far.m, far.n), abs=1e-4 * far.a)
+    near = fem("effects.far-field=false")
+    assert abs(near.a - far.a) > 1e-3 * far.a
+
+
+@pytest.mark.parametrize("Qf", [0.1, 0.5, 0.9])
+def test_opposing_slip_is_left_out_where_tension_is_small(Qf):
+    """Up to the transition that the exact method knows, and on a gradual way up to where slip begins to turn round."""
+    scene = load_scene("hertz-shear")
+    f, P, Q = scene.friction.f, scene.P, Qf * scene.friction.f * scene.P
+    p0 = partialslip.run(scene, ["exact"]).results["exact"].p0
+    turns, gradually = float(transition(Qf, Hertz())), 4 * Qf
+    for limit, steps in ((turns, 1), (gradually, 2)):
+        for share, needed in ((0.999, False), (1.001, True)):
+            sigma = share * limit * f * p0 / 2
+            settings = [f"load.Q=[{-Q}, {Q}]", f"load.sigma=[{-sigma}, {sigma}]", f"load.steps={steps}"]
+            assert plan(load_scene("hertz-shear", settings)).needs("opposing-slip") == needed
+    assert P > 0
+
+
+REFUSED = {
+    "effects.normal=false": "without pressure there is no contact; must be true",
+    "effects.friction=true friction.f=0.01": "the contact slides",
+    "effects.friction=true friction.f=0": "f = 0",
+    "effects.opposing-slip=false load.sigma=[-1e9,1e9]": "large tension",
+    "effects.history=false load.sigma=[0,1e8,0] load.Q=[0,1e4,1e4]": "out of phase",
+    "effects.history=false material.upper.E=400e9 material.upper.nu=0.3 load.Q=[-1e5,1e5]": "depends on the path",
+    "effects.finite-size=true": "have no size; must be false",
+    "effects.far-field=true " + " ".join(BLOCKS): "no half-plane around them",
+    "effects.frction=true": "did you mean 'friction'?",
+    "effects.opposing_slip=true": "did you mean 'opposing-slip'?",
+    "effects.friction=1": "must be true or false, not a whole number",
+}
+
+
+@pytest.mark.parametrize("settings", REFUSED)
+def test_what_cannot_be_forced_is_refused_in_one_line(settings, capsys, tmp_path):
+    overrides = [part for setting in settings.split(" ") for part in ("--set", setting)]
+    assert main(["run", "hertz-shear", "--with", "fem", "--set", SIZE, *overrides, "--out", str(tmp_path)]) == 2
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert REFUSED[settings] in line
+    assert "effects" in line
+
+
+def test_what_is_called_for_may_be_forced_on():
+    """Shear that makes the contact slide is called for, though friction is not."""
+    scene = load_scene("hertz-shear", ["friction.f=0.01", "effects.shear=true", "effects.normal=true"])
+    assert partialslip.run(scene, ["exact"]).results["exact"].regime == "sliding"
+
+
+def test_fields_that_are_asked_for_are_not_left_out():
+    with pytest.raises(InputError, match=r"effects\.subsurface = false: .* were asked for"):
+        partialslip.run(load_scene("hertz-shear", ["effects.subsurface=false"]), subsurface=True)
+
+
+def test_an_effect_that_matters_is_measured(tmp_path, capsys):
+    """Left out by force: the error is that against the whole scene, and no bar says it is fine."""
+    arguments = ["fretting-aluminium", "--set", SIZE, "--set", "effects.tension=false", "--out", str(tmp_path)]
+    assert main(["run", *arguments]) == 0
+    printed = capsys.readouterr().out
+    assert "forced off, though sigma goes between" in " ".join(printed.split())
+    assert "no bars: forced off: tension" in printed
+    data = json.loads((tmp_path / "results.json").read_text("utf-8"))
+    whole, without = (partialslip.run(load_scene("fretting-aluminium", change), ["exact"]).results["exact"]
+                      for change in ([], ["load.sigma=[0, 0]"]))  # fmt: skip
+    assert data["plan"]["missing"] == ["tension"]
+    assert data["comparison"]["exact"]["m"] == pytest.approx(abs(whole.m - without.m) / whole.a, rel=1e-12)
+    assert data["comparison"]["fem"]["m"] == pytest.approx(abs(whole.m - without.m) / whole.a, rel=0.05)
+    assert data["methods"]["all effects"]["m"] == whole.m
+
+
+def test_finite_size_is_measured_by_finite_bodies():
+    scene = load_scene("hertz-shear", [SIZE, *EQUAL, "effects.finite-size=false"])
+    outcome = partialslip.run(scene, ["fem"])
+    assert outcome.reference == "all effects"
+    assert outcome.results["all effects"].a == fem(*EQUAL).a
+    assert outcome.comparisons["fem"].a > 1e-3
+
+
+def test_coupling_left_out_is_the_uncoupled_solution():
+    """Goodman's approximation: what it is worth, and that without it the normal contact is solved once."""
+    unlike, without = fem(*STIFF, SMALLER), fem(*STIFF, SMALLER, "effects.coupling=false")
+    assert without.counts["normal_solves"] == 1
+    assert without.counts["bodies"] == 2
+    assert 1e-4 < abs(without.a - unlike.a) / unlike.a < 0.1
+    assert without.traction.q1 == pytest.approx(-without.traction.q2, abs=1e-12 * unlike.p0)
+
+
+def imported(code):
+    """Which of the heavy packages a piece of code has imported."""
+    names = ("gmsh", "meshio", "skfem", "matplotlib", "jinja2", "rich", "cvxopt")
+    code += f"\nimport sys\nprint([name for name in {names!r} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return set(json.loads(done.stdout.strip().splitlines()[-1].replace("'", '"')))
+
+
+def test_imports_are_those_of_what_is_built(tmp_path):
+    run = "import partialslip as p; s = p.load_scene('hertz-shear', ['fem.size=0.2', 'fem.factor=superlu']); "
+    assert imported(run + "p.run(s, ['exact', 'march'])") == set()
+    assert imported(run + "p.run(s, ['fem'])") == {"gmsh", "skfem"}
+    mesh = tmp_path / "mesh.npz"
+    made = level.block(16.0, (-1.5, 1.5), {0.0: 0.2}, 0.5)
+    np.savez(mesh, points=made.points, triangles=made.triangles, **made.lines)
+    given = (
+        f"file = __import__('numpy').load({str(mesh)!r}); names = set(file) - {{'points', 'triangles'}}\n"
+        "from partialslip_meshes import Mesh; from partialslip_fem import level, model; from partialslip.result import "
+        "Clock\nmesh = Mesh(file['points'], file['triangles'], {n: file[n] for n in names})\n"
+        "level.solve_on([mesh], model._scaled(s, p.plan(s)), 16.0, Clock())"
+    )
+    assert imported(run + given) == {"skfem"}  # no gmsh where the mesh is given
+
+
+def test_a_kept_mesh_is_not_made_again(monkeypatch):
+    fem()
+    monkeypatch.setattr(level, "block", None)
+    scene = load_scene("hertz-shear", [SIZE, "load.Q=[-1e5, 1e5]"])
+    assert model.solve(scene, plan(scene)).counts["factorizations"] == 0
+
+
+@pytest.mark.parametrize("scene", ["hertz-shear", "fretting-aluminium", "flat-rounded"])
+def test_every_effect_is_on_or_off_for_a_reason(scene):
+    for choices in itertools.product((None, True, False), repeat=2):
+        settings = [
+            f"effects.{effect}={str(choice).lower()}"
+            for effect, choice in zip(("tension", "history"), choices, strict=True)
+            if choice is not None
+        ]
+        effects = plan(load_scene(scene, settings))
+        for effect, choice in zip(("tension", "history"), choices, strict=True):
+            assert choice is None or effects.needs(effect) == choice
+        assert all(why.strip() for why in (effects.called_for | effects.left_out).values())
+
+
+def test_ledger_of_effects(tmp_path, capsys):
+    assert main(["study", "effects", "fretting-aluminium", "--set", "fem.size=0.2", "--out", str(tmp_path)]) == 0
+    printed = capsys.readouterr().out
+    data = json.loads((tmp_path / "effects.json").read_text("utf-8"))
+    entries = {entry["effect"]: entry for entry in data["effects"]}
+    exact = partialslip.run(load_scene("fretting-aluminium"), ["exact"]).results["exact"]
+    without = partialslip.run(load_scene("fretting-aluminium", ["load.sigma=[0, 0]"]), ["exact"]).results["exact"]
+    assert entries["tension"]["changes"]["m"] == pytest.approx(abs(exact.m - without.m) / exact.a, rel=0.1)
+    for effect in ("history", "coupling", "subsurface"):
+        assert max(entries[effect]["changes"].values()) < 1e-10
+    assert entries["normal"]["refused"]
+    assert entries["coupling"]["costs"]["factorizations"] == [4, 2]
+    assert entries["history"]["costs"]["load_steps"] == [3, 1]
+    assert "with coupling" in printed
+    assert (tmp_path / "effects.csv").read_text("utf-8").count("\n") == len(entries) + 1
+    assert "fretting-aluminium" in (tmp_path / "effects.svg").read_text("utf-8")

@@ -1,0 +1,170 @@
+"""Stopped at any moment, by Ctrl-C or by kill -9: whole files or none, and a rerun works."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from partialslip.cli import main
+from partialslip.report.files import write_files
+
+RUN = (
+    "run",
+    "hertz-shear",
+    "--with",
+    "exact,march",
+    "--set",
+    "fem.accuracy=0.1",
+    "--save",
+    "out/state.npz",
+    "--out",
+    "out",
+)
+FILES = ["report.html", "results.json", "state.npz", "tractions.csv"]
+
+# Runs the command line with a stop at the n-th of the system calls that change files; without n it counts them.
+STOPPER = """
+import os, signal, sys
+from partialslip.cli import main
+stop, kind, count = int(sys.argv[1]), int(sys.argv[2]), 0
+def hooked(event, arguments):
+    global count
+    writes = event == "open" and isinstance(arguments[2], int) and arguments[2] & (os.O_WRONLY | os.O_RDWR | os.O_CREAT)
+    here = any(isinstance(a, (str, bytes)) and "out" in os.fsdecode(a) for a in arguments)
+    if here and (writes or event in ("os.rename", "os.remove", "os.mkdir", "os.chmod", "tempfile.mkstemp")):
+        count += 1
+        if count == stop:
+            os.kill(os.getpid(), kind)
+sys.addaudithook(hooked)
+code = main(sys.argv[3:])
+print("moments", count, file=sys.stderr)
+sys.exit(code)
+"""
+
+
+def stopped(folder, at, kind=signal.SIGKILL, arguments=RUN):
+    command = [sys.executable, "-c", STOPPER, str(at), str(int(kind)), *arguments]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, env=os.environ)
+    return done.returncode, done.stderr
+
+
+def whole(folder):
+    """Checks every file that has its final name; returns their names, and what else is there."""
+    names = sorted(path.name for path in folder.iterdir()) if folder.exists() else []
+    for name in names:
+        path = folder / name
+        if name == "results.json":
+            assert json.loads(path.read_text("utf-8"))["schema"] == "partialslip/result/1"
+        elif name == "report.html":
+            assert path.read_text("utf-8").rstrip().endswith("</html>")
+        elif name == "tractions.csv":
+            assert {line.count(",") for line in path.read_text("utf-8").splitlines()} == {6}
+        elif name == "state.npz":
+            with np.load(path) as file:
+                assert {"loads", "cells", "p", "q"} == set(file)
+    return [name for name in names if name in FILES], [name for name in names if name not in FILES]
+
+
+def moments(folder):
+    """How many moments there are to stop at."""
+    code, said = stopped(folder, 0)
+    assert code == 0
+    return int(said.split("moments")[1])
+
+
+def stop_and_rerun(folder, at, kind):
+    code, said = stopped(folder, at, kind)
+    assert code == (-signal.SIGKILL if kind == signal.SIGKILL else 130), said
+    _, left = whole(folder / "out")
+    if kind == signal.SIGINT:
+        assert said.splitlines()[0] == "partialslip: interrupted"
+        assert left == []  # nothing half done is left behind
+    assert all(name.startswith(".") for name in left)  # of a killed one, hidden
+    assert main([*RUN[:-3], str(folder / "out" / "state.npz"), "--out", str(folder / "out")]) == 0
+    assert whole(folder / "out") == (FILES, [])
+
+
+@pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
+@pytest.mark.parametrize("at", [2, 7])
+def test_stopped_at_a_write(tmp_path, at, kind):
+    stop_and_rerun(tmp_path, at, kind)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
+def test_stopped_at_every_write(tmp_path, kind):
+    """Also over the files of an earlier run, which stay whole."""
+    count = moments(tmp_path)
+    assert count >= 4 * len(FILES)
+    for at in range(1, count + 1):
+        stop_and_rerun(tmp_path, at, kind)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
+@pytest.mark.parametrize(
+    "arguments", [("run", "hertz-shear", "--fields", "--out", "out"), ("map", "--out", "out"), RUN]
+)
+def test_stopped_at_any_time(tmp_path, kind, arguments):
+    """At times spread over the whole run, start-up and finite elements included."""
+    begin = time.monotonic()
+    assert stopped(tmp_path, 0, arguments=arguments)[0] == 0
+    spent = time.monotonic() - begin
+    for share in np.linspace(0.3, 1.05, 12):
+        command = [sys.executable, "-c", STOPPER, "0", "0", *arguments]
+        process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        try:
+            process.communicate(timeout=share * spent)
+        except subprocess.TimeoutExpired:
+            process.send_signal(kind)
+            _, said = process.communicate()
+            if kind == signal.SIGINT and process.returncode == 130:
+                assert said.splitlines()[-1] == "partialslip: interrupted"
+        whole(tmp_path / "out")
+    assert stopped(tmp_path, 0, arguments=arguments)[0] == 0
+
+
+def test_half_a_file_never_takes_a_name(tmp_path):
+    """Deliberate fault for comparison: written in place, a stopped write leaves half a file under the final name."""
+
+    def half(path):
+        path.write_text("half", "utf-8")
+        raise KeyboardInterrupt
+
+    write_files(tmp_path, {"a.txt": lambda path: path.write_text("whole", "utf-8")})
+    with pytest.raises(KeyboardInterrupt):
+        write_files(tmp_path, {"a.txt": half})
+    assert [path.read_text("utf-8") for path in tmp_path.iterdir()] == ["whole"]
+    with pytest.raises(KeyboardInterrupt):
+        half(tmp_path / "a.txt")
+    assert (tmp_path / "a.txt").read_text("utf-8") == "half"
+
+
+def test_only_what_nobody_writes_is_tidied_up(tmp_path):
+    """What a killed write has left goes; what another process is writing at this moment stays, and so do others'."""
+    code = (
+        "import sys, time; from pathlib import Path; from partialslip.report.files import write_files\n"
+        "def write(path):\n path.write_text('half', 'utf-8'); print('busy', flush=True); time.sleep(60)\n"
+        "write_files(Path('.'), {'a.txt': write})"
+    )
+    busy = [subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path, stdout=subprocess.PIPE) for _ in range(2)]
+    (tmp_path / ".a-mine.txt").write_text("mine", "utf-8")
+    try:
+        for process in busy:
+            assert process.stdout.readline() == b"busy\n"
+        busy[0].kill()
+        busy[0].wait()
+        assert len(list(tmp_path.iterdir())) == 3
+        write_files(tmp_path, {"a.txt": lambda path: path.write_text("whole", "utf-8")})
+        names = sorted(path.name for path in tmp_path.iterdir())
+        assert len(names) == 3
+        assert {".a-mine.txt", "a.txt"} < set(names)
+    finally:
+        for process in busy:
+            process.kill()
+            process.communicate()
