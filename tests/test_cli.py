@@ -231,7 +231,7 @@ def test_scenes_are_listed(capsys):
     assert [line.split(maxsplit=1) for line in lines] == [[name, title] for name, title in shipped_scenes().items()]
 
 
-@pytest.mark.parametrize("command", ["--version", "--help", "run --help", "scenes --help"])
+@pytest.mark.parametrize("command", ["--version", "--help", "run --help", "page --help", "scenes --help"])
 def test_version_and_help(capsys, command):
     with pytest.raises(SystemExit) as end:
         main(command.split())

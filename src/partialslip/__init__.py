@@ -9,6 +9,7 @@
 
 from importlib.metadata import version
 
+from partialslip import notebook as notebook
 from partialslip.compare import Comparison as Comparison
 from partialslip.compare import compare as compare
 from partialslip.errors import InputError as InputError

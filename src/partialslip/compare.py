@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from partialslip import views
 from partialslip.result import Array, Result, Traction
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
@@ -49,6 +50,9 @@ class Comparison:
     def passed(self) -> bool:
         """Whether every error is within its bar, and the regimes agree."""
         return not self.missed
+
+    def _repr_html_(self) -> str:
+        return views.html(self)
 
 
 def compare(result: Result, reference: Result, f: float, accuracy: float | None) -> Comparison:

@@ -14,4 +14,4 @@ class InputError(PartialslipError, ValueError):
 
 
 class MissingLibraryError(PartialslipError, ImportError):
-    """A system library that a dependency needs is not on this machine."""
+    """A library that is asked for, or that a dependency needs, is not on this machine."""

@@ -5,12 +5,17 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from partialslip import views
+from partialslip.frame import frame
 from partialslip.state import State
+
+if TYPE_CHECKING:
+    from partialslip.frame import DataFrame
 
 try:
     import resource
@@ -199,6 +204,29 @@ class Result:
         if self.stick_centre is None or self.stick_half_width is None:
             return None
         return self.stick_half_width + self.stick_centre
+
+    @property
+    def columns(self) -> dict[str, Array | None]:
+        """Tractions as columns of a table (n,), SI units; None what the method does not determine."""
+        of = self.traction
+        return {"x": of.x, "x_over_a": of.x / self.a, "p": of.p, "q1": of.q1, "q2": of.q2, "dq": of.dq}
+
+    def to_dataframe(self) -> "DataFrame":
+        """Tractions, a row a point: x (m), x_over_a, p, q1, q2 and dq (Pa), NaN what the method does not determine.
+
+        Raises
+        ------
+        MissingLibraryError
+            If pandas is not installed.
+        """
+        return frame(self.columns)
+
+    def plot(self, axes: "views.Axes | None" = None) -> "views.Axes":
+        """Draw p/p0 and q/p0, q = (q2 - q1)/2, over x/a on matplotlib ``axes``, as a rule new ones; returns them."""
+        return views.plot(self, axes)
+
+    def _repr_html_(self) -> str:
+        return views.html(self)
 
 
 class Clock:

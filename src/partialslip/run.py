@@ -2,15 +2,23 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+import numpy.typing as npt
 from msgspec.structs import replace
 
+from partialslip import views
 from partialslip.compare import Comparison, compare
 from partialslip.errors import InputError
+from partialslip.frame import frame
 from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
 from partialslip.scene import Effects, Scene
 from partialslip.state import State
+
+if TYPE_CHECKING:
+    from partialslip.frame import DataFrame
 
 METHODS = ("exact", "march", "fem")
 ALL_EFFECTS = "all effects"
@@ -53,6 +61,40 @@ class Run:
     def passed(self) -> bool:
         """Whether every result is certified and every comparison within its bars."""
         return not self.missed
+
+    @property
+    def columns(self) -> dict[str, npt.NDArray[Any]]:
+        """Tractions of every method as columns of one table, SI units; NaN what a method does not determine."""
+        tables = [result.columns for result in self.results.values()]
+        sizes = [len(result.traction.x) for result in self.results.values()]
+        names = np.repeat(list(self.results), sizes)
+        return {"method": names} | {
+            key: np.concatenate(
+                [
+                    np.full(size, np.nan) if table[key] is None else table[key]
+                    for table, size in zip(tables, sizes, strict=True)
+                ]
+            )
+            for key in tables[0]
+        }
+
+    def to_dataframe(self) -> "DataFrame":
+        """:meth:`Result.to_dataframe` of every method, after a column with its name: the table of ``tractions.csv``.
+
+        Raises
+        ------
+        MissingLibraryError
+            If pandas is not installed.
+        """
+        return frame(self.columns)
+
+    def plot(self, axes: "views.Axes | None" = None) -> "views.Axes":
+        """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of every method over x/a on matplotlib ``axes``, as a rule new ones;
+        returns them."""
+        return views.plot(self, axes)
+
+    def _repr_html_(self) -> str:
+        return views.html(self)
 
 
 def default_methods(scene: Scene) -> tuple[str, ...]:

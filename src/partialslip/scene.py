@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
+from partialslip import views
 from partialslip.bodies import Bodies as Bodies
 from partialslip.bodies import Body as Body
 from partialslip.errors import InputError
@@ -370,6 +371,9 @@ class Scene(Table, frozen=True, kw_only=True):
             raise InputError(f"{name}.width = {width}: must be <= {2 * self.profile.widest}, as the profile is")
         if not (edge := float(self.profile.face_at(np.array(width / 2)))) <= _STEEPEST * height:
             raise InputError(f"{name}.height = {height}: must be > {edge / _STEEPEST:g}, as its face goes back so far")
+
+    def _repr_html_(self) -> str:
+        return views.html(self)
 
     @property
     def mirrored(self) -> bool:

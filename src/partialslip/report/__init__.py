@@ -3,6 +3,7 @@
 from partialslip.report.files import write_files as write_files
 from partialslip.report.files import write_run as write_run
 from partialslip.report.files import write_texts as write_texts
+from partialslip.report.live import live_page as live_page
 from partialslip.report.map import place as place
 from partialslip.report.map import write_map as write_map
 from partialslip.report.record import record as record

@@ -1,7 +1,7 @@
 """The traction plot: exact line, finite-element markers, stick zone shaded; x/a against q/(f p0)."""
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,7 +28,7 @@ _STYLE: dict[Any, Any] = {
 
 def traction_svg(run: Run) -> str:
     """The traction plot of a run as SVG."""
-    return svg(lambda figure: draw_tractions(figure.subplots(), run))
+    return svg(lambda figure: draw_run(figure.subplots(), run))
 
 
 def svg(draw: Callable[["Figure"], None], size: tuple[float, float] = (7.4, 4.4)) -> str:
@@ -44,21 +44,30 @@ def svg(draw: Callable[["Figure"], None], size: tuple[float, float] = (7.4, 4.4)
     return text.getvalue()
 
 
-def draw_tractions(axes: "Axes", run: Run) -> None:
-    """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of every method: lines for a closed form, markers for a mesh."""
-    reference = run.results[run.reference or next(iter(run.results))]
-    a, p0, f = reference.a, reference.p0, run.scene.friction.f
+def draw_run(axes: "Axes", run: Run) -> None:
+    """Draw the tractions of every method of ``run``, the reference's scales first."""
+    first = run.reference or next(iter(run.results))
+    draw_tractions(axes, {first: run.results[first]} | run.results, run.scene.friction.f)
+
+
+def draw_tractions(axes: "Axes", results: Mapping[str, Result], f: float | None = None) -> None:
+    """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of every method: lines for a closed form, markers for a mesh. Scales and
+    stick zone are those of the first one; without ``f`` it is q/p0, and the bound is not drawn."""
+    reference = next(iter(results.values()))
+    a, p0 = reference.a, reference.p0
+    unit, shear = (p0, "q/p0") if f is None else (f * p0, "q/(f p0)")
     if reference.m is not None and reference.n is not None:
         axes.axvspan(-reference.m / a, reference.n / a, color="0.88", lw=0, label="stick zone [-m, n]")
     shears = bool(reference.traction.dq.any())
-    for name, result in run.results.items():
+    for name, result in results.items():
         traction, name = result.traction, name.replace("$", r"\$")
         if traction.cells is None:
             x, p, q = traction.x, traction.p, traction.dq / 2
             axes.plot(x / a, p / p0, color="0.45", lw=1, ls="--", label=f"p/p0, {name}")
             if shears:
-                axes.plot(x / a, -p / p0, color="0.45", lw=1, ls="--")
-                axes.plot(x / a, q / (f * p0), color="black", lw=1.4, label=f"q/(f p0), {name}")
+                if f is not None:
+                    axes.plot(x / a, -p / p0, color="0.45", lw=1, ls="--")
+                axes.plot(x / a, q / unit, color="black", lw=1.4, label=f"{shear}, {name}")
         else:
             x = _spread(result)
             p, dq = traction.at(x)
@@ -66,15 +75,15 @@ def draw_tractions(axes: "Axes", run: Run) -> None:
             if shears:
                 axes.plot(
                     x / a,
-                    dq / 2 / (f * p0),
+                    dq / 2 / unit,
                     _Q_MARKS.get(name, "s"),
                     mfc="white",
                     mec="black",
                     ms=4.5,
-                    label=f"q/(f p0), {name}",
+                    label=f"{shear}, {name}",
                 )
     axes.axhline(0, color="0.7", lw=0.6, zorder=0)
-    axes.set(xlabel="x/a", ylabel="tractions: p/p0 and q/(f p0)", xlim=(-1.04, 1.04))
+    axes.set(xlabel="x/a", ylabel=f"tractions: p/p0 and {shear}", xlim=(-1.04, 1.04))
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
 
 

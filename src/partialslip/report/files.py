@@ -87,11 +87,10 @@ def tractions_csv(run: Run) -> str:
     """Tractions of every method, one row a point; SI units, empty where a method does not determine a value."""
     rows: list[list[object]] = []
     for name, result in run.results.items():
-        traction = result.traction
-        columns = [traction.x, traction.x / result.a, traction.p, traction.q1, traction.q2, traction.dq]
-        listed = [[""] * len(traction.x) if column is None else column.tolist() for column in columns]
+        columns = result.columns.values()
+        listed = [[""] * len(result.traction.x) if column is None else column.tolist() for column in columns]
         rows += [[name, *row] for row in zip(*listed, strict=True)]
-    return csv_text(["method", "x", "x_over_a", "p", "q1", "q2", "dq"], rows)
+    return csv_text(["method", *next(iter(run.results.values())).columns], rows)
 
 
 def surface_csv(run: Run) -> str:

@@ -22,21 +22,15 @@ def label_lines(axes: "Axes", lines: Sequence[Array], texts: Sequence[str], avoi
     """Write its text on each of ``lines`` (n, 2), where it is farthest from other lines and labels, and clear of the
     ``avoided`` points (k, 2); none where there is no room. The axes must have their final size."""
     to_paper = axes.transData - axes.transAxes
-    shape = np.array([axes.bbox.width / axes.bbox.height, 1.0])
-    paced = [_paced(to_paper.transform(line) * shape) for line in lines]
-    paced = [line[((line > 0) & (line < shape)).all(axis=1)] for line in paced]
-    off = to_paper.transform(avoided) * shape
-    labels = np.empty((0, 2))
-    for number, (line, text) in enumerate(zip(paced, texts, strict=True)):
-        others = np.concatenate([*paced[:number], *paced[number + 1 :]])
-        room = np.minimum(_CROSSING * _distance(line, others), _distance(line, labels))
-        room[((line < _MARGIN) | (line > shape - _MARGIN)).any(axis=1) | (_distance(line, off) < _CLEAR)] = 0
-        if room.max(initial=0) < _ROOM:
+    width = axes.bbox.width / axes.bbox.height
+    scale = np.array([width, 1.0])
+    places = label_places(
+        [to_paper.transform(line) * scale for line in lines], to_paper.transform(avoided) * scale, width
+    )
+    for place, text in zip(places, texts, strict=True):
+        if place is None:
             continue
-        best = int(room.argmax())
-        labels = np.vstack([labels, line[best]])
-        along = line[min(best + 1, len(line) - 1)] - line[max(best - 1, 0)]
-        x, y = line[best] / shape
+        (x, y), along = place[0] / scale, place[1]
         axes.text(
             x,
             y,
@@ -48,6 +42,26 @@ def label_lines(axes: "Axes", lines: Sequence[Array], texts: Sequence[str], avoi
             fontsize=8,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
         )
+
+
+def label_places(lines: Sequence[Array], avoided: Array, width: float) -> list[tuple[Array, Array] | None]:
+    """Place and direction (2,) of the label of each line, or None; everything in heights of axes of that ``width``."""
+    shape = np.array([width, 1.0])
+    paced = [_paced(line) for line in lines]
+    paced = [line[((line > 0) & (line < shape)).all(axis=1)] for line in paced]
+    places: list[tuple[Array, Array] | None] = []
+    labels = np.empty((0, 2))
+    for number, line in enumerate(paced):
+        others = np.concatenate([*paced[:number], *paced[number + 1 :]])
+        room = np.minimum(_CROSSING * _distance(line, others), _distance(line, labels))
+        room[((line < _MARGIN) | (line > shape - _MARGIN)).any(axis=1) | (_distance(line, avoided) < _CLEAR)] = 0
+        if room.max(initial=0) < _ROOM:
+            places.append(None)
+            continue
+        best = int(room.argmax())
+        labels = np.vstack([labels, line[best]])
+        places.append((line[best], line[min(best + 1, len(line) - 1)] - line[max(best - 1, 0)]))
+    return places
 
 
 def _paced(line: Array) -> Array:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from partialslip.compare import Comparison
 from partialslip.plan import Plan
 from partialslip.result import Result
 from partialslip.run import Run
@@ -29,15 +30,24 @@ def headings(run: Run, name: str) -> list[str]:
 def error_rows(run: Run, name: str) -> list[tuple[str, ...]]:
     """Quantity, the reference's value, that of method ``name``, error, bar and verdict: a, m, n, p, q and stresses."""
     reference, result, comparison = run.results[run.reference or name], run.results[name], run.comparisons[name]
-    rows: list[tuple[str, ...]] = []
-    for key, meaning in _MEANING.items():
-        verdict = _verdict(getattr(comparison, key), comparison.bars.get(key))
-        rows.append((meaning, value(reference, key), value(result, key), *verdict))
-    for key, meaning in _STRESSES.items():
-        if (error := getattr(comparison, key)) is not None:
-            both = (value(each, key) for each in (reference, result))
-            rows.append((meaning, *both, *_verdict(error, None)))
-    return rows
+    return [
+        (meaning, value(reference, key), value(result, key), *verdict)
+        for key, (meaning, *verdict) in zip(_compared(comparison), verdicts(comparison), strict=True)
+    ]
+
+
+def verdicts(comparison: Comparison) -> list[tuple[str, ...]]:
+    """Quantity, error, bar and verdict: a, m, n, p, q and stresses."""
+    return [
+        (meaning, *_verdict(getattr(comparison, key), comparison.bars.get(key)))
+        for key, meaning in _compared(comparison).items()
+    ]
+
+
+def _compared(comparison: Comparison) -> dict[str, str]:
+    """What is compared, by its key: stresses only where they were."""
+    known = {key: meaning for key, meaning in _STRESSES.items() if getattr(comparison, key) is not None}
+    return _MEANING | known
 
 
 def _verdict(error: float | None, bar: float | None) -> tuple[str, str, str]:
@@ -113,6 +123,7 @@ def slip(result: Result) -> str:
 
 def engineering(number: float, unit: str, digits: int) -> str:
     """A number with the SI prefix that suits it, where there is one."""
+    number = float(f"{number:.12g}")  # 1 - 1e-16 is 1, not 1000 thousandths
     for exponent, prefix in ((9, "G"), (6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ"), (-9, "n")):
         if 1 <= abs(number) / 10.0**exponent < 1000:
             return f"{number / 10.0**exponent:.{digits}g} {prefix}{unit}"
@@ -124,6 +135,21 @@ def setting(choice: object) -> str:
     if isinstance(choice, (list, tuple)):
         return ", ".join(f"{number:.10g}" for number in choice)
     return f"{choice:.10g}" if isinstance(choice, float) else str(choice)
+
+
+def facts(result: Result, compared: bool = False) -> dict[str, str]:
+    """What a method found (unless that is told where it is ``compared``), built and certifies, and what it cost."""
+    lines = {
+        "regime": result.regime,
+        "found": "" if compared else ", ".join(f"{key} = {value(result, key)}" for key in ("a", "m", "n")),
+        "built": work(result),
+        "certificate": certificate(result),
+        "limits": limits(result),
+        "slip": slip(result),
+        "cost": cost(result),
+        "note": "; ".join(result.notes),
+    }
+    return {key: text for key, text in lines.items() if text}
 
 
 def work(result: Result) -> str:

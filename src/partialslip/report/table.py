@@ -18,16 +18,7 @@ def print_run(run: Run, console: Console) -> None:
     for name in run.comparisons:
         console.print(_errors(run, name))
     for name, result in run.results.items():
-        lines = {"regime": result.regime, "built": rows.work(result), "certificate": rows.certificate(result)}
-        if not run.comparisons:
-            lines["found"] = ", ".join(f"{key} = {rows.value(result, key)}" for key in ("a", "m", "n"))
-        lines |= {
-            "limits": rows.limits(result),
-            "slip": rows.slip(result),
-            "cost": rows.cost(result),
-            "note": "; ".join(result.notes),
-        }
-        _print_lines(console, name, lines)
+        _print_lines(console, name, rows.facts(result, compared=bool(run.comparisons)))
     _print_effects(console, run)
     console.print(rows.verdict(run), style="bold", markup=False)
 
@@ -52,7 +43,7 @@ def _table(headings: Sequence[str], cells: Iterable[Sequence[str]], words: Conta
 
 def _print_lines(console: Console, name: str, lines: dict[str, str]) -> None:
     grid = Table.grid(padding=(0, 2))
-    for number, (key, text) in enumerate((key, text) for key, text in lines.items() if text):
+    for number, (key, text) in enumerate(lines.items()):
         grid.add_row(name if number == 0 else "", key, Text(text))
     console.print(grid)
 

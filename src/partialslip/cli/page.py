@@ -1,0 +1,43 @@
+"""partialslip page: loads to move with a slider, and what the contact does under them."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from partialslip.cli.common import check_folder, print_written
+from partialslip.reading import load_scene
+
+if TYPE_CHECKING:
+    from partialslip.cli.common import Commands
+
+_SCENE = "fretting-aluminium"
+
+
+def add(commands: "Commands") -> None:
+    """Add the command to the parser."""
+    page = commands.add_parser(
+        "page",
+        help="make a live page: sliders for loads and friction",
+        description="Make one HTML file, in which sliders move the loads and the friction, and tractions, stick zone "
+        "and the place on the map follow. It calculates in the browser and needs no network.",
+        epilog="example: partialslip page hertz-large-tension",
+    )
+    page.add_argument("scene", nargs="?", default=_SCENE, metavar="SCENE",
+                      help="a shipped scene or a TOML file of a Hertz contact, with whose loads it begins "
+                      f"(default: {_SCENE})")  # fmt: skip
+    page.add_argument("--out", metavar="DIR", help="folder for page.html (default: results/NAME-page)")
+    page.set_defaults(command=_page)
+
+
+def _page(options: argparse.Namespace) -> int:
+    check_folder(options.out)
+    scene = load_scene(options.scene)
+
+    from rich.console import Console
+
+    from partialslip.report import live_page, write_texts
+
+    folder = Path(options.out) if options.out else Path("results") / f"{scene.name}-page"
+    files = write_texts(folder, {"page.html": live_page(scene)})
+    print_written(files, Console(highlight=False))
+    return 0

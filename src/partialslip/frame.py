@@ -1,0 +1,18 @@
+"""Tables for pandas, where it is installed."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from partialslip.errors import MissingLibraryError
+
+if TYPE_CHECKING:
+    from pandas import DataFrame as DataFrame
+
+
+def frame(columns: Mapping[str, object]) -> "DataFrame":
+    """A pandas data frame; a column that is None is NaN. Raises MissingLibraryError without pandas."""
+    try:
+        from pandas import DataFrame
+    except ImportError:
+        raise MissingLibraryError("pandas is not installed: pip install 'partialslip[notebook]'") from None
+    return DataFrame({name: float("nan") if values is None else values for name, values in columns.items()})

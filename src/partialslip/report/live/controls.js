@@ -1,0 +1,164 @@
+"use strict";
+
+// The loads: what is set by the controls, the answer to it, and the numbers. The scene is what the page starts with.
+const page = (() => {
+  const scene = JSON.parse(document.getElementById("scene").textContent);
+  const { a, P, p0 } = scene;
+  const by = (id) => document.getElementById(id);
+  const DIGITS = 5, LARGEST = 1e9;  // shown of a setting, and taken
+
+  // In the scene's units, sizes of dQ (N/m) and dsigma (Pa); `turn` is the sign of dQ, `mirror` that of dQ dsigma.
+  const start = {
+    dQ: Math.abs(scene.dQ), dsigma: Math.abs(scene.dsigma), f: scene.f,
+    turn: scene.dQ < 0 ? -1 : 1, mirror: scene.dQ * scene.dsigma < 0 ? -1 : 1,
+  };
+  if (scene.dQ === 0 && scene.dsigma < 0) start.turn = -1;
+  let loads = { ...start };
+
+  const prefixes = [[9, "G"], [6, "M"], [3, "k"], [0, ""], [-3, "m"], [-6, "\u00b5"], [-9, "n"]];
+  function prefix(number) {
+    number = +number.toPrecision(12);
+    const [exponent, letter] = prefixes.find(([power]) => Math.abs(number) >= 10 ** power) ?? [0, ""];
+    return { factor: 10 ** exponent, letter };
+  }
+  function engineering(number, unit, digits) {
+    if (Math.abs(number) < 1e-9 || Math.abs(number) >= 1e12) return `${+number.toPrecision(4)} ${unit}`;
+    const { factor, letter } = prefix(number);
+    return `${+(number / factor).toPrecision(digits)} ${letter}${unit}`;
+  }
+  const minus = (text) => text.replace(/-(?=[\d.])/, "\u2212");
+
+  // What the half-planes do under the loads, as the exact method says it.
+  function answer({ dQ, dsigma, f, turn, mirror }) {
+    const Qf = dQ / (2 * f * P), sf = dsigma / (f * p0), mean = Math.abs(scene.Q_mean) / (f * P);
+    const found = { Qf, sf, turn, mirror, f, zone: null, m: null, n: null, q: null, bound: null };
+    if (!(Qf < 1) || Qf + mean >= 1) return { ...found, regime: "sliding" };
+    const zone = hertz.stickZone(Qf, sf), bound = hertz.meanLoadBound(zone, Qf);
+    const stuck = Qf === 0 && sf === 0;
+    let regime = zone.s > 0 ? "small tension" : "large tension";
+    if (stuck) regime = "stuck";
+    else if (mean > bound) regime = "ratchets";
+    const centre = mirror * zone.centre, q = stuck ? 0 : hertz.largest(zone);
+    return { ...found, zone, regime, bound, m: zone.c - centre, n: zone.c + centre, q };
+  }
+
+  const REGIMES = {
+    stuck: "the loads do not change",
+    "small tension": "both ends slip the same way",
+    "large tension": "the ends slip opposite ways",
+    sliding: "the whole contact slides: there is no stick zone",
+    ratchets: "every cycle adds slip: the mean of Q is beyond what a steady state can hold, m and n are not reached",
+  };
+
+  function note({ zone, Qf, sf }) {
+    if (!zone || sf === 0) return "";
+    const turns = zone.s > 0 ? sf > 4 * Qf : zone.c * sf < 4 * Qf;
+    return turns ? "On a gradual way between these load points, slip at one end turns round: q then differs from the " +
+      "closed form; march with load.steps shows by how much." : "";
+  }
+
+  // [scaled, SI] of every number in the table.
+  function numbers({ zone, f, m, n, q, Qf, bound }) {
+    const none = ["none", ""], length = (at) => engineering(at * a, "m", 6), turns = hertz.transition(Qf);
+    const table = { m: none, n: none, width: none, q: none, turns: none, mean: none };
+    const mean = Math.min(Math.abs(scene.Q_mean) / (f * P), 1);
+    table.slides = [mean ? `${+(1 - mean).toFixed(5)} \u00b7 2 f P` : "2 f P", engineering((1 - mean) * 2 * f * P, "N/m", 6)];
+    if (Qf < 1) table.turns = [`${turns.toFixed(5)} f p0`, engineering(turns * f * p0, "Pa", 6)];
+    if (!zone) return table;
+    const width = 2 * zone.c;
+    return {
+      ...table,
+      m: [`${m.toFixed(7)} a`, length(m)],
+      n: [`${n.toFixed(7)} a`, length(n)],
+      width: [`${width < 1e-4 ? width.toExponential(4) : width.toFixed(7)} a`, length(width)],
+      q: [`${q.toFixed(7)} f p0`, engineering(q * f * p0, "Pa", 6)],
+      mean: [`${bound.toFixed(5)} f P`, engineering(bound * f * P, "N/m", 6)],
+    };
+  }
+
+  // Every control of a load or of friction: its own value, and how it is set.
+  const force = prefix(2 * scene.f * P), stress = prefix(scene.f * p0);
+  const controls = {
+    Qf: { get: ({ Qf }) => Qf, set: (value) => ({ dQ: value * 2 * loads.f * P }) },
+    sf: { get: ({ sf }) => sf, set: (value) => ({ dsigma: value * loads.f * p0 }) },
+    f: { get: ({ f }) => f, set: (value) => ({ f: value }), least: 1e-6 },
+    dQ: { get: () => shear() / force.factor, set: (value) => sized(value * force.factor, tension()), least: -LARGEST },
+    dsigma: {
+      get: () => tension() / stress.factor, set: (value) => sized(shear(), value * stress.factor), least: -LARGEST,
+    },
+  };
+  const shear = () => loads.turn * loads.dQ, tension = () => loads.turn * loads.mirror * loads.dsigma;
+  function sized(dQ, dsigma) {
+    const turn = Math.sign(dQ) || Math.sign(dsigma) * loads.mirror || loads.turn;
+    const mirror = Math.sign(dsigma) ? turn * Math.sign(dsigma) : loads.mirror;
+    return { dQ: Math.abs(dQ), dsigma: Math.abs(dsigma), turn, mirror };
+  }
+
+  let draw = [];
+  function show() {
+    const found = answer(loads);
+    for (const figure of draw) figure(found);
+    for (const [name, control] of Object.entries(controls)) {
+      const value = control.get(found);
+      for (const input of document.querySelectorAll(`[data-sets="${name}"]`)) {
+        if (input.type === "range") {
+          input.value = value;
+          input.setAttribute("aria-valuetext", String(+value.toPrecision(DIGITS)));
+        } else if (input !== document.activeElement) {
+          input.value = +value.toPrecision(DIGITS);
+          input.removeAttribute("aria-invalid");
+        }
+      }
+    }
+    by("opposite").checked = loads.mirror < 0;
+    by("regime").textContent = `${found.regime}:`;
+    by("meaning").textContent = REGIMES[found.regime];
+    for (const [key, cells] of Object.entries(numbers(found))) {
+      cells.forEach((text, column) => { by(`${key}-${column}`).textContent = minus(text); });
+    }
+    by("note").textContent = note(found);
+    const ends = found.zone ? `m = ${found.m.toFixed(3)} a, n = ${found.n.toFixed(3)} a` : "no stick zone";
+    by("tractions").setAttribute("aria-label", `Tractions over the contact: ${found.regime}, ${ends}`);
+  }
+
+  function change(settings) {
+    loads = { ...loads, ...settings };
+    show();
+  }
+
+  function listen() {
+    for (const input of document.querySelectorAll("[data-sets]")) {
+      const { set, least = 0 } = controls[input.dataset.sets];
+      input.addEventListener("input", () => {
+        const value = input.valueAsNumber, fine = value >= least && value <= LARGEST;
+        input.setAttribute("aria-invalid", String(!fine));
+        if (fine) change(set(value));
+      });
+      input.addEventListener("blur", show);
+    }
+    by("opposite").addEventListener("change", (event) => change({ mirror: event.target.checked ? -1 : 1 }));
+    by("reset").addEventListener("click", () => change(start));
+  }
+
+  function layOut() {
+    const move = (Qf, sf) => change({ ...controls.Qf.set(Qf), ...controls.sf.set(sf) });
+    draw = [
+      figures.tractions(by("tractions"), `x/a    (a = ${engineering(a, "m", 5)})`),
+      figures.map(by("map"), scene.map, move),
+    ];
+    show();
+  }
+
+  by("dQ-unit").textContent = `${force.letter}N/m`;
+  by("dsigma-unit").textContent = `${stress.letter}Pa`;
+  listen();
+  layOut();
+  let width = by("map").parentNode.clientWidth;
+  new ResizeObserver(() => {
+    if (by("map").parentNode.clientWidth === width) return;
+    width = by("map").parentNode.clientWidth;
+    layOut();
+  }).observe(by("map").parentNode);
+
+  return { answer: () => answer(loads), loads: () => loads };
+})();

@@ -1,0 +1,121 @@
+"""The live page as a file, without a browser: it stands alone, and says no in one line."""
+
+import html.parser
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from partialslip.cli import main
+from partialslip.errors import InputError
+from partialslip.halfplane import contact
+from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.steady import stick_zones
+from partialslip.reading import load_scene
+from partialslip.report import live_page
+
+
+class Outline(html.parser.HTMLParser):
+    """Tags with their attributes, and the text of the elements that have an id or are scripts."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.links, self.scripts, self._script = [], [], [], False
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append((tag, dict(attributes)))
+        self.links += [value for key, value in attributes if key in ("href", "xlink:href", "src", "data", "action")]
+        self._script = tag == "script"
+
+    def handle_endtag(self, _):
+        self._script = False
+
+    def handle_data(self, data):
+        if self._script:
+            self.scripts.append(data)
+
+    @property
+    def scene(self):
+        return json.loads(self.scripts[0], parse_constant=lambda token: pytest.fail(token))
+
+
+@pytest.fixture(scope="module")
+def text():
+    return live_page(load_scene("fretting-aluminium"))
+
+
+def test_one_file(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["page"]) == 0
+    path = Path("results", "fretting-aluminium-page", "page.html")
+    assert capsys.readouterr().out == f"written: {path}\n"
+    assert main(["page", "hertz-shear", "--out", "here"]) == 0
+    assert sorted(file.name for file in Path("here").iterdir()) == ["page.html"]
+    assert "<h1>hertz-shear</h1>" in Path("here", "page.html").read_text("utf-8")
+
+
+def test_it_stands_alone(text):
+    outline = Outline(text)
+    assert outline.links == []
+    assert not {"link", "img", "iframe", "object", "base"} & {tag for tag, _ in outline.tags}
+    assert re.findall(r"@import|url\((?!#)|\bfetch\b|XMLHttpRequest|import\(", text) == []
+    assert set(re.findall(r"https?://[^\"'<> ]*", text)) == {"http://www.w3.org/2000/svg"}
+
+
+def test_what_it_knows_of_the_scene(text):
+    scene, known = load_scene("fretting-aluminium"), Outline(text).scene
+    pressed = contact(scene)
+    for key, value in {"a": pressed.a, "p0": pressed.p0, "P": scene.P, "dQ": 77.5e3, "dsigma": 2e8, "f": 0.3}.items():
+        assert known[key] == value
+    for kind, way in (("m", -1), ("n", 1)):
+        points = [(*point, line["value"]) for line in known["map"][kind] for point in line["points"][::7]]
+        Qf, sf, value = np.array([point for point in points if point[0] < 0.95]).T  # where rounding Qf does not matter
+        centre, half_width, _ = stick_zones(Qf, sf, Hertz())
+        assert len(Qf) > 40
+        np.testing.assert_allclose(half_width + way * centre, value, rtol=0, atol=1e-3)
+
+
+def test_the_map_reaches_as_far_as_the_loads():
+    assert Outline(live_page(load_scene("hertz-shear", ["load.sigma=[-2e9, 2e9]"]))).scene["map"]["top"] > 20
+
+
+def test_every_field_has_a_label(text):
+    tags = Outline(text).tags
+    labels = {attributes["for"] for tag, attributes in tags if tag == "label" and "for" in attributes}
+    fields = [attributes for tag, attributes in tags if tag == "input" and attributes["type"] != "checkbox"]
+    assert [field["type"] for field in fields].count("range") == len(labels) == 3
+    assert all({"aria-label", "aria-labelledby"} & field.keys() or field["id"] in labels for field in fields)
+
+
+def test_a_title_is_text():
+    title = "</script><script>alert(1)</script> & {{ 7 }} R&D"
+    text = live_page(load_scene("hertz-shear", [f"title={json.dumps(title)}"]))
+    outline = Outline(text)
+    assert [tag for tag, _ in outline.tags].count("script") == 2
+    assert outline.scene["title"] == title
+
+
+@pytest.mark.parametrize(
+    ("scene", "overrides", "says"),
+    [
+        ("flat-rounded", [], 'profile.kind = "flat-rounded": must be "hertz"'),
+        ("hertz-shear", ["load.Q=[0, 1e5, 0, -1e5]", "load.sigma=[1e8, 0, -1e8, 0]"], "load.sigma: out of phase"),
+        ("hertz-shear", ["friction.f=0"], "friction.f = 0: must be > 0"),
+        ("hertz-shear", ["material.upper={E=1e9, nu=0.3}"], "material.upper, material.lower: the bodies differ"),
+    ],
+)
+def test_scenes_that_it_is_not_for(scene, overrides, says):
+    with pytest.raises(InputError, match=f"^{re.escape(says)}"):
+        live_page(load_scene(scene, overrides))
+
+
+def test_refused_in_one_line(tmp_path, capsys):
+    assert main(["page", "flat-rounded", "--out", str(tmp_path / "out")]) == 2
+    assert capsys.readouterr().err.splitlines() == [
+        'partialslip: profile.kind = "flat-rounded": must be "hertz" for a live page, which has its closed form only'
+    ]
+    assert not (tmp_path / "out").exists()

@@ -1,0 +1,155 @@
+"""What notebooks see of scenes, results, comparisons and runs: tables, plots, data frames."""
+
+import csv
+import subprocess
+import sys
+from html.parser import HTMLParser
+
+import matplotlib
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip import views
+from partialslip.report import rows
+from partialslip.report.files import tractions_csv
+
+matplotlib.use("Agg")
+
+
+class Cells(HTMLParser):
+    """The text of the cells, row by row; a tag that is not closed is an error."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.rows, self.text = [], [], ""
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag, _):
+        self.open.append(tag)
+        if tag == "tr":
+            self.rows.append([])
+        elif tag in ("td", "th"):
+            self.rows[-1].append("")
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text += data
+        if self.open and self.open[-1] in ("td", "th"):
+            self.rows[-1][-1] += data
+
+
+@pytest.fixture(scope="module")
+def run():
+    return partialslip.run(partialslip.load_scene("hertz-large-tension", ["fem.accuracy=1e-2"]))
+
+
+def test_scene():
+    title = "<b>P & Q</b>"
+    cells = Cells(partialslip.load_scene("hertz-shear", [f'title="{title}"'])._repr_html_())
+    assert f"hertz-shear: {title}" in cells.text
+    assert ["material", "E", "7.28e+10"] in cells.rows
+    assert ["friction", "f", "0.5"] in cells.rows
+
+
+@pytest.mark.parametrize("name", ["exact", "fem"])
+def test_result(run, name):
+    result = run.results[name]
+    shown = {row[-2]: row[-1] for row in Cells(result._repr_html_()).rows}
+    assert shown == rows.facts(result)
+    assert shown["regime"] == "large tension"
+    assert f"n = {result.n / result.a:.7f} a" in shown["found"]
+
+
+def test_comparison_and_run(run):
+    comparison = run.comparisons["fem"]
+    alone, whole = Cells(comparison._repr_html_()).rows, Cells(run._repr_html_())
+    assert alone[1:] == [list(row) for row in rows.verdicts(comparison)]
+    assert [row[0] for row in alone[1:]] == [
+        "a, half-width",
+        "m, stick from -m",
+        "n, stick to n",
+        "p, pressure",
+        "q, shear",
+    ]
+    assert [[row[0], *row[3:]] for row in whole.rows[1:6]] == alone[1:]
+    assert alone[1][1:] == [f"{comparison.a:.1e}", "1.0e-02", "ok"]
+    assert "hertz-large-tension: all bars met" in whole.text
+
+
+def test_a_missed_bar_is_marked(run):
+    strict = partialslip.compare(run.results["fem"], run.results["exact"], 0.5, 1e-12)
+    text = strict._repr_html_()
+    assert [row[-1] for row in Cells(text).rows[1:]] == ["MISSED"] * 5
+    assert strict.missed[0] in Cells(text).text
+    assert text.count('class="missed"') == 5 + len(strict.missed)
+
+
+def test_plot_of_a_run(run):
+    axes = run.plot()
+    assert isinstance(axes, matplotlib.axes.Axes)
+    assert axes.get_xlabel() == "x/a"
+    lines = {line.get_label(): line.get_xydata() for line in axes.lines}
+    exact = run.results["exact"]
+    np.testing.assert_allclose(lines["q/(f p0), exact"][:, 1], exact.traction.dq / 2 / (0.5 * exact.p0), atol=1e-15)
+    assert {"p/p0, exact", "p/p0, fem", "q/(f p0), fem"} < lines.keys()
+    matplotlib.pyplot.close(axes.figure)
+
+
+def test_plot_of_a_result_on_axes_of_ones_own(run):
+    figure = matplotlib.figure.Figure()
+    mine = figure.subplots()
+    fem = run.results["fem"]
+    assert fem.plot(mine) is mine
+    lines = {line.get_label(): line.get_xydata() for line in mine.lines}
+    x, q = lines["q/p0, fem"].T
+    np.testing.assert_allclose(q * fem.p0, fem.traction.at(x * fem.a)[1] / 2, atol=1e-9 * fem.p0)
+    (zone,) = (patch for patch in mine.patches if patch.get_label().startswith("stick"))
+    assert (zone.get_x(), zone.get_x() + zone.get_width()) == pytest.approx((-fem.m / fem.a, fem.n / fem.a))
+
+
+def test_data_frames(run):
+    pytest.importorskip("pandas")
+    exact = run.results["exact"].to_dataframe()
+    assert list(exact) == ["x", "x_over_a", "p", "q1", "q2", "dq"]
+    np.testing.assert_array_equal(exact["q2"] - exact["q1"], exact["dq"])
+    whole = run.to_dataframe()
+    table = list(csv.DictReader(tractions_csv(run).splitlines()))
+    assert list(whole) == list(table[0])
+    assert whole["method"].tolist() == [row["method"] for row in table]
+    for key in exact:
+        assert whole[key].tolist() == [float(row[key]) for row in table]
+
+
+def test_what_is_not_determined_is_not_a_number():
+    pytest.importorskip("pandas")
+    mean = partialslip.run(partialslip.load_scene("hertz-shear", ["load.Q=[0, 1e5]"]), ["exact", "march"])
+    frame = mean.to_dataframe()
+    assert frame["q1"].isna().tolist() == (frame["method"] == "exact").tolist()
+    assert frame["dq"].notna().all()
+
+
+def test_without_pandas(run, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    for what in (run, run.results["exact"]):
+        with pytest.raises(partialslip.PartialslipError, match="pandas is not installed: pip install"):
+            what.to_dataframe()
+
+
+def test_views_of_something_else():
+    with pytest.raises(TypeError, match="int has no"):
+        views.html(1)
+    with pytest.raises(TypeError, match="str has no plot"):
+        views.plot("")
+
+
+def test_nothing_is_imported_before_it_is_asked_for():
+    code = "import sys, partialslip\nscene = partialslip.load_scene('hertz-shear')"
+    code += "\nnames = {'jinja2', 'matplotlib', 'pandas'}\nprint(names & {*sys.modules})"
+    code += "\nscene._repr_html_()\nprint(names & {*sys.modules})"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines() == ["set()", "{'jinja2'}"]
