@@ -11,6 +11,7 @@ At an end itself, where tractions are square roots, the order does not matter; t
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 from scipy.interpolate import PPoly
 
 from partialslip.result import Array, Clock
@@ -21,6 +22,7 @@ _NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3}
 
 # What an end, p and q are off by, measured as multiples of the size of the element that the end lies in.
 AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.0025}
+_CELLS, _SOMEWHERE = 16.0, 0.5  # with fewer elements in the stick zone it ends somewhere in one of them
 _TRACTIONS = {"p": 8.0, "q": 25.0}  # of that in Hertz contacts, in proportion to :func:`_steepness` in others
 
 
@@ -44,7 +46,21 @@ def end_errors(level: Level, sizes: Array) -> dict[str, float]:
     off = AT_END[level.body.order] * sizes
     most = float(off.max()) * max(_steepness(level), 1.0)
     errors = {"a": float(off[:2].mean()), **{key: most * times for key, times in _TRACTIONS.items()}}
-    return errors | (dict(zip("mn", off[2:4].tolist(), strict=True)) if level.stick else {})
+    if level.stick:
+        m, n = np.where(_resolved(level), off[2:4], np.maximum(off[2:4], _SOMEWHERE * sizes[2:4])).tolist()
+        errors |= {"m": m, "n": n}
+    return errors
+
+
+def _resolved(level: Level) -> npt.NDArray[np.bool_]:
+    """Whether the stick zone has elements enough, of the size of those at its left and right end, to tell where it
+    ends."""
+    assert level.stick
+    vertices = level.body.x[:: level.body.order]
+    ends = np.array([level.stick.left, level.stick.right])
+    cell = np.clip(np.searchsorted(vertices, ends) - 1, 0, len(vertices) - 2)
+    result: npt.NDArray[np.bool_] = ends[1] - ends[0] >= _CELLS * np.diff(vertices)[cell]
+    return result
 
 
 def _steepness(level: Level) -> float:

@@ -1,6 +1,7 @@
 """The finite-element method: scene and plan in, result out."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import PPoly
@@ -16,8 +17,9 @@ from partialslip_fem.adapt import Adapted, adapt, uniform
 from partialslip_fem.displacements import solve_back
 from partialslip_fem.factor import default_backend
 from partialslip_fem.fields import along_surfaces, deformed
-from partialslip_fem.level import Level, Part, Problem
+from partialslip_fem.level import Level, Part, Problem, solve_on
 from partialslip_fem.recovery import inside
+from partialslip_meshes import Mesh
 
 _WIDTH = {"half-plane": 16.0, "box": 4096.0}  # in contact half-widths
 _LARGEST_NU = 0.4999999
@@ -59,6 +61,18 @@ def solve(
         adapted = adapt(problem, scene.fem.accuracy, width, clock, progress)
     else:
         adapted = uniform(problem, scene.fem.size, width, clock)
+    return _result(scene, plan, problem, adapted, clock)
+
+
+def solve_meshed(scene: Scene, plan: Plan, meshes: Sequence[Mesh]) -> Result:
+    """Solve ``scene`` on meshes of one's own, in m, of the lower body and, unless the bodies are mirror images, of the
+    upper one (turned over); nothing is refined, and no error estimated."""
+    clock = Clock()
+    problem = _scaled(scene, plan)
+    scaled = [replace(mesh, points=mesh.points / scene.length) for mesh in meshes]
+    width = float(np.abs(scaled[0].points[:, 0]).max())
+    level = solve_on(scaled, problem, width, clock)
+    adapted = Adapted(level, {}, 1, level.factored, level.iterations, width / level.half_width)
     return _result(scene, plan, problem, adapted, clock)
 
 

@@ -1,0 +1,20 @@
+"""Random scenes by one method: each must come to an end, with finite values and a certificate."""
+
+import itertools
+from collections.abc import Iterator
+
+from partialslip.verify.case import Case
+from partialslip.verify.random_scenes import draw, kind_of
+
+
+def stress_cases(method: str, seed: int, count: int) -> Iterator[Case]:
+    """The first ``count`` random scenes of a seed that ``method`` is for: the exact one is not for loads out of
+    phase."""
+    numbers = (number for number in itertools.count() if method != "exact" or kind_of(number) != "out of phase")
+    return (stress_case(method, seed, number) for number in itertools.islice(numbers, count))
+
+
+def stress_case(method: str, seed: int, number: int) -> Case:
+    """The random scene of that seed and number. A result certifies itself: there is nothing to compare with."""
+    kind, scene = draw(seed, number)
+    return Case(scene.name, scene, (method,), compared=False, hard=kind)
