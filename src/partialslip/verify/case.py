@@ -4,7 +4,7 @@ of one method against its bar."""
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -105,10 +105,6 @@ class Verdict:
     iterations: int = 0
     cpu_s: float = 0.0
 
-    def record(self) -> dict[str, Any]:
-        """As plain data."""
-        return asdict(self)
-
 
 def run_case(case: Case) -> list[Verdict]:
     """Solve the case by each of its methods and judge what they find; what they raise is a verdict, too."""
@@ -123,7 +119,7 @@ def run_case(case: Case) -> list[Verdict]:
             verdicts.append(_verdict(case, method, "finishes", None, None, passed=False, found=error, cpu_s=spent))
             continue
         known = reference if isinstance(reference, Result) and method != "exact" else None
-        work = {"iterations": result.counts.get("iterations", 0), "cpu_s": result.cost.cpu_s}
+        work: dict[str, Any] = {"iterations": result.counts.get("iterations", 0), "cpu_s": result.cost.cpu_s}
         verdicts += [_verdict(case, method, *judged, **work) for judged in _judged(case, method, result, known)]
     return verdicts
 

@@ -4,8 +4,9 @@ Cases come in families, each with a paragraph (:attr:`Family.hard`), which is al
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+import textwrap
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -21,7 +22,13 @@ from partialslip.verify import texts
 from partialslip.verify.case import Bar, Case
 from partialslip.verify.meshes import flat_triangles, one_node, shifted
 
-ALL = ("exact", "march", "fem")
+_HEAD = """# Hard cases
+
+Scenes that go wrong in contact codes, why they do, and what is asked here. `partialslip verify --suite full` runs all
+of them after the shipped scenes, `partialslip verify --suite full --only NAME` one. Each is solved by the methods in
+brackets. Unless something else is said, every result is finite and certified, it has the regime of the exact solution,
+and the ends of the contact and of the stick zone are within the accuracy that the scene asks for (2e-5 of a), however
+narrow the zone is; pressure is within ten times and shear within fifteen times that (relative L2 of cell averages)."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +49,7 @@ def shipped() -> list[Case]:
 def families() -> list[Family]:
     """The whole catalogue."""
     return [
-        Family(name, title, hard, tuple(_CASES[name]()))
+        Family(name, title, hard, tuple(replace(case, hard=hard) for case in _CASES[name]()))
         for name, (title, hard) in texts.FAMILIES.items()
     ]
 
@@ -50,6 +57,27 @@ def families() -> list[Family]:
 def hard_cases() -> list[Case]:
     """The cases of all families."""
     return [case for family in families() for case in family.cases]
+
+
+def document() -> str:
+    """The catalogue in Markdown: docs/hard-cases.md."""
+    lines = [_HEAD]
+    for family in families():
+        lines += [f"## {family.title}", _filled(family.hard)]
+        lines += ["\n".join(map(_listed, family.cases))]
+    return "\n\n".join(lines) + "\n"
+
+
+def _listed(case: Case) -> str:
+    bars: dict[str, list[str]] = {}
+    for key, bar in case.bars.items():
+        bars.setdefault(bar.reason, []).append(f"{key} " + ("not judged" if bar.value is None else f"{bar.value:g}"))
+    looser = "".join(f" {', '.join(keys)}: {reason}." for reason, keys in bars.items())
+    return _filled(f"- `{case.name}` ({', '.join(case.methods)}).{looser}", "  ")
+
+
+def _filled(text: str, indent: str = "") -> str:
+    return textwrap.fill(text, 120, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
 
 
 def _scene(
@@ -65,7 +93,7 @@ def _scene(
     load: Mapping[str, Any] | None = None,
     fem: Mapping[str, Any] | None = None,
 ) -> Scene:
-    """A contact of half-width 1 mm under dQ in 2 f P and dsigma in f p0, with means in f P and f p0; ``flat`` is b/a."""
+    """A contact of half-width 1 mm under dQ in 2 f P and dsigma in f p0, means in f P and f p0; ``flat`` is b/a."""
     a, R = 1e-3, 0.05
     data: dict[str, Any] = {
         "name": name,
@@ -95,10 +123,16 @@ def _near_sliding() -> Iterator[Case]:
         yield Case(name, _scene(name, 1 - 10.0**-power, 2.0))
 
 
+_PEAKS = {
+    f"{method}.q": Bar(0.15, "a peak at either end is narrower than an element, and q is as small as the load")
+    for method in ("march", "fem")
+}
+
+
 def _near_stuck() -> Iterator[Case]:
     for power in (3, 6, 9):
         name = f"near-stuck-1e-{power}"
-        yield Case(name, _scene(name, 10.0**-power, 2 * 10.0**-power))
+        yield Case(name, _scene(name, 10.0**-power, 2 * 10.0**-power), bars=_PEAKS)
 
 
 def _transition() -> Iterator[Case]:
@@ -117,8 +151,8 @@ def _huge_tension() -> Iterator[Case]:
 
 
 def _no_shear() -> Iterator[Case]:
-    for name, sf in (("no-shear", 4.0), ("no-shear-slight", 1e-6)):
-        yield Case(name, _scene(name, 0.0, sf))
+    yield Case("no-shear", _scene("no-shear", 0.0, 4.0))
+    yield Case("no-shear-slight", _scene("no-shear-slight", 0.0, 1e-6), bars=_PEAKS)
 
 
 def _no_tension() -> Iterator[Case]:
@@ -150,28 +184,25 @@ def _mean_loads() -> Iterator[Case]:
     bound = mean_load_bound(stick_zone(0.3, 4.0, Hertz()), Hertz())
     for share in (0.5, 0.9, 0.98, 1.02):
         name = f"mean-load-{share:g}"
-        loads = {"Q_mean": share * bound, "sigma_mean": 3.0, "load": {"cycles": 60}}
-        yield Case(name, _scene(name, 0.3, 4.0, **loads))
+        yield Case(name, _scene(name, 0.3, 4.0, Q_mean=share * bound, sigma_mean=3.0, load={"cycles": 60}))
 
 
 def _cycles() -> Iterator[Case]:
     bound = mean_load_bound(stick_zone(0.3, 4.0, Hertz()), Hertz())
-    loads = {"Q_mean": 0.995 * bound, "sigma_mean": 3.0, "load": {"cycles": 200}}
-    yield Case("cycles-200", _scene("cycles-200", 0.3, 4.0, **loads))
+    scene = _scene("cycles-200", 0.3, 4.0, Q_mean=0.995 * bound, sigma_mean=3.0, load={"cycles": 200})
+    yield Case("cycles-200", scene)
 
 
 def _few_nodes() -> Iterator[Case]:
     size = 0.05
     reason = f"one mesh of elements of {size:g} a: what is smaller cannot be seen"
-    coarse = {key: Bar(bar, reason) for key, bar in (("fem.a", 5e-3), ("fem.m", size), ("fem.n", size))}
+    coarse = {key: Bar(bar, reason) for key, bar in (("fem.a", size / 2), ("fem.m", size), ("fem.n", size))}
     for name, c in (("one-stick-node", size / 2), ("no-stick-node", size / 500)):
         loads = Hertz().conditions(np.array(0.7 - c), np.array(c), np.array(-1))
         scene = _scene(name, float(loads.Qf), float(loads.sf), fem={"size": size, "order": 1})
         yield Case(name, scene, ("fem",), coarse)
     reason = "one node knows no half-width: less than its element is all that can be said"
-    one = {"fem.a": Bar(16.0, reason)} | {
-        f"fem.{key}": Bar(None, reason) for key in ("m", "n", "p", "q", "regime")
-    }
+    one = {"fem.a": Bar(16.0, reason), **{f"fem.{key}": Bar(None, reason) for key in ("m", "n", "p", "q", "regime")}}
     scene = _scene("one-contact-node", 0.4, 0.0, fem={"order": 1})
     yield Case("one-contact-node", scene, ("fem",), one, meshes=one_node)
 

@@ -22,7 +22,7 @@ def shifted(scene: Scene, share: float) -> list[Mesh]:
     """Even elements along the contact, off the middle by a share of their size."""
     a = contact(scene).a
     mesh = block(_WIDTH * a, (-1.5 * a, 1.5 * a), {}, 0.3, along=_ALONG * a)
-    return [Mesh(mesh.points + [share * _ALONG * a, 0.0], mesh.triangles, mesh.lines)]
+    return [Mesh(mesh.points + np.array([share * _ALONG * a, 0.0]), mesh.triangles, mesh.lines)]
 
 
 def flat_triangles(scene: Scene, aspect: float) -> list[Mesh]:
@@ -54,5 +54,5 @@ def flat_triangles(scene: Scene, aspect: float) -> list[Mesh]:
 def _growing(first: float, end: float) -> Array:
     """Distances up to ``end``, whose steps grow by a half from the first one on."""
     count = int(np.ceil(np.log1p(end / first / 2) / np.log(1.5)))
-    result: Array = (1.5 ** np.arange(1, count + 1) - 1) * end / (1.5**count - 1)
+    result: Array = (1.5 ** np.arange(1.0, count + 1) - 1) * end / (1.5**count - 1)
     return result

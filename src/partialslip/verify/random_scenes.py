@@ -57,7 +57,11 @@ def draw(seed: int, number: int) -> Drawn:
 def without_shear(random: np.random.Generator, profile: str) -> dict[str, Any]:
     """Tables of a scene of that profile, one of ``PROFILES``, without tangential loads; SI units."""
     length, stress = 10 ** random.uniform(-9, 6), 10 ** random.uniform(-3, 15)
-    material = {"E": stress, "nu": random.uniform(-0.9, 0.4999), "plane": str(random.choice(["strain", "stress"]))}
+    material: dict[str, Any] = {
+        "E": stress,
+        "nu": random.uniform(-0.9, 0.4999),
+        "plane": str(random.choice(["strain", "stress"])),
+    }
     data: dict[str, Any] = {"name": "random", "material": material, "friction": {"f": 10 ** random.uniform(-3, 1)}}
     A, R = Material(**material).A, length * 10 ** random.uniform(0, 5)
     if profile == "hertz":
