@@ -89,13 +89,13 @@ def forces(traction, order):
         line[outside] = np.linalg.solve(mass[np.ix_(outside, outside)], -(mass @ line)[outside])
         return (mass @ line)[inside]
 
-    return N[inside], shear(traction.q1), shear(traction.q2)
+    return N[inside], *(None if q is None else shear(q) for q in (traction.q1, traction.q2))
 
 
 def complaints(scene, result, steps):
     """What is wrong with a result of finite elements and its load steps."""
     certificate, f = result.certificate, scene.friction.f
-    if not steps:
+    if not steps and "steady" in certificate:
         yield "nothing was solved"
     if not (certificate["kkt"] <= CERTIFIED and certificate["equilibrium"] <= CERTIFIED):
         yield f"certificate {certificate}"
@@ -110,6 +110,8 @@ def complaints(scene, result, steps):
     unit = CERTIFIED * f * scene.P
     if abs(N.sum() / scene.P - 1) > CERTIFIED or not (N > -CERTIFIED * scene.P).all():
         yield f"sum of N {N.sum() / scene.P} P, least {N.min() / scene.P}"
+    if result.slip is None:
+        return
     for T in (T1, T2):
         if not (np.abs(T) <= f * N + unit).all():
             yield f"|T| - f N up to {(np.abs(T) - f * N).max() / unit * CERTIFIED} f P"
@@ -142,7 +144,7 @@ def trials(numbers):
 def test_random_cycles(count):
     found = [
         (number, kind, complaint)
-        for number, kind, scene, result, steps in trials(range(count))
+        for number, kind, scene, result, steps in trials(range(0, 5 * count, 5))
         for complaint in ([result] if isinstance(result, str) else complaints(scene, result, steps))
     ]
     assert not found, "\n".join(map(str, found))

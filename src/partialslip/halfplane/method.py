@@ -87,7 +87,8 @@ def _steady_state(scene: Scene, plan: Plan, pressed: Contact) -> tuple[Regime, S
     if load.dQ == 0 and load.dsigma == 0:
         return "stuck", StickZone(0.0, 1.0, 1)
     zone = stick_zone(abs(load.dQ) / (2 * limit), abs(load.dsigma) / (f * pressed.p0), pressed.shape)
-    if abs(load.Q_mean) > limit * mean_load_bound(zone, pressed.shape):
+    # for small tension the bound is gross sliding, which has been ruled out
+    if zone.s < 0 and abs(load.Q_mean) > limit * mean_load_bound(zone, pressed.shape):
         return "ratchets", zone
     return ("small tension" if zone.s > 0 else "large tension"), zone
 
