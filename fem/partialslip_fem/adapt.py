@@ -9,7 +9,7 @@ import numpy as np
 from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
 from partialslip.result import Clock
-from partialslip_fem.estimate import end_errors, neighbour, smooth_errors
+from partialslip_fem.estimate import end_errors, enough, neighbour, resolved_errors, smooth_errors
 from partialslip_fem.level import Level, Problem, solve_level
 
 _FIRST, _ROUGH = 0.1, 1.0  # element size of the first mesh, in its contact line's half-width; and growth
@@ -53,7 +53,8 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     least = _growth(_AIM * accuracy / 2, order)
     limit = _limit(problem)
     while True:
-        goal = _ENDS * _AIM * accuracy / _worst(end_errors(level, np.ones(4)))
+        share = _ENDS * _AIM * accuracy
+        goal = min(share / _worst(resolved_errors(level, np.ones(4))), enough(level, share))
         goal = min(max(goal, _FINEST), _BESIDE / 2)
         if size > 1.01 * goal:
             finer = (size / goal) ** (1 / math.ceil(math.log(size / goal, _FINER)))

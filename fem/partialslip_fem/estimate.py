@@ -11,7 +11,6 @@ At an end itself, where tractions are square roots, the order does not matter; t
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import PPoly
 
 from partialslip.result import Array, Clock
@@ -42,25 +41,31 @@ def smooth_errors(level: Level, other: Level) -> dict[str, float]:
 
 def end_errors(level: Level, sizes: Array) -> dict[str, float]:
     """What the elements at the ends add; ``sizes`` are those that the ends lie in, in contact half-widths and in the
-    order of ``level.ends``."""
-    off = AT_END[level.body.order] * sizes
-    most = float(off.max()) * max(_steepness(level), 1.0)
-    errors = {"a": float(off[:2].mean()), **{key: most * times for key, times in _TRACTIONS.items()}}
+    order of ``level.ends``. Ends of a stick zone that has not elements enough are only known to be in one of them."""
+    errors = resolved_errors(level, sizes)
     if level.stick:
-        m, n = np.where(_resolved(level), off[2:4], np.maximum(off[2:4], _SOMEWHERE * sizes[2:4])).tolist()
-        errors |= {"m": m, "n": n}
+        unseen = np.where(_stick_width(level) < _CELLS * sizes[2:4], _SOMEWHERE * sizes[2:4], 0.0)
+        errors |= {key: max(errors[key], error) for key, error in zip("mn", unseen.tolist(), strict=True)}
     return errors
 
 
-def _resolved(level: Level) -> npt.NDArray[np.bool_]:
-    """Whether the stick zone has elements enough, of the size of those at its left and right end, to tell where it
-    ends."""
-    assert level.stick
-    vertices = level.body.x[:: level.body.order]
-    ends = np.array([level.stick.left, level.stick.right])
-    cell = np.clip(np.searchsorted(vertices, ends) - 1, 0, len(vertices) - 2)
-    result: npt.NDArray[np.bool_] = ends[1] - ends[0] >= _CELLS * np.diff(vertices)[cell]
-    return result
+def resolved_errors(level: Level, sizes: Array) -> dict[str, float]:
+    """The same, as if there were elements enough."""
+    off = AT_END[level.body.order] * sizes
+    most = float(off.max()) * max(_steepness(level), 1.0)
+    errors = {"a": float(off[:2].mean()), **{key: most * times for key, times in _TRACTIONS.items()}}
+    return errors | (dict(zip("mn", off[2:4].tolist(), strict=True)) if level.stick else {})
+
+
+def enough(level: Level, error: float) -> float:
+    """The size of elements, in contact half-widths, that are enough to tell where the stick zone ends: the zone has
+    some of them, or they are themselves so small that an end somewhere in one is known to ``error``."""
+    return max(_stick_width(level) / _CELLS, error / _SOMEWHERE)
+
+
+def _stick_width(level: Level) -> float:
+    """In contact half-widths; without a stick zone, no bound."""
+    return (level.stick.right - level.stick.left) / level.half_width if level.stick else np.inf
 
 
 def _steepness(level: Level) -> float:
