@@ -9,7 +9,7 @@ import numpy as np
 from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
-from partialslip_fem.estimate import end_errors, neighbour, smooth_errors
+from partialslip_fem.estimate import end_errors, enough, neighbour, smooth_errors
 from partialslip_fem.level import Level, Part, Problem, solve_level
 
 _FIRST, _ROUGH = 0.1, 1.0  # element size of the first mesh, in its contact line's half-width; and growth
@@ -57,7 +57,9 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     coarsest = max(part.fineness for part in problem.parts)  # what is not finer than that is to be fine enough
     rounding = _ROUNDING * accuracy if any(part.face for part in problem.parts) else 0.0
     while True:
-        goal = _ENDS * _AIM * accuracy / _worst(end_errors(level, np.ones(4), np.full(4, np.inf)))
+        share = _ENDS * _AIM * accuracy
+        goal = share / _worst(end_errors(level, np.ones(4), np.full(4, np.inf)))
+        goal = min(goal, enough(level, _gaps(level, problem), share))
         goal = min(max(goal, _FINEST), _BESIDE / 2)
         if size > 1.01 * goal:
             finer = (size / goal) ** (1 / math.ceil(math.log(size / goal, _FINER)))

@@ -23,7 +23,7 @@ _NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3}
 
 # What an end, p and q are off by, measured as multiples of the size of the element that the end lies in.
 AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002}
-_FIT = 5.0  # of what an end of the stick zone is off by where elements are not small beside the distance to the next
+_FIT = 8.0  # of what an end of the stick zone is off by where elements are not small beside the distance to the next
 _SIDE = 0.5  # of the size of its element: an end is not off by more
 _TRACTIONS = {"p": 8.0, "q": 25.0}  # of that in Hertz contacts, in proportion to :func:`_steepness` in others
 
@@ -50,6 +50,15 @@ def end_errors(level: Level, sizes: Array, gaps: Array) -> dict[str, float]:
     errors = {"a": float(off[:2].mean()), **{key: most * times for key, times in _TRACTIONS.items()}}
     fitted = off + np.minimum(_FIT * np.minimum(sizes / gaps, 1.0) ** 2, _SIDE) * sizes
     return errors | (dict(zip("mn", fitted[2:4].tolist(), strict=True)) if level.stick else {})
+
+
+def enough(level: Level, gaps: Array, error: float) -> float:
+    """The size of elements, in contact half-widths, that tell where the stick zone ends to ``error``: small enough
+    beside the ``gaps``, or themselves so small that an end somewhere in one is known to that."""
+    if not level.stick:
+        return np.inf
+    beside = float(np.cbrt(error * gaps[2:4].min() ** 2 / _FIT))
+    return max(beside, error / _SIDE)
 
 
 def _steepness(level: Level) -> float:

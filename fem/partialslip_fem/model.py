@@ -1,6 +1,6 @@
 """The finite-element method: scene and plan in, result out."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,9 +18,9 @@ from partialslip_fem.adapt import Adapted, adapt, uniform
 from partialslip_fem.displacements import solve_back
 from partialslip_fem.factor import default_backend
 from partialslip_fem.fields import along_surfaces, deformed
-from partialslip_fem.level import Face, Level, Part, Problem
+from partialslip_fem.level import Face, Level, Part, Problem, solve_on
 from partialslip_fem.recovery import inside
-from partialslip_meshes import read
+from partialslip_meshes import Mesh, read
 
 _SIZES = 1e-2, 1e5  # of finite bodies, in sqrt(A R P)
 _FLATTEST = 1e9  # profile, likewise
@@ -80,6 +80,18 @@ def _check_sizes(scene: Scene) -> None:
                 raise InputError(f"bodies.{name}.{key} = {size}: must be from {low:.2g} to {high:.2g} in this contact")
         if own and own.height and own.width and own.height > _SLENDER * own.width:
             raise InputError(f"bodies.{name}.height = {own.height}: must be <= {_SLENDER:g} times bodies.{name}.width")
+
+
+def solve_meshed(scene: Scene, plan: Plan, meshes: Sequence[Mesh]) -> Result:
+    """Solve ``scene`` on meshes of one's own, in m, of the lower body and, unless the bodies are mirror images, of the
+    upper one (turned over); nothing is refined, and no error estimated."""
+    clock = Clock()
+    problem = _scaled(scene, plan)
+    scaled = [replace(mesh, points=mesh.points / scene.length) for mesh in meshes]
+    width = float(np.abs(scaled[0].points[:, 0]).max())
+    level = solve_on(scaled, problem, width, clock)
+    adapted = Adapted(level, {}, 1, level.factored, level.iterations, width / level.half_width)
+    return _result(scene, plan, problem, adapted, clock)
 
 
 def _scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:

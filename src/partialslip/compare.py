@@ -164,7 +164,7 @@ def _means(function: Callable[[Array], Array], cells: Array, breaks: Array) -> A
 
 def _relative(error: Array, true: Array, x: Array) -> float:
     norm = np.trapezoid(true**2, x)
-    return float(np.sqrt(np.trapezoid(error**2, x) / norm))
+    return float(np.sqrt(np.trapezoid(error**2, x) / norm)) if norm > 0 else 0.0
 
 
 def _missed(

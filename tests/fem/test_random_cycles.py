@@ -1,9 +1,8 @@
 """Random cycles of load by finite elements: every load step converges, and its conditions hold on other grounds.
 
-A failure names the number that makes its scene again, by ``drawn``.
+A failure names the number that makes its scene again, by ``draw``.
 """
 
-import math
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import NamedTuple
@@ -14,12 +13,10 @@ import pytest
 import partialslip
 from partialslip.condensed import friction
 from partialslip.condensed.bounded import Solution
-from partialslip.halfplane import contact
-from partialslip.scene import Material
+from partialslip.verify.random_scenes import draw
 from partialslip_fem import adapt
 
-PROFILES = ("hertz", "flat-rounded", "tabulated")
-KINDS = ("any", "near-stuck", "near-sliding", "mean loads", "late", "transition", "no dQ", "no dsigma", "out of phase")
+SEED = 13
 CERTIFIED = 1e-10  # in f p0, and in f P
 OPTIMAL = 1e-13  # gap of a load step, in the size of what cancels in it
 FINEST = 1e-4  # in a: beyond it a zone that fades away asks for meshes of minutes, not for more of the load steps
@@ -30,83 +27,6 @@ class Step(NamedTuple):
 
     problem: tuple
     solution: Solution
-
-
-def gap_of_table(random):
-    """A convex gap at 6 to 12 points: flat or curved in the middle, straight here and there."""
-    count = random.integers(6, 13)
-    x = np.concatenate([[0.0], np.cumsum(random.uniform(0.2, 1.0, count - 1))])
-    bends = random.exponential(1.0, count - 1) ** random.uniform(0.5, 3) * (random.random(count - 1) > 0.2)
-    bends[-1] += 0.1
-    return x, np.concatenate([[0.0], np.cumsum(np.cumsum(bends) * np.diff(x))]) * 10 ** random.uniform(-5, -1)
-
-
-def pressed(random, profile):
-    """A scene without tangential loads."""
-    length, stress = 10 ** random.uniform(-6, 3), 10 ** random.uniform(3, 12)
-    material = {"E": stress, "nu": random.uniform(-0.5, 0.499), "plane": str(random.choice(["strain", "stress"]))}
-    data = {"name": "random", "material": material, "friction": {"f": 10 ** random.uniform(-3, 1)}}
-    A, R = Material(**material).A, length * 10 ** random.uniform(0, 5)
-    if profile == "hertz":
-        return data | {"profile": {"kind": "hertz", "R": R}, "load": {"a": length}}
-    if profile == "flat-rounded":
-        flat = random.uniform(0.01, 0.95)
-        psi = math.acos(flat)
-        P = length**2 / (A * R) * (psi - math.sin(psi) * flat)
-        return data | {"profile": {"kind": "flat-rounded", "R": R, "b": flat * length}, "load": {"P": P}}
-    x, gap = gap_of_table(random)
-    data |= {"profile": {"kind": "tabulated", "x": (x * length).tolist(), "gap": (gap * length).tolist()}}
-    at, steps = partialslip.parse_scene(data | {"load": {"P": 1.0}}).profile.curvature_steps()
-    a = at[0] + (x[-1] * length - at[0]) * random.uniform(0.1, 0.99)
-    psi = np.arccos(np.minimum(at / a, 1.0))
-    return data | {"load": {"P": float(a**2 / (2 * A) * (steps @ (2 * psi - np.sin(2 * psi))))}}
-
-
-def cycle(random, kind):
-    """Q in f P and sigma in f p0 at the load points."""
-    Qf = {
-        "near-stuck": 10 ** random.uniform(-9, -2),
-        "near-sliding": 1 - 10 ** random.uniform(-9, -3),
-        "late": 1 - 10 ** random.uniform(-4, -1),
-        "no dQ": 0.0,
-    }.get(kind, random.random() * 0.9999)
-    sf = random.choice([random.uniform(0, 10), 10 ** random.uniform(-6, 1)])
-    if kind == "near-stuck":
-        sf = Qf * random.uniform(0, 8)
-    if kind == "transition":
-        sf = 8 * (1 - math.sqrt(1 - Qf)) * (1 + random.choice([-1, 0, 1]) * 10 ** random.uniform(-12, -1))
-    if kind == "no dsigma":
-        sf = 0.0
-    signs = random.choice([-1.0, 1.0], 4)
-    mean = random.choice([0.0, random.random(), 1 - 10 ** random.uniform(-9, -1)])
-    sigma = random.choice([0.0, 10 ** random.uniform(-2, 1)])
-    if kind == "mean loads":
-        mean, sigma = random.random(), random.uniform(0, 10)
-    if kind == "near-sliding":
-        mean = mean * (random.random() < 0.5)
-    angle = np.array([np.pi, 0.0]), np.array([np.pi, 0.0])
-    if kind == "out of phase":
-        once = 2 * np.pi * np.arange(random.integers(3, 9))
-        angle = once / len(once) + random.uniform(0, 6), once / len(once)
-    Q = signs[2] * mean * (1 - Qf) + signs[0] * Qf * np.cos(angle[0])
-    Q *= min(1.0, (1 - 1e-12) / max(np.abs(Q).max(), 1e-300))  # short of sliding but for rounding
-    return Q, signs[3] * sigma + signs[1] * sf / 2 * np.cos(angle[1])
-
-
-def drawn(number):
-    """Kind of loads, and the scene's tables."""
-    random = np.random.default_rng([13, number])
-    kind, profile = KINDS[number % len(KINDS)], PROFILES[number // len(KINDS) % len(PROFILES)]
-    data = pressed(random, profile)
-    scene = partialslip.parse_scene(data)
-    p0 = scene.P / contact(scene).a * 2 / np.pi
-    f = data["friction"]["f"]
-    Q, sigma = cycle(random, kind)
-    data["load"] |= {"Q": (f * scene.P * Q).tolist(), "sigma": (f * p0 * sigma).tolist()}
-    data["load"] |= {"cycles": int(random.integers(1, 6)), "steps": int(random.integers(1, 5))}
-    far_field = "box" if random.random() < 0.25 else "half-plane"
-    order, accuracy = int(random.choice([2, 3, 4])), float(10 ** random.uniform(-3, -2))
-    return kind, data | {"fem": {"order": order, "far_field": far_field, "accuracy": accuracy}}
 
 
 @contextmanager
@@ -169,13 +89,13 @@ def forces(traction, order):
         line[outside] = np.linalg.solve(mass[np.ix_(outside, outside)], -(mass @ line)[outside])
         return (mass @ line)[inside]
 
-    return N[inside], shear(traction.q1), shear(traction.q2)
+    return N[inside], *(None if q is None else shear(q) for q in (traction.q1, traction.q2))
 
 
 def complaints(scene, result, steps):
     """What is wrong with a result of finite elements and its load steps."""
     certificate, f = result.certificate, scene.friction.f
-    if not steps:
+    if not steps and "steady" in certificate:
         yield "nothing was solved"
     if not (certificate["kkt"] <= CERTIFIED and certificate["equilibrium"] <= CERTIFIED):
         yield f"certificate {certificate}"
@@ -190,6 +110,8 @@ def complaints(scene, result, steps):
     unit = CERTIFIED * f * scene.P
     if abs(N.sum() / scene.P - 1) > CERTIFIED or not (N > -CERTIFIED * scene.P).all():
         yield f"sum of N {N.sum() / scene.P} P, least {N.min() / scene.P}"
+    if result.slip is None:
+        return
     for T in (T1, T2):
         if not (np.abs(T) <= f * N + unit).all():
             yield f"|T| - f N up to {(np.abs(T) - f * N).max() / unit * CERTIFIED} f P"
@@ -210,8 +132,7 @@ def complaints(scene, result, steps):
 def trials(numbers):
     """(number, kind, scene, result, load steps) of each of them, or in place of the last two what was raised."""
     for number in numbers:
-        kind, data = drawn(number)
-        scene = partialslip.parse_scene(data)
+        kind, scene = draw(SEED, number)
         with recorded() as steps:
             try:
                 yield number, kind, scene, partialslip.run(scene, ["fem"]).results["fem"], steps
@@ -223,7 +144,7 @@ def trials(numbers):
 def test_random_cycles(count):
     found = [
         (number, kind, complaint)
-        for number, kind, scene, result, steps in trials(range(count))
+        for number, kind, scene, result, steps in trials(range(0, 5 * count, 5))
         for complaint in ([result] if isinstance(result, str) else complaints(scene, result, steps))
     ]
     assert not found, "\n".join(map(str, found))

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from partialslip import __version__
-from partialslip.cli import export, maps, page, run, score, study
+from partialslip.cli import export, maps, page, run, score, study, verify
 from partialslip.errors import InputError, PartialslipError
 from partialslip.reading import shipped_scenes
 
@@ -51,7 +51,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"partialslip {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
 
-    for command in (run, maps, page, study, score, export):
+    for command in (run, maps, page, verify, study, score, export):
         command.add(commands)
 
     scenes = commands.add_parser("scenes", help="list the shipped scenes")

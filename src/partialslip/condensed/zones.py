@@ -97,12 +97,13 @@ def right_end(vertices: Array, forces: Array, inside: Array) -> float:
     skip = 1 if len(x) > _VERTICES else 0
     x, force = x[skip : skip + _VERTICES], force[skip : skip + _VERTICES]
     near, far = inside[-1], vertices[min(last + 1, len(vertices) - 1)]
+    beyond = vertices[min(int(np.searchsorted(vertices, near, "right")), len(vertices) - 1)]
     if len(x) >= 3 and (force > 0).all():
         roots = _roots(x, force ** (2 / 3))
         between = roots[(roots > x[0]) & (roots < far)]
         if len(between):
             return float(between.min())
-    return float((near + max(near, vertices[last])) / 2)
+    return float((near + max(near, beyond)) / 2)
 
 
 def left_end(vertices: Array, forces: Array, inside: Array) -> float:

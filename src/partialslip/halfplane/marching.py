@@ -22,6 +22,7 @@ from partialslip.state import State
 
 # Errors of m and n fall at least fivefold from mesh to mesh, so that a quarter of the last change bounds the rest.
 _MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # cell size at the ends (in a), and growth
+_CELLS, _SOMEWHERE = 4.0, 0.5  # between zones with fewer cells than that an end is somewhere in one of them
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,9 @@ def solve(
             break
         if before and before.stick:
             moved = {"m": level.stick.left - before.stick.left, "n": level.stick.right - before.stick.right}
-            errors = {key: abs(change) / 4 for key, change in moved.items()}
+            unseen = _SOMEWHERE * size * (np.diff([-1.0, level.stick.left, level.stick.right, 1.0]) < _CELLS * size)
+            beside = np.maximum(unseen[:-1], unseen[1:])
+            errors = {key: max(abs(moved[key]) / 4, least) for key, least in zip(moved, beside.tolist(), strict=True)}
             progress(f"mesh {meshes}: {len(level.pressed):,} cells, m, n known to {max(errors.values()):.1e} a")
             if max(errors.values()) <= scene.fem.accuracy:
                 break

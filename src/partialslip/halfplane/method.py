@@ -7,7 +7,7 @@ import numpy as np
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.slip import dissipation
-from partialslip.halfplane.steady import StickZone, stick_zone, transition
+from partialslip.halfplane.steady import NARROWEST, StickZone, stick_zone, transition
 from partialslip.halfplane.stress import Stress
 from partialslip.halfplane.traction import half_range, mean_load_bound
 from partialslip.plan import Plan
@@ -70,6 +70,7 @@ def solve(
         slip=_slip(scene, pressed, zone, turn, mirror) if zone and regime not in ("stuck", "ratchets") else None,
         settings={"model": "two half-planes, steady state"},
         limits=_limits(scene, pressed, zone) if plan.needs("friction") or (scene.slides and f > 0) else {},
+        certificate=_certificate(scene, pressed, zone) if zone and regime != "stuck" else {},
         notes=_notes(regime, levels, _turns_round(scene, p0, zone)),
         surface=surface,
         stress_at=stress.inside if stress else None,
@@ -86,7 +87,8 @@ def _steady_state(scene: Scene, plan: Plan, pressed: Contact) -> tuple[Regime, S
     if load.dQ == 0 and load.dsigma == 0:
         return "stuck", StickZone(0.0, 1.0, 1)
     zone = stick_zone(abs(load.dQ) / (2 * limit), abs(load.dsigma) / (f * pressed.p0), pressed.shape)
-    if abs(load.Q_mean) > limit * mean_load_bound(zone, pressed.shape):
+    # for small tension the bound is gross sliding, which has been ruled out
+    if zone.s < 0 and abs(load.Q_mean) > limit * mean_load_bound(zone, pressed.shape):
         return "ratchets", zone
     return ("small tension" if zone.s > 0 else "large tension"), zone
 
@@ -99,6 +101,16 @@ def _limits(scene: Scene, pressed: Contact, zone: StickZone | None) -> dict[str,
         limits["dsigma_transition"] = float(turns) * scene.friction.f * pressed.p0
         limits["Q_mean"] = limit * mean_load_bound(zone, pressed.shape)
     return limits
+
+
+def _certificate(scene: Scene, pressed: Contact, zone: StickZone) -> dict[str, float]:
+    """How far the loads that belong to the zone are off: ``tension`` in f p0, or relative where it is more than that,
+    and ``shear`` in 2 f P. Zones narrower than can be told apart belong to any larger tension."""
+    c, load, f = zone.half_width, scene.load, scene.friction.f
+    found = pressed.shape.conditions(*map(np.array, (1 + zone.centre - c, c, zone.s)))
+    sf, Qf = abs(load.dsigma) / (f * pressed.p0), abs(load.dQ) / (2 * f * scene.P)
+    tension = 0.0 if c <= NARROWEST and sf > found.sf else abs(float(found.sf) - sf) / max(sf, 1.0)
+    return {"tension": tension, "shear": abs(float(found.Qf) - Qf)}
 
 
 def _slip(scene: Scene, pressed: Contact, zone: StickZone, turn: int, mirror: int) -> Slip:

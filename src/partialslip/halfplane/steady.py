@@ -11,7 +11,7 @@ from scipy.optimize.elementwise import find_root
 from partialslip.halfplane.shape import NARROW, Conditions, Shape
 from partialslip.result import Array
 
-_NARROWEST = 1e-100  # stick zones narrower than that are not told apart
+NARROWEST = 1e-100  # stick zones narrower than that are not told apart
 _CHUNK = 2**14  # zones at a time: what they need stays in the processor's cache
 _CLOSE = 1e-9  # after a Newton step as small as that, rounding is all that is left
 _SETTLED = 1e-13
@@ -82,9 +82,9 @@ def _solve(Qf: Array, sf: Array, shape: Shape) -> tuple[Array, Array]:
         # of log c, for large tension in a form with nothing that cancels where c is small
         narrow = (dQf / 4 * at.skew - dsf / 16 * (at.right + at.left)) / (at.right * at.left)
         grow = np.where(e < 0, narrow, (to_n - to_edge) / (2 * width))
-        grow = np.where((width <= _NARROWEST) & (grow < 0), 0.0, grow)
+        grow = np.where((width <= NARROWEST) & (grow < 0), 0.0, grow)
         new = np.maximum(
-            np.minimum(width * np.exp(np.clip(grow, np.log(width) / 2 - 1, 1.0)), (1 + width) / 2), _NARROWEST
+            np.minimum(width * np.exp(np.clip(grow, np.log(width) / 2 - 1, 1.0)), (1 + width) / 2), NARROWEST
         )
         edge[active], c[active] = np.clip(e + to_edge, new - 1, 1 - new), new
         slip = 2 - 2 * width  # both slip zones together: what is small is small against that
@@ -121,7 +121,7 @@ def _bracketed_small(Qf: Array, sf: Array, shape: Shape) -> tuple[Array, Array]:
         c = np.exp(log_c)
         return _at(shape, edge(c, sf), c).Qf - Qf
 
-    low = math.log(_NARROWEST) + 0 * sf
+    low = math.log(NARROWEST) + 0 * sf
     widest = _root(lambda log_c, sf: _at(shape, 0.0, np.exp(log_c)).sf - sf, low, 0 * sf, sf)
     c = np.exp(_root(excess, low, widest, Qf, sf))
     return edge(c, sf), c
@@ -141,13 +141,13 @@ def _bracketed_large(Qf: Array, sf: Array, touching: Array, shape: Shape) -> tup
         c = np.exp(log_c)
         return _at(shape, edge(c, Qf), c).sf - sf
 
-    c = np.exp(_root(excess, math.log(_NARROWEST) + 0 * Qf, np.log(touching), Qf, sf))
+    c = np.exp(_root(excess, math.log(NARROWEST) + 0 * Qf, np.log(touching), Qf, sf))
     return edge(c, Qf), c
 
 
 def _touching(Qf: Array, shape: Shape) -> Array:
     """Half-width of the zone that touches the contact's end: where small tension turns large."""
-    low = math.log(_NARROWEST) + 0 * Qf
+    low = math.log(NARROWEST) + 0 * Qf
     return np.exp(_root(lambda log_c, Qf: _at(shape, 0.0, np.exp(log_c)).Qf - Qf, low, 0 * Qf, Qf))
 
 

@@ -1,0 +1,116 @@
+"""Verdicts for people and files: results.json, results.csv and the terminal's table."""
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from partialslip.report.files import write_files
+from partialslip.report.record import versions
+from partialslip.verify import Verdict
+
+SCHEMA = "partialslip/verify/1"
+_FILE = "results.json"
+
+Verdicts = Mapping[str, Sequence[Verdict]]
+
+
+def write_verdicts(folder: Path, settings: Mapping[str, Any], verdicts: Verdicts, finished: bool) -> list[Path]:
+    """Write results.json and results.csv into ``folder``: the verdicts by case, and what was asked for. Returns their
+    paths. Raises InputError if the folder cannot be written."""
+    record = {
+        "schema": SCHEMA,
+        "settings": dict(settings),
+        "finished": finished,
+        "versions": versions(),
+        "cases": {name: [asdict(verdict) for verdict in some] for name, some in verdicts.items()},
+    }
+    texts = {_FILE: json.dumps(record, indent=1, allow_nan=False) + "\n", "results.csv": _csv(_all(verdicts))}
+    return write_files(folder, {name: _writer(text) for name, text in texts.items()})
+
+
+def read_verdicts(folder: Path, settings: Mapping[str, Any]) -> dict[str, list[Verdict]]:
+    """The verdicts that a run with the same settings and versions left behind unfinished; none where there is no such
+    file."""
+    try:
+        record = json.loads((folder / _FILE).read_text("utf-8"))
+        same = all(record[key] == value for key, value in _head(settings).items())
+        return {name: [Verdict(**one) for one in some] for name, some in record["cases"].items()} if same else {}
+    except (OSError, ValueError, TypeError, KeyError, AttributeError):
+        return {}
+
+
+def print_verdicts(verdicts: Verdicts, console: Console, every: bool = True) -> None:
+    """Print a line for each case and method, of its quantity nearest to its bar (or without ``every`` for what is
+    missed only), and the sum of all."""
+    rows = [min(some, key=_room) for some in _by_method(verdicts)]
+    shown = rows if every else [row for row in rows if not row.passed]
+    if shown:
+        table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+        for heading in ("case", "method", "closest", "value", "bar", "faces", "CPU s", ""):
+            right = heading in ("value", "bar", "faces", "CPU s")
+            table.add_column(heading, justify="right" if right else "left", no_wrap=True)
+        for row in shown:
+            value, bar = ("" if number is None else f"{number:.1e}" for number in (row.value, row.bar))
+            table.add_row(row.case, row.method, row.check, value, bar, f"{row.iterations:,}", f"{row.cpu_s:.2f}",
+                          "ok" if row.passed else "MISSED")  # fmt: skip
+        console.print(table)
+    for verdict in _all(verdicts):
+        if not verdict.passed:
+            what = " ".join(part for part in (_shown(verdict), verdict.found) if part)
+            console.print(f"missed: {verdict.case}, {verdict.method}: {what}", soft_wrap=True, markup=False)
+    if rows:
+        most = max(rows, key=lambda row: row.iterations)
+        console.print(
+            f"{len(verdicts):,} cases, {sum(not row.passed for row in rows):,} with something missed, "
+            f"{sum(row.cpu_s for row in rows):.1f} CPU s, at most {most.iterations:,} iterations ({most.case})",
+            style="bold", soft_wrap=True, markup=False,
+        )  # fmt: skip
+
+
+def _head(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """What a file must say to be gone on with."""
+    return {"schema": SCHEMA, "settings": dict(settings), "finished": False, "versions": versions()}
+
+
+def _writer(text: str) -> Any:
+    return lambda path: path.write_text(text, "utf-8")
+
+
+def _csv(verdicts: Iterable[Verdict]) -> str:
+    table = io.StringIO()
+    writer = csv.DictWriter(table, [each.name for each in fields(Verdict)], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(asdict(verdict) for verdict in verdicts)
+    return table.getvalue()
+
+
+def _all(verdicts: Verdicts) -> list[Verdict]:
+    return [verdict for some in verdicts.values() for verdict in some]
+
+
+def _by_method(verdicts: Verdicts) -> list[list[Verdict]]:
+    groups: dict[tuple[str, str], list[Verdict]] = {}
+    for verdict in _all(verdicts):
+        groups.setdefault((verdict.case, verdict.method), []).append(verdict)
+    return list(groups.values())
+
+
+def _room(verdict: Verdict) -> tuple[bool, float]:
+    """To sort by: what is missed first, then by how much of the bar is left."""
+    if verdict.value is None or not verdict.bar:
+        return verdict.passed, 1.0
+    return verdict.passed, 1 - verdict.value / verdict.bar
+
+
+def _shown(verdict: Verdict) -> str:
+    if verdict.value is None:
+        return f"{verdict.check}:"
+    return f"{verdict.check} {verdict.value:.2e}" + ("" if verdict.bar is None else f" > {verdict.bar:.2e}")

@@ -1,0 +1,12 @@
+"""Verification: the shipped scenes, the catalogue of hard cases, and random scenes, each with its verdicts."""
+
+from partialslip.verify.case import Bar as Bar
+from partialslip.verify.case import Case as Case
+from partialslip.verify.case import Verdict as Verdict
+from partialslip.verify.case import run_case as run_case
+from partialslip.verify.catalogue import families as families
+from partialslip.verify.catalogue import hard_cases as hard_cases
+from partialslip.verify.catalogue import shipped as shipped
+from partialslip.verify.stress import stress_case as stress_case
+from partialslip.verify.suites import stress_suite as stress_suite
+from partialslip.verify.suites import suite as suite

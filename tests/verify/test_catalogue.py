@@ -1,0 +1,96 @@
+"""The catalogue of hard cases: a cheap selection by default, all of it with -m slow."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip.halfplane import marching, method
+from partialslip.verify import families, hard_cases, run_case
+from partialslip.verify.catalogue import document
+from partialslip_fem import estimate
+from partialslip_fem.model import solve_meshed
+
+CASES = {case.name: case for case in hard_cases()}
+CHEAP = (
+    "near-sliding-1e-6", "near-stuck-1e-9", "transition-above", "huge-tension-1e-3", "no-shear", "beside-large", "nu-0",
+    "friction-10", "mean-load-1.02", "one-stick-node", "no-stick-node", "one-contact-node", "aspect-1e4",
+    "shifted-0.25h", "mirrored-large",
+)  # fmt: skip
+
+
+def missed(name, *methods):
+    case = CASES[name]
+    verdicts = run_case(replace(case, methods=methods or case.methods))
+    return [(v.method, v.check, v.value, v.bar, v.found) for v in verdicts if not v.passed]
+
+
+@pytest.mark.parametrize(
+    "name", [name if name in CHEAP else pytest.param(name, marks=pytest.mark.slow) for name in CASES]
+)
+def test_hard_case(name):
+    assert not missed(name)
+
+
+def test_every_looser_bar_has_a_reason():
+    assert all(bar.reason for case in CASES.values() for bar in case.bars.values())
+    assert all(bar.reason in document().replace("\n  ", " ") for case in CASES.values() for bar in case.bars.values())
+
+
+def test_the_document_is_the_catalogue():
+    """Written by: python -c "from partialslip.verify.catalogue import document; print(document(), end='')"."""
+    assert (Path(__file__).parents[2] / "docs" / "hard-cases.md").read_text("utf-8") == document()
+    assert len({case.name for family in families() for case in family.cases}) == len(CASES) >= 40
+
+
+def nodes_that_stick(case):
+    result = (
+        solve_meshed(case.scene, partialslip.plan(case.scene), case.meshes(case.scene))
+        if case.meshes
+        else partialslip.run(case.scene, ["fem"]).results["fem"]
+    )
+    traction, f = result.traction, case.scene.friction.f
+    # nodal tractions are not nodal forces: what slips is off its bound by the mass matrix, what sticks by much more
+    return int((np.abs(traction.dq) < 1.9 * f * traction.p).sum()), result.counts["contact_nodes"]
+
+
+def test_few_nodes_are_few():
+    assert nodes_that_stick(CASES["no-stick-node"])[0] <= 1
+    assert nodes_that_stick(CASES["one-contact-node"])[1] == 1
+
+
+def test_flat_triangles_are_flat():
+    case = CASES["aspect-1e4"]
+    (mesh,) = case.meshes(case.scene)
+    corners = mesh.points[mesh.triangles]
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    (ax, ay), (bx, by) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
+    areas = (ax * by - ay * bx) / 2
+    assert (areas > 0).all()
+    assert (sides**2 / (2 * areas)).max() > 1e4
+
+
+def test_ends_of_a_zone_that_no_element_sees_are_not_believed(monkeypatch):
+    """Deliberate fault: the errors of a stick zone's ends are estimated as if it had elements enough."""
+    monkeypatch.setattr(estimate, "_CELLS", 1e-9)
+    assert ("fem", "m") in {found[:2] for found in missed("near-sliding-1e-6", "fem")}
+
+
+def test_two_meshes_that_miss_a_zone_do_not_agree(monkeypatch):
+    """Deliberate fault: marching takes two meshes that both miss the slip zones for converged."""
+    monkeypatch.setattr(marching, "_CELLS", 0.0)
+    assert ("march", "n") in {found[:2] for found in missed("near-stuck-1e-3", "march")}
+
+
+def test_a_wrong_zone_has_no_certificate(monkeypatch):
+    """Deliberate fault: the exact stick zone is off by a millionth."""
+    right = method.stick_zone
+
+    def wrong(*loads):
+        zone = right(*loads)
+        return zone._replace(half_width=zone.half_width * (1 + 1e-6))
+
+    monkeypatch.setattr(method, "stick_zone", wrong)
+    assert ("exact", "certificate") in {found[:2] for found in missed("no-tension", "exact")}
