@@ -4,9 +4,8 @@ import contextlib
 import io
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
-import meshio
 import numpy as np
 import numpy.typing as npt
 from scipy.sparse import coo_array
@@ -14,6 +13,9 @@ from scipy.sparse.csgraph import connected_components
 
 from partialslip.errors import InputError, MissingLibraryError
 from partialslip_meshes.mesh import Mesh
+
+if TYPE_CHECKING:
+    import meshio
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
@@ -100,7 +102,7 @@ def _refusal(name: str, path: str) -> Refuse:
     return refuse
 
 
-def _load(name: str, path: str, refuse: Refuse) -> meshio.Mesh:
+def _load(name: str, path: str, refuse: Refuse) -> "meshio.Mesh":
     if Path(path).suffix.lower() not in FORMATS:
         refuse(f"must be a file {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
     said, damaged = io.StringIO(), "it is damaged, or of another format"
@@ -109,6 +111,8 @@ def _load(name: str, path: str, refuse: Refuse) -> meshio.Mesh:
             pass
         # meshio says what is wrong on the terminal, and exits
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), np.errstate(all="ignore"):
+            import meshio  # only now: it brings much along
+
             return meshio.read(path)
     except ModuleNotFoundError as error:
         raise MissingLibraryError(f"{name}: {error.name} is missing; pip install partialslip[med]") from None
@@ -130,7 +134,7 @@ def _in_plane(points: Array, refuse: Refuse) -> Array:
     return points[:, :2]
 
 
-def _triangles(found: meshio.Mesh, points: Array, refuse: Refuse) -> Indices:
+def _triangles(found: "meshio.Mesh", points: Array, refuse: Refuse) -> Indices:
     """Corners of all elements, quadrilaterals split along their shorter diagonal."""
     if unknown := sorted({block.type for block in found.cells} - {*_NODES}):
         refuse(f"must have triangles and quadrilaterals, linear or quadratic, not {', '.join(unknown)}")
@@ -192,7 +196,7 @@ def _boundary(corners: Indices, count: int, refuse: Refuse) -> Indices:
     return result
 
 
-def _lines(found: meshio.Mesh, boundary: Indices, refuse: Refuse) -> Iterator[tuple[str, Indices]]:
+def _lines(found: "meshio.Mesh", boundary: Indices, refuse: Refuse) -> Iterator[tuple[str, Indices]]:
     """Edges of the boundary that are in each group."""
     known = np.sort(boundary, axis=1)
     for name in NAMES:
@@ -205,7 +209,7 @@ def _lines(found: meshio.Mesh, boundary: Indices, refuse: Refuse) -> Iterator[tu
         yield name, boundary[_among(known, np.sort(edges, axis=1)) | nodes[boundary].all(axis=1)]
 
 
-def _edges_of(found: meshio.Mesh, name: str) -> Iterator[Indices]:
+def _edges_of(found: "meshio.Mesh", name: str) -> Iterator[Indices]:
     """Of a group of line cells, however the format names it."""
     ids = {int(number[0]) for key, number in found.field_data.items() if key.lower() == name and len(number) == 2}
     families = {number for number, keys in getattr(found, "cell_tags", {}).items() if name in map(str.lower, keys)}
@@ -224,7 +228,7 @@ def _edges_of(found: meshio.Mesh, name: str) -> Iterator[Indices]:
             yield ends[np.asarray(sets[name][block], dtype=np.int64)]
 
 
-def _nodes_of(found: meshio.Mesh, name: str) -> Iterator[Indices]:
+def _nodes_of(found: "meshio.Mesh", name: str) -> Iterator[Indices]:
     """Of a group of nodes, however the format names it."""
     families = [number for number, keys in getattr(found, "point_tags", {}).items() if name in map(str.lower, keys)]
     for key, values in found.point_data.items():

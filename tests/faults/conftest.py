@@ -43,7 +43,7 @@ class Red:
         """By the number that it has seen, above its bar."""
         assert number > bar
         fault = self._test.removeprefix("test_").replace("_", " ")
-        assert TABLE[fault] == (check, pytest.approx(number, rel=0.5), bar)
+        assert TABLE[fault] == (check, pytest.approx(number, rel=0.5), pytest.approx(bar))
 
     def comparison(self, key, scene):
         """One of the comparison's with the exact solution: error ``key`` of a run of the scene."""

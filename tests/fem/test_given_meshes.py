@@ -9,6 +9,7 @@ import pytest
 import partialslip
 from partialslip import load_scene, plan
 from partialslip.cli import main
+from partialslip.condensed.threads import one_thread
 from partialslip.result import Clock
 from partialslip_fem import adapt, model, solve
 from partialslip_fem.level import Part, solve_on
@@ -80,8 +81,9 @@ def test_the_result_is_that_of_the_arrays(found, results):
     names = {name: lines[members[1]] for name, members in found.cell_sets.items()}
     mesh = Mesh(found.points[:, :2] * 1e-3 / chosen.length, triangles, names)
     mesh = Mesh(mesh.points, counter_clockwise(mesh), names)
-    level = adapt.uniform(problem, None, 16.0, Clock()).level
-    direct = solve_on([mesh, level.halves[1].mesh], problem, 16.0, Clock())
+    # on one thread, as methods are: which nodes bear next to nothing is up to rounding, and moves the fitted ends
+    level = one_thread(adapt.uniform)(problem, None, 16.0, Clock()).level
+    direct = one_thread(solve_on)([mesh, level.halves[1].mesh], problem, 16.0, Clock())
     assert direct.half_width * chosen.length == pytest.approx(results[".inp"].a, rel=1e-10)
     assert direct.ends == pytest.approx(level.ends, abs=1e-10)
 

@@ -97,7 +97,10 @@ def complaints(scene, result, steps):
     certificate, f = result.certificate, scene.friction.f
     if not steps and "steady" in certificate:
         yield "nothing was solved"
-    if not (certificate["kkt"] <= CERTIFIED and certificate["equilibrium"] <= CERTIFIED):
+    # n forces sum to Q but for n roundings, which make the more of a traction the less of the line a node has
+    count, least = len(result.traction.x), np.diff(result.traction.cells).min() / result.a / (scene.fem.order + 1)
+    rounding = 4 * count * np.finfo(float).eps / least
+    if not (certificate["kkt"] <= CERTIFIED + rounding and certificate["equilibrium"] <= CERTIFIED):
         yield f"certificate {certificate}"
     for C, g, lower, upper, total, x in ((*step.problem, step.solution.x) for step in steps):
         if not ((x >= lower).all() and (x <= upper).all() and abs(x.sum() - total) <= CERTIFIED * upper.sum()):

@@ -292,7 +292,16 @@ def common_tension(tension: float, kind: str, *settings: str) -> Apart:
     def march(C: Any, gap: Array, x: Array, *rest: Any) -> Any:
         return true_march(C, gap, x + tension * moved[0], *rest)
 
-    patches = patch.object(level, "relative_compliances", compliances), patch.object(coupled, "march", march)
+    true_scaled = model._scaled
+
+    def solved_back(*given: Any) -> Problem:  # factors are kept for stretched()
+        return replace(true_scaled(*given), inside=True)
+
+    patches = (
+        patch.object(level, "relative_compliances", compliances),
+        patch.object(coupled, "march", march),
+        patch.object(model, "_scaled", solved_back),
+    )
     return compared("fem", scene, scene, same, block, *patches)
 
 

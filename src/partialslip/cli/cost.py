@@ -62,7 +62,7 @@ def _cost(options: argparse.Namespace) -> int:
     console = Console(highlight=False)
     console.print(f"{scene.name}: what accuracy costs, medians of {options.repeats}", style="bold", markup=False)
     best = {id(point) for point in cost.front(found)}
-    head = ["series", "setting", *cost.KEYS, "unknowns", "CPU s", "process", "MB", "front"]
+    head = ["series (* on the front)", "setting", "m", "n", "q", "unknowns", "CPU s", "process"]
     rows = [_row(point, id(point) in best) for point in [*found, *peers]]
     print_table(console, head, rows, left=2)
     slopes = cost.slopes(found)
@@ -79,10 +79,10 @@ def _cost(options: argparse.Namespace) -> int:
 
 
 def _row(point: "Point", front: bool) -> list[str]:
-    errors = [_number(point.errors.get(key, math.nan), ".1e") for key in ("a", "m", "n", "p", "q")]
-    costs = [f"{point.cpu_s:.3g}", f"{point.process_s:.2f}", f"{point.peak_rss_mb:.0f}"]
+    errors = [_number(point.errors.get(key, math.nan), ".1e") for key in ("m", "n", "q")]
     unknowns = f"{point.counts['dofs']:,}" if "dofs" in point.counts else ""
-    return [point.series, point.setting, *errors, unknowns, *costs, "*" if front else ""]
+    costs = [f"{point.cpu_s:.3g}", f"{point.process_s:.2f}"]
+    return [point.series + (" *" if front else ""), point.setting, *errors, unknowns, *costs]
 
 
 def _number(value: float, form: str) -> str:
