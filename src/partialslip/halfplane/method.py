@@ -105,12 +105,14 @@ def _limits(scene: Scene, pressed: Contact, zone: StickZone | None) -> dict[str,
 
 def _certificate(scene: Scene, pressed: Contact, zone: StickZone) -> dict[str, float]:
     """How far the loads that belong to the zone are off: ``tension`` in f p0, or relative where it is more than that,
-    and ``shear`` in 2 f P. Zones narrower than can be told apart belong to any larger tension."""
+    and ``shear`` in 2 f P. Zones narrower than can be told apart belong to any larger tension. What dQ leaves to
+    sliding, which places a zone near it, is known to the rounding of dQ only: that is no fault of the zone's."""
     c, load, f = zone.half_width, scene.load, scene.friction.f
     found = pressed.shape.conditions(*map(np.array, (1 + zone.centre - c, c, zone.s)))
     sf, Qf = abs(load.dsigma) / (f * pressed.p0), abs(load.dQ) / (2 * f * scene.P)
     tension = 0.0 if c <= NARROWEST and sf > found.sf else abs(float(found.sf) - sf) / max(sf, 1.0)
-    return {"tension": tension, "shear": abs(float(found.Qf) - Qf)}
+    rounding = np.finfo(float).eps / max(1 - Qf, np.finfo(float).eps)
+    return {"tension": max(tension - float(rounding), 0.0), "shear": abs(float(found.Qf) - Qf)}
 
 
 def _slip(scene: Scene, pressed: Contact, zone: StickZone, turn: int, mirror: int) -> Slip:
