@@ -279,7 +279,7 @@ def bent():
     """How far the ends of the contact move, in half-widths, when a specimen thicker in its middle is pulled."""
     scene = load_scene(SCENE, [COARSE, *ECCENTRIC])
     problem = model._scaled(scene, plan(scene))
-    found = adapt.adapt(problem, 1e-3, 16.0, Clock(), lambda _: None).level
+    found = adapt.adapt(problem, 1e-2, 16.0, Clock(), lambda _: None).level
     (left, right), (left_2, right_2) = found.contact_ends
     return np.array([left_2 - left, right_2 - right]) / found.half_width
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.halfplane import marching
+from partialslip.halfplane import contact, marching
 
 MEAN = ["load.Q=[31415.926535897932, 219911.48575128554]", "load.sigma=[2e8, 1e9]"]  # 0.1 .. 0.7 fP, 1 .. 5 f p0
 ROUGH = "fem.accuracy=1e-3"
@@ -105,3 +105,17 @@ def test_slip_that_turns_round_on_a_gradual_way(Qf, sf, turns):
     if not turns:
         assert gradual.comparisons["march"].passed
         assert gradual.comparisons["march"].q == pytest.approx(one.comparisons["march"].q, rel=1e-5)
+
+
+def test_slip_that_turns_round_as_the_loads_do():
+    """What slips to the right in the end is pushed to the left at first: a flat remembers, and the notes say so."""
+    scene = partialslip.load_scene("flat-rounded")
+    fP, fp0 = scene.friction.f * scene.P, scene.friction.f * contact(scene).p0
+    loads = ["fem.accuracy=1e-4", f"load.Q={[-0.375 * fP, 0.375 * fP]}", f"load.sigma={[-4.125 * fp0, 4.125 * fp0]}"]
+    one, gradual = (
+        partialslip.run(partialslip.load_scene("flat-rounded", [*loads, f"load.steps={k}"]), ["exact", "march"])
+        for k in (1, 4)
+    )
+    assert one.passed
+    assert any("turns round" in note for note in one.results["exact"].notes)
+    assert gradual.comparisons["march"].n > 0.01

@@ -87,7 +87,7 @@ def same(answer: Answer) -> Answer:
     return answer
 
 
-def answer(result: Result, means: bool = False) -> Answer:
+def answer(result: Result, scene: Scene, means: bool = False) -> Answer:
     """A result's, at the nodes or cells in contact; of the exact method at any points; or as means over cells."""
     traction, ends = result.traction, np.array([result.a, result.m, result.n], float)
     if means:
@@ -97,7 +97,7 @@ def answer(result: Result, means: bool = False) -> Answer:
         p, dq = traction.at(POINTS * result.a)
         return Answer(ends, POINTS * result.a, p, dq[None] / 2)
     q = [traction.q1, traction.q2] if traction.q1 is not None else [traction.dq / 2]
-    return Answer(ends, traction.x, traction.p, np.array(q), result.regime == "out of phase")
+    return Answer(ends, traction.x, traction.p, np.array(q), not scene.load.in_phase)
 
 
 def apart(one: Answer, other: Answer, f: float) -> Apart:
@@ -152,9 +152,9 @@ def compared(
 ) -> Apart:
     """How far ``other``, solved in a guise and brought back, is from ``scene``."""
     with guise(own=own):
-        one = answer(solved(method, scene), own)
+        one = answer(solved(method, scene), scene, own)
     with guise(mesh, *patches, own=own):
-        return apart(one, bring_back(answer(solved(method, other), own)), scene.friction.f)
+        return apart(one, bring_back(answer(solved(method, other), other, own)), scene.friction.f)
 
 
 # -- scenes in another guise ------------------------------------------------------------------------------------------
@@ -242,14 +242,14 @@ def restart(method: str, kind: str, *settings: str, own: bool = False) -> Apart:
     corners = [np.array(point) for point in (whole.load.points[-1], *whole.load.points)]
     stops = [before + (after - before) * part / 3 for before, after in pairwise(corners) for part in (1, 2, 3)]
     with guise(block, *([] if own else [the_first_mesh()]), own=own), tempfile.TemporaryDirectory() as folder:
-        one, file = answer(solved(method, whole), own), Path(folder) / "state.npz"
+        one, file = answer(solved(method, whole), whole, own), Path(folder) / "state.npz"
         state, steps = None, 3
         for Q, sigma in [corners[0], *(stops[2:6:3] if own else stops)] if method != "exact" else []:
             there = (*loads([Q] * 2, [sigma] * 2), "load.cycles=1", f"load.steps={steps}")
             solved(method, scene_of(kind, *settings, *there), state).state.save(file)
             state, steps = load_state(file), 3 if own else 1
         rest = solved(method, scene_of(kind, *settings, "load.cycles=1", "load.steps=3"), state)
-        return apart(one, answer(rest, own), whole.friction.f)
+        return apart(one, answer(rest, whole, own), whole.friction.f)
 
 
 def little_friction(f: float, method: str, kind: str, *settings: str) -> Apart:
@@ -266,7 +266,7 @@ def without_friction(f: float, method: str, kind: str, *settings: str) -> Apart:
     some = scene_of(kind, *settings, f"friction.f={f}", *times(scene, f / scene.friction.f, f / scene.friction.f))
     none = scene_of(kind, *settings, "friction.f=0")
     with guise():
-        one, other = (answer(solved(method, each)) for each in (none, some))
+        one, other = (answer(solved(method, each), each) for each in (none, some))
     one, other = (found._replace(ends=found.ends[:1], q=0 * found.p) for found in (one, other))
     return apart(one, other, 1.0)
 

@@ -66,7 +66,7 @@ def test_march_closes_every_step_of_any_path(scene):
 @given(scenes())
 def test_march_in_the_mirror(scene):
     with guise():
-        one, other = (answer(solved("march", each)) for each in (scene, again(scene, *times(scene, Q=-1))))
+        one, other = (answer(solved("march", each), each) for each in (scene, again(scene, *times(scene, Q=-1))))
     off = apart(one, other.mirrored(), scene.friction.f)
     assert off.traction <= 1e-9
 
@@ -78,14 +78,13 @@ def test_march_does_not_mind_sub_steps_of_proportional_loading(Qf, share, large,
     sf = 4.5 + 10 * share if large else share * 3.5 * Qf
     zone = stick_zone(Qf, sf, halfplane.contact(BASES[name]).shape)
     assume((zone.s > 0) != large)
-    assume(not large or zone.half_width * sf > 4.5 * Qf)
+    assume(not large or (zone.half_width * sf > 4.5 * Qf and -4 * Qf / sf < zone.centre + zone.half_width))
     assume(zone.half_width > 0.02)
     fP, fp0 = UNITS[name]
     reversed_loads = loads((-Qf * fP, Qf * fP), (-sf / 2 * fp0, sf / 2 * fp0))
+    scenes = [load_scene(name, [*reversed_loads, f"load.steps={k}"]) for k in (1, steps)]
     with guise():
-        one, other = (
-            answer(solved("march", load_scene(name, [*reversed_loads, f"load.steps={k}"]))) for k in (1, steps)
-        )
+        one, other = (answer(solved("march", scene), scene) for scene in scenes)
     off = apart(one, other, BASES[name].friction.f)
     assert off.traction <= 1e-9
     assert off.ends <= 1e-9
@@ -110,5 +109,7 @@ def test_coarse_finite_elements_close_every_step_of_any_path(scene, mesh):
 @settings(max_examples=settings().max_examples // 4)
 @given(scenes())
 def test_coarse_finite_elements_are_turned_round_with_the_loads(scene):
-    one, other = (answer(solved("fem", again(scene, "fem.size=0.2", *times(scene, way, way)))) for way in (1, -1))
+    one, other = (
+        answer(solved("fem", again(scene, "fem.size=0.2", *times(scene, way, way))), scene) for way in (1, -1)
+    )
     assert apart(one, other.turned(), scene.friction.f).traction <= 1e-9

@@ -40,7 +40,7 @@ def stick_zone(x: Array, bound: Array, change: Array, vertices: Array, cell_forc
     cell_forces : callable
         Takes forces of the nodes in contact to integrals over the cells.
     """
-    room = (2 * bound - np.abs(change)) / bound
+    room = np.divide(2 * bound - np.abs(change), bound, out=np.zeros_like(bound), where=bound > 0)
     sticks = _around(int(np.argmax(room)), x, room > _STICKS, vertices)
     signs = (1 if change[0] > 0 else -1), (1 if change[-1] > 0 else -1)
     if len(sticks) == 0:  # a stick zone smaller than a cell: it is where the slip turns round

@@ -19,7 +19,7 @@ from partialslip.result import Array
 from partialslip.scene import Hertz as HertzProfile
 from partialslip.scene import Scene
 
-_HARDLY = 1e-9  # of its flat: by less than that rounding says how much wider a contact is
+_HARDLY = 1e-13  # of its flat: by less than that rounding says how much wider a contact is
 
 
 @dataclass(frozen=True)

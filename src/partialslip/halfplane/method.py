@@ -131,17 +131,21 @@ def _sample(breaks: Array) -> Array:
 
 
 def _turns_round(scene: Scene, p0: float, zone: StickZone | None) -> bool:
-    """Whether slip at one end turns round on a gradual way between the load points.
+    """Whether slip turns round somewhere on a gradual way between the load points.
 
     On such a way the stick zone's left end, at a half-width c, recedes by slip in the direction of dQ/pi - c dsigma/4
     (the adhered traction of the zone). With one direction throughout that is positive from c = a on (small tension),
-    or negative down to the last c (large tension).
+    or negative down to the last c (large tension). And what is to slip must have been pushed that way from the first,
+    or it slips the other way when the loads turn: the adhered traction of the whole contact changes sign at
+    x = -4 dQ/(pi dsigma), which has to be in the last stick zone.
     """
     if zone is None or scene.load.dsigma == 0:
         return False
     Qf = abs(scene.load.dQ) / (2 * scene.friction.f * scene.P)
     sf = abs(scene.load.dsigma) / (scene.friction.f * p0)
-    return sf > 4 * Qf if zone.s > 0 else zone.half_width * sf < 4 * Qf
+    if zone.s > 0:
+        return sf > 4 * Qf
+    return zone.half_width * sf < 4 * Qf or not abs(-4 * Qf / sf - zone.centre) <= zone.half_width
 
 
 def _notes(regime: Regime, levels: bool, turns_round: bool) -> tuple[str, ...]:
@@ -156,7 +160,7 @@ def _notes(regime: Regime, levels: bool, turns_round: bool) -> tuple[str, ...]:
         notes.append("with mean loads the steady state fixes the change dq = q2 - q1, not q1 and q2 themselves")
     if turns_round:
         notes.append(
-            "slip at one end turns round on a gradual way between these load points: dq then differs from the closed "
-            "form; march with load.steps shows by how much"
+            "slip turns round on a gradual way between these load points: dq may then differ from the closed form; "
+            "march with load.steps shows by how much"
         )
     return tuple(notes)
