@@ -22,7 +22,7 @@ from partialslip_fem.level import Face, Level, Part, Problem, solve_on
 from partialslip_fem.recovery import inside
 from partialslip_meshes import Mesh, read
 
-_SIZES = 1e-2, 1e5  # of finite bodies, in sqrt(A R P)
+_SIZES = 1e-3, 1e5  # of finite bodies, in sqrt(A R P)
 _FLATTEST = 1e9  # profile, likewise
 _SLENDER = 1e3  # of height to width
 _LARGEST_NU = 0.4999999

@@ -284,6 +284,7 @@ def bent():
     return np.array([left_2 - left, right_2 - right]) / found.half_width
 
 
+@pytest.mark.slow
 def test_a_pulled_specimen_that_can_bend_moves_the_contact(monkeypatch):
     """What pulls acts below its middle, bends it, and so changes the gap; fault: a tension felt along x only."""
     moved = bent()

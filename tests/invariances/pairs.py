@@ -281,13 +281,13 @@ def common_tension(tension: float, kind: str, *settings: str) -> Apart:
     true_compliances, true_march = level.relative_compliances, coupled.march
     moved: list[Array] = []
 
-    def compliances(halves: tuple[Half, ...]) -> coupled.Relative:
+    def compliances(halves: tuple[Half, ...], *rest: Any) -> coupled.Relative:
         lower, upper = (
             stretched(half, part.kappa)
             for half, part in zip(halves, model._scaled(scene, plan(scene)).parts, strict=True)
         )
         moved[:] = [lower - transfer(halves[0].body, halves[1].body) @ upper]
-        return true_compliances(halves)
+        return true_compliances(halves, *rest)
 
     def march(C: Any, gap: Array, x: Array, *rest: Any) -> Any:
         return true_march(C, gap, x + tension * moved[0], *rest)

@@ -46,7 +46,8 @@ def flat_triangles(scene: Scene, aspect: float) -> list[Mesh]:
         "contact": top[outer:-outer],
         "face": np.vstack([top[:outer], top[-outer:]]),
         "back": np.column_stack([node[-1, :-1], node[-1, 1:]]),
-        "sides": np.vstack([np.column_stack([node[:-1, side], node[1:, side]]) for side in (0, -1)]),
+        "left": np.column_stack([node[:-1, 0], node[1:, 0]]),
+        "right": np.column_stack([node[:-1, -1], node[1:, -1]]),
     }
     return [Mesh(a * np.column_stack([np.tile(x, rows), np.repeat(y, columns)]), triangles, lines)]
 
