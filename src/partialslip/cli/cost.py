@@ -95,8 +95,8 @@ def _against(found: "list[Point]", peers: "list[Point]") -> list[str]:
 
     ours = [point for point in found if point.series.startswith("P")]
     lines = []
-    for series in dict.fromkeys(point.series for point in peers):
-        theirs = [point for point in peers if point.series == series]
+    for series in dict.fromkeys(point.series.partition(",")[0] for point in peers):
+        theirs = [point for point in peers if point.series.partition(",")[0] == series]
         for key in ("m", "n", "q"):
             if any(key in point.errors for point in theirs):
                 ratio = {name: f"{value:.2g}" for name, value in against(ours, theirs, key).items()}

@@ -151,8 +151,8 @@ def _methods(entry: dict[str, Any]) -> Any:
 
 
 def read_peers(path: Path, scene: str) -> list[Point]:
-    """Other codes' results for ``scene``, one a line as JSON: ``scene``, ``method``, ``setting``, ``dofs``, ``errors``,
-    ``cpu_s``, ``process_cpu_s``, ``wall_s`` and ``peak_rss_mb`` (see ``benchmarks/peers``).
+    """Other codes' results for ``scene``, one a line as JSON: ``scene``, ``method``, ``setting``, ``element_size``,
+    ``dofs``, ``errors``, ``cpu_s``, ``process_cpu_s``, ``wall_s`` and ``peak_rss_mb`` (see ``benchmarks/peers``).
 
     Raises
     ------
@@ -170,8 +170,8 @@ def read_peers(path: Path, scene: str) -> list[Point]:
             if data["scene"] == scene:
                 found.append(
                     Point(
-                        series=str(data["method"]),
-                        setting=str(data["setting"]),
+                        series=f"{data['method']}, {_short(str(data['setting']))}",
+                        setting=f"h = {float(data['element_size']):g} a",
                         errors={key: float(data["errors"][key]) for key in KEYS if data["errors"].get(key) is not None},
                         cpu_s=float(data["cpu_s"]),
                         process_s=float(data["process_cpu_s"]),
@@ -185,6 +185,10 @@ def read_peers(path: Path, scene: str) -> list[Point]:
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise InputError(f"--peers {path}: line {number}: must be a peer's result ({error})") from None
     return found
+
+
+def _short(setting: str) -> str:
+    return setting.split(", growth")[0].replace(" to the ends", "").replace("surface-to-surface ", "")
 
 
 def front(points: Iterable[Point]) -> list[Point]:

@@ -32,7 +32,7 @@ def errors_svg(points: Sequence[Point], peers: Sequence[Point], title: str) -> s
                     axes.loglog(
                         *np.maximum(data, 1e-16).T,
                         next(marks),
-                        ls="-" if outside else _LINES[number % len(_LINES)],
+                        ls="none" if outside else _LINES[number % len(_LINES)],
                         color="black" if outside else _GREYS[number % len(_GREYS)],
                         mfc="black" if outside else "white",
                         ms=5,
