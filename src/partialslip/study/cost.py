@@ -55,7 +55,8 @@ class Point:
     @property
     def ends(self) -> float:
         """The larger error of m and n; of a where nothing sticks."""
-        return max((self.errors[key] for key in ("m", "n") if key in self.errors), default=self.errors["a"])
+        of_stick = [self.errors[key] for key in ("m", "n") if key in self.errors]
+        return max(of_stick) if of_stick else self.errors["a"]
 
 
 def ladder(scene: Scene) -> list[Case]:

@@ -1,0 +1,140 @@
+"""What accuracy costs: the ladder, its figures, other codes beside it, and the price list."""
+
+import json
+import math
+
+import msgspec
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip.cli import main
+from partialslip.study import cost, prices
+from partialslip.study.case import Case, solve_apart
+from partialslip.study.ledger import Ledger
+
+SCENE = partialslip.load_scene("hertz-large-tension")
+
+
+def point(series, cpu, error, dofs=1000):
+    return cost.Point(
+        series, "", {"m": error, "n": error, "q": 10 * error}, cpu, 2 * cpu, 0, cpu, 100, {}, {"dofs": dofs}
+    )
+
+
+def test_the_ladder_is_of_every_kind():
+    cases = cost.ladder(SCENE)
+    assert len({case.key for case in cases}) == len(cases)
+    orders = {case.scene.fem.order for case in cases}
+    assert orders == {1, 2, 3, 4}
+    assert {case.scene.fem.far_field for case in cases} == {"half-plane", "box"}
+    assert any(case.scene.fem.size for case in cases)
+    unlike = partialslip.load_scene("hertz-shear", ["material.upper={E=1e9, nu=0.3}"])
+    with pytest.raises(partialslip.InputError, match="needs the exact method"):
+        cost.ladder(unlike)
+
+
+def test_a_case_in_a_process_of_its_own_is_the_same_as_here():
+    found = solve_apart(Case(SCENE, ("exact",), {"series": "exact", "setting": ""}))
+    here = partialslip.run(SCENE, ["exact"]).results["exact"]
+    assert found["methods"]["exact"]["m"] == here.m
+    assert 0 < found["methods"]["exact"]["cost"]["cpu_s"] < found["process"]["cpu_s"]
+
+
+def test_what_was_measured_is_not_measured_again(tmp_path, monkeypatch):
+    """And medians are over the repeats of a setting."""
+    solved = []
+
+    def apart(case):
+        solved.append(case.labels["setting"])
+        fem = {"cost": {"cpu_s": float(len(solved)), "phases": {"mesh": 0.1}}, "counts": {"dofs": 10}}
+        errors = dict.fromkeys(cost.KEYS, 1e-3)
+        process = {"cpu_s": 1.0, "report_cpu_s": 0.5, "wall_s": 1.0, "peak_rss_mb": 100.0}
+        return {**case.data, "methods": {"exact": fem, "fem": fem}, "comparison": {"fem": errors}, "process": process}
+
+    monkeypatch.setattr(cost, "solve_apart", apart)
+    monkeypatch.setattr(cost, "ladder", lambda scene: [Case(scene, ("exact", "fem"), {"series": "P4", "setting": "1"})])
+    cost.measure(SCENE, Ledger(tmp_path / "ledger.jsonl"), 1)
+    (found,) = cost.measure(SCENE, Ledger(tmp_path / "ledger.jsonl"), 3)
+    assert len(solved) == 3
+    assert found.cpu_s == 2.0
+
+
+def test_the_front_is_what_nothing_beats():
+    points = [point("P4", 1.0, 1e-3), point("P4", 2.0, 1e-5), point("P1", 3.0, 1e-2), point("P1", 0.5, 1e-1)]
+    assert [found.cpu_s for found in cost.front(points)] == [0.5, 1.0, 2.0]
+
+
+def test_exponents_of_power_laws_are_found():
+    points = [point("P4", 1e-6 * n**1.5, 7.0 * n**-2.0, n) for n in (100, 1000, 10_000)]
+    assert cost.slopes(points)["P4"] == pytest.approx({"m, n": -2, "q": -2, "CPU": 1.5})
+
+
+def test_a_peer_is_met_at_its_best_error_and_in_its_time():
+    ours = [point("P4", 0.1, 1e-4), point("P4", 1.0, 1e-6)]
+    found = cost.against(ours, [point("peer", 20.0, 1e-3), point("peer", 50.0, 1e-5)], "m")
+    assert found == pytest.approx({"error": 1e-5, "cpu": 1 / 50, "process": 1 / 50, "error at its cpu": 0.1})
+    assert math.isnan(cost.against(ours[:1], [point("peer", 0.01, 1e-5)], "m")["cpu"])
+
+
+@pytest.mark.parametrize("line", ["{}", "[]", "no", '{"scene": "hertz-large-tension", "method": "x"}'])
+def test_what_is_no_peers_result_is_refused(tmp_path, capsys, line):
+    (tmp_path / "peers.jsonl").write_text(line + "\n", "utf-8")
+    arguments = ["study", "cost", "hertz-large-tension", "--peers", str(tmp_path / "peers.jsonl")]
+    assert main([*arguments, "--out", str(tmp_path / "out")]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+# the price list
+
+
+def entries(spread=0.0):
+    """Made up by the model itself: CPU seconds of Hertz contacts and punches, orders 2 and 4."""
+    random = np.random.default_rng(3)
+    for name in ("hertz-shear", "flat-rounded"):
+        for order, growth in ((2, 1.0), (4, 0.4)):
+            for digits in (2.0, 3.0, 4.0, 5.0, 6.0):
+                scene = partialslip.load_scene(name, [f"fem.order={order}", f"fem.accuracy={10**-digits!r}"])
+                ends = 4 if name == "hertz-shear" else 6
+                seconds = (0.2 + ends * 0.01 * math.exp(growth * digits)) * math.exp(spread * random.normal())
+                fem = {"cost": {"cpu_s": seconds}}
+                yield {"scene": msgspec.to_builtins(scene), "methods": {"exact": {}, "fem": fem}}
+
+
+def test_the_model_is_found_again():
+    known = prices.fit(entries(), "a machine")
+    assert known.spread == pytest.approx(1, abs=1e-3)
+    expected = 0.2 + 4 * 0.01 * math.exp(0.4 * 4)
+    assert known.price(partialslip.load_scene("hertz-shear"), 1e-4, 4).cpu_s == pytest.approx(expected, rel=1e-3)
+    assert prices.fit(entries(0.2), "a machine").spread < 1.6
+
+
+def test_the_cheapest_and_the_best():
+    known, scene = prices.fit(entries(), "a machine"), partialslip.load_scene("hertz-shear")
+    assert known.cheapest(scene, 1e-5).order == 4
+    budget = known.price(scene, 1e-5, 4).cpu_s
+    assert known.best(scene, budget * 1.001).accuracy == pytest.approx(1e-5, rel=0.2)
+    with pytest.raises(partialslip.InputError, match=r"--budget 0.1s: finite elements take"):
+        known.best(scene, 0.1)
+    with pytest.raises(partialslip.InputError, match="at least 10"):
+        prices.fit([], "a machine")
+
+
+def test_a_price_is_told_and_the_accuracy_reached(tmp_path, capsys):
+    assert main(["run", "hertz-shear", "--accuracy", "1e-3", "--out", str(tmp_path)]) == 0
+    printed = capsys.readouterr()
+    assert "predicted" in printed.err
+    assert "actual" in printed.out
+    found = json.loads((tmp_path / "results.json").read_text("utf-8"))["comparison"]["fem"]
+    assert max(found[key] for key in ("a", "m", "n")) <= 1e-3
+
+
+@pytest.mark.parametrize(
+    "options",
+    [("--budget", "0"), ("--budget", "-1s"), ("--budget", "soon"), ("--budget", "nan"), ("--budget", "1e-3s"),
+     ("--accuracy", "x"), ("--accuracy", "1"), ("--accuracy", "1e-3", "--budget", "5s")],
+)  # fmt: skip
+def test_bad_prices_are_one_line(capsys, options):
+    assert main(["run", "hertz-shear", *options]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
