@@ -33,6 +33,18 @@ def test_forces_are_the_integrals_of_the_pressure(shape):
     assert pressed[inner] == pytest.approx(midpoint[inner], rel=2e-3)
 
 
+def test_forces_of_cells_with_kinks_inside_add_up():
+    """Weak kinks of a table are no ends of cells. Deliberate fault: cells are not cut there."""
+    shape = Punch([0.1, 0.4, 0.7], [1.0, 0.04, 0.03], np.arccos([0.1, 0.4, 0.7]))
+    vertices = np.linspace(-1, 1, 12)
+    fine = np.linspace(-1, 1, 11 * 1000 + 1)
+    pressed, cells = forces(shape, vertices), forces(shape, fine).reshape(-1, 1000).sum(axis=1)
+    assert pressed.sum() == pytest.approx(1, abs=1e-14)  # room for shear just short of sliding
+    assert pressed == pytest.approx(cells, rel=1e-4)
+    shape.kinks = ()
+    assert np.abs(forces(shape, vertices) / cells - 1).max() > 1e-4
+
+
 def test_compliance_is_the_mean_of_the_logarithm():
     """Against adaptive quadrature, for cells apart, side by side, of very different widths, and one with itself."""
     vertices = np.array([-0.4, -0.2, -0.19, -0.1899, 0.1, 0.4])

@@ -27,13 +27,16 @@ def graded(points: Array, size: float, growth: float) -> Array:
 
 def forces(shape: Shape, vertices: Array) -> Array:
     """Normal force on each cell of [-1, 1], as a fraction of the whole: in the angle x = sin(phi) the square roots at
-    the contact's ends are smooth."""
-    angles = np.arcsin(np.clip(vertices, -1, 1))
+    the contact's ends are smooth, and cells are cut at kinks. What the rule leaves out is shared by all, so that the
+    bounds of friction add up to f P and shear just short of sliding finds room."""
+    kinks = np.asarray(shape.kinks, float)
+    ends = np.unique(np.concatenate([vertices, kinks[np.abs(kinks) < 1]]))
+    angles = np.arcsin(np.clip(ends, -1, 1))
     half = np.diff(angles)[:, None] / 2
     phi = (angles[1:] + angles[:-1])[:, None] / 2 + half * _NODES
     values = shape.pressure(np.sin(phi)) * np.cos(phi)
-    result: Array = (values * half) @ _WEIGHTS * 2 / np.pi
-    return result
+    result: Array = np.add.reduceat((values * half) @ _WEIGHTS, np.searchsorted(ends, vertices[:-1]))
+    return result / float(result.sum())
 
 
 def compliance(vertices: Array) -> Array:
