@@ -11,7 +11,7 @@ from partialslip.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
-    from partialslip.study.size import Law
+    from partialslip.study.size import Law, Sizes
 
 
 def add(topics: "Commands") -> None:
@@ -76,13 +76,16 @@ def _size(options: argparse.Namespace) -> int:
         laws = [law for quantity in size.QUANTITIES if (law := size.law(sizes, quantity))]
         texts["size.svg"] = size_svg(sizes, laws, scene.name, unit)
         console.print(f"{scene.name}: change from the half-plane, over {axes[0].name} {unit}", style="bold")
-        head = ["", *(f"{value:.4g}" for value in sizes.size)]
-        rows = [[quantity, *(_number(value) for value in sizes.off[quantity])] for quantity in size.QUANTITIES]
-        rows += [[f"{quantity}, mesh", *(_number(v) for v in sizes.mesh[quantity])] for quantity in size.QUANTITIES]
-        print_table(console, head, rows)
+        rows = [
+            [f"{value:.4g}", *(_number(sizes.off[quantity][k]) for quantity in size.QUANTITIES), _share(sizes, k)]
+            for k, value in enumerate(sizes.size)
+        ]
+        print_table(console, ["size", *size.QUANTITIES, "of the mesh, at most"], rows)
         if laws:
-            needed = [f"size for {level:.1%}" for level in size.LEVELS]
-            print_table(console, ["law C size^-k", "C", "k", "95 %", "points", *needed], [_law(law) for law in laws])
+            needed = [f"{level:.1%}" for level in size.LEVELS]
+            head = ["change = C size^-k", "C", "k", "95 %", "points", *needed]
+            console.print("the law, and the size from which on the change is below", markup=False)
+            print_table(console, head, [_law(law) for law in laws])
     else:
         for quantity in size.QUANTITIES:
             grid = size.grid(axes, entries, quantity)
@@ -98,6 +101,12 @@ def _size(options: argparse.Namespace) -> int:
 
 def _number(value: float) -> str:
     return "" if math.isnan(value) else f"{value:.1e}"
+
+
+def _share(sizes: "Sizes", k: int) -> str:
+    """The largest share of a change that may be due to the mesh."""
+    shares = [sizes.mesh[key][k] / off[k] for key, off in sizes.off.items() if off[k] > 0]
+    return f"{max(shares):.1%}" if shares else ""
 
 
 def _law(law: "Law") -> list[str]:
