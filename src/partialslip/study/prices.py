@@ -45,11 +45,13 @@ class Price:
 class Prices(msgspec.Struct, frozen=True, kw_only=True):
     """A fitted cost model.
 
-    ``orders`` holds start, each and growth by element order; ``spread`` is the factor within which nine of ten cases of
+    ``orders`` holds start, each and growth by element order, and ``finest`` the finest accuracy that each was measured
+    at: it is not offered beyond, unless none is. ``spread`` is the factor within which nine of ten cases of
     the fit are; ``machine`` what it was measured on.
     """
 
     orders: dict[str, tuple[float, float, float]]
+    finest: dict[str, float]
     spread: float
     machine: str
 
@@ -60,7 +62,9 @@ class Prices(msgspec.Struct, frozen=True, kw_only=True):
 
     def cheapest(self, scene: Scene, accuracy: float) -> Price:
         """The least price of ``accuracy``."""
-        return min((self.price(scene, accuracy, int(order)) for order in self.orders), key=lambda price: price.cpu_s)
+        least = min(self.finest.values())
+        offered = [order for order, finest in self.finest.items() if finest <= max(accuracy, least) * 1.01]
+        return min((self.price(scene, accuracy, int(order)) for order in offered), key=lambda price: price.cpu_s)
 
     def best(self, scene: Scene, budget: float) -> Price:
         """The best accuracy to be had for ``budget`` CPU seconds.
@@ -118,6 +122,7 @@ def fit(entries: Iterable[Mapping[str, Any]], machine: str) -> Prices:
     rows = found.reshape(3, -1).T.tolist()
     return Prices(
         orders={str(each): tuple(row) for each, row in zip(orders.tolist(), rows, strict=True)},
+        finest={str(each): float(10.0 ** -digits[order == each].max()) for each in orders.tolist()},
         spread=float(np.exp(np.quantile(np.abs(off(found)), 0.9))),
         machine=machine,
     )
