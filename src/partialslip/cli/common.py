@@ -13,6 +13,13 @@ if TYPE_CHECKING:
     Commands = argparse._SubParsersAction[Any]
 
 
+def add_scene(parser: "argparse.ArgumentParser") -> None:
+    """Add the scene and ``--set``, the changes to it."""
+    parser.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
+    parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
+                        help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
+
+
 def check_folder(out: str | None) -> None:
     """Raise InputError if ``--out`` names nothing."""
     if out == "":

@@ -5,12 +5,12 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import check_folder, print_written
+from partialslip.cli.common import add_scene, check_folder, print_written
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
+    from partialslip.cli.common import Commands, add_scene
     from partialslip.study.cost import Point
 
 
@@ -21,9 +21,7 @@ def add(topics: "Commands") -> None:
         help="what accuracy costs: a ladder of settings of every method, each in a process of its own",
         epilog="example: partialslip study cost hertz-large-tension --repeats 1; stopped, it goes on where it was",
     )
-    cost.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
-    cost.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
-                      help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
+    add_scene(cost)
     cost.add_argument("--repeats", type=int, default=3, metavar="N", help="of each setting, for medians (default: 3)")
     cost.add_argument("--peers", metavar="FILE", help="other codes' results, JSON lines, for the same diagram")
     cost.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-cost)")
@@ -64,13 +62,12 @@ def _cost(options: argparse.Namespace) -> int:
     best = {id(point) for point in cost.front(found)}
     head = ["series (* on the front)", "setting", "m", "n", "q", "unknowns", "CPU s", "process"]
     rows = [_row(point, id(point) in best) for point in [*found, *peers]]
-    print_table(console, head, rows, left=2)
+    print_table(console, head, rows, words=(0, 1))
     slopes = cost.slopes(found)
     print_table(
         console,
         ["exponent against unknowns", "m, n", "q", "CPU"],
         [[series, *(_number(value, ".2f") for value in of.values())] for series, of in slopes.items()],
-        left=1,
     )
     for line in _against(found, peers):
         console.print(line, soft_wrap=True, markup=False)

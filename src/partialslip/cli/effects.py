@@ -5,11 +5,11 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import check_folder, print_written
+from partialslip.cli.common import add_scene, check_folder, print_written
 from partialslip.reading import load_scene
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
+    from partialslip.cli.common import Commands, add_scene
 
 
 def add(topics: "Commands") -> None:
@@ -19,9 +19,7 @@ def add(topics: "Commands") -> None:
         help="each effect on and off: what it changes and what it costs",
         epilog="example: partialslip study effects fretting-aluminium --set fem.size=0.05",
     )
-    effects.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
-    effects.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
-                         help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
+    add_scene(effects)
     effects.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-effects)")
     effects.set_defaults(command=_effects)
 
@@ -48,7 +46,7 @@ def _effects(options: argparse.Namespace) -> int:
     files = write_texts(Path(options.out) if options.out else Path("results") / name, texts)
     console = Console(highlight=False)
     console.print(effects.heading(study), style="bold", markup=False)
-    print_table(console, *effects.changes_table(study), left=2)
+    print_table(console, *effects.changes_table(study), words=(0, 1))
     print_table(console, *effects.costs_table(study))
     for line in effects.notes(study):
         console.print(line, soft_wrap=True, markup=False)

@@ -6,14 +6,14 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import check_folder, print_written
+from partialslip.cli.common import add_scene, check_folder, print_written
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
 from partialslip.run import METHODS, Run, run
 from partialslip.state import State, load_state
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
+    from partialslip.cli.common import Commands, add_scene
     from partialslip.scene import Scene
     from partialslip.study.prices import Price
 
@@ -25,12 +25,10 @@ def add(commands: "Commands") -> None:
         help="solve a scene, compare the methods, write the report",
         epilog="example: partialslip run fretting-aluminium --set fem.far_field=box --out results/box",
     )
-    runs.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
+    add_scene(runs)
     runs.add_argument("--with", dest="methods", metavar="METHODS",
                       help="methods, separated by commas, of exact, march, fem (default: exact,fem; march,fem where "
                       "Q and sigma are out of phase)")  # fmt: skip
-    runs.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
-                      help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
     runs.add_argument("--accuracy", metavar="FRACTION",
                       help="of a, m and n, as a fraction of a: fem takes the elements that reach it for the least, by "
                       "the price list, unless --set fem.order says which")  # fmt: skip

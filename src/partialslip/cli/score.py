@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from partialslip.cli.common import check_folder, print_written
+from partialslip.cli.common import add_scene, check_folder, print_written
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
 from partialslip.run import METHODS
@@ -15,7 +15,7 @@ from partialslip.score import score
 from partialslip.score.csvfile import template
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
+    from partialslip.cli.common import Commands, add_scene
 
 _T = TypeVar("_T")
 
@@ -28,12 +28,10 @@ def add(commands: "Commands") -> None:
         epilog="example: partialslip score fretting-aluminium --template > mine.csv, fill it in, "
         "partialslip score fretting-aluminium mine.csv",
     )
-    scores.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
+    add_scene(scores)
     scores.add_argument("file", metavar="FILE", nargs="?",
                         help="tractions: .csv (x, p, dq), .frd or .dat of CalculiX, .vtu, .xdmf, ...")  # fmt: skip
     scores.add_argument("--template", action="store_true", help="print a table to fill in, and nothing else")
-    scores.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
-                        help="change a setting of the scene; may be repeated")  # fmt: skip
     scores.add_argument("--factors", metavar="X,P,Q", default="1,1,1",
                         help="multiply x, p and q by these: 1e-3,1e6,1e6 for mm and MPa; -1 turns round")  # fmt: skip
     scores.add_argument("--order", metavar="1|2", default="1",

@@ -5,12 +5,12 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import check_folder, print_written
+from partialslip.cli.common import add_scene, check_folder, print_written
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
+    from partialslip.cli.common import Commands, add_scene
     from partialslip.study.size import Law, Sizes
 
 
@@ -22,12 +22,10 @@ def add(topics: "Commands") -> None:
         epilog="example: partialslip study size block.toml --over bodies.*.width+bodies.*.height=4a..256a; stopped, it "
         "goes on where it was",
     )
-    size.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
+    add_scene(size)
     size.add_argument("--over", action="append", required=True, metavar="KEY[+KEY]=VALUES",
                       help="4a,8a,16a or 4a..256a (equal ratios) or 4a..256a:13, in contact half-widths of the "
                       "half-plane, or without a as in the scene; twice for a map")  # fmt: skip
-    size.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
-                      help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
     size.add_argument("--processes", type=int, metavar="N", help="at once on this machine (default: its cores)")
     size.add_argument("--cluster", metavar="ADDRESS", help="of a Dask scheduler, whose workers solve instead")
     size.add_argument("--one-mesh", action="store_true", help="no second, coarser mesh of each size")

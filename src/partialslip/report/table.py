@@ -23,9 +23,11 @@ def print_run(run: Run, console: Console) -> None:
     console.print(rows.verdict(run), style="bold", markup=False)
 
 
-def print_table(console: Console, headings: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> None:
-    """Print ``rows`` under ``headings``; the first ``left`` columns are of words, the others of numbers."""
-    console.print(_table(headings, rows, set(range(left))))
+def print_table(
+    console: Console, headings: Sequence[str], rows: Iterable[Sequence[str]], words: Container[int] = (0,)
+) -> None:
+    """Print ``rows`` under ``headings``; columns ``words`` are of words, the others of numbers."""
+    console.print(_table(headings, rows, words))
 
 
 def _errors(run: Run, name: str) -> Table:

@@ -1,19 +1,16 @@
 """Verdicts for people and files: results.json, results.csv and the terminal's table."""
 
-import csv
-import io
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
-from rich import box
 from rich.console import Console
-from rich.table import Table
 
-from partialslip.report.files import write_files
+from partialslip.report.files import csv_text, write_texts
 from partialslip.report.record import versions
+from partialslip.report.table import print_table
 from partialslip.verify import Verdict
 
 SCHEMA = "partialslip/verify/1"
@@ -33,7 +30,7 @@ def write_verdicts(folder: Path, settings: Mapping[str, Any], verdicts: Verdicts
         "cases": {name: [asdict(verdict) for verdict in some] for name, some in verdicts.items()},
     }
     texts = {_FILE: json.dumps(record, indent=1, allow_nan=False) + "\n", "results.csv": _csv(_all(verdicts))}
-    return write_files(folder, {name: _writer(text) for name, text in texts.items()})
+    return write_texts(folder, texts)
 
 
 def read_verdicts(folder: Path, settings: Mapping[str, Any]) -> dict[str, list[Verdict]]:
@@ -53,15 +50,8 @@ def print_verdicts(verdicts: Verdicts, console: Console, every: bool = True) -> 
     rows = [min(some, key=_room) for some in _by_method(verdicts)]
     shown = rows if every else [row for row in rows if not row.passed]
     if shown:
-        table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
-        for heading in ("case", "method", "closest", "value", "bar", "faces", "CPU s", ""):
-            right = heading in ("value", "bar", "faces", "CPU s")
-            table.add_column(heading, justify="right" if right else "left", no_wrap=True)
-        for row in shown:
-            value, bar = ("" if number is None else f"{number:.1e}" for number in (row.value, row.bar))
-            table.add_row(row.case, row.method, row.check, value, bar, f"{row.iterations:,}", f"{row.cpu_s:.2f}",
-                          "ok" if row.passed else "MISSED")  # fmt: skip
-        console.print(table)
+        headings = ("case", "method", "closest", "value", "bar", "faces", "CPU s", "")
+        print_table(console, headings, map(_row, shown), words=(0, 1, 2, 7))
     for verdict in _all(verdicts):
         if not verdict.passed:
             what = " ".join(part for part in (_shown(verdict), verdict.found) if part)
@@ -80,16 +70,15 @@ def _head(settings: Mapping[str, Any]) -> dict[str, Any]:
     return {"schema": SCHEMA, "settings": dict(settings), "finished": False, "versions": versions()}
 
 
-def _writer(text: str) -> Any:
-    return lambda path: path.write_text(text, "utf-8")
-
-
 def _csv(verdicts: Iterable[Verdict]) -> str:
-    table = io.StringIO()
-    writer = csv.DictWriter(table, [each.name for each in fields(Verdict)], lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(asdict(verdict) for verdict in verdicts)
-    return table.getvalue()
+    names = [each.name for each in fields(Verdict)]
+    return csv_text(names, ([getattr(verdict, name) for name in names] for verdict in verdicts))
+
+
+def _row(row: Verdict) -> list[str]:
+    value, bar = ("" if number is None else f"{number:.1e}" for number in (row.value, row.bar))
+    work = f"{row.iterations:,}", f"{row.cpu_s:.2f}"
+    return [row.case, row.method, row.check, value, bar, *work, "ok" if row.passed else "MISSED"]
 
 
 def _all(verdicts: Verdicts) -> list[Verdict]:

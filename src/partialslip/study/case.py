@@ -6,7 +6,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ import msgspec
 from partialslip.errors import InputError, PartialslipError
 from partialslip.reading import parse_scene
 from partialslip.report import record, write_run
-from partialslip.run import run
+from partialslip.run import Run, run
 from partialslip.scene import Scene
 
 
@@ -39,13 +39,14 @@ class Case:
         return hashlib.sha256(json.dumps(self.data, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def solve(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Solve a case given as :attr:`Case.data`; its figures, or ``error``: what cannot be solved, in one line."""
+def solve(data: Mapping[str, Any], also: Callable[[Run], Mapping[str, Any]] = lambda _: {}) -> dict[str, Any]:
+    """Solve a case given as :attr:`Case.data`; its figures and what ``also`` has to say of the run, or ``error``: what
+    cannot be solved, in one line."""
     try:
         outcome = run(parse_scene(data["scene"]), data["methods"])
-    except PartialslipError as error:
+    except InputError as error:  # what this machine lacks is no finding, and is not to be kept as one
         return {**data, "error": str(error)}
-    return {**data, **record(outcome, curves=False)}
+    return {**data, **record(outcome, curves=False), **also(outcome)}
 
 
 def solve_apart(case: Case) -> dict[str, Any]:
@@ -58,26 +59,18 @@ def solve_apart(case: Case) -> dict[str, Any]:
         last = (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1]
         raise PartialslipError(f"{case.scene.name} {dict(case.labels)}: the process died: {last}")
     found: dict[str, Any] = json.loads(done.stdout)
-    found["process"]["wall_s"] = time.perf_counter() - began
+    found.setdefault("process", {})["wall_s"] = time.perf_counter() - began
     return found
 
 
-def _main() -> None:
-    data = json.load(sys.stdin)
-    scene = parse_scene(data["scene"])
-    try:
-        outcome = run(scene, data["methods"])
-    except InputError as error:
-        print(json.dumps({**data, "error": str(error), "process": {"cpu_s": time.process_time()}}))
-        return
-    found = record(outcome, curves=False)
+def _costs(outcome: Run) -> dict[str, Any]:
+    """Of this process up to now, and of writing the report."""
     cpu = time.process_time()
     with tempfile.TemporaryDirectory() as folder:
         write_run(outcome, Path(folder))
     costs = {"cpu_s": cpu, "report_cpu_s": time.process_time() - cpu}
-    costs["peak_rss_mb"] = max(result.cost.peak_rss_mb or 0.0 for result in outcome.results.values())
-    print(json.dumps({**data, **found, "process": costs}, allow_nan=False))
+    return {"process": costs | {"peak_rss_mb": max(each.cost.peak_rss_mb or 0.0 for each in outcome.results.values())}}
 
 
 if __name__ == "__main__":
-    _main()
+    print(json.dumps(solve(json.load(sys.stdin), _costs), allow_nan=False))
