@@ -21,7 +21,7 @@ class Holder(Table, frozen=True, kw_only=True):
 class Body(Table, frozen=True, kw_only=True):
     """A finite body, pressed on in the middle of its face.
 
-    A ``block`` is rectangular; the face of a ``pad`` has the profile's true shape, a cylinder's arc for hertz, and only
+    Its ``kind``: a ``block`` is rectangular; the face of a ``pad`` has the profile's true shape, a cylinder's arc for hertz, and only
     one body can have it. ``width`` and ``height`` (m; of a pad in its middle) are the body's, behind which a ``holder``
     may sit. Instead of those ``mesh`` may be the path of a file, whose lengths are in units of ``unit`` (m).
 
@@ -63,7 +63,7 @@ class Body(Table, frozen=True, kw_only=True):
 
 
 class Bodies(Table, frozen=True, kw_only=True):
-    """The bodies that are finite; the others are half-planes."""
+    """The bodies that are finite, ``upper`` or ``lower`` or both; the others, None, are half-planes."""
 
     upper: Body | None = None
     lower: Body | None = None

@@ -30,8 +30,8 @@ _Decisions = dict[Effect, tuple[bool, str, str]]  # whether it is needed; why, i
 
 @dataclass(frozen=True)
 class Plan:
-    """Effects by name, with the reason why each is called for or left out. ``missing`` are those that the scene calls
-    for and its ``[effects]`` force off."""
+    """Effects by name, with the reason why each is ``called_for`` or ``left_out``. ``missing`` are those that the scene
+    calls for and its ``[effects]`` force off."""
 
     called_for: dict[Effect, str]
     left_out: dict[Effect, str]

@@ -134,7 +134,8 @@ class DeformedBody:
 
 @dataclass(frozen=True)
 class Cost:
-    """CPU and wall seconds, peak resident memory in MB (None where the system does not tell), CPU seconds by phase."""
+    """CPU and wall seconds, ``cpu_s`` and ``wall_s``; peak resident memory, ``peak_rss_mb`` (None where the system does not
+    tell); CPU seconds by phase, ``phases``."""
 
     cpu_s: float
     wall_s: float
@@ -148,8 +149,9 @@ class Result:
 
     ``a`` is the contact half-width (m) and ``p0`` = 2 P/(pi a) (Pa), for Hertz the largest pressure.
 
-    The stick zone [-m, n] is kept as its centre (n - m)/2 and half-width (n + m)/2, because n + m cancels when
-    it is tiny; both are None where nothing sticks (``regime`` says "sliding").
+    The stick zone [-m, n] is kept as its centre, ``stick_centre`` = (n - m)/2, and ``stick_half_width`` = (n + m)/2
+    (m), because n + m cancels when it is tiny; both are None where nothing sticks (``regime`` says "sliding").
+    ``traction`` holds p, q1, q2 and dq along the contact, ``cost`` what it took.
     ``certificate`` holds residuals in units of f p0 (of p0 for the normal problem) and equilibrium relative to
     the load; ``estimate`` the method's own estimate of its errors in a, m and n, as fractions of a, and by finite
     elements in p and q, too (relative L2 of cell averages);

@@ -31,14 +31,14 @@ Array = npt.NDArray[np.float64]
 
 
 class Elastic(Table, frozen=True, kw_only=True):
-    """Linear elastic, isotropic. ``E`` in Pa."""
+    """Linear elastic, isotropic: Young's modulus ``E`` (Pa) and Poisson's ratio ``nu``."""
 
     E: Positive
     nu: Annotated[float, msgspec.Meta(ge=-0.9, lt=0.5)]
 
 
 class Constants(NamedTuple):
-    """Shear modulus, Pa, and Kolosov's constant of a plane body."""
+    """Shear modulus ``mu``, Pa, and Kolosov's constant ``kappa`` of a plane body."""
 
     mu: float
     kappa: float
@@ -50,7 +50,7 @@ class Constants(NamedTuple):
 
 
 class Material(Elastic, frozen=True, kw_only=True):
-    """``E`` and ``nu`` of both bodies, but for one that has its own."""
+    """``E`` and ``nu`` of both bodies, but for one that has its own, ``upper`` or ``lower``; ``plane`` strain or stress."""
 
     plane: Literal["strain", "stress"] = "strain"
     upper: Elastic | None = None
@@ -221,7 +221,7 @@ Profile = Hertz | FlatRounded | Tabulated
 
 
 class Friction(Table, frozen=True, kw_only=True):
-    """Coulomb friction: |q| <= f p. Without friction (f = 0) any tangential load slides."""
+    """Coulomb friction with the coefficient ``f``: |q| <= f p. Without friction (f = 0) any tangential load slides."""
 
     f: Annotated[float, msgspec.Meta(ge=0, le=1000)]
 
@@ -322,7 +322,11 @@ class Fem(Table, frozen=True, kw_only=True):
 
 
 class Effects(Table, frozen=True, kw_only=True, rename="kebab"):
-    """Effects that are forced on (true) or off (false), whatever the scene calls for; see :mod:`partialslip.plan`."""
+    """Effects that are forced on (true) or off (false), whatever the scene calls for; see :mod:`partialslip.plan`.
+
+    ``normal``, ``friction``, ``shear``, ``tension``, ``opposing_slip``, ``history``, ``coupling``, ``finite_size``,
+    ``far_field``, ``subsurface``; in a scene file with hyphens.
+    """
 
     normal: bool | None = None
     friction: bool | None = None
@@ -338,7 +342,11 @@ class Effects(Table, frozen=True, kw_only=True, rename="kebab"):
 
 class Scene(Table, frozen=True, kw_only=True):
     """A whole scene file. See the README for the format; :func:`partialslip.load_scene` reads one, and
-    :func:`partialslip.parse_scene` makes one from nested tables. Both check it, the constructor does not."""
+    :func:`partialslip.parse_scene` makes one from nested tables. Both check it, the constructor does not.
+
+    Its ``name`` (letters, digits, ".", "_" and "-") and ``title``, and the tables ``material``, ``profile``, ``load``,
+    ``friction``, ``bodies``, ``fem`` and ``effects``.
+    """
 
     name: Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*\Z", max_length=100)]
     material: Material

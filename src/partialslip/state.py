@@ -44,14 +44,14 @@ class State:
                 raise InputError(f"state: is of {name} = {mine:.10g}; this scene has {its:.10g}")
 
     def save(self, path: Path) -> None:
-        """Write an .npz file."""
+        """Write an .npz file to ``path``."""
         loads = np.array([self.P, self.A, self.Q, self.sigma])
         with path.open("wb") as file:
             np.savez(file, loads=loads, cells=self.q.x, p=self.p.c, q=self.q.c)
 
 
 def load_state(path: str | Path) -> State:
-    """Read what :meth:`State.save` has written.
+    """Read what :meth:`State.save` has written to ``path``.
 
     Raises
     ------

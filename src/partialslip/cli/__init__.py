@@ -7,16 +7,23 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from partialslip import __version__
-from partialslip.cli import export, maps, page, run, score, study, verify
+from partialslip.cli import completion, export, maps, page, run, score, study, verify
 from partialslip.errors import InputError, PartialslipError
 from partialslip.reading import shipped_scenes
 
 
 class _Parser(argparse.ArgumentParser):
-    """Errors in one line, like all others; no abbreviations."""
+    """Errors in one line, like all others; no abbreviations; examples and exit codes at the end of the help."""
 
-    def __init__(self, **settings: Any) -> None:
+    def __init__(self, examples: Sequence[str] = (), failure: str = "", **settings: Any) -> None:
         super().__init__(allow_abbrev=False, **settings)
+        codes = ["0    fine", *([f"1    {failure}"] if failure else []), "2    bad input", "130  interrupted"]
+        self._end = {"examples": examples, "exit codes": codes}
+
+    def format_help(self) -> str:
+        """The help, its examples one a line as they are typed."""
+        ends = ["\n  ".join([f"\n{head}:", *lines]) + "\n" for head, lines in self._end.items() if lines]
+        return super().format_help() + "".join(ends)
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} (see {self.prog} --help)")
@@ -25,7 +32,7 @@ class _Parser(argparse.ArgumentParser):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code."""
     try:
-        options = _parser().parse_args(arguments)
+        options = parser().parse_args(arguments)
         code: int = options.command(options)
         sys.stdout.flush()
     except PartialslipError as error:
@@ -43,20 +50,34 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return code
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+def parser() -> argparse.ArgumentParser:
+    """What reads the command line: all commands and their options."""
+    root = _Parser(
         prog="partialslip",
         description="How right is a frictional contact calculation? Exact solution and finite elements, side by side.",
+        examples=[
+            "partialslip run fretting-aluminium",
+            "partialslip scenes",
+            "partialslip run --help",
+        ],
+        failure="a bar missed, or a case not solved",
     )
-    parser.add_argument("--version", action="version", version=f"partialslip {__version__}")
-    commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
+    root.add_argument("--version", action="version", version=f"partialslip {__version__}")
+    commands = root.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
 
     for command in (run, maps, page, verify, study, score, export):
         command.add(commands)
 
-    scenes = commands.add_parser("scenes", help="list the shipped scenes")
+    scenes = commands.add_parser(
+        "scenes",
+        help="list the shipped scenes",
+        description="List the scenes that come with partialslip: their names, by which every command knows them, and "
+        "titles.",
+        examples=["partialslip scenes", "partialslip run hertz-shear"],
+    )
     scenes.set_defaults(command=_scenes)
-    return parser
+    completion.add(commands, root)
+    return root
 
 
 def _scenes(_: argparse.Namespace) -> int:

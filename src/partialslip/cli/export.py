@@ -19,7 +19,13 @@ def add(commands: "Commands") -> None:
     exports = commands.add_parser(
         "export",
         help="write a scene as a model for another code",
-        epilog="example: partialslip export hertz-small-tension --to calculix --size 0.025 -o hertz.inp",
+        description="Mesh both bodies of a scene and write them for another code, with contact, friction and load steps, "
+        "ready to run; partialslip score takes the results.",
+        examples=[
+            "partialslip export hertz-small-tension --to calculix --size 0.025 -o hertz.inp",
+            "partialslip export fretting-aluminium --to abaqus --stiffer 100",
+            "partialslip export flat-rounded --to gmsh",
+        ],
     )
     exports.add_argument("scene", metavar="SCENE", help="a shipped scene or a TOML file")
     exports.add_argument("--to", required=True, choices=_TO,

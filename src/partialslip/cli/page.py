@@ -20,7 +20,7 @@ def add(commands: "Commands") -> None:
         help="make a live page: sliders for loads and friction",
         description="Make one HTML file, in which sliders move the loads and the friction, and tractions, stick zone "
         "and the place on the map follow. It calculates in the browser and needs no network.",
-        epilog="example: partialslip page hertz-large-tension",
+        examples=["partialslip page", "partialslip page hertz-large-tension --out live"],
     )
     page.add_argument("scene", nargs="?", default=_SCENE, metavar="SCENE",
                       help="a shipped scene or a TOML file of a Hertz contact, with whose loads it begins "

@@ -23,7 +23,14 @@ def add(commands: "Commands") -> None:
     runs = commands.add_parser(
         "run",
         help="solve a scene, compare the methods, write the report",
-        epilog="example: partialslip run fretting-aluminium --set fem.far_field=box --out results/box",
+        description="Solve a scene exactly and by finite elements, print by how much they differ, and write report.html, "
+        "results.json and tractions.csv.",
+        examples=[
+            "partialslip run fretting-aluminium",
+            "partialslip run my-scene.toml --set load.Q=[-30e3,30e3] --accuracy 1e-6",
+            "partialslip run fretting-aluminium --set fem.far_field=box --out results/box",
+        ],
+        failure="a bar or a certificate missed",
     )
     add_scene(runs)
     runs.add_argument("--with", dest="methods", metavar="METHODS",

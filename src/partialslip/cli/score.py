@@ -25,8 +25,14 @@ def add(commands: "Commands") -> None:
     scores = commands.add_parser(
         "score",
         help="score somebody else's tractions for a scene",
-        epilog="example: partialslip score fretting-aluminium --template > mine.csv, fill it in, "
-        "partialslip score fretting-aluminium mine.csv",
+        description="Compare tractions from another code, in a table, CalculiX's results or a mesh with point data, with "
+        "the exact ones: the same table, page and files as of partialslip run.",
+        examples=[
+            "partialslip score fretting-aluminium --template > mine.csv",
+            "partialslip score fretting-aluminium mine.csv --bar 1e-2",
+            "partialslip score hertz-shear job.frd --factors 1e-3,1e6,1e6",
+        ],
+        failure="a bar missed",
     )
     add_scene(scores)
     scores.add_argument("file", metavar="FILE", nargs="?",

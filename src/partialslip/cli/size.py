@@ -19,8 +19,13 @@ def add(topics: "Commands") -> None:
     size = topics.add_parser(
         "size",
         help="when is a body a half-plane? a sweep over sizes, or over anything else in a scene",
-        epilog="example: partialslip study size block.toml --over bodies.*.width+bodies.*.height=4a..256a; stopped, it "
-        "goes on where it was",
+        description="Sweep over sizes of bodies, or anything else in a scene, on two meshes each, and fit how the change "
+        "from half-planes falls with size. Stopped, it goes on where it was.",
+        examples=[
+            "partialslip study size block.toml --over bodies.*.width+bodies.*.height=4a..256a",
+            "partialslip study size pad.toml --over bodies.upper.height=8a,16a,32a --over friction.f=0.2,0.4",
+        ],
+        failure="a case that could not be solved",
     )
     add_scene(size)
     size.add_argument("--over", action="append", required=True, metavar="KEY[+KEY]=VALUES",

@@ -23,7 +23,13 @@ def add(commands: "Commands") -> None:
     verify = commands.add_parser(
         "verify",
         help="hold the methods against their bars: shipped scenes, hard cases, random scenes",
-        epilog="example: partialslip verify --suite full --only near-sliding-1e-6",
+        description="Hold every method against its bars. What was interrupted goes on where it stopped.",
+        examples=[
+            "partialslip verify",
+            "partialslip verify --suite full --only near-sliding-1e-6",
+            "partialslip verify --suite stress --count 1000 --seed 0 --method march",
+        ],
+        failure="a bar missed",
     )
     verify.add_argument("--suite", choices=_SUITES, default="quick",
                         help="quick: the shipped scenes; full: these and the hard cases; stress: random scenes "

@@ -24,7 +24,8 @@ _HARDLY = 1e-13  # of its flat: by less than that rounding says how much wider a
 
 @dataclass(frozen=True)
 class Contact:
-    """Two half-planes pressed together: contact half-width ``a`` (m), normal force ``P`` (N/m) and the shape of p."""
+    """Two half-planes pressed together: contact half-width ``a`` (m), normal force ``P`` (N/m) and the ``shape`` of p,
+    scaled (:mod:`partialslip.halfplane.shape`)."""
 
     a: float
     P: float
@@ -41,7 +42,7 @@ class Contact:
 
 
 def contact(scene: Scene) -> Contact:
-    """The contact of a scene.
+    """The contact of ``scene``, of half-planes of one material.
 
     Hertz: P = pi a^2/(2 A R). Any profile whose curvature steps by w at |x| = b (flat and rounded: by 1/R at b):
     P = a^2/(2 A) sum w (2 psi - sin 2 psi), b = a cos(psi) (Ciavarella, Hills and Monno, 1998).

@@ -23,6 +23,7 @@ def solve(
     scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None, start: State | None = None
 ) -> Result:
     """Solve ``scene`` exactly, as two elastically similar half-planes in the steady state; SI units.
+    ``plan`` is what the scene calls for (:func:`partialslip.plan`).
 
     It is done before there is any ``progress`` to tell; and a steady state does not remember its ``start``.
 

@@ -1,0 +1,182 @@
+"""Every block of code in the documents runs, page by page and in order, as a reader would run it.
+
+``python`` blocks share their names; ``sh`` blocks run in the page's own folder, beside the files that lie beside the
+page; ``toml`` blocks are scenes, whole ones or tables to change in a shipped one, and are saved where their first line
+names a file. A ``text`` block is what the block before it prints: numbers with an exponent are errors, which agree to
+a factor of three; others to 1e-5, or the last digit shown; ``...`` stands for anything. What is not run says why in a
+comment before it, or is ``slow``, as what takes another code is.
+"""
+
+import contextlib
+import io
+import math
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import tomllib
+from pathlib import Path
+from typing import NamedTuple
+from unittest import mock
+
+import pytest
+
+from partialslip.cli import main
+from partialslip.reading import load_scene, parse_scene
+
+DOCS = Path(__file__).parents[1] / "docs"
+BLOCK = re.compile(r"^(?:<!-- (not run: .+|slow) -->\n)?```(\w+)\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
+PARTS = re.compile(r"(\.\.\.|(?<![\w.])-?\d+\.\d+(?:e[-+]\d+)?(?![\w.]))")
+PLAIN = ("head", "cat", "ls")
+ALONE = ("ccx",)  # other codes, which need not be installed
+
+
+class Block(NamedTuple):
+    """A block of code, and what it prints if the page says so."""
+
+    mark: str
+    language: str
+    code: str
+    shown: str | None
+
+
+def blocks(text):
+    """Blocks of a page; those of what is printed go with the ones before them."""
+    found = []
+    for mark, language, code in BLOCK.findall(text):
+        if language == "text":
+            assert found, code
+            assert found[-1].shown is None, code
+            found[-1] = found[-1]._replace(shown=code)
+        else:
+            found.append(Block(mark, language, code, None))
+    return found
+
+
+PAGES = {
+    str(path.relative_to(DOCS)): blocks(path.read_text("utf-8"))
+    for path in sorted(DOCS.rglob("*.md"))
+    if "_build" not in path.parts
+}
+PAGES = {name: found for name, found in PAGES.items() if found}
+
+
+def agrees(printed, shown):
+    """Whether ``printed`` is what a page shows."""
+    wanted = PARTS.split(" ".join(shown.split()))
+    numbers = [part for part in wanted[1::2] if part != "..."]
+    pattern = "".join(
+        re.escape(part) if k % 2 == 0 else ".*" if part == "..." else r"(-?\d+\.\d+(?:e[-+]\d+)?)"
+        for k, part in enumerate(wanted)
+    )
+    found = re.fullmatch(pattern, " ".join(printed.split()))
+    return bool(found) and all(map(same, found.groups(), numbers))
+
+
+def same(printed, shown):
+    value, other = float(printed), float(shown)
+    if "e" in shown:
+        return value == other or (value * other > 0 and abs(math.log(value / other)) < math.log(3))
+    return abs(value - other) <= max(1e-5 * abs(other), 2 * 10.0 ** -len(shown.partition(".")[2]))
+
+
+def shell(code):
+    """Run the lines of a ``sh`` block; commands of partialslip in this process. Returns what they print."""
+    printed = io.StringIO()
+    for line in code.replace("\\\n", " ").splitlines():
+        words = shlex.split(line, comments=True)
+        *words, into = [*words, None] if ">" not in words else [*words[: words.index(">")], words[-1]]
+        if not words:
+            continue
+        if words[0] == "partialslip":
+            out = io.StringIO()
+            with contextlib.redirect_stdout(out), mock.patch.dict(os.environ, COLUMNS="80"):
+                try:
+                    code = main(words[1:])
+                except SystemExit as exit:  # --help
+                    code = exit.code
+            assert code in (0, 1), line
+            text = out.getvalue()
+        else:
+            assert words[0] in PLAIN + ALONE, line
+            done = subprocess.run(words, capture_output=True, text=True, check=True)
+            text = "" if words[0] in ALONE else done.stdout
+        if into:
+            Path(into).write_text(text, "utf-8")
+        else:
+            printed.write(text)
+    return printed.getvalue()
+
+
+def scene(code):
+    """Read a ``toml`` block, and save it where it names a file."""
+    data = tomllib.loads(code)
+    if name := re.match(r"# (\S+\.toml)\n", code):
+        Path(name[1]).write_text(code, "utf-8")
+        load_scene(name[1])
+    elif "name" in data:
+        parse_scene(data)
+    else:
+        whole = tomllib.loads((DOCS.parent / "src/partialslip/scenes/fretting-aluminium.toml").read_text("utf-8"))
+        parse_scene(whole | data)
+
+
+def run_page(name, folder, slow):
+    """Run the blocks of a page in ``folder``; returns how many were run."""
+    for file in (DOCS / name).parent.iterdir():
+        if file.suffix not in (".md", ".py", ".svg") and file.is_file():
+            shutil.copy(file, folder)
+    names, count = {"__name__": "page"}, 0
+    for block in PAGES[name]:
+        if block.mark.startswith("not run") or (block.mark == "slow" and not slow):
+            continue
+        printed = io.StringIO()
+        if block.language == "python":
+            assert "assert" in block.code or block.shown is not None, block.code
+            with contextlib.redirect_stdout(printed):
+                exec(compile(block.code, name, "exec"), names)
+        elif block.language == "sh":
+            printed.write(shell(block.code))
+        elif block.language == "toml":
+            scene(block.code)
+        else:
+            raise AssertionError(f"{block.language}: {block.code}")
+        if block.shown is not None:
+            assert agrees(printed.getvalue(), block.shown), f"{block.code}\n{printed.getvalue()}"
+        count += 1
+    return count
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_page_runs(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run_page(name, tmp_path, slow=False)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name, found in PAGES.items() if any(b.mark == "slow" for b in found)])
+def test_page_runs_with_other_codes(name, tmp_path, monkeypatch):
+    codes = {line.split()[0] for block in PAGES[name] if block.mark == "slow" for line in block.code.splitlines()}
+    if missing := [code for code in codes & set(ALONE) if not shutil.which(code)]:
+        pytest.skip(f"{', '.join(missing)}: not installed")
+    monkeypatch.chdir(tmp_path)
+    run_page(name, tmp_path, slow=True)
+
+
+def test_what_differs_is_noticed():
+    shown = "a 0.2066977 mm 2.6e-06 ok\ncost ...\nend"
+    assert agrees("a  0.2066979 mm 3.1e-06 ok\n cost 1.2 s and more\nend\n", shown)
+    assert not agrees("a 0.2067977 mm 2.6e-06 ok cost 1.2 s end", shown)
+    assert not agrees("a 0.2066977 mm 2.6e-05 ok cost 1.2 s end", shown)
+    assert not agrees("a 0.2066977 mm 2.6e-06 missed cost 1.2 s end", shown)
+
+
+def test_most_blocks_are_run():
+    found = [block for page in PAGES.values() for block in page]
+    assert sum(block.mark != "" for block in found) < len(found) / 5
+
+
+if __name__ == "__main__":  # how many blocks there are
+    counted = [block for page in PAGES.values() for block in page]
+    print(len(counted), "of which", sum(block.mark != "" for block in counted), "are not run or slow")
