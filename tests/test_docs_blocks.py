@@ -72,8 +72,7 @@ def agrees(printed, shown):
     wanted = PARTS.split(shown)
     numbers = [part for part in wanted[1::2] if part != "..."]
     pattern = "".join(
-        re.escape(part) if k % 2 == 0 else ".*" if part == "..." else f"({NUMBER})"
-        for k, part in enumerate(wanted)
+        re.escape(part) if k % 2 == 0 else ".*" if part == "..." else f"({NUMBER})" for k, part in enumerate(wanted)
     )
     found = re.fullmatch(pattern, printed)
     return bool(found) and all(map(same, found.groups(), numbers))

@@ -1,5 +1,5 @@
-"""Every public name is documented: modules, classes, functions and properties by a docstring, fields and parameters by
-name in it."""
+"""Every public name is documented: modules, classes, functions and properties by a docstring; and of what the reference
+shows, fields and parameters, too, by name in one."""
 
 import dataclasses
 import functools
@@ -7,10 +7,11 @@ import importlib
 import inspect
 import pkgutil
 import re
+from pathlib import Path
 
 import msgspec
-import pytest
 
+REFERENCE = Path(__file__).parents[1] / "docs" / "reference" / "api.md"
 PACKAGES = ("partialslip", "partialslip_fem", "partialslip_meshes")
 
 
@@ -35,6 +36,12 @@ def members(owner):
         home = owner.__name__ if inspect.ismodule(owner) else owner.__module__
         if getattr(found, "__module__", None) == home:
             yield name, found, isinstance(value, (property, functools.cached_property))
+
+
+def docstring(owner, name, found):
+    """The docstring of a member; what overrides another needs none of its own."""
+    lines = (vars(base).get(name) for base in getattr(owner, "__mro__", ()))
+    return found.__doc__ or next((line.__doc__ for line in lines if line is not None and line.__doc__), None)
 
 
 def fields(kind):
@@ -66,8 +73,9 @@ def public():
             else:
                 yield from ((f"{where}.{field}", field, found.__doc__) for field in fields(found))
                 for below, method, is_property in members(found):
-                    yield f"{where}.{below}", "", method.__doc__
-                    if not is_property:
+                    doc = docstring(found, below, method)
+                    yield f"{where}.{below}", "", doc
+                    if not is_property and method.__doc__:
                         yield from parameters(f"{where}.{below}", method)
 
 
@@ -76,15 +84,41 @@ def parameters(where, function):
     return ((f"{where}({name})", name, function.__doc__) for name in names if not name.startswith("_"))
 
 
-if __name__ == "__main__":
-    missing = {}
-    count = {}
-    for what, name, doc in public():
-        kind = "param" if "(" in what else "field" if name else "name"
-        count[kind] = count.get(kind, 0) + 1
-        if not doc or (name and not says(doc, name)):
-            missing.setdefault(kind, []).append(what)
-    for kind in count:
-        print(kind, count[kind], len(missing.get(kind, [])))
-    for kind in ("name", "field", "param"):
-        print(kind, *missing.get(kind, []), sep="\n   ")
+def shown():
+    """Names that the reference shows one by one, as they are called where they are defined."""
+    text, found = REFERENCE.read_text("utf-8"), set()
+    for module, entries in re.findall(
+        r"^\.\. currentmodule:: (\S+)\n(.*?)(?=^\.\. currentmodule|^```)", text, re.M | re.S
+    ):
+        for name in re.findall(r"^\.\. auto(?:function|class):: (\w+)$", entries, re.M):
+            value = getattr(importlib.import_module(module), name)
+            found.add(f"{value.__module__}.{value.__qualname__}")
+    return found
+
+
+def undocumented(items):
+    return [what for what, name, doc in items if not doc or (name and not says(doc, name))]
+
+
+def test_all_names_have_docstrings():
+    names = [item for item in public() if not item[1]]
+    assert len(names) > 500
+    assert undocumented(names) == []
+
+
+def test_fields_and_parameters_of_the_reference_are_named():
+    of = shown()
+    items = [item for item in public() if item[1]]
+    owners = {what: re.split(r"\(", what)[0] for what, _, _ in items}
+    chosen = [item for item in items if owners[item[0]] in of or owners[item[0]].rpartition(".")[0] in of]
+    assert len(chosen) > 150
+    assert undocumented(chosen) == []
+
+
+def test_missing_docstrings_are_noticed():
+    def halved(force):
+        """Half of it."""
+
+    assert undocumented([("force", "force", halved.__doc__)]) == ["force"]
+    assert undocumented([("force", "force", "Half of ``force``, N.")]) == []
+    assert undocumented([("force", "force", "Half of it.\n\nParameters\n----------\nP, force : float\n    N.")]) == []

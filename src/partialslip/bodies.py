@@ -21,9 +21,10 @@ class Holder(Table, frozen=True, kw_only=True):
 class Body(Table, frozen=True, kw_only=True):
     """A finite body, pressed on in the middle of its face.
 
-    Its ``kind``: a ``block`` is rectangular; the face of a ``pad`` has the profile's true shape, a cylinder's arc for hertz, and only
-    one body can have it. ``width`` and ``height`` (m; of a pad in its middle) are the body's, behind which a ``holder``
-    may sit. Instead of those ``mesh`` may be the path of a file, whose lengths are in units of ``unit`` (m).
+    Its ``kind``: a ``block`` is rectangular; the face of a ``pad`` has the profile's true shape, a cylinder's arc for
+    hertz, and only one body can have it. ``width`` and ``height`` (m; of a pad in its middle) are the body's, behind
+    which a ``holder`` may sit. Instead of those ``mesh`` may be the path of a file, whose lengths are in units of
+    ``unit`` (m).
 
     ``support`` says what holds the body, or its holder, and carries P and Q: ``clamped``, the back by a rigid plate
     that does not turn; ``roller``, the back by a plate along which it slides (the middle plane of a specimen of twice

@@ -22,13 +22,13 @@ class Comparison:
     """Errors of a result against a reference; None where there is nothing to compare: without a stick zone, and of
     m, n and q where the reference says that the contact ratchets, so that its steady state is not reached.
 
-    ``a``, ``m``, ``n``: |difference| / a. ``p``, ``q``: relative L2 over the contact of cell averages (each cell's
-    mean against the reference's mean over the same cell), q being (q2 - q1)/2. ``p_nodal``, ``q_nodal``:
-    relative L2 of nodal values; ``p_max``, ``q_max``: the largest error of a node, in p0 and f p0. Where stresses were asked for and both know them,
-    ``surface`` is the relative L2 error of sigma_xx along both surfaces as averages over those cells, ``largest`` the
-    relative error of its largest value on the lower body, and ``inside`` the relative L2 error of the stresses in the
-    middle of the triangles within 3 a, by area. ``bars`` are what a, m, n, p and q must not
-    exceed; ``missed`` says what failed, in words.
+    ``a``, ``m``, ``n``: |difference| / a. ``p``, ``q``: relative L2 over the contact of cell averages (each cell's mean
+    against the reference's mean over the same cell), q being (q2 - q1)/2. ``p_nodal``, ``q_nodal``: relative L2 of
+    nodal values; ``p_max``, ``q_max``: the largest error of a node, in p0 and f p0. Where stresses were asked for and
+    both know them, ``surface`` is the relative L2 error of sigma_xx along both surfaces as averages over those cells,
+    ``largest`` the relative error of its largest value on the lower body, and ``inside`` the relative L2 error of the
+    stresses in the middle of the triangles within 3 a, by area. ``bars`` are what a, m, n, p and q must not exceed;
+    ``missed`` says what failed, in words.
     """
 
     a: float

@@ -61,8 +61,8 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
 
 
 def parse_scene(data: Mapping[str, Any]) -> Scene:
-    """Make a scene from nested tables ``data``, as in a scene file or in ``results.json``; NumPy numbers and arrays will
-    do.
+    """Make a scene from nested tables ``data``, as in a scene file or in ``results.json``; NumPy numbers and arrays
+    will do.
 
     Raises
     ------

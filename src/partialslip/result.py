@@ -134,8 +134,8 @@ class DeformedBody:
 
 @dataclass(frozen=True)
 class Cost:
-    """CPU and wall seconds, ``cpu_s`` and ``wall_s``; peak resident memory, ``peak_rss_mb`` (None where the system does not
-    tell); CPU seconds by phase, ``phases``."""
+    """CPU and wall seconds, ``cpu_s`` and ``wall_s``; peak resident memory, ``peak_rss_mb`` (None where the system does
+    not tell); CPU seconds by phase, ``phases``."""
 
     cpu_s: float
     wall_s: float

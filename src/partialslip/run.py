@@ -27,10 +27,10 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Run:
-    """A ``scene``, its ``plan``, the ``results`` by method, and ``comparisons`` of all others with the reference: the exact
-    one, or, where there is none, the march's, or else that of the finite elements; with :data:`ALL_EFFECTS` where some that
-    matter have been forced off. ``accuracy`` is the bar for a, m and n, as a fraction of a; None if there are no
-    bars."""
+    """A ``scene``, its ``plan``, the ``results`` by method, and ``comparisons`` of all others with the reference: the
+    exact one, or, where there is none, the march's, or else that of the finite elements; with :data:`ALL_EFFECTS` where
+    some that matter have been forced off. ``accuracy`` is the bar for a, m and n, as a fraction of a; None if there are
+    no bars."""
 
     scene: Scene
     plan: Plan

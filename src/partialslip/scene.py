@@ -50,7 +50,8 @@ class Constants(NamedTuple):
 
 
 class Material(Elastic, frozen=True, kw_only=True):
-    """``E`` and ``nu`` of both bodies, but for one that has its own, ``upper`` or ``lower``; ``plane`` strain or stress."""
+    """``E`` and ``nu`` of both bodies, but for one that has its own, ``upper`` or ``lower``; ``plane`` strain or
+    stress."""
 
     plane: Literal["strain", "stress"] = "strain"
     upper: Elastic | None = None

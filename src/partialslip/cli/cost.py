@@ -19,8 +19,8 @@ def add(topics: "Commands") -> None:
     cost = topics.add_parser(
         "cost",
         help="what accuracy costs: a ladder of settings of every method, each in a process of its own",
-        description="Solve a scene by a ladder of settings of every method, each in a process of its own, and print errors "
-        "against CPU seconds. Stopped, it goes on where it was.",
+        description="Solve a scene by a ladder of settings of every method, each in a process of its own, and print "
+        "errors against CPU seconds. Stopped, it goes on where it was.",
         examples=[
             "partialslip study cost hertz-large-tension --repeats 1",
             "partialslip study cost hertz-small-tension --peers benchmarks/peers/measured.jsonl",

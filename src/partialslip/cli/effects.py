@@ -17,7 +17,7 @@ def add(topics: "Commands") -> None:
     effects = topics.add_parser(
         "effects",
         help="each effect on and off: what it changes and what it costs",
-        description="Turn each effect of a scene over, and print what that changes in a, m, n and q, and what it costs.",
+        description="Turn each effect of a scene over; print what that changes in a, m, n and q, and what it costs.",
         examples=[
             "partialslip study effects fretting-aluminium",
             "partialslip study effects my-scene.toml --set fem.size=0.05",

@@ -19,8 +19,8 @@ def add(commands: "Commands") -> None:
     exports = commands.add_parser(
         "export",
         help="write a scene as a model for another code",
-        description="Mesh both bodies of a scene and write them for another code, with contact, friction and load steps, "
-        "ready to run; partialslip score takes the results.",
+        description="Mesh both bodies of a scene and write them for another code, with contact, friction and load "
+        "steps, ready to run; partialslip score takes the results.",
         examples=[
             "partialslip export hertz-small-tension --to calculix --size 0.025 -o hertz.inp",
             "partialslip export fretting-aluminium --to abaqus --stiffer 100",

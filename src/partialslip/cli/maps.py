@@ -16,8 +16,8 @@ def add(commands: "Commands") -> None:
     maps = commands.add_parser(
         "map",
         help="draw the stick zones over all loads",
-        description="Draw where a profile sticks under all loads, as map.svg, ends.svg and map.csv, mark the scene's own "
-        "loads, and print their regime and stick zone.",
+        description="Draw where a profile sticks under all loads, as map.svg, ends.svg and map.csv, mark the scene's "
+        "own loads, and print their regime and stick zone.",
         examples=["partialslip map", "partialslip map flat-rounded", "partialslip map my-scene.toml --out maps"],
     )
     maps.add_argument("scene", nargs="?", metavar="SCENE",

@@ -23,8 +23,8 @@ def add(commands: "Commands") -> None:
     runs = commands.add_parser(
         "run",
         help="solve a scene, compare the methods, write the report",
-        description="Solve a scene exactly and by finite elements, print by how much they differ, and write report.html, "
-        "results.json and tractions.csv.",
+        description="Solve a scene exactly and by finite elements, print by how much they differ, and write "
+        "report.html, results.json and tractions.csv.",
         examples=[
             "partialslip run fretting-aluminium",
             "partialslip run my-scene.toml --set load.Q=[-30e3,30e3] --accuracy 1e-6",

@@ -25,8 +25,8 @@ def add(commands: "Commands") -> None:
     scores = commands.add_parser(
         "score",
         help="score somebody else's tractions for a scene",
-        description="Compare tractions from another code, in a table, CalculiX's results or a mesh with point data, with "
-        "the exact ones: the same table, page and files as of partialslip run.",
+        description="Compare tractions from another code, in a table, CalculiX's results or a mesh with point data, "
+        "with the exact ones: the same table, page and files as of partialslip run.",
         examples=[
             "partialslip score fretting-aluminium --template > mine.csv",
             "partialslip score fretting-aluminium mine.csv --bar 1e-2",

@@ -19,8 +19,8 @@ def add(topics: "Commands") -> None:
     size = topics.add_parser(
         "size",
         help="when is a body a half-plane? a sweep over sizes, or over anything else in a scene",
-        description="Sweep over sizes of bodies, or anything else in a scene, on two meshes each, and fit how the change "
-        "from half-planes falls with size. Stopped, it goes on where it was.",
+        description="Sweep over sizes of bodies, or anything else in a scene, on two meshes each, and fit how the "
+        "change from half-planes falls with size. Stopped, it goes on where it was.",
         examples=[
             "partialslip study size block.toml --over bodies.*.width+bodies.*.height=4a..256a",
             "partialslip study size pad.toml --over bodies.upper.height=8a,16a,32a --over friction.f=0.2,0.4",

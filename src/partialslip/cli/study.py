@@ -13,8 +13,8 @@ def add(commands: "Commands") -> None:
     study = commands.add_parser(
         "study",
         help="many cases of a scene: its effects, what accuracy costs, sizes of bodies",
-        description="Solve many cases of a scene and say what they show together, as tables, files and pictures. What was "
-        "stopped goes on where it was.",
+        description="Solve many cases of a scene and say what they show together, as tables, files and pictures. "
+        "What was stopped goes on where it was.",
         examples=[
             "partialslip study effects fretting-aluminium",
             "partialslip study cost hertz-large-tension --repeats 1",

@@ -10,7 +10,7 @@ from partialslip.export.calculix import calculix_deck
 from partialslip.export.model import GROWTH, SIZE, modelled
 from partialslip.scene import Scene
 
-# Formats, and the endings of their files.
+#: Formats, and the endings of their files.
 FORMATS = {"calculix": ".inp", "abaqus": ".inp", "gmsh": ".msh"}
 
 

@@ -66,10 +66,10 @@ class Part:
 
 @dataclass(frozen=True)
 class Model:
-    """``parts`` are the lower and the upper body; ``steps`` what happens to them, in ``substeps`` increments each but
-    the first; ``a`` (m) the half-width that is expected, ``size`` (m) the elements' along the contact, ``width`` that
-    of the blocks on either side in ``a``, ``f`` the coefficient of friction; bodies are so many times ``stiffer`` than
-    the scene's."""
+    """Of the scene ``name``: ``parts`` are the lower and the upper body; ``steps`` what happens to them, in
+    ``substeps`` increments each but the first; ``a`` (m) the half-width that is expected, ``size`` (m) the elements'
+    along the contact, ``width`` that of the blocks on either side in ``a``, ``f`` the coefficient of friction; bodies
+    are so many times ``stiffer`` than the scene's."""
 
     name: str
     parts: tuple[Part, Part]

@@ -26,9 +26,9 @@ except ImportError:  # Windows
 
 
 def write_run(run: Run, folder: Path) -> list[Path]:
-    """Write results.json, tractions.csv and report.html into ``folder``; where fields inside the bodies were asked for,
-    surface.csv, bodies.vtu and mesh.msh, too (lower.msh and upper.msh of bodies that are not mirror images). Returns
-    the files' paths. Raises InputError if the folder cannot be written.
+    """Write results.json, tractions.csv and report.html of ``run`` into ``folder``; where fields inside the bodies were
+    asked for, surface.csv, bodies.vtu and mesh.msh, too (lower.msh and upper.msh of bodies that are not mirror images).
+    Returns the files' paths. Raises InputError if the folder cannot be written.
     """
     data = record(run)
     files: dict[str, Callable[[Path], object]] = {

@@ -11,8 +11,8 @@ from partialslip.report.stickmap import StickMap
 
 
 def write_map(data: StickMap, folder: Path) -> list[Path]:
-    """Write map.svg, ends.svg and map.csv into ``folder``. Returns the files' paths. Raises InputError if the folder
-    cannot be written.
+    """Write map.svg, ends.svg and map.csv of the map ``data`` into ``folder``. Returns the files' paths. Raises
+    InputError if the folder cannot be written.
     """
     texts = {"map.svg": map_svg(data), "ends.svg": ends_svg(data), "map.csv": map_csv(data)}
     return write_texts(folder, texts)
@@ -33,7 +33,7 @@ def map_csv(data: StickMap) -> str:
 
 
 def place(data: StickMap) -> list[str]:
-    """Where the scene is on the map, and its limits, in lines of text; none without a scene."""
+    """Where the scene of the map ``data`` is on it, and its limits, in lines of text; none without a scene."""
     if data.scene is None:
         return []
     name, point = data.scene.name, data.point

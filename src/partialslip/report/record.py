@@ -17,7 +17,7 @@ _PACKAGES = ("partialslip", "numpy", "scipy", "scikit-fem", "gmsh", "meshio")
 
 
 def record(run: Run, *, curves: bool = True) -> dict[str, Any]:
-    """Everything a run found, as numbers, strings, lists and tables; SI units; with ``curves``, or without."""
+    """Everything that ``run`` found, as numbers, strings, lists and tables; SI units; with ``curves``, or without."""
     return {
         "schema": SCHEMA,
         "scene": msgspec.to_builtins(run.scene),

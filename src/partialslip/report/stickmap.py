@@ -86,7 +86,8 @@ class StickMap:
 
 
 def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lambda _: None) -> StickMap:
-    """The map for the pressure of ``scene``, without one for Hertz.
+    """The map for the pressure of ``scene``, without one for Hertz. ``progress`` is called with a line of text now and
+    then.
 
     Raises
     ------

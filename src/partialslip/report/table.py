@@ -12,7 +12,7 @@ from partialslip.run import Run
 
 
 def print_run(run: Run, console: Console) -> None:
-    """Print regimes, errors, certificates and costs."""
+    """Print regimes, errors, certificates and costs of ``run`` on rich's ``console``."""
     title = f"{run.scene.name}: {run.scene.title}" if run.scene.title else run.scene.name
     console.print(title, style="bold", markup=False)
     for name in run.comparisons:
