@@ -17,8 +17,8 @@ _HEAD = """\
 # Gallery
 
 The shipped scenes, then three of one's own, whose files are in `docs/scenes`; each at its own settings. Lines are the
-reference, markers the finite elements; half the change of shear between the load points is drawn, q = (q2 - q1)/2, in
-f p0, and p in p0. Errors are those of `partialslip run`: a, m and n as fractions of a, p and q in the relative L2 norm of
+reference, markers the finite elements; half the change of shear between the load points is drawn, q = (q2 - q1)/2, in f
+p0, and p in p0. Errors are those of `partialslip run`: a, m and n as fractions of a, p and q in the relative L2 norm of
 cell averages.
 """
 _ENTRY = """
