@@ -50,8 +50,8 @@ def _completion(root: argparse.ArgumentParser, shell: str) -> int:
     files = {"SCENE": _SCENES, "FILE": shtab.FILE, "DIR": shtab.DIRECTORY}
     for action in _actions(root):
         if action.metavar in files:
-            action.complete = files[action.metavar]  # type: ignore[attr-defined, index]
-    preamble = {name: text.format(names=" ".join(shipped_scenes())) for name, text in _FUNCTIONS.items()}
+            action.complete = files[action.metavar]  # type: ignore[attr-defined]
+    preamble = _FUNCTIONS[shell].format(names=" ".join(shipped_scenes()))
     sys.stdout.write(shtab.complete(root, shell, preamble=preamble))
     return 0
 

@@ -10,13 +10,15 @@ from rich.text import Text
 from partialslip.report import rows
 from partialslip.run import Run
 
+_WIDEST = 1000
+
 
 def print_run(run: Run, console: Console) -> None:
     """Print regimes, errors, certificates and costs of ``run`` on rich's ``console``."""
     title = f"{run.scene.name}: {run.scene.title}" if run.scene.title else run.scene.name
     console.print(title, style="bold", markup=False)
     for name in run.comparisons:
-        console.print(_errors(run, name))
+        print_table(console, rows.headings(run, name), rows.error_rows(run, name), words=(0, 5))
     for name, result in run.results.items():
         _print_lines(console, name, rows.facts(result, compared=bool(run.comparisons)))
     _print_effects(console, run)
@@ -26,21 +28,16 @@ def print_run(run: Run, console: Console) -> None:
 def print_table(
     console: Console, headings: Sequence[str], rows: Iterable[Sequence[str]], words: Container[int] = (0,)
 ) -> None:
-    """Print ``rows`` under ``headings``; columns ``words`` are of words, the others of numbers."""
-    console.print(_table(headings, rows, words))
-
-
-def _errors(run: Run, name: str) -> Table:
-    return _table(rows.headings(run, name), rows.error_rows(run, name), {0, 5})
-
-
-def _table(headings: Sequence[str], cells: Iterable[Sequence[str]], words: Container[int]) -> Table:
+    """Print ``rows`` under ``headings``; columns ``words`` are of words, the others of numbers. A table is as wide as
+    its numbers are long: beyond a narrow terminal rather than with digits left out."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for number, heading in enumerate(headings):
         table.add_column(Text(heading), justify="left" if number in words else "right", no_wrap=True)
-    for row in cells:
+    for row in rows:
         table.add_row(*row)
-    return table
+    needed = console.measure(table, options=console.options.update(width=_WIDEST)).maximum
+    table.width = needed if needed > console.width else None
+    console.print(table, crop=False)
 
 
 def _print_lines(console: Console, name: str, lines: dict[str, str]) -> None:
