@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from partialslip import shipped_scenes
-from partialslip.bodies import Body
 from partialslip.cli import main
 from partialslip.reading import parse_scene
 from partialslip_meshes.gmsh import DEBIAN_PACKAGES
@@ -40,14 +39,6 @@ def test_scene_in_the_readme_is_the_shipped_one(capsys):
     shipped = tomllib.loads((ROOT / f"src/partialslip/scenes/{scene.name}.toml").read_text("utf-8"))
     assert scene.load == parse_scene(shipped).load
     assert f'"name": "{scene.name}"' in printed
-
-
-def test_every_field_of_a_body_is_in_the_readme():
-    (text,) = blocks("toml")
-    body, rest = text.partition("# [bodies.lower]")[2].split("\n\n", 1)
-    lines = [line.removeprefix("# ") for line in body.splitlines()[1:]]
-    assert "[fem]" in rest
-    assert set(tomllib.loads("\n".join(lines))) == set(Body.__struct_fields__)
 
 
 def test_python_in_the_readme_runs(capsys):
