@@ -14,6 +14,7 @@ from partialslip.compare import Comparison as Comparison
 from partialslip.compare import compare as compare
 from partialslip.errors import InputError as InputError
 from partialslip.errors import PartialslipError as PartialslipError
+from partialslip.export import export as export
 from partialslip.plan import Plan as Plan
 from partialslip.plan import plan as plan
 from partialslip.reading import load_scene as load_scene

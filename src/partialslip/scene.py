@@ -342,7 +342,7 @@ class Effects(Table, frozen=True, kw_only=True, rename="kebab"):
 
 
 class Scene(Table, frozen=True, kw_only=True):
-    """A whole scene file. See the README for the format; :func:`partialslip.load_scene` reads one, and
+    """A whole scene file, whose keys docs/reference/scene.md lists; :func:`partialslip.load_scene` reads one, and
     :func:`partialslip.parse_scene` makes one from nested tables. Both check it, the constructor does not.
 
     Its ``name`` (letters, digits, ".", "_" and "-") and ``title``, and the tables ``material``, ``profile``, ``load``,

@@ -10,7 +10,7 @@ from partialslip.export.calculix import calculix_deck
 from partialslip.export.model import GROWTH, SIZE, modelled
 from partialslip.scene import Scene
 
-#: Formats, and the endings of their files.
+# Formats, and the endings of their files.
 FORMATS = {"calculix": ".inp", "abaqus": ".inp", "gmsh": ".msh"}
 
 
@@ -34,7 +34,7 @@ def export(
     scene : Scene
         Of half-planes of one material.
     to : str
-        "calculix", "abaqus" or "gmsh", one of :data:`FORMATS`.
+        "calculix", "abaqus" or "gmsh".
     size, width, growth, stiffer, ends, fine
         As for :func:`partialslip.export.model.modelled`.
     penalty : bool

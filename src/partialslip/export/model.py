@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.errors import InputError
-from partialslip.halfplane import contact
+from partialslip.halfplane.contact import contact
 from partialslip.result import Array
 from partialslip.scene import Constants, Scene
 from partialslip_meshes import QuadMesh, quad_block
