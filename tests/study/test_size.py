@@ -46,7 +46,8 @@ def test_axes_are_read(text, values, in_a):
 @pytest.mark.parametrize(
     "text",
     ["", "load.P", "load.P=", "=1,2", "load.P=1..", "load.P=2..1", "load.P=0..1", "load.P=1..2..3", "load.P=1a,2",
-     "load.P=one", "load.P=1..2:1", "load.P=1..2:x", "load.P=1,2:3", "load.P+=1,2", "0*load.P=1,2", "2*=1,2", "load.P=1..1e999"],
+     "load.P=one", "load.P=1..2:1", "load.P=1..2:x", "load.P=1,2:3", "load.P+=1,2",
+     "0*load.P=1,2", "2*=1,2", "load.P=1..1e999"],
 )  # fmt: skip
 def test_bad_axes_are_refused_in_one_line(text):
     with pytest.raises(partialslip.InputError, match="--over"):
