@@ -79,7 +79,7 @@ def _size(options: argparse.Namespace) -> int:
             [f"{value:.4g}", *(_number(sizes.off[quantity][k]) for quantity in size.QUANTITIES), _share(sizes, k)]
             for k, value in enumerate(sizes.size)
         ]
-        print_table(console, ["size", *size.QUANTITIES, "of the mesh, at most"], rows)
+        print_table(console, ["size", *size.QUANTITIES, "mesh"], rows)
         if laws:
             needed = [f"{level:.1%}" for level in size.LEVELS]
             head = ["change = C size^-k", "C", "k", "95 %", "points", *needed]
