@@ -119,3 +119,11 @@ def test_no_shear_no_error_of_shear():
 
 def test_points_without_cells_have_no_cell_errors(exact):
     assert cell_errors(exact.traction, exact.traction) == (None, None)
+
+
+def test_the_largest_pressure_is_found_between_points():
+    traction = traction_of(root, root)
+    assert traction.p.max() < 1 - 1e-4
+    assert traction.p_max == pytest.approx(1, abs=(traction.x[1] - traction.x[0]) ** 4 / 8)  # the term left out
+    corner = traction_of(lambda x: 1 - np.abs(x - traction.x[7]), root)  # a top that is none of a parabola is no less
+    assert 1 <= corner.p_max <= 1.01

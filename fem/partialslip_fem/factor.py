@@ -136,10 +136,11 @@ def _back(order: Indices, solution: Array) -> Array:
 
 
 def _inverse(lower: Array) -> Array:
-    """Inverse of L L^T, with ``lower`` = L."""
-    inverse, _ = la.lapack.dpotri(lower, lower=True)
-    result: Array = np.tril(inverse) + np.tril(inverse, -1).T
-    return result
+    """Inverse of L L^T, with ``lower`` = L, which it is put in the place of."""
+    half, _ = la.lapack.dpotri(lower, lower=True, overwrite_c=True)  # zero above the diagonal, as L is
+    inverse: Array = half + half.T
+    inverse[np.diag_indices_from(inverse)] /= 2
+    return inverse
 
 
 def _import_cvxopt() -> ModuleType:

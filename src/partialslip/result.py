@@ -60,6 +60,16 @@ class Traction:
     breaks: Array
     cells: Array | None = None
 
+    @property
+    def p_max(self) -> float:
+        """The largest pressure, Pa: of the parabola through the largest value and those beside it, as points need not
+        fall on the top."""
+        near = np.clip(int(self.p.argmax()), 1, len(self.x) - 2) + np.array([-1, 0, 1])
+        x, p = (self.x[near] - self.x[near[1]]) / np.ptp(self.x[near]), self.p[near]
+        curvature, slope, middle = np.polyfit(x, p, 2)
+        top = -slope / (2 * curvature) if curvature < 0 else np.inf
+        return float(max(p.max(), middle + slope * top / 2 if x[0] <= top <= x[2] else 0.0))
+
 
 @dataclass(frozen=True)
 class Slip:

@@ -19,8 +19,8 @@ def add(topics: "Commands") -> None:
     size = topics.add_parser(
         "size",
         help="when is a body a half-plane? a sweep over sizes, or over anything else in a scene",
-        description="Sweep over sizes of bodies, or anything else in a scene, on two meshes each, and fit how the "
-        "change from half-planes falls with size. Stopped, it goes on where it was.",
+        description="Sweep over sizes of bodies, or anything else in a scene, on meshes that tell what is of the "
+        "mesh, and fit how the change from half-planes falls with size. Stopped, it goes on where it was.",
         examples=[
             "partialslip study size block.toml --over bodies.*.width+bodies.*.height=4a..256a",
             "partialslip study size pad.toml --over bodies.upper.height=8a,16a,32a --over friction.f=0.2,0.4",
@@ -33,7 +33,9 @@ def add(topics: "Commands") -> None:
                       "half-plane, or without a as in the scene; twice for a map")  # fmt: skip
     size.add_argument("--processes", type=int, metavar="N", help="at once on this machine (default: its cores)")
     size.add_argument("--cluster", metavar="ADDRESS", help="of a Dask scheduler, whose workers solve instead")
-    size.add_argument("--one-mesh", action="store_true", help="no second, coarser mesh of each size")
+    size.add_argument(
+        "--one-mesh", action="store_true", help="of each size, instead of two or more that tell what is of the mesh"
+    )
     size.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-size)")
     size.set_defaults(command=_size)
 
@@ -52,25 +54,24 @@ def _size(options: argparse.Namespace) -> int:
     from partialslip.report import print_table, write_texts
     from partialslip.report.files import csv_text
     from partialslip.study import size
+    from partialslip.study.axes import axis
     from partialslip.study.ledger import Ledger
     from partialslip.study.sizefigure import grid_svg, size_svg
-    from partialslip.study.sweep import sweep, workers
+    from partialslip.study.sweep import workers
 
-    axes = [size.axis(text) for text in options.over]
-    cases = size.cases(scene, axes, 1 if options.one_mesh else 2)
+    axes = [axis(text) for text in options.over]
     folder = Path(options.out) if options.out else Path("results") / f"{scene.name}-size"
     ledger = Ledger(folder / "ledger.jsonl")
     columns = (TextColumn(f"{scene.name}-size"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[left]}"))
     messages = Console(stderr=True, highlight=False)
     with Progress(*columns, console=messages, transient=True) as bar:
-        task = bar.add_task("", total=len(cases), left="")
+        task = bar.add_task("", total=None, left="")
 
         def progress(done: int, total: int, left: float) -> None:
             bar.update(task, completed=done, total=total, left="" if math.isnan(left) else f"{left:.0f} s left")
 
         with workers(options.cluster, options.processes) as executor:
-            sweep(cases, ledger, executor, progress)
-    entries = [ledger[case.key] for case in cases]
+            entries = size.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
     console = Console(highlight=False)
     texts = {"cases.csv": csv_text(*size.table(axes, entries))}
     unit = "in contact half-widths" if axes[0].in_a else "as in the scene"
@@ -83,7 +84,7 @@ def _size(options: argparse.Namespace) -> int:
             [f"{value:.4g}", *(_number(sizes.off[quantity][k]) for quantity in size.QUANTITIES), _share(sizes, k)]
             for k, value in enumerate(sizes.size)
         ]
-        print_table(console, ["size", *size.QUANTITIES, "of the mesh, at most"], rows)
+        print_table(console, ["size", *size.QUANTITIES, "mesh"], rows)
         if laws:
             needed = [f"{level:.1%}" for level in size.LEVELS]
             head = ["change = C size^-k", "C", "k", "95 %", "points", *needed]

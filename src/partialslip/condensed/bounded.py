@@ -11,6 +11,7 @@ from partialslip.result import Array
 Sides = npt.NDArray[np.int8]
 
 _EPS = float(np.finfo(float).eps)
+_HALVINGS = 60  # of a step, after which less than rounding is left of it
 
 
 @dataclass(frozen=True)
@@ -81,12 +82,10 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, 
 class _BlockPivoting:
     """Minimise x.C x/2 - (g + shift).x over lower <= x <= upper.
 
-    All members that violate their condition change sides at once; if their number has not fallen for three
-    rounds, only the last of them does (Murty's rule), until it falls. That cannot cycle (Judice and Pires 1994)
-    but by rounding, where a member sits exactly on its bound and neither side is right to the last digit: if a
-    partition comes back, or 10 n rounds of that rule bring nothing, more counts as rounding. What is left of the
-    conditions is in the solution's residual. It always ends: the number falls at most n times, and in between what
-    counts as rounding grows until all members are free and none can be told to be wrong.
+    All members that violate their condition change sides at once, which takes a few rounds as a rule but may go round
+    in circles. If their number has not fallen for three rounds, projected Newton steps take over (Bertsekas 1982):
+    from a point within the bounds to the minimum of its face, clipped, as far as the objective falls. It falls each
+    time, so that no face comes back, and what is left of the conditions when it cannot fall any more is rounding.
     """
 
     def __init__(self, C: Array, g: Array, lower: Array, upper: Array, start: Sides | None) -> None:
@@ -113,30 +112,63 @@ class _BlockPivoting:
 
     def solve(self, shift: float) -> tuple[Array, Array, float]:
         """The minimiser, its r = C x - g - shift, and how fast its sum grows with the shift."""
-        fewest, chances, rounding = len(self._g) + 1, 3, 4 * _EPS
-        seen: set[bytes] = set()
+        fewest, chances = len(self._g) + 1, 3
         while True:
             x, slope = self._face(shift)
-            r = self._C @ x - self._g - shift
-            noise = rounding * (self._diagonal * np.abs(x).sum() + np.abs(self._g) + abs(shift)) / self._diagonal
-            augmented = x - r / self._diagonal
-            wanted = (augmented > self._upper + noise).astype(np.int8) - (augmented < self._lower - noise)
+            r, wanted = self._conditions(x, shift)
             wrong = np.flatnonzero(wanted != self._side)
             if len(wrong) == 0:
                 return x, r, slope
             if len(wrong) < fewest:
                 fewest, chances = len(wrong), 3
-                seen.clear()
             elif chances > 0:
                 chances -= 1
             else:
-                wrong = wrong[-1:]
-                if (partition := self._side.tobytes()) in seen or len(seen) == 10 * len(self._g):
-                    rounding *= 16
-                    seen.clear()
-                seen.add(partition)
-            self.changes += 1
-            self._side[wrong] = np.where(self._side[wrong] == 0, wanted[wrong], 0)
+                return self._descend(x, shift)
+            self._change(np.where(self._side == 0, wanted, np.where(wanted == self._side, wanted, 0)))
+
+    def _descend(self, x: Array, shift: float) -> tuple[Array, Array, float]:
+        """The same by projected Newton steps, from near ``x``.
+
+        Members that their gradient alone would take to a bound go straight there, the others by Newton's step at what
+        the gradient is now: both ways are downhill, and none stops right before a bound.
+        """
+        at = np.clip(x, self._lower, self._upper)
+        while True:
+            r, sides = self._conditions(at, shift)
+            self._change(sides)
+            x, slope = self._face(shift)
+            new, wanted = self._conditions(x, shift)
+            if np.array_equal(wanted, sides):
+                return x, new, slope
+            free, way = sides == 0, x - at
+            if free.any():
+                way[free] = -la.cho_solve(self._factor, r[free], check_finite=False)
+            noise = self._noise(at, shift)
+            for halvings in range(_HALVINGS):
+                step = np.clip(at + 0.5**halvings * way, self._lower, self._upper) - at
+                if step @ r + step @ self._C @ step / 2 < -np.abs(step) @ noise:
+                    break
+            if np.all(self._diagonal * np.abs(step) <= noise):
+                return at, r, slope
+            at = at + step
+
+    def _conditions(self, x: Array, shift: float) -> tuple[Array, Sides]:
+        """r, and the sides that x and r call for, rounding aside."""
+        r = self._C @ x - self._g - shift
+        noise = self._noise(x, shift) / self._diagonal
+        augmented = x - r / self._diagonal
+        above, below = augmented > self._upper + noise, augmented < self._lower - noise
+        return r, above.astype(np.int8) - below
+
+    def _noise(self, x: Array, shift: float) -> Array:
+        """What rounding makes of r."""
+        noise: Array = 4 * _EPS * (self._diagonal * np.abs(x).sum() + np.abs(self._g) + abs(shift))
+        return noise
+
+    def _change(self, sides: Sides) -> None:
+        self.changes += not np.array_equal(sides, self._side)
+        self._side = sides
 
     def _face(self, shift: float) -> tuple[Array, float]:
         """Minimise with the bound members held: x, and the growth of its sum with the shift."""

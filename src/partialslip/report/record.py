@@ -45,7 +45,7 @@ def _method(result: Result, curves: bool) -> dict[str, Any]:
 def _figures(result: Result) -> dict[str, Any]:
     return {
         **{key: getattr(result, key) for key in ("a", "p0", "regime", "m", "n", "stick_half_width", "stick_centre")},
-        "p_max": float(result.traction.p.max()),
+        "p_max": result.traction.p_max,
         **{key: result.counts[key] for key in ("dofs", "contact_nodes") if key in result.counts},
         **{key: dict(getattr(result, key)) for key in ("settings", "counts", "limits", "certificate", "estimate")},
         "notes": list(result.notes),

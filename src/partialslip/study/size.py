@@ -1,127 +1,72 @@
 """When is a body a half-plane? Sweeps over sizes, or anything else in a scene, against the half-plane's solution."""
 
-import itertools
 import math
-import re
 from collections.abc import Iterable, Mapping, Sequence
-from copy import deepcopy
+from concurrent.futures import Executor
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from typing import Any
 
-import msgspec
 import numpy as np
 from scipy.stats import t as student
 
-from partialslip.errors import InputError
-from partialslip.reading import parse_scene
 from partialslip.result import Array
-from partialslip.run import run
 from partialslip.scene import Scene
-from partialslip.study.case import Case
+from partialslip.study.axes import ACCURACY, Axis, cases
+from partialslip.study.ledger import Ledger
+from partialslip.study.sweep import Progress, sweep
 
-QUANTITIES = ("a", "p", "m", "n", "q")
+QUANTITIES = ("a", "p0", "p", "m", "n", "q")
 LEVELS = (0.05, 0.01, 0.001)
-_COARSER = 8.0  # accuracy of the second mesh, in the first's
-_CLEAR = 10.0  # an error of size counts where it is so many times that of the mesh
-_COUNT = 9
-_NUMBER = re.compile(r"([0-9.]+(?:[eE][-+]?[0-9]+)?)(a?)")
+_COARSER = 8.0  # accuracy of one mesh in the next one's
+_FINER = 3  # meshes at most that follow where the size changes hardly more than the mesh
+_FINEST = 1e-8  # accuracy that rounding allows
+_CLEAR = 10.0  # a change counts where it is so many times what the mesh may be off by
+
+Entry = Mapping[str, Any]
 
 
-@dataclass(frozen=True)
-class Axis:
-    """A parameter to sweep over: its keys in the scene, and the values, in the half-plane's contact half-widths where
-    ``in_a`` is true."""
+def measure(
+    scene: Scene,
+    axes: Sequence[Axis],
+    ledger: Ledger,
+    executor: Executor,
+    progress: Progress = lambda *_: None,
+    control: bool = True,
+) -> list[Entry]:
+    """Solve the grid of ``axes``, but for what ``ledger`` has; returns its entries.
 
-    keys: tuple[str, ...]
-    values: tuple[float, ...]
-    in_a: bool
-
-    @property
-    def name(self) -> str:
-        """For headings."""
-        return " = ".join(self.keys)
-
-
-def axis(text: str) -> Axis:
-    """Read ``KEY[+KEY ...]=VALUES``: a list ``4a,8a,16a``, or a range ``4a..256a`` or ``4a..256a:13`` of 9, or 13,
-    values in equal ratios; ``a`` is the half-plane's contact half-width. ``*`` in a key stands for any one table.
-
-    Raises
-    ------
-    InputError
-        If it is not that.
-    """
-    keys, equals, values = text.partition("=")
-    names = tuple(key.strip() for key in keys.split("+"))
-    if not (equals and all(names)):
-        raise InputError(f"--over {text}: must be key=values, for example bodies.*.width=4a..256a")
-    span, _, count = values.partition(":")
-    ends = span.split("..") if ".." in span else span.split(",")
-    found = [_NUMBER.fullmatch(value.strip()) for value in ends]
-    if not all(found) or (".." in span and len(ends) != 2) or (count and ".." not in span):
-        raise InputError(f"--over {text}: values must be a list 4a,8a,16a or a range 4a..256a or 4a..256a:13")
-    matches = [match for match in found if match]
-    if len({match[2] for match in matches}) > 1:
-        raise InputError(f"--over {text}: values must be all in a or none")
-    try:
-        numbers = [float(match[1]) for match in matches]
-        if ".." in span:
-            number = int(count) if count else _COUNT
-            if not (0 < numbers[0] < numbers[1] < math.inf and 2 <= number <= 10_000):
-                raise ValueError
-            numbers = np.geomspace(numbers[0], numbers[1], number).tolist()
-    except ValueError:
-        raise InputError(f"--over {text}: a range must rise from above 0, in 2 to 10000 steps") from None
-    return Axis(names, tuple(float(f"{number:.12g}") for number in numbers), bool(matches[0][2]))
-
-
-def cases(scene: Scene, axes: Sequence[Axis], meshes: int = 2) -> list[Case]:
-    """The cases of a sweep over the grid of all ``axes``, each at the scene's accuracy, and with two ``meshes`` at an
-    eight times coarser one, too.
+    With ``control`` each point is solved on two meshes at least, for the accuracy that the scene asks for and for one
+    eight times coarser. Where a change is not ten times what the mesh may be off by, another one follows that is eight
+    times finer, up to three of them.
 
     Raises
     ------
     InputError
         If a key is not in the scene, or a value not allowed.
+    PartialslipError
+        If a worker process dies; what was finished is in the ledger.
     """
-    a = run(scene, ["exact"]).results["exact"].a
-    plain = msgspec.to_builtins(scene)
-    found = []
-    for values in itertools.product(*(each.values for each in axes)):
-        data = deepcopy(plain)
-        for each, value in zip(axes, values, strict=True):
-            for key in each.keys:
-                _put(data, key.split("."), value * a if each.in_a else value, key)
-        labels = {each.name: value for each, value in zip(axes, values, strict=True)}
-        for coarser in (1.0, _COARSER)[:meshes]:
-            own = deepcopy(data)
-            own["fem"]["accuracy"] = scene.fem.accuracy * coarser
-            found.append(Case(parse_scene(own), ("exact", "fem"), {**labels, "coarser": coarser}))
-    return found
-
-
-def _put(data: dict[str, Any], path: list[str], value: float, key: str) -> None:
-    """Set what ``path`` leads to, in every table that its stars stand for."""
-    head, *rest = path
-    if not rest:
-        if head not in data:
-            raise InputError(f"--over {key}: not in the scene")
-        data[head] = int(value) if isinstance(data[head], int) and value == int(value) else value
-        return
-    tables = [name for name, table in data.items() if fnmatchcase(name, head) and isinstance(table, dict)]
-    if not tables:
-        raise InputError(f"--over {key}: there is no table {head!r} in the scene")
-    for name in tables:
-        _put(data[name], rest, value, key)
+    asked = cases(scene, axes, (_COARSER, 1.0) if control else (1.0,))
+    sweep(asked, ledger, executor, progress)
+    finer = [_COARSER**-k for k in range(1, _FINER + 1)] if control else []
+    for accuracy in (each for each in finer if each * scene.fem.accuracy >= _FINEST):
+        points = _by_point(axes, (ledger[case.key] for case in asked))
+        unclear = {point for point, meshes in points.items() if not _clear(meshes)}
+        asked += [
+            case
+            for case in cases(scene, axes, (accuracy,))
+            if tuple(case.labels[each.name] for each in axes) in unclear
+        ]
+        sweep(asked, ledger, executor, progress)
+    return [ledger[case.key] for case in asked]
 
 
 @dataclass(frozen=True)
 class Sizes:
     """A sweep along one axis.
 
-    ``size`` (k,), in a or as swept; ``off`` (k,) by quantity: what the body changes: a and the largest p relative, m
-    and n in a, q in the relative L2 norm; ``mesh`` (k,): what of it may be due to the mesh.
+    ``size`` (k,), in a or as swept; ``off`` (k,) by quantity: what the body changes: a and p0, the largest p, relative,
+    m and n in a, p and q in the relative L2 norm; ``mesh`` (k,): what of it may be due to the mesh.
     """
 
     name: str
@@ -143,41 +88,49 @@ class Law:
     needed: tuple[float, ...]
 
 
-def along(axis: Axis, entries: Iterable[Mapping[str, Any]]) -> Sizes:
+def along(axis: Axis, entries: Iterable[Entry]) -> Sizes:
     """The sweep along ``axis``, from the entries of a ledger with its label; cases that failed are left out."""
-    fine: dict[float, Mapping[str, Any]] = {}
-    coarse: dict[float, Mapping[str, Any]] = {}
-    for entry in entries:
-        if "error" not in entry:
-            (fine if entry["labels"]["coarser"] == 1 else coarse)[entry["labels"][axis.name]] = entry
-    sizes = sorted(fine)
-    off: dict[str, list[float]] = {quantity: [] for quantity in QUANTITIES}
-    mesh: dict[str, list[float]] = {quantity: [] for quantity in QUANTITIES}
-    for size in sizes:
-        found, estimate = _off(fine[size]), fine[size]["methods"]["fem"]["estimate"]
-        rough = _off(coarse[size]) if size in coarse else {}
-        for quantity in QUANTITIES:
-            off[quantity].append(abs(found.get(quantity, np.nan)))
-            known = estimate.get(quantity, np.nan)
-            changed = abs(rough.get(quantity, np.nan) - found.get(quantity, np.nan))
-            mesh[quantity].append(float(np.fmax(known, 0.0 if math.isnan(changed) else changed / _COARSER)))
+    points = {point[0]: _change(meshes) for point, meshes in sorted(_by_point([axis], entries).items())}
     return Sizes(
         axis.name,
-        np.array(sizes),
-        {key: np.array(values) for key, values in off.items()},
-        {key: np.array(values) for key, values in mesh.items()},
+        np.array(list(points)),
+        {key: np.array([off[key] for off, _ in points.values()]) for key in QUANTITIES},
+        {key: np.array([mesh[key] for _, mesh in points.values()]) for key in QUANTITIES},
     )
 
 
-def _off(entry: Mapping[str, Any]) -> dict[str, float]:
+def _by_point(axes: Sequence[Axis], entries: Iterable[Entry]) -> dict[tuple[float, ...], list[Entry]]:
+    """The entries of each point of the grid, from the coarsest mesh to the finest; without those that failed."""
+    points: dict[tuple[float, ...], list[Entry]] = {}
+    for entry in sorted(entries, key=lambda entry: -entry["labels"][ACCURACY]):
+        if "error" not in entry:
+            points.setdefault(tuple(entry["labels"][each.name] for each in axes), []).append(entry)
+    return points
+
+
+def _change(meshes: Sequence[Entry]) -> tuple[dict[str, float], dict[str, float]]:
+    """What the body changes at one point, by its finest mesh, and what of it may be due to that mesh: its own estimate,
+    or an eighth of what the last refinement changed, if that is more."""
+    found, estimate = _off(meshes[-1]), dict(meshes[-1]["methods"]["fem"]["estimate"])
+    estimate["p0"] = estimate.get("p", math.nan)
+    rough = _off(meshes[-2]) if len(meshes) > 1 else {}
+    changed = {key: abs(rough.get(key, math.nan) - found.get(key, math.nan)) / _COARSER for key in QUANTITIES}
+    mesh = {key: float(np.fmax(estimate.get(key, math.nan), np.nan_to_num(changed[key]))) for key in QUANTITIES}
+    return {key: abs(found.get(key, math.nan)) for key in QUANTITIES}, mesh
+
+
+def _clear(meshes: Sequence[Entry]) -> bool:
+    off, mesh = _change(meshes)
+    return all(not off[key] < _CLEAR * mesh[key] for key in QUANTITIES)
+
+
+def _off(entry: Entry) -> dict[str, float]:
     fem, exact, comparison = entry["methods"]["fem"], entry["methods"]["exact"], entry["comparison"]["fem"]
-    found = {"a": fem["a"] / exact["a"] - 1, "p": fem["p_max"] / exact["p_max"] - 1}
+    found = {"a": fem["a"] / exact["a"] - 1, "p0": fem["p_max"] / exact["p_max"] - 1}
     for key in ("m", "n"):
         if fem[key] is not None and exact[key] is not None:
             found[key] = (fem[key] - exact[key]) / exact["a"]
-    if comparison["q"] is not None:
-        found["q"] = comparison["q"]
-    return found
+    return found | {key: comparison[key] for key in ("p", "q") if comparison[key] is not None}
 
 
 def law(sizes: Sizes, quantity: str) -> Law | None:
@@ -208,25 +161,21 @@ def _needed(size: Array, off: Array, level: float, C: float, k: float) -> float:
     return float(np.exp(np.interp(-np.log(level), -np.log(off[ends]), np.log(size[ends]))))
 
 
-def grid(axes: Sequence[Axis], entries: Iterable[Mapping[str, Any]], quantity: str) -> tuple[Array, Array, Array]:
+def grid(axes: Sequence[Axis], entries: Iterable[Entry], quantity: str) -> tuple[Array, Array, Array]:
     """The values of two ``axes``, and |change| of ``quantity`` over them, (second, first); NaN where not solved."""
     x, y = (np.array(each.values) for each in axes)
-    off = np.full((len(y), len(x)), np.nan)
-    for entry in entries:
-        if "error" not in entry and entry["labels"]["coarser"] == 1:
-            at = tuple(np.flatnonzero(v == entry["labels"][each.name]) for v, each in zip((x, y), axes, strict=True))
-            off[at[1], at[0]] = abs(_off(entry).get(quantity, np.nan))
-    return x, y, off
+    points = {point: _change(meshes)[0][quantity] for point, meshes in _by_point(axes, entries).items()}
+    return x, y, np.array([[points.get((first, second), math.nan) for first in x.tolist()] for second in y.tolist()])
 
 
-def table(axes: Sequence[Axis], entries: Iterable[Mapping[str, Any]]) -> tuple[list[str], list[list[Any]]]:
+def table(axes: Sequence[Axis], entries: Iterable[Entry]) -> tuple[list[str], list[list[Any]]]:
     """Headings and rows for a CSV file: one row a case."""
     figures = ("a", "p_max", "m", "n", "regime")
-    head = [*(each.name for each in axes), "coarser", *figures, *(f"change of {key}" for key in QUANTITIES)]
+    head = [*(each.name for each in axes), ACCURACY, *figures, *(f"change of {key}" for key in QUANTITIES)]
     head += ["dofs", "cpu_s", "error"]
     rows = []
     for entry in entries:
-        row = [entry["labels"][name] for name in (*(each.name for each in axes), "coarser")]
+        row = [entry["labels"][name] for name in (*(each.name for each in axes), ACCURACY)]
         if "error" in entry:
             rows.append([*row, *[""] * (len(head) - len(row) - 1), entry["error"]])
         else:

@@ -12,8 +12,8 @@ from partialslip.study.size import QUANTITIES, Law, Sizes
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_STYLE = {"a": ("o", "-"), "p": ("s", "--"), "m": ("^", "-"), "n": ("v", "--"), "q": ("D", ":")}
-_UNIT = {"a": "a", "p": "largest p", "m": "m, in a", "n": "n, in a", "q": "q, relative L2"}
+_STYLE = {"a": ("o", "-"), "p0": ("s", "--"), "p": ("x", ":"), "m": ("^", "-"), "n": ("v", "--"), "q": ("D", ":")}
+_UNIT = {"a": "a", "p0": "p0, largest p", "p": "p, relative L2", "m": "m, in a", "n": "n, in a", "q": "q, relative L2"}
 
 
 def size_svg(sizes: Sizes, laws: Sequence[Law], title: str, unit: str) -> str:
