@@ -4,7 +4,7 @@
 page; ``toml`` blocks are scenes, whole ones or tables to change in a shipped one, and are saved where their first line
 names a file. A ``text`` block is what the block before it prints: numbers with an exponent are errors, which agree to
 a factor of three or are rounding; others agree to 1e-5, or the last digit shown, and costs need not; ``...`` stands for
-anything. What is not run says why in a comment before it, or is ``slow``, as what takes another code is.
+anything. What is not run says why in a comment before it, or is ``slow``, as other codes are.
 """
 
 import contextlib
@@ -159,7 +159,7 @@ def test_page_runs(name, tmp_path, monkeypatch):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name, found in PAGES.items() if any(b.mark == "slow" for b in found)])
-def test_page_runs_with_other_codes(name, tmp_path, monkeypatch):
+def test_whole_page_runs(name, tmp_path, monkeypatch):
     codes = {line.split()[0] for block in PAGES[name] if block.mark == "slow" for line in block.code.splitlines()}
     if missing := [code for code in codes & set(ALONE) if not shutil.which(code)]:
         pytest.skip(f"{', '.join(missing)}: not installed")
