@@ -34,11 +34,11 @@ _SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)
 
 @dataclass(frozen=True)
 class Point:
-    """Medians over the repeats of one setting.
+    """Medians over the repeats of one ``setting``, of a ``series`` of them.
 
     ``errors`` by quantity, against the exact solution (a, m and n in a, p and q in the relative L2 norm of cell means);
     ``cpu_s`` of the method, by ``phases``, ``process_s`` of the whole process, ``report_s`` of writing the report (not
-    in the former); ``counts`` of work.
+    in the former), all CPU seconds; ``wall_s``; ``peak_rss_mb``, memory; ``counts`` of work.
     """
 
     series: str
@@ -101,7 +101,8 @@ def _case(scene: Scene, methods: tuple[str, ...], series: str, setting: str, fem
 def measure(
     scene: Scene, ledger: Ledger, repeats: int, progress: Callable[[int, int, str], None] = lambda *_: None
 ) -> list[Point]:
-    """Solve the ladder ``repeats`` times, each setting in a process of its own, but for what ``ledger`` has.
+    """Solve the ladder of ``scene`` ``repeats`` times, each setting in a process of its own, but for what ``ledger``
+    has.
 
     One repeat of all settings comes after the other, so that what disturbs the machine for a while disturbs no setting
     alone. ``progress`` is called with how many are done, how many there are, and the next one in words.
@@ -119,7 +120,7 @@ def measure(
 
 
 def points(entries: Iterable[dict[str, Any]]) -> list[Point]:
-    """Medians of the entries of a ledger, setting by setting."""
+    """Medians of the ``entries`` of a ledger, setting by setting."""
     by_setting: dict[tuple[str, str], list[dict[str, Any]]] = {}
     for entry in entries:
         if "error" not in entry:
@@ -152,8 +153,9 @@ def _methods(entry: dict[str, Any]) -> Any:
 
 
 def read_peers(path: Path, scene: str) -> list[Point]:
-    """Other codes' results for ``scene``, one a line as JSON: ``scene``, ``method``, ``setting``, ``element_size``,
-    ``dofs``, ``errors``, ``cpu_s``, ``process_cpu_s``, ``wall_s`` and ``peak_rss_mb`` (see ``benchmarks/peers``).
+    """Other codes' results for ``scene`` from the file ``path``, one a line as JSON: ``scene``, ``method``,
+    ``setting``, ``element_size``, ``dofs``, ``errors``, ``cpu_s``, ``process_cpu_s``, ``wall_s`` and ``peak_rss_mb``
+    (see ``benchmarks/peers``).
 
     Raises
     ------
@@ -193,7 +195,7 @@ def _short(setting: str) -> str:
 
 
 def front(points: Iterable[Point]) -> list[Point]:
-    """Those that no other one beats in CPU seconds of the process and in m and n, cheapest first."""
+    """Those of ``points`` that no other one beats in CPU seconds of the process and in m and n, cheapest first."""
     best, found = np.inf, []
     for point in sorted((point for point in points if point.errors), key=lambda point: (point.process_s, point.ends)):
         if point.ends < best:
@@ -203,14 +205,15 @@ def front(points: Iterable[Point]) -> list[Point]:
 
 
 def slope(x: Sequence[float], y: Sequence[float]) -> float:
-    """The exponent k of the power law y = C x^k by least squares in logarithms; NaN for fewer than two points."""
+    """The exponent k of the power law ``y = C x^k`` by least squares in logarithms; NaN for fewer than two points."""
     if len(x) < 2:
         return float("nan")
     return float(np.polyfit(np.log(x), np.log(np.maximum(y, 1e-300)), 1)[0])
 
 
 def slopes(points: Iterable[Point]) -> dict[str, dict[str, float]]:
-    """By series of finite elements: exponents of the errors of m, n and q against unknowns, and of CPU seconds."""
+    """By series of finite elements among ``points``: exponents of the errors of m, n and q against unknowns, and of CPU
+    seconds."""
     by_series: dict[str, list[Point]] = {}
     for point in points:
         if "dofs" in point.counts:
@@ -227,7 +230,7 @@ def slopes(points: Iterable[Point]) -> dict[str, dict[str, float]]:
 
 def against(ours: Sequence[Point], peer: Sequence[Point], key: str) -> dict[str, float]:
     """What a ``peer``'s best error in ``key`` costs here, over what it costs there (CPU of the method, and of the
-    process), and the best error here at its CPU, over its own; NaN where ours never get there."""
+    process), and the best error here at its CPU, over its own; NaN where ``ours`` never get there."""
     best = min((point for point in peer if key in point.errors), key=lambda point: point.errors[key])
     good = [point for point in ours if point.errors.get(key, np.inf) <= best.errors[key]]
     in_time = [point.errors[key] for point in ours if key in point.errors and point.cpu_s <= best.cpu_s]
@@ -240,7 +243,7 @@ def against(ours: Sequence[Point], peer: Sequence[Point], key: str) -> dict[str,
 
 
 def table(points: Sequence[Point]) -> tuple[list[str], list[list[float | str]]]:
-    """Headings and rows for a CSV file: every figure of every point."""
+    """Headings and rows for a CSV file: every figure of all ``points``."""
     phases = list(dict.fromkeys(phase for point in points for phase in point.phases))
     counts = list(dict.fromkeys(count for point in points for count in point.counts))
     costs = ["cpu_s", "process_s", "report_s", "wall_s", "peak_rss_mb"]
@@ -260,5 +263,5 @@ def table(points: Sequence[Point]) -> tuple[list[str], list[list[float | str]]]:
 
 
 def errors_of(points: Iterable[Point], key: str) -> Array:
-    """(k, 2) array: CPU seconds of the process and the error in ``key``, of those that have one."""
+    """(k, 2) array: CPU seconds of the process and the error in ``key``, of those ``points`` that have one."""
     return np.array([[point.process_s, point.errors[key]] for point in points if key in point.errors]).reshape(-1, 2)

@@ -36,7 +36,7 @@ _REPEATS = 2  # the best CPU time of
 
 @dataclass(frozen=True)
 class Entry:
-    """An effect, on and off.
+    """An ``effect``, on and off.
 
     ``called_for`` says whether the scene calls for it, and ``why``. ``changes``, between on and off: of a, m and n in
     a, of q = (q2 - q1)/2 as relative L2 of cell averages, and of q2 as relative L2; None where there is nothing to
@@ -60,7 +60,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class EffectStudy:
-    """A scene, as solved, its plan and result, and the ledger of its effects."""
+    """A ``scene``, as solved, its ``plan`` and ``result``, and the ledger of its effects, the ``entries``."""
 
     scene: Scene
     plan: Plan
@@ -155,7 +155,7 @@ def _costs(result: Result) -> dict[str, float | None]:
 
 
 def changes_table(study: EffectStudy) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Headings and rows: what each effect changes."""
+    """Headings and rows: what each effect of ``study`` changes."""
     rows = [
         (entry.effect, "called for" if entry.called_for else "left out", *(change(entry, key) for key in CHANGES))
         for entry in study.entries
@@ -164,7 +164,7 @@ def changes_table(study: EffectStudy) -> tuple[tuple[str, ...], list[tuple[str, 
 
 
 def costs_table(study: EffectStudy) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Headings and rows: what the scene costs as planned, and with each effect turned over."""
+    """Headings and rows: what the scene of ``study`` costs as planned, and with each effect turned over."""
     rows = [("as planned", *map(_digits, _costs(study.result).values()))]
     for entry in study.entries:
         if not entry.refused:
@@ -174,12 +174,12 @@ def costs_table(study: EffectStudy) -> tuple[tuple[str, ...], list[tuple[str, ..
 
 
 def turned_over(entry: Entry) -> str:
-    """What is different where an effect is not as the scene has it."""
+    """What is different where the effect of ``entry`` is not as the scene has it."""
     return f"{'without' if entry.called_for else 'with'} {entry.effect}"
 
 
 def change(entry: Entry, key: str) -> str:
-    """A change in digits; "-" where there is nothing to compare."""
+    """The change of ``key`` by the effect of ``entry`` in digits; "-" where there is nothing to compare."""
     value = entry.changes.get(key)
     return "-" if value is None else "0" if value == 0 else f"{value:.1e}"
 
@@ -189,12 +189,12 @@ def _digits(cost: float | None) -> str:
 
 
 def notes(study: EffectStudy) -> list[str]:
-    """What cannot be switched, in lines of text."""
+    """What cannot be switched in ``study``, in lines of text."""
     return [entry.refused for entry in study.entries if entry.refused]
 
 
 def heading(study: EffectStudy) -> str:
-    """The scene, and what it comes to with its own effects."""
+    """The scene of ``study``, and what it comes to with its own effects."""
     result = study.result
     ends = ", ".join(
         f"{key} = {'none' if getattr(result, key) is None else f'{getattr(result, key) / result.a:.5f} a'}"
@@ -204,7 +204,7 @@ def heading(study: EffectStudy) -> str:
 
 
 def effects_csv(study: EffectStudy) -> str:
-    """The ledger, one row an effect; fractions, CPU seconds and counts, empty where there is nothing."""
+    """The ledger of ``study``, one row an effect; fractions, CPU seconds and counts, empty where there is nothing."""
     costs = [f"{key}_{state}" for key in COSTS for state in ("on", "off")]
     rows = [
         [
@@ -221,7 +221,7 @@ def effects_csv(study: EffectStudy) -> str:
 
 
 def effects_record(study: EffectStudy) -> dict[str, Any]:
-    """The ledger as plain data."""
+    """The ledger of ``study`` as plain data."""
     result = study.result
     return {
         "schema": SCHEMA,

@@ -27,7 +27,7 @@ _FINEST, _COARSEST = 1e-7, 1e-2
 
 @dataclass(frozen=True)
 class Price:
-    """What a setting of the finite elements is expected to cost, in CPU seconds of the method."""
+    """What finite elements of ``order`` at ``accuracy`` (of a) are expected to cost: ``cpu_s``, of the method."""
 
     order: int
     accuracy: float
@@ -56,18 +56,18 @@ class Prices(msgspec.Struct, frozen=True, kw_only=True):
     machine: str
 
     def price(self, scene: Scene, accuracy: float, order: int) -> Price:
-        """The CPU seconds of ``order`` at ``accuracy``, of the method fem."""
+        """The CPU seconds of ``order`` at ``accuracy`` for ``scene``, of the method fem."""
         seconds = _seconds(*self.orders[str(order)], _points(scene), math.log10(1 / accuracy))
         return Price(order, accuracy, float(seconds))
 
     def cheapest(self, scene: Scene, accuracy: float) -> Price:
-        """The least price of ``accuracy``."""
+        """The least price of ``accuracy`` for ``scene``."""
         least = min(self.finest.values())
         offered = [order for order, finest in self.finest.items() if finest <= max(accuracy, least) * 1.01]
         return min((self.price(scene, accuracy, int(order)) for order in offered), key=lambda price: price.cpu_s)
 
     def best(self, scene: Scene, budget: float) -> Price:
-        """The best accuracy to be had for ``budget`` CPU seconds.
+        """The best accuracy to be had of ``scene`` for ``budget`` CPU seconds.
 
         Raises
         ------
@@ -94,7 +94,7 @@ def load_prices() -> Prices:
 
 
 def fit(entries: Iterable[Mapping[str, Any]], machine: str) -> Prices:
-    """The price list of the adapted finite elements in a ledger.
+    """The price list of the adapted finite elements in the ``entries`` of a ledger, measured on ``machine``.
 
     Raises
     ------
@@ -129,7 +129,7 @@ def fit(entries: Iterable[Mapping[str, Any]], machine: str) -> Prices:
 
 
 def to_json(prices: Prices) -> str:
-    """As :func:`load_prices` reads it."""
+    """``prices`` as :func:`load_prices` reads them."""
     return json.dumps(msgspec.to_builtins(prices), indent=1) + "\n"
 
 
