@@ -72,11 +72,11 @@ def test_a_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
         solved.append(data["labels"]["number"])
         return solve(data)
 
-    monkeypatch.setattr("partialslip.study.sweep.solve", counted)
+    monkeypatch.setattr("partialslip.study.case.solve", counted)
     with ThreadPoolExecutor(1) as executor:
-        sweep(cases[:4], Ledger(path), executor)
+        sweep([case.task for case in cases[:4]], Ledger(path), executor)
         seen = []
-        sweep([*cases, broken], Ledger(path), executor, lambda *at: seen.append(at[:2]))
+        sweep([case.task for case in (*cases, broken)], Ledger(path), executor, lambda *at: seen.append(at[:2]))
     assert solved == [0, 1, 2, 3, 4, 5, 6]
     assert seen == [(4, 7), (5, 7), (6, 7), (7, 7)]
     assert "nothing" in Ledger(path)[broken.key]["error"]
@@ -106,7 +106,7 @@ def test_blocks_come_near_the_half_plane_with_the_square_of_their_size(tmp_path)
     axis = size.axis("bodies.*.width+bodies.*.height=16a..128a:4")
     cases, ledger = size.cases(scene(accuracy=1e-5), [axis], meshes=1), Ledger(tmp_path / "ledger.jsonl")
     with ThreadPoolExecutor(1) as executor:
-        sweep(cases, ledger, executor)
+        sweep([case.task for case in cases], ledger, executor)
     sizes = size.along(axis, ledger)
     for quantity in ("a", "m"):
         assert max(sizes.mesh[quantity]) < 1e-5
@@ -138,7 +138,7 @@ def test_a_dask_cluster_goes_on_where_a_worker_is_killed(tmp_path):
                 crew[0].kill()
 
         with workers(address) as executor:
-            sweep(cases, ledger, executor, kill)
+            sweep([case.task for case in cases], ledger, executor, kill)
     finally:
         for process in (*crew, scheduler):
             process.kill()

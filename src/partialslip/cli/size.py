@@ -64,7 +64,7 @@ def _size(options: argparse.Namespace) -> int:
             bar.update(task, completed=done, total=total, left="" if math.isnan(left) else f"{left:.0f} s left")
 
         with workers(options.cluster, options.processes) as executor:
-            sweep(cases, ledger, executor, progress)
+            sweep([case.task for case in cases], ledger, executor, progress)
     entries = [ledger[case.key] for case in cases]
     console = Console(highlight=False)
     texts = {"cases.csv": csv_text(*size.table(axes, entries))}

@@ -1,11 +1,15 @@
 """A run in words and table cells: the terminal and the page show the same ones."""
 
+from collections.abc import Iterator, Mapping
+
+import msgspec
 import numpy as np
 
 from partialslip.compare import Comparison
 from partialslip.plan import Plan
 from partialslip.result import Result
 from partialslip.run import Run
+from partialslip.scene import Scene
 
 HEADINGS = ("quantity", "reference", "value", "error", "bar", "")
 _MEANING = {
@@ -77,6 +81,33 @@ def effects(plan: Plan) -> list[tuple[str, str, str]]:
         (title if number == 0 else "", effect, why)
         for title, group in groups.items()
         for number, (effect, why) in enumerate(group.items())
+    ]
+
+
+def settings(scene: Scene) -> list[tuple[str, str, str]]:
+    """Table (in its first row), key and setting."""
+    found = []
+    for table, keys in msgspec.to_builtins(scene).items():
+        if isinstance(keys, dict):
+            known = [(key, setting(choice)) for key, choice in _flat(keys) if choice is not None]
+            found += [(table if number == 0 else "", *line) for number, line in enumerate(known)]
+    return found
+
+
+def _flat(table: Mapping[str, object], before: str = "") -> Iterator[tuple[str, object]]:
+    for key, choice in table.items():
+        if isinstance(choice, dict):
+            yield from _flat(choice, f"{before}{key}.")
+        else:
+            yield before + key, choice
+
+
+def methods(results: Mapping[str, Result], *, compared: bool = False) -> list[tuple[str, str, str]]:
+    """Method (in its first row), and its facts; what it found is told elsewhere where it is ``compared``."""
+    return [
+        (name if number == 0 else "", *line)
+        for name, result in results.items()
+        for number, line in enumerate(facts(result, compared).items())
     ]
 
 

@@ -1,6 +1,7 @@
 """Pages are made of templates."""
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
+from markupsafe import Markup
 
 
 def template(name: str) -> Template:
@@ -12,4 +13,5 @@ def template(name: str) -> Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["inline"] = lambda svg: Markup(svg[svg.index("<svg") :])
     return environment.get_template(name)
