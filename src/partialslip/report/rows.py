@@ -86,12 +86,25 @@ def effects(plan: Plan) -> list[tuple[str, str, str]]:
 
 def settings(scene: Scene) -> list[tuple[str, str, str]]:
     """Table (in its first row), key and setting."""
-    found = []
-    for table, keys in msgspec.to_builtins(scene).items():
-        if isinstance(keys, dict):
-            known = [(key, setting(choice)) for key, choice in _flat(keys) if choice is not None]
-            found += [(table if number == 0 else "", *line) for number, line in enumerate(known)]
-    return found
+    return [
+        (table if number == 0 else "", *line)
+        for table, lines in _set(scene).items()
+        for number, line in enumerate(lines)
+    ]
+
+
+def settings_of_tables(scene: Scene) -> list[tuple[str, str]]:
+    """Table, and all its settings in one line."""
+    return [(table, "; ".join(" ".join(line) for line in lines)) for table, lines in _set(scene).items() if lines]
+
+
+def _set(scene: Scene) -> dict[str, list[tuple[str, str]]]:
+    """By table, keys and settings."""
+    tables = {table: keys for table, keys in msgspec.to_builtins(scene).items() if isinstance(keys, dict)}
+    return {
+        table: [(key, setting(choice)) for key, choice in _flat(keys) if choice is not None]
+        for table, keys in tables.items()
+    }
 
 
 def _flat(table: Mapping[str, object], before: str = "") -> Iterator[tuple[str, object]]:

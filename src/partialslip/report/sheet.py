@@ -11,7 +11,7 @@ def sheet(run: Run) -> dict[str, Any]:
     the regime: texts."""
     return {
         "title": run.scene.title,
-        "settings": rows.settings(run.scene),
+        "settings": rows.settings_of_tables(run.scene),
         "effects": rows.effects(run.plan),
         "methods": rows.methods(run.results, compared=True),
         "values": {

@@ -28,9 +28,7 @@ class Task(NamedTuple):
     argument: Any
 
 
-def sweep(
-    tasks: Collection[Task], ledger: Ledger, executor: Executor, progress: Progress = lambda *_: None
-) -> None:
+def sweep(tasks: Collection[Task], ledger: Ledger, executor: Executor, progress: Progress = lambda *_: None) -> None:
     """Do those of ``tasks`` that are not in ``ledger`` and add what they find, in the order they finish.
 
     ``progress`` is called with how many are done, how many there are, and the seconds left by the pace so far.

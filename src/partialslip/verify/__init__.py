@@ -3,6 +3,7 @@
 from partialslip.verify.case import REQUIREMENTS as REQUIREMENTS
 from partialslip.verify.case import Bar as Bar
 from partialslip.verify.case import Case as Case
+from partialslip.verify.case import Found as Found
 from partialslip.verify.case import Verdict as Verdict
 from partialslip.verify.case import judge as judge
 from partialslip.verify.case import number_of as number_of

@@ -115,6 +115,16 @@ class Verdict:
     iterations: int = 0
     cpu_s: float = 0.0
 
+    @property
+    def share(self) -> float | None:
+        """Of its bar that the value takes; None where one of them is none, or the bar is 0."""
+        return None if self.value is None or not self.bar else self.value / self.bar
+
+    @property
+    def judged(self) -> bool:
+        """Whether anything is asked: a bar of None that has a reason asks nothing."""
+        return self.bar is not None or (self.value is None and not self.reason)
+
 
 def number_of(check: str) -> str:
     """That of the requirement which a ``check`` answers: R1 to R9."""
@@ -139,7 +149,9 @@ def judge(case: Case, found: Found) -> list[Verdict]:
     for method in case.methods:
         result = found[method]
         if isinstance(result, Failure):
-            failed = _verdict(case, method, "finishes", None, None, passed=False, found=result.error, cpu_s=result.cpu_s)
+            failed = _verdict(
+                case, method, "finishes", None, None, passed=False, found=result.error, cpu_s=result.cpu_s
+            )
             verdicts.append(failed)
             continue
         known = reference if isinstance(reference, Result) and method != "exact" else None
