@@ -13,7 +13,7 @@ import partialslip
 from partialslip.study import size
 from partialslip.study.case import Case, solve
 from partialslip.study.ledger import Ledger
-from partialslip.study.sweep import sweep, workers
+from partialslip.study.sweep import Task, sweep, workers
 
 BLOCKS = {"upper": {"width": 1.0, "height": 1.0}, "lower": {"width": 1.0, "height": 1.0}}
 
@@ -80,6 +80,42 @@ def test_a_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
     assert solved == [0, 1, 2, 3, 4, 5, 6]
     assert seen == [(4, 7), (5, 7), (6, 7), (7, 7)]
     assert "nothing" in Ledger(path)[broken.key]["error"]
+
+
+class Counting(ThreadPoolExecutor):
+    """Knows how much was handed over at once."""
+
+    waiting = most = 0
+
+    def submit(self, *work):
+        self.waiting += 1
+        self.most = max(self.most, self.waiting)
+        future = super().submit(*work)
+        future.add_done_callback(lambda _: setattr(self, "waiting", self.waiting - 1))
+        return future
+
+
+def test_a_long_sweep_is_handed_over_bit_by_bit(tmp_path):
+    tasks = [Task(str(number), lambda number: {"found": number}, number) for number in range(2000)]
+    ledger = Ledger(tmp_path / "ledger.jsonl")
+    with Counting(2) as executor:
+        sweep(tasks, ledger, executor)
+    assert {entry["key"]: entry["found"] for entry in ledger} == {str(number): number for number in range(2000)}
+    assert executor.most <= 256
+
+
+def test_in_this_process_each_case_is_kept_before_the_next_begins(tmp_path):
+    ledger, known = Ledger(tmp_path / "ledger.jsonl"), []
+
+    def do(number):
+        known.append(len(ledger))
+        if number == 3:
+            raise KeyboardInterrupt
+        return {}
+
+    with pytest.raises(KeyboardInterrupt), workers(processes=1) as executor:
+        sweep([Task(str(number), do, number) for number in range(5)], ledger, executor)
+    assert known == [0, 1, 2, 3]
 
 
 def test_the_law_of_made_up_sizes_is_found():

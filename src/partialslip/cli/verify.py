@@ -2,6 +2,7 @@
 
 import argparse
 import math
+from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 from partialslip.cli.common import check_folder, print_written
@@ -47,12 +48,15 @@ def _verify(options: argparse.Namespace) -> int:
 
     messages = Console(stderr=True, highlight=False)
     columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.fields[left]}"))
-    with Progress(*columns, console=messages, transient=True) as bar:
-        task = bar.add_task("", total=None, left="")
+    bar = Progress(*columns, console=messages, transient=True)
+    task = bar.add_task("", total=None, left="")
+    with ExitStack() as running:  # what is refused is so before there is any progress
 
         def progress(done: int, total: int, left: float) -> None:
-            if math.isnan(left) and done:
-                messages.print(f"{done} cases were finished before", markup=False)
+            if math.isnan(left):
+                running.enter_context(bar)
+                if done:
+                    messages.print(f"{done} cases were finished before", markup=False)
             left_text = "" if math.isnan(left) else f"{left:.0f} s left" if done < total else "writing the report"
             bar.update(task, completed=done, total=total, left=left_text)
 

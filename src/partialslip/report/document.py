@@ -167,7 +167,7 @@ def _reasons(verdicts: Sequence[Verdict]) -> list[str]:
 
 
 def _number(value: float | None) -> str:
-    return "" if value is None else f"{value:.1e}"
+    return "" if value is None else f"{value:.1e}" if value else "0"
 
 
 def _share(verdict: Verdict) -> str:

@@ -177,8 +177,10 @@ def engineering(number: float, unit: str, digits: int) -> str:
 def setting(choice: object) -> str:
     """A scene's setting as text."""
     if isinstance(choice, (list, tuple)):
-        return ", ".join(f"{number:.10g}" for number in choice)
-    return f"{choice:.10g}" if isinstance(choice, float) else str(choice)
+        return ", ".join(map(setting, choice))
+    if not isinstance(choice, float):
+        return str(choice)
+    return min(f"{choice:.10g}", np.format_float_scientific(choice, 9, trim="-", exp_digits=1), key=len)
 
 
 def facts(result: Result, compared: bool = False) -> dict[str, str]:
@@ -198,14 +200,26 @@ def facts(result: Result, compared: bool = False) -> dict[str, str]:
 
 def work(result: Result) -> str:
     """What was built and counted, but for what was not."""
-    counts = ", ".join(f"{count:,} {name.replace('_', ' ')}" for name, count in result.counts.items() if count)
+    counts = ", ".join(_counted(count, name.replace("_", " ")) for name, count in result.counts.items() if count)
     settings = ", ".join(f"{name.replace('_', ' ')} {setting(choice)}" for name, choice in result.settings.items())
     return "; ".join(part for part in (settings, counts) if part)
 
 
+def _power(residual: float) -> str:
+    return f"{residual:.0e}" if residual else "0"
+
+
+def _counted(count: int, things: str) -> str:
+    if count == 1:
+        things = things.removesuffix("ies") + "y" if things.endswith("ies") else things.removesuffix("s")
+    return f"{count:,} {things}"
+
+
 def certificate(result: Result) -> str:
     """Residuals and the method's own error estimate."""
-    residuals = ", ".join(f"{name.replace('_', ' ')} {residual:.0e}" for name, residual in result.certificate.items())
+    residuals = ", ".join(
+        f"{name.replace('_', ' ')} {_power(residual)}" for name, residual in result.certificate.items()
+    )
     estimate = ", ".join(f"{name} {error:.1e}" for name, error in result.estimate.items())
     return "; ".join(part for part in (residuals, f"own estimate of errors: {estimate}" if estimate else "") if part)
 
