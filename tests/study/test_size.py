@@ -1,10 +1,12 @@
 """Sweeps: what is swept over, what is solved once, and the law that the sizes follow."""
 
 import json
+import signal
 import subprocess
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -116,6 +118,40 @@ def test_in_this_process_each_case_is_kept_before_the_next_begins(tmp_path):
     with pytest.raises(KeyboardInterrupt), workers(processes=1) as executor:
         sweep([Task(str(number), do, number) for number in range(5)], ledger, executor)
     assert known == [0, 1, 2, 3]
+
+
+WORKERS = """
+import os, time
+from partialslip.study.sweep import workers
+with workers(processes=2) as pool:
+    print(*{pool.submit(os.getpid).result() for _ in range(8)}, flush=True)
+    list(pool.map(time.sleep, [60] * 4))
+"""
+
+
+@pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
+def test_workers_end_with_the_process_that_they_work_for(kind):
+    command = [sys.executable, "-c", WORKERS]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    numbers = [int(number) for number in process.stdout.readline().split()]
+    assert numbers
+    process.send_signal(kind)
+    _, said = process.communicate(timeout=30)
+    assert "InvalidStateError" not in said
+    for _ in range(600):
+        if not any(map(runs, numbers)):
+            break
+        time.sleep(0.05)
+    else:
+        pytest.fail("a worker is left behind")
+
+
+def runs(number):
+    """Whether a process of that number runs, other than as a dead one that nobody has asked after."""
+    try:
+        return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def test_the_law_of_made_up_sizes_is_found():

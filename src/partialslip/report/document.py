@@ -173,7 +173,7 @@ def _number(value: float | None) -> str:
 def _share(verdict: Verdict) -> str:
     if verdict.share is None:
         return ""
-    return "< 0.1 %" if verdict.share < 1e-3 else f"{100 * verdict.share:.2g} %"
+    return "< 0.1 %" if verdict.share < 1e-3 else f"{100 * verdict.share:.1f} %"
 
 
 def _word(verdict: Verdict) -> str:

@@ -5,6 +5,7 @@ import itertools
 import multiprocessing
 import os
 import signal
+import threading
 import time
 from collections.abc import Callable, Collection, Iterator, Mapping
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
@@ -95,12 +96,16 @@ def workers(cluster: str | None = None, processes: int | None = None) -> Iterato
         return
     if cluster is None:
         context = multiprocessing.get_context("spawn")  # BLAS threads and gmsh do not survive a fork
-        with ProcessPoolExecutor(processes or os.cpu_count(), context, _end_quietly) as pool:
-            try:
-                yield pool
-            except BaseException:
-                pool.shutdown(wait=False, cancel_futures=True)
-                raise
+        others = set(multiprocessing.active_children())
+        pool = ProcessPoolExecutor(processes or os.cpu_count(), context, _begin)
+        try:
+            yield pool
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            for process in set(multiprocessing.active_children()) - others:
+                process.terminate()
+            raise
+        pool.shutdown()
         return
     try:
         from distributed import Client
@@ -114,6 +119,13 @@ def workers(cluster: str | None = None, processes: int | None = None) -> Iterato
         yield pool
 
 
-def _end_quietly() -> None:
-    """Ctrl-C reaches workers, too: it is their end, and the first process has the word."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+def _begin() -> None:
+    """A worker ends with the process that it works for, which Ctrl-C reaches, too, and however that ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    if parent := multiprocessing.parent_process():
+        parent.join()
+        os._exit(1)
