@@ -6,7 +6,7 @@ from typing import NoReturn
 from partialslip.errors import MissingLibraryError
 from partialslip.report.files import write_files
 
-_LIBRARIES = "libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
+LIBRARIES = "libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
 
 
 def write_pdf(html: str, folder: Path, name: str) -> list[Path]:
@@ -24,7 +24,7 @@ def write_pdf(html: str, folder: Path, name: str) -> list[Path]:
     except ImportError:
         raise MissingLibraryError(f"{name} needs WeasyPrint: pip install 'partialslip[pdf]'") from None
     except OSError:
-        raise MissingLibraryError(f"{name} needs libraries of Pango: apt-get install {_LIBRARIES}") from None
+        raise MissingLibraryError(f"{name} needs libraries of Pango: apt-get install {LIBRARIES}") from None
     page = HTML(string=html, url_fetcher=_refuse)
     return write_files(folder, {name: page.write_pdf})
 

@@ -77,7 +77,8 @@ def verify_suite(
     method, seed, count : optional
         Of random scenes only: by which method (as a rule "exact"), which (0), and how many (100).
     processes : int, optional
-        At once; as a rule as many as there are cores.
+        At once; as a rule as many as there are cores. With more than one, a script must call this under
+        ``if __name__ == "__main__":``, as each of them imports it.
     out : str or Path, optional
         Folder for ``ledger.jsonl``, ``results.json``, ``results.csv``, ``report.html``, ``report.pdf`` and ``scenes``
         (``scene.toml``, ``tractions.csv`` and ``tractions.svg`` of each; not of random ones); as a rule
