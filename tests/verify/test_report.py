@@ -105,6 +105,7 @@ def test_where_it_was_found_is_told(folder):
 def test_a_missed_bar_cannot_be_overlooked(tmp_path, monkeypatch):
     """Deliberate fault: a residual beyond its bar. It is in the heading, first in the table, and at its scene."""
     monkeypatch.setattr(case, "CERTIFICATE_BAR", 1e-30)
+    monkeypatch.setitem(sys.modules, "weasyprint", None)
     verified(tmp_path)
     text = page(tmp_path)
     assert re.search(r'<div class="verdict">[1-9]\d* of \d+ verdicts missed</div>', text)
@@ -117,6 +118,7 @@ def test_a_missed_bar_cannot_be_overlooked(tmp_path, monkeypatch):
 
 def test_stopped_and_continued_it_is_the_same(folder, tmp_path, monkeypatch):
     """Ctrl-C in the second case: the first is not solved again, and the report tells as much of it as of the other."""
+    monkeypatch.setitem(sys.modules, "weasyprint", None)
     solved = []
 
     def stopped(scene, methods):
