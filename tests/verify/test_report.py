@@ -95,6 +95,7 @@ def test_it_needs_nothing_but_itself(folder):
 
 def test_where_it_was_found_is_told(folder):
     made = json.loads((folder / "ledger.jsonl").read_text("utf-8").splitlines()[0])["made"]
+    assert "<h1>Verification of partialslip, suite full, in part</h1>" in page(folder)
     table = dict(row for row in words(page(folder)) if len(row) == 2)
     assert table["command"] == "partialslip verify --suite full --only no-shear --only one-contact-node"
     assert made["machine"]["processor"] in table["machine"]

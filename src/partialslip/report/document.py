@@ -74,9 +74,7 @@ def document(account: Account) -> str:
     listed, stress = every_one(verdicts), account.settings["suite"] == "stress"
     page = template("document.html").render(
         account=account,
-        title=", ".join(
-            ["Verification of partialslip", *(f"{key} {settings[key]}" for key in _ASKED if key in settings)]
-        ),
+        title=_title(settings),
         asked=_asked(settings, [entry["made"] for entry in account.entries.values()]),
         verdicts=verdicts,
         again={case: command(settings, [case.rpartition("-")[2] if stress else case]) for case in verdicts},
@@ -95,11 +93,20 @@ def document(account: Account) -> str:
     return page + "\n"
 
 
+def _title(settings: Mapping[str, Any]) -> str:
+    parts = [f"{key} {settings[key]}" for key in _known(settings)]
+    return ", ".join(["Verification of partialslip", *parts, *(["in part"] if settings["only"] else [])])
+
+
 def command(settings: Mapping[str, Any], only: Sequence[str]) -> str:
     """What repeats a verification, or the ``only`` cases of it."""
-    keys = [key for key in _ASKED if key in settings and not (only and key == "count")]
-    words = [f"--{key} {settings[key]}" for key in keys] + [f"--only {shlex.quote(name)}" for name in only]
-    return " ".join(["partialslip verify", *words])
+    words = [f"--{key} {settings[key]}" for key in _known({**settings, "only": only})]
+    return " ".join(["partialslip verify", *words, *(f"--only {shlex.quote(name)}" for name in only)])
+
+
+def _known(settings: Mapping[str, Any]) -> list[str]:
+    """What was asked for, by its key: a count of random scenes only where they were not named."""
+    return [key for key in _ASKED if key in settings and not (key == "count" and settings["only"])]
 
 
 def _asked(settings: Mapping[str, Any], origins: Sequence[Mapping[str, Any]]) -> list[tuple[str, str]]:

@@ -25,6 +25,7 @@ from partialslip.verify import Case, Found, Verdict, judge, solve_case, stress_s
 from partialslip.verify.suites import SUITES, Maker, Makers, Suite
 
 _SCENES, _FIGURE = "scenes", "tractions.svg"
+_PAGE, _PDF = "report.html", "report.pdf"
 _MOST = 999_999_999
 
 
@@ -109,9 +110,9 @@ def verify_suite(
             sweep(tasks, ledger, executor, progress)
         entries = {case: ledger[key] for case, key in keys.items()}
         page = document(Account(settings, entries, _figures(folder / _SCENES, entries), studies))
-        files, missing = write_texts(folder, {"report.html": page}), ""
+        files, missing = write_texts(folder, {_PAGE: page}), ""
         try:
-            files += write_pdf(page, folder, "report.pdf")
+            files += write_pdf(page, folder, _PDF)
         except MissingLibraryError as error:
             missing = str(error)
         verdicts = _verdicts(ledger, keys)
@@ -176,14 +177,14 @@ def _folder(settings: Mapping[str, Any]) -> str:
 
 
 def _ledger(folder: Path) -> Ledger:
-    """That of a run that was stopped, or an empty one."""
-    path = folder / "ledger.jsonl"
+    """That of a run that was stopped; of one that was finished nothing stays that could be taken for the next one's."""
     if was_finished(folder):
         try:
-            path.unlink(missing_ok=True)
+            for name in ("ledger.jsonl", _PAGE, _PDF):
+                (folder / name).unlink(missing_ok=True)
         except OSError as error:
-            raise InputError(f"{path}: cannot be removed: {error.strerror}") from None
-    return Ledger(path)
+            raise InputError(f"{folder / name}: cannot be removed: {error.strerror}") from None
+    return Ledger(folder / "ledger.jsonl")
 
 
 def _verdicts(ledger: Ledger, keys: Mapping[str, str]) -> dict[str, list[Verdict]]:
