@@ -1,8 +1,8 @@
 """Where the time goes on one mesh of 10,000, 100,000 and 500,000 unknowns: python benchmarks/phases.py [--repeats 3]
 
 Meshes of ``hertz-large-tension`` by P4, graded to the ends of the zones and growing at different rates beyond; CHOLMOD.
-Beside the phases, as a floor, what CHOLMOD takes for the numbers alone of one factor of that stiffness, in the order that
-it likes best itself, with no compliance asked for.
+Beside the phases, as a floor, what CHOLMOD takes for the numbers alone of one factor of that stiffness, in the order
+that it likes best itself, with no compliance asked for.
 """
 
 import argparse
