@@ -25,6 +25,7 @@ RUN = (
     "--out",
     "out",
 )
+VERIFY = ("verify", "--suite", "stress", "--only", "1", "--only", "2", "--processes", "1", "--out", "out")
 FILES = ["report.html", "results.json", "state.npz", "tractions.csv"]
 
 # Runs the command line with a stop at the n-th of the system calls that change files; without n it counts them.
@@ -93,6 +94,20 @@ def stop_and_rerun(folder, at, kind):
 @pytest.mark.parametrize("at", [2, 7])
 def test_stopped_at_a_write(tmp_path, at, kind):
     stop_and_rerun(tmp_path, at, kind)
+
+
+@pytest.mark.parametrize(("at", "cases", "kind"), [(17, 1, signal.SIGKILL), (27, 2, signal.SIGINT)])
+def test_a_verification_stopped_at_a_write_goes_on(tmp_path, at, cases, kind):
+    """Before its second case is in the ledger, and while it writes the PDF."""
+    assert stopped(tmp_path, at, kind, VERIFY)[0] == (-signal.SIGKILL if kind == signal.SIGKILL else 130)
+    ledger = tmp_path / "out" / "ledger.jsonl"
+    kept = ledger.read_bytes() if ledger.exists() else b""
+    assert len(kept.splitlines()) == cases
+    assert main([*VERIFY[:-1], str(tmp_path / "out")]) == 0
+    assert ledger.read_bytes().startswith(kept)
+    assert json.loads((tmp_path / "out" / "results.json").read_text("utf-8"))["finished"]
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    assert names == {"ledger.jsonl", "report.html", "report.pdf", "results.csv", "results.json"}
 
 
 @pytest.mark.slow

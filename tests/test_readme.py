@@ -9,6 +9,7 @@ import pytest
 from partialslip import shipped_scenes
 from partialslip.cli import main
 from partialslip.reading import parse_scene
+from partialslip.report import pdf
 from partialslip_meshes.gmsh import DEBIAN_PACKAGES
 
 ROOT = Path(__file__).parents[1]
@@ -27,8 +28,9 @@ def test_two_commands_set_up_one_runs_one_tests():
     assert all(f"<!-- {name} -->\n```sh" in README for name in ("set-up", "run", "tests"))
 
 
-def test_every_library_that_gmsh_needs_is_set_up():
+def test_every_library_that_is_needed_is_set_up():
     assert all(f" {package}" in blocks("sh")[0] for package in DEBIAN_PACKAGES.values())
+    assert pdf.LIBRARIES in blocks("sh")[0]
 
 
 def test_scene_in_the_readme_is_the_shipped_one(capsys):

@@ -1,10 +1,12 @@
 """Sweeps: what is swept over, what is solved once, and the law that the sizes follow."""
 
 import json
+import signal
 import subprocess
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +17,7 @@ from partialslip.study.axes import axis as read
 from partialslip.study.axes import cases as make
 from partialslip.study.case import Case, solve
 from partialslip.study.ledger import Ledger
-from partialslip.study.sweep import sweep, workers
+from partialslip.study.sweep import Task, sweep, workers
 
 BLOCKS = {"upper": {"width": 1.0, "height": 1.0}, "lower": {"width": 1.0, "height": 1.0}}
 
@@ -75,14 +77,84 @@ def test_a_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
         solved.append(data["labels"]["number"])
         return solve(data)
 
-    monkeypatch.setattr("partialslip.study.sweep.solve", counted)
+    monkeypatch.setattr("partialslip.study.case.solve", counted)
     with ThreadPoolExecutor(1) as executor:
-        sweep(cases[:4], Ledger(path), executor)
+        sweep([case.task for case in cases[:4]], Ledger(path), executor)
         seen = []
-        sweep([*cases, broken], Ledger(path), executor, lambda *at: seen.append(at[:2]))
+        sweep([case.task for case in (*cases, broken)], Ledger(path), executor, lambda *at: seen.append(at[:2]))
     assert solved == [0, 1, 2, 3, 4, 5, 6]
     assert seen == [(4, 7), (5, 7), (6, 7), (7, 7)]
     assert "nothing" in Ledger(path)[broken.key]["error"]
+
+
+class Counting(ThreadPoolExecutor):
+    """Knows how much was handed over at once."""
+
+    waiting = most = 0
+
+    def submit(self, *work):
+        self.waiting += 1
+        self.most = max(self.most, self.waiting)
+        future = super().submit(*work)
+        future.add_done_callback(lambda _: setattr(self, "waiting", self.waiting - 1))
+        return future
+
+
+def test_a_long_sweep_is_handed_over_bit_by_bit(tmp_path):
+    tasks = [Task(str(number), lambda number: {"found": number}, number) for number in range(2000)]
+    ledger = Ledger(tmp_path / "ledger.jsonl")
+    with Counting(2) as executor:
+        sweep(tasks, ledger, executor)
+    assert {entry["key"]: entry["found"] for entry in ledger} == {str(number): number for number in range(2000)}
+    assert executor.most <= 256
+
+
+def test_in_this_process_each_case_is_kept_before_the_next_begins(tmp_path):
+    ledger, known = Ledger(tmp_path / "ledger.jsonl"), []
+
+    def do(number):
+        known.append(len(ledger))
+        if number == 3:
+            raise KeyboardInterrupt
+        return {}
+
+    with pytest.raises(KeyboardInterrupt), workers(processes=1) as executor:
+        sweep([Task(str(number), do, number) for number in range(5)], ledger, executor)
+    assert known == [0, 1, 2, 3]
+
+
+WORKERS = """
+import os, time
+from partialslip.study.sweep import workers
+with workers(processes=2) as pool:
+    print(*{pool.submit(os.getpid).result() for _ in range(8)}, flush=True)
+    list(pool.map(time.sleep, [60] * 4))
+"""
+
+
+@pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
+def test_workers_end_with_the_process_that_they_work_for(kind):
+    command = [sys.executable, "-c", WORKERS]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    numbers = [int(number) for number in process.stdout.readline().split()]
+    assert numbers
+    process.send_signal(kind)
+    _, said = process.communicate(timeout=30)
+    assert "InvalidStateError" not in said
+    for _ in range(600):
+        if not any(map(runs, numbers)):
+            break
+        time.sleep(0.05)
+    else:
+        pytest.fail("a worker is left behind")
+
+
+def runs(number):
+    """Whether a process of that number runs, other than as a dead one that nobody has asked after."""
+    try:
+        return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def test_the_law_of_made_up_sizes_is_found():
@@ -145,7 +217,7 @@ def test_a_dask_cluster_goes_on_where_a_worker_is_killed(tmp_path):
                 crew[0].kill()
 
         with workers(address) as executor:
-            sweep(cases, ledger, executor, kill)
+            sweep([case.task for case in cases], ledger, executor, kill)
     finally:
         for process in (*crew, scheduler):
             process.kill()

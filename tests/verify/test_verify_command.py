@@ -3,19 +3,26 @@
 import csv
 import itertools
 import json
-from dataclasses import asdict
+import sys
 
 import pytest
 
 from partialslip.cli import main
 from partialslip.cli import verify as command
-from partialslip.report import verdicts as files
 from partialslip.run import run
+from partialslip.study import verification
+from partialslip.study.ledger import Ledger
 from partialslip.verify import Case, case, run_case, stress_suite, suite
 from partialslip.verify.random_scenes import KINDS, draw
 from partialslip.verify.stress import stress_numbers
 
-STRESS = ["verify", "--suite", "stress", "--method", "march", "--seed", "5"]
+STRESS = ["verify", "--suite", "stress", "--method", "march", "--seed", "5", "--processes", "1"]
+
+
+@pytest.fixture(autouse=True)
+def without_pdf(monkeypatch):
+    """It takes its time, and is another test's."""
+    monkeypatch.setitem(sys.modules, "weasyprint", None)
 
 
 def verify(tmp_path, *arguments):
@@ -75,15 +82,56 @@ def test_interrupted_it_goes_on(tmp_path, capsys, monkeypatch):
     assert "2 cases were finished before" in capsys.readouterr().err
 
 
-def test_other_settings_begin_anew(tmp_path):
-    settings = {"suite": "stress", "only": [], "method": "march", "seed": 5}
-    found = run_case(stress_suite("march", 5, 2)["stress-5-1"]())
-    files.write_verdicts(tmp_path, settings, {"stress-5-1": found}, finished=False)
-    assert files.read_verdicts(tmp_path, settings) == {"stress-5-1": found}
-    assert files.read_verdicts(tmp_path, settings | {"seed": 6}) == {}
-    (tmp_path / "results.json").write_text("{", "utf-8")
-    assert files.read_verdicts(tmp_path, settings) == {}
-    assert asdict(found[0])["case"] == "stress-5-1"
+@pytest.mark.parametrize(
+    ("change", "solved_again"),
+    [
+        ({}, False),
+        ({"count": 2}, False),
+        ({"method": "exact"}, True),
+        ({"versions": 1}, True),
+    ],
+    ids=str,
+)
+def test_what_another_run_takes_over(change, solved_again, tmp_path, monkeypatch):
+    """What was finished by another method or other versions is done again."""
+    settings = {"only": ["1"], "method": "march", "seed": 5, "processes": 1, "out": tmp_path}
+    verification.verify_suite("stress", **settings)
+    (tmp_path / "results.json").write_text("{", "utf-8")  # as if that had been stopped
+    if "versions" in change:
+        monkeypatch.setattr(verification, "versions", lambda: {"numpy": "0"})
+    known = []
+    verification.verify_suite(
+        "stress", **settings | {key: value for key, value in change.items() if key != "versions"},
+        progress=lambda done, *_: known.append(done),
+    )  # fmt: skip
+    assert known[0] == (0 if solved_again else 1)
+
+
+def test_two_processes_find_what_one_finds(tmp_path):
+    """And in Python what the command writes."""
+    one, two = (
+        verification.verify_suite("stress", method="march", seed=5, count=6, processes=processes, out=tmp_path / f"{n}")
+        for n, processes in enumerate((1, 2))
+    )
+    assert list(one.verdicts) == list(two.verdicts)
+    for case_name, some in one.verdicts.items():
+        assert [(v.check, v.value, v.found) for v in some] == [
+            (v.check, v.value, v.found) for v in two.verdicts[case_name]
+        ]
+    assert {entry["case"] for entry in Ledger(tmp_path / "1" / "ledger.jsonl")} == set(two.verdicts)
+
+
+def test_a_finished_run_begins_anew(tmp_path):
+    """What was verified is not taken for verified when it is asked for again: the program may have changed."""
+    settings = {"only": ["1"], "method": "march", "seed": 5, "processes": 1, "out": tmp_path}
+    verification.verify_suite("stress", **settings)
+    first = (tmp_path / "ledger.jsonl").read_text("utf-8")
+    known = []
+    verification.verify_suite(
+        "stress", **settings, progress=lambda done, *_: known.append((done, (tmp_path / "report.html").exists()))
+    )
+    assert known == [(0, False), (1, False)]  # nor is its report
+    assert len(first.splitlines()) == len((tmp_path / "ledger.jsonl").read_text("utf-8").splitlines()) == 1
 
 
 @pytest.mark.parametrize(
@@ -91,11 +139,14 @@ def test_other_settings_begin_anew(tmp_path):
     [
         (["--suite", "quick", "--count", "3"], "--count 3: only with --suite stress"),
         (["--suite", "full", "--only", "near-slide"], "--only 'near-slide': no case of the suite full; did you mean"),
-        (["--suite", "stress", "--count", "0"], "--count '0': must be a whole number from 1 to 999999999"),
-        (["--suite", "stress", "--seed", "x"], "--seed 'x': must be a whole number"),
+        (["--suite", "stress", "--count", "0"], "--count 0: must be a whole number from 1 to 999999999"),
+        (["--suite", "stress", "--seed", "x"], "argument --seed: invalid int value: 'x'"),
         (["--suite", "stress", "--method", "bem"], "--method 'bem': must be one of exact, march, fem"),
         (["--suite", "stress", "--only", "one"], "--only 'one': must be the number of a random scene"),
+        (["--suite", "stress", "--seed=-1"], "--seed -1: must be a whole number from 0"),
         (["--suite", "all"], "argument --suite"),
+        (["--processes", "0"], "--processes 0: must be >= 1"),
+        (["--include", "nowhere"], "--include nowhere: must be the folder of a study"),
     ],
 )
 def test_what_it_refuses(arguments, said, tmp_path, capsys):

@@ -2,8 +2,6 @@
 
 from typing import TYPE_CHECKING
 
-import msgspec
-
 from partialslip.compare import Comparison
 from partialslip.report import rows
 from partialslip.report.figure import draw_run, draw_tractions
@@ -18,8 +16,7 @@ if TYPE_CHECKING:
 
 def html(what: Scene | Result | Comparison | Run) -> str:
     """The tables of ``what``."""
-    scene = msgspec.to_builtins(what) if isinstance(what, Scene) else None
-    return template("cells.html").render(kind=type(what).__name__, what=what, scene=scene, rows=rows)
+    return template("cells.html").render(kind=type(what).__name__, what=what, rows=rows)
 
 
 def plot(what: Result | Run, axes: "Axes | None" = None) -> "Axes":

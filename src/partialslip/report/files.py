@@ -10,14 +10,18 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
+from typing import Any
 
+import msgspec
 import numpy as np
+import tomli_w
 
 from partialslip.errors import InputError
 from partialslip.report.figure import traction_svg
 from partialslip.report.page import page
 from partialslip.report.record import record
 from partialslip.run import Run
+from partialslip.scene import Scene
 
 try:
     import fcntl
@@ -81,6 +85,17 @@ def csv_text(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     writer.writerow(head)
     writer.writerows(rows)
     return text.getvalue()
+
+
+def scene_toml(scene: Scene) -> str:
+    """A scene as the text of a scene file, every setting that it has written out."""
+    return tomli_w.dumps(_set(msgspec.to_builtins(scene)))
+
+
+def _set(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Without what is None, which TOML does not know, and without empty tables."""
+    known = {key: _set(value) if isinstance(value, dict) else value for key, value in table.items()}
+    return {key: value for key, value in known.items() if value is not None and value != {}}
 
 
 def tractions_csv(run: Run) -> str:

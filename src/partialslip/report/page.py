@@ -9,4 +9,4 @@ from partialslip.run import Run
 
 def page(run: Run, data: dict[str, Any], figure: str) -> str:
     """The report of a run as HTML. ``data`` is its record, ``figure`` the traction plot as SVG."""
-    return template("page.html").render(run=run, data=data, figure=figure[figure.index("<svg") :], rows=rows) + "\n"
+    return template("page.html").render(run=run, data=data, figure=figure, rows=rows) + "\n"

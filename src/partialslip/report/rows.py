@@ -1,11 +1,15 @@
 """A run in words and table cells: the terminal and the page show the same ones."""
 
+from collections.abc import Iterator, Mapping
+
+import msgspec
 import numpy as np
 
 from partialslip.compare import Comparison
 from partialslip.plan import Plan
 from partialslip.result import Result
 from partialslip.run import Run
+from partialslip.scene import Scene
 
 HEADINGS = ("quantity", "reference", "value", "error", "bar", "")
 _MEANING = {
@@ -80,6 +84,46 @@ def effects(plan: Plan) -> list[tuple[str, str, str]]:
     ]
 
 
+def settings(scene: Scene) -> list[tuple[str, str, str]]:
+    """Table (in its first row), key and setting."""
+    return [
+        (table if number == 0 else "", *line)
+        for table, lines in _set(scene).items()
+        for number, line in enumerate(lines)
+    ]
+
+
+def settings_of_tables(scene: Scene) -> list[tuple[str, str]]:
+    """Table, and all its settings in one line."""
+    return [(table, "; ".join(" ".join(line) for line in lines)) for table, lines in _set(scene).items() if lines]
+
+
+def _set(scene: Scene) -> dict[str, list[tuple[str, str]]]:
+    """By table, keys and settings."""
+    tables = {table: keys for table, keys in msgspec.to_builtins(scene).items() if isinstance(keys, dict)}
+    return {
+        table: [(key, setting(choice)) for key, choice in _flat(keys) if choice is not None]
+        for table, keys in tables.items()
+    }
+
+
+def _flat(table: Mapping[str, object], before: str = "") -> Iterator[tuple[str, object]]:
+    for key, choice in table.items():
+        if isinstance(choice, dict):
+            yield from _flat(choice, f"{before}{key}.")
+        else:
+            yield before + key, choice
+
+
+def methods(results: Mapping[str, Result], *, compared: bool = False) -> list[tuple[str, str, str]]:
+    """Method (in its first row), and its facts; what it found is told elsewhere where it is ``compared``."""
+    return [
+        (name if number == 0 else "", *line)
+        for name, result in results.items()
+        for number, line in enumerate(facts(result, compared).items())
+    ]
+
+
 def value(result: Result, key: str) -> str:
     """A quantity of a result with its unit; of p and q the largest value, of fields none."""
     if key in ("surface", "inside"):
@@ -133,8 +177,10 @@ def engineering(number: float, unit: str, digits: int) -> str:
 def setting(choice: object) -> str:
     """A scene's setting as text."""
     if isinstance(choice, (list, tuple)):
-        return ", ".join(f"{number:.10g}" for number in choice)
-    return f"{choice:.10g}" if isinstance(choice, float) else str(choice)
+        return ", ".join(map(setting, choice))
+    if not isinstance(choice, float):
+        return str(choice)
+    return min(f"{choice:.10g}", np.format_float_scientific(choice, 9, trim="-", exp_digits=1), key=len)
 
 
 def facts(result: Result, compared: bool = False) -> dict[str, str]:
@@ -154,14 +200,26 @@ def facts(result: Result, compared: bool = False) -> dict[str, str]:
 
 def work(result: Result) -> str:
     """What was built and counted, but for what was not."""
-    counts = ", ".join(f"{count:,} {name.replace('_', ' ')}" for name, count in result.counts.items() if count)
+    counts = ", ".join(_counted(count, name.replace("_", " ")) for name, count in result.counts.items() if count)
     settings = ", ".join(f"{name.replace('_', ' ')} {setting(choice)}" for name, choice in result.settings.items())
     return "; ".join(part for part in (settings, counts) if part)
 
 
+def _power(residual: float) -> str:
+    return f"{residual:.0e}" if residual else "0"
+
+
+def _counted(count: int, things: str) -> str:
+    if count == 1:
+        things = things.removesuffix("ies") + "y" if things.endswith("ies") else things.removesuffix("s")
+    return f"{count:,} {things}"
+
+
 def certificate(result: Result) -> str:
     """Residuals and the method's own error estimate."""
-    residuals = ", ".join(f"{name.replace('_', ' ')} {residual:.0e}" for name, residual in result.certificate.items())
+    residuals = ", ".join(
+        f"{name.replace('_', ' ')} {_power(residual)}" for name, residual in result.certificate.items()
+    )
     estimate = ", ".join(f"{name} {error:.1e}" for name, error in result.estimate.items())
     return "; ".join(part for part in (residuals, f"own estimate of errors: {estimate}" if estimate else "") if part)
 

@@ -20,8 +20,8 @@ def print_run(run: Run, console: Console) -> None:
     for name in run.comparisons:
         print_table(console, rows.headings(run, name), rows.error_rows(run, name), words=(0, 5))
     for name, result in run.results.items():
-        _print_lines(console, name, rows.facts(result, compared=bool(run.comparisons)))
-    _print_effects(console, run)
+        _print_lines(console, rows.methods({name: result}, compared=bool(run.comparisons)))
+    _print_lines(console, rows.effects(run.plan))
     console.print(rows.verdict(run), style="bold", markup=False)
 
 
@@ -40,15 +40,8 @@ def print_table(
     console.print(table, crop=False)
 
 
-def _print_lines(console: Console, name: str, lines: dict[str, str]) -> None:
+def _print_lines(console: Console, lines: Iterable[Sequence[str]]) -> None:
     grid = Table.grid(padding=(0, 2))
-    for number, (key, text) in enumerate(lines.items()):
-        grid.add_row(name if number == 0 else "", key, Text(text))
-    console.print(grid)
-
-
-def _print_effects(console: Console, run: Run) -> None:
-    grid = Table.grid(padding=(0, 2))
-    for row in rows.effects(run.plan):
-        grid.add_row(*map(Text, row))
+    for line in lines:
+        grid.add_row(*map(Text, line))
     console.print(grid)

@@ -1,6 +1,9 @@
 """Pages are made of templates."""
 
+import re
+
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
+from markupsafe import Markup
 
 
 def template(name: str) -> Template:
@@ -12,4 +15,11 @@ def template(name: str) -> Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["inline"] = _inline
     return environment.get_template(name)
+
+
+def _inline(svg: str, name: str = "") -> Markup:
+    """A figure as a part of a page; its own names begin with ``name`` there, as a page has each name once."""
+    own = re.sub(r'(\bid="|href="#|url\(#)', lambda found: found[0] + name, svg[svg.index("<svg") :])
+    return Markup(own)

@@ -1,6 +1,7 @@
 """Verdicts for people and files: results.json, results.csv and the terminal's table."""
 
 import json
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -29,30 +30,28 @@ def write_verdicts(folder: Path, settings: Mapping[str, Any], verdicts: Verdicts
         "versions": versions(),
         "cases": {name: [asdict(verdict) for verdict in some] for name, some in verdicts.items()},
     }
-    texts = {_FILE: json.dumps(record, indent=1, allow_nan=False) + "\n", "results.csv": _csv(_all(verdicts))}
+    texts = {_FILE: json.dumps(record, indent=1, allow_nan=False) + "\n", "results.csv": _csv(every_one(verdicts))}
     return write_texts(folder, texts)
 
 
-def read_verdicts(folder: Path, settings: Mapping[str, Any]) -> dict[str, list[Verdict]]:
-    """The verdicts that a run with the same settings and versions left behind unfinished; none where there is no such
-    file."""
+def was_finished(folder: Path) -> bool:
+    """Whether ``folder`` holds the verdicts of a run that came to its end."""
     try:
         record = json.loads((folder / _FILE).read_text("utf-8"))
-        same = all(record[key] == value for key, value in _head(settings).items())
-        return {name: [Verdict(**one) for one in some] for name, some in record["cases"].items()} if same else {}
-    except (OSError, ValueError, TypeError, KeyError, AttributeError):
-        return {}
+        return record["schema"] == SCHEMA and record["finished"] is True
+    except (OSError, ValueError, TypeError, KeyError):
+        return False
 
 
 def print_verdicts(verdicts: Verdicts, console: Console, every: bool = True) -> None:
     """Print a line for each case and method, of its quantity nearest to its bar (or without ``every`` for what is
     missed only), and the sum of all."""
-    rows = [min(some, key=_room) for some in _by_method(verdicts)]
+    rows = nearest(verdicts)
     shown = rows if every else [row for row in rows if not row.passed]
     if shown:
         headings = ("case", "method", "closest", "value", "bar", "faces", "CPU s", "")
         print_table(console, headings, map(_row, shown), words=(0, 1, 2, 7))
-    for verdict in _all(verdicts):
+    for verdict in every_one(verdicts):
         if not verdict.passed:
             what = " ".join(part for part in (_shown(verdict), verdict.found) if part)
             console.print(f"missed: {verdict.case}, {verdict.method}: {what}", soft_wrap=True, markup=False)
@@ -63,11 +62,6 @@ def print_verdicts(verdicts: Verdicts, console: Console, every: bool = True) -> 
             f"{sum(row.cpu_s for row in rows):.1f} CPU s, at most {most.iterations:,} iterations ({most.case})",
             style="bold", soft_wrap=True, markup=False,
         )  # fmt: skip
-
-
-def _head(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """What a file must say to be gone on with."""
-    return {"schema": SCHEMA, "settings": dict(settings), "finished": False, "versions": versions()}
 
 
 def _csv(verdicts: Iterable[Verdict]) -> str:
@@ -81,22 +75,23 @@ def _row(row: Verdict) -> list[str]:
     return [row.case, row.method, row.check, value, bar, *work, "ok" if row.passed else "MISSED"]
 
 
-def _all(verdicts: Verdicts) -> list[Verdict]:
+def every_one(verdicts: Verdicts) -> list[Verdict]:
+    """All of them in one list."""
     return [verdict for some in verdicts.values() for verdict in some]
 
 
-def _by_method(verdicts: Verdicts) -> list[list[Verdict]]:
+def nearest(verdicts: Verdicts) -> list[Verdict]:
+    """Of each case and method the verdict that is missed, or nearest to its bar."""
     groups: dict[tuple[str, str], list[Verdict]] = {}
-    for verdict in _all(verdicts):
+    for verdict in every_one(verdicts):
         groups.setdefault((verdict.case, verdict.method), []).append(verdict)
-    return list(groups.values())
+    return [min(some, key=room) for some in groups.values()]
 
 
-def _room(verdict: Verdict) -> tuple[bool, float]:
+def room(verdict: Verdict) -> tuple[bool, float]:
     """To sort by: what is missed first, then by how much of the bar is left."""
-    if verdict.value is None or not verdict.bar:
-        return verdict.passed, 1.0
-    return verdict.passed, 1 - verdict.value / verdict.bar
+    share = verdict.share
+    return verdict.passed, math.inf if share is None else 1 - share
 
 
 def _shown(verdict: Verdict) -> str:

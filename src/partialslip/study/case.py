@@ -1,6 +1,5 @@
 """One case of a study: a scene solved by some methods, as figures without curves, here or in a process of its own."""
 
-import hashlib
 import json
 import subprocess
 import sys
@@ -18,6 +17,8 @@ from partialslip.reading import parse_scene
 from partialslip.report import record, write_run
 from partialslip.run import Run, run
 from partialslip.scene import Scene
+from partialslip.study.ledger import key_of
+from partialslip.study.sweep import Task
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,12 @@ class Case:
     @property
     def key(self) -> str:
         """The same for the same case only."""
-        return hashlib.sha256(json.dumps(self.data, sort_keys=True).encode()).hexdigest()[:16]
+        return key_of(self.data)
+
+    @property
+    def task(self) -> Task:
+        """It as work for a sweep."""
+        return Task(self.key, solve, self.data)
 
 
 def solve(data: Mapping[str, Any], also: Callable[[Run], Mapping[str, Any]] = lambda _: {}) -> dict[str, Any]:

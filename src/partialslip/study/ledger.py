@@ -1,5 +1,6 @@
 """A ledger: finished cases as JSON lines, written one at a time and never changed, so that a study can be continued."""
 
+import hashlib
 import json
 import os
 import platform
@@ -69,6 +70,11 @@ class Ledger:
         except OSError as error:
             raise InputError(f"{self.path}: cannot be written: {error.strerror}") from None
         self._entries[key] = entry
+
+
+def key_of(data: Mapping[str, Any]) -> str:
+    """A key that is the same for the same plain data only."""
+    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()[:16]
 
 
 @cache

@@ -47,7 +47,7 @@ def measure(
         If a worker process dies; what was finished is in the ledger.
     """
     asked = cases(scene, axes, (_COARSER, 1.0) if control else (1.0,))
-    sweep(asked, ledger, executor, progress)
+    sweep([case.task for case in asked], ledger, executor, progress)
     finer = [_COARSER**-k for k in range(1, _FINER + 1)] if control else []
     for accuracy in (each for each in finer if each * scene.fem.accuracy >= _FINEST):
         points = _by_point(axes, (ledger[case.key] for case in asked))
@@ -57,7 +57,7 @@ def measure(
             for case in cases(scene, axes, (accuracy,))
             if tuple(case.labels[each.name] for each in axes) in unclear
         ]
-        sweep(asked, ledger, executor, progress)
+        sweep([case.task for case in asked], ledger, executor, progress)
     return [ledger[case.key] for case in asked]
 
 

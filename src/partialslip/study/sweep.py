@@ -1,23 +1,36 @@
 """Many cases at once, on this machine or a Dask cluster; every finished one is in the ledger before the next is heard
 of."""
 
+import itertools
 import multiprocessing
 import os
+import signal
+import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Collection, Iterator, Mapping
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from queue import SimpleQueue
+from typing import Any, NamedTuple
 
 from partialslip.errors import InputError, MissingLibraryError, PartialslipError
-from partialslip.study.case import Case, solve
 from partialslip.study.ledger import Ledger
 
 Progress = Callable[[int, int, float], None]
+_AHEAD = 256  # tasks that wait for a worker, or work: more than any cluster has workers, and few in memory
 
 
-def sweep(cases: Sequence[Case], ledger: Ledger, executor: Executor, progress: Progress = lambda *_: None) -> None:
-    """Solve those of ``cases`` that are not in ``ledger`` and add them, in the order they finish.
+class Task(NamedTuple):
+    """Work for a sweep: what ``do`` makes of ``argument``, an entry of a ledger under ``key``. Both can be pickled."""
+
+    key: str
+    do: Callable[[Any], Mapping[str, Any]]
+    argument: Any
+
+
+def sweep(tasks: Collection[Task], ledger: Ledger, executor: Executor, progress: Progress = lambda *_: None) -> None:
+    """Do those of ``tasks`` that are not in ``ledger`` and add what they find, in the order they finish.
 
     ``progress`` is called with how many are done, how many there are, and the seconds left by the pace so far.
 
@@ -26,26 +39,50 @@ def sweep(cases: Sequence[Case], ledger: Ledger, executor: Executor, progress: P
     PartialslipError
         If a worker process dies; what was finished is kept.
     """
-    to_do = {case.key: case for case in cases if case.key not in ledger}
-    total = len({case.key for case in cases})
+    to_do = {task.key: task for task in tasks if task.key not in ledger}
+    added = itertools.count(1)
+    total = len({task.key for task in tasks})
     known, began = total - len(to_do), time.monotonic()
-    futures = {executor.submit(solve, case.data): key for key, case in to_do.items()}
+    at_work: dict[Future[Mapping[str, Any]], str] = {}
+    finished: SimpleQueue[Future[Mapping[str, Any]]] = SimpleQueue()
+
+    def keep() -> None:
+        future = finished.get()
+        ledger.add(at_work[future], future.result())
+        del at_work[future]
+        done = next(added)
+        progress(known + done, total, (time.monotonic() - began) / done * (len(to_do) - done))
+
     progress(known, total, float("nan"))
     try:
-        for done, future in enumerate(as_completed(futures), start=1):
-            ledger.add(futures[future], future.result())
-            pace = (time.monotonic() - began) / done
-            progress(known + done, total, pace * (len(futures) - done))
+        for task in to_do.values():
+            future = executor.submit(task.do, task.argument)
+            at_work[future] = task.key
+            future.add_done_callback(finished.put)
+            while len(at_work) >= _AHEAD or not finished.empty():
+                keep()
+        while at_work:
+            keep()
     except BrokenProcessPool:
-        raise PartialslipError("a worker process died, perhaps for want of memory; run the study again") from None
+        raise PartialslipError("a worker process died, perhaps for want of memory; run it again to go on") from None
     finally:
-        for future in futures:
+        for future in at_work:
             future.cancel()
+
+
+class _Here(Executor):
+    """This process: work is done when it is submitted, and what it raises ends the sweep."""
+
+    def submit(self, do: Callable[..., Any], /, *arguments: Any, **named: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        future.set_result(do(*arguments, **named))
+        return future
 
 
 @contextmanager
 def workers(cluster: str | None = None, processes: int | None = None) -> Iterator[Executor]:
-    """Local processes, or the workers of the Dask cluster whose scheduler is at the address ``cluster``.
+    """Local ``processes`` (as a rule as many as there are cores; one is this one), or the workers of the Dask cluster
+    whose scheduler is at the address ``cluster``.
 
     Raises
     ------
@@ -54,14 +91,21 @@ def workers(cluster: str | None = None, processes: int | None = None) -> Iterato
     MissingLibraryError
         If dask.distributed is not installed.
     """
+    if cluster is None and processes == 1:
+        yield _Here()
+        return
     if cluster is None:
         context = multiprocessing.get_context("spawn")  # BLAS threads and gmsh do not survive a fork
-        with ProcessPoolExecutor(processes or os.cpu_count(), mp_context=context) as pool:
-            try:
-                yield pool
-            except BaseException:
-                pool.shutdown(wait=False, cancel_futures=True)
-                raise
+        others = set(multiprocessing.active_children())
+        pool = ProcessPoolExecutor(processes or os.cpu_count(), context, _begin)
+        try:
+            yield pool
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            for process in set(multiprocessing.active_children()) - others:
+                process.terminate()
+            raise
+        pool.shutdown()
         return
     try:
         from distributed import Client
@@ -73,3 +117,15 @@ def workers(cluster: str | None = None, processes: int | None = None) -> Iterato
         raise InputError(f"--cluster {cluster!r}: no scheduler answers there: {error}") from None
     with client, client.get_executor(pure=False) as pool:
         yield pool
+
+
+def _begin() -> None:
+    """A worker ends with the process that it works for, which Ctrl-C reaches, too, and however that ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    if parent := multiprocessing.parent_process():
+        parent.join()
+        os._exit(1)

@@ -1,9 +1,14 @@
 """Verification: the shipped scenes, the catalogue of hard cases, and random scenes, each with its verdicts."""
 
+from partialslip.verify.case import REQUIREMENTS as REQUIREMENTS
 from partialslip.verify.case import Bar as Bar
 from partialslip.verify.case import Case as Case
+from partialslip.verify.case import Found as Found
 from partialslip.verify.case import Verdict as Verdict
+from partialslip.verify.case import judge as judge
+from partialslip.verify.case import number_of as number_of
 from partialslip.verify.case import run_case as run_case
+from partialslip.verify.case import solve_case as solve_case
 from partialslip.verify.catalogue import families as families
 from partialslip.verify.catalogue import hard_cases as hard_cases
 from partialslip.verify.catalogue import shipped as shipped

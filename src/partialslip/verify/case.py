@@ -1,5 +1,5 @@
 """What is verified: a case is a scene, the methods that solve it and the bars they must meet; a verdict is one quantity
-of one method against its bar."""
+of one method against its bar, and answers one of the requirements, R1 to R9."""
 
 import math
 import time
@@ -19,7 +19,7 @@ from partialslip_meshes.mesh import Mesh
 Meshes = Callable[[Scene], Sequence[Mesh]]
 
 _BARS = {"a": 1.0, "m": 1.0, "n": 1.0, "p": P_BAR, "q": Q_BAR}  # in the accuracy asked for
-_REQUIREMENTS = {
+REQUIREMENTS = {
     "finishes": "the method ends with a result, without an error",
     "finite": "no value is NaN or infinite",
     "certificate": "no residual of the method's own conditions, in f p0 and in f P, is larger",
@@ -30,6 +30,16 @@ _REQUIREMENTS = {
     "p": "cell averages of pressure differ from the exact ones by at most that, relative L2",
     "q": "cell averages of shear's change differ from the exact ones by at most that, relative L2",
 }
+
+
+class Failure(NamedTuple):
+    """What a method raised instead of a result, and the CPU seconds until then."""
+
+    error: str
+    cpu_s: float
+
+
+Found = Mapping[str, Result | Failure]
 
 
 class Bar(NamedTuple):
@@ -82,7 +92,7 @@ class Verdict:
         The quantity and what it must not exceed; None for what is no number, and where nothing is judged.
     passed : bool
     requirement : str
-        What is required, in words.
+        What is required: its number and words.
     found : str
         What was found, in words, where it is no number.
     reason : str
@@ -105,18 +115,44 @@ class Verdict:
     iterations: int = 0
     cpu_s: float = 0.0
 
+    @property
+    def share(self) -> float | None:
+        """Of its bar that the value takes; None where one of them is none, or the bar is 0."""
+        return None if self.value is None or not self.bar else self.value / self.bar
+
+    @property
+    def judged(self) -> bool:
+        """Whether anything is asked: a bar of None that has a reason asks nothing."""
+        return self.bar is not None or (self.value is None and not self.reason)
+
+
+def number_of(check: str) -> str:
+    """That of the requirement which a ``check`` answers: R1 to R9."""
+    return f"R{list(REQUIREMENTS).index(check) + 1}"
+
 
 def run_case(case: Case) -> list[Verdict]:
     """Solve the case by each of its methods and judge what they find; what they raise is a verdict, too."""
-    reference = _solve(case, "exact") if case.compared else None
+    return judge(case, solve_case(case))
+
+
+def solve_case(case: Case) -> Found:
+    """What each method of the case finds or raises, the exact one's first where it is what others are compared with."""
+    needed = ["exact"] if case.compared else []
+    return {method: _solve(case, method) for method in dict.fromkeys([*needed, *case.methods])}
+
+
+def judge(case: Case, found: Found) -> list[Verdict]:
+    """The verdicts on what the methods of a case have found."""
+    reference = found["exact"] if case.compared else None
     verdicts = []
     for method in case.methods:
-        start = time.process_time()
-        result = reference if method == "exact" and reference else _solve(case, method)
-        spent = time.process_time() - start
-        if isinstance(result, Exception):
-            error = f"{type(result).__name__}: {result}"
-            verdicts.append(_verdict(case, method, "finishes", None, None, passed=False, found=error, cpu_s=spent))
+        result = found[method]
+        if isinstance(result, Failure):
+            failed = _verdict(
+                case, method, "finishes", None, None, passed=False, found=result.error, cpu_s=result.cpu_s
+            )
+            verdicts.append(failed)
             continue
         known = reference if isinstance(reference, Result) and method != "exact" else None
         work: dict[str, Any] = {"iterations": result.counts.get("iterations", 0), "cpu_s": result.cost.cpu_s}
@@ -124,8 +160,9 @@ def run_case(case: Case) -> list[Verdict]:
     return verdicts
 
 
-def _solve(case: Case, method: str) -> Result | Exception:
+def _solve(case: Case, method: str) -> Result | Failure:
     """The result of a method, or what it raises."""
+    start = time.process_time()
     try:
         with np.errstate(all="ignore"):  # what is not finite is found below
             if method == "fem" and case.meshes:
@@ -134,13 +171,14 @@ def _solve(case: Case, method: str) -> Result | Exception:
                 return solve_meshed(case.scene, plan(case.scene), case.meshes(case.scene))
             return run(case.scene, [method]).results[method]
     except Exception as error:
-        return error
+        return Failure(f"{type(error).__name__}: {error}", time.process_time() - start)
 
 
 def _judged(
     case: Case, method: str, result: Result, reference: Result | None
 ) -> Iterator[tuple[str, float | None, float | None, bool, str]]:
     """Check, value, bar, whether it is passed and what was found, one by one."""
+    yield "finishes", None, None, True, ""
     lost = _not_finite(result)
     yield "finite", float(lost), 0.0, lost == 0, ""
     if residuals := [value for name, value in result.certificate.items() if name != "steady"]:
@@ -171,10 +209,11 @@ def _verdict(
     **work: Any,
 ) -> Verdict:
     reason = case.bars[f"{method}.{check}"].reason if f"{method}.{check}" in case.bars else ""
+    requirement = f"{number_of(check)}: {REQUIREMENTS[check]}"
     finite = value if value is not None and math.isfinite(value) else None
     if value is not None and finite is None:
         found = str(value)
-    return Verdict(case.name, method, check, finite, bar, passed, _REQUIREMENTS[check], found, reason, **work)
+    return Verdict(case.name, method, check, finite, bar, passed, requirement, found, reason, **work)
 
 
 def _not_finite(result: Result) -> int:

@@ -15,7 +15,8 @@ from partialslip.verify.stress import stress_case, stress_numbers
 Suite = Literal["quick", "full", "stress"]
 SUITES: tuple[Suite, ...] = get_args(Suite)
 
-Makers = Mapping[str, Callable[[], Case]]
+Maker = Callable[[], Case]
+Makers = Mapping[str, Maker]
 
 
 def suite(name: Suite, only: Sequence[str] = ()) -> Makers:

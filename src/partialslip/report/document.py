@@ -1,0 +1,224 @@
+"""The verification report: one self-contained page, which prints, on what was verified and how near to its bars."""
+
+import shlex
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from partialslip.compare import P_BAR, Q_BAR
+from partialslip.errors import InputError
+from partialslip.report.figure import svg
+from partialslip.report.template import template
+from partialslip.report.verdicts import Verdicts, every_one, nearest, room
+from partialslip.result import CERTIFICATE_BAR
+from partialslip.verify import REQUIREMENTS, Verdict, number_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_ASKED = ("suite", "method", "seed", "count")
+_LEAST = 1e-18  # of a certificate in the figure: a residual can be zero
+
+
+class Study(NamedTuple):
+    """Figures of a study by their files' names, SVG, and the names of its tables."""
+
+    folder: Path
+    figures: dict[str, str]
+    tables: list[str]
+
+
+@dataclass(frozen=True)
+class Account:
+    """What there is to report.
+
+    Parameters
+    ----------
+    settings : mapping
+        What was asked for: the suite, and more of random scenes.
+    entries : mapping of str to mapping
+        By case, its entry in the ledger.
+    figures : mapping of str to str
+        By case, its tractions as SVG.
+    studies : sequence of Study
+    """
+
+    settings: Mapping[str, Any]
+    entries: Mapping[str, Mapping[str, Any]]
+    figures: Mapping[str, str]
+    studies: Sequence[Study] = ()
+
+    @property
+    def verdicts(self) -> dict[str, list[Verdict]]:
+        """By case."""
+        return {case: [Verdict(**each) for each in entry["verdicts"]] for case, entry in self.entries.items()}
+
+
+def read_study(folder: Path) -> Study:
+    """The figures that ``partialslip study`` has left in a folder. Raises InputError if it has none."""
+    try:
+        figures = {path.name: path.read_text("utf-8") for path in sorted(folder.glob("*.svg"))}
+    except (OSError, ValueError):
+        raise InputError(f"--include {folder}: has figures that cannot be read") from None
+    if not figures or any("<svg" not in figure for figure in figures.values()):
+        raise InputError(f"--include {folder}: must be the folder of a study, with figures (.svg)")
+    return Study(folder, figures, sorted(path.name for path in folder.glob("*.csv")))
+
+
+def document(account: Account) -> str:
+    """The report as HTML."""
+    settings, verdicts = account.settings, account.verdicts
+    listed, stress = every_one(verdicts), account.settings["suite"] == "stress"
+    page = template("document.html").render(
+        account=account,
+        title=_title(settings),
+        asked=_asked(settings, [entry["made"] for entry in account.entries.values()]),
+        verdicts=verdicts,
+        again={case: command(settings, [case.rpartition("-")[2] if stress else case]) for case in verdicts},
+        stress=stress,
+        count=f"{len(listed):,}",
+        missed=[verdict for verdict in listed if not verdict.passed],
+        summary=_summary(verdicts),
+        requirements=_requirements(listed),
+        usual={"certificate": CERTIFICATE_BAR, "p": P_BAR, "q": Q_BAR},
+        closest=[_close(verdict) for verdict in sorted(nearest(verdicts), key=room)],
+        found={case: [_found(verdict, account.entries[case]) for verdict in some] for case, some in verdicts.items()},
+        reasons={case: _reasons(some) for case, some in verdicts.items()},
+        kinds=_kinds(account) if stress else [],
+        spread=_spread(listed) if stress else None,
+    )
+    return page + "\n"
+
+
+def _title(settings: Mapping[str, Any]) -> str:
+    parts = [f"{key} {settings[key]}" for key in _known(settings)]
+    return ", ".join(["Verification of partialslip", *parts, *(["in part"] if settings["only"] else [])])
+
+
+def command(settings: Mapping[str, Any], only: Sequence[str]) -> str:
+    """What repeats a verification, or the ``only`` cases of it."""
+    words = [f"--{key} {settings[key]}" for key in _known({**settings, "only": only})]
+    return " ".join(["partialslip verify", *words, *(f"--only {shlex.quote(name)}" for name in only)])
+
+
+def _known(settings: Mapping[str, Any]) -> list[str]:
+    """What was asked for, by its key: a count of random scenes only where they were not named."""
+    return [key for key in _ASKED if key in settings and not (key == "count" and settings["only"])]
+
+
+def _asked(settings: Mapping[str, Any], origins: Sequence[Mapping[str, Any]]) -> list[tuple[str, str]]:
+    """What was asked for; when, where and with what it was found, each thing once."""
+    times = sorted(origin["at"].replace("T", " ").replace("+00:00", " UTC") for origin in origins)
+    machines = [origin["machine"] for origin in origins]
+    found = {
+        "finished": [times[0] if times[0] == times[-1] else f"{times[0]} to {times[-1]}"],
+        "commit": [origin["commit"] or "none: not from a clone" for origin in origins],
+        "versions": [", ".join(map(" ".join, origin["versions"].items())) for origin in origins],
+        "machine": [f"{each['processor']}, {each['cores']} cores, {each['system']}" for each in machines],
+    }
+    lines = [(key, "; ".join(dict.fromkeys(texts))) for key, texts in found.items()]
+    return [("command", command(settings, settings["only"])), *lines]
+
+
+def _summary(verdicts: Verdicts) -> list[tuple[str, ...]]:
+    """By method, and in all: cases, verdicts, missed, CPU seconds."""
+    closest, listed = nearest(verdicts), every_one(verdicts)
+    rows: list[tuple[str, ...]] = []
+    for method in (*dict.fromkeys(verdict.method for verdict in closest), None):
+        some = [verdict for verdict in listed if method in (None, verdict.method)]
+        cpu_s = sum(verdict.cpu_s for verdict in closest if method in (None, verdict.method))
+        counts = len({verdict.case for verdict in some}), len(some), sum(not verdict.passed for verdict in some)
+        rows.append((method or "in all", *(f"{count:,}" for count in counts), f"{cpu_s:.1f}", ""))
+    return rows
+
+
+def _requirements(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
+    """Number, requirement, how many verdicts, how many missed, the largest share of a bar, and where."""
+    rows: list[tuple[str, ...]] = []
+    for check, text in REQUIREMENTS.items():
+        some = [verdict for verdict in verdicts if verdict.check == check and verdict.judged]
+        worst = min(some, key=room, default=None)
+        told = worst is not None and (worst.share is not None or not worst.passed)
+        where = f"{worst.case}, {worst.method}" if worst and told else ""
+        share = _share(worst) if worst else ""
+        missed = sum(not verdict.passed for verdict in some)
+        rows.append((number_of(check), text, f"{len(some):,}", f"{missed:,}", share, where))
+    return rows
+
+
+def _close(verdict: Verdict) -> tuple[str, ...]:
+    """Case, requirement, check, value, bar, its share, CPU seconds and verdict."""
+    numbers = _number(verdict.value), _number(verdict.bar), _share(verdict), f"{verdict.cpu_s:.2f}"
+    return verdict.case, number_of(verdict.check), f"{verdict.method}.{verdict.check}", *numbers, _word(verdict)
+
+
+def _found(verdict: Verdict, entry: Mapping[str, Any]) -> tuple[str, ...]:
+    """Requirement, check, the exact method's value and its own, error or residual, bar, its share, and verdict."""
+    values = entry["sheet"]["values"] if entry.get("sheet") else {}
+    pair = [values.get(method, {}).get(verdict.check, "") for method in ("exact", verdict.method)]
+    numbers = _number(verdict.value), _number(verdict.bar), _share(verdict)
+    own = pair if any(pair) else ["", verdict.found]
+    return number_of(verdict.check), f"{verdict.method}.{verdict.check}", *own, *numbers, _word(verdict)
+
+
+def _reasons(verdicts: Sequence[Verdict]) -> list[str]:
+    """Why bars are not the usual ones, each reason once."""
+    reasons: dict[str, list[str]] = {}
+    for verdict in verdicts:
+        if verdict.reason:
+            reasons.setdefault(verdict.reason, []).append(f"{verdict.method}.{verdict.check}")
+    return [f"Bar of {', '.join(checks)}: {reason}." for reason, checks in reasons.items()]
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.1e}" if value else "0"
+
+
+def _share(verdict: Verdict) -> str:
+    if verdict.share is None:
+        return ""
+    return "< 0.1 %" if verdict.share < 1e-3 else f"{100 * verdict.share:.1f} %"
+
+
+def _word(verdict: Verdict) -> str:
+    return ("ok" if verdict.judged else "not judged") if verdict.passed else "MISSED"
+
+
+def _kinds(account: Account) -> list[tuple[str, ...]]:
+    """By kind of loads: how many scenes, median and largest of the certificates, and where that is."""
+    groups: dict[str, list[Verdict]] = {}
+    for case, verdicts in account.verdicts.items():
+        groups.setdefault(account.entries[case]["hard"], []).extend(_certificates(verdicts))
+    rows: list[tuple[str, ...]] = []
+    for kind, some in groups.items():
+        values = [verdict.value or 0.0 for verdict in some]
+        worst = max(some, key=lambda verdict: verdict.value or 0.0, default=None)
+        figures = (f"{np.median(values):.1e}", f"{max(values):.1e}", worst.case) if worst else ("", "", "")
+        rows.append((kind, f"{len(some):,}", *figures))
+    return rows
+
+
+def _spread(verdicts: Sequence[Verdict]) -> str | None:
+    """How the certificates are spread, as SVG; None where there are none."""
+    some = _certificates(verdicts)
+    if not some:
+        return None
+    tens = np.log10([max(verdict.value or 0.0, _LEAST) for verdict in some])
+    bar = np.log10(some[0].bar or np.nan)
+
+    def draw(figure: "Figure") -> None:
+        axes = figure.subplots()
+        bins = np.arange(np.floor(tens.min()), max(np.ceil(tens.max()), bar) + 1, 0.5)
+        axes.hist(tens, bins.tolist(), color="0.75", edgecolor="black", lw=0.6)
+        axes.axvline(bar, color="black", lw=1.4, ls="--", label="bar")
+        axes.set(xlabel="log10 of the certificate", ylabel="scenes", yscale="log")
+        axes.legend(frameon=False)
+
+    return svg(draw, (7.4, 3.2))
+
+
+def _certificates(verdicts: Sequence[Verdict]) -> list[Verdict]:
+    return [verdict for verdict in verdicts if verdict.check == "certificate" and verdict.value is not None]

@@ -1,0 +1,186 @@
+"""The report of a verification: every verdict can be traced, and what it shows is beside it as data."""
+
+import csv
+import html
+import json
+import re
+import sys
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip.cli import main
+from partialslip.run import run
+from partialslip.study.verification import verify_suite
+from partialslip.verify import REQUIREMENTS, case
+
+CASES = ["no-shear", "one-contact-node"]
+SVG = '<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg"><title>picture of costs</title></svg>'
+
+
+def verified(folder, **settings):
+    return verify_suite("full", CASES, processes=1, out=folder, **settings)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A verification of two cases with a study."""
+    folder = tmp_path_factory.mktemp("verified")
+    (folder / "study").mkdir()
+    (folder / "study" / "cost.svg").write_text(SVG, "utf-8")
+    (folder / "study" / "cost.csv").write_text("setting,m\n", "utf-8")
+    verified(folder, include=[folder / "study"])
+    return folder
+
+
+def page(folder):
+    return (folder / "report.html").read_text("utf-8")
+
+
+def words(text):
+    """The text of each row of each table."""
+    rows = re.findall(r"<tr>(.*?)</tr>", text, re.DOTALL)
+    return [
+        [html.unescape(re.sub("<[^>]*>", "", cell)) for cell in re.findall(r"<t[dh].*?</t[dh]>", row, re.DOTALL)]
+        for row in rows
+    ]
+
+
+def section(text, name):
+    return re.search(rf'<section class="scene" id="{name}">.*?</section>', text, re.DOTALL)[0]
+
+
+def test_every_verdict_is_there_with_its_requirement_and_bar(folder):
+    with (folder / "results.csv").open(newline="") as table:
+        verdicts = list(csv.DictReader(table))
+    assert {verdict["requirement"].partition(":")[0] for verdict in verdicts} == {f"R{n}" for n in range(1, 10)}
+    for name in CASES:
+        shown = {tuple(row[:2]): row for row in words(section(page(folder), name))}
+        for verdict in (one for one in verdicts if one["case"] == name):
+            number = verdict["requirement"].partition(":")[0]
+            row = shown[number, f"{verdict['method']}.{verdict['check']}"]
+            if float(verdict["value"] or 0):
+                assert f"{float(verdict['value']):.1e}" in row
+            assert not verdict["bar"] or f"{float(verdict['bar']):.1e}" in row or verdict["bar"] == "0.0"
+            assert verdict["reason"] in html.unescape(page(folder))
+    assert all(required in html.unescape(page(folder)) for required in REQUIREMENTS.values())
+
+
+def test_what_repeats_a_case_and_the_data_of_its_figure_are_named(folder):
+    for name in CASES:
+        own = section(page(folder), name)
+        assert f"<code>partialslip verify --suite full --only {name}</code>" in own
+        for file in ("scene.toml", "tractions.csv"):
+            assert f"scenes/{name}/{file}" in own
+            assert (folder / "scenes" / name / file).exists()
+    assert "picture of costs" in page(folder)
+    assert str(folder / "study" / "cost.csv") in page(folder)
+
+
+def test_a_filed_scene_gives_the_filed_tractions(folder):
+    scene = partialslip.load_scene(folder / "scenes" / "no-shear" / "scene.toml")
+    exact = run(scene, ["exact"]).results["exact"]
+    with (folder / "scenes" / "no-shear" / "tractions.csv").open(newline="") as table:
+        dq = [float(row["dq"]) for row in csv.DictReader(table) if row["method"] == "exact"]
+    np.testing.assert_array_equal(exact.traction.dq, dq)
+
+
+def test_it_needs_nothing_but_itself(folder):
+    text = page(folder)
+    assert not re.search(r"<(script|link|img|iframe)\b|@import|url\((?!#)", text)
+    assert re.findall(r'(?:src|href)="(?!#|http://www.w3.org/)([^"]*)"', text) == []
+    assert (folder / "report.pdf").read_bytes().startswith(b"%PDF-")
+
+
+def test_where_it_was_found_is_told(folder):
+    made = json.loads((folder / "ledger.jsonl").read_text("utf-8").splitlines()[0])["made"]
+    assert "<h1>Verification of partialslip, suite full, in part</h1>" in page(folder)
+    table = dict(row for row in words(page(folder)) if len(row) == 2)
+    assert table["command"] == "partialslip verify --suite full --only no-shear --only one-contact-node"
+    assert made["machine"]["processor"] in table["machine"]
+    assert all(number in table["versions"] for number in made["versions"].values())
+    assert made["at"][:10] in table["finished"]
+
+
+def test_a_missed_bar_cannot_be_overlooked(tmp_path, monkeypatch):
+    """Deliberate fault: a residual beyond its bar. It is in the heading, first in the table, and at its scene."""
+    monkeypatch.setattr(case, "CERTIFICATE_BAR", 1e-30)
+    monkeypatch.setitem(sys.modules, "weasyprint", None)
+    verified(tmp_path)
+    text = page(tmp_path)
+    assert re.search(r'<div class="verdict">[1-9]\d* of \d+ verdicts missed</div>', text)
+    nearest = text[text.index("Nearest to their bars") :]
+    assert words(nearest)[1][1] == "R3"
+    assert words(nearest)[1][-1] == "MISSED"
+    assert "MISSED" in section(text, "one-contact-node")
+    assert "again with <code>partialslip verify --suite full --only one-contact-node</code>" in text
+
+
+def test_stopped_and_continued_it_is_the_same(folder, tmp_path, monkeypatch):
+    """Ctrl-C in the second case: the first is not solved again, and the report tells as much of it as of the other."""
+    monkeypatch.setitem(sys.modules, "weasyprint", None)
+    solved = []
+
+    def stopped(scene, methods):
+        if scene.name == CASES[1]:
+            raise KeyboardInterrupt
+        solved.append(scene.name)
+        return run(scene, methods)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(case, "run", stopped)
+        with pytest.raises(KeyboardInterrupt):
+            verified(tmp_path)
+    assert set(solved) == {CASES[0]}
+    assert list(json.loads((tmp_path / "results.json").read_text("utf-8"))["cases"]) == [CASES[0]]
+    assert not (tmp_path / "report.html").exists()
+    known = []
+    verified(tmp_path, progress=lambda done, *_: known.append(done))
+    assert known == [1, 2]
+
+    def lasting(text):
+        times = r"<td>[^<]*CPU s[^<]*</td>|<td[^>]*>[\d.]+</td>|<td>[^<]*UTC</td>"
+        return re.sub(times, "", text)
+
+    assert [section(lasting(page(tmp_path)), name) for name in CASES] == [
+        section(lasting(page(folder)), name) for name in CASES
+    ]
+
+
+def test_without_weasyprint_there_is_the_page(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "weasyprint", None)
+    arguments = ["verify", "--suite", "stress", "--only", "1", "--method", "march", "--processes", "1"]
+    assert main([*arguments, "--out", str(tmp_path)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == (
+        "report.pdf needs WeasyPrint: pip install 'partialslip[pdf]'"
+    )  # fmt: skip
+    assert not (tmp_path / "report.pdf").exists()
+    assert page(tmp_path).endswith("</html>\n")
+
+
+def test_random_scenes_are_summed_up(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "weasyprint", None)
+    verified = verify_suite("stress", method="march", seed=5, count=20, processes=1, out=tmp_path)
+    text = page(tmp_path)
+    assert "<section" not in text
+    assert not (tmp_path / "scenes").exists()
+    by_kind = [row for row in words(text[text.index("<h2>Certificates") :]) if len(row) == 5][1:]
+    found = [v.value for some in verified.verdicts.values() for v in some if v.check == "certificate"]
+    assert len(found) >= 15
+    assert sum(int(row[1]) for row in by_kind) == len(found)
+    assert max(float(row[3]) for row in by_kind if row[3]) == pytest.approx(max(found), rel=0.05)
+
+
+@pytest.mark.parametrize("content", [None, "no picture"])
+def test_what_is_no_study_is_refused(content, tmp_path, capsys):
+    (tmp_path / "study").mkdir()
+    if content:
+        (tmp_path / "study" / "cost.svg").write_text(content, "utf-8")
+    assert main(["verify", "--include", str(tmp_path / "study"), "--out", str(tmp_path / "none")]) == 2
+    printed = capsys.readouterr()
+    assert (
+        printed.err
+        == f"partialslip: --include {tmp_path / 'study'}: must be the folder of a study, with figures (.svg)\n"
+    )
+    assert not (tmp_path / "none").exists()
