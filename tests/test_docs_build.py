@@ -1,6 +1,7 @@
 """The documents are built without a warning, need no network, and the reference leaves nothing out."""
 
 import importlib
+import inspect
 import os
 import re
 import subprocess
@@ -84,7 +85,7 @@ def test_all_that_is_handed_out_is_in_the_reference(built, name):
     handed = [
         each
         for each, value in vars(module).items()
-        if callable(value) and not each.startswith("_")
+        if (inspect.isfunction(value) or isinstance(value, type)) and not each.startswith("_")
         if f" as {each}\n" in source or value.__module__ == module.__name__
     ]
     assert handed
