@@ -30,7 +30,8 @@ def add(topics: "Commands") -> None:
     add_scene(size)
     size.add_argument("--over", action="append", required=True, metavar="KEY[+KEY]=VALUES",
                       help="4a,8a,16a or 4a..256a (equal ratios) or 4a..256a:13, in contact half-widths of the "
-                      "half-plane, or without a as in the scene; twice for a map")  # fmt: skip
+                      "half-plane, or without a as in the scene; 3*KEY is set to three times that; "
+                      "twice for a map")  # fmt: skip
     size.add_argument("--processes", type=int, metavar="N", help="at once on this machine (default: its cores)")
     size.add_argument("--cluster", metavar="ADDRESS", help="of a Dask scheduler, whose workers solve instead")
     size.add_argument(
