@@ -35,9 +35,8 @@ def main() -> None:
                     forget()
                 run(each, ["fem"])
             rates[kept] = CASES / (time.process_time() - start)
-        print(
-            f"{name}: {rates[True]:.1f} cases a CPU s, factored again {rates[False]:.1f}: {rates[True] / rates[False]:.1f}"
-        )
+        ratio = rates[True] / rates[False]
+        print(f"{name}: {rates[True]:.1f} cases a CPU s, factored again {rates[False]:.1f}: {ratio:.1f}")
 
 
 if __name__ == "__main__":
