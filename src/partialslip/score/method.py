@@ -15,6 +15,7 @@ _SLIDES = 0.02  # of 2 f p0: with less room than that, or than noise, nothing is
 _ROUNDING = 1e-9
 _OFF = 0.05  # relative difference of resultants that is worth a note
 _LOOSE = 0.1  # by which |dq| may be beyond 2 f p
+_TIGHT = 1e-3  # by which it may stay below where it slips
 
 
 class Stick(NamedTuple):
@@ -143,6 +144,11 @@ def _notes(scene: Scene, traction: Traction, left: End, right: End) -> tuple[str
     beyond = np.abs(traction.dq) > (1 + _LOOSE) * 2 * f * np.maximum(traction.p, 0.0)
     if f > 0 and np.count_nonzero(beyond) > np.count_nonzero(traction.p > 0) / 4:
         notes.append("|dq| is beyond 2 f p at many points: another coefficient of friction?")
+    pressed, shear = traction.p > _ROUNDING * traction.p.max(), np.abs(traction.dq)
+    share = float((shear[pressed] / (2 * f * traction.p[pressed])).max()) if f > 0 else 0.0
+    if 0 < share < 1 - _TIGHT and scene.load.dQ > 0:
+        why = "points too far apart, or another coefficient of friction?"
+        notes.append(f"|dq| is {share:.3g} of 2 f p at most, so that nothing is seen to slip: {why}")
     return tuple(notes)
 
 
