@@ -89,7 +89,7 @@ def same(printed, shown):
 def shell(code):
     """Run the lines of a ``sh`` block; commands of partialslip in this process. Returns what they print."""
     printed = io.StringIO()
-    for line in code.replace("\\\n", " ").splitlines():
+    for line in code.replace("\\\n", "").splitlines():
         words = shlex.split(line, comments=True)
         *words, into = [*words, None] if ">" not in words else [*words[: words.index(">")], words[-1]]
         if not words:

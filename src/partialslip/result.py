@@ -65,10 +65,14 @@ class Traction:
         """The largest pressure, Pa: of the parabola through the largest value and those beside it, as points need not
         fall on the top."""
         near = np.clip(int(self.p.argmax()), 1, len(self.x) - 2) + np.array([-1, 0, 1])
-        x, p = (self.x[near] - self.x[near[1]]) / np.ptp(self.x[near]), self.p[near]
-        curvature, slope, middle = np.polyfit(x, p, 2)
-        top = -slope / (2 * curvature) if curvature < 0 else np.inf
-        return float(max(p.max(), middle + slope * top / 2 if x[0] <= top <= x[2] else 0.0))
+        x, p = self.x[near], self.p[near]
+        if np.diff(x).min() <= 0:
+            return float(p.max())
+        before, after = np.diff(p) / np.diff(x)
+        bend = (after - before) / (x[2] - x[0])
+        slope = before + bend * (x[1] - x[0])
+        rise = -(slope**2) / (4 * bend) if bend < 0 and abs(slope) < -bend * (x[2] - x[0]) else 0.0
+        return float(max(p.max(), p[1] + rise))
 
 
 @dataclass(frozen=True)

@@ -140,13 +140,13 @@ def _notes(scene: Scene, traction: Traction, left: End, right: End) -> tuple[str
     centres = (traction.breaks[1:] + traction.breaks[:-1]) / 2
     P, dQ = (float(column @ widths) for column in traction.at(centres))
     notes += _resultant("p", P, scene.P, "P")
-    notes += _resultant("dq", dQ, scene.load.dQ, "dQ")
+    notes += (of_dq := _resultant("dq", dQ, scene.load.dQ, "dQ"))
     beyond = np.abs(traction.dq) > (1 + _LOOSE) * 2 * f * np.maximum(traction.p, 0.0)
     if f > 0 and np.count_nonzero(beyond) > np.count_nonzero(traction.p > 0) / 4:
         notes.append("|dq| is beyond 2 f p at many points: another coefficient of friction?")
     pressed, shear = traction.p > _ROUNDING * traction.p.max(), np.abs(traction.dq)
     share = float((shear[pressed] / (2 * f * traction.p[pressed])).max()) if f > 0 else 0.0
-    if 0 < share < 1 - _TIGHT and scene.load.dQ > 0:
+    if 0 < share < 1 - _TIGHT and scene.load.dQ > 0 and not of_dq:
         why = "points too far apart, or another coefficient of friction?"
         notes.append(f"|dq| is {share:.3g} of 2 f p at most, so that nothing is seen to slip: {why}")
     return tuple(notes)
