@@ -12,6 +12,7 @@ from partialslip.study.size import QUANTITIES, Law, Sizes
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+_LEVELS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3)  # of maps
 _STYLE = {"a": ("o", "-"), "p0": ("s", "--"), "p": ("x", ":"), "m": ("^", "-"), "n": ("v", "--"), "q": ("D", ":")}
 _UNIT = {"a": "a", "p0": "p0, largest p", "p": "p, relative L2", "m": "m, in a", "n": "n, in a", "q": "q, relative L2"}
 
@@ -43,14 +44,27 @@ def size_svg(sizes: Sizes, laws: Sequence[Law], title: str, unit: str) -> str:
 
 
 def grid_svg(x: Array, y: Array, off: Array, labels: tuple[str, str], title: str) -> str:
-    """Lines of equal change over two parameters; ``off`` is (len(y), len(x))."""
+    """Lines of equal change over two parameters, darker where it is larger; hatched where nothing was solved. ``off``
+    is (len(y), len(x))."""
+    from matplotlib.colors import LogNorm
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
     def draw(figure: "Figure") -> None:
         axes = figure.subplots()
-        levels = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3]
-        lines = axes.contour(x, y, off, levels=levels, colors="black", linewidths=1)
-        axes.clabel(lines, fmt="%g", fontsize=8)
+        axes.set_facecolor("white")
+        axes.patch.set(hatch="///", edgecolor="0.7")
+        levels, shades = np.array(_LEVELS), LogNorm(_LEVELS[0], 3 * _LEVELS[-1])
+        shown = np.clip(off, levels[0] / 10, None)
+        filled = axes.contourf(x, y, shown, levels=levels, norm=shades, cmap="Greys", extend="both")
+        filled.cmap.set_under("white")
+        axes.contour(x, y, shown, levels=levels, colors="black", linewidths=0.8)
+        bar = figure.colorbar(filled, ax=axes, ticks=levels, format="%g", label="change")
+        bar.ax.minorticks_off()
         axes.set(xscale="log", yscale="log", xlabel=labels[0], ylabel=labels[1])
+        for side in (axes.xaxis, axes.yaxis):
+            side.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            side.set_major_formatter(StrMethodFormatter("{x:g}"))
+            side.set_minor_formatter(NullFormatter())
         axes.set_title(title, loc="left", fontsize=10)
 
-    return svg(draw, (6.0, 4.6))
+    return svg(draw, (6.6, 4.6))
