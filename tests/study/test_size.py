@@ -17,6 +17,7 @@ from partialslip.study.axes import axis as read
 from partialslip.study.axes import cases as make
 from partialslip.study.case import Case, solve
 from partialslip.study.ledger import Ledger
+from partialslip.study.sizefigure import grid_svg
 from partialslip.study.sweep import Task, sweep, workers
 
 BLOCKS = {"upper": {"width": 1.0, "height": 1.0}, "lower": {"width": 1.0, "height": 1.0}}
@@ -175,6 +176,24 @@ def test_what_the_mesh_is_off_by_is_no_law():
     blind = size.Sizes("W", x, {"m": off}, {"m": np.zeros(9)})
     assert size.law(honest, "m").k == pytest.approx(2, abs=0.1)
     assert size.law(blind, "m").k < 1
+
+
+def test_maps_leave_out_what_was_not_solved():
+    """Each change in its place: the first axis across, the second one up."""
+    axes = [read("bodies.*.width=2a,4a,8a"), read("bodies.*.height=3a,9a")]
+    entries = [
+        {"labels": {"bodies.*.width": x, "bodies.*.height": y, "accuracy": 1.0},
+         "methods": {"fem": {"a": 1 + 0.1 / x / y, "p_max": 1.0, "m": None, "n": None, "estimate": {}},
+                     "exact": {"a": 1.0, "p_max": 1.0, "m": None, "n": None}},
+         "comparison": {"fem": {"p": None, "q": None}}}
+        for x in axes[0].values for y in axes[1].values
+    ]  # fmt: skip
+    entries[0] = {"labels": entries[0]["labels"], "error": "too narrow"}
+    x, y, off = size.grid(axes, entries, "a")
+    expected = 0.1 / x / y[:, None]
+    expected[0, 0] = np.nan
+    np.testing.assert_allclose(off, expected)
+    assert "<svg" in grid_svg(x, y, off, ("width", "height"), "a")
 
 
 def test_blocks_come_near_the_half_plane_with_the_square_of_their_size(tmp_path):
