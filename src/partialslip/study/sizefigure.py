@@ -46,6 +46,7 @@ def size_svg(sizes: Sizes, laws: Sequence[Law], title: str, unit: str) -> str:
 def grid_svg(x: Array, y: Array, off: Array, labels: tuple[str, str], title: str) -> str:
     """Lines of equal change over two parameters, darker where it is larger; hatched where nothing was solved. ``off``
     is (len(y), len(x))."""
+    from matplotlib import colormaps
     from matplotlib.colors import LogNorm
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
@@ -55,8 +56,8 @@ def grid_svg(x: Array, y: Array, off: Array, labels: tuple[str, str], title: str
         axes.patch.set(hatch="///", edgecolor="0.7")
         levels, shades = np.array(_LEVELS), LogNorm(_LEVELS[0], 3 * _LEVELS[-1])
         shown = np.clip(off, levels[0] / 10, None)
-        filled = axes.contourf(x, y, shown, levels=levels, norm=shades, cmap="Greys", extend="both")
-        filled.cmap.set_under("white")
+        greys = colormaps["Greys"].with_extremes(under="white")
+        filled = axes.contourf(x, y, shown, levels=levels, norm=shades, cmap=greys, extend="both")
         axes.contour(x, y, shown, levels=levels, colors="black", linewidths=0.8)
         bar = figure.colorbar(filled, ax=axes, ticks=levels, format="%g", label="change")
         bar.ax.minorticks_off()
