@@ -19,9 +19,8 @@ def print_run(run: Run, console: Console) -> None:
     console.print(title, style="bold", markup=False)
     for name in run.comparisons:
         print_table(console, rows.headings(run, name), rows.error_rows(run, name), words=(0, 5))
-    for name, result in run.results.items():
-        _print_lines(console, rows.methods({name: result}, compared=bool(run.comparisons)))
-    _print_lines(console, rows.effects(run.plan))
+    methods = rows.methods(run.results, compared=bool(run.comparisons))
+    _print_lines(console, [*methods, *rows.effects(run.plan)])
     console.print(rows.verdict(run), style="bold", markup=False)
 
 
