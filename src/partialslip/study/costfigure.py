@@ -12,7 +12,7 @@ from partialslip.study.cost import Point, errors_of, front, slope
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_MARKS = ("o", "s", "^", "v", "D", "<", ">", "p", "h", "X", "P", "*", "d", "8")
+_MARKS = ("o", "s", "^", "v", "D", "<", ">", "p", "h", "X", "P", "*", "d")
 _GREYS = ("0.0", "0.45", "0.65")
 _LINES = ("-", "--", ":", "-.")
 _HATCHES = ("", "////", "....", "xxxx", "----", "\\\\\\\\", "oooo", "++++")
