@@ -149,6 +149,8 @@ class _BlockPivoting:
                 step = np.clip(at + 0.5**halvings * way, self._lower, self._upper) - at
                 if step @ r + step @ self._C @ step / 2 < -np.abs(step) @ noise:
                     break
+            else:
+                return at, r, slope
             if np.all(self._diagonal * np.abs(step) <= noise):
                 return at, r, slope
             at = at + step
