@@ -66,9 +66,10 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         size = max(size / finer, _FINEST)
         growth = max(least, _growth(size, order)) if size > 1.01 * goal else least
         a = level.half_width
-        sizes = dict.fromkeys(apart([*level.ends.tolist(), *problem.kinks], size * a), size * a / coarsest)
         margin = (0.1 + 2 * finer * size) * a  # of safety, and what the mesh before may have been off by
         contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
+        kinks = [kink for kink in problem.kinks if contact[0] < kink < contact[1]]  # others touch nothing
+        sizes = dict.fromkeys(apart([*level.ends.tolist(), *kinks], size * a), size * a / coarsest)
         level = solve_level(problem, width * a, contact, sizes, growth / coarsest, clock, rounding=rounding)
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         if not level.enclosed and max(-level.left, level.right) >= limit:

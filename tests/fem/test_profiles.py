@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import partialslip
+from partialslip.verify.random_scenes import draw
 
 
 def tabulated(x, gap):
@@ -34,3 +35,11 @@ def test_a_table_of_a_parabola_is_hertz():
     table = partialslip.run(tabulated(x, x**2 / 0.02), ["fem"]).results["fem"]
     hertz = partialslip.run(partialslip.load_scene("fretting-aluminium", ["fem.accuracy=1e-4"]), ["fem"]).results["fem"]
     assert (table.a, table.m, table.n) == pytest.approx((hertz.a, hertz.m, hertz.n), rel=1e-9, abs=1e-12)
+
+
+def test_a_table_goes_on_far_beyond_the_contact():
+    """A corner of it lies outside the block that is meshed while the contact is still known roughly."""
+    _, scene = draw(0, 333)
+    fem = partialslip.run(scene, ["fem"]).results["fem"]
+    assert max(scene.profile.kinks) > 13 * fem.a
+    assert max(fem.certificate.values()) < 1e-10
