@@ -1,5 +1,6 @@
 """What several commands share."""
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,6 +10,8 @@ if TYPE_CHECKING:
     import argparse
 
     from rich.console import Console
+
+    from partialslip.run import Run
 
     Commands = argparse._SubParsersAction[Any]
 
@@ -29,3 +32,30 @@ def check_folder(out: str | None) -> None:
 def print_written(files: list[Path], console: "Console") -> None:
     """Say which files a command leaves behind."""
     console.print("written: " + ", ".join(map(str, files)), soft_wrap=True, markup=False)
+
+
+def write_outcome(outcome: "Run", options: "argparse.Namespace", name: str) -> list[Path]:
+    """Write the files of a run into ``--out``, or results/NAME; with ``--json`` into ``--out`` alone. Returns their
+    paths."""
+    from partialslip.report import write_run
+
+    folder = Path(options.out) if options.out else None if options.json else Path("results") / name
+    return write_run(outcome, folder) if folder else []
+
+
+def print_outcome(outcome: "Run", options: "argparse.Namespace", files: list[Path], last: str = "") -> int:
+    """Print a run, a ``last`` line and which files there are, or with ``--json`` the record alone. Returns the exit
+    code."""
+    from rich.console import Console
+
+    from partialslip.report import print_run, record
+
+    if options.json:
+        print(json.dumps(record(outcome), indent=1, allow_nan=False))
+    else:
+        console = Console(highlight=False)
+        print_run(outcome, console)
+        if last:
+            console.print(last, soft_wrap=True, markup=False)
+        print_written(files, console)
+    return 0 if outcome.passed else 1

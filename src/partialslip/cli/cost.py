@@ -10,7 +10,7 @@ from partialslip.errors import InputError
 from partialslip.reading import load_scene
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands, add_scene
+    from partialslip.cli.common import Commands
     from partialslip.study.cost import Point
 
 

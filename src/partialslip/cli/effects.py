@@ -9,7 +9,7 @@ from partialslip.cli.common import add_scene, check_folder, print_written
 from partialslip.reading import load_scene
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands, add_scene
+    from partialslip.cli.common import Commands
 
 
 def add(topics: "Commands") -> None:

@@ -1,19 +1,18 @@
 """partialslip run: solve a scene, compare the methods, write the report."""
 
 import argparse
-import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_scene, check_folder, print_written
+from partialslip.cli.common import add_scene, check_folder, print_outcome, write_outcome
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
 from partialslip.run import METHODS, Run, run
 from partialslip.state import State, load_state
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands, add_scene
+    from partialslip.cli.common import Commands
     from partialslip.scene import Scene
     from partialslip.study.prices import Price
 
@@ -70,7 +69,7 @@ def _run(options: argparse.Namespace) -> int:
 
     from rich.console import Console
 
-    from partialslip.report import print_run, record, write_files, write_run
+    from partialslip.report import write_files
 
     messages = Console(stderr=True, highlight=False)
     if price:
@@ -87,18 +86,11 @@ def _run(options: argparse.Namespace) -> int:
         if options.save is not None:
             save = Path(options.save)
             files += write_files(save.parent, {save.name: _state(outcome).save})
-        folder = Path(options.out) if options.out else None if options.json else Path("results") / scene.name
-        files += write_run(outcome, folder) if folder else []
-    if options.json:
-        print(json.dumps(record(outcome), indent=1, allow_nan=False))
-    else:
-        console = Console(highlight=False)
-        print_run(outcome, console)
-        if price and "fem" in outcome.results:
-            took = outcome.results["fem"].cost.cpu_s
-            console.print(f"{price}, predicted; {took:.2g} CPU s, actual", soft_wrap=True, markup=False)
-        print_written(files, console)
-    return 0 if outcome.passed else 1
+        files += write_outcome(outcome, options, scene.name)
+    paid = ""
+    if price and "fem" in outcome.results:
+        paid = f"{price}, predicted; {outcome.results['fem'].cost.cpu_s:.2g} CPU s, actual"
+    return print_outcome(outcome, options, files, paid)
 
 
 def _price(options: argparse.Namespace, scene: "Scene") -> "Price | None":

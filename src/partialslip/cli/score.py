@@ -1,13 +1,12 @@
 """partialslip score: somebody else's results against a scene."""
 
 import argparse
-import json
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from partialslip.cli.common import add_scene, check_folder, print_written
+from partialslip.cli.common import add_scene, check_folder, print_outcome, write_outcome
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
 from partialslip.run import METHODS
@@ -15,7 +14,7 @@ from partialslip.score import score
 from partialslip.score.csvfile import template
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands, add_scene
+    from partialslip.cli.common import Commands
 
 _T = TypeVar("_T")
 
@@ -78,8 +77,6 @@ def _score(options: argparse.Namespace) -> int:
 
     from rich.console import Console
 
-    from partialslip.report import print_run, record, write_run
-
     file = Path(options.file)
     messages = Console(stderr=True, highlight=False)
     with messages.status(f"{scene.name} ...") as status:
@@ -93,16 +90,8 @@ def _score(options: argparse.Namespace) -> int:
             at=(at[0], at[1]) if at else None,
             progress=lambda line: status.update(f"{scene.name}: {line}"),
         )
-        name = f"{scene.name}-{file.stem}"
-        folder = Path(options.out) if options.out else None if options.json else Path("results") / name
-        files = write_run(outcome, folder) if folder else []
-    if options.json:
-        print(json.dumps(record(outcome), indent=1, allow_nan=False))
-    else:
-        console = Console(highlight=False)
-        print_run(outcome, console)
-        print_written(files, console)
-    return 0 if outcome.passed else 1
+        files = write_outcome(outcome, options, f"{scene.name}-{file.stem}")
+    return print_outcome(outcome, options, files)
 
 
 def _numbers(text: str, kind: Callable[[str], _T], option: str, wanted: str, count: int) -> tuple[_T, ...]:
