@@ -49,6 +49,12 @@ class Traction:
         Points where the tractions are not smooth (ends of the contact and of the stick zone), m.
     cells : (c + 1,) array or None
         The ends of the cells (contact edges) that the method's accuracy is judged on, m; None if it has none.
+    levels_at : callable or None
+        ``levels_at(x) -> (q1, q2)`` at any points, zero outside the contact; None where ``q1`` and ``q2`` are.
+    p1 : (n,) array or None
+        Pressure at load point 1, Pa, where it differs from ``p``, which is that at load point 2.
+    pressures_at : callable or None
+        ``pressures_at(x) -> (p1, p2)`` at any points; None where the pressure is the same at both load points.
     """
 
     x: Array
@@ -59,6 +65,9 @@ class Traction:
     at: Callable[[Array], tuple[Array, Array]]
     breaks: Array
     cells: Array | None = None
+    levels_at: Callable[[Array], tuple[Array, Array]] | None = None
+    p1: Array | None = None
+    pressures_at: Callable[[Array], tuple[Array, Array]] | None = None
 
     @property
     def p_max(self) -> float:
@@ -176,6 +185,13 @@ class Result:
     only where fields inside the bodies were asked for, and so are ``surface`` and ``stress_at``, from methods that know
     stresses everywhere (the exact one, at fully reversed loads that do not slide): ``stress_at(x, y) -> (2, 3, k)``, by
     load point and component xx, yy, xy, Pa, at points (k,) of which y <= 0 are in the lower body.
+
+    ``contact_ends`` are the contact's left and right end (m) at load points 1 and 2; None stands for -a and a at both.
+    ``estimate`` may hold ``left`` and ``right`` (fractions of a), ``q1`` and ``q2`` (relative L2 of cell averages)
+    besides, and ``shares`` says what each estimate is made of: by source (``discretisation``, ``steps``, ``table``,
+    ``rounding``) and then by the estimate's key. ``undetermined`` gives, by quantity (``m``, ``n``, ``q``, ``q1``,
+    ``q2``), the reason why the method's value is none to judge others by; ``path_dependent`` says that slip turns round
+    on the way between the load points, so that a method that takes one step is no reference.
     """
 
     method: str
@@ -197,6 +213,15 @@ class Result:
     state: State | None = None
     surface: SurfaceStress | None = None
     stress_at: Callable[[Array, Array], Array] | None = None
+    contact_ends: tuple[tuple[float, float], tuple[float, float]] | None = None
+    shares: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    undetermined: Mapping[str, str] = field(default_factory=dict)
+    path_dependent: bool = False
+
+    @property
+    def ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The contact's left and right end at load points 1 and 2, m."""
+        return self.contact_ends or ((-self.a, self.a), (-self.a, self.a))
 
     @property
     def uncertified(self) -> tuple[str, ...]:
