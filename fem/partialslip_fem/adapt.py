@@ -1,7 +1,7 @@
 """Mesh after mesh, each fine where the one before it found the ends of the contact and of the stick zone."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
-from partialslip_fem.estimate import end_errors, enough, neighbour, smooth_errors
+from partialslip_fem.estimate import end_errors, enough, kink_sizes, neighbour, smooth_errors
 from partialslip_fem.level import Level, Part, Problem, solve_level
 
 _FIRST, _ROUGH = 0.1, 1.0  # element size of the first mesh, in its contact line's half-width; and growth
@@ -20,8 +20,9 @@ _AIM, _BAR = 0.5, 0.9  # of the accuracy: estimates are right within a factor of
 _ENDS = 0.33  # share of what is aimed at that the elements at the ends may take
 _FINEST = 1e-7  # element size at the ends, in contact half-widths; below, rounding takes over
 _BESIDE = 0.005  # element size at an end, in contact half-widths, beyond which the mesh is only good for finding it
+_ANYWAY = 1.5  # of the size that a kink needs: a mesh that is not coarser there is left as it is
 _MOST = 200_000  # unknowns
-_SHARES = {"p": 0.1, "q": 1 / 15}  # of the accuracy asked: tractions may be off by 10 and 15 times as much
+_SHARES = {"p": 0.1, "q": 1 / 15, "q1": 1 / 15, "q2": 1 / 15}  # of the accuracy asked: tractions may be off by 10 and 15 times as much
 _FILLS = 0.95  # of a finite body's width: as much as the contact line may take
 _ROUNDING = 0.25  # of the accuracy: how far a round face may be from its elements, and the ends off for that
 _FEWEST = 4  # elements of a mesh as it is that must lie in the contact
@@ -58,7 +59,8 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     rounding = _ROUNDING * accuracy if any(part.face for part in problem.parts) else 0.0
     while True:
         share = _ENDS * _AIM * accuracy
-        goal = share / _worst(end_errors(level, np.ones(4), np.full(4, np.inf)))
+        locked = kink_sizes(level, share / _SHARES["q1"])
+        goal = share / _worst(end_errors(level, *_anywhere(level)))
         goal = min(goal, enough(level, _gaps(level, problem), share))
         goal = min(max(goal, _FINEST), _BESIDE / 2)
         if size > 1.01 * goal:
@@ -70,14 +72,19 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
         kinks = [kink for kink in problem.kinks if contact[0] < kink < contact[1]]  # others touch nothing
         sizes = dict.fromkeys(apart([*level.ends.tolist(), *kinks], size * a), size * a / coarsest)
+        for kink, needed in zip(level.kinks, np.clip(locked, size, None).tolist(), strict=True):
+            if _sizes(np.array([kink]), sizes, growth / coarsest)[0] > _ANYWAY * needed * a / coarsest:
+                sizes[kink] = needed * a / coarsest
         level = solve_level(problem, width * a, contact, sizes, growth / coarsest, clock, rounding=rounding)
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         if not level.enclosed and max(-level.left, level.right) >= limit:
             raise _too_narrow(problem)
-        local = size + growth * np.abs(level.ends[:, None] - [*sizes]).min(axis=1) / a
+        local, beside = (
+            _sizes(points, sizes, growth / coarsest) * coarsest / a for points in (level.ends, np.array(level.kinks))
+        )
         errors = at_ends = {
-            key: error + rounding * (key in ("a", "m", "n"))
-            for key, error in end_errors(level, local, _gaps(level, problem)).items()
+            key: error + rounding * (key in ("a", "left", "right", "m", "n"))
+            for key, error in end_errors(level, local, _gaps(level, problem), beside).items()
         }
         known, calmer = np.inf, 1.0
         found = f"mesh {meshes}: {level.dofs:,} unknowns"
@@ -165,6 +172,19 @@ def _gaps(level: Level, problem: Problem) -> Array:
     np.fill_diagonal(apart, np.inf)
     nearest: Array = np.maximum(apart.min(axis=1), np.finfo(float).tiny) / level.half_width
     return nearest
+
+
+def _anywhere(level: Level) -> tuple[Array, Array, Array]:
+    """Elements as large as the contact's half-width at all ends, far apart, and kinks that do not matter."""
+    count = len(level.ends)
+    return np.ones(count), np.full(count, np.inf), np.zeros(len(level.kinks))
+
+
+def _sizes(points: Array, sizes: Mapping[float, float], growth: float) -> Array:
+    """Element sizes at points of the contact line, of a mesh that is graded to other points with those ``sizes``."""
+    at, size = np.array([*sizes]), np.array([*sizes.values()])
+    smallest: Array = (size + growth * np.abs(points[:, None] - at)).min(axis=1)
+    return smallest
 
 
 def _growth(error: float, order: int) -> float:

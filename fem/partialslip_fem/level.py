@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -11,7 +12,7 @@ from scipy.interpolate import PPoly
 from partialslip.condensed import coupled
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.friction import History, Path, march
-from partialslip.condensed.zones import Zone, left_end, right_end, stick_zone
+from partialslip.condensed.zones import Zone, finest, kinks, left_end, right_end, stick_zone
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
 from partialslip.scene import Profile
@@ -112,7 +113,8 @@ class Level:
     """The solution on one mesh of each body: of the lower one, and, unless that is mirrored, of the upper one.
 
     ``nodes`` of the lower one's contact line are in contact at load point 1 or 2, at 2 it is over [left, right], and
-    the ends at 1 are ``others``, where they differ. ``factored`` counts the factorisations made for it; pressure and
+    the ends at 1 are ``others``, where they differ. ``kinks`` are points where q1 or q2 is not smooth, beside the ends
+    of the stick zone, while the change of q is. ``factored`` counts the factorisations made for it; pressure and
     shear are solved together where bodies are ``coupled``.
     """
 
@@ -125,6 +127,7 @@ class Level:
     right: float
     stick: Zone | None
     others: tuple[float, float] | tuple[()] = ()
+    kinks: tuple[float, ...] = ()
     coupled: bool = False
 
     @property
@@ -142,6 +145,12 @@ class Level:
         """Ends of the contact, at load point 1, too, and of the stick zone: where the next mesh is to be fine."""
         stick = (self.stick.left, self.stick.right) if self.stick else ()
         return np.array([self.left, self.right, *stick, *self.others])
+
+    @property
+    def contact_at(self) -> tuple[list[int], list[int]]:
+        """Which of the ``ends`` are left, and which are right ends of the contact."""
+        count = len(self.ends)
+        return ([0, count - 2], [1, count - 1]) if self.others else ([0], [1])
 
     @property
     def contact_ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -172,8 +181,15 @@ class Level:
         return self.pressing.iterations + (self.history.iterations if self.history else 0)
 
     def pressure(self) -> PPoly:
-        """p along the contact line."""
+        """p along the contact line, at load point 2."""
         return traction(self.body, self.pressing.x)
+
+    def pressures(self, f: float) -> tuple[PPoly, PPoly] | None:
+        """p at load points 1 and 2, where they differ."""
+        if not self.history or not self.coupled:
+            return None
+        first, second = (self.shear(bound / f) for bound in self.history.bounds)
+        return first, second
 
     def shear(self, forces: Array) -> PPoly:
         """q along the contact line that belongs to tangential forces of the nodes in contact."""
@@ -285,7 +301,11 @@ def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clo
         if stick:  # of both contacts, whatever a coarse mesh makes of its ends
             at_left, at_right = others or (left, right)
             stick = replace(stick, left=max(stick.left, left, at_left), right=min(stick.right, right, at_right))
-        return Level(halves, factored, nodes, pressing, history, left, right, stick, others, relative.xy is not None)
+        first, last = min([left, *others[:1]]), max([right, *others[1:]])
+        locked = _kinks(problem, line, nodes, history) if history else ()
+        locked = tuple(kink for kink in locked if first < kink < last)
+        two = relative.xy is not None
+        return Level(halves, factored, nodes, pressing, history, left, right, stick, others, locked, two)
 
 
 def _half(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) -> Half:
@@ -322,12 +342,27 @@ def _solve(problem: Problem, C: coupled.Relative, lower: Half) -> tuple[Solution
 
 
 def _stick_zone(line: Body, nodes: Indices, history: History) -> Zone:
-    def cell_forces(forces: Array) -> Array:
-        on_line = np.zeros(len(line.x))
-        on_line[nodes] = forces
-        return _cell_forces(line, on_line)
+    forces = partial(_forces_of, line, nodes)
+    return stick_zone(line.x[nodes], history.bound, history.change, line.x[:: line.order], forces)
 
-    return stick_zone(line.x[nodes], history.bound, history.change, line.x[:: line.order], cell_forces)
+
+def _kinks(problem: Problem, line: Body, nodes: Indices, history: History) -> tuple[float, ...]:
+    """Points where slip has left q1 and q2 not smooth, or what the path begins with is not. Where the first loading
+    tells the whole there are none but the ends of the stick zone."""
+    if history.path.half:
+        return ()
+    x, vertices, forces = line.x[nodes], line.x[:: line.order], partial(_forces_of, line, nodes)
+    found = finest(problem.start[1].x) if problem.start else []
+    for bound, q in zip(history.bounds, history.at_ends, strict=True):
+        found += kinks(x, bound, q, vertices, forces)
+    return tuple(found)
+
+
+def _forces_of(line: Body, nodes: Indices, forces: Array) -> Array:
+    """Integrals over the cells of the contact line of the traction that belongs to forces of some nodes."""
+    on_line = np.zeros(len(line.x))
+    on_line[nodes] = forces
+    return _cell_forces(line, on_line)
 
 
 def _ends(line: Body, normal: Array) -> tuple[float, float]:
