@@ -18,6 +18,8 @@ from partialslip.result import Array
 _VERTICES = 5
 _BESIDE, _FINER = 3, 0.95  # cells on either side of a fine place, and how small it is beside them
 _STICKS = 1e-9  # what slips has used up its bound to rounding, whatever the units
+_LEAVES = 1e-6  # of the bound: a traction nearer to it than that is at it, as kinks so slight do not matter
+_RUN = 4  # nodes in a row that make a zone; fewer are noise
 
 
 @dataclass(frozen=True)
@@ -84,8 +86,12 @@ def kinks(x: Array, bound: Array, q: Array, vertices: Array, cell_forces: Callab
     cell_forces : callable
         Takes forces of the nodes in contact to integrals over the cells.
     """
-    side = np.where(np.abs(q) >= (1 - _STICKS) * bound, np.sign(q), 0).astype(np.int8)
+    side = np.where(np.abs(q) >= (1 - _LEAVES) * bound, np.sign(q), 0).astype(np.int8)
     starts = np.concatenate([[0], np.flatnonzero(np.diff(side)) + 1, [len(x)]])
+    starts = starts[:-1][np.diff(starts) >= _RUN]
+    if not len(starts):
+        return []
+    starts = np.append(starts[np.append(True, np.diff(side[starts]) != 0)], len(x))
     found: list[float] = []
     for run, (first, last) in enumerate(zip(starts[:-1], starts[1:], strict=True)):  # runs of one side: a handful
         if side[first] != 0:
