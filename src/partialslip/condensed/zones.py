@@ -6,6 +6,7 @@ function of x whose root is the end. Forces are far better than nodal values her
 last elements hardly touches them.
 """
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -87,7 +88,7 @@ def kinks(x: Array, bound: Array, q: Array, vertices: Array, cell_forces: Callab
     side = np.where(np.abs(q) >= (1 - _STICKS) * bound, np.sign(q), 0).astype(np.int8)
     starts = np.concatenate([[0], np.flatnonzero(np.diff(side)) + 1, [len(x)]])
     found: list[float] = []
-    for run, (first, last) in enumerate(zip(starts[:-1], starts[1:], strict=True)):  # runs of one side: a handful
+    for run, (first, last) in enumerate(itertools.pairwise(starts)):  # runs of one side: a handful
         if side[first] != 0:
             continue
         inside = x[first:last]
