@@ -6,6 +6,7 @@ function of x whose root is the end. Forces are far better than nodal values her
 last elements hardly touches them.
 """
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -93,7 +94,7 @@ def kinks(x: Array, bound: Array, q: Array, vertices: Array, cell_forces: Callab
         return []
     starts = np.append(starts[np.append(True, np.diff(side[starts]) != 0)], len(x))
     found: list[float] = []
-    for run, (first, last) in enumerate(zip(starts[:-1], starts[1:], strict=True)):  # runs of one side: a handful
+    for run, (first, last) in enumerate(itertools.pairwise(starts)):  # runs of one side: a handful
         if side[first] != 0:
             continue
         inside = x[first:last]
