@@ -9,7 +9,7 @@ import numpy as np
 from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
-from partialslip_fem.estimate import end_errors, enough, kink_sizes, neighbour, smooth_errors
+from partialslip_fem.estimate import ENDS, end_errors, enough, kink_sizes, neighbour, smooth_errors, together
 from partialslip_fem.level import Level, Part, Problem, solve_level
 
 _FIRST, _ROUGH = 0.1, 1.0  # element size of the first mesh, in its contact line's half-width; and growth
@@ -22,9 +22,13 @@ _FINEST = 1e-7  # element size at the ends, in contact half-widths; below, round
 _BESIDE = 0.005  # element size at an end, in contact half-widths, beyond which the mesh is only good for finding it
 _ANYWAY = 1.5  # of the size that a kink needs: a mesh that is not coarser there is left as it is
 _MOST = 200_000  # unknowns
-_SHARES = {"p": 0.1, "q": 1 / 15, "q1": 1 / 15, "q2": 1 / 15}  # of the accuracy asked: tractions may be off by 10 and 15 times as much
+# of the accuracy asked: tractions may be off by 10 and 15 times as much
+_SHARES = {"p": 0.1, "q": 1 / 15, "q1": 1 / 15, "q2": 1 / 15}
 _FILLS = 0.95  # of a finite body's width: as much as the contact line may take
 _ROUNDING = 0.25  # of the accuracy: how far a round face may be from its elements, and the ends off for that
+_CORNERS = 10.0  # of the accuracy: what elements at corners of finite bodies may be off by, at most
+_LOOSEST = 1e-2  # the same, relative
+_TILTS = {"left": 1e-3, "right": 1e-3, "p": 5e-3, "q": 5e-3, "q1": 5e-3, "q2": 5e-3}  # of that, felt at the contact
 _FEWEST = 4  # elements of a mesh as it is that must lie in the contact
 
 
@@ -57,6 +61,9 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     limit = _limit(problem)
     coarsest = max(part.fineness for part in problem.parts)  # what is not finer than that is to be fine enough
     rounding = _ROUNDING * accuracy if any(part.face for part in problem.parts) else 0.0
+    corners = min(_CORNERS * accuracy, _LOOSEST)
+    tilting = any(part.extent for part in problem.parts)
+    tilts = {key: share * corners * tilting for key, share in _TILTS.items()}
     while True:
         share = _ENDS * _AIM * accuracy
         locked = kink_sizes(level, share / _SHARES["q1"])
@@ -75,7 +82,8 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         for kink, needed in zip(level.kinks, np.clip(locked, size, None).tolist(), strict=True):
             if _sizes(np.array([kink]), sizes, growth / coarsest)[0] > _ANYWAY * needed * a / coarsest:
                 sizes[kink] = needed * a / coarsest
-        level = solve_level(problem, width * a, contact, sizes, growth / coarsest, clock, rounding=rounding)
+        deep = {"rounding": rounding, "corners": corners}
+        level = solve_level(problem, width * a, contact, sizes, growth / coarsest, clock, **deep)
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         if not level.enclosed and max(-level.left, level.right) >= limit:
             raise _too_narrow(problem)
@@ -83,7 +91,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
             _sizes(points, sizes, growth / coarsest) * coarsest / a for points in (level.ends, np.array(level.kinks))
         )
         errors = at_ends = {
-            key: error + rounding * (key in ("a", "left", "right", "m", "n"))
+            key: error + rounding * (key in ENDS) + tilts.get(key, 0.0)
             for key, error in end_errors(level, local, _gaps(level, problem), beside).items()
         }
         known, calmer = np.inf, 1.0
@@ -93,7 +101,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
             other = neighbour(level, problem, width * a, clock)
             factored, iterations = factored + other.factored, iterations + other.iterations
             smooth = smooth_errors(level, other)
-            errors = {key: error + at_ends[key] for key, error in smooth.items()}
+            errors = together(smooth, at_ends)
             known = _worst(errors)
             calmer = float(np.clip((3 * _worst(smooth) / bar) ** (-0.5 / order), *_CALMER))
             found += f", {', '.join(errors)} known to {known:.1e} a"
@@ -165,19 +173,23 @@ def _first(problem: Problem, width: float, clock: Clock, keep: bool = False) -> 
 
 
 def _gaps(level: Level, problem: Problem) -> Array:
-    """From each end the distance to the next one, or to a kink, in contact half-widths."""
+    """From each end of the stick zone the distance to the other one, and from each end that to the nearest of all other
+    ends and kinks of the profile, (2, k), in contact half-widths."""
     kinks = np.array(problem.kinks)
-    points = np.concatenate([level.ends, kinks, -kinks])
-    apart = np.abs(level.ends[:, None] - points)
+    apart = np.abs(level.ends[:, None] - np.concatenate([level.ends, kinks, -kinks]))
     np.fill_diagonal(apart, np.inf)
-    nearest: Array = np.maximum(apart.min(axis=1), np.finfo(float).tiny) / level.half_width
-    return nearest
+    across = np.full(len(level.ends), np.inf)
+    if level.stick:
+        across[2:4] = apart[2, 3]
+        apart[2, 3] = apart[3, 2] = np.inf
+    gaps: Array = np.maximum([across, apart.min(axis=1)], np.finfo(float).tiny) / level.half_width
+    return gaps
 
 
 def _anywhere(level: Level) -> tuple[Array, Array, Array]:
     """Elements as large as the contact's half-width at all ends, far apart, and kinks that do not matter."""
     count = len(level.ends)
-    return np.ones(count), np.full(count, np.inf), np.zeros(len(level.kinks))
+    return np.ones(count), np.full((2, count), np.inf), np.zeros(len(level.kinks))
 
 
 def _sizes(points: Array, sizes: Mapping[float, float], growth: float) -> Array:

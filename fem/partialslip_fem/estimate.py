@@ -11,6 +11,7 @@ fitted to some elements beside them.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -22,15 +23,23 @@ from partialslip_fem.level import Level, Problem, solve_on
 # The order below costs least, but where it locks (P2 and P1 towards nu = 0.5) its errors say nothing.
 _NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3}
 
-KEYS = ("a", "left", "right", "m", "n", "p", "q", "q1", "q2")
+ENDS = ("a", "left", "right", "m", "n")
+KEYS = (*ENDS, "p", "q", "q1", "q2")
+
+# The difference of the orders bounds an error up to a factor, that of meshes (see benchmarks/estimates.py).
+_SAFE = 2.0
+_SAME = 0.5  # of the error of a: no end is known better than that
 
 # What an end, p and q are off by, measured as multiples of the size of the element that the end lies in.
 AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002}
-_FIT = 8.0  # of what an end of the stick zone is off by where elements are not small beside the distance to the next
+# of what an end of the stick zone is off by where elements are not small beside the distance to the other end of it,
+# and to what else is near
+_FIT = np.array([8.0, 2.0])
+_STICK = 1.5  # of what an end of the contact is off by: an end of the stick zone
 _SIDE = 0.5  # of the size of its element: an end is not off by more
 _KINK = 0.03  # of a kink's strength times the size of its element: what q is off by, in L2
 _ACROSS = 3.0  # elements on either side of a kink that tell its strength
-_TRACTIONS = {"p": 8.0, "q": 25.0}  # of that in Hertz contacts, in proportion to :func:`_steepness` in others
+_TRACTIONS = {"p": 12.0, "q": 40.0}  # of that in Hertz contacts, in proportion to :func:`_steepness` in others
 
 
 def neighbour(level: Level, problem: Problem, width: float, clock: Clock) -> Level:
@@ -41,31 +50,65 @@ def neighbour(level: Level, problem: Problem, width: float, clock: Clock) -> Lev
 
 
 def smooth_errors(level: Level, other: Level) -> dict[str, float]:
-    """Errors of the contact's half-width and ends, of m and n (in contact half-widths), and of p, q, q1 and q2 (relative
-    L2 of cell averages), but for those of the elements at the ends; ``other`` is the neighbour."""
+    """Errors of the contact's half-width and ends, m and n (in contact half-widths), p, q, q1 and q2 (relative L2 of
+    cell averages), but for those of the elements at the ends; ``other`` is the neighbour."""
     order = level.body.order
-    return {key: change ** (order / min(order, other.body.order)) for key, change in _changes(level, other).items()}
+    errors = {
+        key: _SAFE * change ** (order / min(order, other.body.order)) for key, change in _changes(level, other).items()
+    }
+    least = _SAME * errors["a"]  # two solutions may meet in one of the ends by chance
+    return {key: max(error, least) if key in ENDS else error for key, error in errors.items()}
 
 
 def end_errors(level: Level, sizes: Array, gaps: Array, beside: Array) -> dict[str, float]:
-    """What the elements at the ends add; ``sizes`` are those that the ends lie in, and ``gaps`` the distances to the
-    next end or kink, in contact half-widths and in the order of ``level.ends``; ``beside`` are the sizes of those that
-    the kinks of q1 and q2 lie in."""
+    """What the elements at the ends add.
+
+    Parameters
+    ----------
+    level : Level
+    sizes : (k,) array
+        Those of the elements that the ``level.ends`` lie in, in contact half-widths.
+    gaps : (2, k) array
+        From each of the ends of the stick zone to the other one (infinite at other ends), and from each end to the
+        nearest of the other ends and kinks.
+    beside : (j,) array
+        Sizes of the elements that the ``level.kinks`` lie in.
+    """
     off = AT_END[level.body.order] * sizes
     most = float(off.max()) * max(_steepness(level), 1.0)
     errors = {"a": float(off[:2].mean()), **{key: most * times for key, times in _TRACTIONS.items()}}
     first, second = level.contact_at
     errors |= {"left": float(off[first].max()), "right": float(off[second].max())}
     if level.stick:
-        fitted = off + np.minimum(_FIT * np.minimum(sizes / gaps, 1.0) ** 2, _SIDE) * sizes
+        fit = _FIT[:, None] * np.minimum(sizes / gaps, 1.0) ** 2
+        fitted = _STICK * off + np.minimum(fit.sum(axis=0), _SIDE) * sizes
         errors |= dict(zip("mn", fitted[2:4].tolist(), strict=True))
     if level.history:
         half, *both = _norms(level)
-        locked = _KINK * (_strengths(level) @ beside) * level.half_width
+        locked = np.hypot.reduce(_KINK * _strengths(level) * beside * level.half_width, axis=1)
         for key, norm, kinks in zip(("q1", "q2"), both, locked.tolist(), strict=True):
             if norm > 0:
-                errors[key] = (errors["q"] * half + kinks) / norm
+                errors[key] = math.hypot(errors["q"] * half, kinks) / float(norm)
     return errors
+
+
+def together(smooth: Mapping[str, float], at_ends: Mapping[str, float]) -> dict[str, float]:
+    """Both errors: of ends their sum; of tractions, which are in L2 and lie in different elements, the root of the sum
+    of squares."""
+    return {
+        key: error + at_ends[key] if key in ENDS else math.hypot(error, at_ends[key])
+        for key, error in smooth.items()
+        if key in at_ends
+    }
+
+
+def enough(level: Level, gaps: Array, error: float) -> float:
+    """The size of elements, in contact half-widths, that tell where the stick zone ends to ``error``: small enough
+    beside the ``gaps``, or themselves so small that an end somewhere in one is known to that."""
+    if not level.stick:
+        return np.inf
+    beside = float(np.cbrt(error * (gaps[:, 2:4] ** 2).min(axis=1) / _FIT).min())
+    return max(beside, error / _SIDE)
 
 
 def kink_sizes(level: Level, error: float) -> Array:
@@ -73,7 +116,7 @@ def kink_sizes(level: Level, error: float) -> Array:
     if not level.kinks or not level.history:
         return np.empty(0)
     norms = np.maximum(_norms(level)[1:], np.finfo(float).tiny)
-    relative = _KINK * _strengths(level) * level.half_width * len(level.kinks) / norms[:, None]
+    relative = _KINK * _strengths(level) * level.half_width * math.sqrt(len(level.kinks)) / norms[:, None]
     sizes: Array = error / np.maximum(relative.max(axis=0), np.finfo(float).tiny)
     return sizes
 
@@ -108,15 +151,6 @@ def _strengths(level: Level) -> Array:
         whole, half = after - 2 * at + before, near - 2 * at + close
         found.append(1.5 * np.abs(4 * half - whole) / ((math.sqrt(2) - 1) * (width * _ACROSS) ** 1.5))
     return np.array(found)
-
-
-def enough(level: Level, gaps: Array, error: float) -> float:
-    """The size of elements, in contact half-widths, that tell where the stick zone ends to ``error``: small enough
-    beside the ``gaps``, or themselves so small that an end somewhere in one is known to that."""
-    if not level.stick:
-        return np.inf
-    beside = float(np.cbrt(error * gaps[2:4].min() ** 2 / _FIT))
-    return max(beside, error / _SIDE)
 
 
 def _steepness(level: Level) -> float:

@@ -18,12 +18,13 @@ from partialslip.result import Array, Clock
 from partialslip.scene import Profile
 from partialslip_fem.condensation import Condensed
 from partialslip_fem.contact import Half, press, relative_compliances
+from partialslip_fem.corners import free_exponent, held_exponent, size
 from partialslip_fem.elasticity import ALL_AROUND, Body, Held, Indices, body
 from partialslip_fem.factor import Backend
 from partialslip_fem.farfield import half_plane
 from partialslip_fem.mortar import nodal_forces
 from partialslip_fem.recovery import traction
-from partialslip_meshes import Mesh, block
+from partialslip_meshes import Corner, Mesh, block
 
 Support = Literal["clamped", "roller", "sides"]
 _HELD: dict[Support, Held] = {
@@ -84,6 +85,24 @@ class Part:
             [line for line in lines if line != "right" or not self.pulled] for lines in _HELD[self.support]
         )
         return along_x, along_y
+
+    def corners(self, tolerance: float) -> dict[Corner, float]:
+        """Element sizes at the corners that disturb, of a block: the size of what is at the contact is then known to
+        about ``tolerance``, relative."""
+        assert self.extent
+        width, height = self.extent
+        across, (low, deep) = math.pi / 2, self.holder or self.extent
+        held = set(self.held[0]) & set(self.held[1])
+        found: dict[Corner, float] = {}
+        if held:  # a held side meets a free one
+            found["foot"] = held_exponent(across, self.kappa)
+        if held - {"back"}:
+            angle = across if not self.holder or low > width else 3 * across if low < width else 2 * across
+            found["shoulder"] = held_exponent(angle, self.kappa)
+        if self.holder and low != width and ("shoulder" not in found or low > width):
+            found["notch"] = free_exponent(3 * across)
+        least = min(width, height, low, deep)
+        return {corner: least * size(tolerance, exponent) for corner, exponent in found.items()}
 
 
 @dataclass(frozen=True)
@@ -222,22 +241,24 @@ def solve_level(
     along: float | None = None,
     keep: bool = False,
     rounding: float | None = None,
+    corners: float | None = None,
 ) -> Level:
     """Mesh the bodies, blocks of half-width ``width`` unless they have an extent or a mesh of their own, and solve on
     them.
 
     ``contact``, ``sizes``, ``growth`` and ``along`` are as for :func:`partialslip_meshes.block`. ``rounding`` is how
-    far a round face may be from its elements' straight sides, in half-widths of the contact line. With ``keep`` the
+    far a round face may be from its elements' straight sides, in half-widths of the contact line; ``corners`` what
+    elements at the corners of finite bodies may change at the contact, relative. With ``keep`` the
     condensed bodies are kept for other loads, friction and profiles on the same mesh.
     """
     kind = (problem.parts, problem.order, problem.far_field, problem.backend, problem.path is None, problem.inside)
-    key = (*kind, width, contact, tuple(sizes.items()), growth, along, rounding)
+    key = (*kind, width, contact, tuple(sizes.items()), growth, along, rounding, corners)
     if keep and key in _kept:
         return _level(problem, _kept[key], 0, clock)
     meshes = []
     for part in problem.parts:
         with clock.phase("mesh"):
-            meshes.append(part.mesh or _block(part, width, contact, sizes, growth, along, rounding))
+            meshes.append(part.mesh or _block(part, width, contact, sizes, growth, along, rounding, corners))
     level = solve_on(meshes, problem, width, clock)
     if keep:
         _kept[key] = level.halves
@@ -266,6 +287,7 @@ def _block(
     growth: float,
     along: float | None,
     rounding: float | None,
+    corners: float | None,
 ) -> Mesh:
     half_width, height = part.extent or (width, width)
     finer = {x: size * part.fineness for x, size in sizes.items()}
@@ -273,7 +295,7 @@ def _block(
     facets = None
     if part.face and rounding:  # a chord of length c is c^2/(8 R) from its arc; what that does falls with the distance
         facets = math.sqrt(8 * rounding * part.face.radius / (contact[1] - contact[0]) * 2)
-    shape = (part.holder, part.face, facets)
+    shape = (part.holder, part.face, facets, part.corners(corners) if part.extent and corners else {})
     return block(half_width, contact, finer, growth * part.fineness, height, everywhere, *shape)
 
 
