@@ -1,7 +1,7 @@
 """Mesh after mesh, each fine where the one before it found the ends of the contact and of the stick zone."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
-from partialslip_fem.estimate import end_errors, enough, neighbour, smooth_errors
+from partialslip_fem.estimate import ENDS, end_errors, enough, kink_sizes, neighbour, smooth_errors, together
 from partialslip_fem.level import Level, Part, Problem, solve_level
 
 _FIRST, _ROUGH = 0.1, 1.0  # element size of the first mesh, in its contact line's half-width; and growth
@@ -20,10 +20,15 @@ _AIM, _BAR = 0.5, 0.9  # of the accuracy: estimates are right within a factor of
 _ENDS = 0.33  # share of what is aimed at that the elements at the ends may take
 _FINEST = 1e-7  # element size at the ends, in contact half-widths; below, rounding takes over
 _BESIDE = 0.005  # element size at an end, in contact half-widths, beyond which the mesh is only good for finding it
+_ANYWAY = 1.5  # of the size that a kink needs: a mesh that is not coarser there is left as it is
 _MOST = 200_000  # unknowns
-_SHARES = {"p": 0.1, "q": 1 / 15}  # of the accuracy asked: tractions may be off by 10 and 15 times as much
+# of the accuracy asked: tractions may be off by 10 and 15 times as much
+_SHARES = {"p": 0.1, "q": 1 / 15, "q1": 1 / 15, "q2": 1 / 15}
 _FILLS = 0.95  # of a finite body's width: as much as the contact line may take
 _ROUNDING = 0.25  # of the accuracy: how far a round face may be from its elements, and the ends off for that
+_CORNERS = 10.0  # of the accuracy: what elements at corners of finite bodies may be off by, at most
+_LOOSEST = 1e-2  # the same, relative
+_TILTS = {"left": 1e-3, "right": 1e-3, "p": 5e-3, "q": 5e-3, "q1": 5e-3, "q2": 5e-3}  # of that, felt at the contact
 _FEWEST = 4  # elements of a mesh as it is that must lie in the contact
 
 
@@ -56,9 +61,13 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     limit = _limit(problem)
     coarsest = max(part.fineness for part in problem.parts)  # what is not finer than that is to be fine enough
     rounding = _ROUNDING * accuracy if any(part.face for part in problem.parts) else 0.0
+    corners = min(_CORNERS * accuracy, _LOOSEST)
+    tilting = any(part.extent for part in problem.parts)
+    tilts = {key: share * corners * tilting for key, share in _TILTS.items()}
     while True:
         share = _ENDS * _AIM * accuracy
-        goal = share / _worst(end_errors(level, np.ones(4), np.full(4, np.inf)))
+        locked = kink_sizes(level, share / _SHARES["q1"])
+        goal = share / _worst(end_errors(level, *_anywhere(level)))
         goal = min(goal, enough(level, _gaps(level, problem), share))
         goal = min(max(goal, _FINEST), _BESIDE / 2)
         if size > 1.01 * goal:
@@ -70,14 +79,20 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
         kinks = [kink for kink in problem.kinks if contact[0] < kink < contact[1]]  # others touch nothing
         sizes = dict.fromkeys(apart([*level.ends.tolist(), *kinks], size * a), size * a / coarsest)
-        level = solve_level(problem, width * a, contact, sizes, growth / coarsest, clock, rounding=rounding)
+        for kink, needed in zip(level.kinks, np.clip(locked, size, None).tolist(), strict=True):
+            if _sizes(np.array([kink]), sizes, growth / coarsest)[0] > _ANYWAY * needed * a / coarsest:
+                sizes[kink] = needed * a / coarsest
+        deep = {"rounding": rounding, "corners": corners}
+        level = solve_level(problem, width * a, contact, sizes, growth / coarsest, clock, **deep)
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         if not level.enclosed and max(-level.left, level.right) >= limit:
             raise _too_narrow(problem)
-        local = size + growth * np.abs(level.ends[:, None] - [*sizes]).min(axis=1) / a
+        local, beside = (
+            _sizes(points, sizes, growth / coarsest) * coarsest / a for points in (level.ends, np.array(level.kinks))
+        )
         errors = at_ends = {
-            key: error + rounding * (key in ("a", "m", "n"))
-            for key, error in end_errors(level, local, _gaps(level, problem)).items()
+            key: error + rounding * (key in ENDS) + tilts.get(key, 0.0)
+            for key, error in end_errors(level, local, _gaps(level, problem), beside).items()
         }
         known, calmer = np.inf, 1.0
         found = f"mesh {meshes}: {level.dofs:,} unknowns"
@@ -86,7 +101,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
             other = neighbour(level, problem, width * a, clock)
             factored, iterations = factored + other.factored, iterations + other.iterations
             smooth = smooth_errors(level, other)
-            errors = {key: error + at_ends[key] for key, error in smooth.items()}
+            errors = together(smooth, at_ends)
             known = _worst(errors)
             calmer = float(np.clip((3 * _worst(smooth) / bar) ** (-0.5 / order), *_CALMER))
             found += f", {', '.join(errors)} known to {known:.1e} a"
@@ -158,13 +173,30 @@ def _first(problem: Problem, width: float, clock: Clock, keep: bool = False) -> 
 
 
 def _gaps(level: Level, problem: Problem) -> Array:
-    """From each end the distance to the next one, or to a kink, in contact half-widths."""
+    """From each end of the stick zone the distance to the other one, and from each end that to the nearest of all other
+    ends and kinks of the profile, (2, k), in contact half-widths."""
     kinks = np.array(problem.kinks)
-    points = np.concatenate([level.ends, kinks, -kinks])
-    apart = np.abs(level.ends[:, None] - points)
+    apart = np.abs(level.ends[:, None] - np.concatenate([level.ends, kinks, -kinks]))
     np.fill_diagonal(apart, np.inf)
-    nearest: Array = np.maximum(apart.min(axis=1), np.finfo(float).tiny) / level.half_width
-    return nearest
+    across = np.full(len(level.ends), np.inf)
+    if level.stick:
+        across[2:4] = apart[2, 3]
+        apart[2, 3] = apart[3, 2] = np.inf
+    gaps: Array = np.maximum([across, apart.min(axis=1)], np.finfo(float).tiny) / level.half_width
+    return gaps
+
+
+def _anywhere(level: Level) -> tuple[Array, Array, Array]:
+    """Elements as large as the contact's half-width at all ends, far apart, and kinks that do not matter."""
+    count = len(level.ends)
+    return np.ones(count), np.full((2, count), np.inf), np.zeros(len(level.kinks))
+
+
+def _sizes(points: Array, sizes: Mapping[float, float], growth: float) -> Array:
+    """Element sizes at points of the contact line, of a mesh that is graded to other points with those ``sizes``."""
+    at, size = np.array([*sizes]), np.array([*sizes.values()])
+    smallest: Array = (size + growth * np.abs(points[:, None] - at)).min(axis=1)
+    return smallest
 
 
 def _growth(error: float, order: int) -> float:

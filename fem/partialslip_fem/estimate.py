@@ -10,6 +10,8 @@ the distance to the next end, or kink of the profile, over which tractions are s
 fitted to some elements beside them.
 """
 
+import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -21,11 +23,23 @@ from partialslip_fem.level import Level, Problem, solve_on
 # The order below costs least, but where it locks (P2 and P1 towards nu = 0.5) its errors say nothing.
 _NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3}
 
+ENDS = ("a", "left", "right", "m", "n")
+KEYS = (*ENDS, "p", "q", "q1", "q2")
+
+# The difference of the orders bounds an error up to a factor, that of meshes (see benchmarks/estimates.py).
+_SAFE = 2.0
+_SAME = 0.5  # of the error of a: no end is known better than that
+
 # What an end, p and q are off by, measured as multiples of the size of the element that the end lies in.
 AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002}
-_FIT = 8.0  # of what an end of the stick zone is off by where elements are not small beside the distance to the next
+# of what an end of the stick zone is off by where elements are not small beside the distance to the other end of it,
+# and to what else is near
+_FIT = np.array([8.0, 2.0])
+_STICK = 1.5  # of what an end of the contact is off by: an end of the stick zone
 _SIDE = 0.5  # of the size of its element: an end is not off by more
-_TRACTIONS = {"p": 8.0, "q": 25.0}  # of that in Hertz contacts, in proportion to :func:`_steepness` in others
+_KINK = 0.03  # of a kink's strength times the size of its element: what q is off by, in L2
+_ACROSS = 3.0  # elements on either side of a kink that tell its strength
+_TRACTIONS = {"p": 12.0, "q": 40.0}  # of that in Hertz contacts, in proportion to :func:`_steepness` in others
 
 
 def neighbour(level: Level, problem: Problem, width: float, clock: Clock) -> Level:
@@ -36,20 +50,56 @@ def neighbour(level: Level, problem: Problem, width: float, clock: Clock) -> Lev
 
 
 def smooth_errors(level: Level, other: Level) -> dict[str, float]:
-    """Errors of a, m, n (in contact half-widths), p and q (relative L2 of cell averages), but for those of the
-    elements at the ends; ``other`` is the neighbour."""
+    """Errors of the contact's half-width and ends, m and n (in contact half-widths), p, q, q1 and q2 (relative L2 of
+    cell averages), but for those of the elements at the ends; ``other`` is the neighbour."""
     order = level.body.order
-    return {key: change ** (order / min(order, other.body.order)) for key, change in _changes(level, other).items()}
+    errors = {
+        key: _SAFE * change ** (order / min(order, other.body.order)) for key, change in _changes(level, other).items()
+    }
+    least = _SAME * errors["a"]  # two solutions may meet in one of the ends by chance
+    return {key: max(error, least) if key in ENDS else error for key, error in errors.items()}
 
 
-def end_errors(level: Level, sizes: Array, gaps: Array) -> dict[str, float]:
-    """What the elements at the ends add; ``sizes`` are those that the ends lie in, and ``gaps`` the distances to the
-    next end or kink, in contact half-widths and in the order of ``level.ends``."""
+def end_errors(level: Level, sizes: Array, gaps: Array, beside: Array) -> dict[str, float]:
+    """What the elements at the ends add.
+
+    Parameters
+    ----------
+    level : Level
+    sizes : (k,) array
+        Those of the elements that the ``level.ends`` lie in, in contact half-widths.
+    gaps : (2, k) array
+        From each of the ends of the stick zone to the other one (infinite at other ends), and from each end to the
+        nearest of the other ends and kinks.
+    beside : (j,) array
+        Sizes of the elements that the ``level.kinks`` lie in.
+    """
     off = AT_END[level.body.order] * sizes
     most = float(off.max()) * max(_steepness(level), 1.0)
     errors = {"a": float(off[:2].mean()), **{key: most * times for key, times in _TRACTIONS.items()}}
-    fitted = off + np.minimum(_FIT * np.minimum(sizes / gaps, 1.0) ** 2, _SIDE) * sizes
-    return errors | (dict(zip("mn", fitted[2:4].tolist(), strict=True)) if level.stick else {})
+    first, second = level.contact_at
+    errors |= {"left": float(off[first].max()), "right": float(off[second].max())}
+    if level.stick:
+        fit = _FIT[:, None] * np.minimum(sizes / gaps, 1.0) ** 2
+        fitted = _STICK * off + np.minimum(fit.sum(axis=0), _SIDE) * sizes
+        errors |= dict(zip("mn", fitted[2:4].tolist(), strict=True))
+    if level.history:
+        half, *both = _norms(level)
+        locked = np.hypot.reduce(_KINK * _strengths(level) * beside * level.half_width, axis=1)
+        for key, norm, kinks in zip(("q1", "q2"), both, locked.tolist(), strict=True):
+            if norm > 0:
+                errors[key] = math.hypot(errors["q"] * half, kinks) / float(norm)
+    return errors
+
+
+def together(smooth: Mapping[str, float], at_ends: Mapping[str, float]) -> dict[str, float]:
+    """Both errors: of ends their sum; of tractions, which are in L2 and lie in different elements, the root of the sum
+    of squares."""
+    return {
+        key: error + at_ends[key] if key in ENDS else math.hypot(error, at_ends[key])
+        for key, error in smooth.items()
+        if key in at_ends
+    }
 
 
 def enough(level: Level, gaps: Array, error: float) -> float:
@@ -57,8 +107,50 @@ def enough(level: Level, gaps: Array, error: float) -> float:
     beside the ``gaps``, or themselves so small that an end somewhere in one is known to that."""
     if not level.stick:
         return np.inf
-    beside = float(np.cbrt(error * gaps[2:4].min() ** 2 / _FIT))
+    beside = float(np.cbrt(error * (gaps[:, 2:4] ** 2).min(axis=1) / _FIT).min())
     return max(beside, error / _SIDE)
+
+
+def kink_sizes(level: Level, error: float) -> Array:
+    """Sizes of elements, in contact half-widths, at each of the kinks that leave q1 and q2 within ``error``."""
+    if not level.kinks or not level.history:
+        return np.empty(0)
+    norms = np.maximum(_norms(level)[1:], np.finfo(float).tiny)
+    relative = _KINK * _strengths(level) * level.half_width * math.sqrt(len(level.kinks)) / norms[:, None]
+    sizes: Array = error / np.maximum(relative.max(axis=0), np.finfo(float).tiny)
+    return sizes
+
+
+def _norms(level: Level) -> Array:
+    """L2 norms of the cell averages of (q2 - q1)/2, q1 and q2."""
+    history = level.history
+    assert history
+    return np.array([_norm(level.shear(forces)) for forces in (history.change / 2, history.q1, history.q2)])
+
+
+def _norm(traction: PPoly) -> float:
+    force = np.diff(traction.antiderivative()(traction.x))
+    return float(np.sqrt(np.sum(force**2 / np.diff(traction.x))))
+
+
+def _strengths(level: Level) -> Array:
+    """Factors of the square root of the distance that q1 and q2 gain on one side of each kink, (2, k).
+
+    What two intervals of length d on either side of a kink bear differs by s d^2, s the slope, and by 2/3 of the factor
+    times d^(3/2); that of half the length tells the two apart.
+    """
+    history, kinks = level.history, np.array(level.kinks)
+    assert history
+    vertices = level.body.x[:: level.body.order]
+    width = np.diff(vertices)[np.clip(np.searchsorted(vertices, kinks) - 1, 0, len(vertices) - 2)]
+    points = kinks + width * _ACROSS * np.array([[-1.0], [-0.5], [0.0], [0.5], [1.0]])
+    found = []
+    for forces in (history.q1, history.q2):
+        resultant = level.shear(forces).antiderivative()
+        before, close, at, near, after = resultant(np.clip(points, vertices[0], vertices[-1]))
+        whole, half = after - 2 * at + before, near - 2 * at + close
+        found.append(1.5 * np.abs(4 * half - whole) / ((math.sqrt(2) - 1) * (width * _ACROSS) ** 1.5))
+    return np.array(found)
 
 
 def _steepness(level: Level) -> float:
@@ -76,12 +168,16 @@ def _steepness(level: Level) -> float:
 
 def _changes(level: Level, other: Level) -> dict[str, float]:
     a = level.half_width
-    changes = {"a": abs(other.half_width - a) / a, "p": _apart(level.pressure(), other.pressure())}
+    ends = np.abs(np.subtract(level.contact_ends, other.contact_ends)).max(axis=0) / a
+    changes = {"a": abs(other.half_width - a) / a, "left": float(ends[0]), "right": float(ends[1])}
+    changes["p"] = _apart(level.pressure(), other.pressure())
     if level.stick and other.stick and level.history and other.history:
         changes["m"] = abs(other.stick.left - level.stick.left) / a
         changes["n"] = abs(other.stick.right - level.stick.right) / a
         changes["q"] = _apart(level.shear(level.history.change), other.shear(other.history.change))
-    return {key: changes[key] for key in ("a", "m", "n", "p", "q") if key in changes}
+        for key in ("q1", "q2"):
+            changes[key] = _apart(*(each.shear(getattr(each.history, key)) for each in (level, other)))
+    return {key: changes[key] for key in KEYS if key in changes}
 
 
 def _apart(traction: PPoly, other: PPoly) -> float:

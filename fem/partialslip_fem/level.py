@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -11,18 +12,19 @@ from scipy.interpolate import PPoly
 from partialslip.condensed import coupled
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.friction import History, Path, march
-from partialslip.condensed.zones import Zone, left_end, right_end, stick_zone
+from partialslip.condensed.zones import Zone, finest, kinks, left_end, right_end, stick_zone
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
 from partialslip.scene import Profile
 from partialslip_fem.condensation import Condensed
 from partialslip_fem.contact import Half, press, relative_compliances
+from partialslip_fem.corners import free_exponent, held_exponent, size
 from partialslip_fem.elasticity import ALL_AROUND, Body, Held, Indices, body
 from partialslip_fem.factor import Backend
 from partialslip_fem.farfield import half_plane
 from partialslip_fem.mortar import nodal_forces
 from partialslip_fem.recovery import traction
-from partialslip_meshes import Mesh, block
+from partialslip_meshes import Corner, Mesh, block
 
 Support = Literal["clamped", "roller", "sides"]
 _HELD: dict[Support, Held] = {
@@ -84,6 +86,24 @@ class Part:
         )
         return along_x, along_y
 
+    def corners(self, tolerance: float) -> dict[Corner, float]:
+        """Element sizes at the corners that disturb, of a block: the size of what is at the contact is then known to
+        about ``tolerance``, relative."""
+        assert self.extent
+        width, height = self.extent
+        across, (low, deep) = math.pi / 2, self.holder or self.extent
+        held = set(self.held[0]) & set(self.held[1])
+        found: dict[Corner, float] = {}
+        if held:  # a held side meets a free one
+            found["foot"] = held_exponent(across, self.kappa)
+        if held - {"back"}:
+            angle = across if not self.holder or low > width else 3 * across if low < width else 2 * across
+            found["shoulder"] = held_exponent(angle, self.kappa)
+        if self.holder and low != width and ("shoulder" not in found or low > width):
+            found["notch"] = free_exponent(3 * across)
+        least = min(width, height, low, deep)
+        return {corner: least * size(tolerance, exponent) for corner, exponent in found.items()}
+
 
 @dataclass(frozen=True)
 class Problem:
@@ -112,7 +132,8 @@ class Level:
     """The solution on one mesh of each body: of the lower one, and, unless that is mirrored, of the upper one.
 
     ``nodes`` of the lower one's contact line are in contact at load point 1 or 2, at 2 it is over [left, right], and
-    the ends at 1 are ``others``, where they differ. ``factored`` counts the factorisations made for it; pressure and
+    the ends at 1 are ``others``, where they differ. ``kinks`` are points where q1 or q2 is not smooth, beside the ends
+    of the stick zone, while the change of q is. ``factored`` counts the factorisations made for it; pressure and
     shear are solved together where bodies are ``coupled``.
     """
 
@@ -125,6 +146,7 @@ class Level:
     right: float
     stick: Zone | None
     others: tuple[float, float] | tuple[()] = ()
+    kinks: tuple[float, ...] = ()
     coupled: bool = False
 
     @property
@@ -142,6 +164,12 @@ class Level:
         """Ends of the contact, at load point 1, too, and of the stick zone: where the next mesh is to be fine."""
         stick = (self.stick.left, self.stick.right) if self.stick else ()
         return np.array([self.left, self.right, *stick, *self.others])
+
+    @property
+    def contact_at(self) -> tuple[list[int], list[int]]:
+        """Which of the ``ends`` are left, and which are right ends of the contact."""
+        count = len(self.ends)
+        return ([0, count - 2], [1, count - 1]) if self.others else ([0], [1])
 
     @property
     def contact_ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -172,8 +200,15 @@ class Level:
         return self.pressing.iterations + (self.history.iterations if self.history else 0)
 
     def pressure(self) -> PPoly:
-        """p along the contact line."""
+        """p along the contact line, at load point 2."""
         return traction(self.body, self.pressing.x)
+
+    def pressures(self, f: float) -> tuple[PPoly, PPoly] | None:
+        """p at load points 1 and 2, where they differ."""
+        if not self.history or not self.coupled:
+            return None
+        first, second = (self.shear(bound / f) for bound in self.history.bounds)
+        return first, second
 
     def shear(self, forces: Array) -> PPoly:
         """q along the contact line that belongs to tangential forces of the nodes in contact."""
@@ -206,22 +241,24 @@ def solve_level(
     along: float | None = None,
     keep: bool = False,
     rounding: float | None = None,
+    corners: float | None = None,
 ) -> Level:
     """Mesh the bodies, blocks of half-width ``width`` unless they have an extent or a mesh of their own, and solve on
     them.
 
     ``contact``, ``sizes``, ``growth`` and ``along`` are as for :func:`partialslip_meshes.block`. ``rounding`` is how
-    far a round face may be from its elements' straight sides, in half-widths of the contact line. With ``keep`` the
+    far a round face may be from its elements' straight sides, in half-widths of the contact line; ``corners`` what
+    elements at the corners of finite bodies may change at the contact, relative. With ``keep`` the
     condensed bodies are kept for other loads, friction and profiles on the same mesh.
     """
     kind = (problem.parts, problem.order, problem.far_field, problem.backend, problem.path is None, problem.inside)
-    key = (*kind, width, contact, tuple(sizes.items()), growth, along, rounding)
+    key = (*kind, width, contact, tuple(sizes.items()), growth, along, rounding, corners)
     if keep and key in _kept:
         return _level(problem, _kept[key], 0, clock)
     meshes = []
     for part in problem.parts:
         with clock.phase("mesh"):
-            meshes.append(part.mesh or _block(part, width, contact, sizes, growth, along, rounding))
+            meshes.append(part.mesh or _block(part, width, contact, sizes, growth, along, rounding, corners))
     level = solve_on(meshes, problem, width, clock)
     if keep:
         _kept[key] = level.halves
@@ -250,6 +287,7 @@ def _block(
     growth: float,
     along: float | None,
     rounding: float | None,
+    corners: float | None,
 ) -> Mesh:
     half_width, height = part.extent or (width, width)
     finer = {x: size * part.fineness for x, size in sizes.items()}
@@ -257,7 +295,7 @@ def _block(
     facets = None
     if part.face and rounding:  # a chord of length c is c^2/(8 R) from its arc; what that does falls with the distance
         facets = math.sqrt(8 * rounding * part.face.radius / (contact[1] - contact[0]) * 2)
-    shape = (part.holder, part.face, facets)
+    shape = (part.holder, part.face, facets, part.corners(corners) if part.extent and corners else {})
     return block(half_width, contact, finer, growth * part.fineness, height, everywhere, *shape)
 
 
@@ -285,7 +323,11 @@ def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clo
         if stick:  # of both contacts, whatever a coarse mesh makes of its ends
             at_left, at_right = others or (left, right)
             stick = replace(stick, left=max(stick.left, left, at_left), right=min(stick.right, right, at_right))
-        return Level(halves, factored, nodes, pressing, history, left, right, stick, others, relative.xy is not None)
+        first, last = min([left, *others[:1]]), max([right, *others[1:]])
+        locked = _kinks(problem, line, nodes, history) if history else ()
+        locked = tuple(kink for kink in locked if first < kink < last)
+        two = relative.xy is not None
+        return Level(halves, factored, nodes, pressing, history, left, right, stick, others, locked, two)
 
 
 def _half(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) -> Half:
@@ -322,12 +364,27 @@ def _solve(problem: Problem, C: coupled.Relative, lower: Half) -> tuple[Solution
 
 
 def _stick_zone(line: Body, nodes: Indices, history: History) -> Zone:
-    def cell_forces(forces: Array) -> Array:
-        on_line = np.zeros(len(line.x))
-        on_line[nodes] = forces
-        return _cell_forces(line, on_line)
+    forces = partial(_forces_of, line, nodes)
+    return stick_zone(line.x[nodes], history.bound, history.change, line.x[:: line.order], forces)
 
-    return stick_zone(line.x[nodes], history.bound, history.change, line.x[:: line.order], cell_forces)
+
+def _kinks(problem: Problem, line: Body, nodes: Indices, history: History) -> tuple[float, ...]:
+    """Points where slip has left q1 and q2 not smooth, or what the path begins with is not. Where the first loading
+    tells the whole there are none but the ends of the stick zone."""
+    if history.path.half:
+        return ()
+    x, vertices, forces = line.x[nodes], line.x[:: line.order], partial(_forces_of, line, nodes)
+    found = finest(problem.start[1].x) if problem.start else []
+    for bound, q in zip(history.bounds, history.at_ends, strict=True):
+        found += kinks(x, bound, q, vertices, forces)
+    return tuple(found)
+
+
+def _forces_of(line: Body, nodes: Indices, forces: Array) -> Array:
+    """Integrals over the cells of the contact line of the traction that belongs to forces of some nodes."""
+    on_line = np.zeros(len(line.x))
+    on_line[nodes] = forces
+    return _cell_forces(line, on_line)
 
 
 def _ends(line: Body, normal: Array) -> tuple[float, float]:

@@ -161,8 +161,8 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     certified = _certificate(problem, level, p0)
     found = judge(scene, level.history, level.stick, level.half_width)
 
-    q1, q2, dq = np.zeros_like(x), np.zeros_like(x), None
-    history = level.history
+    q1, q2, at1, at2, dq = np.zeros_like(x), np.zeros_like(x), None, None, None
+    history, pressures = level.history, level.pressures(problem.f)
     if history:
         at1, at2 = level.shear(history.q1), level.shear(history.q2)
         q1, q2, dq = stress * at1(x), stress * at2(x), PPoly(at2.c - at1.c, at2.x)
@@ -171,10 +171,11 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     moved = solve_back(level, problem) if plan.needs("subsurface") else ()
     extra = {"back_solves": len(moved), "factorizations": adapted.factorizations + _factorizations(level) - made}
 
-    def at(points: Array) -> tuple[Array, Array]:
-        scaled = points / L
-        return stress * inside(pressure, scaled), stress * inside(dq, scaled)
+    def pair(first: PPoly | None, second: PPoly | None) -> Callable[[Array], tuple[Array, Array]]:
+        return lambda points: (stress * inside(first, points / L), stress * inside(second, points / L))
 
+    known = found.regime != "sliding"
+    (left1, right1), (left2, right2) = level.contact_ends
     return Result(
         method="fem",
         a=level.half_width * L,
@@ -186,11 +187,14 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
             x=x * L,
             p=stress * pressure(x),
             dq=q2 - q1,
-            q1=q1 if found.regime != "sliding" else None,
-            q2=q2 if found.regime != "sliding" else None,
-            at=at,
-            breaks=np.sort([*level.ends, *problem.kinks]) * L,
+            q1=q1 if known else None,
+            q2=q2 if known else None,
+            at=pair(pressure, dq),
+            breaks=np.unique([*level.ends, *level.kinks, *problem.kinks]) * L,
             cells=level.body.x[:: level.body.order] * L,
+            levels_at=pair(at1, at2) if known else None,
+            p1=stress * pressures[0](x) if pressures else None,
+            pressures_at=pair(*pressures) if pressures else None,
         ),
         cost=clock.cost(),
         slip=Slip(x * L, history.slip * unit, history.dissipated * unit * scene.P) if history else None,
@@ -206,6 +210,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         estimate=adapted.errors,
         notes=found.notes + _apart(level) + doubts(certified, adapted.errors, scene.fem.accuracy),
         bodies=tuple(deformed(body, L, unit, stress) for body in moved),
+        contact_ends=((left1 * L, right1 * L), (left2 * L, right2 * L)),
         state=_state(scene, level),
         surface=along_surfaces(moved, level.contact_ends, L, stress) if moved else None,
     )

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from types import ModuleType
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +13,9 @@ from partialslip_meshes.mesh import Mesh, QuadMesh
 # triangles with right angles, paired, and what is left over split so that no triangle is
 _ALL_QUADS = {"Algorithm": 8, "RecombineAll": 1, "RecombinationAlgorithm": 3}
 
-_CORNER = 0.02  # element size at a corner of the holder that stresses concentrate in, in the block's half-width
+_CORNER = 0.02  # element size in the notch between block and holder, in the block's half-width
+
+Corner = Literal["foot", "shoulder", "notch"]
 
 
 def block(
@@ -25,6 +28,7 @@ def block(
     holder: tuple[float, float] | None = None,
     face: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]] | None = None,
     facets: float | None = None,
+    corners: Mapping[Corner, float] | None = None,
 ) -> Mesh:
     """Mesh the block [-width, width] x [-height, 0].
 
@@ -50,6 +54,9 @@ def block(
     facets : float, optional
         The largest element size on that side, in the distance from the middle of the contact line or half of that
         line's length, whichever is larger.
+    corners : mapping of str to float, optional
+        Element sizes on both sides at the "foot" (an end of the back), at the "shoulder" (the upper end of the sides
+        "left" and "right"), and in the "notch" between block and holder.
 
     Raises
     ------
@@ -58,7 +65,7 @@ def block(
     """
     height = width if height is None else height
     with gmsh_session() as gmsh:
-        lines = _outline(gmsh, (width, height), holder, contact, sizes, growth, along, facets)
+        lines = _outline(gmsh, (width, height), holder, contact, sizes, growth, along, facets, corners or {})
         gmsh.model.mesh.generate(2)
         mesh = Mesh(*_collect(gmsh, lines, 3))
     if face:
@@ -72,7 +79,7 @@ def quad_block(width: float, contact: tuple[float, float], sizes: Mapping[float,
     """Mesh the block [-width, width] x [-width, 0] with quadrilaterals only; parameters and what is raised as for
     :func:`block`."""
     with gmsh_session() as gmsh:
-        lines = _outline(gmsh, (width, width), None, contact, sizes, growth, along, None)
+        lines = _outline(gmsh, (width, width), None, contact, sizes, growth, along, None, {})
         for option, value in _ALL_QUADS.items():
             gmsh.option.setNumber(f"Mesh.{option}", value)
         gmsh.model.mesh.generate(2)
@@ -88,6 +95,7 @@ def _outline(
     growth: float,
     along: float | None,
     facets: float | None,
+    at_corners: Mapping[Corner, float],
 ) -> dict[str, list[int]]:
     """Geometry and size field; returns the curves of each named line."""
     geo, field = gmsh.model.geo, gmsh.model.mesh.field
@@ -107,8 +115,12 @@ def _outline(
     geo.synchronize()
 
     starts = {surface[1 + on_contact.index(x)]: size for x, size in sizes.items()}
+    places: dict[Corner, int] = {"foot": 0, "shoulder": 1 if holder else -1}
     if holder and holder[0] != width:
-        starts |= {side[1 if holder[0] < width else 2]: _CORNER * width for side in (left, right)}
+        places["notch"] = 1 if holder[0] < width else 2
+        at_corners = {"notch": _CORNER * width, **at_corners}
+    for corner, size_there in at_corners.items():
+        starts |= {side[places[corner]]: size_there for side in (left, right)}
     grades = []
     for point, size_there in starts.items():
         distance = field.add("Distance")

@@ -5,6 +5,7 @@ import pytest
 
 from partialslip.condensed import zones
 from partialslip.condensed.zones import right_end, stick_zone
+from partialslip.halfplane.cells import graded
 
 VERTICES = np.linspace(-1, 1, 81)
 X = (VERTICES[1:] + VERTICES[:-1]) / 2
@@ -65,3 +66,26 @@ def test_a_zone_at_the_end_of_the_line(side):
     zone = read(room(*sorted((side * 1.2, side * 0.4))))
     assert side * (zone.right if side > 0 else zone.left) == pytest.approx(1, abs=0.05)
     assert side * (zone.left if side > 0 else zone.right) == pytest.approx(0.4, abs=0.025 / 25)
+
+
+def test_kinks_are_where_q_leaves_its_bound():
+    """A first loading and a reversal lock in two zones, one within the other: both ends of each, far below a cell."""
+    inner, outer = room(-0.31, 0.52), room(-0.6, 0.8)
+    for q, ends in ((BOUND - inner, (-0.31, 0.52)), (outer - BOUND, (-0.6, 0.8))):
+        found = zones.kinks(X, BOUND, q, VERTICES, lambda forces: forces)
+        assert found == pytest.approx(ends, abs=0.025 / 25)
+
+
+def test_kinks_between_slip_of_either_way():
+    """Large tension: the bound is met with one sign on the left and with the other on the right."""
+    zone = room(-0.31, 0.52)
+    turn = np.where(X < 0, -1, 1)
+    assert zones.kinks(X, BOUND, turn * (BOUND - zone), VERTICES, lambda forces: forces) == pytest.approx(
+        [-0.31, 0.52], abs=0.025 / 25
+    )
+
+
+def test_the_finest_places_of_a_mesh():
+    points = np.array([-1.0, -0.3, 0.41, 1.0])
+    assert zones.finest(graded(points, 1e-4, 0.1)) == [-0.3, 0.41]
+    assert zones.finest(np.linspace(-1, 1, 50)) == []

@@ -148,7 +148,7 @@ def march(
     done = [
         (resting(0 * gap if pressed is None else pressed), resting(0 * gap if path.before is None else path.before))
     ]
-    cycle = len(path.cycle) * path.substeps
+    cycle = sum(len(way) for way in path.fractions[1:])
     gap = gap - path.begin[1] * stretch[1]
 
     def advance(before: Solution, Q: float, strain: float, P: float = 1.0) -> tuple[Solution, Array]:
@@ -164,7 +164,7 @@ def march(
     for P in np.linspace(0, 1, path.substeps + 1)[1:].tolist() if pressed is None else ():
         q, _ = advance(q, 0.0, 0.0, P)
     history = follow(path, advance, q)
-    last, _ = done[-cycle:][(path.ends[1] + 1) * path.substeps - 1]
+    last, _ = done[-cycle:][sum(len(way) for way in path.fractions[1 : path.ends[1] + 2]) - 1]
     return history, replace(
         last,
         residual=np.max([pressed.residual for pressed, _ in done], axis=0),

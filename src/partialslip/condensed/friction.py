@@ -3,7 +3,8 @@
 Scaled: lengths by sqrt(A R P), forces by P and displacements by A P, so that nothing depends on units.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+import itertools
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -20,6 +21,9 @@ from partialslip.state import State
 _REPEATS = 1e-13  # change of a node's q in a cycle, in the sum of |q|, that is rounding
 _STEADY = 1e-6  # change of q from cycle to cycle, in its range or in f p0, that counts as none
 _SLIPS = 1e-9  # what is missing of the bound, relative, that is rounding
+_GROUPS, _HALVINGS, _SOLVES = 64, 6, 400  # of neighbours, on which steps are chosen; a step is halved so often at most
+_TRIED = (0, 1 / 32, 1 / 8, 1 / 2, 3 / 4, 7 / 8, 1)  # fractions of a way on which slip that turns round is looked for
+_CLOSES = 3  # cycles at least where the first loading does not tell the whole of fully reversed loads
 _RATCHETS = 1e-3  # net slip of a cycle, in the slip of half a cycle, that counts where q has settled
 
 
@@ -28,8 +32,12 @@ class Path:
     """Where the loads go: (Q, relative strain of the surfaces due to bulk tension) at the points of a cycle, scaled.
 
     ``ends`` are the indices of load points 1 and 2, the extremes of the cycle. The path begins at ``begin``, with the
-    tangential forces ``before`` (n,); without those there are none. Of one that is fully reversed, in one step, from
-    nothing on, ``half`` a cycle will do: the first loading.
+    tangential forces ``before`` (n,); without those there are none. Of one that is fully reversed, from nothing on, and
+    on whose way no slip turns round, ``half`` a cycle will do: the first loading.
+
+    ``substeps`` is the least number of steps from each point to the next. ``ways`` are the steps that are taken, as
+    ascending fractions of the way up to 1: to the last point at first, and then to each point of the cycle. Without
+    them they are ``substeps`` equal ones.
     """
 
     cycle: tuple[tuple[float, float], ...]
@@ -40,6 +48,27 @@ class Path:
     begin: tuple[float, float] = (0.0, 0.0)
     before: Array | None = None
     half: bool = False
+    ways: tuple[tuple[float, ...], ...] = ()
+
+    @property
+    def fractions(self) -> tuple[tuple[float, ...], ...]:
+        """``ways``, or equal steps."""
+        equal = tuple(np.linspace(0, 1, self.substeps + 1)[1:].tolist())
+        return self.ways or (equal,) * (1 + len(self.cycle))
+
+    @property
+    def halved(self) -> "Path":
+        """The path with every step in two."""
+        middles = (
+            [(before + after) / 2 for before, after in itertools.pairwise([0.0, *way])] for way in self.fractions
+        )
+        ways = (tuple(sorted([*way, *middle])) for way, middle in zip(self.fractions, middles, strict=True))
+        return replace(self, ways=tuple(ways), half=False)
+
+    @property
+    def most_steps(self) -> int:
+        """The largest number of steps from one load point to the next."""
+        return max(len(way) for way in self.fractions)
 
 
 @dataclass(frozen=True)
@@ -90,6 +119,16 @@ class History:
             key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "bounds", "end")
         }
         return replace(self, points=points, **fields)
+
+    @property
+    def visited(self) -> list[tuple[Array, Array]]:
+        """q at the load points, of the first two cycles and of the last, and the bounds f p there: where q leaves its
+        bound (:func:`partialslip.condensed.zones.kinks`) the mesh is to be fine."""
+        cycle = len(self.path.cycle)
+        bounds = dict(zip(self.path.ends, self.bounds, strict=True))
+        numbers = sorted({*range(2 * cycle + 1), *range(len(self.points) - cycle, len(self.points))})
+        known = [number for number in numbers if 0 <= number < len(self.points)]
+        return [(self.points[number].x, bounds.get((number - 1) % cycle, self.bound)) for number in known]
 
     @property
     def bound(self) -> Array:
@@ -165,7 +204,9 @@ def lower_strain(scene: Scene, sigma: float) -> float:
     return scene.material.bodies[0].A / scene.material.A * sigma * scene.length / (4 * scene.P)
 
 
-def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> History:
+def march(
+    tangential: Array, stretch: Array, bound: Array, path: Path, accuracy: float | None = None, x: Array | None = None
+) -> History:
     """Tangential forces along the path at constant pressure, every step of it certified.
 
     A step is then a convex problem: where nothing slips, the relative displacement keeps what it was, so that
@@ -180,7 +221,11 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
     bound : (n,) array
         f times its normal forces.
     path : Path
+    accuracy : float, optional
+        Refine the steps to what q may be off by for their sake, relative to f P; without it they stay as they are.
     """
+    if accuracy is not None:
+        path = refined(tangential, stretch, bound, path, accuracy)
 
     def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
         free = tangential @ before.x + strain * stretch
@@ -190,6 +235,93 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
 
 
 Advance = Callable[[Solution, float, float], tuple[Solution, Array]]
+
+
+def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accuracy: float) -> Path:
+    """The path in as many steps as the answer needs: :func:`march` on groups of neighbours decides.
+
+    One step is the answer where no slip turns round on the way, for then the conditions of one step are those of the
+    gradual way. Otherwise each of some steps, smaller towards the load points, is halved as long as its two halves lead
+    elsewhere: slip turns round at a moment, so that few steps are halved often. Bulk tension that does not change
+    turns nothing round, as shear drives all slip one way.
+    """
+    strains = {strain for _, strain in (path.begin, *path.cycle)}
+    if len(strains) == 1:
+        return path
+    coarse = _Coarse(tangential, stretch, bound, accuracy)
+    load = np.array(path.begin)
+    q = coarse.sums(0 * bound if path.before is None else path.before)
+    ways, ends = [], []
+    for point in (*path.cycle[-1:], *path.cycle):
+        end = np.array(point)
+        fractions, q = coarse.way(q, load, end, path.substeps)
+        ways.append(fractions)
+        ends.append(q)
+        load = end
+    if path.half and all(len(fractions) == 1 for fractions in ways) and coarse.same(ends[0], -ends[1]):
+        return path
+    if path.half:  # the first loading does not tell the whole: the cycle is to close
+        path = replace(path, half=False, cycles=max(path.cycles, _CLOSES))
+    return replace(path, ways=tuple(ways))
+
+
+class _Coarse:
+    """Tangential forces summed over groups of neighbours, which share them as they share the bounds."""
+
+    def __init__(self, tangential: Array, stretch: Array, bound: Array, accuracy: float) -> None:
+        count = min(_GROUPS, len(bound))
+        self._first = np.arange(count) * len(bound) // count
+        self._bound = self.sums(bound)
+        share = bound / np.repeat(self._bound, np.diff(self._first, append=len(bound)))
+        self._C = np.add.reduceat(self.sums(share[:, None] * tangential) * share, self._first, axis=1)
+        self._stretch = self.sums(share * stretch)
+        self._near, self._solves = accuracy * float(self._bound.sum()), 0
+
+    def sums(self, forces: Array) -> Array:
+        """Sums over the groups."""
+        result: Array = np.add.reduceat(forces, self._first)
+        return result
+
+    def same(self, q: Array, other: Array) -> bool:
+        """Whether the two differ by less than what is asked for."""
+        return float(np.abs(q - other).sum()) <= self._near
+
+    def way(self, q: Array, load: Array, end: Array, substeps: int) -> tuple[tuple[float, ...], Array]:
+        """Fractions of the way from ``load`` to ``end`` that steps are to end at, and where they lead from ``q``."""
+        fractions: list[float] = []
+        self._solves = 0
+        for number in range(substeps):
+            stops = [(number + part) / substeps for part in _TRIED]
+            loads = [load + stop * (end - load) for stop in stops]
+            whole = self._step(q, loads[0], loads[-1])
+            tried = [q]
+            for start, stop in itertools.pairwise(loads):
+                tried.append(self._step(tried[-1], start, stop))
+            if self.same(tried[-1], whole):
+                fractions.append(stops[-1])
+                q = whole
+                continue
+            for (begins, start), (ends, stop) in itertools.pairwise(zip(stops, loads, strict=True)):
+                parts, q = self._halve(q, start, stop, self._step(q, start, stop), _HALVINGS)
+                fractions += [begins + part * (ends - begins) for part in parts]
+        fractions[-1] = 1.0
+        return tuple(fractions), q
+
+    def _halve(self, q: Array, load: Array, end: Array, whole: Array, depth: int) -> tuple[list[float], Array]:
+        """The same of steps that are halved until they lead where their halves do; ``whole`` is where one leads."""
+        middle = (load + end) / 2
+        first = self._step(q, load, middle)
+        second = self._step(first, middle, end)
+        if depth == 0 or self._solves > _SOLVES or self.same(second, whole):
+            return [1.0], second
+        left, at_middle = self._halve(q, load, middle, first, depth - 1)
+        right, at_end = self._halve(at_middle, middle, end, self._step(at_middle, middle, end), depth - 1)
+        return [0.5 * at for at in left] + [0.5 + 0.5 * at for at in right], at_end
+
+    def _step(self, q: Array, load: Array, end: Array) -> Array:
+        self._solves += 1
+        free = self._C @ q + (end[1] - load[1]) * self._stretch
+        return solve_bounded(self._C, free, -self._bound, self._bound, float(end[0])).x
 
 
 def resting(forces: Array) -> Solution:
@@ -205,13 +337,18 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
     ``advance`` takes the solution before a step, Q after it and the increment of the free relative strain to the
     solution after it, whose ``rest`` is the slip, turned round; and f times the normal forces after it.
     """
-    went, load = _go(path, advance, before, np.array(path.begin), path.cycle[-1:])
-    points = [_certified(went[0])]
+    first, *ways = path.fractions
+    load = np.array(path.begin)
+    went = [_go(advance, before, load, np.array(path.cycle[-1]), first)]
+    points, taken = [_certified(went[0])], len(first)
     if path.half:
-        return _reversed(path, points[0], went[0][0][1])
+        return _reversed(path, points[0], went[0])
     for _ in range(path.cycles):
-        went, load = _go(path, advance, points[-1], load, path.cycle)
-        points += [_certified(way) for way in went]
+        went = []
+        for start, end, fractions in zip((path.cycle[-1], *path.cycle), path.cycle, ways, strict=False):
+            went.append(_go(advance, points[-1], np.array(start), np.array(end), fractions))
+            points.append(_certified(went[-1]))
+            taken += len(fractions)
         if np.abs(points[-1].x - points[-1 - len(went)].x).max() <= _REPEATS * np.abs(points[-1].x).sum():
             break
     steps = [step for way in went for step, _ in way]
@@ -230,14 +367,14 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
         net_slip=slips[-1],
         dissipated=-sum(float(step.x @ step.rest) for step in steps),
         end=(ends[-1][0].x, ends[-1][1]),
-        load_steps=len(points) * path.substeps,
+        load_steps=taken,
     )
 
 
-def _reversed(path: Path, first: Solution, bound: Array) -> History:
+def _reversed(path: Path, first: Solution, went: "_Way") -> History:
     """The cycle that a first loading to load point 2 tells: on the way from 1 to 2 all is doubled (Masing's rule)."""
-    forces, slip = first.x, -2 * first.rest
-    way = replace(first, rest=2 * first.rest, iterations=0, changes=0)
+    forces, slip, bound = first.x, -2 * sum(step.rest for step, _ in went), went[-1][1]
+    way = replace(first, rest=-slip, iterations=0, changes=0)
     return History(
         path=path,
         points=[first, replace(way, x=-forces, rest=-way.rest), way],
@@ -249,26 +386,23 @@ def _reversed(path: Path, first: Solution, bound: Array) -> History:
         net_slip=0 * slip,
         dissipated=2 * float(forces @ slip),
         end=(forces, bound),
-        load_steps=1,
+        load_steps=len(went),
     )
 
 
 _Way = list[tuple[Solution, Array]]
 
 
-def _go(
-    path: Path, advance: Advance, before: Solution, load: Array, points: Sequence[tuple[float, float]]
-) -> tuple[list[_Way], Array]:
-    """From ``load`` to each of ``points`` in turn: the steps on the way to each, and where that ends."""
-    ways: list[_Way] = []
-    for point in points:
-        ways.append([])
-        before = resting(before.x)  # the loads turn: what slips now says nothing of what will
-        for Q, strain in np.linspace(load, point, path.substeps + 1)[1:].tolist():
-            before, bound = advance(before, Q, strain - load[1])
-            ways[-1].append((before, bound))
-            load = np.array([Q, strain])
-    return ways, load
+def _go(advance: Advance, before: Solution, start: Array, end: Array, fractions: tuple[float, ...]) -> _Way:
+    """The steps from the loads at ``start`` to those at ``end``."""
+    before = resting(before.x)  # the loads turn: what slips now says nothing of what will
+    load, way = start, []
+    for fraction in fractions:
+        next_load = start + fraction * (end - start) if fraction < 1 else end
+        before, bound = advance(before, float(next_load[0]), float(next_load[1] - load[1]))
+        way.append((before, bound))
+        load = next_load
+    return way
 
 
 def _certified(way: _Way) -> Solution:

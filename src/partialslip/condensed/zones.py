@@ -6,6 +6,7 @@ function of x whose root is the end. Forces are far better than nodal values her
 last elements hardly touches them.
 """
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,7 +17,10 @@ import numpy.typing as npt
 from partialslip.result import Array
 
 _VERTICES = 5
+_BESIDE, _FINER = 3, 0.95  # cells on either side of a fine place, and how small it is beside them
 _STICKS = 1e-9  # what slips has used up its bound to rounding, whatever the units
+_LEAVES = 1e-6  # of the bound: a traction nearer to it than that is at it, as kinks so slight do not matter
+_RUN = 4  # nodes in a row that make a zone; fewer are noise
 
 
 @dataclass(frozen=True)
@@ -66,6 +70,57 @@ def _around(most: int, x: Array, sticks: npt.NDArray[np.bool_], vertices: Array)
     last = np.searchsorted(ends, after[most])
     result: npt.NDArray[np.int64] = np.flatnonzero(sticks & (after > ends[last - 1]) & (before < ends[last]))
     return result
+
+
+def kinks(x: Array, bound: Array, q: Array, vertices: Array, cell_forces: Callable[[Array], Array]) -> list[float]:
+    """Points inside the contact where q leaves its bound f p or -f p: a mesh is to be fine there.
+
+    Towards such a point the difference of q and the bound it meets falls like a square root, just as beside the ends of
+    the stick zone.
+
+    Parameters
+    ----------
+    x, bound, q : (n,) arrays
+        Nodes in contact, f times their normal forces, and their tangential forces at one moment.
+    vertices : (c + 1,) array
+        Ends of the cells of the contact line.
+    cell_forces : callable
+        Takes forces of the nodes in contact to integrals over the cells.
+    """
+    side = np.where(np.abs(q) >= (1 - _LEAVES) * bound, np.sign(q), 0).astype(np.int8)
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(side)) + 1, [len(x)]])
+    starts = starts[:-1][np.diff(starts) >= _RUN]
+    if not len(starts):
+        return []
+    starts = np.append(starts[np.append(True, np.diff(side[starts]) != 0)], len(x))
+    found: list[float] = []
+    for run, (first, last) in enumerate(itertools.pairwise(starts)):  # runs of one side: a handful
+        if side[first] != 0:
+            continue
+        inside = x[first:last]
+        for beside, way in ((run - 1, -1), (run + 1, 1)):
+            if not 0 <= beside < len(starts) - 1:
+                continue
+            held = slice(starts[beside], starts[beside + 1])
+            room = bound - side[held.start] * q
+            room[held] = 0.0
+            room[held.stop :] *= way < 0
+            room[: held.start] *= way > 0
+            forces = cell_forces(room)
+            found.append((right_end if way > 0 else left_end)(vertices, forces, inside))
+    return sorted(found)
+
+
+def finest(vertices: Array) -> list[float]:
+    """Inner vertices that a graded mesh is fine around: the cells beside them are the smallest far and wide."""
+    widths = np.diff(vertices)
+    if len(widths) < 2 * _BESIDE + 1:
+        return []
+    smallest = (widths[1:] + widths[:-1]) / 2
+    wide = np.lib.stride_tricks.sliding_window_view(np.pad(smallest, _BESIDE, constant_values=np.inf), 2 * _BESIDE + 1)
+    far = np.pad(widths, _BESIDE, mode="edge")
+    larger = np.minimum(far[: len(smallest)], far[2 * _BESIDE + 1 :][: len(smallest)])
+    return vertices[1:-1][(smallest <= wide.min(axis=1)) & (smallest < _FINER * larger)].tolist()  # type: ignore[no-any-return]
 
 
 def apart(ends: list[float], size: float) -> list[float]:

@@ -6,10 +6,12 @@ import numpy as np
 
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact, contact
+from partialslip.halfplane.levels import PATH_DEPENDENT, Levels, levels
+from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.slip import dissipation
-from partialslip.halfplane.steady import NARROWEST, StickZone, stick_zone, transition
+from partialslip.halfplane.steady import NARROWEST, transition
 from partialslip.halfplane.stress import Stress
-from partialslip.halfplane.traction import half_range, mean_load_bound
+from partialslip.halfplane.traction import mean_load_bound
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Regime, Result, Slip, SurfaceStress, Traction
 from partialslip.scene import Scene
@@ -25,101 +27,127 @@ def solve(
     """Solve ``scene`` exactly, as two elastically similar half-planes in the steady state; SI units.
     ``plan`` is what the scene calls for (:func:`partialslip.plan`).
 
-    It is done before there is any ``progress`` to tell; and a steady state does not remember its ``start``.
+    There is no ``progress`` to tell. The change q2 - q1 does not remember the ``start``; q1 and q2 do.
 
     Raises
     ------
     InputError
         If Q and sigma are out of phase: there is no closed form.
     """
-    del progress, start
+    del progress
     clock = Clock()
     f, load = scene.friction.f, scene.load
     if not load.in_phase:
         raise InputError("load.sigma: out of phase with load.Q; the exact method is for loads in phase, take march")
     pressed = contact(scene)
-    a, p0, shape = pressed.a, pressed.p0, pressed.shape
-    regime, zone = _steady_state(scene, plan, pressed)
-
-    # zone is the one for positive dQ and dsigma: turning q round, and mirroring x, brings it to the signs here
-    turn = -1 if load.dQ < 0 else 1
-    mirror = turn * (-1 if load.dsigma < 0 else 1)
+    a, p0 = pressed.a, pressed.p0
+    regime, cycle = _steady_state(scene, plan, pressed)
+    found = _levels(scene, pressed, regime, cycle, start)
+    turns = cycle is not None and _turns_round(cycle)
 
     def at(x: Array) -> tuple[Array, Array]:
         p = pressed.pressure(x)
-        if not zone or regime == "stuck":
-            return p, np.zeros_like(p)
-        return p, turn * 2 * f * p0 * half_range(mirror * x / a, zone, shape)
+        return p, f * p0 * cycle.traction(x / a) if cycle else np.zeros_like(p)
 
-    ends = [mirror * (zone.centre + way * zone.half_width) for way in (-1, 1)] if zone else []
-    kinks = [kink for kink in scene.profile.kinks if abs(kink) < a]
-    breaks = np.unique([-a, *kinks, *(a * np.clip(ends, -1, 1)), a])
+    def levels_at(x: Array) -> tuple[Array, Array]:
+        assert isinstance(found, Levels)
+        q1, q2 = found.at(x / a)
+        return f * p0 * q1, f * p0 * q2
+
+    breaks = _breaks(scene, a, cycle, found)
     x = _sample(np.union1d(breaks, [0.0]))
     p, dq = at(x)
-    levels = load.fully_reversed and regime != "sliding"
-    stress = Stress(pressed, f, load.dQ, load.dsigma) if plan.needs("subsurface") and levels else None
+    q1, q2 = levels_at(x) if isinstance(found, Levels) else (None, None)
+    reversed_ = load.fully_reversed and isinstance(found, Levels)
+    stress = Stress(pressed, f, load.dQ, load.dsigma) if plan.needs("subsurface") and reversed_ else None
     surface = _surface(stress, np.concatenate([[-_BEYOND * a], breaks, [_BEYOND * a]])) if stress else None
+    slips = cycle and not cycle.nothing
+    undetermined = _undetermined(regime, turns, found)
     return Result(
         method="exact",
         a=a,
         p0=p0,
         regime=regime,
-        stick_centre=mirror * zone.centre * a if zone else None,
-        stick_half_width=zone.half_width * a if zone else None,
-        traction=Traction(x, p, dq, -dq / 2 if levels else None, dq / 2 if levels else None, at, breaks),
+        stick_centre=cycle.mirror * cycle.zone.centre * a if cycle else None,
+        stick_half_width=cycle.zone.half_width * a if cycle else None,
+        traction=Traction(x, p, dq, q1, q2, at, breaks, levels_at=levels_at if isinstance(found, Levels) else None),
         cost=clock.cost(),
-        slip=_slip(scene, pressed, zone, turn, mirror) if zone and regime not in ("stuck", "ratchets") else None,
+        slip=_slip(scene, pressed, cycle) if cycle and slips and regime != "ratchets" else None,
         settings={"model": "two half-planes, steady state"},
-        limits=_limits(scene, pressed, zone) if plan.needs("friction") or (scene.slides and f > 0) else {},
-        certificate=_certificate(scene, pressed, zone) if zone and regime != "stuck" else {},
-        notes=_notes(regime, levels, _turns_round(scene, p0, zone)),
+        limits=_limits(scene, pressed, cycle) if plan.needs("friction") or (scene.slides and f > 0) else {},
+        certificate=_certificate(pressed, cycle) if cycle and slips else {},
+        notes=_notes(regime, turns, undetermined),
         surface=surface,
         stress_at=stress.inside if stress else None,
+        undetermined=undetermined,
+        path_dependent=turns,
     )
 
 
-def _steady_state(scene: Scene, plan: Plan, pressed: Contact) -> tuple[Regime, StickZone | None]:
-    """Regime and stick zone (scaled, for positive dQ and dsigma; None where the contact slides)."""
+def _steady_state(scene: Scene, plan: Plan, pressed: Contact) -> tuple[Regime, Loading | None]:
+    """Regime, and the change from load point 1 to 2 (None where the contact slides)."""
     f, load, limit = scene.friction.f, scene.load, scene.friction.f * scene.P
     if scene.slides:
         return "sliding", None
     if not plan.needs("friction"):
-        return "stuck", StickZone(0.0, 1.0, 1)
-    if load.dQ == 0 and load.dsigma == 0:
-        return "stuck", StickZone(0.0, 1.0, 1)
-    zone = stick_zone(abs(load.dQ) / (2 * limit), abs(load.dsigma) / (f * pressed.p0), pressed.shape)
+        return "stuck", loading(pressed, 1.0, 0.0, 0.0, bound=2)
+    cycle = loading(pressed, f, load.dQ, load.dsigma, bound=2)
+    if cycle.nothing:
+        return "stuck", cycle
     # for small tension the bound is gross sliding, which has been ruled out
-    if zone.s < 0 and abs(load.Q_mean) > limit * mean_load_bound(zone, pressed.shape):
-        return "ratchets", zone
-    return ("small tension" if zone.s > 0 else "large tension"), zone
+    if cycle.zone.s < 0 and abs(load.Q_mean) > limit * mean_load_bound(cycle.zone, pressed.shape):
+        return "ratchets", cycle
+    return ("small tension" if cycle.zone.s > 0 else "large tension"), cycle
 
 
-def _limits(scene: Scene, pressed: Contact, zone: StickZone | None) -> dict[str, float]:
+def _levels(scene: Scene, pressed: Contact, regime: Regime, cycle: Loading | None, start: State | None) -> Levels | str:
+    """q1 and q2, or why there are none."""
+    if cycle is None:
+        return "the contact slides"
+    if regime == "ratchets":
+        return "the contact ratchets"
+    if start:
+        return "the path goes on from a state, which a steady state does not know"
+    if not scene.friction.f:
+        return Levels(cycle, cycle, 1)
+    return levels(pressed, scene.friction.f, scene.load, cycle)
+
+
+def _breaks(scene: Scene, a: float, cycle: Loading | None, found: Levels | str) -> Array:
+    """Ends of the contact and of stick zones, and kinks of p, m."""
+    ends = [*(cycle.ends if cycle else ()), *(found.first.ends if isinstance(found, Levels) else ())]
+    kinks = [kink for kink in scene.profile.kinks if abs(kink) < a]
+    return np.unique([-a, *kinks, *(a * np.clip(ends, -1, 1)), a])
+
+
+def _limits(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[str, float]:
     limit = scene.friction.f * scene.P
     limits = {"Q_sliding": limit}
-    if zone:
-        turns = transition(abs(scene.load.dQ) / (2 * limit), pressed.shape)
-        limits["dsigma_transition"] = float(turns) * scene.friction.f * pressed.p0
-        limits["Q_mean"] = limit * mean_load_bound(zone, pressed.shape)
+    if cycle:
+        limits["dsigma_transition"] = float(transition(cycle.Qf, pressed.shape)) * scene.friction.f * pressed.p0
+        limits["Q_mean"] = limit * mean_load_bound(cycle.zone, pressed.shape)
     return limits
 
 
-def _certificate(scene: Scene, pressed: Contact, zone: StickZone) -> dict[str, float]:
+def _certificate(pressed: Contact, cycle: Loading) -> dict[str, float]:
     """How far the loads that belong to the zone are off: ``tension`` in f p0, or relative where it is more than that,
     and ``shear`` in 2 f P. Zones narrower than can be told apart belong to any larger tension. What dQ leaves to
     sliding, which places a zone near it, is known to the rounding of dQ only: that is no fault of the zone's."""
-    c, load, f = zone.half_width, scene.load, scene.friction.f
-    found = pressed.shape.conditions(*map(np.array, (1 + zone.centre - c, c, zone.s)))
-    sf, Qf = abs(load.dsigma) / (f * pressed.p0), abs(load.dQ) / (2 * f * scene.P)
+    c, sf, Qf = cycle.zone.half_width, cycle.sf, cycle.Qf
+    found = pressed.shape.conditions(*map(np.array, (1 + cycle.zone.centre - c, c, cycle.zone.s)))
     tension = 0.0 if c <= NARROWEST and sf > found.sf else abs(float(found.sf) - sf) / max(sf, 1.0)
     rounding = np.finfo(float).eps / max(1 - Qf, np.finfo(float).eps)
     return {"tension": max(tension - float(rounding), 0.0), "shear": abs(float(found.Qf) - Qf)}
 
 
-def _slip(scene: Scene, pressed: Contact, zone: StickZone, turn: int, mirror: int) -> Slip:
-    x, slips, dissipated = dissipation(zone, pressed.shape)
+def _slip(scene: Scene, pressed: Contact, cycle: Loading) -> Slip:
+    x, slips, dissipated = dissipation(cycle.zone, pressed.shape)
     stress, unit = scene.friction.f * pressed.p0, scene.material.A * scene.friction.f * pressed.p0 * pressed.a
-    return Slip(mirror * pressed.a * x[::mirror], turn * unit * slips[::mirror], dissipated * unit * stress * pressed.a)
+    return Slip(
+        cycle.mirror * pressed.a * x[:: cycle.mirror],
+        cycle.turn * unit * slips[:: cycle.mirror],
+        dissipated * unit * stress * pressed.a,
+    )
 
 
 def _surface(stress: Stress, breaks: Array) -> SurfaceStress:
@@ -133,25 +161,29 @@ def _sample(breaks: Array) -> Array:
     return np.unique(breaks[:-1, None] + np.diff(breaks)[:, None] * crowd)
 
 
-def _turns_round(scene: Scene, p0: float, zone: StickZone | None) -> bool:
+def _turns_round(cycle: Loading) -> bool:
     """Whether slip turns round somewhere on a gradual way between the load points.
 
-    On such a way the stick zone's left end, at a half-width c, recedes by slip in the direction of dQ/pi - c dsigma/4
-    (the adhered traction of the zone). With one direction throughout that is positive from c = a on (small tension),
-    or negative down to the last c (large tension). And what is to slip must have been pushed that way from the first,
-    or it slips the other way when the loads turn: the adhered traction of the whole contact changes sign at
-    x = -4 dQ/(pi dsigma), which has to be in the last stick zone.
+    The left slip zone may turn round (:meth:`Loading.turns_round`). And what is to slip must have been pushed that way
+    from the first, or it slips the other way when the loads turn: the adhered traction of the whole contact changes
+    sign at x = -4 dQ/(pi dsigma), which in large tension has to be in the last stick zone.
     """
-    if zone is None or scene.load.dsigma == 0:
+    if cycle.nothing:
         return False
-    Qf = abs(scene.load.dQ) / (2 * scene.friction.f * scene.P)
-    sf = abs(scene.load.dsigma) / (scene.friction.f * p0)
-    if zone.s > 0:
-        return sf > 4 * Qf
-    return zone.half_width * sf < 4 * Qf or not abs(-4 * Qf / sf - zone.centre) <= zone.half_width
+    zero = -4 * cycle.Qf / max(cycle.sf, np.finfo(float).tiny)
+    return cycle.turns_round() or (cycle.zone.s < 0 and abs(zero - cycle.zone.centre) > cycle.zone.half_width)
 
 
-def _notes(regime: Regime, levels: bool, turns_round: bool) -> tuple[str, ...]:
+def _undetermined(regime: Regime, turns: bool, found: Levels | str) -> dict[str, str]:
+    reason = f"{PATH_DEPENDENT}between the load points; march with refined steps is the reference"
+    if regime == "sliding":
+        return {}
+    if turns:
+        return dict.fromkeys(("m", "n", "q", "q1", "q2"), reason)
+    return dict.fromkeys(("q1", "q2"), found) if isinstance(found, str) else {}
+
+
+def _notes(regime: Regime, turns: bool, undetermined: dict[str, str]) -> tuple[str, ...]:
     if regime == "sliding":
         return ("the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip",)
     notes: list[str] = []
@@ -159,11 +191,8 @@ def _notes(regime: Regime, levels: bool, turns_round: bool) -> tuple[str, ...]:
         notes.append(
             "the mean of Q is beyond what a steady state can hold: the contact ratchets, m and n are not reached"
         )
-    elif not levels:
-        notes.append("with mean loads the steady state fixes the change dq = q2 - q1, not q1 and q2 themselves")
-    if turns_round:
-        notes.append(
-            "slip turns round on a gradual way between these load points: dq may then differ from the closed form; "
-            "march with load.steps shows by how much"
-        )
+    elif not turns and "q2" in undetermined:
+        notes.append(f"q1 and q2: {undetermined['q2']}")
+    if turns:
+        notes.append(f"m, n, q: {undetermined['m']}")
     return tuple(notes)

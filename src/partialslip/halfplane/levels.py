@@ -1,0 +1,110 @@
+"""q1 and q2 of the steady state themselves, where the first loading decides them (Mindlin and Deresiewicz, 1953).
+
+A steady cycle fixes the change q2 - q1. Where the first loading of one load point slips all that the cycle slips, and
+more, the shear traction at that load point is the first loading's, and the steady state is there from the first cycle.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from partialslip.halfplane.contact import Contact
+from partialslip.halfplane.loading import Loading, loading
+from partialslip.result import Array
+from partialslip.scene import Load
+
+_ROUNDING = 1e-9  # lengths in a, tractions in f p0, slip in A f p0 a
+_PLACES = np.cos(np.linspace(np.pi, 0, 81))[1:-1]
+_SHARES = np.linspace(0, 1, 9)[1:-1]
+_Point = tuple[float, float]
+
+PATH_DEPENDENT = "path-dependent: slip turns round on the way "
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Shear tractions at the load points: at the one with the index ``known`` (0 or 1) that of its ``first`` loading,
+    at the other less, or more, by the change over half a ``cycle``. Scaled like :class:`Loading`."""
+
+    first: Loading
+    cycle: Loading
+    known: int
+
+    def at(self, x: Array) -> tuple[Array, Array]:
+        """q1 and q2 at ``x``, in f p0."""
+        q, dq = self.first.traction(x), self.cycle.traction(x)
+        return (q - dq, q) if self.known else (q, q + dq)
+
+
+def levels(pressed: Contact, f: float, load: Load, cycle: Loading) -> Levels | str:
+    """The steady state's q1 and q2, or the reason why no closed form has them; ``cycle`` is the change from load point
+    1 to 2.
+
+    The path runs from nothing to its last load point and then through all of them. With Z the stick zone of the cycle
+    and Z_k that of a first loading straight to load point k, q_k is that of this first loading if
+
+    - Z_k lies in Z, both slip the same way beyond, and q_k less the change stays within the bound all the way: then
+      the cycle returns to q_k;
+    - what was visited before slipped only beyond Z_k, and less than the first loading to k does: then the way to k
+      makes up the difference;
+    - slip does not turn round on the way.
+    """
+    points = [load.points[end] for end in load.ends]
+    reason = ""
+    for known in sorted((0, 1), key=lambda end: -abs(points[end][0])):
+        found = _levels(pressed, f, load, cycle, points, known)
+        if isinstance(found, Levels):
+            return found
+        reason = reason or found
+    return reason
+
+
+def _levels(pressed: Contact, f: float, load: Load, cycle: Loading, points: list[_Point], known: int) -> Levels | str:
+    target = points[known]
+    first = loading(pressed, f, *target, bound=1)
+    left, right = first.ends
+    within = cycle.ends[0] - _ROUNDING <= left and right <= cycle.ends[1] + _ROUNDING
+    way = tuple((2 * known - 1) * sign for sign in cycle.signs)
+    gaps = cycle.ends[0] + 1, 1 - cycle.ends[1]
+    if not within or any(
+        mine != its and gap > _ROUNDING for mine, its, gap in zip(first.signs, way, gaps, strict=True)
+    ):
+        return "mean loads act, and the cycle slips where the first loading sticks: march follows the path"
+    before = _before(load, points, known)
+    if first.turns_round() if not before else cycle.turns_round(first.zone.half_width):
+        return f"{PATH_DEPENDENT}of the first loading; march with refined steps is the reference"
+    for point in before:
+        earlier = loading(pressed, f, *point, bound=1)
+        if earlier.turns_round():
+            return f"{PATH_DEPENDENT}of the first loading; march with refined steps is the reference"
+        if not (earlier.ends[0] <= left + _ROUNDING and right - _ROUNDING <= earlier.ends[1]):
+            return (
+                "mean loads act, and the load point visited first slips where the other sticks: march follows the path"
+            )
+        x = _PLACES
+        more = first.slip(x) - earlier.slip(x)
+        signs = np.where(x < right, first.signs[0], first.signs[1])
+        if (signs * more < -_ROUNDING).any():
+            return "mean loads act, and the way to the second load point slips back: march follows the path"
+    found = Levels(first, cycle, known)
+    if not (load.fully_reversed or _bounded(pressed, f, load, found)):
+        return "mean loads act, and the first loading less the change exceeds f p: march follows the path"
+    return found
+
+
+def _before(load: Load, points: list[_Point], known: int) -> list[_Point]:
+    """Loads where the path turns before it comes to load point ``known`` for the first time."""
+    path = [load.points[-1], *load.points]
+    visited = path[: path.index(points[known])]
+    turns = {path[0], points[1 - known]} & set(visited)
+    return [point for point in turns if any(point)]
+
+
+def _bounded(pressed: Contact, f: float, load: Load, found: Levels) -> bool:
+    """Whether |q| <= f p on the way to the other load point; where both ends slip one way, it is largest at its end."""
+    p, q = found.cycle.shape.pressure(_PLACES), found.first.traction(_PLACES)
+    back = 1 - 2 * found.known
+    ways = [found.cycle]
+    if found.cycle.zone.s < 0:
+        ways += [loading(pressed, f, share * load.dQ, share * load.dsigma, bound=2) for share in _SHARES]
+    return all((np.abs(q + back * way.traction(_PLACES)) <= p + _ROUNDING).all() for way in ways)

@@ -1,0 +1,193 @@
+"""q1 and q2 under mean loads: Mindlin and Deresiewicz's rule, against a small boundary-element march of its own."""
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip import halfplane
+from partialslip.halfplane.contact import Contact
+from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.levels import Levels, levels
+from partialslip.halfplane.loading import loading
+from partialslip.halfplane.punch import Punch
+from partialslip.scene import Load
+
+P = np.pi / 2  # of a contact with a = p0 = 1
+MINDLIN = {
+    "name": "mindlin-deresiewicz",
+    "material": {"E": 70e9, "nu": 0.3},
+    "profile": {"kind": "hertz", "R": 0.02},
+    "friction": {"f": 0.4},
+    "load": {"a": 1e-3, "Q": [181245.73001, 483321.94669]},  # 0.3 and 0.8 f P
+}
+
+
+def scene(**load):
+    return partialslip.parse_scene(MINDLIN | {"load": MINDLIN["load"] | load})
+
+
+def exact(its, **options):
+    return halfplane.solve(its, partialslip.plan(its), **options)
+
+
+def ellipse(x, centre, half_width):
+    return np.sqrt(np.maximum(half_width**2 - (x - centre) ** 2, 0.0))
+
+
+def of(Q, sigma, shape=None):
+    """Levels of a contact with a = p0 = f = 1; Q in f P, sigma in f p0."""
+    pressed = Contact(1.0, P, shape or Hertz())
+    load = Load(P=P, Q=tuple(P * each for each in Q), sigma=sigma)
+    return levels(pressed, 1.0, load, loading(pressed, 1.0, load.dQ, load.dsigma, bound=2))
+
+
+def boundary_elements(shape, path, count=80, steps=12):
+    """q along a path of (Q in f P, sigma in f p0), from nothing: cells of constant traction, collocation, active sets.
+    Shares nothing with the package but the pressure."""
+    ends = -np.cos(np.linspace(0, np.pi, count + 1))
+    x, widths = (ends[1:] + ends[:-1]) / 2, np.diff(ends)
+
+    def primitive(apart):
+        return apart * np.log(np.abs(apart)) - apart
+
+    C = -(primitive(x[:, None] - ends[:-1]) - primitive(x[:, None] - ends[1:])) / np.pi
+    p, q, load, found = shape.pressure(x), np.zeros(count), np.zeros(2), []
+    for point in np.array(path) * [P, 1]:
+        side = np.zeros(count, int)
+        for share in np.arange(1, steps + 1) / steps:
+            Q = load[0] + share * (point[0] - load[0])
+            free = C @ q + x * (point[1] - load[1]) / steps / 4
+            for _ in range(200):
+                sticks = side == 0
+                known = np.where(sticks, 0.0, side * p)
+                system = np.block([[C[np.ix_(sticks, sticks)], -np.ones((sticks.sum(), 1))], [widths[sticks], 0.0]])
+                found_q = np.linalg.solve(system, np.append((free - C @ known)[sticks], Q - widths @ known))
+                new = known.copy()
+                new[sticks] = found_q[:-1]
+                slip = free - C @ new + found_q[-1]
+                turned = np.where(sticks, np.sign(new) * (np.abs(new) > p * (1 + 1e-11)), side)
+                turned = np.where(side * slip < -1e-13, 0, turned).astype(int)
+                if (turned == side).all():
+                    break
+                side = turned
+            else:
+                raise AssertionError("the active set cycles")
+            q = new
+        load = point
+        found.append(q)
+    return x, widths, p, found
+
+
+def test_mindlin_deresiewicz():
+    """The reference case: q2 is the first loading's, and q1 what the reversal leaves of it."""
+    result = exact(scene())
+    x = np.linspace(-1.2, 1.2, 501)
+    q1, q2 = (q / (0.4 * result.p0) for q in result.traction.levels_at(x * result.a))
+    p = ellipse(x, 0, 1)
+    assert q2 == pytest.approx(p - ellipse(x, 0, np.sqrt(0.2)), abs=1e-8)
+    assert q1 == pytest.approx(-p + 2 * ellipse(x, 0, np.sqrt(0.75)) - ellipse(x, 0, np.sqrt(0.2)), abs=1e-8)
+    assert not result.undetermined
+    assert result.notes == ()
+
+
+def test_kinks_of_the_first_loading_are_breaks_and_points():
+    result = exact(scene())
+    kinks = np.sqrt(0.2) * np.array([-1, 1])
+    for places in (result.traction.breaks, result.traction.x):
+        assert np.abs(places[:, None] / result.a - kinks).min(axis=0) == pytest.approx(0, abs=1e-8)
+    at = result.traction.levels_at(result.traction.x)
+    np.testing.assert_array_equal(at, [result.traction.q1, result.traction.q2])
+
+
+def test_tension_moves_the_ellipse_that_the_first_loading_locks_in():
+    """Half-width a sqrt(1 - |Q|/(f P)), centre -sign(Q) A R sigma/(4 f) (scaled: sigma/4)."""
+    for Q, sigma in ((0.8, 0.3), (-0.8, 0.3), (0.8, -0.3), (-0.8, -0.3)):
+        found = of((Q / 3, Q), (sigma / 2, sigma))
+        x = np.linspace(-1, 1, 101)
+        corrective = ellipse(x, -np.sign(Q) * sigma / 4, np.sqrt(1 - abs(Q)))
+        assert found.at(x)[1] == pytest.approx(np.sign(Q) * (ellipse(x, 0, 1) - corrective), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("Q", "sigma", "shape"),
+    [
+        ((0.3, 0.8), (0.0, 0.0), Hertz()),
+        ((0.8, 0.3), (0.0, 0.0), Hertz()),  # the point visited first slips less
+        ((0.8, -0.3), (0.0, 0.0), Punch(0.4)),
+        ((0.745, 0.216), (0.79, -0.005), Hertz()),
+        ((0.898, -0.441), (-0.577, -0.186), Punch(0.6)),
+        ((0.0, -0.826), (-0.795, -0.795), Hertz()),
+        ((-0.06, -0.34), (-0.05, -3.7), Hertz()),  # large tension
+        ((0.299, 0.118), (-0.84, -0.162), Hertz()),
+        ((0.3, 0.3), (0.2, 0.2), Hertz()),  # a cycle of nothing
+    ],
+)
+def test_boundary_elements_agree(Q, sigma, shape):
+    """Relative L2, in p, of q at both load points after the first visits: cells leave up to 1e-2."""
+    load_points = list(zip(Q, sigma, strict=True))
+    x, widths, p, (_, one, two) = boundary_elements(shape, [load_points[1], *load_points])
+    for mine, its in zip(of(Q, sigma, shape).at(x), (one, two), strict=True):
+        assert np.sqrt((mine - its) ** 2 @ widths / (p**2 @ widths)) < 1.3e-2
+
+
+@pytest.mark.fault
+def test_the_first_loading_of_the_wrong_load_point_is_caught():
+    """q2 by the first loading of load point 1, which slips less, and the change."""
+    pressed, path = Contact(1.0, P, Hertz()), [(0.8, 0.0), (0.3, 0.0), (0.8, 0.0)]
+    x, widths, p, (_, _, two) = boundary_elements(Hertz(), path)
+    first, cycle = (loading(pressed, 1.0, Q * P, 0.0, bound) for Q, bound in ((0.3, 1), (0.5, 2)))
+    wrong = first.traction(x) + cycle.traction(x)
+    assert np.sqrt((wrong - two) ** 2 @ widths / (p**2 @ widths)) > 5e-2
+
+
+def test_levels_stay_within_the_bound_and_hold_their_loads():
+    """|q| <= f p, int q dx = Q: 15 random pairs of loads."""
+    random = np.random.default_rng(20)
+    angle = (np.arange(4000) + 0.5) / 4000 * np.pi
+    x, weights = np.cos(angle), np.sin(angle) * np.pi / 4000
+    p, known = np.sqrt(1 - x**2), 0
+    while known < 15:
+        Q, sigma = random.uniform(-0.95, 0.95, 2), random.uniform(-0.8, 0.8, 2)
+        found = of(Q, tuple(sigma))
+        if isinstance(found, Levels):
+            known += 1
+            for level, force in zip(found.at(x), Q, strict=True):
+                assert (np.abs(level) <= p * (1 + 1e-9) + 1e-12).all()
+                assert level @ weights == pytest.approx(force * P, abs=2e-5)
+
+
+def test_symmetries():
+    """Turning q round turns both loads round; mirroring x turns Q round and keeps sigma."""
+    x = np.linspace(-1, 1, 41)
+    base = of((0.2, 0.7), (0.1, 0.4)).at(x)
+    turned = of((-0.2, -0.7), (-0.1, -0.4)).at(x)
+    mirrored = of((-0.2, -0.7), (0.1, 0.4)).at(-x)
+    for its in (turned, mirrored):
+        np.testing.assert_allclose(its, -np.array(base), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("Q", "sigma", "reason"),
+    [
+        ((0.1, -0.4), (-0.95, -1.2), "the cycle slips where the first loading sticks"),
+        ((-0.909, -0.337), (0.67, 0.81), "path-dependent"),
+    ],
+)
+def test_where_there_is_no_closed_form_the_reason_says_so(Q, sigma, reason):
+    assert reason in of(Q, sigma)
+
+
+def test_results_say_why_there_are_no_levels():
+    base = scene()
+    unit, stress = 0.4 * base.P, 0.4 * exact(base).p0
+    result = exact(scene(Q=[0.1 * unit, -0.4 * unit], sigma=[-0.95 * stress, -1.2 * stress]))
+    assert result.traction.q1 is result.traction.q2 is result.traction.levels_at is None
+    assert set(result.undetermined) == {"q1", "q2"}
+    assert result.undetermined["q1"] in result.notes[0]
+
+
+def test_load_points_in_between():
+    """The path may begin at a load point between the extremes."""
+    x = np.linspace(-1, 1, 41)
+    direct, detour = of((-0.3, 0.8), (0.0, 0.0)), of((-0.3, 0.8, 0.2), (0.0, 0.0, 0.0))
+    np.testing.assert_allclose(detour.at(x), direct.at(x), atol=1e-12)
