@@ -1,8 +1,11 @@
-"""Small dense algebra on one thread: two threads on two busy cores make it up to a hundred times slower."""
+"""Small dense algebra on one BLAS thread: two threads on two busy cores make it up to a hundred times slower."""
 
 import functools
-from collections.abc import Callable
-from typing import ParamSpec, TypeVar
+import os
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, ParamSpec, TypeVar
 
 import scipy.linalg  # noqa: F401 - the controller sees the libraries that are loaded by now
 from threadpoolctl import ThreadpoolController
@@ -12,12 +15,43 @@ _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
 
+class _Limit:
+    """BLAS has one setting for all threads: the first function sets it, the last one to end restores it."""
+
+    def __init__(self) -> None:
+        self._lock, self._running = threading.Lock(), 0
+        self._limited: Any = None
+        if hasattr(os, "register_at_fork"):  # another thread, which the child has not, may be holding the lock
+            os.register_at_fork(after_in_child=self._begin_anew)
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Hold BLAS at one thread."""
+        with self._lock:
+            if not self._running:
+                self._limited = _CONTROLLER.limit(limits=1, user_api="blas")
+            self._running += 1
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._running -= 1
+                if not self._running:
+                    self._limited.restore_original_limits()
+
+    def _begin_anew(self) -> None:
+        self._lock = threading.Lock()
+
+
+_limit = _Limit()
+
+
 def one_thread(function: Callable[_P, _T]) -> Callable[_P, _T]:
     """Decorator: run ``function`` with BLAS on one thread."""
 
     @functools.wraps(function)
     def limited(*args: _P.args, **kwargs: _P.kwargs) -> _T:
-        with _CONTROLLER.limit(limits=1):
+        with _limit.held():
             return function(*args, **kwargs)
 
     return limited
