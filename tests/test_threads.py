@@ -16,13 +16,13 @@ from partialslip.condensed.threads import one_thread
 from partialslip_fem import Kept
 from partialslip_meshes.quiet import quiet
 
-COARSE = ["fem.accuracy=1e-2", "fem.order=2"]
+COARSE = ["fem.accuracy=5e-2", "fem.order=2"]
 SETTINGS = [  # of runs: adaptive and not, one body and two, both factors, with and without a closed form
     ["fem.factor=superlu"],
-    ["fem.factor=cholmod", "load.sigma=[0, 5e8]"],
+    ["fem.factor=cholmod", "load.sigma=[0, 5e8]", "fem.size=0.2"],
     ["fem.size=0.1"],
-    ["friction.f=0.7", "load.Q=[-5e4, 5e4]"],
-    ["fem.lower_size=0.7"],
+    ["friction.f=0.7", "load.Q=[-5e4, 5e4]", "fem.size=0.2"],
+    ["fem.size=0.3", "fem.lower_size=0.7"],
 ]
 
 
@@ -33,11 +33,18 @@ def solved(settings, keep=None):
         "fem"
     ]
     traction = fem.traction
-    return fem.a, fem.m, fem.n, *(getattr(traction, key).tobytes() for key in ("x", "p", "q1", "q2")), fem.counts
+    columns = [getattr(traction, key) for key in ("x", "p", "q1", "q2")]
+    return [np.array([fem.a, fem.m, fem.n]), *columns], dict(fem.counts)
+
+
+def same(found, other):
+    """Counts alike, and figures to the last bit."""
+    return found[1] == other[1] and all(np.array_equal(each, its) for each, its in zip(found[0], other[0], strict=True))
 
 
 def blas():
-    return [(each["filepath"], each["num_threads"]) for each in threadpool_info() if each["user_api"] == "blas"]
+    """Threads of those that NumPy and SciPy bring."""
+    return [(each["filepath"], each["num_threads"]) for each in threadpool_info() if "scipy" in each["prefix"]]
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +64,7 @@ def test_as_one_after_the_other(alone, threads, times):
     for _ in range(times):
         with ThreadPoolExecutor(threads) as pool:
             found = list(pool.map(all_of_them, range(threads)))
-        assert all(result == alone[number] for runs in found for number, result in runs)
+        assert all(same(result, alone[number]) for runs in found for number, result in runs)
         assert blas() == before
 
 
@@ -65,11 +72,11 @@ def test_in_a_notebook(alone):
     async def cells():
         return await asyncio.gather(*(asyncio.to_thread(solved, settings) for settings in SETTINGS[:3]))
 
-    assert asyncio.run(cells()) == alone[:3]
+    assert all(map(same, asyncio.run(cells()), alone))
 
 
 def test_a_run_does_not_depend_on_those_before(alone):
-    assert [solved(SETTINGS[2]) for _ in range(2)] == [alone[2]] * 2
+    assert all(same(solved(SETTINGS[2]), alone[2]) for _ in range(2))
     assert alone[2][-1]["factorizations"] == 2
 
 
@@ -79,8 +86,9 @@ def test_what_is_kept_is_the_thread_s_own(alone):
     first, second = (solved(SETTINGS[2], keep) for _ in range(2))
     with ThreadPoolExecutor(1) as pool:
         elsewhere = pool.submit(solved, SETTINGS[2], keep).result()
-    assert first == elsewhere == alone[2]
-    assert second[:-1] == first[:-1]
+    assert same(first, alone[2])
+    assert same(elsewhere, alone[2])
+    assert same((second[0], first[1]), first)
     assert second[-1]["factorizations"] == 0
 
 
@@ -95,7 +103,7 @@ def test_an_open_gmsh_session_does_not_matter(alone):
         gmsh.model.add("mine")
         gmsh.model.geo.addPoint(1, 2, 3)
         gmsh.model.geo.synchronize()
-        assert solved(SETTINGS[0]) == alone[0]
+        assert same(solved(SETTINGS[0]), alone[0])
         assert gmsh.model.getCurrent() == "mine"
         assert gmsh.model.getEntities() == [(0, 1)]
         assert gmsh.option.getNumber("Mesh.MeshSizeFactor") == 3

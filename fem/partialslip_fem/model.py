@@ -47,7 +47,7 @@ def solve(
     start : State, optional
         What the path of the loads begins with, instead of bodies without shear.
     keep : Kept, optional
-        Condensed bodies to take, and to add to, where the size of the elements or the meshes are given.
+        Condensed bodies to take, and to add to, where the size of the elements is given.
 
     Raises
     ------

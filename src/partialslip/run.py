@@ -131,8 +131,8 @@ def run(
         What the path of the loads begins with (:attr:`Result.state`, :func:`partialslip.load_state`); otherwise bodies
         without shear.
     keep : partialslip_fem.Kept, optional
-        Factored meshes that runs share: where element sizes or meshes are given, runs that differ only in loads and
-        friction then factor once. As a rule nothing is kept from one run to the next.
+        Factored meshes that runs share: where ``fem.size`` is given, runs that differ only in loads and friction then
+        factor once. As a rule nothing is kept from one run to the next.
 
     Raises
     ------

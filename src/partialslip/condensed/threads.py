@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import Any, ParamSpec, TypeVar
 
 import scipy.linalg  # noqa: F401 - the controller sees the libraries that are loaded by now
-from threadpoolctl import ThreadpoolController
+from threadpoolctl import OpenBLASController, ThreadpoolController
 
 _CONTROLLER = ThreadpoolController()
 _P = ParamSpec("_P")
@@ -29,6 +29,7 @@ class _Limit:
         """Hold BLAS at one thread."""
         with self._lock:
             if not self._running:
+                _take_over()
                 self._limited = _CONTROLLER.limit(limits=1, user_api="blas")
             self._running += 1
         try:
@@ -37,10 +38,18 @@ class _Limit:
             with self._lock:
                 self._running -= 1
                 if not self._running:
+                    _take_over()
                     self._limited.restore_original_limits()
+                    _take_over()
 
     def _begin_anew(self) -> None:
         self._lock = threading.Lock()
+
+
+def _take_over() -> None:
+    """Be the thread that newer versions of threadpoolctl listen to: as a rule the one that set the first limit."""
+    if release := getattr(OpenBLASController, "clear_controlling_thread", None):
+        release(force=True)
 
 
 _limit = _Limit()
