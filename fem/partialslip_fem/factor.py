@@ -5,6 +5,7 @@ several times faster, where it is installed: ``pip install partialslip[fast]``.
 """
 
 import importlib.util
+import threading
 from types import ModuleType
 from typing import Literal, Protocol
 
@@ -18,6 +19,7 @@ from partialslip.result import Array
 from partialslip_fem.elasticity import Indices
 
 Backend = Literal["superlu", "cholmod"]
+_options = threading.Lock()  # those of CHOLMOD are one dictionary for all threads
 _SYMMETRIC = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
 
@@ -105,13 +107,14 @@ class _Cholmod:
 
     def _numeric(self) -> object:
         cholmod, as_it_is = self._cvxopt.cholmod, self._cvxopt.matrix(np.arange(len(self._order) + self._n))
-        cholmod.options["nmethods"] = 1  # no other order than the given one
-        try:
-            factored = cholmod.symbolic(self._matrix, p=as_it_is)
-            cholmod.numeric(self._matrix, factored)
-            self.made += 1
-        finally:
-            del cholmod.options["nmethods"]
+        with _options:
+            cholmod.options["nmethods"] = 1  # no other order than the given one
+            try:
+                factored = cholmod.symbolic(self._matrix, p=as_it_is)
+                cholmod.numeric(self._matrix, factored)
+                self.made += 1
+            finally:
+                del cholmod.options["nmethods"]
         return factored
 
     def _lower(self, K: sp.csr_matrix, *zeros: tuple[int, int]) -> object:

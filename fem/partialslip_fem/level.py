@@ -1,6 +1,7 @@
 """One mesh, from its size to the zones found on it. Scaled as in :mod:`partialslip_fem.contact`."""
 
 import math
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -223,12 +224,26 @@ class Level:
 
 _ROUNDING = 1e-9  # of a contact line's length
 _KEPT = 2  # sets of bodies: those of a rough mesh, and of the uniform one made from it
-_kept: dict[tuple[object, ...], tuple[Half, ...]] = {}
 
 
-def forget() -> None:
-    """Drop the bodies that are kept."""
-    _kept.clear()
+class Kept(threading.local):
+    """Condensed bodies of the last meshes, for runs with other loads, friction or profiles on the same meshes.
+
+    Whoever wants them kept makes one and passes it to each run. Each thread has bodies of its own in it.
+    """
+
+    def __init__(self) -> None:
+        self._bodies: dict[tuple[object, ...], tuple[Half, ...]] = {}
+
+    def find(self, key: tuple[object, ...]) -> tuple[Half, ...] | None:
+        """The bodies under ``key``, if they are there."""
+        return self._bodies.get(key)
+
+    def add(self, key: tuple[object, ...], bodies: tuple[Half, ...]) -> None:
+        """Keep ``bodies`` under ``key``, and of others those added last."""
+        self._bodies[key] = bodies
+        for oldest in list(self._bodies)[:-_KEPT]:
+            del self._bodies[oldest]
 
 
 def solve_level(
@@ -239,7 +254,7 @@ def solve_level(
     growth: float,
     clock: Clock,
     along: float | None = None,
-    keep: bool = False,
+    keep: Kept | None = None,
     rounding: float | None = None,
     corners: float | None = None,
 ) -> Level:
@@ -248,22 +263,22 @@ def solve_level(
 
     ``contact``, ``sizes``, ``growth`` and ``along`` are as for :func:`partialslip_meshes.block`. ``rounding`` is how
     far a round face may be from its elements' straight sides, in half-widths of the contact line; ``corners`` what
-    elements at the corners of finite bodies may change at the contact, relative. With ``keep`` the
-    condensed bodies are kept for other loads, friction and profiles on the same mesh.
+    elements at the corners of finite bodies may change at the contact, relative. Condensed bodies are taken from
+    ``keep`` and added to it.
     """
     kind = (problem.parts, problem.order, problem.far_field, problem.backend, problem.path is None, problem.inside)
     key = (*kind, width, contact, tuple(sizes.items()), growth, along, rounding, corners)
-    if keep and key in _kept:
-        return _level(problem, _kept[key], 0, clock)
+    if keep and (known := keep.find(key)):
+        return _level(problem, known, 0, clock)
     meshes = []
     for part in problem.parts:
         with clock.phase("mesh"):
-            meshes.append(part.mesh or _block(part, width, contact, sizes, growth, along, rounding, corners))
+            mesh = part.mesh or _block(part, width, contact, sizes, growth, along, rounding, corners)
+        clock.add_meshing(mesh.cpu_s)
+        meshes.append(mesh)
     level = solve_on(meshes, problem, width, clock)
     if keep:
-        _kept[key] = level.halves
-        for oldest in list(_kept)[:-_KEPT]:
-            del _kept[oldest]
+        keep.add(key, level.halves)
     return level
 
 

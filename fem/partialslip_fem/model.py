@@ -18,7 +18,7 @@ from partialslip_fem.adapt import Adapted, adapt, uniform
 from partialslip_fem.displacements import solve_back
 from partialslip_fem.factor import default_backend
 from partialslip_fem.fields import along_surfaces, deformed
-from partialslip_fem.level import Face, Level, Part, Problem, solve_on
+from partialslip_fem.level import Face, Kept, Level, Part, Problem, solve_on
 from partialslip_fem.recovery import inside
 from partialslip_meshes import Mesh, read
 
@@ -30,7 +30,11 @@ _LARGEST_NU = 0.4999999
 
 @one_thread
 def solve(
-    scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None, start: State | None = None
+    scene: Scene,
+    plan: Plan,
+    progress: Callable[[str], None] = lambda _: None,
+    start: State | None = None,
+    keep: Kept | None = None,
 ) -> Result:
     """Solve ``scene`` by finite elements: two blocks, Lagrange multipliers, Coulomb friction.
 
@@ -42,6 +46,8 @@ def solve(
         Called with one line after each mesh.
     start : State, optional
         What the path of the loads begins with, instead of bodies without shear.
+    keep : Kept, optional
+        Condensed bodies to take, and to add to, where the size of the elements is given.
 
     Raises
     ------
@@ -65,7 +71,7 @@ def solve(
     if scene.fem.size is None and not scene.meshed:
         adapted = adapt(problem, scene.fem.accuracy, width, clock, progress)
     else:
-        adapted = uniform(problem, scene.fem.size, width, clock)
+        adapted = uniform(problem, scene.fem.size, width, clock, keep)
     return _result(scene, plan, problem, adapted, clock)
 
 

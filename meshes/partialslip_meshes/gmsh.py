@@ -1,11 +1,22 @@
-"""A gmsh session that is quiet, clean and interruptible, and says which system library is missing."""
+"""gmsh in a process of its own, shared by all threads: gmsh has one global state, which may be the caller's.
 
+The process starts with the first mesh and ends with this one, however that ends.
+"""
+
+import atexit
+import importlib.util
+import os
+import pkgutil
 import re
-from collections.abc import Iterator
-from contextlib import contextmanager
-from types import ModuleType
+import subprocess
+import sys
+import threading
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NoReturn
 
-from partialslip.errors import MissingLibraryError
+from partialslip.errors import MissingLibraryError, PartialslipError
+from partialslip_meshes.mesher import receive, send
 
 # The libraries that the gmsh wheel needs from the system, and the Debian packages that have them.
 DEBIAN_PACKAGES = {
@@ -22,32 +33,128 @@ DEBIAN_PACKAGES = {
     "libgomp.so.1": "libgomp1",
 }
 
+OPTIONS: dict[str, float] = {}  # of gmsh's for every mesh, without "Mesh."
 
-@contextmanager
-def gmsh_session() -> Iterator[ModuleType]:
-    """An initialised gmsh with an empty model, finalised at the end.
+
+class _Mesher:
+    """A running process of :mod:`partialslip_meshes.mesher`."""
+
+    def __init__(self, folder: str) -> None:
+        source = (pkgutil.get_data("partialslip_meshes", "mesher.py") or b"").decode()
+        try:
+            self._process = subprocess.Popen(
+                [sys.executable, "-I", "-S", "-c", source, folder],
+                bufsize=0,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                cwd=os.path.abspath(os.sep),  # that of this process may be gone
+                start_new_session=True,  # Ctrl-C is for this process to deal with
+            )
+        except OSError as error:
+            raise PartialslipError(f"the process that makes meshes cannot be started: {error.strerror}") from None
+
+    def ask(self, request: Mapping[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
+        """The answer to ``request``. Raises EOFError or OSError if the process dies."""
+        assert self._process.stdin
+        assert self._process.stdout
+        send(self._process.stdin.fileno(), request)
+        return receive(self._process.stdout.fileno())
+
+    def end(self) -> int:
+        """Kill the process, if it is not dead; returns its exit code."""
+        self._process.kill()
+        code = self._process.wait()
+        self.leave()
+        return code
+
+    def leave(self) -> None:
+        """Leave the process to whoever else has its pipes."""
+        for pipe in (self._process.stdin, self._process.stdout):
+            if pipe:
+                pipe.close()
+        self._process.returncode = self._process.returncode or 0  # nothing to wait for
+
+
+_lock = threading.Lock()
+_mesher: _Mesher | None = None
+
+
+def ask(request: Mapping[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
+    """Have a mesh made: the arguments of :func:`partialslip_meshes.mesher.mesh` in, what that returns out, and
+    "cpu_s" with it, the CPU seconds that it took. One thread at a time; a process that dies is replaced once.
 
     Raises
     ------
     MissingLibraryError
         If gmsh, or a system library that it needs, is not there.
+    PartialslipError
+        If gmsh cannot make the mesh, or the process dies twice.
     """
-    gmsh = _import_gmsh()
-    gmsh.initialize([], readConfigFiles=False, interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        yield gmsh
-    finally:
-        gmsh.finalize()
+    global _mesher
+    died = 0
+    with _lock:
+        while True:
+            _mesher = _mesher or _Mesher(_folder())
+            try:
+                head, arrays = _mesher.ask({**request, "options": OPTIONS})
+                break
+            except (EOFError, OSError):
+                code, _mesher = _mesher.end(), None
+                died += 1
+                if died == 2:
+                    how = f"signal {-code}" if code < 0 else f"exit code {code}"
+                    raise PartialslipError(
+                        f"the process that makes meshes died twice ({how}), perhaps for want of memory"
+                    ) from None
+            except BaseException:  # Ctrl-C: nobody is left to read the answer
+                _end()
+                raise
+    if "error" in head:
+        _refuse(**head)
+    return head, arrays
 
 
-def _import_gmsh() -> ModuleType:
-    try:
-        import gmsh
-    except OSError as error:  # the wheel installs everywhere, but its library links to the system's
-        library = re.match(r"[^\s:]+", str(error))
-        name = library[0] if library else str(error)
-        package = DEBIAN_PACKAGES.get(name)
-        hint = f"on Debian or Ubuntu: apt-get install {package}" if package else "install it with the system's packages"
-        raise MissingLibraryError(f"gmsh cannot be loaded: the system library {name} is missing; {hint}") from None
-    return gmsh  # type: ignore[no-any-return]
+def _folder() -> str:
+    """The folder that gmsh would be imported from."""
+    loaded = getattr(sys.modules.get("gmsh"), "__file__", None)
+    spec = None if loaded else importlib.util.find_spec("gmsh")
+    origin = loaded or (spec and spec.origin)
+    if not origin:
+        raise MissingLibraryError("gmsh is missing; pip install gmsh")
+    return str(Path(origin).parent)
+
+
+def _refuse(error: str, text: str, **_: Any) -> NoReturn:
+    if error == "memory":
+        raise MemoryError
+    if error == "module":
+        raise MissingLibraryError(f"gmsh cannot be loaded: {text} is missing")
+    if error == "gmsh":
+        raise PartialslipError(f"gmsh cannot make the mesh: {text}")
+    library = re.match(r"[^\s:]+", text)
+    name = library[0] if library else text
+    package = DEBIAN_PACKAGES.get(name)
+    hint = f"on Debian or Ubuntu: apt-get install {package}" if package else "install it with the system's packages"
+    raise MissingLibraryError(f"gmsh cannot be loaded: the system library {name} is missing; {hint}")
+
+
+def _end() -> None:
+    global _mesher
+    if _mesher:
+        _mesher.end()
+        _mesher = None
+
+
+def _begin_anew() -> None:
+    """In the child of a fork: leave the process to the parent, whose threads may be waiting for it."""
+    global _lock, _mesher
+    _lock = threading.Lock()
+    if _mesher:
+        _mesher.leave()
+        _mesher = None
+
+
+atexit.register(_end)
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_begin_anew)

@@ -18,11 +18,14 @@ class Mesh:
     lines : dict of (k, 2) int arrays
         Named groups of boundary edges; "contact" is the contact line, "back" the side opposite to it, "left" and
         "right" are those beside it.
+    cpu_s : float
+        CPU seconds that it took in a process of its own.
     """
 
     points: npt.NDArray[np.float64]
     triangles: npt.NDArray[np.int64]
     lines: dict[str, npt.NDArray[np.int64]]
+    cpu_s: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,6 @@
 """Reading what is known at the points of a mesh through meshio, which reads many formats but says little when it
 cannot."""
 
-import contextlib
-import io
-import warnings
 from pathlib import Path
 
 import meshio
@@ -11,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.errors import InputError
+from partialslip_meshes.quiet import quiet
 
 # Of the endings that meshio knows, those of formats with point data; its readers of others may not come to an end.
 FORMATS = {".vtu", ".vtk", ".xdmf", ".xmf", ".msh", ".med", ".e", ".exo", ".ex2"}
@@ -40,10 +38,8 @@ def read_point_data(path: Path) -> tuple[npt.NDArray[np.float64], dict[str, npt.
 
 def _read(path: Path) -> meshio.Mesh:
     """meshio prints and exits where it cannot read, and its readers raise what they run into."""
-    quiet = io.StringIO()
     try:
-        with warnings.catch_warnings(), contextlib.redirect_stderr(quiet), contextlib.redirect_stdout(quiet):
-            warnings.simplefilter("ignore")
+        with quiet():
             return meshio.read(path)
     except ImportError as error:
         raise InputError(f"{path}: cannot be read without the package {error.name}") from None

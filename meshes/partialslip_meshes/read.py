@@ -1,7 +1,5 @@
 """Reading a body's mesh, made by another tool, through meshio; what cannot be meant is refused in one line."""
 
-import contextlib
-import io
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
@@ -13,6 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from partialslip.errors import InputError, MissingLibraryError
 from partialslip_meshes.mesh import Mesh
+from partialslip_meshes.quiet import quiet
 
 if TYPE_CHECKING:
     import meshio
@@ -105,21 +104,24 @@ def _refusal(name: str, path: str) -> Refuse:
 def _load(name: str, path: str, refuse: Refuse) -> "meshio.Mesh":
     if Path(path).suffix.lower() not in FORMATS:
         refuse(f"must be a file {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
-    said, damaged = io.StringIO(), "it is damaged, or of another format"
+    said, damaged = "", "it is damaged, or of another format"
     try:
         with open(path, "rb"):
             pass
         # meshio says what is wrong on the terminal, and exits
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), np.errstate(all="ignore"):
+        with quiet() as printed, np.errstate(all="ignore"):
             import meshio  # only now: it brings much along
 
-            return meshio.read(path)
+            try:
+                return meshio.read(path)
+            finally:
+                said = printed.getvalue()
     except ModuleNotFoundError as error:
         raise MissingLibraryError(f"{name}: {error.name} is missing; pip install partialslip[med]") from None
     except OSError as error:
         refuse(f"cannot be read: {error.strerror or damaged}")
     except (Exception, SystemExit):
-        why = said.getvalue().partition("Error:")[0].strip() or damaged
+        why = said.partition("Error:")[0].strip() or damaged
         refuse(f"cannot be read: {' '.join(why.split())}")
 
 

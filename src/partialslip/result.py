@@ -157,13 +157,15 @@ class DeformedBody:
 
 @dataclass(frozen=True)
 class Cost:
-    """CPU and wall seconds, ``cpu_s`` and ``wall_s``; peak resident memory, ``peak_rss_mb`` (None where the system does
-    not tell); CPU seconds by phase, ``phases``."""
+    """CPU and wall seconds, ``cpu_s`` and ``wall_s``; peak resident memory of this process, ``peak_rss_mb`` (None where
+    the system does not tell); CPU seconds by phase, ``phases``; ``meshing_cpu_s``, the CPU seconds of ``cpu_s`` that
+    the process which makes meshes took."""
 
     cpu_s: float
     wall_s: float
     peak_rss_mb: float | None
     phases: Mapping[str, float] = field(default_factory=dict)
+    meshing_cpu_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -275,6 +277,7 @@ class Clock:
 
     def __init__(self) -> None:
         self._cpu, self._wall = time.process_time(), time.perf_counter()
+        self._meshing = 0.0
         self.phases: dict[str, float] = {}
 
     @contextmanager
@@ -286,9 +289,15 @@ class Clock:
         finally:
             self.phases[name] = self.phases.get(name, 0.0) + time.process_time() - start
 
+    def add_meshing(self, seconds: float) -> None:
+        """Add CPU seconds of the process that makes meshes to phase "mesh"."""
+        self.phases["mesh"] = self.phases.get("mesh", 0.0) + seconds
+        self._meshing += seconds
+
     def cost(self) -> Cost:
         """What it has cost up to now."""
-        return Cost(time.process_time() - self._cpu, time.perf_counter() - self._wall, _peak_rss_mb(), self.phases)
+        own, wall = time.process_time() - self._cpu, time.perf_counter() - self._wall
+        return Cost(own + self._meshing, wall, _peak_rss_mb(), self.phases, self._meshing)
 
 
 def _peak_rss_mb() -> float | None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from partialslip.state import State
 
 if TYPE_CHECKING:
     from partialslip.frame import DataFrame
+    from partialslip_fem.level import Kept
 
 METHODS = ("exact", "march", "fem")
 ALL_EFFECTS = "all effects"
@@ -112,6 +114,7 @@ def run(
     subsurface: bool = False,
     progress: Progress = lambda _: None,
     start: State | None = None,
+    keep: "Kept | None" = None,
 ) -> Run:
     """Solve ``scene`` by each of ``methods`` ("exact", "march", "fem") and compare.
 
@@ -127,6 +130,9 @@ def run(
     start : State, optional
         What the path of the loads begins with (:attr:`Result.state`, :func:`partialslip.load_state`); otherwise bodies
         without shear.
+    keep : partialslip_fem.Kept, optional
+        Factored meshes that runs share: where ``fem.size`` is given, runs that differ only in loads and friction then
+        factor once. As a rule nothing is kept from one run to the next.
 
     Raises
     ------
@@ -145,7 +151,8 @@ def run(
         whole = replace(scene, effects=Effects())
         tasks[ALL_EFFECTS] = _best(whole), whole, plan(whole, subsurface=subsurface, start=start is not None)
     results = {
-        name: _method(method)(what, its, _told_by(name, progress), start) for name, (method, what, its) in tasks.items()
+        name: _method(method, keep)(what, its, _told_by(name, progress), start)
+        for name, (method, what, its) in tasks.items()
     }
     for result in results.values():
         effects.accept(result.regime)
@@ -174,7 +181,7 @@ def _told_by(name: str, progress: Progress) -> Progress:
     return lambda line: progress(f"{name}: {line}")
 
 
-def _method(name: str) -> Callable[[Scene, Plan, Progress, State | None], Result]:
+def _method(name: str, keep: "Kept | None") -> Callable[[Scene, Plan, Progress, State | None], Result]:
     """A method by its name, imported now: finite elements bring much along."""
     if name == "exact":
         from partialslip.halfplane.method import solve as solve_exactly
@@ -187,5 +194,5 @@ def _method(name: str) -> Callable[[Scene, Plan, Progress, State | None], Result
     if name == "fem":
         from partialslip_fem.model import solve as solve_by_elements
 
-        return solve_by_elements
+        return partial(solve_by_elements, keep=keep)
     raise InputError(f"method {name!r}: must be one of {', '.join(METHODS)}")

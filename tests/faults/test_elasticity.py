@@ -67,7 +67,6 @@ def test_truncated_correction_made_symmetric(monkeypatch, red):
     def asymmetry():
         with pytest.MonkeyPatch.context() as inner:
             found = []
-            inner.setattr(level, "_kept", {})
             true = level.relative_compliances
             inner.setattr(
                 level, "relative_compliances", lambda halves, *also: found.append(halves[0]) or true(halves, *also)

@@ -5,11 +5,11 @@ import pytest
 
 import partialslip
 from partialslip import InputError, load_scene
-from partialslip_fem import condensation, level
+from partialslip_fem import Kept, condensation
 
 
-def solved(*overrides, name="hertz-large-tension"):
-    outcome = partialslip.run(load_scene(name, overrides))
+def solved(*overrides, name="hertz-large-tension", keep=None):
+    outcome = partialslip.run(load_scene(name, overrides), keep=keep)
     return outcome.results["fem"], outcome.comparisons["fem"]
 
 
@@ -35,13 +35,13 @@ def test_factored_once_for_all_loads(monkeypatch):
     calls = []
     original = condensation.factor
     monkeypatch.setattr(condensation, "factor", lambda *args: calls.append(1) or original(*args))
-    level._kept.clear()
     scenes = [("fem.size=0.04", f"friction.f={f}", f"load.Q=[{-Q}, {Q}]") for f in (0.4, 0.6) for Q in (5e4, 9e4)]
-    results = [solved(*scene)[0] for scene in scenes]
+    keep = Kept()
+    results = [solved(*scene, keep=keep)[0] for scene in scenes]
     assert len(calls) == 2  # the rough mesh, and the uniform one
     assert [result.counts["factorizations"] for result in results] == [2, 0, 0, 0]
-    level._kept.clear()
     afresh = solved(*scenes[-1])[0]
+    assert afresh.counts["factorizations"] == 2
     assert (afresh.a, afresh.m, afresh.n) == (results[-1].a, results[-1].m, results[-1].n)
 
 

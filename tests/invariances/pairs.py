@@ -131,7 +131,6 @@ def guise(mesh: Callable[..., Mesh] = block, *patches: Any, own: bool = False) -
         if not own:
             stack.enter_context(patch.object(marching, "_MESHES", ((1e-3, 0.1),)))
         stack.enter_context(patch.object(level, "block", mesh))
-        stack.enter_context(patch.dict(level._kept, clear=True))
         for each in patches:
             stack.enter_context(each)
         yield

@@ -1,15 +1,58 @@
-"""Small dense algebra on one thread: two threads on two busy cores make it up to a hundred times slower."""
+"""Small dense algebra on one BLAS thread: two threads on two busy cores make it up to a hundred times slower."""
 
 import functools
-from collections.abc import Callable
-from typing import ParamSpec, TypeVar
+import os
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, ParamSpec, TypeVar
 
 import scipy.linalg  # noqa: F401 - the controller sees the libraries that are loaded by now
-from threadpoolctl import ThreadpoolController
+from threadpoolctl import OpenBLASController, ThreadpoolController
 
 _CONTROLLER = ThreadpoolController()
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
+
+
+class _Limit:
+    """BLAS has one setting for all threads: the first function sets it, the last one to end restores it."""
+
+    def __init__(self) -> None:
+        self._lock, self._running = threading.Lock(), 0
+        self._limited: Any = None
+        if hasattr(os, "register_at_fork"):  # another thread, which the child has not, may be holding the lock
+            os.register_at_fork(after_in_child=self._begin_anew)
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Hold BLAS at one thread."""
+        with self._lock:
+            if not self._running:
+                _take_over()
+                self._limited = _CONTROLLER.limit(limits=1, user_api="blas")
+            self._running += 1
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._running -= 1
+                if not self._running:
+                    _take_over()
+                    self._limited.restore_original_limits()
+                    _take_over()
+
+    def _begin_anew(self) -> None:
+        self._lock = threading.Lock()
+
+
+def _take_over() -> None:
+    """Be the thread that newer versions of threadpoolctl listen to: as a rule the one that set the first limit."""
+    if release := getattr(OpenBLASController, "clear_controlling_thread", None):
+        release(force=True)
+
+
+_limit = _Limit()
 
 
 def one_thread(function: Callable[_P, _T]) -> Callable[_P, _T]:
@@ -17,7 +60,7 @@ def one_thread(function: Callable[_P, _T]) -> Callable[_P, _T]:
 
     @functools.wraps(function)
     def limited(*args: _P.args, **kwargs: _P.kwargs) -> _T:
-        with _CONTROLLER.limit(limits=1):
+        with _limit.held():
             return function(*args, **kwargs)
 
     return limited

@@ -5,10 +5,12 @@ import subprocess
 import sys
 import tempfile
 import time
+import uuid
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
@@ -19,6 +21,9 @@ from partialslip.run import Run, run
 from partialslip.scene import Scene
 from partialslip.study.ledger import key_of
 from partialslip.study.sweep import Task
+
+if TYPE_CHECKING:
+    from partialslip_fem import Kept
 
 
 @dataclass(frozen=True)
@@ -45,14 +50,34 @@ class Case:
         return Task(self.key, solve, self.data)
 
 
-def solve(data: Mapping[str, Any], also: Callable[[Run], Mapping[str, Any]] = lambda _: {}) -> dict[str, Any]:
+def solve(
+    data: Mapping[str, Any], also: Callable[[Run], Mapping[str, Any]] = lambda _: {}, keep: "Kept | None" = None
+) -> dict[str, Any]:
     """Solve a case given as :attr:`Case.data`; its figures and what ``also`` has to say of the run, or ``error``: what
-    cannot be solved, in one line."""
+    cannot be solved, in one line. ``keep`` is as for :func:`partialslip.run`."""
     try:
-        outcome = run(parse_scene(data["scene"]), data["methods"])
+        outcome = run(parse_scene(data["scene"]), data["methods"], keep=keep)
     except InputError as error:  # what this machine lacks is no finding, and is not to be kept as one
         return {**data, "error": str(error)}
     return {**data, **record(outcome, curves=False), **also(outcome)}
+
+
+class Sharing:
+    """:func:`solve` for a sweep: cases that one process solves share their factored meshes. It can be pickled."""
+
+    def __init__(self) -> None:
+        self._sweep = uuid.uuid4().hex
+
+    def __call__(self, data: Mapping[str, Any]) -> dict[str, Any]:
+        return solve(data, keep=_kept_in(self._sweep) if "fem" in data["methods"] else None)
+
+
+@lru_cache(maxsize=1)
+def _kept_in(_sweep: str) -> "Kept":
+    """What this process keeps in a sweep, until it works for another one."""
+    from partialslip_fem import Kept
+
+    return Kept()
 
 
 def solve_apart(case: Case) -> dict[str, Any]:
@@ -71,10 +96,11 @@ def solve_apart(case: Case) -> dict[str, Any]:
 
 def _costs(outcome: Run) -> dict[str, Any]:
     """Of this process up to now, and of writing the report."""
-    cpu = time.process_time()
+    cpu = time.process_time() + sum(each.cost.meshing_cpu_s for each in outcome.results.values())
+    began = time.process_time()
     with tempfile.TemporaryDirectory() as folder:
         write_run(outcome, Path(folder))
-    costs = {"cpu_s": cpu, "report_cpu_s": time.process_time() - cpu}
+    costs = {"cpu_s": cpu, "report_cpu_s": time.process_time() - began}
     return {"process": costs | {"peak_rss_mb": max(each.cost.peak_rss_mb or 0.0 for each in outcome.results.values())}}
 
 

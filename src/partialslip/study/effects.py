@@ -115,9 +115,8 @@ def _measured(scene: Scene) -> Result:
 
 
 def _solve(scene: Scene) -> Result:
-    from partialslip_fem import forget, solve
+    from partialslip_fem import solve
 
-    forget()
     its = plan(scene)
     result = solve(reduced(scene), its)
     its.accept(result.regime)

@@ -12,6 +12,7 @@ from scipy.stats import t as student
 from partialslip.result import Array
 from partialslip.scene import Scene
 from partialslip.study.axes import ACCURACY, Axis, cases
+from partialslip.study.case import Sharing
 from partialslip.study.ledger import Ledger
 from partialslip.study.sweep import Progress, sweep
 
@@ -46,8 +47,8 @@ def measure(
     PartialslipError
         If a worker process dies; what was finished is in the ledger.
     """
-    asked = cases(scene, axes, (_COARSER, 1.0) if control else (1.0,))
-    sweep([case.task for case in asked], ledger, executor, progress)
+    solve, asked = Sharing(), cases(scene, axes, (_COARSER, 1.0) if control else (1.0,))
+    sweep([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
     finer = [_COARSER**-k for k in range(1, _FINER + 1)] if control else []
     for accuracy in (each for each in finer if each * scene.fem.accuracy >= _FINEST):
         points = _by_point(axes, (ledger[case.key] for case in asked))
@@ -57,7 +58,7 @@ def measure(
             for case in cases(scene, axes, (accuracy,))
             if tuple(case.labels[each.name] for each in axes) in unclear
         ]
-        sweep([case.task for case in asked], ledger, executor, progress)
+        sweep([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
     return [ledger[case.key] for case in asked]
 
 

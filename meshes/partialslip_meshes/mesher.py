@@ -1,0 +1,210 @@
+"""The process that makes meshes with gmsh, in which no other gmsh session can be.
+
+It answers requests on its standard input until that is closed. A message is a length (8 bytes), so many bytes of JSON,
+and the arrays whose lengths in bytes the JSON gives. This file is run as it stands, and needs the standard library and
+gmsh only: NumPy would take longer to import than most meshes take to make.
+"""
+
+import json
+import os
+import sys
+import time
+from array import array
+from collections.abc import Mapping, Sequence
+from types import ModuleType
+from typing import Any
+
+# triangles with right angles, paired, and what is left over split so that no triangle is
+_ALL_QUADS = {"Algorithm": 8, "RecombineAll": 1, "RecombinationAlgorithm": 3}
+
+_PIECE = 1 << 20  # bytes to ask a pipe for
+
+
+def send(pipe: int, head: Mapping[str, Any], arrays: Sequence[bytes] = ()) -> None:
+    """Write a message to the file descriptor ``pipe``."""
+    text = json.dumps({**head, "bytes": [len(each) for each in arrays]}).encode()
+    left = memoryview(b"".join([len(text).to_bytes(8, "little"), text, *arrays]))
+    while left:
+        left = left[os.write(pipe, left) :]
+
+
+def receive(pipe: int) -> tuple[dict[str, Any], list[bytes]]:
+    """Read a message from the file descriptor ``pipe``: its JSON and its arrays. Raises EOFError where it ends."""
+    head = json.loads(_read(pipe, int.from_bytes(_read(pipe, 8), "little")))
+    return head, [_read(pipe, length) for length in head["bytes"]]
+
+
+def _read(pipe: int, length: int) -> bytes:
+    found = bytearray()
+    while len(found) < length:
+        piece = os.read(pipe, min(length - len(found), _PIECE))
+        if not piece:
+            raise EOFError
+        found += piece
+    return bytes(found)
+
+
+def main() -> None:
+    """Answer requests; the only argument is the folder that gmsh is in."""
+    answers = os.dup(1)
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # libraries may print what they like
+    _end_with_parent()
+    sys.path.append(sys.argv[1])
+    sys.modules["numpy"] = None  # type: ignore[assignment]
+    counted = 0.0  # CPU seconds; the first answer counts the start, too
+    while True:
+        try:
+            request, _ = receive(0)
+        except EOFError:
+            return
+        head, arrays = _answer(request)
+        spent = time.process_time()
+        send(answers, head | {"cpu_s": spent - counted}, arrays)
+        counted = spent
+
+
+def _end_with_parent() -> None:
+    """End when standard input is closed, even in the middle of a mesh."""
+    import select
+    import threading
+
+    if not hasattr(select, "poll"):  # Windows: the process ends after its mesh
+        return
+    closed = select.poll()
+    closed.register(0, 0)  # reports hang-ups only
+
+    def wait() -> None:
+        closed.poll()
+        os._exit(0)
+
+    threading.Thread(target=wait, daemon=True).start()
+
+
+def _answer(request: Mapping[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
+    try:
+        import gmsh
+    except ModuleNotFoundError as error:
+        return {"error": "module", "text": str(error.name)}, []
+    except OSError as error:  # the wheel installs everywhere, but its library links to the system's
+        return {"error": "library", "text": str(error)}, []
+    try:
+        return mesh(gmsh, **{key: value for key, value in request.items() if key != "bytes"})
+    except MemoryError:
+        return {"error": "memory", "text": ""}, []
+    except Exception as error:  # gmsh raises nothing else
+        return {"error": "gmsh", "text": str(error)}, []
+
+
+def mesh(gmsh: ModuleType, corners: int, options: Mapping[str, float] | None = None,
+         **outline: Any) -> tuple[dict[str, Any], list[bytes]]:  # fmt: skip
+    """Mesh a block in a gmsh session of its own.
+
+    Parameters
+    ----------
+    gmsh : module
+    corners : int
+        Of an element: 3 or 4.
+    options : mapping, optional
+        Other options of gmsh.
+    **outline
+        As for :func:`partialslip_meshes.block`, sizes as pairs, with "holder" None or a pair, and "at_corners" the
+        sizes of elements at corners.
+
+    Returns
+    -------
+    dict, list of bytes
+        The names of the lines; then tags and coordinates of the nodes, node tags of the elements and of each line.
+    """
+    gmsh.initialize([], readConfigFiles=False, interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        lines = _outline(gmsh, **outline)
+        for option, value in {**(_ALL_QUADS if corners == 4 else {}), **(options or {})}.items():
+            gmsh.option.setNumber(f"Mesh.{option}", value)
+        gmsh.model.mesh.generate(2)
+        tags, coordinates, _ = gmsh.model.mesh.getNodes()
+        cells = [_cells(gmsh, 2, [-1]), *(_cells(gmsh, 1, curves) for curves in lines.values())]
+    finally:
+        gmsh.finalize()
+    return {"lines": list(lines)}, [array("Q", tags).tobytes(), array("d", coordinates).tobytes(), *cells]
+
+
+def _cells(gmsh: ModuleType, dimension: int, entities: Sequence[int]) -> bytes:
+    """Node tags of the elements of all ``entities``, one after the other."""
+    return b"".join(
+        array("Q", nodes[0]).tobytes()
+        for _, _, nodes in (gmsh.model.mesh.getElements(dimension, entity) for entity in entities)
+    )
+
+
+def _outline(
+    gmsh: ModuleType,
+    width: float,
+    height: float,
+    holder: tuple[float, float] | None,
+    contact: tuple[float, float],
+    sizes: Sequence[tuple[float, float]],
+    growth: float,
+    along: float | None,
+    facets: float | None,
+    at_corners: Mapping[str, float],
+) -> dict[str, list[int]]:
+    """Geometry and size field; returns the curves of each named line."""
+    geo, field = gmsh.model.geo, gmsh.model.mesh.field
+    starts_at = dict(sizes)
+    on_contact = sorted({*contact, *starts_at})
+    # corners of the right side, from the back to the face
+    corners = [(width, -height), (width, 0.0)]
+    if holder:
+        foot = (holder[0], -height)
+        corners = [(holder[0], -height - holder[1]), *([foot] if foot != corners[0] else []), *corners]
+    right = [geo.addPoint(x, y, 0) for x, y in corners]
+    left = [geo.addPoint(-x, y, 0) for x, y in corners]
+    surface = [left[-1], *(geo.addPoint(x, 0, 0) for x in on_contact), right[-1]]
+    loop = [*right, *reversed(surface[1:-1]), *reversed(left)]
+    curves = [geo.addLine(start, end) for start, end in zip(loop, [*loop[1:], loop[0]], strict=True)]
+    geo.addPlaneSurface([geo.addCurveLoop(curves)])
+    geo.synchronize()
+
+    starts = {surface[1 + on_contact.index(x)]: size for x, size in starts_at.items()}
+    places = {"foot": 0, "shoulder": 1 if holder else -1}
+    if holder and holder[0] != width:
+        places["notch"] = 1 if holder[0] < width else 2
+    for corner, size_there in at_corners.items():
+        if corner in places:
+            starts |= {side[places[corner]]: size_there for side in (left, right)}
+    grades = []
+    for point, size_there in starts.items():
+        distance = field.add("Distance")
+        field.setNumbers(distance, "PointsList", [point])
+        grades.append(field.add("MathEval"))
+        field.setString(grades[-1], "F", f"{float(size_there)!r} + {float(growth)!r} * F{distance}")
+    middle, half = (contact[0] + contact[1]) / 2, (contact[1] - contact[0]) / 2
+    beyond = f"(abs(x - ({middle!r})) - {half!r})"
+    if along is not None:
+        grades.append(field.add("MathEval"))
+        field.setString(grades[-1], "F", f"{along!r} + {growth!r} * sqrt(y^2 + ({beyond} + abs{beyond})^2 / 4)")
+    if facets is not None:
+        grades.append(field.add("MathEval"))
+        field.setString(
+            grades[-1], "F", f"{facets!r} * ({half!r} + ({beyond} + abs{beyond}) / 2) + {growth!r} * abs(y)"
+        )
+    smallest = field.add("Min")
+    field.setNumbers(smallest, "FieldsList", grades)
+    field.setAsBackgroundMesh(smallest)
+    for other in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
+        gmsh.option.setNumber(f"Mesh.{other}", 0)
+
+    up = len(corners) - 1  # curves of a side
+    return {
+        "contact": curves[up + 1 : -up - 2],
+        "face": [curves[up], curves[-up - 2]],
+        "back": curves[-1:],
+        "left": [curves[-2]],
+        "right": curves[:1],
+        **({"flanks": [*curves[1:up], *curves[-up - 1 : -2]]} if up > 1 else {}),
+    }
+
+
+if __name__ == "__main__":
+    main()
