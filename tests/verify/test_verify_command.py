@@ -9,10 +9,11 @@ import pytest
 
 from partialslip.cli import main
 from partialslip.cli import verify as command
+from partialslip.judge import Outcome, verdict
 from partialslip.run import run
 from partialslip.study import verification
 from partialslip.study.ledger import Ledger
-from partialslip.verify import Case, case, run_case, stress_suite, suite
+from partialslip.verify import Case, run_case, stress_suite, suite
 from partialslip.verify.random_scenes import KINDS, draw
 from partialslip.verify.stress import stress_numbers
 
@@ -36,15 +37,15 @@ def test_one_case_by_name(tmp_path, capsys):
     assert list(record["cases"]) == ["one-contact-node"]
     with (tmp_path / "results.csv").open(newline="") as table:
         rows = list(csv.DictReader(table))
-    assert [row["check"] for row in rows] == [one["check"] for one in record["cases"]["one-contact-node"]]
+    assert [row["quantity"] for row in rows] == [one["quantity"] for one in record["cases"]["one-contact-node"]]
     assert {"one-contact-node", "fem"} <= set(capsys.readouterr().out.split())
 
 
 def test_a_missed_bar_is_exit_1(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(case, "CERTIFICATE_BAR", 0.0)
+    monkeypatch.setattr(verdict, "CERTIFICATE_BAR", 1e-300)
     code, record = verify(tmp_path, *STRESS, "--only", "1")
     assert code == 1
-    assert [one["check"] for one in record["cases"]["stress-5-1"] if not one["passed"]] == ["certificate"]
+    assert [one["quantity"] for one in record["cases"]["stress-5-1"] if one["outcome"] == "missed"] == ["certificate"]
     assert "missed: stress-5-1, march: certificate" in capsys.readouterr().out
 
 
@@ -54,8 +55,8 @@ def test_what_is_raised_is_a_verdict(monkeypatch):
 
     monkeypatch.setattr("partialslip.verify.case.run", raising)
     kind, scene = draw(0, 1)
-    (verdict,) = run_case(Case(kind, scene, ("march",), compared=False))
-    assert (verdict.check, verdict.passed, verdict.found) == ("finishes", False, "ZeroDivisionError: none left")
+    (found,) = run_case(Case(kind, scene, ("march",), compared=False))
+    assert (found.quantity, found.outcome, found.reason) == ("finishes", "missed", "ZeroDivisionError: none left")
 
 
 def test_interrupted_it_goes_on(tmp_path, capsys, monkeypatch):
@@ -115,8 +116,8 @@ def test_two_processes_find_what_one_finds(tmp_path):
     )
     assert list(one.verdicts) == list(two.verdicts)
     for case_name, some in one.verdicts.items():
-        assert [(v.check, v.value, v.found) for v in some] == [
-            (v.check, v.value, v.found) for v in two.verdicts[case_name]
+        assert [(v.quantity, v.error, v.reason) for v in some] == [
+            (v.quantity, v.error, v.reason) for v in two.verdicts[case_name]
         ]
     assert {entry["case"] for entry in Ledger(tmp_path / "1" / "ledger.jsonl")} == set(two.verdicts)
 
@@ -185,5 +186,6 @@ def test_a_random_scene_is_its_seed_and_number():
     ],
 )
 def test_random_scenes_have_certificates(method, count):
-    missed = [v for make in stress_suite(method, 1, count).values() for v in run_case(make()) if not v.passed]
-    assert not missed
+    found = [v for make in stress_suite(method, 1, count).values() for v in run_case(make())]
+    assert not [v for v in found if v.outcome is Outcome.MISSED]
+    assert {v.outcome for v in found} == {Outcome.PASSED}

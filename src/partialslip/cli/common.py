@@ -48,6 +48,7 @@ def print_outcome(outcome: "Run", options: "argparse.Namespace", files: list[Pat
     code."""
     from rich.console import Console
 
+    from partialslip.judge import Outcome
     from partialslip.report import print_run, record
 
     if options.json:
@@ -58,4 +59,4 @@ def print_outcome(outcome: "Run", options: "argparse.Namespace", files: list[Pat
         if last:
             console.print(last, soft_wrap=True, markup=False)
         print_written(files, console)
-    return 0 if outcome.passed else 1
+    return 1 if outcome.outcome is Outcome.MISSED else 0

@@ -49,6 +49,7 @@ def _verify(options: argparse.Namespace) -> int:
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
+    from partialslip.judge import Outcome
     from partialslip.report.verdicts import print_verdicts
     from partialslip.study.verification import verify_suite
 
@@ -82,4 +83,4 @@ def _verify(options: argparse.Namespace) -> int:
     print_written(verified.files, console)
     if verified.missing:
         console.print(verified.missing, soft_wrap=True, markup=False)
-    return 0 if verified.passed else 1
+    return 1 if verified.outcome is Outcome.MISSED else 0

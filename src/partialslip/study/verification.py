@@ -3,12 +3,13 @@ and the document about them."""
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from partialslip.errors import InputError, MissingLibraryError
+from partialslip.judge import Outcome, overall
 from partialslip.plan import plan
 from partialslip.report.document import Account, document, read_study
 from partialslip.report.figure import traction_svg
@@ -21,7 +22,7 @@ from partialslip.result import Result
 from partialslip.run import METHODS, compared
 from partialslip.study.ledger import Ledger, key_of
 from partialslip.study.sweep import Progress, Task, sweep, workers
-from partialslip.verify import Case, Found, Verdict, judge, solve_case, stress_suite, suite
+from partialslip.verify import Case, CaseVerdict, Found, judge, solve_case, stress_suite, suite
 from partialslip.verify.suites import SUITES, Maker, Makers, Suite
 
 _SCENES, _FIGURE = "scenes", "tractions.svg"
@@ -35,7 +36,7 @@ class Verification:
 
     Parameters
     ----------
-    verdicts : dict of str to list of Verdict
+    verdicts : dict of str to list of CaseVerdict
         By case.
     files : list of Path
         What was written.
@@ -43,14 +44,19 @@ class Verification:
         What the PDF would need, where there is none.
     """
 
-    verdicts: dict[str, list[Verdict]]
+    verdicts: dict[str, list[CaseVerdict]]
     files: list[Path]
     missing: str = ""
 
     @property
+    def outcome(self) -> Outcome:
+        """Passed, missed or not judged, as a whole (:func:`partialslip.judge.overall`)."""
+        return overall(verdict for some in self.verdicts.values() for verdict in some)
+
+    @property
     def passed(self) -> bool:
-        """Whether nothing is missed."""
-        return all(verdict.passed for some in self.verdicts.values() for verdict in some)
+        """Whether something was judged and nothing is missed."""
+        return self.outcome is Outcome.PASSED
 
 
 def verify_suite(
@@ -128,7 +134,7 @@ def solve_and_judge(make: Maker, folder: Path | None) -> dict[str, Any]:
     tractions and their figure go into a folder of its name in there."""
     case = make()
     found = solve_case(case)
-    entry = {"case": case.name, "hard": case.hard, "verdicts": [asdict(verdict) for verdict in judge(case, found)]}
+    entry = {"case": case.name, "hard": case.hard, "verdicts": [verdict.data for verdict in judge(case, found)]}
     return entry if folder is None else {**entry, "sheet": _file(case, found, folder / case.name)}
 
 
@@ -187,10 +193,10 @@ def _ledger(folder: Path) -> Ledger:
     return Ledger(folder / "ledger.jsonl")
 
 
-def _verdicts(ledger: Ledger, keys: Mapping[str, str]) -> dict[str, list[Verdict]]:
+def _verdicts(ledger: Ledger, keys: Mapping[str, str]) -> dict[str, list[CaseVerdict]]:
     """Those that are in the ledger, in the order of ``keys``."""
     known = {case: ledger[key]["verdicts"] for case, key in keys.items() if key in ledger}
-    return {case: [Verdict(**each) for each in verdicts] for case, verdicts in known.items()}
+    return {case: [CaseVerdict.of(each) for each in verdicts] for case, verdicts in known.items()}
 
 
 def _figures(folder: Path, entries: Mapping[str, Mapping[str, Any]]) -> dict[str, str]:
