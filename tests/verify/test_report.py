@@ -5,6 +5,7 @@ import html
 import json
 import re
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -104,8 +105,15 @@ def test_where_it_was_found_is_told(folder):
 
 
 def test_a_missed_bar_cannot_be_overlooked(tmp_path, monkeypatch):
-    """Deliberate fault: a residual beyond its bar. It is in the heading, first in the table, and at its scene."""
-    monkeypatch.setattr(case, "CERTIFICATE_BAR", 1e-30)
+    """Deliberate fault: solvers that stop at a residual of 1e-3 f p0. It is in the heading, first in the table, and at
+    its scene."""
+
+    solve = case._solve
+
+    def stopped_early(one, method):
+        return replace(solve(one, method), certificate={"kkt": 1e-3})
+
+    monkeypatch.setattr(case, "_solve", stopped_early)
     monkeypatch.setitem(sys.modules, "weasyprint", None)
     verified(tmp_path)
     text = page(tmp_path)
