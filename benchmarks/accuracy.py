@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 import partialslip
-from partialslip.judge import Comparison
 from partialslip.condensed.threads import one_thread
+from partialslip.judge import Comparison
 from partialslip.result import Clock, Result
 from partialslip_fem import adapt, model
 from partialslip_fem.level import solve_level

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from partialslip.run import Run
+    from partialslip.study.ledger import Ledger
 
     Commands = argparse._SubParsersAction[Any]
 
@@ -32,6 +33,12 @@ def check_folder(out: str | None) -> None:
 def print_written(files: list[Path], console: "Console") -> None:
     """Say which files a command leaves behind."""
     console.print("written: " + ", ".join(map(str, files)), soft_wrap=True, markup=False)
+
+
+def print_outdated(ledger: "Ledger", console: "Console") -> None:
+    """Say how many entries of a study's ledger the program no longer fits."""
+    if count := ledger.outdated:
+        console.print(f"{ledger.path}: {count:,} entries are by other source files: not used", markup=False)
 
 
 def write_outcome(outcome: "Run", options: "argparse.Namespace", name: str) -> list[Path]:

@@ -80,6 +80,12 @@ def _verify(options: argparse.Namespace) -> int:
         )
     console = Console(highlight=False)
     print_verdicts(verified.verdicts, console, every=options.suite != "stress" or bool(options.only))
+    if verified.again:
+        console.print(
+            f"solved again, as the scene, its settings or the program have changed: {', '.join(verified.again)}",
+            soft_wrap=True,
+            markup=False,
+        )
     print_written(verified.files, console)
     if verified.missing:
         console.print(verified.missing, soft_wrap=True, markup=False)
