@@ -56,7 +56,7 @@ def scenes() -> dict[str, str]:
 def entry(name: str, scene: str, run: Run) -> str:
     """The section of a run: command, errors, what limits and slip there are, and the figure."""
     title = run.scene.title.rstrip(".")
-    lines = [table(run, each) for each in run.comparisons]
+    lines = [rows.units(run), *(table(run, each) for each in run.comparisons)]
     facts = fact(run.results[run.reference or "fem"])
     return _ENTRY.format(name=name, title=title, scene=scene, table="\n\n".join(lines), facts=facts)
 

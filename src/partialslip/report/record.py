@@ -71,7 +71,7 @@ def _curves(result: Result) -> dict[str, Any]:
         "surface": {"x": result.surface.x.tolist(), "sigma_xx": result.surface.sigma.tolist()}
         if result.surface
         else None,
-        "traction": {key: _listed(getattr(traction, key)) for key in ("x", "p", "p1", "q1", "q2", "dq")},
+        "traction": {key: _listed(column) for key, column in result.columns.items() if key != "x_over_a"},
     }
 
 
