@@ -56,14 +56,14 @@ def scenes() -> dict[str, str]:
 def entry(name: str, scene: str, run: Run) -> str:
     """The section of a run: command, errors, what limits and slip there are, and the figure."""
     title = run.scene.title.rstrip(".")
-    lines = [table(run, each) for each in run.comparisons]
+    lines = [rows.units(run), *(table(run, each) for each in run.comparisons)]
     facts = fact(run.results[run.reference or "fem"])
     return _ENTRY.format(name=name, title=title, scene=scene, table="\n\n".join(lines), facts=facts)
 
 
 def table(run: Run, method: str) -> str:
     """Errors of a method, as a table of Markdown."""
-    cells = [rows.headings(run, method), *rows.error_rows(run, method)]
+    cells = [rows.headings(run, method), *rows.error_rows(run.comparisons[method])]
     lines = ["| " + " | ".join(row).rstrip() + " |" for row in cells]
     return "\n".join([lines[0], "|---" * len(cells[0]) + "|", *lines[1:]])
 

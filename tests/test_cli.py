@@ -72,7 +72,7 @@ def test_exact_run_writes_three_files(exact):
 
 
 def test_record_of_an_exact_run(exact):
-    assert (exact.record["schema"], exact.record["comparison"]) == ("partialslip/result/1", {})
+    assert (exact.record["schema"], exact.record["comparison"]) == ("partialslip/result/2", {})
     assert exact.record["versions"]["partialslip"] == partialslip.__version__
     decided = exact.record["plan"]
     assert decided["reasons"].keys() == {*decided["called_for"], *decided["left_out"]}
@@ -101,7 +101,8 @@ def test_run_with_finite_elements(both):
     assert both.record["methods"].keys() == {"exact", "fem"}
     assert parse_scene(both.record["scene"]) == load_scene("hertz-shear", ["fem.accuracy=1e-2"])
     comparison = both.record["comparison"]["fem"]
-    assert (comparison["passed"], comparison["missed"]) == (True, [])
+    assert (comparison["outcome"], comparison["missed"]) == ("passed", [])
+    assert (both.record["outcome"], both.record["reference"]) == ("passed", "exact")
     for key in ("a", "m", "n", "p", "q"):
         assert 0 <= comparison[key] <= comparison["bars"][key]
     assert comparison["bars"]["a"] == 1e-2
@@ -124,7 +125,7 @@ def test_json_alone_writes_nothing(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main([*EXACT, "--json"]) == 0
     printed = capsys.readouterr()
-    assert strict(printed.out)["schema"] == "partialslip/result/1"
+    assert strict(printed.out)["schema"] == "partialslip/result/2"
     assert (printed.err, names(tmp_path)) == ("", [])
 
 
@@ -197,7 +198,7 @@ def test_page_takes_a_title_as_text(tmp_path):
 def test_missed_bar(missed):
     said = " ".join(missed.out.split())
     comparison = missed.record["comparison"]["fem"]
-    assert (missed.code, comparison["passed"]) == (1, False)
+    assert (missed.code, comparison["outcome"]) == (1, "missed")
     assert comparison["a"] > comparison["bars"]["a"] == 1e-3
     assert "missed: fem: a: error " in said
     assert all(what in said for what in comparison["missed"])
@@ -208,9 +209,16 @@ def test_errors_are_legible_in_80_columns(missed):
     table = [line.strip() for line in missed.out.partition("exact  regime")[0].splitlines()]
     comparison = missed.record["comparison"]["fem"]
     assert "…" not in missed.out
-    for key, bar in comparison["bars"].items():
-        (row,) = (line for line in table if line.startswith(f"{key}, "))
-        assert row.split()[-3:] == [f"{comparison[key]:.1e}", f"{bar:.1e}", "MISSED"]
+    assert all(len(line) <= 80 for line in missed.out.splitlines() if not line.startswith(("missed: ", "written: ")))
+    for key in ("a", "m", "n", "p", "q"):
+        (row,) = (line for line in table if line.startswith(f"{key}, ") and "largest" not in line)
+        words, bar = row.split(), comparison["bars"][key]
+        assert words[-1] == "MISSED"
+        assert words[-2] == f"{bar:.1e}"
+        assert f"{comparison[key]:.1e}" in words
+    for each in comparison["verdicts"]:  # a reader who subtracts finds the error
+        if each["quantity"] in ("a", "m", "n", "p_max", "q_max"):
+            assert abs(each["found"] - each["reference"]) == pytest.approx(each["error"], abs=1e-12)
 
 
 def test_errors_of_a_soft_body_are_legible_in_80_columns(tmp_path):
@@ -249,7 +257,7 @@ def test_stopped_before_the_page_is_written(tmp_path, monkeypatch, capsys):
     assert main([*EXACT, "--out", str(tmp_path)]) == 130
     assert capsys.readouterr().err == "partialslip: interrupted\n"
     assert names(tmp_path) in ([], ["results.json", "tractions.csv"])
-    assert [strict(path)["schema"] for path in tmp_path.glob("*.json")] in ([], ["partialslip/result/1"])
+    assert [strict(path)["schema"] for path in tmp_path.glob("*.json")] in ([], ["partialslip/result/2"])
 
 
 @pytest.mark.parametrize("what", ["page", "tractions_csv", "record", "traction_svg"])

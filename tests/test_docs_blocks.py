@@ -74,9 +74,9 @@ def agrees(printed, shown):
     printed, shown = (COSTS.sub("", text) for text in (printed, shown))
     lines = [PARTS.split(" ".join(line.split())) for line in shown.splitlines() if line.strip()]
     numbers = [
-        (part, _error(line) * (1.0 if unit.startswith(" a") else abs(float(part))))  # errors of m and n are in a
+        (part, _error(line))  # both values of a row are in its unit, and so is the error
         for line in lines
-        for part, unit in zip(line[1::2], line[2::2], strict=True)
+        for part in line[1::2]
         if part != "..."
     ]
     pattern = " ".join(
@@ -90,8 +90,8 @@ def agrees(printed, shown):
 
 
 def _error(line):
-    """The largest error that a line shows."""
-    return max((abs(float(part)) for part in line[1::2] if "e" in part), default=0.0)
+    """The error that a line shows: its first number with an exponent."""
+    return next((abs(float(part)) for part in line[1::2] if "e" in part), 0.0)
 
 
 def same(printed, shown, error=0.0):
@@ -190,9 +190,9 @@ def test_what_differs_is_noticed():
     assert not agrees("a 0.2067977 mm 2.6e-06 ok cost 1.2 s end", shown)
     assert not agrees("a 0.2066977 mm 2.6e-05 ok cost 1.2 s end", shown)
     assert not agrees("a 0.2066977 mm 2.6e-06 missed cost 1.2 s end", shown)
-    coarse = "a, half-width 0.2066 mm 4.7e-04 -"
-    assert agrees("a, half-width 0.2069 mm 9.0e-04 -", coarse)
-    assert not agrees("a, half-width 0.2072 mm 9.0e-04 -", coarse)
+    coarse = "m, stick from -m a 0.2066 0.2071 4.7e-04 2.0e-02 ok"
+    assert agrees("m, stick from -m a 0.2066 0.2075 9.0e-04 2.0e-02 ok", coarse)
+    assert not agrees("m, stick from -m a 0.2066 0.2095 9.0e-04 2.0e-02 ok", coarse)
 
 
 def test_most_blocks_are_run():

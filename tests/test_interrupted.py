@@ -60,7 +60,7 @@ def whole(folder):
     for name in names:
         path = folder / name
         if name == "results.json":
-            assert json.loads(path.read_text("utf-8"))["schema"] == "partialslip/result/1"
+            assert json.loads(path.read_text("utf-8"))["schema"] == "partialslip/result/2"
         elif name == "report.html":
             assert path.read_text("utf-8").rstrip().endswith("</html>")
         elif name == "tractions.csv":

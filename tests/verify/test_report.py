@@ -60,9 +60,9 @@ def test_every_verdict_is_there_with_its_requirement_and_bar(folder):
         shown = {tuple(row[:2]): row for row in words(section(page(folder), name))}
         for verdict in (one for one in verdicts if one["case"] == name):
             number = verdict["requirement"].partition(":")[0]
-            row = shown[number, f"{verdict['method']}.{verdict['check']}"]
-            if float(verdict["value"] or 0):
-                assert f"{float(verdict['value']):.1e}" in row
+            row = shown[number, f"{verdict['method']}.{verdict['quantity']}"]
+            if float(verdict["error"] or 0):
+                assert f"{float(verdict['error']):.1e}" in row
             assert not verdict["bar"] or f"{float(verdict['bar']):.1e}" in row or verdict["bar"] == "0.0"
             assert verdict["reason"] in html.unescape(page(folder))
     assert all(required in html.unescape(page(folder)) for required in REQUIREMENTS.values())
@@ -174,7 +174,7 @@ def test_random_scenes_are_summed_up(tmp_path, monkeypatch):
     assert "<section" not in text
     assert not (tmp_path / "scenes").exists()
     by_kind = [row for row in words(text[text.index("<h2>Certificates") :]) if len(row) == 5][1:]
-    found = [v.value for some in verified.verdicts.values() for v in some if v.check == "certificate"]
+    found = [v.error for some in verified.verdicts.values() for v in some if v.quantity == "certificate"]
     assert len(found) >= 15
     assert sum(int(row[1]) for row in by_kind) == len(found)
     assert max(float(row[3]) for row in by_kind if row[3]) == pytest.approx(max(found), rel=0.05)
