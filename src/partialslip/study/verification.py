@@ -10,9 +10,10 @@ from typing import Any
 
 from partialslip.errors import InputError, MissingLibraryError
 from partialslip.plan import plan
-from partialslip.report.document import Account, document, read_study
+from partialslip.report.document import Account, Study, document, read_study
 from partialslip.report.figure import traction_svg
 from partialslip.report.files import scene_toml, tractions_csv, write_texts
+from partialslip.report.lock import locked
 from partialslip.report.pdf import write_pdf
 from partialslip.report.record import versions
 from partialslip.report.sheet import sheet
@@ -92,14 +93,26 @@ def verify_suite(
     Raises
     ------
     InputError
-        If something asked for does not exist, or the folder cannot be written.
+        If something asked for does not exist, or the folder cannot be written, or another process writes there.
     """
     if processes is not None and processes < 1:
         raise InputError(f"--processes {processes}: must be >= 1")
     settings, makers = _cases(name, only, method, seed, count)
     studies = [read_study(Path(each)) for each in include]
     folder = Path(out) if out is not None else Path("results") / _folder(settings)
-    ledger = _ledger(folder)
+    with locked(folder):
+        return _verify(settings, makers, studies, folder, processes, progress)
+
+
+def _verify(
+    settings: dict[str, Any],
+    makers: Makers,
+    studies: Sequence[Study],
+    folder: Path,
+    processes: int | None,
+    progress: Progress,
+) -> Verification:
+    ledger, name = _ledger(folder), settings["suite"]
     write_verdicts(folder, settings, {}, finished=False)
     same = {key: setting for key, setting in settings.items() if key not in ("only", "count")} | versions()
     keys = {case: key_of({**same, "case": case}) for case in makers}
