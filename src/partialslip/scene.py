@@ -27,6 +27,14 @@ _ROUGH = 1e-9  # changes of slope and curvature in a table, in the largest one, 
 _SHARP = 0.05
 _STEEPEST = 0.9  # sine of the angle to which a pad's round face may go
 
+# What may not be in text that terminals, pages and figures show: control characters, line and paragraph separators,
+# marks that turn the direction of writing round, halves of surrogate pairs, and what XML does not allow.
+_NO_TEXT = (
+    r"\x00-\x1f\x7f-\x9f\u2028\u2029"
+    r"\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"
+    r"\ud800-\udfff\ufffe\uffff"
+)
+
 Array = npt.NDArray[np.float64]
 
 
@@ -354,7 +362,7 @@ class Scene(Table, frozen=True, kw_only=True):
     profile: Profile
     load: Load
     friction: Friction
-    title: Annotated[str, msgspec.Meta(pattern=r"^[^\x00-\x1f\x7f]*\Z", max_length=200)] = ""
+    title: Annotated[str, msgspec.Meta(pattern=rf"^[^{_NO_TEXT}]*\Z", max_length=200)] = ""
     bodies: Bodies = Bodies()
     fem: Fem = Fem()
     effects: Effects = Effects()

@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_scene, check_folder, print_outcome, write_outcome
+from partialslip.cli.common import add_scene, check_folder, held, out_folder, print_outcome
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
 from partialslip.run import METHODS, Run, run
@@ -67,26 +67,19 @@ def _run(options: argparse.Namespace) -> int:
         scene = load_scene(options.scene, [*price.overrides, *options.overrides])
     start = load_state(options.start) if options.start is not None else None
 
-    from rich.console import Console
+    from partialslip.cli.consoles import messages, working
+    from partialslip.report import write_files, write_run
 
-    from partialslip.report import write_files
-
-    messages = Console(stderr=True, highlight=False)
     if price:
-        messages.print(f"{price}, predicted", soft_wrap=True, markup=False)
-    with messages.status(f"{scene.name} ...") as status:
-        outcome = run(
-            scene,
-            methods,
-            subsurface=options.fields,
-            progress=lambda line: status.update(f"{scene.name}: {line}"),
-            start=start,
-        )
+        messages().print(f"{price}, predicted", soft_wrap=True, markup=False)
+    folder = out_folder(options, scene.name)
+    with held(folder), working(scene.name) as tell:
+        outcome = run(scene, methods, subsurface=options.fields, progress=tell, start=start)
         files = []
         if options.save is not None:
             save = Path(options.save)
             files += write_files(save.parent, {save.name: _state(outcome).save})
-        files += write_outcome(outcome, options, scene.name)
+        files += write_run(outcome, folder) if folder else []
     paid = ""
     if price and "fem" in outcome.results:
         paid = f"{price}, predicted; {outcome.results['fem'].cost.cpu_s:.2g} CPU s, actual"

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from partialslip.cli.common import add_scene, check_folder, print_outcome, write_outcome
+from partialslip.cli.common import add_scene, check_folder, held, out_folder, print_outcome
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
 from partialslip.run import METHODS
@@ -75,11 +75,12 @@ def _score(options: argparse.Namespace) -> int:
     if options.file is None:
         raise InputError("FILE: missing; --template prints one to fill in")
 
-    from rich.console import Console
+    from partialslip.cli.consoles import working
+    from partialslip.report import write_run
 
     file = Path(options.file)
-    messages = Console(stderr=True, highlight=False)
-    with messages.status(f"{scene.name} ...") as status:
+    folder = out_folder(options, f"{scene.name}-{file.stem}")
+    with held(folder), working(scene.name) as tell:
         outcome = score(
             scene,
             file,
@@ -88,9 +89,9 @@ def _score(options: argparse.Namespace) -> int:
             factors=(factors[0], factors[1], factors[2]),
             order=int(options.order),
             at=(at[0], at[1]) if at else None,
-            progress=lambda line: status.update(f"{scene.name}: {line}"),
+            progress=tell,
         )
-        files = write_outcome(outcome, options, f"{scene.name}-{file.stem}")
+        files = write_run(outcome, folder) if folder else []
     return print_outcome(outcome, options, files)
 
 
