@@ -39,6 +39,9 @@ def print_table(
     for row in rows:
         table.add_row(*row)
     needed = console.measure(table, options=console.options.update(width=_WIDEST)).maximum
+    if needed > console.width:  # narrower gaps
+        table.padding = (0, 0, 0, 0)
+        needed = console.measure(table, options=console.options.update(width=_WIDEST)).maximum
     table.width = needed if needed > console.width else None
     console.print(table, crop=False)
 
