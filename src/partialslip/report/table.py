@@ -42,6 +42,9 @@ def print_table(
     for row in rows:
         table.add_row(*row)
     needed = console.measure(table, options=console.options.update(width=_WIDEST)).maximum
+    if needed > console.width:  # narrower gaps
+        table.padding = (0, 0, 0, 0)
+        needed = console.measure(table, options=console.options.update(width=_WIDEST)).maximum
     if needed > console.width and console.width < _NARROW:
         _print_lines(console, [line for row in rows for line in (*zip(headings, row, strict=True), ("", ""))])
         return
