@@ -26,16 +26,91 @@ BATCH = 25
 COUNTS = {"exact": 50, "fem": 3, "score": 5}
 
 SCENES = Path(__file__).parents[2] / "src" / "partialslip" / "scenes"
-NUMBERS = ["0", "-0.0", "1", "-1", "1e-100", "1e100", "1e-30", "1e30", "nan", "inf", "-inf", "1e400",
-           "0x" + "f" * 4000, "9" * 5000, "true", "1e-3", "0.5", "3", "1000", "2e-5", "0.4999999", "1979-05-27", "1_000", "0b1"]  # fmt: skip
-WORDS = ["''", "'x'", '"\\u202e"', '"\\u0085"', '"\\U0010ffff"', '"µ ΔQ"', "'" + "x" * 5000 + "'", "[]", "[1]", "{}",
-         "[[1, 2], [3]]", "[1e5, -1e5]", "[0, 0]", "[-1e4, 2e4, 0]", "[" + "1," * 2000 + "]", "[" * 200 + "]" * 200,
-         '"half-plane"', '"box"', '"hertz"', '"tabulated"', '"stress"', "{E = 1e9, nu = 0.3}"]  # fmt: skip
-KEYS = ["name", "title", "material.E", "material.nu", "material.plane", "material.upper", "profile.kind", "profile.R",
-        "profile.b", "profile.x", "profile.gap", "friction.f", "load.P", "load.p0", "load.a", "load.Q", "load.sigma",
-        "load.cycles", "load.steps", "fem.accuracy", "fem.order", "fem.size", "fem.far_field", "fem.width",
-        "bodies.upper.width", "bodies.lower.mesh", "effects.friction", "effects.coupling", ".".join("a" * 900),
-        "x" * 5000, "\u202e", "a b", "E"]  # fmt: skip
+NUMBERS = [
+    "0",
+    "-0.0",
+    "1",
+    "-1",
+    "1e-100",
+    "1e100",
+    "1e-30",
+    "1e30",
+    "nan",
+    "inf",
+    "-inf",
+    "1e400",
+    "0x" + "f" * 4000,
+    "9" * 5000,
+    "true",
+    "1e-3",
+    "0.5",
+    "3",
+    "1000",
+    "2e-5",
+    "0.4999999",
+    "1979-05-27",
+    "1_000",
+    "0b1",
+]
+WORDS = [
+    "''",
+    "'x'",
+    '"\\u202e"',
+    '"\\u0085"',
+    '"\\U0010ffff"',
+    '"µ ΔQ"',
+    "'" + "x" * 5000 + "'",
+    "[]",
+    "[1]",
+    "{}",
+    "[[1, 2], [3]]",
+    "[1e5, -1e5]",
+    "[0, 0]",
+    "[-1e4, 2e4, 0]",
+    "[" + "1," * 2000 + "]",
+    "[" * 200 + "]" * 200,
+    '"half-plane"',
+    '"box"',
+    '"hertz"',
+    '"tabulated"',
+    '"stress"',
+    "{E = 1e9, nu = 0.3}",
+]
+KEYS = [
+    "name",
+    "title",
+    "material.E",
+    "material.nu",
+    "material.plane",
+    "material.upper",
+    "profile.kind",
+    "profile.R",
+    "profile.b",
+    "profile.x",
+    "profile.gap",
+    "friction.f",
+    "load.P",
+    "load.p0",
+    "load.a",
+    "load.Q",
+    "load.sigma",
+    "load.cycles",
+    "load.steps",
+    "fem.accuracy",
+    "fem.order",
+    "fem.size",
+    "fem.far_field",
+    "fem.width",
+    "bodies.upper.width",
+    "bodies.lower.mesh",
+    "effects.friction",
+    "effects.coupling",
+    ".".join("a" * 900),
+    "x" * 5000,
+    "\u202e",
+    "a b",
+    "E",
+]
 
 
 def mutated(random):
@@ -206,7 +281,15 @@ def test_what_is_wrong_is_seen():
     """Deliberate faults: a traceback, a wrong exit code, two lines, no JSON."""
     assert wrong(0, "{}", "") is None
     assert wrong(2, "", "partialslip: E = -1: must be > 0\n") is None
-    faults = [(3, "", "partialslip: a fault\n"), (2, "", "Traceback\n"), (2, "{}", "partialslip: x\n"), (0, "", ""),
-                (0, '{"a": NaN}', ""), (0, "{}", "warning\n"), (2, "", "partialslip: x\n\n"), (1, "half {", "")]  # fmt: skip
+    faults = [
+        (3, "", "partialslip: a fault\n"),
+        (2, "", "Traceback\n"),
+        (2, "{}", "partialslip: x\n"),
+        (0, "", ""),
+        (0, '{"a": NaN}', ""),
+        (0, "{}", "warning\n"),
+        (2, "", "partialslip: x\n\n"),
+        (1, "half {", ""),
+    ]
     for end in faults:
         assert wrong(*end)
