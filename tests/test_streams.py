@@ -56,19 +56,19 @@ def test_closed_streams(tmp_path, closing, code):
     assert len(done.stderr.splitlines()) == (0 if closing.startswith("2") else 1)
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "cp932", "latin-1", "utf-8"])
+@pytest.mark.parametrize("encoding", ["ascii", "cp932"])
 def test_poor_encodings(tmp_path, encoding):
-    """Every character is printed, or stands as its number; lines of tables stay as long as they are."""
-    setting = "title=Größe ΔQ 接触"
-    small = ("--set", "load.p0=4e6", "--with", "exact,march", "--set", "fem.accuracy=0.1")
-    code, out, said = partialslip(tmp_path, *EXACT, *small, "--set", setting, env={"PYTHONIOENCODING": encoding})
-    assert code == 0
-    assert said == ""
-    text = out.decode(encoding)
-    assert ("10 µm" in text) == (encoding in ("latin-1", "utf-8"))
-    assert ("10 um" in text) == (encoding in ("ascii", "cp932"))
-    shown = "Größe ΔQ 接触".encode(encoding, "backslashreplace").decode(encoding)
-    assert text.splitlines()[0] == f"hertz-shear: {shown}"
+    """Every character is printed, or stands as its number, and tables are ruled in ASCII."""
+    title = "Größe ΔQ 接触"
+    code, out, said = partialslip(tmp_path, *EXACT, "--set", f"title={title}", env={"PYTHONIOENCODING": encoding})
+    assert (code, said) == (0, "")
+    shown = title.encode(encoding, "backslashreplace").decode(encoding)
+    assert out.decode(encoding).splitlines()[0] == f"hertz-shear: {shown}"
+
+
+def test_units_have_plain_letters():
+    assert [f"1 µm, {c}".encode("ascii", "partialslip") for c in "ö接"] == [b"1 um, \\xf6", rb"1 um, \u63a5"]
+    assert "1 µm".encode("latin-1", "partialslip").decode("latin-1") == "1 µm"
 
 
 @pytest.mark.parametrize("columns", ["0", "20", "100000000000"])

@@ -129,7 +129,6 @@ def _streams() -> Iterator[None]:
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115
     streams: list[Any] = [each for each in (sys.stdout, sys.stderr) if hasattr(each, "reconfigure") and not each.closed]
     before = [(stream, stream.errors) for stream in streams]
-    codecs.register_error(_FALLBACK, _fallback)
     for stream in streams:
         stream.reconfigure(errors=_FALLBACK)
     try:
@@ -178,3 +177,6 @@ def _signals() -> Iterator[None]:
 def _raise(number: int, _: FrameType | None) -> NoReturn:
     signal.signal(number, signal.SIG_DFL)  # a second one ends it at once
     raise _Signal(number)
+
+
+codecs.register_error(_FALLBACK, _fallback)
