@@ -12,6 +12,7 @@ from partialslip import views
 from partialslip.compare import Comparison, compare
 from partialslip.errors import InputError
 from partialslip.frame import frame
+from partialslip.gradual import may_turn_round
 from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
 from partialslip.scene import Effects, Scene
@@ -40,8 +41,10 @@ class Run:
 
     @property
     def reference(self) -> str | None:
-        """The method that the others are compared with."""
-        return next((name for name in (ALL_EFFECTS, *METHODS) if name in self.results), None)
+        """The method that the others are compared with: none whose answer depends on steps not taken, if there is any
+        other."""
+        there = [name for name in (ALL_EFFECTS, *METHODS) if name in self.results]
+        return next((name for name in there if not self.results[name].path_dependent), next(iter(there), None))
 
     @property
     def judged(self) -> bool:
@@ -99,10 +102,18 @@ class Run:
 
 def default_methods(scene: Scene) -> tuple[str, ...]:
     """Finite elements, and what they are compared with: the exact method, or march where Q and sigma are out of phase;
-    nothing where the bodies are of different materials."""
+    both where slip turns round between the load points of half-planes; nothing where the bodies are of different
+    materials."""
     if not scene.material.alike:
         return ("fem",)
-    return ("exact", "fem") if scene.load.in_phase else ("march", "fem")
+    if not scene.load.in_phase:
+        return ("march", "fem")
+    if not scene.finite and may_turn_round(scene):
+        from partialslip.halfplane.method import path_dependent
+
+        if path_dependent(scene):
+            return ("exact", "march", "fem")
+    return ("exact", "fem")
 
 
 def run(
@@ -161,7 +172,8 @@ def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: flo
     for name, result in results.items():
         if outcome.reference and name != outcome.reference:
             reference = results[outcome.reference]
-            outcome.comparisons[name] = compare(result, reference, scene.friction.f, accuracy)
+            bar = None if result.path_dependent else accuracy
+            outcome.comparisons[name] = compare(result, reference, scene.friction.f, bar)
     return outcome
 
 
