@@ -81,7 +81,7 @@ def solve(
         certificate=_certificate(pressed, cycle) if cycle and slips else {},
         estimate=table,
         shares={"table": table} if table else {},
-        notes=_notes(regime, turns, undetermined) + _coarse(table, scene.fem.accuracy),
+        notes=_notes(scene, regime, turns, undetermined) + _coarse(table, scene.fem.accuracy),
         surface=surface,
         stress_at=stress.inside if stress else None,
         undetermined=undetermined,
@@ -190,7 +190,9 @@ def _undetermined(regime: Regime, turns: bool, found: Levels | str) -> dict[str,
     return dict.fromkeys(("q1", "q2"), found) if isinstance(found, str) else {}
 
 
-def _notes(regime: Regime, turns: bool, undetermined: dict[str, str]) -> tuple[str, ...]:
+def _notes(scene: Scene, regime: Regime, turns: bool, undetermined: dict[str, str]) -> tuple[str, ...]:
+    if scene.free:
+        return ("f = 0 and Q = 0: nothing sticks, and without shear force the contact stays where it is",)
     if regime == "sliding":
         return ("the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip",)
     notes: list[str] = []
