@@ -408,6 +408,11 @@ class Scene(Table, frozen=True, kw_only=True):
         return max(abs(Q) for Q, _ in self.load.points) >= self.friction.f * self.P
 
     @property
+    def free(self) -> bool:
+        """Whether there is neither friction nor shear force: nothing sticks, and nothing drives the bodies apart."""
+        return self.friction.f == 0 and not any(Q for Q, _ in self.load.points)
+
+    @property
     def meshed(self) -> bool:
         """Whether a body's mesh is given."""
         return any(body.mesh is not None for _, body in self.bodies)

@@ -101,7 +101,9 @@ def test_slip_that_turns_round_on_a_gradual_way(Qf, sf, turns):
         for k in (1, 12)
     )
     assert any("turns round" in note for note in one.results["exact"].notes) == turns
-    assert (gradual.comparisons["march"].q > 5e-3) == turns
+    (compared,) = gradual.comparisons.values()  # the march is the reference where slip turns round
+    assert (gradual.reference == "march") == turns
+    assert turns or compared.q < 5e-3
     if not turns:
         assert gradual.comparisons["march"].passed
         assert gradual.comparisons["march"].q == pytest.approx(one.comparisons["march"].q, rel=1e-5)
@@ -118,4 +120,4 @@ def test_slip_that_turns_round_as_the_loads_do():
     )
     assert one.passed
     assert any("turns round" in note for note in one.results["exact"].notes)
-    assert gradual.comparisons["march"].n > 0.01
+    assert gradual.comparisons["exact"].n > 0.01

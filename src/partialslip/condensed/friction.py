@@ -437,6 +437,8 @@ def judge(scene: Scene, history: History | None, stick: Zone | None, half_width:
     load = scene.load
     if scene.slides:
         note = "the contact slides: |Q| >= f P at a load point; there is no steady partial slip"
+        if scene.free:
+            note = "f = 0 and Q = 0: nothing sticks, and without shear force the contact stays where it is"
         return Verdict("sliding", None, None, (note,))
     if history is None or stick is None or (load.dQ == 0 and load.dsigma == 0):  # nothing changes: all of it sticks
         return Verdict("stuck", 0.0, half_width, ())
