@@ -22,6 +22,8 @@ _REPEATS = 1e-13  # change of a node's q in a cycle, in the sum of |q|, that is 
 _STEADY = 1e-6  # change of q from cycle to cycle, in its range or in f p0, that counts as none
 _SLIPS = 1e-9  # what is missing of the bound, relative, that is rounding
 _GROUPS, _HALVINGS, _SOLVES = 64, 6, 400  # of neighbours, on which steps are chosen; a step is halved so often at most
+_MANY = 4  # steps, of which each is tried in two only
+_TELLING = 1e-7  # change of the forces, relative to f P, that is more than rounding
 _TRIED = (0, 1 / 32, 1 / 8, 1 / 2, 3 / 4, 7 / 8, 1)  # fractions of a way on which slip that turns round is looked for
 _CLOSES = 3  # cycles at least where the first loading does not tell the whole of fully reversed loads
 _RATCHETS = 1e-3  # net slip of a cycle, in the slip of half a cycle, that counts where q has settled
@@ -204,9 +206,7 @@ def lower_strain(scene: Scene, sigma: float) -> float:
     return scene.material.bodies[0].A / scene.material.A * sigma * scene.length / (4 * scene.P)
 
 
-def march(
-    tangential: Array, stretch: Array, bound: Array, path: Path, accuracy: float | None = None, x: Array | None = None
-) -> History:
+def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> History:
     """Tangential forces along the path at constant pressure, every step of it certified.
 
     A step is then a convex problem: where nothing slips, the relative displacement keeps what it was, so that
@@ -221,17 +221,31 @@ def march(
     bound : (n,) array
         f times its normal forces.
     path : Path
-    accuracy : float, optional
-        Refine the steps to what q may be off by for their sake, relative to f P; without it they stay as they are.
     """
-    if accuracy is not None:
-        path = refined(tangential, stretch, bound, path, accuracy)
 
     def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
         free = tangential @ before.x + strain * stretch
         return solve_bounded(tangential, free, -bound, bound, Q, before.sides), bound
 
     return follow(path, advance, resting(0 * bound if path.before is None else path.before))
+
+
+def march_refined(
+    tangential: Array, stretch: Array, bound: Array, path: Path, accuracy: float
+) -> tuple[History, History | None]:
+    """:func:`march` in as many steps as it takes for the forces to be right to ``accuracy``, relative to f P.
+
+    Where these are more than were asked for, the second one is the history in twice as many steps: errors being of
+    first order, the steps are off by twice the difference, or less. A path whose ``ways`` are known is followed as it
+    is.
+    """
+    if path.ways:
+        return march(tangential, stretch, bound, path), None
+    path = refined(tangential, stretch, bound, path, accuracy)
+    history = march(tangential, stretch, bound, path)
+    if path.most_steps == path.substeps:
+        return history, None
+    return history, march(tangential, stretch, bound, path.halved)
 
 
 Advance = Callable[[Solution, float, float], tuple[Solution, Array]]
@@ -259,7 +273,7 @@ def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accurac
         ends.append(q)
         load = end
     if path.half and all(len(fractions) == 1 for fractions in ways) and coarse.same(ends[0], -ends[1]):
-        return path
+        return replace(path, ways=path.fractions)
     if path.half:  # the first loading does not tell the whole: the cycle is to close
         path = replace(path, half=False, cycles=max(path.cycles, _CLOSES))
     return replace(path, ways=tuple(ways))
@@ -275,7 +289,7 @@ class _Coarse:
         share = bound / np.repeat(self._bound, np.diff(self._first, append=len(bound)))
         self._C = np.add.reduceat(self.sums(share[:, None] * tangential) * share, self._first, axis=1)
         self._stretch = self.sums(share * stretch)
-        self._near, self._solves = accuracy * float(self._bound.sum()), 0
+        self._near, self._solves = max(accuracy, _TELLING) * float(self._bound.sum()), 0
 
     def sums(self, forces: Array) -> Array:
         """Sums over the groups."""
@@ -291,7 +305,7 @@ class _Coarse:
         fractions: list[float] = []
         self._solves = 0
         for number in range(substeps):
-            stops = [(number + part) / substeps for part in _TRIED]
+            stops = [(number + part) / substeps for part in (_TRIED if substeps < _MANY else (0, 1 / 2, 1))]
             loads = [load + stop * (end - load) for stop in stops]
             whole = self._step(q, loads[0], loads[-1])
             tried = [q]
