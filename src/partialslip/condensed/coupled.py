@@ -6,7 +6,7 @@ lower's along x and apart along y, under normal forces p and tangential forces q
     u = C_xx q + C_xy p,    v = C_xy^T q + C_yy p.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,9 +15,15 @@ import scipy.linalg as la
 
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
 from partialslip.condensed.friction import History, Path, follow, resting
+from partialslip.condensed.pressing import Punch
 from partialslip.result import Array
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
+_STICKS = 1e-9  # relative difference that is rounding
+_LAST, _TIMES = 2.5e-3, 2  # of the half-width, the last small step of bodies pressed alike; and how often it is placed
+_FAR = 10.0  # half-widths: a gap that nothing closes
+_ENDS = 15.0  # times as well as q the ends are to be known
+_MOST, _WORK = 64, 16_000  # steps in which bodies are pressed, and these times the nodes
 _PATIENCE = 4  # iterations without progress before another way is taken
 
 
@@ -122,13 +128,137 @@ class _Step:
         return p, q, opening, rest, scale
 
 
-def march(
-    C: Relative, gap: Array, stretch: Array, f: float, path: Path, pressed: Array | None = None
-) -> tuple[History, Solution]:
-    """Press the bodies together and go along the path; the history, and the normal forces at load point 2 with the
-    residuals of all steps.
+@dataclass(frozen=True)
+class Line:
+    """Where the nodes are: ``x`` (n,), the ``weights`` (n,) that turn tractions into forces, and the ends of the
+    contact under nodal normal forces (n,), ``ends(forces) -> (left, right)``. ``similar`` says whether bodies without a
+    size are pressed together by a parabola, so that all stages of it are alike."""
 
-    Friction acts while the bodies are pressed together, too, in as many steps as the path has from point to point.
+    x: Array
+    weights: Array
+    ends: Callable[[Array], tuple[float, float]]
+    similar: bool
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """The bodies pressed together: normal and tangential forces, the steps it took, what q may be off by for their sake
+    (relative L2) and the half-width (relative). ``growth`` are forces (n,) along y and x that grow with the last of P;
+    where q does not reach its bound with those, the surfaces have stuck since they touched."""
+
+    normal: Solution
+    tangential: Solution
+    steps: int
+    errors: dict[str, float]
+    growth: tuple[Array, Array]
+    f: float
+
+    def slipped(self) -> bool:
+        """Whether there has been slip."""
+        p, q = self.growth
+        return bool((np.abs(q)[p > 0] >= (1 - _STICKS) * self.f * p[p > 0]).any())
+
+
+def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accuracy: float) -> Pressed:
+    """Press the bodies together under P from 0 to 1 with friction and without Q.
+
+    What sticks early keeps its displacement. Half-planes under a parabola are pressed in one step from a stage that the
+    flat punch tells (:mod:`partialslip.condensed.pressing`); other bodies in steps, ``least`` of them or more, whose
+    number is doubled until q changes by less than ``accuracy`` (relative L2), or there are as many as are affordable.
+    """
+    zero = 0 * gap
+    apart = resting(zero), resting(zero)
+
+    def step(P: float, gap: Array, before: tuple[Solution, Solution]) -> tuple[Solution, Solution]:
+        kept = C.xx @ before[1].x + C.xy @ before[0].x
+        return _solve(_Step(C.xx, C.yy, C.xy, f, P, gap, 0.0, kept), [before])
+
+    def steps(count: int) -> list[tuple[Solution, Solution]]:
+        found = [apart]
+        for P in np.linspace(0, 1, count + 1)[1:].tolist():
+            found.append(step(P, gap, found[-1]))
+        return found
+
+    norm = np.diag(C.xx)  # of forces: it makes no difference which, but it is to suit nodes close together
+
+    def off(q: Array, other: Array) -> float:
+        size = float(norm @ q**2)
+        return float(np.sqrt(norm @ (q - other) ** 2 / size)) if size > 0 else 0.0
+
+    last = steps(least)
+    if line is not None and line.similar:
+        return _similar(gap, f, line, last[-1], step, off)
+    count = least
+    while True:
+        before, last, count = last, steps(2 * count), 2 * count
+        errors = {"q": 2 * off(last[-1][1].x, before[-1][1].x)}
+        if line is not None:
+            errors["a"] = 2 * _moved(line, last[-1][0].x, before[-1][0].x)
+        grown = last[-1][0].x - last[-2][0].x, last[-1][1].x - last[-2][1].x
+        reached = errors["q"] <= accuracy and errors.get("a", 0.0) <= accuracy / _ENDS
+        if reached or 2 * count > max(_MOST, 2 * least) or 2 * count * len(gap) > _WORK:
+            return Pressed(*_certified(last[1:]), count, errors, grown, f)
+
+
+def _moved(line: Line, forces: Array, others: Array) -> float:
+    """How far the ends of two contacts are apart, in half-widths."""
+    (left, right), (l_other, r_other) = line.ends(forces), line.ends(others)
+    return max(abs(left - l_other), abs(right - r_other)) * 2 / (right - left)
+
+
+def _similar(
+    gap: Array,
+    f: float,
+    line: Line,
+    last: tuple[Solution, Solution],
+    step: Callable[[float, Array, tuple[Solution, Solution]], tuple[Solution, Solution]],
+    off: Callable[[Array, Array], float],
+) -> Pressed:
+    """The last small steps, the second of half the size, whose difference tells what the size is worth."""
+    for _ in range(_TIMES):
+        left, right = line.ends(last[0].x)
+        reach = (right - left) / 2
+        flat = np.where(np.abs(line.x) <= reach * (1 + _STICKS), 0.0, _FAR * reach)
+        punch = step(1.0, flat, (resting(0 * gap), resting(0 * gap)))
+        stages = Punch(reach, line.x, line.weights, punch[0].x, punch[1].x)
+        found = []
+        for size in (_LAST, _LAST / 2):
+            p, q = stages.stage(1 - size)
+            found.append(step(1.0, gap, (replace(last[0], x=p), replace(last[1], x=q))))
+        rough, last = found
+    errors = {"q": off(last[1].x, rough[1].x), "a": _moved(line, last[0].x, rough[0].x)}
+    return Pressed(*_certified([last]), 2 + 2 * _TIMES, errors, (punch[0].x, punch[1].x), f)
+
+
+def _certified(done: Sequence[tuple[Solution, Solution]]) -> tuple[Solution, Solution]:
+    """The last solution, with the residuals of all."""
+    (p, q), normals, shears = done[-1], [p for p, _ in done], [q for _, q in done]
+    return tuple(
+        replace(
+            one,
+            residual=np.max([step.residual for step in steps], axis=0),
+            imbalance=max(step.imbalance for step in steps),
+            iterations=sum(step.iterations for step in steps),
+            changes=sum(step.changes for step in steps),
+        )
+        for one, steps in ((p, normals), (q, shears))
+    )
+
+
+def march(
+    C: Relative,
+    gap: Array,
+    stretch: Array,
+    f: float,
+    path: Path,
+    pressed: Array | None = None,
+    line: Line | None = None,
+    accuracy: float = 1e-3,
+) -> tuple[History, Solution, Pressed | None]:
+    """Press the bodies together and go along the path: the history, the normal forces at load point 2 with the
+    residuals of all steps, and how the bodies were pressed.
+
+    Friction acts while the bodies are pressed together, too.
 
     Parameters
     ----------
@@ -142,36 +272,48 @@ def march(
     path : Path
     pressed : (n,) array, optional
         Normal forces where the path does not begin with bodies apart.
+    line : Line, optional
+        Where the nodes are.
+    accuracy : float
+        What q may be off by for the sake of the steps in which the bodies are pressed, relative L2.
     """
     assert C.xx is not None
-    xx, xy = C.xx, C.xy if C.xy is not None else 0 * C.xx
-    done = [
-        (resting(0 * gap if pressed is None else pressed), resting(0 * gap if path.before is None else path.before))
-    ]
-    cycle = sum(len(way) for way in path.fractions[1:])
+    full = C if C.xy is not None else replace(C, xy=0 * C.xx)
+    xx, xy = full.xx, full.xy
     gap = gap - path.begin[1] * stretch[1]
+    first: Pressed | None = None
+    if pressed is None:
+        first = press(full, gap, f, line, path.substeps, accuracy)
+        done = [(first.normal, first.tangential)]
+    else:
+        done = [(resting(pressed), resting(0 * gap if path.before is None else path.before))]
+    cycle = sum(len(way) for way in path.fractions[1:])
+    load = path.begin[0] if pressed is not None else 0.0
 
-    def advance(before: Solution, Q: float, strain: float, P: float = 1.0) -> tuple[Solution, Array]:
-        nonlocal gap
-        gap = gap - strain * stretch[1]
+    def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
+        nonlocal gap, load
+        if strain == 0 and load == Q:  # nothing moves
+            zero = 0 * gap
+            still = replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0)
+            done.append((replace(done[-1][0], residual=zero, imbalance=0.0, iterations=0, changes=0), still))
+            return still, f * done[-1][0].x
+        gap, load = gap - strain * stretch[1], Q
         kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0]
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the step before, and this one a cycle ago
-        pressed, sheared = _solve(_Step(xx, C.yy, xy, f, P, gap, Q, kept), starts)
-        done.append((replace(pressed, residual=np.maximum(pressed.residual, sheared.residual / f)), sheared))
-        return sheared, f * pressed.x
+        normal, sheared = _solve(_Step(xx, C.yy, xy, f, 1.0, gap, Q, kept), starts)
+        done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
+        return sheared, f * normal.x
 
-    q = done[0][1]
-    for P in np.linspace(0, 1, path.substeps + 1)[1:].tolist() if pressed is None else ():
-        q, _ = advance(q, 0.0, 0.0, P)
-    history = follow(path, advance, q)
+    history = follow(path, advance, done[0][1])
     last, _ = done[-cycle:][sum(len(way) for way in path.fractions[1 : path.ends[1] + 2]) - 1]
-    return history, replace(
+    together = replace(
         last,
-        residual=np.max([pressed.residual for pressed, _ in done], axis=0),
-        imbalance=max(pressed.imbalance for pressed, _ in done),
-        iterations=sum(pressed.iterations for pressed, _ in done),
-        changes=sum(pressed.changes + sheared.changes for pressed, sheared in done),
+        residual=np.max([normal.residual for normal, _ in done], axis=0),
+        imbalance=max(normal.imbalance for normal, _ in done),
+        iterations=sum(normal.iterations for normal, _ in done),
+        changes=sum(normal.changes + sheared.changes for normal, sheared in done),
     )
+    return history, together, first
 
 
 def _solve(step: _Step, starts: Sequence[tuple[Solution, Solution]]) -> tuple[Solution, Solution]:

@@ -68,6 +68,11 @@ class Path:
         return replace(self, ways=tuple(ways), half=False)
 
     @property
+    def moves(self) -> bool:
+        """Whether any load changes."""
+        return len({self.begin, *self.cycle}) > 1
+
+    @property
     def most_steps(self) -> int:
         """The largest number of steps from one load point to the next."""
         return max(len(way) for way in self.fractions)
@@ -445,13 +450,19 @@ def certificate(history: History, weights: Array, f: float, p0: float) -> dict[s
     return closed | {"steady": float((np.abs(points[-1].x - points[-1 - len(history.path.cycle)].x) / held).max())}
 
 
-def judge(scene: Scene, history: History | None, stick: Zone | None, half_width: float) -> Verdict:
+def judge(
+    scene: Scene, history: History | None, stick: Zone | None, half_width: float, pressed: bool = False
+) -> Verdict:
     """What it means that the stick zone of ``scene`` has been found to be ``stick`` (None: there was no friction to
-    solve), in a contact of ``half_width``; lengths in any one unit."""
+    solve), in a contact of ``half_width``; lengths in any one unit. ``pressed`` says that coupled bodies slipped while
+    they were pressed, that no other load acts, and that what stuck all through is the stick zone."""
     load = scene.load
     if scene.slides:
         note = "the contact slides: |Q| >= f P at a load point; there is no steady partial slip"
         return Verdict("sliding", None, None, (note,))
+    if pressed and stick:
+        note = "no load but P acts: the stick zone is where the surfaces have stuck since they touched"
+        return Verdict("pressing", (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, (note,))
     if history is None or stick is None or (load.dQ == 0 and load.dsigma == 0):  # nothing changes: all of it sticks
         return Verdict("stuck", 0.0, half_width, ())
     notes: tuple[str, ...] = ()
