@@ -30,11 +30,19 @@ _PATIENCE = 4  # iterations without progress before another way is taken
 @dataclass(frozen=True)
 class Relative:
     """Relative compliances (n, n) of two bodies' contact nodes; ``xy`` is None where it vanishes or is left out, and
-    so is ``xx`` without friction."""
+    so is ``xx`` without friction. ``yx`` is what q does to the gap, by reciprocity the transpose of ``xy``; zero in
+    Goodman's approximation, in which p moves the surfaces along x and q does not open the gap."""
 
     xx: Array | None
     yy: Array
     xy: Array | None
+    yx: Array | None = None
+
+    @property
+    def opening(self) -> Array:
+        """``yx``, or what reciprocity says that it is."""
+        assert self.xy is not None
+        return self.xy.T if self.yx is None else self.yx
 
 
 @dataclass(frozen=True)
@@ -45,6 +53,7 @@ class _Step:
     xx: Array
     yy: Array
     xy: Array
+    yx: Array
     f: float
     P: float
     gap: Array
@@ -53,7 +62,7 @@ class _Step:
 
     def sweep(self, p: Solution, q: Solution) -> tuple[Solution, Solution]:
         """One iteration of the fixed point: p for the old q, then q for that p, a convex problem each."""
-        n, pushed = len(self.gap), self.gap + self.xy.T @ q.x
+        n, pushed = len(self.gap), self.gap + self.yx @ q.x
         pressed = solve_bounded(self.yy, -pushed, np.zeros(n), np.full(n, np.inf), self.P, p.sides)
         on = np.flatnonzero(pressed.x > 0)
         bound = self.f * pressed.x[on]
@@ -61,7 +70,7 @@ class _Step:
         held = solve_bounded(self.xx[np.ix_(on, on)], free, -bound, bound, self.Q, q.sides[on])
         x, rest, residual = (_spread(values, on, n) for values in (held.x, held.rest, held.residual))
         sheared = replace(held, x=x, rest=rest, residual=residual)
-        moved = self.xy.T @ (sheared.x - q.x)  # what p does not know of yet
+        moved = self.yx @ (sheared.x - q.x)  # what p does not know of yet
         return replace(pressed, residual=np.abs(moved - moved[on].mean()) / np.diag(self.yy)), sheared
 
     def newton(self, p: Solution, q: Solution) -> tuple[Solution, Solution] | None:
@@ -101,8 +110,8 @@ class _Step:
         i, end = len(on), len(on) + len(sticks)
         dragged = self.f * slip[on]
         matrix, right = np.zeros((end + 2, end + 2)), np.zeros(end + 2)
-        matrix[:i, :i] = self.yy[np.ix_(on, on)] + self.xy[np.ix_(on, on)].T * dragged
-        matrix[:i, i:end] = self.xy[np.ix_(sticks, on)].T
+        matrix[:i, :i] = self.yy[np.ix_(on, on)] + self.yx[np.ix_(on, on)] * dragged
+        matrix[:i, i:end] = self.yx[np.ix_(on, sticks)]
         matrix[i:end, :i] = self.xx[np.ix_(sticks, on)] * dragged + self.xy[np.ix_(sticks, on)]
         matrix[i:end, i:end] = self.xx[np.ix_(sticks, sticks)]
         matrix[:i, -2] = matrix[i:end, -1] = -1  # rigid shifts
@@ -116,7 +125,7 @@ class _Step:
         p[on] = solution[:i]
         q[on] = dragged * p[on]
         q[sticks] = solution[i:end]
-        opening = self.yy @ p + self.xy.T @ q + self.gap - approach
+        opening = self.yy @ p + self.yx @ q + self.gap - approach
         rest = self.xx @ q + self.xy @ p - self.kept - shift
         total = np.abs(p).sum() + np.abs(q).sum()
         scale = total + np.stack(
@@ -171,7 +180,7 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
 
     def step(P: float, gap: Array, before: tuple[Solution, Solution]) -> tuple[Solution, Solution]:
         kept = C.xx @ before[1].x + C.xy @ before[0].x
-        return _solve(_Step(C.xx, C.yy, C.xy, f, P, gap, 0.0, kept), [before])
+        return _solve(_Step(C.xx, C.yy, C.xy, C.opening, f, P, gap, 0.0, kept), [before])
 
     def steps(count: int) -> list[tuple[Solution, Solution]]:
         found = [apart]
@@ -300,7 +309,7 @@ def march(
         gap, load = gap - strain * stretch[1], Q
         kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0]
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the step before, and this one a cycle ago
-        normal, sheared = _solve(_Step(xx, C.yy, xy, f, 1.0, gap, Q, kept), starts)
+        normal, sheared = _solve(_Step(xx, C.yy, xy, full.opening, f, 1.0, gap, Q, kept), starts)
         done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
         return sheared, f * normal.x
 
