@@ -1,6 +1,6 @@
-"""Coupled bodies that are pressed together with friction: Spence's self-similar solution, and steps that are not enough.
+"""Coupled bodies that are pressed together with friction: Spence's self-similar solution, and one step of all of P.
 
-Steel on aluminium. Goodman's approximation keeps what pressure does to the tangential displacements and drops what shear
+Steel on aluminium. Goodman's approximation keeps what pressure does to the displacements along x and drops what shear
 does to the gap; with it the part of the contact that sticks is c with K(c)/K'(c) = f/beta, beta = 1/7 (Spence 1975).
 """
 
@@ -60,7 +60,7 @@ def test_goodmans_coupling_gives_spences_stick_zone(f, c, monkeypatch):
 
 @pytest.mark.parametrize(("f", "c"), [(0.1, 0.3945), (0.3, 0.9862)])
 def test_slip_while_pressed_is_told(f, c, pressed):
-    """The regime is not that nothing slipped, and the stick zone is where the surfaces have stuck since they touched."""
+    """The regime does not say that nothing slipped; the stick zone is where the surfaces stuck since they touched."""
     result = pressed[f]
     assert result.regime == "pressing"
     assert any("stuck since they touched" in note for note in result.notes)
@@ -80,7 +80,7 @@ def test_one_step_of_pressing_forgets_what_stuck_early(monkeypatch, pressed):
     """Deliberate fault: all of P in one step."""
     assert pressed[0.3].m / pressed[0.3].a == pytest.approx(0.986, abs=2e-3)
 
-    def at_once(C, gap, f, *args):
+    def at_once(C, gap, f, *_):
         zero = coupled.resting(0 * gap)
         kept = 0 * gap
         p, q = coupled._solve(coupled._Step(C.xx, C.yy, C.xy, C.opening, f, 1.0, gap, 0.0, kept), [(zero, zero)])

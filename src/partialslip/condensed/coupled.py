@@ -188,16 +188,15 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
             found.append(step(P, gap, found[-1]))
         return found
 
-    norm = np.diag(C.xx)  # of forces: it makes no difference which, but it is to suit nodes close together
+    norm = 1 / line.weights if line is not None else np.ones(len(gap))
 
     def off(q: Array, other: Array) -> float:
         size = float(norm @ q**2)
         return float(np.sqrt(norm @ (q - other) ** 2 / size)) if size > 0 else 0.0
 
-    last = steps(least)
     if line is not None and line.similar:
-        return _similar(gap, f, line, last[-1], step, off)
-    count = least
+        return _similar(gap, f, line, steps(1)[-1], step, off)
+    last, count = steps(least), least
     while True:
         before, last, count = last, steps(2 * count), 2 * count
         errors = {"q": 2 * off(last[-1][1].x, before[-1][1].x)}
