@@ -121,7 +121,7 @@ def test_left_out_effects_count_zero(name, spied):
 def test_work_of_the_cheapest_and_the_fullest():
     cheap, full = (fem(*overrides, subsurface=inside).counts for overrides, inside in (SIX["shear"], SIX["everything"]))
     assert (cheap["cycles"], cheap["load_steps"], cheap["normal_solves"]) == (0, 1, 1)
-    assert full["load_steps"] >= 1 + 2 * full["cycles"] > 3  # more where slip turns round on the way
+    assert full["load_steps"] >= 1 + 2 * full["cycles"] >= 3  # more where slip turns round on the way
     assert full["normal_solves"] == full["load_steps"] + full["pressing_steps"]
     assert fem(LARGE).counts["opposing_nodes"] > 0
     assert full["factorizations"] - 2 * full["meshes"] in (0, 2)  # CHOLMOD's are taken apart, and made again

@@ -175,12 +175,14 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
     flat punch tells (:mod:`partialslip.condensed.pressing`); other bodies in steps, ``least`` of them or more, whose
     number is doubled until q changes by less than ``accuracy`` (relative L2), or there are as many as are affordable.
     """
-    zero = 0 * gap
+    assert C.xx is not None
+    assert C.xy is not None
+    zero, xx, xy = 0 * gap, C.xx, C.xy
     apart = resting(zero), resting(zero)
 
     def step(P: float, gap: Array, before: tuple[Solution, Solution]) -> tuple[Solution, Solution]:
-        kept = C.xx @ before[1].x + C.xy @ before[0].x
-        return _solve(_Step(C.xx, C.yy, C.xy, C.opening, f, P, gap, 0.0, kept), [before])
+        kept = xx @ before[1].x + xy @ before[0].x
+        return _solve(_Step(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept), [before])
 
     def steps(count: int) -> list[tuple[Solution, Solution]]:
         found = [apart]
@@ -240,17 +242,17 @@ def _similar(
 
 def _certified(done: Sequence[tuple[Solution, Solution]]) -> tuple[Solution, Solution]:
     """The last solution, with the residuals of all."""
-    (p, q), normals, shears = done[-1], [p for p, _ in done], [q for _, q in done]
-    return tuple(
-        replace(
-            one,
+
+    def worst(steps: list[Solution]) -> Solution:
+        return replace(
+            steps[-1],
             residual=np.max([step.residual for step in steps], axis=0),
             imbalance=max(step.imbalance for step in steps),
             iterations=sum(step.iterations for step in steps),
             changes=sum(step.changes for step in steps),
         )
-        for one, steps in ((p, normals), (q, shears))
-    )
+
+    return worst([p for p, _ in done]), worst([q for _, q in done])
 
 
 def march(
@@ -286,8 +288,8 @@ def march(
         What q may be off by for the sake of the steps in which the bodies are pressed, relative L2.
     """
     assert C.xx is not None
-    full = C if C.xy is not None else replace(C, xy=0 * C.xx)
-    xx, xy = full.xx, full.xy
+    xx, xy = C.xx, C.xy if C.xy is not None else 0 * C.xx
+    full = replace(C, xy=xy)
     gap = gap - path.begin[1] * stretch[1]
     first: Pressed | None = None
     if pressed is None:

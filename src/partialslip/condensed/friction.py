@@ -270,7 +270,8 @@ def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accurac
     coarse = _Coarse(tangential, stretch, bound, accuracy)
     load = np.array(path.begin)
     q = coarse.sums(0 * bound if path.before is None else path.before)
-    ways, ends = [], []
+    ways: list[tuple[float, ...]] = []
+    ends: list[Array] = []
     for point in (*path.cycle[-1:], *path.cycle):
         end = np.array(point)
         fractions, q = coarse.way(q, load, end, path.substeps)
@@ -415,7 +416,7 @@ _Way = list[tuple[Solution, Array]]
 def _go(advance: Advance, before: Solution, start: Array, end: Array, fractions: tuple[float, ...]) -> _Way:
     """The steps from the loads at ``start`` to those at ``end``."""
     before = resting(before.x)  # the loads turn: what slips now says nothing of what will
-    load, way = start, []
+    load, way = start, list[tuple[Solution, Array]]()
     for fraction in fractions:
         next_load = start + fraction * (end - start) if fraction < 1 else end
         before, bound = advance(before, float(next_load[0]), float(next_load[1] - load[1]))
