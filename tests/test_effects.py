@@ -118,8 +118,8 @@ def test_left_out_effects_count_zero(name, spied):
 def test_work_of_the_cheapest_and_the_fullest():
     cheap, full = (fem(*overrides, subsurface=inside).counts for overrides, inside in (SIX["shear"], SIX["everything"]))
     assert (cheap["cycles"], cheap["load_steps"], cheap["normal_solves"]) == (0, 1, 1)
-    assert full["load_steps"] == 1 + 2 * full["cycles"] > 3
-    assert full["normal_solves"] == full["load_steps"] + 1  # one to press them together
+    assert full["load_steps"] >= 1 + 2 * full["cycles"] >= 3  # more where slip turns round on the way
+    assert full["normal_solves"] == full["load_steps"] + full["pressing_steps"]
     assert fem(LARGE).counts["opposing_nodes"] > 0
     assert full["factorizations"] - 2 * full["meshes"] in (0, 2)  # CHOLMOD's are taken apart, and made again
     assert cheap["factorizations"] == cheap["meshes"]
@@ -175,14 +175,14 @@ def test_half_a_cycle_of_mean_loads_is_another_answer():
 
 def test_a_gradual_way_is_followed():
     """Slip turns round on it: Masing's rule would be wrong."""
-    assert fem("load.steps=3", "load.Q=[-3e4, 3e4]", LARGE).counts["load_steps"] == 9
+    assert fem("load.steps=3", "load.Q=[-3e4, 3e4]", LARGE).counts["load_steps"] >= 9
 
 
 @pytest.mark.parametrize("load", [(), (LARGE,)])
 def test_mirror_images_as_two_coupled_bodies(load):
     one, two = fem(*load), fem(*load, "effects.coupling=true")
     assert (one.counts["bodies"], two.counts["bodies"]) == (1, 2)
-    assert two.counts["normal_solves"] == 1 + two.counts["load_steps"]
+    assert two.counts["normal_solves"] == two.counts["pressing_steps"] + two.counts["load_steps"]
     assert_same(one, two)
 
 

@@ -7,12 +7,14 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.bodies import Body
-from partialslip.condensed.friction import History, certificate, doubts, judge, load_path, lower_strain
+from partialslip.compare import Q_BAR
+from partialslip.condensed.coupled import Pressed
+from partialslip.condensed.friction import certificate, doubts, judge, load_path, lower_strain
 from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Result, Slip, Traction
-from partialslip.scene import WIDTHS, Scene
+from partialslip.scene import WIDTHS, Hertz, Scene
 from partialslip.state import State
 from partialslip_fem.adapt import Adapted, adapt, uniform
 from partialslip_fem.displacements import solve_back
@@ -119,6 +121,8 @@ def _scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
         strain=lower_strain(scene, scene.load.points[scene.load.ends[1]][1]),
+        similar=isinstance(scene.profile, Hertz) and not scene.finite,
+        accuracy=15 * scene.fem.accuracy,
     )
 
 
@@ -165,7 +169,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     p0 = 2 / (np.pi * level.half_width)
     unit = scene.material.A * scene.P  # of displacement
     certified = _certificate(problem, level, p0)
-    found = judge(scene, level.history, level.stick, level.half_width)
+    found = judge(scene, level.history, level.stick, level.half_width, level.slips_when_pressed)
 
     q1, q2, at1, at2, dq = np.zeros_like(x), np.zeros_like(x), None, None, None
     history, pressures = level.history, level.pressures(problem.f)
@@ -173,6 +177,8 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         at1, at2 = level.shear(history.q1), level.shear(history.q2)
         q1, q2, dq = stress * at1(x), stress * at2(x), PPoly(at2.c - at1.c, at2.x)
 
+    stepped = level.step_errors
+    errors = {key: adapted.errors.get(key, 0.0) + stepped.get(key, 0.0) for key in (*adapted.errors, *stepped)}
     made = _factorizations(level)
     moved = solve_back(level, problem) if plan.needs("subsurface") else ()
     extra = {"back_solves": len(moved), "factorizations": adapted.factorizations + _factorizations(level) - made}
@@ -213,8 +219,9 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         },
         counts=_counts(level, adapted, extra),
         certificate=certified,
-        estimate=adapted.errors,
-        notes=found.notes + _apart(level) + doubts(certified, adapted.errors, scene.fem.accuracy),
+        estimate=errors,
+        shares={"discretisation": adapted.errors, "steps": stepped} if stepped else {},
+        notes=found.notes + _apart(level) + doubts(certified, errors, scene.fem.accuracy) + _steps(stepped, scene),
         bodies=tuple(deformed(body, L, unit, stress) for body in moved),
         contact_ends=((left1 * L, right1 * L), (left2 * L, right2 * L)),
         state=_state(scene, level),
@@ -249,7 +256,9 @@ def _counts(level: Level, adapted: Adapted, extra: dict[str, int]) -> dict[str, 
         "meshes": adapted.meshes,
         "cycles": history.cycles if history else 0,
         "load_steps": history.load_steps if history else 0,
-        "normal_solves": history.load_steps + _pressing_steps(history) if history and both else 1,
+        "steps": history.path.most_steps if history else 0,
+        "pressing_steps": _pressing_steps(level.pressed),
+        "normal_solves": history.load_steps + _pressing_steps(level.pressed) if history and both else 1,
         "normal_iterations": 0 if both else pressing.changes,
         "friction_iterations": (pressing.changes if both else history.changes) if history else 0,
         "opposing_nodes": history.opposing if history else 0,
@@ -258,9 +267,9 @@ def _counts(level: Level, adapted: Adapted, extra: dict[str, int]) -> dict[str, 
     }
 
 
-def _pressing_steps(history: History) -> int:
+def _pressing_steps(pressed: Pressed | None) -> int:
     """Steps that press coupled bodies together, before the loads of the path."""
-    return history.path.substeps if history.path.before is None else 0
+    return pressed.steps if pressed else 0
 
 
 def _extents(problem: Problem, width: float) -> dict[str, str | float]:
@@ -275,6 +284,14 @@ def _apart(level: Level) -> tuple[str, ...]:
     if level.pieces == 1:
         return ()
     return (f"the contact is in {level.pieces} pieces: a, m and n are of the outermost ends",)
+
+
+def _steps(stepped: dict[str, float], scene: Scene) -> tuple[str, ...]:
+    """A note on steps that do not suffice for what is asked of q."""
+    worst = max((stepped.get(key, 0.0) for key in ("q1", "q2")), default=0.0)
+    if worst <= Q_BAR * scene.fem.accuracy:
+        return ()
+    return (f"the steps in which the bodies are pressed leave q1 and q2 uncertain by {worst:.1e} (relative L2)",)
 
 
 def _fineness(scene: Scene, problem: Problem) -> dict[str, str | float]:

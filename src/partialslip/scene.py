@@ -244,7 +244,7 @@ class Load(Table, frozen=True, kw_only=True):
     ``P`` (N/m) is constant; for Hertz ``a`` (m) or ``p0`` (Pa) may be given instead. ``Q`` (N/m) and ``sigma`` (Pa, the
     difference of the two bodies' bulk tensions) are their values at the load points: as a rule at points 1 and 2,
     between which they cycle in phase, or at more of them. The path begins without shear, goes to the last point, and
-    then ``cycles`` times through all of them; methods that follow it take ``steps`` from each to the next.
+    then ``cycles`` times through all of them; methods that follow it take ``steps`` from each to the next, or more.
     """
 
     P: Positive | None = None
