@@ -82,8 +82,9 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         for kink, needed in zip(level.kinks, np.clip(locked, size, None).tolist(), strict=True):
             if _sizes(np.array([kink]), sizes, growth / coarsest)[0] > _ANYWAY * needed * a / coarsest:
                 sizes[kink] = needed * a / coarsest
-        deep = {"rounding": rounding, "corners": corners}
-        level = solve_level(problem, width * a, contact, sizes, growth / coarsest, clock, **deep)
+        level = solve_level(
+            problem, width * a, contact, sizes, growth / coarsest, clock, rounding=rounding, corners=corners
+        )
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         if not level.enclosed and max(-level.left, level.right) >= limit:
             raise _too_narrow(problem)
@@ -101,7 +102,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
             other = neighbour(level, problem, width * a, clock)
             factored, iterations = factored + other.factored, iterations + other.iterations
             smooth = smooth_errors(level, other)
-            errors = together(smooth, at_ends)
+            errors = together(level, smooth, at_ends)
             known = _worst(errors)
             calmer = float(np.clip((3 * _worst(smooth) / bar) ** (-0.5 / order), *_CALMER))
             found += f", {', '.join(errors)} known to {known:.1e} a"

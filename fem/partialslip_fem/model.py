@@ -16,6 +16,7 @@ from partialslip.scene import WIDTHS, Scene
 from partialslip.state import State
 from partialslip_fem.adapt import Adapted, adapt, uniform
 from partialslip_fem.displacements import solve_back
+from partialslip_fem.estimate import rounding
 from partialslip_fem.factor import default_backend
 from partialslip_fem.fields import along_surfaces, deformed
 from partialslip_fem.level import Face, Level, Part, Problem, solve_on
@@ -174,6 +175,8 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     def pair(first: PPoly | None, second: PPoly | None) -> Callable[[Array], tuple[Array, Array]]:
         return lambda points: (stress * inside(first, points / L), stress * inside(second, points / L))
 
+    shares = {"discretisation": adapted.errors, "rounding": dict.fromkeys(adapted.errors, rounding(level))}
+    estimate = {key: float(sum(share[key] for share in shares.values())) for key in adapted.errors}
     known = found.regime != "sliding"
     (left1, right1), (left2, right2) = level.contact_ends
     return Result(
@@ -208,7 +211,11 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         counts=_counts(level, adapted, extra),
         certificate=certified,
         estimate=adapted.errors,
-        notes=found.notes + _apart(level) + doubts(certified, adapted.errors, scene.fem.accuracy),
+        shares=shares if estimate else {},
+        notes=found.notes
+        + _apart(level)
+        + _beside(scene, level, adapted)
+        + doubts(certified, estimate, scene.fem.accuracy),
         bodies=tuple(deformed(body, L, unit, stress) for body in moved),
         contact_ends=((left1 * L, right1 * L), (left2 * L, right2 * L)),
         state=_state(scene, level),
@@ -269,6 +276,16 @@ def _apart(level: Level) -> tuple[str, ...]:
     if level.pieces == 1:
         return ()
     return (f"the contact is in {level.pieces} pieces: a, m and n are of the outermost ends",)
+
+
+def _beside(scene: Scene, level: Level, adapted: Adapted) -> tuple[str, ...]:
+    """A note on a contact whose middle is off x = 0 by more than its ends are known to."""
+    a = level.half_width
+    middles = [(left + right) / 2 / a for left, right in level.contact_ends]
+    if not adapted.errors or max(map(abs, middles)) <= scene.fem.accuracy:
+        return ()
+    at = " and ".join(f"{middle:+.2g} a" for middle in middles)
+    return (f"the middle of the contact is off x = 0: by {at} at load points 1 and 2",)
 
 
 def _fineness(scene: Scene, problem: Problem) -> dict[str, str | float]:
