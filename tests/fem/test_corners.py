@@ -1,4 +1,4 @@
-"""Corners of finite bodies: exponents of their singularities, meshes that are fine there, and where the contact sits."""
+"""Corners of finite bodies: exponents of their singularities, meshes fine there, and where the contact sits."""
 
 import numpy as np
 import pytest
