@@ -9,6 +9,7 @@ import numpy as np
 from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
+from partialslip.scene import ALLOWED
 from partialslip_fem.estimate import ENDS, end_errors, enough, kink_sizes, neighbour, smooth_errors, together
 from partialslip_fem.level import Kept, Level, Part, Problem, solve_level
 
@@ -22,8 +23,6 @@ _FINEST = 1e-7  # element size at the ends, in contact half-widths; below, round
 _BESIDE = 0.005  # element size at an end, in contact half-widths, beyond which the mesh is only good for finding it
 _ANYWAY = 1.5  # of the size that a kink needs: a mesh that is not coarser there is left as it is
 _MOST = 200_000  # unknowns
-# of the accuracy asked: tractions may be off by 10 and 15 times as much
-_SHARES = {"p": 0.1, "q": 1 / 15, "q1": 1 / 15, "q2": 1 / 15}
 _FILLS = 0.95  # of a finite body's width: as much as the contact line may take
 _ROUNDING = 0.25  # of the accuracy: how far a round face may be from its elements, and the ends off for that
 _CORNERS = 10.0  # of the accuracy: what elements at corners of finite bodies may be off by, at most
@@ -66,7 +65,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     tilts = {key: share * corners * tilting for key, share in _TILTS.items()}
     while True:
         share = _ENDS * _AIM * accuracy
-        locked = kink_sizes(level, share / _SHARES["q1"])
+        locked = kink_sizes(level, share * ALLOWED["q1"])
         goal = share / _worst(end_errors(level, *_anywhere(level)))
         goal = min(goal, enough(level, _gaps(level, problem), share))
         goal = min(max(goal, _FINEST), _BESIDE / 2)
@@ -82,8 +81,9 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         for kink, needed in zip(level.kinks, np.clip(locked, size, None).tolist(), strict=True):
             if _sizes(np.array([kink]), sizes, growth / coarsest)[0] > _ANYWAY * needed * a / coarsest:
                 sizes[kink] = needed * a / coarsest
-        deep = {"rounding": rounding, "corners": corners}
-        level = solve_level(problem, width * a, contact, sizes, growth / coarsest, clock, **deep)
+        level = solve_level(
+            problem, width * a, contact, sizes, growth / coarsest, clock, rounding=rounding, corners=corners
+        )
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         if not level.enclosed and max(-level.left, level.right) >= limit:
             raise _too_narrow(problem)
@@ -101,7 +101,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
             other = neighbour(level, problem, width * a, clock)
             factored, iterations = factored + other.factored, iterations + other.iterations
             smooth = smooth_errors(level, other)
-            errors = together(smooth, at_ends)
+            errors = together(level, smooth, at_ends)
             known = _worst(errors)
             calmer = float(np.clip((3 * _worst(smooth) / bar) ** (-0.5 / order), *_CALMER))
             found += f", {', '.join(errors)} known to {known:.1e} a"
@@ -227,4 +227,4 @@ def _too_narrow(problem: Problem) -> InputError:
 
 def _worst(errors: dict[str, float]) -> float:
     """As an error of an end."""
-    return max(error * _SHARES.get(key, 1.0) for key, error in errors.items())
+    return max(error / ALLOWED[key] for key, error in errors.items())

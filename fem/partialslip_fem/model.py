@@ -7,17 +7,17 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.bodies import Body
-from partialslip.compare import Q_BAR
 from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.friction import certificate, doubts, judge, load_path, lower_strain
 from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Result, Slip, Traction
-from partialslip.scene import WIDTHS, Hertz, Scene
+from partialslip.scene import ALLOWED, WIDTHS, Hertz, Scene
 from partialslip.state import State
 from partialslip_fem.adapt import Adapted, adapt, uniform
 from partialslip_fem.displacements import solve_back
+from partialslip_fem.estimate import rounding
 from partialslip_fem.factor import default_backend
 from partialslip_fem.fields import along_surfaces, deformed
 from partialslip_fem.level import Face, Kept, Level, Part, Problem, solve_on
@@ -122,7 +122,7 @@ def _scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         inside=plan.needs("subsurface"),
         strain=lower_strain(scene, scene.load.points[scene.load.ends[1]][1]),
         similar=isinstance(scene.profile, Hertz) and not scene.finite,
-        accuracy=15 * scene.fem.accuracy,
+        accuracy=ALLOWED["q"] * scene.fem.accuracy,
     )
 
 
@@ -177,8 +177,6 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         at1, at2 = level.shear(history.q1), level.shear(history.q2)
         q1, q2, dq = stress * at1(x), stress * at2(x), PPoly(at2.c - at1.c, at2.x)
 
-    stepped = level.step_errors
-    errors = {key: adapted.errors.get(key, 0.0) + stepped.get(key, 0.0) for key in (*adapted.errors, *stepped)}
     made = _factorizations(level)
     moved = solve_back(level, problem) if plan.needs("subsurface") else ()
     extra = {"back_solves": len(moved), "factorizations": adapted.factorizations + _factorizations(level) - made}
@@ -186,6 +184,11 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     def pair(first: PPoly | None, second: PPoly | None) -> Callable[[Array], tuple[Array, Array]]:
         return lambda points: (stress * inside(first, points / L), stress * inside(second, points / L))
 
+    shares = {"discretisation": adapted.errors, "rounding": dict.fromkeys(adapted.errors, rounding(level))}
+    if stepped := level.step_errors:
+        shares["steps"] = stepped
+    keys = [*adapted.errors, *(key for key in stepped if key not in adapted.errors)]
+    estimate = {key: float(sum(share.get(key, 0.0) for share in shares.values())) for key in keys}
     known = found.regime != "sliding"
     (left1, right1), (left2, right2) = level.contact_ends
     return Result(
@@ -219,9 +222,12 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         },
         counts=_counts(level, adapted, extra),
         certificate=certified,
-        estimate=errors,
-        shares={"discretisation": adapted.errors, "steps": stepped} if stepped else {},
-        notes=found.notes + _apart(level) + doubts(certified, errors, scene.fem.accuracy) + _steps(stepped, scene),
+        estimate=estimate,
+        shares=shares if estimate else {},
+        notes=found.notes
+        + _apart(level)
+        + _beside(scene, level, adapted)
+        + doubts(certified, estimate, scene.fem.accuracy),
         bodies=tuple(deformed(body, L, unit, stress) for body in moved),
         contact_ends=((left1 * L, right1 * L), (left2 * L, right2 * L)),
         state=_state(scene, level),
@@ -286,12 +292,14 @@ def _apart(level: Level) -> tuple[str, ...]:
     return (f"the contact is in {level.pieces} pieces: a, m and n are of the outermost ends",)
 
 
-def _steps(stepped: dict[str, float], scene: Scene) -> tuple[str, ...]:
-    """A note on steps that do not suffice for what is asked of q."""
-    worst = max((stepped.get(key, 0.0) for key in ("q1", "q2")), default=0.0)
-    if worst <= Q_BAR * scene.fem.accuracy:
+def _beside(scene: Scene, level: Level, adapted: Adapted) -> tuple[str, ...]:
+    """A note on a contact whose middle is off x = 0 by more than its ends are known to."""
+    a = level.half_width
+    middles = [(left + right) / 2 / a for left, right in level.contact_ends]
+    if not adapted.errors or max(map(abs, middles)) <= scene.fem.accuracy:
         return ()
-    return (f"the steps in which the bodies are pressed leave q1 and q2 uncertain by {worst:.1e} (relative L2)",)
+    at = " and ".join(f"{middle:+.2g} a" for middle in middles)
+    return (f"the middle of the contact is off x = 0: by {at} at load points 1 and 2",)
 
 
 def _fineness(scene: Scene, problem: Problem) -> dict[str, str | float]:

@@ -23,6 +23,13 @@ SMALLEST, LARGEST = 1e-100, 1e100
 
 WIDTHS = {"half-plane": 16.0, "box": 4096.0}  # half-widths of a block in contact half-widths, as a rule
 
+# What may be off by how many times the accuracy asked for: ends of zones in a, tractions in relative L2.
+ALLOWED = {
+    **dict.fromkeys(("a", "left", "right", "m", "n"), 1.0),
+    "p": 10.0,
+    **dict.fromkeys(("q", "q1", "q2"), 15.0),
+}
+
 _ROUGH = 1e-9  # changes of slope and curvature in a table, in the largest one, that are taken for rounding
 _SHARP = 0.05
 _STEEPEST = 0.9  # sine of the angle to which a pad's round face may go

@@ -15,7 +15,7 @@ from partialslip.condensed.bounded import Solution, solve_bounded
 from partialslip.condensed.zones import Zone
 from partialslip.plan import Plan
 from partialslip.result import Array, Regime
-from partialslip.scene import Scene
+from partialslip.scene import ALLOWED, Scene
 from partialslip.state import State
 
 _REPEATS = 1e-13  # change of a node's q in a cycle, in the sum of |q|, that is rounding
@@ -486,10 +486,9 @@ def judge(
 def doubts(certificate: Mapping[str, float], errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:
     """Notes on an accuracy that was not reached, and on q that still changed in the last cycle."""
     notes: tuple[str, ...] = ()
-    ends = {key: error for key, error in errors.items() if key in ("a", "m", "n")}
-    if max(ends.values(), default=0.0) > accuracy:
-        known = ", ".join(f"{key} {error:.1e}" for key, error in ends.items())
-        notes += (f"accuracy {accuracy:g} not reached: the ends are known to {known} a",)
+    if beyond := {key: error for key, error in errors.items() if error > ALLOWED[key] * accuracy}:
+        known = ", ".join(f"{key} {error:.1e}" for key, error in beyond.items())
+        notes += (f"accuracy {accuracy:g} not reached: estimated errors are {known} (ends in a, tractions relative)",)
     if (change := certificate.get("steady", 0.0)) > max(accuracy, _STEADY):
         notes += (f"not steady: q changed by {change:.1e} f p0 in the last cycle; take more of them (load.cycles)",)
     return notes

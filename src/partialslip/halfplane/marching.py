@@ -18,7 +18,7 @@ from partialslip.halfplane.cells import compliance, forces, graded
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Result, Slip, Traction
-from partialslip.scene import Scene
+from partialslip.scene import ALLOWED, Scene
 from partialslip.state import State
 
 _MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # cell size at the ends (in a), and growth
@@ -35,7 +35,7 @@ _SHEARS: dict[str, Callable[[History], Array]] = {
     "q1": lambda history: history.q1,
     "q2": lambda history: history.q2,
 }
-_SHARES = {"m": 1.0, "n": 1.0, "q": 15.0, "q1": 15.0, "q2": 15.0}  # of the accuracy
+_JUDGED = ("m", "n", "q", "q1", "q2")
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def solve(
             errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
             ends_known = max(errors["m"], errors["n"])
             progress(f"mesh {meshes}: {len(level.pressed):,} cells, m, n known to {ends_known:.1e} a")
-            if all(errors[key] <= share * scene.fem.accuracy for key, share in _SHARES.items()):
+            if all(errors[key] <= ALLOWED[key] * scene.fem.accuracy for key in _JUDGED):
                 break
     assert level is not None
     return _result(scene, pressed, level, errors, shares, {"meshes": meshes, "iterations": iterations}, clock)
@@ -157,9 +157,7 @@ def _with_steps(
     while True:
         errors = _step_errors(level)
         finer /= _FINER
-        if finer < _FINEST or all(
-            errors.get(key, 0.0) <= share * scene.fem.accuracy / 2 for key, share in _SHARES.items()
-        ):
+        if finer < _FINEST or all(errors.get(key, 0.0) <= ALLOWED[key] * scene.fem.accuracy / 2 for key in _JUDGED):
             return level, errors
         level = _solve_level(scene, pressed, path, start, level.vertices, clock, finer)
 

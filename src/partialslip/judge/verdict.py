@@ -9,9 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from partialslip.result import CERTIFICATE_BAR, Result
+from partialslip.scene import ALLOWED
 
 # Bars on traction errors, in multiples of the accuracy asked of a, m and n.
-P_BAR, Q_BAR = 10.0, 15.0
+P_BAR, Q_BAR = ALLOWED["p"], ALLOWED["q"]
 
 NAN, NO_BAR = "not a number", "no bar"
 
