@@ -8,6 +8,7 @@ from partialslip.errors import InputError
 from partialslip.run import METHODS, Run, compared, run
 from partialslip.scene import Scene
 from partialslip.score.method import scored
+from partialslip.score.mistakes import in_another_unit, mistakes
 from partialslip.score.read import read
 
 
@@ -60,6 +61,11 @@ def score(
         raise InputError(f"reference {reference!r}: must be one of {', '.join(METHODS)}")
     result = scored(scene, read(file, scene, factors, order, at), name, str(file))
     outcome = run(scene, [reference], progress=progress)
-    if outcome.results[reference].regime == "ratchets":  # of slip that adds up, tractions say nothing
+    truth = outcome.results[reference]
+    result = replace(result, notes=(*mistakes(scene, result, truth), *result.notes))
+    if in_another_unit(result, truth):
+        why = dict.fromkeys(("m", "n"), "x is in another unit than the scene")
+        result = replace(result, stick_centre=None, stick_half_width=None, undetermined=why)
+    if truth.regime == "ratchets":  # of slip that adds up, tractions say nothing
         result = replace(result, regime="ratchets")
     return compared(scene, outcome.plan, outcome.results | {name: result}, bar)
