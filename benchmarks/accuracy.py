@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 import partialslip
-from partialslip.compare import Comparison
 from partialslip.condensed.threads import one_thread
+from partialslip.judge import Comparison
 from partialslip.result import Clock, Result
 from partialslip_fem import adapt, model
 from partialslip_fem.level import solve_level
@@ -39,7 +39,7 @@ def on_mesh(name: str, order: int, sizes: Mapping[float, float], growth: float, 
     level = solve_level(problem, 16 * a, (-1.2 * a, 1.2 * a), scaled, growth, Clock())
     adapted = adapt.Adapted(level, {}, 1, 1, level.iterations, 16.0)
     result = model._result(scene, plan, problem, adapted, Clock())
-    return result.counts["dofs"], partialslip.compare(result, exact, scene.friction.f, 1.0)
+    return result.counts["dofs"], partialslip.compare(result, exact, scene, 1.0)
 
 
 def ends(name: str) -> np.ndarray[Any, Any]:

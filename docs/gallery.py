@@ -63,7 +63,7 @@ def entry(name: str, scene: str, run: Run) -> str:
 
 def table(run: Run, method: str) -> str:
     """Errors of a method, as a table of Markdown."""
-    cells = [rows.headings(run, method), *rows.error_rows(run, method)]
+    cells = [rows.headings(run, method), *rows.error_rows(run.comparisons[method])]
     lines = ["| " + " | ".join(row).rstrip() + " |" for row in cells]
     return "\n".join([lines[0], "|---" * len(cells[0]) + "|", *lines[1:]])
 

@@ -82,7 +82,7 @@ def test_comparison_and_run(run):
 
 
 def test_a_missed_bar_is_marked(run):
-    strict = partialslip.compare(run.results["fem"], run.results["exact"], 0.5, 1e-12)
+    strict = partialslip.compare(run.results["fem"], run.results["exact"], run.scene, 1e-12)
     text = strict._repr_html_()
     assert [row[-1] for row in Cells(text).rows[1:]] == ["MISSED"] * 5
     assert strict.missed[0] in Cells(text).text

@@ -10,11 +10,13 @@
 from importlib.metadata import version
 
 from partialslip import notebook as notebook
-from partialslip.compare import Comparison as Comparison
-from partialslip.compare import compare as compare
 from partialslip.errors import InputError as InputError
 from partialslip.errors import PartialslipError as PartialslipError
 from partialslip.export import export as export
+from partialslip.judge import Comparison as Comparison
+from partialslip.judge import Outcome as Outcome
+from partialslip.judge import Verdict as Verdict
+from partialslip.judge import compare as compare
 from partialslip.plan import Plan as Plan
 from partialslip.plan import plan as plan
 from partialslip.reading import load_scene as load_scene

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from partialslip import views
-from partialslip.compare import Comparison
+from partialslip.judge import Comparison
 from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.scene import Scene

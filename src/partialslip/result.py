@@ -73,6 +73,8 @@ class Traction:
     def p_max(self) -> float:
         """The largest pressure, Pa: of the parabola through the largest value and those beside it, as points need not
         fall on the top."""
+        if len(self.x) < 3:
+            return float(self.p.max())
         near = np.clip(int(self.p.argmax()), 1, len(self.x) - 2) + np.array([-1, 0, 1])
         x, p = self.x[near], self.p[near]
         if np.diff(x).min() <= 0:
@@ -224,15 +226,6 @@ class Result:
         return self.contact_ends or ((-self.a, self.a), (-self.a, self.a))
 
     @property
-    def uncertified(self) -> tuple[str, ...]:
-        """Residuals beyond what rounding leaves, in words: then this is no solution."""
-        return tuple(
-            f"certificate: {name} {residual:.1e} > {CERTIFICATE_BAR:.0e}"
-            for name, residual in self.certificate.items()
-            if name != "steady" and not residual <= CERTIFICATE_BAR
-        )
-
-    @property
     def m(self) -> float | None:
         """The stick zone's left end is at x = -m, m."""
         if self.stick_centre is None or self.stick_half_width is None:
@@ -248,9 +241,11 @@ class Result:
 
     @property
     def columns(self) -> dict[str, Array | None]:
-        """Tractions as columns of a table (n,), SI units; None what the method does not determine."""
+        """Tractions as columns of a table (n,), SI units; None what the method does not determine. ``p1`` only where
+        the pressure differs between the load points."""
         of = self.traction
-        return {"x": of.x, "x_over_a": of.x / self.a, "p": of.p, "q1": of.q1, "q2": of.q2, "dq": of.dq}
+        columns = {"x": of.x, "x_over_a": of.x / self.a, "p": of.p, "q1": of.q1, "q2": of.q2, "dq": of.dq}
+        return columns if of.p1 is None else columns | {"p1": of.p1}
 
     def to_dataframe(self) -> "DataFrame":
         """Tractions, a row a point: x (m), x_over_a, p, q1, q2 and dq (Pa), NaN what the method does not determine.

@@ -9,9 +9,9 @@ import numpy.typing as npt
 from msgspec.structs import replace
 
 from partialslip import views
-from partialslip.compare import Comparison, compare
 from partialslip.errors import InputError
 from partialslip.frame import frame
+from partialslip.judge import Comparison, Outcome, Verdict, compare, conditions, overall
 from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
 from partialslip.scene import Effects, Scene
@@ -40,8 +40,12 @@ class Run:
 
     @property
     def reference(self) -> str | None:
-        """The method that the others are compared with."""
-        return next((name for name in (ALL_EFFECTS, *METHODS) if name in self.results), None)
+        """The method that the others are compared with: the first of exact, march and fem that can judge. Where slip
+        turns on the way between the load points the exact one cannot, if there is the march."""
+        known = [name for name in (ALL_EFFECTS, *METHODS) if name in self.results]
+        if known[:1] == ["exact"] and self.results["exact"].path_dependent and "march" in known:
+            return "march"
+        return next(iter(known), None)
 
     @property
     def judged(self) -> bool:
@@ -49,33 +53,48 @@ class Run:
         return self.accuracy is not None
 
     @property
+    def conditions(self) -> dict[str, tuple[Verdict, ...]]:
+        """What each result must meet by itself: finite numbers and small residuals."""
+        return {name: conditions(result) for name, result in self.results.items()}
+
+    @property
+    def outcome(self) -> Outcome:
+        """Passed, missed or not judged, as a whole: a run without bars, or without a comparison, is not judged unless a
+        result does not meet its own conditions."""
+        verdicts = [verdict for comparison in self.comparisons.values() for verdict in comparison.verdicts]
+        return overall(verdicts, [verdict for each in self.conditions.values() for verdict in each])
+
+    @property
     def missed(self) -> tuple[str, ...]:
         """Bars and certificates that are missed, in words."""
+        compared = {name: comparison.verdicts for name, comparison in self.comparisons.items()}
         return tuple(
-            f"{name}: {what}"
-            for name, result in self.results.items()
-            for what in (self.comparisons[name].missed if name in self.comparisons else result.uncertified)
+            f"{name}: {verdict.text}"
+            for name, own in self.conditions.items()
+            for verdict in (*compared.get(name, ()), *own)
+            if verdict.outcome is Outcome.MISSED
         )
 
     @property
     def passed(self) -> bool:
-        """Whether every result is certified and every comparison within its bars."""
-        return not self.missed
+        """Whether something was judged and nothing is missed."""
+        return self.outcome is Outcome.PASSED
 
     @property
     def columns(self) -> dict[str, npt.NDArray[Any]]:
         """Tractions of every method as columns of one table, SI units; NaN what a method does not determine."""
         tables = [result.columns for result in self.results.values()]
+        keys = dict.fromkeys(key for table in tables for key in table)
         sizes = [len(result.traction.x) for result in self.results.values()]
         names = np.repeat(list(self.results), sizes)
         return {"method": names} | {
             key: np.concatenate(
                 [
-                    np.full(size, np.nan) if table[key] is None else table[key]
+                    np.full(size, np.nan) if table.get(key) is None else table[key]
                     for table, size in zip(tables, sizes, strict=True)
                 ]
             )
-            for key in tables[0]
+            for key in keys
         }
 
     def to_dataframe(self) -> "DataFrame":
@@ -161,7 +180,7 @@ def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: flo
     for name, result in results.items():
         if outcome.reference and name != outcome.reference:
             reference = results[outcome.reference]
-            outcome.comparisons[name] = compare(result, reference, scene.friction.f, accuracy)
+            outcome.comparisons[name] = compare(result, reference, scene, accuracy)
     return outcome
 
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.compare import compare
 from partialslip.halfplane import hertz, method, steady
 from partialslip.halfplane import traction as exact_traction
 from partialslip.halfplane.hertz import Hertz
+from partialslip.judge import compare
 
 LARGE = "hertz-large-tension"
 
@@ -82,6 +82,6 @@ def test_traction_perturbed_with_its_resultant_kept(sound, red):
         p, dq = true(x)
         return p, dq + 0.2 * scene.friction.f * fem.p0 * np.sin(np.pi * x / fem.a) * (np.abs(x) < fem.a)
 
-    found = compare(replace(fem, traction=replace(fem.traction, at=moved)), exact, scene.friction.f, 1e-3)
+    found = compare(replace(fem, traction=replace(fem.traction, at=moved)), exact, scene, 1e-3)
     assert "q" in {what.split(":")[0] for what in found.missed}
     red("compare: q", found.q, found.bars["q"])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.compare import cell_errors
+from partialslip.judge import cell_errors
 from partialslip.result import Clock, Traction
 from partialslip_fem import model
 from partialslip_fem.level import solve_level

@@ -16,9 +16,9 @@ from unittest.mock import patch
 import numpy as np
 
 from partialslip import halfplane, load_scene, load_state, plan
-from partialslip.compare import Q_BAR, cell_means
 from partialslip.condensed import coupled
 from partialslip.halfplane import marching
+from partialslip.judge import Q_BAR, cell_means
 from partialslip.result import Array, Clock, Result
 from partialslip.scene import Scene
 from partialslip_fem import level, model

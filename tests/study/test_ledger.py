@@ -10,7 +10,9 @@ import time
 import pytest
 
 import partialslip
-from partialslip.study.ledger import Ledger
+from partialslip.study import ledger as module
+from partialslip.study.case import Case
+from partialslip.study.ledger import Ledger, checksum_of, scene_content, source_checksum
 
 
 def test_entries_are_there_again(tmp_path):
@@ -62,3 +64,50 @@ def test_a_killed_writer_leaves_whole_lines(tmp_path):
     assert [entry["key"] for entry in ledger] == [str(n) for n in range(len(ledger))]
     ledger.add("last", {})
     assert all(json.loads(line) for line in path.read_text("utf-8").splitlines())
+
+
+def test_the_checksum_knows_names_and_contents_but_not_what_is_compiled(tmp_path):
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "one.py").write_text("x = 1\n", "utf-8")
+    (tmp_path / "a" / "prices.json").write_text("{}", "utf-8")
+    first = checksum_of([tmp_path])
+    (tmp_path / "a" / "__pycache__").mkdir()
+    (tmp_path / "a" / "__pycache__" / "one.pyc").write_bytes(b"0")
+    assert checksum_of([tmp_path]) == first
+    seen = {first}
+    for name, text in (("one.py", "x = 2\n"), ("prices.json", "[]"), ("two.py", "")):
+        (tmp_path / "a" / name).write_text(text, "utf-8")
+        seen.add(checksum_of([tmp_path]))
+    assert len(seen) == 4
+
+
+@pytest.mark.fault
+@pytest.mark.parametrize("change", ["scene", "mesh", "code"])
+def test_a_case_of_a_study_is_another_one(change, tmp_path, monkeypatch):
+    """Deliberate fault: a setting, a mesh file or a source file is changed, under the same name."""
+    mesh = tmp_path / "lower.msh"
+    mesh.write_text("one", "utf-8")
+    settings = [f"bodies.lower={{mesh='{mesh}'}}"] if change == "mesh" else []
+    scene = partialslip.load_scene("hertz-shear", settings)
+    case = Case(scene, ("fem",))
+    assert case.key == Case(scene, ("fem",)).key
+    ledger = Ledger(tmp_path / "ledger.jsonl")
+    ledger.add(case.key, {})
+    assert ledger.outdated == 0
+    if change == "scene":
+        case = Case(partialslip.load_scene("hertz-shear", ["friction.f=0.49"]), ("fem",))
+    elif change == "mesh":
+        mesh.write_text("two", "utf-8")
+        content = scene_content(scene)["mesh files"]
+        mesh.unlink()
+        assert scene_content(scene)["mesh files"] != content
+        mesh.write_text("two", "utf-8")
+    else:
+        monkeypatch.setattr(module, "source_checksum", lambda: "another")
+        assert ledger.outdated == 1
+    assert case.key not in ledger
+
+
+def test_the_source_files_of_all_packages_count():
+    assert len(source_checksum()) == 16
+    assert list(module._PACKAGES) == ["partialslip", "partialslip_fem", "partialslip_meshes"]

@@ -8,6 +8,7 @@ import pytest
 
 import partialslip
 from partialslip.halfplane import marching, method
+from partialslip.judge import Outcome
 from partialslip.verify import families, hard_cases, run_case
 from partialslip.verify.catalogue import document
 from partialslip_fem import estimate
@@ -24,7 +25,7 @@ CHEAP = (
 def missed(name, *methods):
     case = CASES[name]
     verdicts = run_case(replace(case, methods=methods or case.methods))
-    return [(v.method, v.check, v.value, v.bar, v.found) for v in verdicts if not v.passed]
+    return [(v.method, v.quantity, v.error, v.bar, v.reason) for v in verdicts if v.outcome is Outcome.MISSED]
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import html
 import json
 import re
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -59,9 +60,9 @@ def test_every_verdict_is_there_with_its_requirement_and_bar(folder):
         shown = {tuple(row[:2]): row for row in words(section(page(folder), name))}
         for verdict in (one for one in verdicts if one["case"] == name):
             number = verdict["requirement"].partition(":")[0]
-            row = shown[number, f"{verdict['method']}.{verdict['check']}"]
-            if float(verdict["value"] or 0):
-                assert f"{float(verdict['value']):.1e}" in row
+            row = shown[number, f"{verdict['method']}.{verdict['quantity']}"]
+            if float(verdict["error"] or 0):
+                assert f"{float(verdict['error']):.1e}" in row
             assert not verdict["bar"] or f"{float(verdict['bar']):.1e}" in row or verdict["bar"] == "0.0"
             assert verdict["reason"] in html.unescape(page(folder))
     assert all(required in html.unescape(page(folder)) for required in REQUIREMENTS.values())
@@ -104,8 +105,15 @@ def test_where_it_was_found_is_told(folder):
 
 
 def test_a_missed_bar_cannot_be_overlooked(tmp_path, monkeypatch):
-    """Deliberate fault: a residual beyond its bar. It is in the heading, first in the table, and at its scene."""
-    monkeypatch.setattr(case, "CERTIFICATE_BAR", 1e-30)
+    """Deliberate fault: solvers that stop at a residual of 1e-3 f p0. It is in the heading, first in the table, and at
+    its scene."""
+
+    solve = case._solve
+
+    def stopped_early(one, method):
+        return replace(solve(one, method), certificate={"kkt": 1e-3})
+
+    monkeypatch.setattr(case, "_solve", stopped_early)
     monkeypatch.setitem(sys.modules, "weasyprint", None)
     verified(tmp_path)
     text = page(tmp_path)
@@ -166,7 +174,7 @@ def test_random_scenes_are_summed_up(tmp_path, monkeypatch):
     assert "<section" not in text
     assert not (tmp_path / "scenes").exists()
     by_kind = [row for row in words(text[text.index("<h2>Certificates") :]) if len(row) == 5][1:]
-    found = [v.value for some in verified.verdicts.values() for v in some if v.check == "certificate"]
+    found = [v.error for some in verified.verdicts.values() for v in some if v.quantity == "certificate"]
     assert len(found) >= 15
     assert sum(int(row[1]) for row in by_kind) == len(found)
     assert max(float(row[3]) for row in by_kind if row[3]) == pytest.approx(max(found), rel=0.05)

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from partialslip.run import Run
+    from partialslip.study.ledger import Ledger
 
     Commands = argparse._SubParsersAction[Any]
 
@@ -34,6 +35,12 @@ def print_written(files: list[Path], console: "Console") -> None:
     console.print("written: " + ", ".join(map(str, files)), soft_wrap=True, markup=False)
 
 
+def print_outdated(ledger: "Ledger", console: "Console") -> None:
+    """Say how many entries of a study's ledger the program no longer fits."""
+    if count := ledger.outdated:
+        console.print(f"{ledger.path}: {count:,} entries are by other source files: not used", markup=False)
+
+
 def write_outcome(outcome: "Run", options: "argparse.Namespace", name: str) -> list[Path]:
     """Write the files of a run into ``--out``, or results/NAME; with ``--json`` into ``--out`` alone. Returns their
     paths."""
@@ -48,6 +55,7 @@ def print_outcome(outcome: "Run", options: "argparse.Namespace", files: list[Pat
     code."""
     from rich.console import Console
 
+    from partialslip.judge import Outcome
     from partialslip.report import print_run, record
 
     if options.json:
@@ -58,4 +66,4 @@ def print_outcome(outcome: "Run", options: "argparse.Namespace", files: list[Pat
         if last:
             console.print(last, soft_wrap=True, markup=False)
         print_written(files, console)
-    return 0 if outcome.passed else 1
+    return 1 if outcome.outcome is Outcome.MISSED else 0

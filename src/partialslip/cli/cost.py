@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_scene, check_folder, print_written
+from partialslip.cli.common import add_scene, check_folder, print_outdated, print_written
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
 
@@ -52,6 +52,7 @@ def _cost(options: argparse.Namespace) -> int:
     folder = Path(options.out) if options.out else Path("results") / name
     ledger = Ledger(folder / "ledger.jsonl")
     messages = Console(stderr=True, highlight=False)
+    print_outdated(ledger, messages)
     with messages.status(f"{name} ...") as status:
         found = cost.measure(
             scene, ledger, options.repeats, lambda done, of, what: status.update(f"{name}: {done} of {of}, {what}")

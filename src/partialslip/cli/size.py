@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_scene, check_folder, print_written
+from partialslip.cli.common import add_scene, check_folder, print_outdated, print_written
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
 
@@ -65,6 +65,7 @@ def _size(options: argparse.Namespace) -> int:
     ledger = Ledger(folder / "ledger.jsonl")
     columns = (TextColumn(f"{scene.name}-size"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[left]}"))
     messages = Console(stderr=True, highlight=False)
+    print_outdated(ledger, messages)
     with Progress(*columns, console=messages, transient=True) as bar:
         task = bar.add_task("", total=None, left="")
 

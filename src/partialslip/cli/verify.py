@@ -49,6 +49,7 @@ def _verify(options: argparse.Namespace) -> int:
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
+    from partialslip.judge import Outcome
     from partialslip.report.verdicts import print_verdicts
     from partialslip.study.verification import verify_suite
 
@@ -79,7 +80,13 @@ def _verify(options: argparse.Namespace) -> int:
         )
     console = Console(highlight=False)
     print_verdicts(verified.verdicts, console, every=options.suite != "stress" or bool(options.only))
+    if verified.again:
+        console.print(
+            f"solved again, as the scene, its settings or the program have changed: {', '.join(verified.again)}",
+            soft_wrap=True,
+            markup=False,
+        )
     print_written(verified.files, console)
     if verified.missing:
         console.print(verified.missing, soft_wrap=True, markup=False)
-    return 0 if verified.passed else 1
+    return 1 if verified.outcome is Outcome.MISSED else 0

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from partialslip.compare import Comparison
+from partialslip.judge import Comparison
 from partialslip.report import rows
 from partialslip.report.figure import draw_run, draw_tractions
 from partialslip.report.template import template

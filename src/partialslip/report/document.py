@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from partialslip.compare import P_BAR, Q_BAR
 from partialslip.errors import InputError
+from partialslip.judge import P_BAR, Q_BAR, Outcome
+from partialslip.report import rows
 from partialslip.report.figure import svg
 from partialslip.report.template import template
-from partialslip.report.verdicts import Verdicts, every_one, nearest, room
+from partialslip.report.verdicts import Verdicts, every_one, missed, nearest, room
 from partialslip.result import CERTIFICATE_BAR
-from partialslip.verify import REQUIREMENTS, Verdict, number_of
+from partialslip.verify import REQUIREMENTS, CaseVerdict, number_of, requirement_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,9 +53,9 @@ class Account:
     studies: Sequence[Study] = ()
 
     @property
-    def verdicts(self) -> dict[str, list[Verdict]]:
+    def verdicts(self) -> dict[str, list[CaseVerdict]]:
         """By case."""
-        return {case: [Verdict(**each) for each in entry["verdicts"]] for case, entry in self.entries.items()}
+        return {case: [CaseVerdict.of(each) for each in entry["verdicts"]] for case, entry in self.entries.items()}
 
 
 def read_study(folder: Path) -> Study:
@@ -80,12 +81,13 @@ def document(account: Account) -> str:
         again={case: command(settings, [case.rpartition("-")[2] if stress else case]) for case in verdicts},
         stress=stress,
         count=f"{len(listed):,}",
-        missed=[verdict for verdict in listed if not verdict.passed],
+        missed=list(filter(missed, listed)),
+        headline=_headline(listed),
         summary=_summary(verdicts),
         requirements=_requirements(listed),
         usual={"certificate": CERTIFICATE_BAR, "p": P_BAR, "q": Q_BAR},
         closest=[_close(verdict) for verdict in sorted(nearest(verdicts), key=room)],
-        found={case: [_found(verdict, account.entries[case]) for verdict in some] for case, some in verdicts.items()},
+        found={case: list(map(_found, some)) for case, some in verdicts.items()},
         reasons={case: _reasons(some) for case, some in verdicts.items()},
         kinds=_kinds(account) if stress else [],
         spread=_spread(listed) if stress else None,
@@ -123,90 +125,103 @@ def _asked(settings: Mapping[str, Any], origins: Sequence[Mapping[str, Any]]) ->
     return [("command", command(settings, settings["only"])), *lines]
 
 
+def _headline(verdicts: Sequence[CaseVerdict]) -> str:
+    """How many verdicts are missed, or else passed and not judged."""
+    counts = {outcome: sum(verdict.outcome is outcome for verdict in verdicts) for outcome in Outcome}
+    if counts[Outcome.MISSED]:
+        return f"{counts[Outcome.MISSED]:,} of {len(verdicts):,} verdicts missed"
+    unjudged = f", {counts[Outcome.NOT_JUDGED]:,} not judged" if counts[Outcome.NOT_JUDGED] else ""
+    return f"{counts[Outcome.PASSED]:,} verdicts passed, none missed{unjudged}"
+
+
 def _summary(verdicts: Verdicts) -> list[tuple[str, ...]]:
-    """By method, and in all: cases, verdicts, missed, CPU seconds."""
+    """By method, and in all: cases, verdicts, missed, not judged, CPU seconds."""
     closest, listed = nearest(verdicts), every_one(verdicts)
-    rows: list[tuple[str, ...]] = []
+    table: list[tuple[str, ...]] = []
     for method in (*dict.fromkeys(verdict.method for verdict in closest), None):
         some = [verdict for verdict in listed if method in (None, verdict.method)]
         cpu_s = sum(verdict.cpu_s for verdict in closest if method in (None, verdict.method))
-        counts = len({verdict.case for verdict in some}), len(some), sum(not verdict.passed for verdict in some)
-        rows.append((method or "in all", *(f"{count:,}" for count in counts), f"{cpu_s:.1f}", ""))
-    return rows
+        unjudged = sum(verdict.outcome is Outcome.NOT_JUDGED for verdict in some)
+        counts = len({verdict.case for verdict in some}), len(some), sum(map(missed, some)), unjudged
+        table.append((method or "in all", *(f"{count:,}" for count in counts), f"{cpu_s:.1f}", ""))
+    return table
 
 
-def _requirements(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
+def _requirements(verdicts: Sequence[CaseVerdict]) -> list[tuple[str, ...]]:
     """Number, requirement, how many verdicts, how many missed, the largest share of a bar, and where."""
-    rows: list[tuple[str, ...]] = []
-    for check, text in REQUIREMENTS.items():
-        some = [verdict for verdict in verdicts if verdict.check == check and verdict.judged]
+    table: list[tuple[str, ...]] = []
+    for key, text in REQUIREMENTS.items():
+        some = [
+            each for each in verdicts if requirement_of(each.quantity) == key and each.outcome is not Outcome.NOT_JUDGED
+        ]
         worst = min(some, key=room, default=None)
-        told = worst is not None and (worst.share is not None or not worst.passed)
+        told = worst is not None and (worst.share is not None or missed(worst))
         where = f"{worst.case}, {worst.method}" if worst and told else ""
         share = _share(worst) if worst else ""
-        missed = sum(not verdict.passed for verdict in some)
-        rows.append((number_of(check), text, f"{len(some):,}", f"{missed:,}", share, where))
-    return rows
+        table.append((number_of(key), text, f"{len(some):,}", f"{sum(map(missed, some)):,}", share, where))
+    return table
 
 
-def _close(verdict: Verdict) -> tuple[str, ...]:
-    """Case, requirement, check, value, bar, its share, CPU seconds and verdict."""
-    numbers = _number(verdict.value), _number(verdict.bar), _share(verdict), f"{verdict.cpu_s:.2f}"
-    return verdict.case, number_of(verdict.check), f"{verdict.method}.{verdict.check}", *numbers, _word(verdict)
+def _close(verdict: CaseVerdict) -> tuple[str, ...]:
+    """Case, requirement, check, error, bar, its share, CPU seconds and verdict."""
+    numbers = _number(verdict.error), _number(verdict.bar), _share(verdict), f"{verdict.cpu_s:.2f}"
+    return (
+        verdict.case,
+        number_of(verdict.quantity),
+        f"{verdict.method}.{verdict.quantity}",
+        *numbers,
+        rows.word(verdict),
+    )
 
 
-def _found(verdict: Verdict, entry: Mapping[str, Any]) -> tuple[str, ...]:
-    """Requirement, check, the exact method's value and its own, error or residual, bar, its share, and verdict."""
-    values = entry["sheet"]["values"] if entry.get("sheet") else {}
-    pair = [values.get(method, {}).get(verdict.check, "") for method in ("exact", verdict.method)]
-    numbers = _number(verdict.value), _number(verdict.bar), _share(verdict)
-    own = pair if any(pair) else ["", verdict.found]
-    return number_of(verdict.check), f"{verdict.method}.{verdict.check}", *own, *numbers, _word(verdict)
+def _found(verdict: CaseVerdict) -> tuple[str, ...]:
+    """Requirement, check, unit, the exact method's value and the method's own, error or residual, bar, its share, and
+    verdict."""
+    unit, *pair = rows.numbers(verdict)[:3]
+    numbers = _number(verdict.error), _number(verdict.bar), _share(verdict)
+    check = f"{verdict.method}.{verdict.quantity}"
+    return number_of(verdict.quantity), check, unit, *pair, *numbers, rows.word(verdict)
 
 
-def _reasons(verdicts: Sequence[Verdict]) -> list[str]:
-    """Why bars are not the usual ones, each reason once."""
+def _reasons(verdicts: Sequence[CaseVerdict]) -> list[str]:
+    """Why bars are not the usual ones, or quantities are missed or not judged, each reason once."""
     reasons: dict[str, list[str]] = {}
     for verdict in verdicts:
         if verdict.reason:
-            reasons.setdefault(verdict.reason, []).append(f"{verdict.method}.{verdict.check}")
-    return [f"Bar of {', '.join(checks)}: {reason}." for reason, checks in reasons.items()]
+            reasons.setdefault(verdict.reason, []).append(f"{verdict.method}.{verdict.quantity}")
+    return [f"{', '.join(checks)}: {reason}." for reason, checks in reasons.items()]
 
 
 def _number(value: float | None) -> str:
     return "" if value is None else f"{value:.1e}" if value else "0"
 
 
-def _share(verdict: Verdict) -> str:
+def _share(verdict: CaseVerdict) -> str:
     if verdict.share is None:
         return ""
     return "< 0.1 %" if verdict.share < 1e-3 else f"{100 * verdict.share:.1f} %"
 
 
-def _word(verdict: Verdict) -> str:
-    return ("ok" if verdict.judged else "not judged") if verdict.passed else "MISSED"
-
-
 def _kinds(account: Account) -> list[tuple[str, ...]]:
     """By kind of loads: how many scenes, median and largest of the certificates, and where that is."""
-    groups: dict[str, list[Verdict]] = {}
+    groups: dict[str, list[CaseVerdict]] = {}
     for case, verdicts in account.verdicts.items():
         groups.setdefault(account.entries[case]["hard"], []).extend(_certificates(verdicts))
-    rows: list[tuple[str, ...]] = []
+    table: list[tuple[str, ...]] = []
     for kind, some in groups.items():
-        values = [verdict.value or 0.0 for verdict in some]
-        worst = max(some, key=lambda verdict: verdict.value or 0.0, default=None)
+        values = [verdict.error or 0.0 for verdict in some]
+        worst = max(some, key=lambda verdict: verdict.error or 0.0, default=None)
         figures = (f"{np.median(values):.1e}", f"{max(values):.1e}", worst.case) if worst else ("", "", "")
-        rows.append((kind, f"{len(some):,}", *figures))
-    return rows
+        table.append((kind, f"{len(some):,}", *figures))
+    return table
 
 
-def _spread(verdicts: Sequence[Verdict]) -> str | None:
+def _spread(verdicts: Sequence[CaseVerdict]) -> str | None:
     """How the certificates are spread, as SVG; None where there are none."""
     some = _certificates(verdicts)
     if not some:
         return None
-    tens = np.log10([max(verdict.value or 0.0, _LEAST) for verdict in some])
+    tens = np.log10([max(verdict.error or 0.0, _LEAST) for verdict in some])
     bar = np.log10(some[0].bar or np.nan)
 
     def draw(figure: "Figure") -> None:
@@ -220,5 +235,5 @@ def _spread(verdicts: Sequence[Verdict]) -> str | None:
     return svg(draw, (7.4, 3.2))
 
 
-def _certificates(verdicts: Sequence[Verdict]) -> list[Verdict]:
-    return [verdict for verdict in verdicts if verdict.check == "certificate" and verdict.value is not None]
+def _certificates(verdicts: Sequence[CaseVerdict]) -> list[CaseVerdict]:
+    return [verdict for verdict in verdicts if verdict.quantity == "certificate" and verdict.error is not None]

@@ -100,12 +100,9 @@ def _set(table: Mapping[str, Any]) -> dict[str, Any]:
 
 def tractions_csv(run: Run) -> str:
     """Tractions of every method, one row a point; SI units, empty where a method does not determine a value."""
-    rows: list[list[object]] = []
-    for name, result in run.results.items():
-        columns = result.columns.values()
-        listed = [[""] * len(result.traction.x) if column is None else column.tolist() for column in columns]
-        rows += [[name, *row] for row in zip(*listed, strict=True)]
-    return csv_text(["method", *next(iter(run.results.values())).columns], rows)
+    columns = run.columns
+    values = ([("" if number != number else number) for number in column.tolist()] for column in columns.values())
+    return csv_text(list(columns), zip(*values, strict=True))
 
 
 def surface_csv(run: Run) -> str:

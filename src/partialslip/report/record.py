@@ -1,5 +1,6 @@
 """A run as plain data: what ``results.json`` holds."""
 
+import math
 import platform
 from dataclasses import asdict
 from importlib.metadata import version
@@ -8,18 +9,21 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from partialslip.compare import Comparison
+from partialslip.judge import Comparison
 from partialslip.result import Result
 from partialslip.run import Run
 
-SCHEMA = "partialslip/result/1"
+SCHEMA = "partialslip/result/2"
 _PACKAGES = ("partialslip", "numpy", "scipy", "scikit-fem", "gmsh", "meshio")
 
 
 def record(run: Run, *, curves: bool = True) -> dict[str, Any]:
     """Everything that ``run`` found, as numbers, strings, lists and tables; SI units; with ``curves``, or without."""
-    return {
+    data = {
         "schema": SCHEMA,
+        "outcome": run.outcome,
+        "reference": run.reference,
+        "missed": list(run.missed),
         "scene": msgspec.to_builtins(run.scene),
         "plan": {
             "called_for": list(run.plan.called_for),
@@ -31,6 +35,7 @@ def record(run: Run, *, curves: bool = True) -> dict[str, Any]:
         "comparison": {name: _comparison(comparison) for name, comparison in run.comparisons.items()},
         "versions": versions(),
     }
+    return _finite(data)  # type: ignore[no-any-return]
 
 
 def versions() -> dict[str, str]:
@@ -47,7 +52,11 @@ def _figures(result: Result) -> dict[str, Any]:
         **{key: getattr(result, key) for key in ("a", "p0", "regime", "m", "n", "stick_half_width", "stick_centre")},
         "p_max": result.traction.p_max,
         **{key: result.counts[key] for key in ("dofs", "contact_nodes") if key in result.counts},
+        "contact_ends": [list(ends) for ends in result.ends],
         **{key: dict(getattr(result, key)) for key in ("settings", "counts", "limits", "certificate", "estimate")},
+        "shares": {source: dict(shares) for source, shares in result.shares.items()},
+        "undetermined": dict(result.undetermined),
+        "path_dependent": result.path_dependent,
         "notes": list(result.notes),
         "cost": asdict(result.cost),
     }
@@ -62,12 +71,31 @@ def _curves(result: Result) -> dict[str, Any]:
         "surface": {"x": result.surface.x.tolist(), "sigma_xx": result.surface.sigma.tolist()}
         if result.surface
         else None,
-        "traction": {key: _listed(getattr(traction, key)) for key in ("x", "p", "q1", "q2", "dq")},
+        "traction": {key: _listed(getattr(traction, key)) for key in ("x", "p", "p1", "q1", "q2", "dq")},
     }
 
 
 def _comparison(comparison: Comparison) -> dict[str, Any]:
-    return {**asdict(comparison), "passed": comparison.passed}
+    """The errors by quantity, bars, what is missed, and the verdicts that they are from."""
+    nodal = ("p_nodal", "q_nodal", "p_nodal_max", "q_nodal_max")
+    return {
+        "outcome": comparison.outcome,
+        **comparison.errors,
+        **{key: getattr(comparison, key) for key in nodal},
+        "bars": comparison.bars,
+        "missed": list(comparison.missed),
+        "verdicts": [verdict.data for verdict in comparison.verdicts],
+        "conditions": [verdict.data for verdict in comparison.conditions],
+    }
+
+
+def _finite(data: Any) -> Any:
+    """Plain data with null for numbers that are NaN or infinite, which JSON does not have."""
+    if isinstance(data, dict):
+        return {key: _finite(value) for key, value in data.items()}
+    if isinstance(data, (list, tuple)):
+        return [_finite(value) for value in data]
+    return None if isinstance(data, float) and not math.isfinite(data) else data
 
 
 def _listed(values: np.ndarray | None) -> list[float] | None:

@@ -1,77 +1,102 @@
 """A run in words and table cells: the terminal and the page show the same ones."""
 
+import math
 from collections.abc import Iterator, Mapping
 
 import msgspec
 import numpy as np
 
-from partialslip.compare import Comparison
+from partialslip.judge import NO_BAR, Comparison, Outcome, Verdict
 from partialslip.plan import Plan
 from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.scene import Scene
 
-HEADINGS = ("quantity", "reference", "value", "error", "bar", "")
+HEADINGS = ("quantity", "unit", "reference", "value", "error", "estimate", "bar", "")
 _MEANING = {
     "a": "a, half-width",
+    "left": "left end",
+    "right": "right end",
     "m": "m, stick from -m",
     "n": "n, stick to n",
+    "P": "P, sum of p",
     "p": "p, pressure",
+    "p_max": "p, largest",
+    "dQ": "dQ, sum of dq",
     "q": "q, shear",
-}
-_STRESSES = {
+    "q_max": "q, largest",
     "largest": "sigma_xx, largest",
     "surface": "sigma_xx, surfaces",
     "inside": "stresses inside",
-}
+} | {
+    f"{key}_{point}": f"{text}, point {point}"
+    for key, text in {"left": "left end", "right": "right end", "P": "P", "p": "p"}.items()
+    for point in (1, 2)
+}  # fmt: skip
+_WORDS = {Outcome.PASSED: "ok", Outcome.MISSED: "MISSED", Outcome.NOT_JUDGED: "not judged"}
+_DIGITS, _MOST = 7, 10  # decimals of values; more where the error needs them, unless it is rounding
 
 
 def headings(run: Run, name: str) -> list[str]:
-    """Those of the errors of method ``name``."""
+    """Headings of the table of :func:`error_rows` of method ``name``."""
     return [{"reference": run.reference or "", "value": name}.get(heading, heading) for heading in HEADINGS]
 
 
-def error_rows(run: Run, name: str) -> list[tuple[str, ...]]:
-    """Quantity, the reference's value, that of method ``name``, error, bar and verdict: a, m, n, p, q and stresses."""
-    reference, result, comparison = run.results[run.reference or name], run.results[name], run.comparisons[name]
-    return [
-        (meaning, value(reference, key), value(result, key), *verdict)
-        for key, (meaning, *verdict) in zip(_compared(comparison), verdicts(comparison), strict=True)
-    ]
+def error_rows(comparison: Comparison) -> list[tuple[str, ...]]:
+    """Quantity, unit, the reference's value, the method's value, error, the method's own estimate of it, bar and
+    verdict. Error = \\|value - reference\\|; norms have no values. What neither of both knows is left out."""
+    shown = [each for each in comparison.verdicts if each.quantity != "regime" and each.known]
+    return [(_MEANING.get(each.quantity, each.quantity), *numbers(each), word(each)) for each in shown]
 
 
-def verdicts(comparison: Comparison) -> list[tuple[str, ...]]:
-    """Quantity, error, bar and verdict: a, m, n, p, q and stresses."""
-    return [
-        (meaning, *_verdict(getattr(comparison, key), comparison.bars.get(key)))
-        for key, meaning in _compared(comparison).items()
-    ]
+def numbers(verdict: Verdict) -> tuple[str, ...]:
+    """Unit, the reference's value and the value found, error, estimate and bar of a verdict."""
+    error = verdict.error or 0.0
+    digits = max(_DIGITS, math.ceil(-math.log10(error)) + 1) if 10.0**-_MOST < error < math.inf else _DIGITS
+    values = (
+        "" if each is None else each if isinstance(each, str) else f"{each:.{digits}f}"
+        for each in (verdict.reference, verdict.found)
+    )
+    figures = ("" if each is None else f"{each:.1e}" for each in (verdict.error, verdict.estimate, verdict.bar))
+    return verdict.scale, *values, *figures
 
 
-def _compared(comparison: Comparison) -> dict[str, str]:
-    """What is compared, by its key: stresses only where they were."""
-    known = {key: meaning for key, meaning in _STRESSES.items() if getattr(comparison, key) is not None}
-    return _MEANING | known
+def word(verdict: Verdict) -> str:
+    """The verdict in a word: ok, MISSED, no bar or not judged."""
+    return "no bar" if verdict.outcome is Outcome.NOT_JUDGED and verdict.reason == NO_BAR else _WORDS[verdict.outcome]
 
 
-def _verdict(error: float | None, bar: float | None) -> tuple[str, str, str]:
-    if error is None or bar is None:
-        return "-" if error is None else f"{error:.1e}", "-", ""
-    return f"{error:.1e}", f"{bar:.1e}", "ok" if error <= bar else "MISSED"
+def units(run: Run) -> str:
+    """What the units of the table of errors are, in one line: values of the reference."""
+    reference, scene = run.results[run.reference or ""], run.scene
+    limit = f", f p0 = {engineering(scene.friction.f * reference.p0, 'Pa', 6)}" if scene.friction.f else ""
+    p0, P = engineering(reference.p0, "Pa", 6), engineering(scene.P, "N/m", 6)
+    return f"{run.reference}: a = {length(reference.a)}, p0 = {p0}{limit}; P = {P}"
+
+
+def unjudged(comparison: Comparison) -> list[str]:
+    """What is not judged although it has a bar as a rule, and why: a line for each reason."""
+    reasons: dict[str, list[str]] = {}
+    for verdict in comparison.verdicts:
+        if verdict.outcome is Outcome.NOT_JUDGED and verdict.reason != NO_BAR:
+            reasons.setdefault(verdict.reason, []).append(verdict.quantity)
+    return [f"not judged: {', '.join(quantities)}: {reason}" for reason, quantities in reasons.items()]
 
 
 def verdict(run: Run) -> str:
-    """In one line, on the whole run."""
-    if run.missed:
+    """The verdict on the whole run in one line."""
+    if run.outcome is Outcome.MISSED:
         return "missed: " + "; ".join(run.missed)
-    if not run.comparisons:
-        return "nothing to compare with"
-    if run.judged:
+    if run.outcome is Outcome.PASSED:
         return "all bars met"
+    if not run.comparisons:
+        return "not judged: nothing to compare with"
+    if run.judged:
+        return "not judged: no quantity can be judged"
     if run.plan.missing:
-        return f"no bars: forced off: {', '.join(run.plan.missing)}; the errors are what that is worth"
+        return f"not judged: no bars: forced off: {', '.join(run.plan.missing)}; the errors are what that is worth"
     reasons = {"finite bodies": run.scene.finite, "the element size was given": run.scene.fem.size is not None}
-    return "no bars: " + next((why for why, applies in reasons.items() if applies), "none were asked for")
+    return "not judged: no bars: " + next((why for why, applies in reasons.items() if applies), "none were asked for")
 
 
 def effects(plan: Plan) -> list[tuple[str, str, str]]:
@@ -125,20 +150,16 @@ def methods(results: Mapping[str, Result], *, compared: bool = False) -> list[tu
 
 
 def value(result: Result, key: str) -> str:
-    """A quantity of a result with its unit; of p and q the largest value, of fields none."""
-    if key in ("surface", "inside"):
-        return ""
-    if key == "largest":
-        return engineering(result.surface.largest[1], "Pa", 6) if result.surface else ""
-    if key in ("m", "n"):
-        end = getattr(result, key)
-        return "none" if end is None else f"{end / result.a:.7f} a"
+    """One of a, m and n of a result, with its unit."""
     if key == "a":
-        return f"{result.a * 1e3:.7g} mm" if 1e-6 <= result.a < 1 else engineering(result.a, "m", 7)
-    if key == "q" and result.regime == "sliding":
-        return "none"
-    peak = result.traction.p.max() if key == "p" else np.abs(result.traction.dq).max() / 2
-    return f"max {engineering(float(peak), 'Pa', 6)}"
+        return length(result.a)
+    end = getattr(result, key)
+    return "none" if end is None else f"{end / result.a:.7f} a"
+
+
+def length(a: float) -> str:
+    """A length with its unit, in mm unless that is far off."""
+    return f"{a * 1e3:.7g} mm" if 1e-6 <= a < 1 else engineering(a, "m", 7)
 
 
 _LIMITS = {

@@ -7,15 +7,10 @@ from partialslip.run import Run
 
 
 def sheet(run: Run) -> dict[str, Any]:
-    """Title, settings and effects of the scene, facts of every method, and by method the values of a, m, n, p, q and
-    the regime: texts."""
+    """Title, settings and effects of the scene, and facts of every method: texts."""
     return {
         "title": run.scene.title,
         "settings": rows.settings_of_tables(run.scene),
         "effects": rows.effects(run.plan),
         "methods": rows.methods(run.results, compared=True),
-        "values": {
-            name: {key: rows.value(result, key) for key in ("a", "m", "n", "p", "q")} | {"regime": result.regime}
-            for name, result in run.results.items()
-        },
     }

@@ -17,8 +17,12 @@ def print_run(run: Run, console: Console) -> None:
     """Print regimes, errors, certificates and costs of ``run`` on rich's ``console``."""
     title = f"{run.scene.name}: {run.scene.title}" if run.scene.title else run.scene.name
     console.print(title, style="bold", markup=False)
-    for name in run.comparisons:
-        print_table(console, rows.headings(run, name), rows.error_rows(run, name), words=(0, 5))
+    if run.comparisons:
+        console.print(rows.units(run), soft_wrap=True, markup=False)
+    for name, comparison in run.comparisons.items():
+        print_table(console, rows.headings(run, name), rows.error_rows(comparison), words=(0, 1, 7))
+        for line in rows.unjudged(comparison):
+            console.print(line, soft_wrap=True, markup=False)
     methods = rows.methods(run.results, compared=bool(run.comparisons))
     _print_lines(console, [*methods, *rows.effects(run.plan)])
     console.print(rows.verdict(run), style="bold", markup=False)

@@ -3,21 +3,23 @@
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, fields
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 
+from partialslip.judge import Outcome
+from partialslip.report import rows
 from partialslip.report.files import csv_text, write_texts
 from partialslip.report.record import versions
 from partialslip.report.table import print_table
-from partialslip.verify import Verdict
+from partialslip.verify import CaseVerdict
 
-SCHEMA = "partialslip/verify/1"
+SCHEMA = "partialslip/verify/2"
 _FILE = "results.json"
 
-Verdicts = Mapping[str, Sequence[Verdict]]
+Verdicts = Mapping[str, Sequence[CaseVerdict]]
 
 
 def write_verdicts(folder: Path, settings: Mapping[str, Any], verdicts: Verdicts, finished: bool) -> list[Path]:
@@ -28,7 +30,7 @@ def write_verdicts(folder: Path, settings: Mapping[str, Any], verdicts: Verdicts
         "settings": dict(settings),
         "finished": finished,
         "versions": versions(),
-        "cases": {name: [asdict(verdict) for verdict in some] for name, some in verdicts.items()},
+        "cases": {name: [verdict.data for verdict in some] for name, some in verdicts.items()},
     }
     texts = {_FILE: json.dumps(record, indent=1, allow_nan=False) + "\n", "results.csv": _csv(every_one(verdicts))}
     return write_texts(folder, texts)
@@ -46,55 +48,55 @@ def was_finished(folder: Path) -> bool:
 def print_verdicts(verdicts: Verdicts, console: Console, every: bool = True) -> None:
     """Print a line for each case and method, of its quantity nearest to its bar (or without ``every`` for what is
     missed only), and the sum of all."""
-    rows = nearest(verdicts)
-    shown = rows if every else [row for row in rows if not row.passed]
+    closest = nearest(verdicts)
+    shown = closest if every else [row for row in closest if missed(row)]
     if shown:
-        headings = ("case", "method", "closest", "value", "bar", "faces", "CPU s", "")
+        headings = ("case", "method", "closest", "error", "bar", "iterations", "CPU s", "")
         print_table(console, headings, map(_row, shown), words=(0, 1, 2, 7))
-    for verdict in every_one(verdicts):
-        if not verdict.passed:
-            what = " ".join(part for part in (_shown(verdict), verdict.found) if part)
-            console.print(f"missed: {verdict.case}, {verdict.method}: {what}", soft_wrap=True, markup=False)
-    if rows:
-        most = max(rows, key=lambda row: row.iterations)
+    listed = every_one(verdicts)
+    for verdict in filter(missed, listed):
+        console.print(f"missed: {verdict.case}, {verdict.method}: {verdict.text}", soft_wrap=True, markup=False)
+    if closest:
+        most = max(closest, key=lambda row: row.iterations)
+        unjudged = sum(verdict.outcome is Outcome.NOT_JUDGED for verdict in listed)
         console.print(
-            f"{len(verdicts):,} cases, {sum(not row.passed for row in rows):,} with something missed, "
-            f"{sum(row.cpu_s for row in rows):.1f} CPU s, at most {most.iterations:,} iterations ({most.case})",
+            f"{len(verdicts):,} cases, {sum(map(missed, closest)):,} with something missed"
+            f"{f', {unjudged:,} of {len(listed):,} verdicts not judged' if unjudged else ''}, "
+            f"{sum(row.cpu_s for row in closest):.1f} CPU s, at most {most.iterations:,} iterations ({most.case})",
             style="bold", soft_wrap=True, markup=False,
         )  # fmt: skip
 
 
-def _csv(verdicts: Iterable[Verdict]) -> str:
-    names = [each.name for each in fields(Verdict)]
-    return csv_text(names, ([getattr(verdict, name) for name in names] for verdict in verdicts))
+def _csv(verdicts: Iterable[CaseVerdict]) -> str:
+    names = [each.name for each in fields(CaseVerdict)]
+    return csv_text(names, ([verdict.data[name] for name in names] for verdict in verdicts))
 
 
-def _row(row: Verdict) -> list[str]:
-    value, bar = ("" if number is None else f"{number:.1e}" for number in (row.value, row.bar))
+def _row(row: CaseVerdict) -> list[str]:
+    error, bar = ("" if number is None else f"{number:.1e}" for number in (row.error, row.bar))
     work = f"{row.iterations:,}", f"{row.cpu_s:.2f}"
-    return [row.case, row.method, row.check, value, bar, *work, "ok" if row.passed else "MISSED"]
+    return [row.case, row.method, row.quantity, error, bar, *work, rows.word(row)]
 
 
-def every_one(verdicts: Verdicts) -> list[Verdict]:
+def missed(verdict: CaseVerdict) -> bool:
+    """Whether a verdict says so."""
+    return verdict.outcome is Outcome.MISSED
+
+
+def every_one(verdicts: Verdicts) -> list[CaseVerdict]:
     """All of them in one list."""
     return [verdict for some in verdicts.values() for verdict in some]
 
 
-def nearest(verdicts: Verdicts) -> list[Verdict]:
+def nearest(verdicts: Verdicts) -> list[CaseVerdict]:
     """Of each case and method the verdict that is missed, or nearest to its bar."""
-    groups: dict[tuple[str, str], list[Verdict]] = {}
+    groups: dict[tuple[str, str], list[CaseVerdict]] = {}
     for verdict in every_one(verdicts):
         groups.setdefault((verdict.case, verdict.method), []).append(verdict)
     return [min(some, key=room) for some in groups.values()]
 
 
-def room(verdict: Verdict) -> tuple[bool, float]:
+def room(verdict: CaseVerdict) -> tuple[bool, float]:
     """To sort by: what is missed first, then by how much of the bar is left."""
-    share = verdict.share
-    return verdict.passed, math.inf if share is None else 1 - share
-
-
-def _shown(verdict: Verdict) -> str:
-    if verdict.value is None:
-        return f"{verdict.check}:"
-    return f"{verdict.check} {verdict.value:.2e}" + ("" if verdict.bar is None else f" > {verdict.bar:.2e}")
+    share = verdict.share if verdict.outcome is not Outcome.NOT_JUDGED else None
+    return not missed(verdict), math.inf if share is None else 1 - share

@@ -17,7 +17,7 @@ from partialslip.reading import parse_scene
 from partialslip.report import record, write_run
 from partialslip.run import Run, run
 from partialslip.scene import Scene
-from partialslip.study.ledger import key_of
+from partialslip.study.ledger import key_of, scene_content
 from partialslip.study.sweep import Task
 
 
@@ -36,8 +36,8 @@ class Case:
 
     @property
     def key(self) -> str:
-        """The same for the same case only."""
-        return key_of(self.data)
+        """The same for the same case by the same source files only."""
+        return key_of({**self.data, "scene": scene_content(self.scene)})
 
     @property
     def task(self) -> Task:

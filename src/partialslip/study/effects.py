@@ -11,8 +11,8 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from partialslip.compare import cell_errors
 from partialslip.errors import InputError
+from partialslip.judge import cell_errors
 from partialslip.plan import Effect, Plan, plan, reduced
 from partialslip.report.files import csv_text
 from partialslip.report.rows import engineering

@@ -1,18 +1,28 @@
-"""A ledger: finished cases as JSON lines, written one at a time and never changed, so that a study can be continued."""
+"""A ledger: finished cases as JSON lines, written one at a time and never changed, so that a study can be continued.
+
+A case is known by the content of its scene and settings, and by a checksum of the packages' source files. What does not
+fit is solved again. Commit and versions are written down, but decide nothing.
+"""
 
 import hashlib
 import json
 import os
 import platform
 import subprocess
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from datetime import UTC, datetime
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from partialslip.errors import InputError
 from partialslip.report.record import versions
+from partialslip.scene import Scene
+
+_PACKAGES = ("partialslip", "partialslip_fem", "partialslip_meshes")
 
 
 class Ledger:
@@ -58,6 +68,11 @@ class Ledger:
     def __len__(self) -> int:
         return len(self._entries)
 
+    @property
+    def outdated(self) -> int:
+        """How many entries are from other source files than today's: their cases are solved again."""
+        return sum(entry.get("made", {}).get("code") != source_checksum() for entry in self)
+
     def add(self, key: str, found: Mapping[str, Any]) -> None:
         """Append an entry, on the disk when this returns. Raises InputError if the file cannot be written."""
         entry = {"key": key, **found, "made": {"at": datetime.now(UTC).isoformat(timespec="seconds"), **_origin()}}
@@ -73,13 +88,45 @@ class Ledger:
 
 
 def key_of(data: Mapping[str, Any]) -> str:
-    """A key that is the same for the same plain data only."""
-    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()[:16]
+    """A key that is the same for the same plain data by the same source files only."""
+    text = json.dumps({"data": data, "code": source_checksum()}, sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def scene_content(scene: Scene) -> dict[str, Any]:
+    """The plain data of a scene, and the checksums of the mesh files that it names (None for a file that cannot be
+    read)."""
+    files = [body.mesh for _, body in scene.bodies if body.mesh is not None]
+    return {**msgspec.to_builtins(scene), "mesh files": {file: _checksum([Path(file)]) for file in files}}
+
+
+@cache
+def source_checksum() -> str:
+    """Checksum of all files of the packages, as they are installed: code and data."""
+    roots = [Path(place) for name in _PACKAGES for place in find_spec(name).submodule_search_locations]  # type: ignore[union-attr]
+    return checksum_of(roots)
+
+
+def checksum_of(folders: Iterable[Path]) -> str:
+    """Checksum of the names and contents of the files in ``folders``, without what Python compiles from them."""
+    files = [path for folder in folders for path in sorted(folder.rglob("*")) if path.is_file()]
+    return _checksum([path for path in files if "__pycache__" not in path.parts]) or ""
+
+
+def _checksum(files: Iterable[Path]) -> str | None:
+    found = hashlib.sha256()
+    try:
+        for path in files:
+            found.update(f"{path.name}\0{path.stat().st_size}\0".encode())
+            found.update(path.read_bytes())
+    except OSError:
+        return None
+    return found.hexdigest()[:16]
 
 
 @cache
 def _origin() -> dict[str, Any]:
-    """Versions, machine and, in a clone, the commit."""
+    """Versions, machine, checksum of the source files and, in a clone, the commit."""
     here = Path(__file__).parent
     git = ["git", "-C", str(here), "describe", "--always", "--dirty", "--abbrev=12"]
     try:
@@ -87,7 +134,7 @@ def _origin() -> dict[str, Any]:
     except (OSError, subprocess.SubprocessError):
         commit = None
     machine = {"system": platform.system(), "processor": _processor(), "cores": os.cpu_count()}
-    return {"versions": versions(), "machine": machine, "commit": commit}
+    return {"versions": versions(), "machine": machine, "commit": commit, "code": source_checksum()}
 
 
 def _processor() -> str:

@@ -3,25 +3,25 @@ and the document about them."""
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from partialslip.errors import InputError, MissingLibraryError
+from partialslip.judge import Outcome, overall
 from partialslip.plan import plan
 from partialslip.report.document import Account, document, read_study
 from partialslip.report.figure import traction_svg
 from partialslip.report.files import scene_toml, tractions_csv, write_texts
 from partialslip.report.pdf import write_pdf
-from partialslip.report.record import versions
 from partialslip.report.sheet import sheet
 from partialslip.report.verdicts import was_finished, write_verdicts
 from partialslip.result import Result
 from partialslip.run import METHODS, compared
-from partialslip.study.ledger import Ledger, key_of
+from partialslip.study.ledger import Ledger, key_of, scene_content
 from partialslip.study.sweep import Progress, Task, sweep, workers
-from partialslip.verify import Case, Found, Verdict, judge, solve_case, stress_suite, suite
+from partialslip.verify import Case, CaseVerdict, Found, judge, solve_case, stress_suite, suite
 from partialslip.verify.suites import SUITES, Maker, Makers, Suite
 
 _SCENES, _FIGURE = "scenes", "tractions.svg"
@@ -35,22 +35,31 @@ class Verification:
 
     Parameters
     ----------
-    verdicts : dict of str to list of Verdict
+    verdicts : dict of str to list of CaseVerdict
         By case.
     files : list of Path
         What was written.
     missing : str
         What the PDF would need, where there is none.
+    again : tuple of str
+        Cases that an earlier, stopped run had finished, but of another scene, other settings or by other source files,
+        so that they were solved again.
     """
 
-    verdicts: dict[str, list[Verdict]]
+    verdicts: dict[str, list[CaseVerdict]]
     files: list[Path]
     missing: str = ""
+    again: tuple[str, ...] = ()
+
+    @property
+    def outcome(self) -> Outcome:
+        """Passed, missed or not judged, as a whole (:func:`partialslip.judge.overall`)."""
+        return overall(verdict for some in self.verdicts.values() for verdict in some)
 
     @property
     def passed(self) -> bool:
-        """Whether nothing is missed."""
-        return all(verdict.passed for some in self.verdicts.values() for verdict in some)
+        """Whether something was judged and nothing is missed."""
+        return self.outcome is Outcome.PASSED
 
 
 def verify_suite(
@@ -67,7 +76,8 @@ def verify_suite(
 ) -> Verification:
     """Hold the methods against their bars on the cases of a suite, and write the verdicts and the report on them.
 
-    A run that was stopped goes on where it was; one that had come to its end begins anew.
+    A run that was stopped goes on where it was, but for cases whose scene, settings or source files have changed
+    meanwhile: these are solved again. A run that had come to its end begins anew.
 
     Parameters
     ----------
@@ -96,13 +106,14 @@ def verify_suite(
     """
     if processes is not None and processes < 1:
         raise InputError(f"--processes {processes}: must be >= 1")
-    settings, makers = _cases(name, only, method, seed, count)
+    settings, makers, contents = _cases(name, only, method, seed, count)
     studies = [read_study(Path(each)) for each in include]
     folder = Path(out) if out is not None else Path("results") / _folder(settings)
     ledger = _ledger(folder)
     write_verdicts(folder, settings, {}, finished=False)
-    same = {key: setting for key, setting in settings.items() if key not in ("only", "count")} | versions()
-    keys = {case: key_of({**same, "case": case}) for case in makers}
+    keys = {case: key_of(content) for case, content in contents.items()}
+    finished = {entry["case"] for entry in ledger}
+    again = tuple(case for case, key in keys.items() if case in finished and key not in ledger)
     work = partial(solve_and_judge, folder=None if name == "stress" else folder / _SCENES)
     tasks = [Task(keys[case], work, make) for case, make in makers.items()]
     try:
@@ -120,7 +131,7 @@ def verify_suite(
         write_verdicts(folder, settings, _verdicts(ledger, keys), finished=False)
         raise
     files = [ledger.path, *write_verdicts(folder, settings, verdicts, finished=True), *files]
-    return Verification(verdicts, files, missing)
+    return Verification(verdicts, files, missing, again)
 
 
 def solve_and_judge(make: Maker, folder: Path | None) -> dict[str, Any]:
@@ -128,7 +139,7 @@ def solve_and_judge(make: Maker, folder: Path | None) -> dict[str, Any]:
     tractions and their figure go into a folder of its name in there."""
     case = make()
     found = solve_case(case)
-    entry = {"case": case.name, "hard": case.hard, "verdicts": [asdict(verdict) for verdict in judge(case, found)]}
+    entry = {"case": case.name, "hard": case.hard, "verdicts": [verdict.data for verdict in judge(case, found)]}
     return entry if folder is None else {**entry, "sheet": _file(case, found, folder / case.name)}
 
 
@@ -145,8 +156,8 @@ def _file(case: Case, found: Found, folder: Path) -> dict[str, Any] | None:
 
 def _cases(
     name: Suite, only: Sequence[str], method: str | None, seed: int | None, count: int | None
-) -> tuple[dict[str, Any], Makers]:
-    """What was asked for, and the cases."""
+) -> tuple[dict[str, Any], Makers, dict[str, Any]]:
+    """What was asked for, the cases, and the content that a ledger knows each of them by."""
     if name not in SUITES:
         raise InputError(f"--suite {name!r}: must be one of {', '.join(SUITES)}")
     settings: dict[str, Any] = {"suite": name, "only": list(only)}
@@ -155,12 +166,33 @@ def _cases(
         for key, value in own.items():
             if value is not None:
                 raise InputError(f"--{key} {value}: only with --suite stress")
-        return settings, suite(name, only)
+        makers = suite(name, only)
+        return settings, makers, {case: _content(make()) for case, make in makers.items()}
     method = "exact" if method is None else method
     if method not in METHODS:
         raise InputError(f"--method {method!r}: must be one of {', '.join(METHODS)}")
     seed, count = _within("seed", seed, 0, 0), _within("count", count, 100, 1)
-    return {**settings, "method": method, "seed": seed, "count": count}, stress_suite(method, seed, count, only)
+    makers = stress_suite(method, seed, count, only)
+    # a random scene is made of its name, by the source files
+    contents = {case: {"method": method, "case": case} for case in makers}
+    return {**settings, "method": method, "seed": seed, "count": count}, makers, contents
+
+
+def _content(case: Case) -> dict[str, Any]:
+    """A case as plain data: its scene and what is asked of the methods."""
+    meshes = [case.meshes.func, case.meshes.keywords] if isinstance(case.meshes, partial) else [case.meshes]
+    own = {
+        "methods": list(case.methods),
+        "bars": dict(case.bars),
+        "compared": case.compared,
+        "meshes": list(map(_named, meshes)),
+    }
+    return {"scene": scene_content(case.scene), **own}
+
+
+def _named(part: Any) -> Any:
+    """A function by its name."""
+    return getattr(part, "__qualname__", part)
 
 
 def _within(key: str, value: int | None, usual: int, least: int) -> int:
@@ -187,10 +219,10 @@ def _ledger(folder: Path) -> Ledger:
     return Ledger(folder / "ledger.jsonl")
 
 
-def _verdicts(ledger: Ledger, keys: Mapping[str, str]) -> dict[str, list[Verdict]]:
+def _verdicts(ledger: Ledger, keys: Mapping[str, str]) -> dict[str, list[CaseVerdict]]:
     """Those that are in the ledger, in the order of ``keys``."""
     known = {case: ledger[key]["verdicts"] for case, key in keys.items() if key in ledger}
-    return {case: [Verdict(**each) for each in verdicts] for case, verdicts in known.items()}
+    return {case: [CaseVerdict.of(each) for each in verdicts] for case, verdicts in known.items()}
 
 
 def _figures(folder: Path, entries: Mapping[str, Mapping[str, Any]]) -> dict[str, str]:

@@ -1,12 +1,13 @@
 """Verification: the shipped scenes, the catalogue of hard cases, and random scenes, each with its verdicts."""
 
+from partialslip.judge import Bar as Bar
 from partialslip.verify.case import REQUIREMENTS as REQUIREMENTS
-from partialslip.verify.case import Bar as Bar
 from partialslip.verify.case import Case as Case
+from partialslip.verify.case import CaseVerdict as CaseVerdict
 from partialslip.verify.case import Found as Found
-from partialslip.verify.case import Verdict as Verdict
 from partialslip.verify.case import judge as judge
 from partialslip.verify.case import number_of as number_of
+from partialslip.verify.case import requirement_of as requirement_of
 from partialslip.verify.case import run_case as run_case
 from partialslip.verify.case import solve_case as solve_case
 from partialslip.verify.catalogue import families as families

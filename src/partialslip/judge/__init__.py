@@ -1,0 +1,16 @@
+"""Judge a result: error measures, bars and verdicts. No other module says that a result has passed or missed a bar."""
+
+from partialslip.judge.comparison import Comparison as Comparison
+from partialslip.judge.comparison import compare as compare
+from partialslip.judge.means import cell_errors as cell_errors
+from partialslip.judge.means import cell_means as cell_means
+from partialslip.judge.verdict import BARS as BARS
+from partialslip.judge.verdict import NO_BAR as NO_BAR
+from partialslip.judge.verdict import P_BAR as P_BAR
+from partialslip.judge.verdict import Q_BAR as Q_BAR
+from partialslip.judge.verdict import Bar as Bar
+from partialslip.judge.verdict import Outcome as Outcome
+from partialslip.judge.verdict import Verdict as Verdict
+from partialslip.judge.verdict import conditions as conditions
+from partialslip.judge.verdict import judged as judged
+from partialslip.judge.verdict import overall as overall

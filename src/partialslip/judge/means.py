@@ -1,0 +1,98 @@
+"""Means of tractions over cells, relative L2 errors of these means, and resultants."""
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from partialslip.result import Array, Traction
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+
+# Errors of q are relative to q's norm, or to so much of f p's norm where q's is less.
+LEAST_SHEAR = 1e-3
+
+
+def cell_errors(traction: Traction, reference: Traction, f: float = 0.0) -> tuple[float, float]:
+    """Relative L2 errors of p and of q = dq/2 as averages over cells that cover the reference's contact.
+
+    Parameters
+    ----------
+    traction, reference : Traction
+    f : float, optional
+        The coefficient of friction: the error of q is relative to the larger of q's norm and 1e-3 of f p's.
+    """
+    errors = norm_errors(traction, reference, f, ("p", "q"))
+    return errors["p"], errors["q"]
+
+
+def norm_errors(traction: Traction, reference: Traction, f: float, keys: tuple[str, ...]) -> dict[str, float]:
+    """Relative L2 errors of cell averages by key: of ``p`` and ``p_1`` (at load points 2 and 1) relative to their norm,
+    of ``q``, ``q1`` and ``q2`` relative to the larger of their norm and 1e-3 of f p's. Zero if both are zero."""
+    cells, every = _cells(traction, reference), ("p", *keys)
+    widths = np.diff(cells)
+    found, true = (means(partial(fields, each, keys=every), cells, each.breaks) for each in (traction, reference))
+    off, norms = (np.sqrt(values**2 @ widths) for values in (found - true, true))
+    least = LEAST_SHEAR * f * norms[0]
+    return {
+        key: _ratio(error, norm if key.startswith("p") else max(norm, least))
+        for key, error, norm in zip(keys, off[1:].tolist(), norms[1:].tolist(), strict=True)
+    }
+
+
+def resultants(traction: Traction, keys: tuple[str, ...]) -> dict[str, float]:
+    """Integrals of p, p_1 or q over everything that the method has a traction for, N/m, by key."""
+    cells = np.unique(np.concatenate([traction.breaks, [] if traction.cells is None else traction.cells]))
+    sums = means(partial(fields, traction, keys=keys), cells, cells) @ np.diff(cells)
+    return dict(zip(keys, sums.tolist(), strict=True))
+
+
+def fields(traction: Traction, x: Array, keys: tuple[str, ...]) -> Array:
+    """Tractions at ``x`` (n,) by key, (keys, n), Pa: p and p_1, the pressures at load points 2 and 1; q = dq/2; q1 and
+    q2, which the method must know."""
+    p, dq = traction.at(x)
+    known = {"p": p, "p_1": p, "q": dq / 2}
+    if traction.pressures_at:
+        known["p_1"], known["p"] = traction.pressures_at(x)
+    if traction.levels_at:
+        known["q1"], known["q2"] = traction.levels_at(x)
+    return np.stack([known[key] for key in keys])
+
+
+def cell_means(traction: Traction, cells: Array) -> tuple[Array, Array]:
+    """Means of p and dq over each of the cells with ends ``cells`` (ascending), (c,) each."""
+    p, dq = means(lambda x: np.stack(traction.at(x)), cells, traction.breaks)
+    return p, dq
+
+
+def means(function: Callable[[Array], Array], cells: Array, breaks: Array) -> Array:
+    """Means of ``function`` (k,) -> (..., k) over the cells, (..., c).
+
+    Gauss quadrature in an angle over every piece between cell ends and breaks of the traction, which takes square
+    roots at the breaks exactly.
+    """
+    ends = np.unique(np.concatenate([cells, breaks]))
+    ends = ends[(ends >= cells[0]) & (ends <= cells[-1])]
+    middle, half = (ends[1:] + ends[:-1]) / 2, np.diff(ends) / 2
+    angle = np.pi / 2 * (_NODES + 1)
+    weights = np.pi / 2 * _WEIGHTS * np.sin(angle)
+    points = middle[:, None] - half[:, None] * np.cos(angle)
+    values = function(points.ravel())
+    pieces = half * (values.reshape(*values.shape[:-1], *points.shape) @ weights)
+    first = np.searchsorted(ends, cells[:-1])
+    return np.add.reduceat(pieces, first, axis=-1) / np.diff(cells)
+
+
+def _cells(traction: Traction, reference: Traction) -> Array:
+    """Ends of the cells to average over: those that overlap the reference's contact, and what they leave of it. They
+    are the method's own; else the reference's; else the spaces between the method's points."""
+    known = (each.cells for each in (traction, reference) if each.cells is not None)
+    cells = next(known, np.unique(traction.x))
+    left, right = reference.breaks.min(), reference.breaks.max()
+    first, last = np.searchsorted(cells, left, "right") - 1, np.searchsorted(cells, right, "left")
+    own = cells[max(first, 0) : last + 1]
+    return np.union1d(own, [end for end in (left, right) if not own[0] <= end <= own[-1]])
+
+
+def _ratio(error: float, norm: float) -> float:
+    return 0.0 if error == 0 else error / norm if norm else float("inf")

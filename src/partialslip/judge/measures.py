@@ -1,0 +1,140 @@
+"""Error measures between two results of one scene. They are fixed, so that figures compare across versions and codes.
+
+Both values of a measure are on one scale, taken from the reference and the scene, so that their difference is the
+error. Norms have no values, only the error.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from partialslip.judge.means import norm_errors, resultants
+from partialslip.judge.stresses import inside_error, surface_error
+from partialslip.result import Result, Traction
+from partialslip.scene import Scene
+
+NORM = "norm"
+_SHEAR = ("m", "n", "dQ", "q", "q_max", "q1", "q2")  # what friction, and a steady partial slip, must be there for
+
+
+@dataclass(frozen=True)
+class Measure:
+    """How far a result is from the reference in one quantity.
+
+    Parameters
+    ----------
+    quantity, scale : str
+        Its key, and the unit of values and error; :data:`NORM` if the error is relative to the reference's norm.
+    reference, found : float or None
+        Both values; None for norms, and where there is no value.
+    error : float or None
+        NaN if one of the values is; None if the result has no value where the reference has one.
+    undetermined : str
+        Why there is nothing to judge; empty as a rule.
+    """
+
+    quantity: str
+    scale: str
+    reference: float | None
+    found: float | None
+    error: float | None
+    undetermined: str = ""
+
+
+def measures(result: Result, reference: Result, scene: Scene) -> Iterator[Measure]:
+    """Measure what the ``result`` and the ``reference`` know of the ``scene``. What does not exist has no values and no
+    error; what one of them calls undetermined has both, but is not to be judged."""
+    for quantity, scale, true, found, error in _measured(result, reference, scene):
+        if absent := _absent(quantity, reference, scene):
+            yield Measure(quantity, scale, None, None, None, absent)
+        else:
+            yield Measure(quantity, scale, true, found, error, _undetermined(quantity, result, reference))
+
+
+def _absent(quantity: str, reference: Result, scene: Scene) -> str:
+    """Say why the quantity does not exist; empty if it does."""
+    if quantity not in _SHEAR:
+        return ""
+    if scene.friction.f == 0:
+        return "there is no friction"
+    if reference.regime == "sliding":
+        return "the contact slides"
+    if reference.regime == "ratchets":
+        return "the contact ratchets: its steady state is not reached"
+    if quantity == "dQ" and not scene.load.in_phase:
+        return "Q and sigma are out of phase: dq is the range of q at each point, and need not add up to dQ"
+    return ""
+
+
+def _undetermined(quantity: str, result: Result, reference: Result) -> str:
+    """Say which of both calls the quantity undetermined, and why; empty if none does."""
+    key = "q" if quantity == "q_max" else quantity
+    calls = (f"{each.method}: {each.undetermined[key]}" for each in (reference, result) if key in each.undetermined)
+    return next(calls, "")
+
+
+_Values = tuple[str, str, float | None, float | None, float | None]
+
+
+def _measured(result: Result, reference: Result, scene: Scene) -> Iterator[_Values]:
+    """Quantity, scale, both values and error, one by one."""
+    a, p0, f = reference.a, reference.p0, scene.friction.f
+    yield _apart("a", "a", 1.0, result.a / a)
+    yield from _contact_ends(result, reference)
+    yield from _stick_ends(result, reference)
+    of, to = result.traction, reference.traction
+    pressures = ("p_1", "p") if of.pressures_at or to.pressures_at else ("p",)
+    levels = ("q1", "q2") if of.levels_at and to.levels_at else ()
+    errors = norm_errors(of, to, f, (*pressures, "q", *levels))
+    sums = resultants(of, (*pressures, "q"))
+    for key in pressures:
+        yield _apart(key.replace("p", "P"), "P", 1.0, sums[key] / scene.P)
+        yield key, NORM, None, None, errors[key]
+    yield _apart("p_max", "p0", to.p_max / p0, of.p_max / p0)
+    limit = f * scene.P
+    yield _apart("dQ", "2 f P", *((half / limit if limit else math.nan) for half in (scene.load.dQ / 2, sums["q"])))
+    yield "q", NORM, None, None, errors["q"]
+    yield _apart("q_max", "f p0", *((_q_max(each) / (f * p0) if f else math.nan) for each in (to, of)))
+    for key in levels:
+        yield key, NORM, None, None, errors[key]
+    if result.surface and reference.surface:
+        largest, true = result.surface.largest[1], reference.surface.largest[1]
+        yield _apart("largest", "of exact", math.copysign(1.0, true), largest / abs(true))
+    for key, error in (("surface", surface_error(result, reference)), ("inside", inside_error(result, reference))):
+        if error is not None:
+            yield key, NORM, None, None, error
+
+
+def _apart(quantity: str, scale: str, reference: float, found: float) -> _Values:
+    return quantity, scale, reference, found, abs(found - reference)
+
+
+def _contact_ends(result: Result, reference: Result) -> Iterator[_Values]:
+    """Both ends of the contact, in a; at load points 1 and 2 if they differ in one of the results."""
+    same = all(first == second for first, second in (result.ends, reference.ends))
+    for point, (found, true) in enumerate(zip(result.ends, reference.ends, strict=True), start=1):
+        for side, end, exact in zip(("left", "right"), found, true, strict=True):
+            if not same or point == 2:
+                yield _apart(side if same else f"{side}_{point}", "a", exact / reference.a, end / reference.a)
+
+
+def _stick_ends(result: Result, reference: Result) -> Iterator[_Values]:
+    """m and n in a. Their errors are those of the stick zone's centre and half-width, which do not cancel if the zone
+    is tiny."""
+    a = reference.a
+    error: dict[str, float | None] = {"m": None, "n": None}
+    found, true = ((each.stick_centre, each.stick_half_width) for each in (result, reference))
+    if None not in (*found, *true):
+        centre, half_width = (off - exact for off, exact in zip(found, true, strict=True))  # type: ignore[operator]
+        error = {"m": abs(half_width - centre) / a, "n": abs(half_width + centre) / a}
+    for key, off in error.items():
+        values = (None if end is None else end / a for end in (getattr(reference, key), getattr(result, key)))
+        yield key, "a", *values, off  # type: ignore[misc]
+
+
+def _q_max(traction: Traction) -> float:
+    """The largest |q| = |dq|/2, Pa, at the method's points and at the breaks of its tractions."""
+    _, dq = traction.at(np.union1d(traction.x, traction.breaks))
+    return float(np.abs(dq).max()) / 2

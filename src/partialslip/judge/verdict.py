@@ -1,0 +1,150 @@
+"""Bars and verdicts: a verdict says passed, missed or not judged of one quantity, and why."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from partialslip.result import CERTIFICATE_BAR, Result
+
+# Bars on traction errors, in multiples of the accuracy asked of a, m and n.
+P_BAR, Q_BAR = 10.0, 15.0
+
+NAN, NO_BAR = "not a number", "no bar"
+
+#: Bars by quantity, in multiples of the accuracy asked for. Quantities that are not listed have no bar.
+BARS = {
+    **dict.fromkeys(("a", "left", "right", "left_1", "right_1", "left_2", "right_2", "m", "n"), 1.0),
+    **dict.fromkeys(("P", "P_1", "p", "p_1"), P_BAR),
+    **dict.fromkeys(("dQ", "q", "q1", "q2"), Q_BAR),
+}
+
+
+class Outcome(StrEnum):
+    """The three values of a verdict."""
+
+    PASSED = "passed"
+    MISSED = "missed"
+    NOT_JUDGED = "not judged"
+
+
+class Bar(NamedTuple):
+    """The largest error that is allowed, None if the quantity is not judged; and the reason, where the bar is not the
+    usual one."""
+
+    value: float | None
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The verdict on one quantity.
+
+    Parameters
+    ----------
+    quantity : str
+        Its key, for example ``m`` or ``q_max``.
+    outcome : Outcome
+    reference, found : float, str or None
+        The reference's value and the value found, in units of ``scale``, or in words; None for norms, which have none.
+    error : float or None
+        The error, or the residual; None if there is none.
+    bar : float or None
+        The largest error that passes; None if there is no bar.
+    reason : str
+        Why the quantity is missed or not judged, or why its bar is not the usual one.
+    scale : str
+        Unit of both values and of the error, for example ``a``, ``f p0`` or ``norm`` (relative).
+    estimate : float or None
+        The error as the method itself estimates it.
+    """
+
+    quantity: str
+    outcome: Outcome
+    reference: float | str | None = None
+    found: float | str | None = None
+    error: float | None = None
+    bar: float | None = None
+    reason: str = ""
+    scale: str = ""
+    estimate: float | None = None
+
+    @property
+    def share(self) -> float | None:
+        """The error as a fraction of its bar; None where one of them is missing, or the bar is 0."""
+        return None if self.error is None or not self.bar else self.error / self.bar
+
+    @property
+    def known(self) -> bool:
+        """Whether there is a value or an error to show."""
+        return (self.reference, self.found, self.error) != (None, None, None)
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """The verdict as plain data, for JSON: null for what is not a number."""
+        return {key: _plain(value) for key, value in vars(self).items()}
+
+    @property
+    def text(self) -> str:
+        """The verdict in words: quantity, error and bar, or the reason."""
+        if self.error is None or self.bar is None or not math.isfinite(self.error):
+            return f"{self.quantity}: {self.reason or self.outcome}"
+        return f"{self.quantity}: error {self.error:.3g} {'<=' if self.error <= self.bar else '>'} {self.bar:.3g}"
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Outcome):
+        return str(value)
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def judged(error: float, bar: float) -> Outcome:
+    """Judge an error: it is passed if it is a number of at most ``bar``; NaN is missed."""
+    return Outcome.PASSED if error <= bar else Outcome.MISSED
+
+
+def overall(verdicts: Iterable[Verdict], conditions: Iterable[Verdict] = ()) -> Outcome:
+    """Judge as a whole: missed if any of the verdicts is missed, passed if one of ``verdicts`` is passed and none is
+    missed, not judged otherwise. ``conditions`` can be missed, but a result that meets them is not right for that."""
+    verdicts = tuple(verdicts)
+    if any(verdict.outcome is Outcome.MISSED for verdict in (*verdicts, *conditions)):
+        return Outcome.MISSED
+    if any(verdict.outcome is Outcome.PASSED for verdict in verdicts):
+        return Outcome.PASSED
+    return Outcome.NOT_JUDGED
+
+
+def conditions(result: Result) -> tuple[Verdict, ...]:
+    """Judge what a result must meet by itself: every number is finite (``finite``; the error is the count of those that
+    are not), and every residual of its certificate is at most :data:`partialslip.result.CERTIFICATE_BAR`."""
+    lost = _not_finite(result)
+    reason = f"NaN or infinite: {lost:,} of the result's numbers" if lost else ""
+    finite = Verdict("finite", judged(lost, 0.0), error=float(lost), bar=0.0, reason=reason, scale="numbers")
+    certificate = (
+        Verdict(
+            f"certificate {name}",
+            judged(residual, CERTIFICATE_BAR),
+            error=residual,
+            bar=CERTIFICATE_BAR,
+            reason="" if math.isfinite(residual) else NAN,
+            scale="f p0 or f P",
+        )
+        for name, residual in result.certificate.items()
+        if name != "steady"
+    )
+    return finite, *certificate
+
+
+def _not_finite(result: Result) -> int:
+    """Count the numbers of a result that are NaN or infinite."""
+    traction, slip = result.traction, result.slip
+    arrays = [traction.x, traction.p, traction.dq, traction.q1, traction.q2, traction.p1]
+    arrays += [slip.x, slip.slip, np.array(slip.dissipated)] if slip else []
+    numbers = [result.a, result.p0, result.stick_centre, result.stick_half_width]
+    numbers += [*result.certificate.values(), *result.estimate.values(), *result.limits.values()]
+    numbers += [end for pair in result.ends for end in pair]
+    arrays.append(np.array([number for number in numbers if number is not None]))
+    return sum(int((~np.isfinite(array)).sum()) for array in arrays if array is not None)

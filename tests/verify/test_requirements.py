@@ -1,0 +1,151 @@
+"""Each requirement, R1 to R9, sees a deliberate fault. Nothing is solved."""
+
+from dataclasses import replace
+
+import msgspec
+import numpy as np
+import pytest
+from known import EXACT, SCENE, A, result, traction
+
+from partialslip.judge import Bar, Outcome
+from partialslip.report.verdicts import nearest, room
+from partialslip.verify import REQUIREMENTS, Case, CaseVerdict, judge, number_of, requirement_of, run_case
+from partialslip.verify import case as module
+from partialslip.verify.case import Failure, solve_case
+
+NAN = float("nan")
+CASE = Case("made", SCENE, ("fem",))
+SOUND = result()
+
+
+def wavy(number):
+    """Tractions whose pressure (0) or shear (1) goes up and down by a tenth; its sum is right."""
+
+    def at(x):
+        values = [np.array(each) for each in traction().at(x)]
+        values[number] *= 1 + 0.1 * np.cos(9 * np.pi * x / A)
+        return tuple(values)
+
+    return replace(traction(), at=at)
+
+
+FAULTS = {
+    "R1": ("finishes", Failure("ZeroDivisionError: none", 2.0)),
+    "R2": ("finite", replace(SOUND, limits={"Q_mean": NAN})),
+    "R3": ("certificate", replace(SOUND, certificate={"kkt": 1e-12, "equilibrium": 1e-3, "steady": 1.0})),
+    "R4": ("regime", replace(SOUND, regime="large tension")),
+    "R5": ("a", result(a=1.01, contact_ends=((-A, A), (-A, A)))),
+    "R6": ("m", result(centre=-0.005, half_width=EXACT.stick_half_width / A + 0.005)),
+    "R7": ("n", result(centre=0.005, half_width=EXACT.stick_half_width / A + 0.005)),
+    "R8": ("p", result(of=wavy(0))),
+    "R9": ("q", result(of=wavy(1))),
+}
+
+
+def found(fem, case=CASE, exact=EXACT):
+    return judge(case, {"exact": exact, "fem": fem})
+
+
+def missed(verdicts):
+    return {each.quantity for each in verdicts if each.outcome is Outcome.MISSED}
+
+
+@pytest.mark.fault
+@pytest.mark.parametrize("number", FAULTS)
+def test_each_requirement_sees_its_fault(number):
+    """Deliberate fault: the requirement, and no other one, is missed."""
+    quantity, wrong = FAULTS[number]
+    verdicts = found(wrong)
+    (seen,) = (each for each in verdicts if each.outcome is Outcome.MISSED)
+    assert (seen.quantity, number_of(seen.quantity), seen.requirement) == (
+        quantity, number, f"{number}: {REQUIREMENTS[quantity]}",
+    )  # fmt: skip
+    assert (seen.case, seen.method) == ("made", "fem")
+    assert min(verdicts, key=room) is seen
+    assert nearest({"made": verdicts}) == [seen]
+
+
+def test_a_sound_result_answers_all_requirements():
+    verdicts = found(SOUND)
+    assert missed(verdicts) == set()
+    assert {number_of(each.quantity) for each in verdicts} == set(FAULTS) == {f"R{n}" for n in range(1, 10)}
+    assert list(REQUIREMENTS) == [quantity for quantity, _ in FAULTS.values()]
+    assert {each.outcome for each in verdicts} == {Outcome.PASSED}
+    assert not {"p_max", "q_max"} & {each.quantity for each in verdicts}
+    kept = {"left": "a", "right_2": "a", "P": "p", "p_1": "p", "dQ": "q", "q1": "q", "m": "m", "finite": "finite"}
+    assert {key: requirement_of(key) for key in kept} == kept
+
+
+def test_work_and_words_go_with_a_verdict():
+    counted = replace(SOUND, counts={"iterations": 7})
+    assert {(each.iterations, each.cpu_s) for each in found(counted)} == {(7, 1.0)}
+    assert {each.iterations for each in found(SOUND)} == {0}
+    (failed,) = found(FAULTS["R1"][1])
+    assert (failed.iterations, failed.cpu_s, failed.reason) == (0, 2.0, "ZeroDivisionError: none")
+
+
+def test_the_worst_residual_is_shown_whatever_the_order():
+    for certificate in ({"one": 1e-9, "two": 5e-9}, {"two": 5e-9, "one": 1e-9}):
+        (worst,) = (v for v in found(replace(SOUND, certificate=certificate)) if v.quantity == "certificate")
+        assert (worst.error, worst.outcome) == (5e-9, Outcome.PASSED)
+    for certificate in ({"one": 1e-9, "two": NAN}, {"two": NAN, "one": 1e-9}):
+        assert "certificate" in missed(found(replace(SOUND, certificate=certificate)))
+    assert "certificate" not in {v.quantity for v in found(replace(SOUND, certificate={"steady": 1.0}))}
+
+
+def test_bars_are_the_accuracy_asked_for_unless_a_case_or_its_mesh_says_otherwise():
+    bars = {each.quantity: each.bar for each in found(SOUND)}
+    assert (bars["a"], bars["p"], bars["q"]) == pytest.approx((1e-3, 1e-2, 1.5e-2))
+    own = replace(CASE, bars={"fem.a": Bar(0.5, "coarse"), "march.m": Bar(9.0, "no"), "fem.n": Bar(None, "one node")})
+    bars = {each.quantity: (each.bar, each.reason) for each in found(SOUND, own)}
+    assert (bars["a"], bars["m"][0], bars["n"]) == ((0.5, "coarse"), pytest.approx(1e-3), (None, "one node"))
+    fixed = msgspec.structs.replace(SCENE, fem=msgspec.structs.replace(SCENE.fem, size=0.1))
+    for case in (replace(CASE, scene=fixed), replace(CASE, meshes=lambda _: [])):
+        verdicts = {each.quantity: each.outcome for each in found(result(a=2.0), case)}
+        assert (verdicts["a"], verdicts["regime"]) == (Outcome.NOT_JUDGED, Outcome.NOT_JUDGED)
+        own = replace(case, bars={"fem.a": Bar(0.5, "coarse")})
+        assert missed(found(result(a=2.0, contact_ends=((-A, A),) * 2), own)) == {"a"}
+
+
+@pytest.mark.fault
+def test_an_exact_solution_that_is_missing_is_missed():
+    """Deliberate fault: the exact method raises, and is not among the case's own: nothing was compared."""
+    verdicts = found(SOUND, exact=Failure("ValueError: no", 1.0))
+    assert [(v.method, v.quantity) for v in verdicts if v.outcome is Outcome.MISSED] == [("exact", "finishes")]
+    assert {v.quantity for v in verdicts if v.method == "fem"} == {"finishes", "finite", "certificate"}
+    both = judge(replace(CASE, methods=("exact", "fem")), {"exact": EXACT, "fem": SOUND})
+    assert {v.quantity for v in both if v.method == "exact"} == {"finishes", "finite"} | {"certificate"}
+    alone = judge(replace(CASE, compared=False), {"fem": SOUND})
+    assert {v.quantity for v in alone} == {"finishes", "finite", "certificate"}
+
+
+def test_verdicts_come_back_from_their_data():
+    for wrong in (SOUND, *(each for _, each in FAULTS.values())):
+        for verdict in found(wrong):
+            back = CaseVerdict.of(verdict.data)
+            assert back.outcome is verdict.outcome
+            assert back.data == verdict.data
+
+
+def test_a_case_is_solved_by_what_it_needs(monkeypatch):
+    asked = []
+
+    def solved(_, method):
+        asked.append(method)
+        return EXACT if method == "exact" else SOUND
+
+    monkeypatch.setattr(module, "_solve", solved)
+    assert missed(run_case(CASE)) == set()
+    assert asked == ["exact", "fem"]
+    assert list(solve_case(replace(CASE, compared=False))) == ["fem"]
+
+
+def test_what_is_not_judged_is_nearer_to_no_bar_than_what_is():
+    verdicts = found(SOUND, replace(CASE, bars={"fem.a": Bar(None, "none")}))
+    by_quantity = {each.quantity: each for each in verdicts}
+    assert room(by_quantity["a"]) == (True, float("inf"))
+    assert room(by_quantity["finishes"]) == (True, float("inf"))
+    assert room(by_quantity["m"]) == (True, 1.0)
+    half = next(each for each in found(result(a=1.0005)) if each.quantity == "a")
+    assert half.share == pytest.approx(0.5)
+    assert room(half) == (True, pytest.approx(0.5))
