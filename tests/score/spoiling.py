@@ -11,13 +11,18 @@ import msgspec
 import numpy as np
 
 from partialslip.condensed.friction import load_path
+from partialslip.errors import InputError
 from partialslip.halfplane.cells import compliance, forces, graded
 from partialslip.halfplane.contact import contact
 from partialslip.halfplane.method import solve
 from partialslip.plan import plan
 from partialslip.result import Array, Result
 from partialslip.scene import Scene
+from partialslip.score import read_as
+from partialslip.score.method import scored
+from partialslip.score.samples import samples
 
+ROUNDING = 1e-9  # of a
 REACH = 1.1  # half-widths
 SHIFTED = 0.003  # of the half-width: points do not lie evenly about the middle
 DELTAS = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)  # of penalty friction, in the largest slip
@@ -34,9 +39,7 @@ class Table:
 
     def times(self, **factors: float) -> "Table":
         """The table with some of its columns multiplied."""
-        return replace(
-            self, columns={name: column * factors.get(name, 1.0) for name, column in self.columns.items()}
-        )
+        return replace(self, columns={name: column * factors.get(name, 1.0) for name, column in self.columns.items()})
 
 
 @cache
@@ -210,3 +213,58 @@ def spoiled(scene: Scene, sampling: str, seed: int = 0) -> Iterator[tuple[str, s
     if len(x) % 2:
         even = x if sampling != "graded" else np.sort(np.concatenate([x[::2], (x[:-2:2] + x[2::2]) / 2]))
         yield "nodal forces", "2", nodal(scene, even, 2)
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What was read from a spoiled table: the errors of m and n and their own estimates, in a (None where they are not
+    given); the ``spacing`` of the points, in a; and the notes."""
+
+    way: str
+    size: str
+    errors: tuple[float, float] | None
+    estimates: tuple[float, float] | None
+    spacing: float
+    notes: tuple[str, ...]
+
+    @property
+    def honest(self) -> bool:
+        """Whether errors are within three times their estimates, or m and n are not given and a note says why."""
+        if self.errors is None or self.estimates is None:
+            return bool(self.notes)
+        return all(error <= 3 * own + ROUNDING for error, own in zip(self.errors, self.estimates, strict=True))
+
+
+def readings(scene: Scene, sampling: str, seed: int = 0) -> Iterator[Reading]:
+    """Read every table of :func:`spoiled` as ``partialslip score`` does."""
+    asked = exact(scene)
+    for way, size, table in spoiled(scene, sampling, seed):
+        truth, x = table.truth, np.unique(table.columns["x"])
+        spacing = float(np.median(np.diff(x))) / truth.a
+        try:
+            found = read_as(scene, scored(scene, samples(table.columns, way, (1, 1, 1), table.order), way, way), asked)
+        except InputError as error:
+            yield Reading(way, size, None, None, spacing, (str(error),))
+            continue
+        given = found.m is not None and truth.m is not None
+        off = tuple(abs(getattr(found, key) - getattr(truth, key)) / truth.a for key in "mn") if given else None
+        own = tuple(found.estimate[key] for key in "mn") if given else None
+        yield Reading(way, size, off, own, spacing, found.notes)  # type: ignore[arg-type]
+
+
+def counts(read: list[Reading]) -> list[str]:
+    """A table of counts by way and size: tables, those given, within a spacing, withheld, dishonest; and the median of
+    estimate over error, both no less than rounding."""
+    head = "way and size", "tables", "read", "in a spacing", "withheld", "beyond 3 est.", "median est./error"
+    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
+    for key in dict.fromkeys((reading.way, reading.size) for reading in read):
+        of = [reading for reading in read if (reading.way, reading.size) == key]
+        given = [reading for reading in of if reading.errors and reading.estimates]
+        near = [reading for reading in given if max(reading.errors or ()) <= reading.spacing]
+        ratios = [(own + ROUNDING) / (error + ROUNDING) for reading in given
+                  for error, own in zip(reading.errors or (), reading.estimates or (), strict=True)]  # fmt: skip
+        median = f"{np.median(ratios):.2g}" if ratios else "-"
+        dishonest = sum(not reading.honest for reading in of)
+        row = " ".join(key), len(of), len(given), len(near), len(of) - len(given), dishonest, median
+        lines.append("| " + " | ".join(map(str, row)) + " |")
+    return lines

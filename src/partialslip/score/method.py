@@ -1,6 +1,7 @@
 """Tractions from outside as a result, like that of any method."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from partialslip.score.slip import Friction, frictions
 _SLIDES = 0.02  # of 2 f p0: with less room than that, or than noise, nothing is seen to stick
 _APART = 3.0  # times the uncertainty of f, by which 2 f p may be off
 _SIGMAS = 2.0  # standard deviations of x, by which an end may be off
-_CERTAIN = 0.1  # of a: ends of the stick zone that may be off by more are not given
+_CERTAIN = 0.05  # of a: ends of the stick zone that may be off by more are not given
 
 
 class Stick(NamedTuple):
@@ -42,17 +43,8 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     """
     clock = Clock()
     x, p, dq, f = samples.x, samples.p, samples.dq, scene.friction.f
-    cells, least = samples.cells is not None, NOISE * noise(p, x)
-    touching = zone(p, least)
-    if touching is None or touching[1] - touching[0] + 1 < FEWEST:
-        hint = "; or are the elements of another order (--order)?" if cells else ""
-        raise InputError(f"{origin}: p: must stand out from its noise at {FEWEST} or more neighbouring points{hint}")
-    first, last = touching
-    left = left_end(x, p, first, last, cells=cells, least=least)
-    right = right_end(x, p, last, first, cells=cells, least=least)
-    a, middle = (right.x - left.x) / 2, (left.x + right.x) / 2
-    if not a > 0:
-        raise InputError(f"{origin}: p: no contact of any width is found in it")
+    first, last, left, right = _contact(samples, origin)
+    cells, a, middle = samples.cells is not None, (right.x - left.x) / 2, (left.x + right.x) / 2
     p0 = 2 * float(p @ _widths(samples)) / (np.pi * a)
     inside = slice(first, last + 1)
     slips = f > 0 and bool(np.abs(dq).max() > max(ROUNDING * p0, NOISE * noise(dq, x)))
@@ -64,7 +56,8 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     if ends:
         shifted = abs(middle) if abs(middle) > either else 0.0
         uncertainty |= {
-            key: float(np.linalg.norm((end.uncertainty, either, shifted))) / a for key, end in zip("mn", ends, strict=True)
+            key: float(np.linalg.norm((end.uncertainty, either, shifted))) / a
+            for key, end in zip("mn", ends, strict=True)
         }
     uncertain = ends is not None and max(uncertainty["m"], uncertainty["n"]) > _CERTAIN
     known = None if uncertain else ends
@@ -83,13 +76,38 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
             "spacing_over_a": _rounded(float(np.median(np.diff(x[inside]))) / a),
             "noise_over_p0": _rounded(noise(p[inside], x[inside]) / p0),
             **(_friction(stick.sides, f) if stick else {}),
+            **({"columns": samples.made_of} if samples.made_of else {}),
         },
         counts={"points": len(x), "contact_nodes": last - first + 1},
         estimate=uncertainty,
-        notes=(f"m and n are not given: {why}",) if why else (),
+        notes=(*samples.notes, f"m and n are not given: {why}") if why else samples.notes,
         contact_ends=((left.x, right.x),) * 2,
         undetermined=dict.fromkeys("mn", why) if why else {},
     )
+
+
+def centred(samples: Samples, origin: str) -> Samples:
+    """``samples`` with x = 0 in the middle of the contact that they show. Raises InputError like :func:`scored`."""
+    _, _, left, right = _contact(samples, origin)
+    middle = (left.x + right.x) / 2
+    note = f"x = 0 was put in the middle of the contact, at x = {middle:.6g} m"
+    return replace(samples.moved(-middle), notes=(*samples.notes, note))
+
+
+def _contact(samples: Samples, origin: str) -> tuple[int, int, End, End]:
+    """First and last point in contact, and where the contact ends."""
+    x, p, cells = samples.x, samples.p, samples.cells is not None
+    least = NOISE * noise(p, x)
+    touching = zone(p, least)
+    if touching is None or touching[1] - touching[0] + 1 < FEWEST:
+        hint = "; or are the elements of another order (--order)?" if cells else ""
+        raise InputError(f"{origin}: p: must stand out from its noise at {FEWEST} or more neighbouring points{hint}")
+    first, last = touching
+    left = left_end(x, p, first, last, cells=cells, least=least)
+    right = right_end(x, p, last, first, cells=cells, least=least)
+    if not right.x > left.x:
+        raise InputError(f"{origin}: p: no contact of any width is found in it")
+    return first, last, left, right
 
 
 def _why(stick: Stick | None, uncertainty: dict[str, float]) -> str:

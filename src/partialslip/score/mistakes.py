@@ -52,7 +52,9 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
         notes.append(f"p adds up to {P / scene.P:.3g} of the scene's P")
     slides, load = 2 * scene.friction.f * scene.P, scene.load.dQ
     if abs(dQ - load) > max(_OFF, _SIGMAS * dQ_off) * max(abs(load), 0.1 * slides):
-        notes.append(f"dq adds up to {dQ / load:.3g} of the scene's dQ" if load else f"dq adds up to {dQ:.3g} N/m, not 0")
+        notes.append(
+            f"dq adds up to {dQ / load:.3g} of the scene's dQ" if load else f"dq adds up to {dQ:.3g} N/m, not 0"
+        )
     unsure = float(f_known) / seen if seen and isinstance(f_known, float) else 0.0
     if seen is not None and abs(share - 1) > max(_FRICTION, _SIGMAS * unsure):
         f = scene.friction.f

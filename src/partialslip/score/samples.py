@@ -1,6 +1,6 @@
 """Somebody else's tractions: what a file of results comes down to."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +27,10 @@ class Samples:
         Where p and dq are means over cells (nodal forces over their widths): their ends, m. None: values at points.
     resolution : float
         By how much x may be off, m: where it is written with few digits, so that points lie unevenly.
+    made_of : str
+        What the columns were made of, in words, if that is not their names.
+    notes : tuple of str
+        What whoever wrote the file must know.
     """
 
     x: Array
@@ -36,6 +40,12 @@ class Samples:
     q2: Array | None = None
     cells: Array | None = None
     resolution: float = 0.0
+    made_of: str = ""
+    notes: tuple[str, ...] = ()
+
+    def moved(self, shift: float) -> "Samples":
+        """The same at x + ``shift`` (m)."""
+        return replace(self, x=self.x + shift, cells=None if self.cells is None else self.cells + shift)
 
 
 def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float, float], order: int) -> Samples:
