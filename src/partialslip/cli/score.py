@@ -35,14 +35,14 @@ def add(commands: "Commands") -> None:
     )
     add_scene(scores)
     scores.add_argument("file", metavar="FILE", nargs="?",
-                        help="tractions: a table (.csv, .txt, .tsv, .rpt), .frd or .dat of CalculiX, .vtu, .xdmf, ...")  # fmt: skip
+                        help="tractions: a table (.csv, .txt, .tsv, .rpt), CalculiX's .frd, .dat, .vtu, ...")  # fmt: skip
     scores.add_argument("--template", action="store_true", help="print a table to fill in, and nothing else")
     scores.add_argument("--factors", metavar="X,P,Q", default="1,1,1",
                         help="multiply x, p and q by these: 1e-3,1e6,1e6 for mm and MPa; -1 turns round")  # fmt: skip
     scores.add_argument("--columns", metavar="NAMES",
-                        help="what a table's columns are: x=X,p=CPRESS,dq=S2-S1, by name or number (from 1)")  # fmt: skip
+                        help="what the columns are: x=X,p=CPRESS,dq=S2-S1, by name or number (from 1)")  # fmt: skip
     scores.add_argument("--centre", choices=("given", "auto"), default="given",
-                        help="auto puts x = 0 in the middle of the contact (default: as the file has it)")  # fmt: skip
+                        help="auto puts x = 0 in the middle of the contact (default: given)")  # fmt: skip
     scores.add_argument("--order", metavar="1|2", default="1",
                         help="of the elements that nodal forces (columns Fn, Ft) are from (default: 1)")  # fmt: skip
     scores.add_argument("--at", metavar="I,J",

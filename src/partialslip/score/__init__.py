@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Literal
 
 from partialslip.errors import InputError
-from partialslip.run import METHODS, Run, compared, run
 from partialslip.result import Result
+from partialslip.run import METHODS, Run, compared, run
 from partialslip.scene import Scene
 from partialslip.score.method import centred, scored
 from partialslip.score.mistakes import in_another_unit, mistakes
@@ -34,8 +34,9 @@ def score(
     scene : Scene
     file : str or Path
         A table (.csv, .txt, .tsv, .rpt) with a header line: x (m); p (Pa), or Fn (N per m of depth) of nodes; and one
-        of dq = q2 - q1, q = dq/2, q1 and q2, or of dFt, Ft, Ft1 and Ft2; or the names that other codes give them. Or CalculiX's .frd, or .dat with the .frd beside it; or a
-        format of meshio's with p and dq, q, or q1 and q2 as point data.
+        of dq = q2 - q1, q = dq/2, q1 and q2, or of dFt, Ft, Ft1 and Ft2; or the names that other codes give them. Or
+        CalculiX's .frd, or .dat with the .frd beside it; or a format of meshio's with p and dq, q, or q1 and q2 as
+        point data.
     bar : float, optional
         What errors of a, m and n may be, as fractions of a; p and q have 10 and 15 times that. Otherwise no bars.
     reference : str, optional

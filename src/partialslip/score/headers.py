@@ -13,7 +13,9 @@ _OWN = ("x", *NORMAL, *(name for shear in SHEARS for name in shear))
 
 #: Other names of x, p and the shear traction at one load point, in lower case, with the sign that makes p positive.
 NAMES = {
-    "x": {"x": 1, "coor1": 1, "coord1": 1, "coord_x": 1, "coor_x": 1, "points:0": 1, "points_0": 1, "x location": 1, "xloc": 1},
+    "x": dict.fromkeys(
+        ("x", "coor1", "coord1", "coor_x", "coord_x", "points:0", "points_0", "x location", "xloc"), 1
+    ),
     "p": {
         "cpress": 1, "contact pressure": 1, "contact_pressure": 1, "pressure": 1,  # Abaqus, CalculiX, MOOSE, ANSYS
         "pres": 1, "contpres": 1, "cont,pres": 1,  # ANSYS
@@ -112,10 +114,7 @@ def _made_of(text: str, names: list[str], origin: str) -> Wanted:
         places = [int(text) - 1]
     if len(places) == 1:
         return Wanted({places[0]: 1.0}, plain[places[0]][1], text)
-    if not places and text.startswith("-"):
-        first = _made_of(text[1:].strip(), names, origin)
-        return Wanted({column: -sign for column, sign in first.parts.items()}, first.factor, text)
-    for sign in _TERM.finditer(text):
+    for sign in reversed(list(_TERM.finditer(text))):
         first = _made_of(text[: sign.start()], names, origin)
         second = _made_of(text[sign.end() :], names, origin)
         if first.factor != second.factor:
@@ -125,6 +124,9 @@ def _made_of(text: str, names: list[str], origin: str) -> Wanted:
         for column, own in second.parts.items():
             parts[column] = parts.get(column, 0.0) + turn * own
         return Wanted(parts, first.factor, text)
+    if not places and text.startswith("-"):
+        first = _made_of(text[1:].strip(), names, origin)
+        return Wanted({column: -sign for column, sign in first.parts.items()}, first.factor, text)
     shown = ", ".join(repr(name) for name in names)[:100]
     raise InputError(
         f"--columns {text}: {origin} has the columns {shown}; must be one of them once, or a number from 1"

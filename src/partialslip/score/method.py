@@ -54,10 +54,9 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     either = float(np.linalg.norm((left.uncertainty, right.uncertainty, _SIGMAS * samples.resolution)))
     uncertainty = {"a": either / 2 / a, "left": left.uncertainty / a, "right": right.uncertainty / a}
     if ends:
-        shifted = abs(middle) if abs(middle) > either else 0.0
+        shared = either, abs(middle) if abs(middle) > either else 0.0
         uncertainty |= {
-            key: float(np.linalg.norm((end.uncertainty, either, shifted))) / a
-            for key, end in zip("mn", ends, strict=True)
+            key: float(np.linalg.norm((end.uncertainty, *shared))) / a for key, end in zip("mn", ends, strict=True)
         }
     uncertain = ends is not None and max(uncertainty["m"], uncertainty["n"]) > _CERTAIN
     known = None if uncertain else ends

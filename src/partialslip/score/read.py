@@ -27,8 +27,8 @@ def read(
     at: tuple[int, int] | None = None,
     chosen: Mapping[str, str] | None = None,
 ) -> Samples:
-    """Tractions from ``file``: .csv, .txt, .tsv, .rpt (tables), .frd or .dat (CalculiX), or a format of meshio's with point data p and dq, q, or
-    q1 and q2. Parameters as of :func:`partialslip.score`.
+    """Tractions from ``file``: .csv, .txt, .tsv, .rpt (tables), .frd or .dat (CalculiX), or a format of meshio's with
+    point data p and dq, q, or q1 and q2. Parameters as of :func:`partialslip.score`, ``chosen`` being its columns.
 
     Raises
     ------
