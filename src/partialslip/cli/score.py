@@ -35,7 +35,7 @@ def add(commands: "Commands") -> None:
     )
     add_scene(scores)
     scores.add_argument("file", metavar="FILE", nargs="?",
-                        help="tractions: a table (.csv, .txt, .tsv, .rpt), CalculiX's .frd, .dat, .vtu, ...")  # fmt: skip
+                        help="tractions: a table (.csv, .txt, .tsv, .rpt), CalculiX's .frd, .dat, .vtu")  # fmt: skip
     scores.add_argument("--template", action="store_true", help="print a table to fill in, and nothing else")
     scores.add_argument("--factors", metavar="X,P,Q", default="1,1,1",
                         help="multiply x, p and q by these: 1e-3,1e6,1e6 for mm and MPa; -1 turns round")  # fmt: skip

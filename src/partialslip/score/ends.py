@@ -20,7 +20,9 @@ _FEW = 8  # points, whose scatter about their polynomial is noise
 _SKIPPED = (0, 1, 2, 4, 7, 12, 20, 34, 56, 90, 150, 240, 400)  # points next to the end that are left out
 _PART = 0.6  # of the zone: farther points know of its other end
 _NEAREST = 2.0  # of the points skipped: windows are at least half as long as they are far from the end
+_NEAR = 3  # of the levels, which are near the end
 _AGREE = 3.0  # times their uncertainties, by which ends seen from near and from afar may differ
+_FADES = 0.35
 _FALL = 0.05  # at best, from one degree to the next, of what polynomials leave out
 _SAFE = 2.0  # times the uncertainty of the best one: it is the best by some luck, too
 _SPREAD = 0.5  # of the length over which an end is spread, that it may be off
@@ -30,10 +32,11 @@ ROUNDING = 1e-9
 
 
 class End(NamedTuple):
-    """A place, m, and how far it may be off."""
+    """A place, m, and how far it may be off; how much of that is due to an end that is ``spread`` over some length."""
 
     x: float
     uncertainty: float
+    spread: float = 0.0
 
 
 class _Estimate(NamedTuple):
@@ -113,21 +116,27 @@ def right_end(
     few = [root.scatter for root in every if root.points <= _FEW]
     floor = float(np.median(few)) if few else 0.0
     steepest = max((abs(root.slope) for root in every if root.points > _FEW), default=np.inf)
-    found, left, right = [], -np.inf, np.inf
-    for level in levels:
-        if ends := [end for roots in level for end in _estimates(roots, floor, steepest)]:
-            surest = min(ends, key=lambda end: end.doubt)
-            left, right = max(left, surest.x - _AGREE * surest.doubt), min(right, surest.x + _AGREE * surest.doubt)
-            if left > right:
-                break
-            found.append(min(ends, key=lambda end: end.uncertainty))
+    every_level = [[end for roots in level for end in _estimates(roots, floor, steepest)] for level in levels]
+    found = _agreeing(every_level)
+    # over three points before the last a square root falls to half; what falls by more fades out
+    fades = last - first >= _FEW and values[last - 1] < _FADES * values[last - 4]
+    apart = 0.0
+    if len(found) < len([level for level in every_level if level]) and not fades:
+        # from afar a kink may mislead: the end is where the points have it
+        within = [end for level in every_level[-_NEAR:] for end in level if x[last] <= end.x <= beyond]
+        if within:
+            nearest = min(within, key=lambda end: end.uncertainty)
+            apart = abs(nearest.x - min(found, key=lambda end: end.uncertainty).x) if found else 0.0
+            found = [nearest]
     if not found:
-        unknown = x[last] - x[first] if last - first >= _FEW else (beyond - x[last]) / 2
-        return End(float(x[last] + beyond) / 2, float(unknown))
-    best = min(found, key=lambda end: end.uncertainty)
-    hidden = least**2 / abs(best.slope)  # noise hides as much of the zone
-    spread = max(x[last] - cells * spacing - best.x, best.x - beyond - hidden, 0.0)
-    return End(best.x, float(np.linalg.norm((_SAFE * best.uncertainty, _SPREAD * spread, _CELL * cells * spacing))))
+        return End(float(x[last] + beyond) / 2, float(x[last] - x[first] if fades else (beyond - x[last]) / 2))
+    outside = [max(end.x - beyond - least**2 / abs(end.slope), 0.0) for end in found]  # noise hides as much of the zone
+    off, best = min(zip(outside, found, strict=True), key=lambda pair: np.hypot(pair[0], pair[1].uncertainty))
+    spread = _SPREAD * max(x[last] - cells * spacing - best.x, off, 0.0)
+    own = float(np.hypot(_SAFE * best.uncertainty, _SPREAD * apart))
+    if x[last] <= best.x <= beyond and not fades:  # the points are on either side of it
+        own = min(own, beyond - x[last])
+    return End(best.x, float(np.linalg.norm((own, spread, _CELL * cells * spacing))), spread)
 
 
 def left_end(
@@ -136,7 +145,21 @@ def left_end(
     """Likewise on the left: :func:`right_end` of the mirror image."""
     count, slack = len(x) - 1, None if slack is None else slack[::-1]
     end = right_end(-x[::-1], values[::-1], count - first, count - last, cells=cells, slack=slack, least=least)
-    return End(-end.x, end.uncertainty)
+    return end._replace(x=-end.x)
+
+
+def _agreeing(levels: list[list[_Estimate]]) -> list[_Estimate]:
+    """The best of each level, from afar to the end, as long as each agrees with those before."""
+    found: list[_Estimate] = []
+    left, right = -np.inf, np.inf
+    for level in levels:
+        if level:
+            surest = min(level, key=lambda end: end.doubt)
+            left, right = max(left, surest.x - _AGREE * surest.doubt), min(right, surest.x + _AGREE * surest.doubt)
+            if left > right:
+                break
+            found.append(min(level, key=lambda end: end.uncertainty))
+    return found
 
 
 def _estimates(roots: list[_Root | None], floor: float, steepest: float) -> list[_Estimate]:

@@ -17,6 +17,7 @@ _SLIDES = 0.02  # of 2 f p0: with less room than that, or than noise, nothing is
 _APART = 3.0  # times the uncertainty of f, by which 2 f p may be off
 _SIGMAS = 2.0  # standard deviations of x, by which an end may be off
 _CERTAIN = 0.05  # of a: ends of the stick zone that may be off by more are not given
+_SPACINGS = 2.0  # likewise, of the points' spacing
 
 
 class Stick(NamedTuple):
@@ -50,17 +51,28 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     slips = f > 0 and bool(np.abs(dq).max() > max(ROUNDING * p0, NOISE * noise(dq, x)))
     stick = _stick(x[inside], p[inside], dq[inside], f, p0, cells) if slips else None
     regime, ends = _regime(scene, stick, left, right, slips)
-    # smoothing spreads all ends alike: those of the stick zone are known no better than those of the contact
+    # smoothing spreads all ends alike: those of the stick zone by as much as those of the contact
     either = float(np.linalg.norm((left.uncertainty, right.uncertainty, _SIGMAS * samples.resolution)))
     uncertainty = {"a": either / 2 / a, "left": left.uncertainty / a, "right": right.uncertainty / a}
     if ends:
-        shared = either, abs(middle) if abs(middle) > either else 0.0
+        shared = (
+            left.spread,
+            right.spread,
+            _SIGMAS * samples.resolution,
+            middle,
+        )
         uncertainty |= {
             key: float(np.linalg.norm((end.uncertainty, *shared))) / a for key, end in zip("mn", ends, strict=True)
         }
-    uncertain = ends is not None and max(uncertainty["m"], uncertainty["n"]) > _CERTAIN
+    spacing = float(np.median(np.diff(x[inside]))) / a
+    uncertain = ends is not None and max(uncertainty["m"], uncertainty["n"]) > max(_CERTAIN, _SPACINGS * spacing)
     known = None if uncertain else ends
     why = _why(stick, uncertainty) if uncertain else ""
+    notes = samples.notes
+    if why:
+        notes += (f"m and n are not given: {why}",)
+    if regime == "sliding" and not scene.slides:
+        notes += ("nothing is seen to stick: |dq|/(2 p) is the same everywhere, to within what the points tell",)
     return Result(
         method=name,
         a=a,
@@ -72,14 +84,14 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
         cost=clock.cost(),
         settings={
             "read": "means over cells" if cells else "values at points",
-            "spacing_over_a": _rounded(float(np.median(np.diff(x[inside]))) / a),
+            "spacing_over_a": _rounded(spacing),
             "noise_over_p0": _rounded(noise(p[inside], x[inside]) / p0),
             **(_friction(stick.sides, f) if stick else {}),
             **({"columns": samples.made_of} if samples.made_of else {}),
         },
         counts={"points": len(x), "contact_nodes": last - first + 1},
         estimate=uncertainty,
-        notes=(*samples.notes, f"m and n are not given: {why}") if why else samples.notes,
+        notes=notes,
         contact_ends=((left.x, right.x),) * 2,
         undetermined=dict.fromkeys("mn", why) if why else {},
     )
@@ -138,16 +150,22 @@ def _widths(samples: Samples) -> Array:
 def _stick(x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool) -> Stick | None:
     """From the room 2 f p - |dq| that points in contact leave; None where nothing sticks."""
     sides = frictions(p, dq, asked)
-    rooms = [2 * side.f * p - side.sign * dq for side in sides]
     slacks = [2 * side.uncertainty * p for side in sides]
-    room = np.minimum(*rooms)
+    room = 2 * min(side.f for side in sides) * p - np.abs(dq)
     hidden = [NOISE * (side.scatter if side.seen else noise(room, x)) for side in sides]
     found = [zone(room, least + _APART * slack) for least, slack in zip(hidden, slacks, strict=True)]
     if None in found or room.max() < 2 * max(side.f for side in sides) * p0 * min(_SLIDES, 4 / len(x)):
         return None
     first, last = found[0][0], found[1][1]
-    left = left_end(x, rooms[0], first, last, cells=cells, slack=slacks[0], least=hidden[0])
-    right = right_end(x, rooms[1], last, first, cells=cells, slack=slacks[1], least=hidden[1])
+    beyond = dq[: first + 1].sum(), dq[last:].sum()
+    sides = tuple(  # type: ignore[assignment]
+        side if side.seen else side._replace(sign=1 if shear >= 0 else -1)
+        for side, shear in zip(sides, beyond, strict=True)
+    )
+    rooms = [2 * side.f * p - side.sign * dq for side in sides]
+    told = [least if side.seen else 0.0 for least, side in zip(hidden, sides, strict=True)]
+    left = left_end(x, rooms[0], first, last, cells=cells, slack=slacks[0], least=told[0])
+    right = right_end(x, rooms[1], last, first, cells=cells, slack=slacks[1], least=told[1])
     return Stick(left, right if right.x > left.x else End(left.x, right.uncertainty), sides)
 
 

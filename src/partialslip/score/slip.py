@@ -14,6 +14,8 @@ _FLAT = 0.02  # relative uncertainty of f, above which |dq|/(2 p) is not flat
 _OWN = 2e-3  # likewise, up to which each side may have its own
 _APART = 3.0  # times the uncertainty: then two values differ
 _ROUNDING = 1e-12
+_PRESSED = 0.2  # of the largest p: less of it, at the ends, tells nothing of f
+_TOP = 3  # points with the largest |dq|/(2 p)
 
 
 class Friction(NamedTuple):
@@ -36,8 +38,9 @@ def frictions(p: Array, dq: Array, asked: float) -> tuple[Friction, Friction]:
     sides = _outer(p, dq), _outer(p[::-1], dq[::-1])
     seen = [side for side in sides if side.seen]
     if not seen:
-        pressed = p > 0.1 * p.max()
-        top = float((np.abs(dq[pressed]) / (2 * p[pressed])).max())
+        pressed = p > _PRESSED * p.max()
+        shares = np.sort(np.abs(dq[pressed]) / (2 * p[pressed]))
+        top = float(np.median(shares[-_TOP:]))
         left, right = (side._replace(f=asked, uncertainty=abs(asked - top)) for side in sides)
         return left, right
     known = min(seen, key=lambda side: side.uncertainty)
