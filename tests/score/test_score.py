@@ -74,9 +74,11 @@ def test_noise_is_seen_and_told(exact, tmp_path, name):
         table = sampled(result, 80)
         table[:, 1:] += 0.01 * result.p0 * random.standard_normal((80, 2)) * [1, 2 * scene.friction.f]
         found, comparison = errors(scene, written(tmp_path / "t.csv", table))
-        off += [comparison.a, comparison.m, comparison.n]
-        told += [found.estimate[key] for key in "amn"]
+        given = "a" if found.m is None else "amn"
+        off += [getattr(comparison, key) for key in given]
+        told += [found.estimate[key] for key in given]
     spacing = 2.2 / 79
+    assert len(off) >= 20  # of 30, the others not given
     assert np.median(off) < 0.15 * spacing
     assert max(off) < 2 * spacing
     assert 0.3 < np.median(told) / np.median(off) < 10
@@ -152,14 +154,15 @@ def test_meshes(exact, tmp_path, ending):
     assert (found.a, found.m, comparison.q) == pytest.approx((same.a, same.m, expected.q), rel=1e-6)
 
 
-@pytest.mark.parametrize(("ending", "off"), [("frd", 0.1), ("dat", 0.25)])
+@pytest.mark.parametrize(("ending", "off"), [("frd", 0.2), ("dat", 0.4)])
 def test_calculix(ending, off):
     """From a run of CalculiX 2.20 (elements of 0.16 a, surface-to-surface, blocks of 16 a): ends to part of an
-    element."""
+    element, with two points in a slip zone, so that f is not seen; errors are within the estimates."""
     scene = load_scene("hertz-shear")
     found, comparison = errors(scene, FIXTURES / f"calculix.{ending}")
     assert found.regime == "small tension"
     assert max(comparison.a, comparison.m, comparison.n) < off * 0.1625
+    assert all(getattr(comparison, key) < 3 * found.estimate[key] for key in "amn")
     assert comparison.p < 0.12
     chosen, _ = errors(scene, FIXTURES / f"calculix.{ending}", at=(1, 2))
     assert chosen.m == found.m

@@ -10,18 +10,17 @@ from partialslip.reading import shipped_scenes
 
 method = importlib.import_module("partialslip.score.method")
 SCENE = load_scene("fretting-aluminium")
-SMALL = ("clean", "dq times 1 - 10^-k", "f off", "P off", "Q off", "sigma off", "moving average", "other units",
-         "half a cycle", "turned round", "nodal forces", "x shifted")  # fmt: skip
 
 
 @pytest.fixture
 def soft(monkeypatch):
     """Only soft penalty friction, which is cheap to solve."""
     found = spoiling.penalty(SCENE, 1e-2, 1e-2)
-    monkeypatch.setattr(spoiling, "penalty", lambda scene: found)
+    monkeypatch.setattr(spoiling, "penalty", lambda _: found)
 
 
-def test_no_spoiled_table_is_read_wrong_without_saying_so(soft):
+@pytest.mark.usefixtures("soft")
+def test_no_spoiled_table_is_read_wrong_without_saying_so():
     read = list(spoiling.readings(SCENE, "151"))
     assert [(reading.way, reading.size) for reading in read if not reading.honest] == []
     clean = [reading for reading in read if reading.way in ("clean", "dq times 1 - 10^-k", "f off")]
