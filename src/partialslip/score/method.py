@@ -156,7 +156,7 @@ def _stick(x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool) 
     found = [zone(room, least + _APART * slack) for least, slack in zip(hidden, slacks, strict=True)]
     if None in found or room.max() < 2 * max(side.f for side in sides) * p0 * min(_SLIDES, 4 / len(x)):
         return None
-    first, last = found[0][0], found[1][1]
+    first, last = found[0][0], found[1][1]  # type: ignore[index]
     beyond = dq[: first + 1].sum(), dq[last:].sum()
     sides = tuple(  # type: ignore[assignment]
         side if side.seen else side._replace(sign=1 if shear >= 0 else -1)

@@ -113,7 +113,7 @@ def _resolution(x: Array) -> float:
         return 0.0
     unit = float(units[(off < _WHOLE).argmax()])
     uneven = 1.4826 * float(np.median(np.abs(np.diff(x, 3)))) / np.sqrt(20)
-    return min(uneven, 5 * unit)  # the largest numbers are rounded to a place before that of the least
+    return float(min(uneven, 5 * unit))  # the largest numbers are rounded to a place before that of the least
 
 
 def _merged(values: Array) -> Array:
