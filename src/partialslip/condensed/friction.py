@@ -393,7 +393,7 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
 
 def _reversed(path: Path, first: Solution, went: "_Way") -> History:
     """The cycle that a first loading to load point 2 tells: on the way from 1 to 2 all is doubled (Masing's rule)."""
-    forces, slip, bound = first.x, -2 * sum(step.rest for step, _ in went), went[-1][1]
+    forces, slip, bound = first.x, -2 * np.sum([step.rest for step, _ in went], axis=0), went[-1][1]
     way = replace(first, rest=-slip, iterations=0, changes=0)
     return History(
         path=path,

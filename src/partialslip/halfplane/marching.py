@@ -139,14 +139,14 @@ def _solve_level(
         tangential = compliance(vertices / 2)  # a change of length is a rigid shift, which is free
     with clock.phase("contact"):
         moved = x * pressed.a / scene.length
-        history, finer = march_refined(tangential, moved, bound, path, finer * _STEPS * scene.fem.accuracy)
+        history, halved = march_refined(tangential, moved, bound, path, finer * _STEPS * scene.fem.accuracy)
 
         def zone(of: History) -> Zone:
             return stick_zone(x, bound, of.change, vertices, lambda values: values)
 
         inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in history.visited]
         found = tuple(itertools.chain.from_iterable(inner))
-        return _Level(vertices, normal, history, zone(history), found, finer, zone(finer) if finer else None)
+        return _Level(vertices, normal, history, zone(history), found, halved, zone(halved) if halved else None)
 
 
 def _with_steps(
