@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from partialslip.compare import cell_means
+from partialslip.judge import cell_means
 
 import partialslip
 from partialslip import parse_scene, plan
