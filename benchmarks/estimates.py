@@ -19,10 +19,10 @@ from msgspec.structs import replace
 
 import partialslip
 from partialslip import Result, Scene
-from partialslip.judge import compare
 from partialslip.condensed.threads import one_thread
 from partialslip.halfplane import contact
 from partialslip.halfplane.steady import transition
+from partialslip.judge import compare
 from partialslip.reading import parse_scene
 from partialslip.result import Array, Traction
 

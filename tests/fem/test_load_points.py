@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from partialslip.judge import cell_means
 
 import partialslip
 from partialslip import parse_scene, plan
+from partialslip.judge import cell_means
 from partialslip.result import Traction
 from partialslip_fem import level, solve
 
