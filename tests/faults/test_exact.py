@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.halfplane import hertz, method, steady
+from partialslip.halfplane import hertz, loading, steady
 from partialslip.halfplane import traction as exact_traction
 from partialslip.halfplane.hertz import Hertz
 from partialslip.judge import compare
@@ -23,7 +23,7 @@ def test_sign_of_x_instead_of_the_slip_zones(monkeypatch, sound, red):
         slips = np.abs(x - zone.centre) > zone.half_width
         return np.where(slips, np.sign(x) * np.abs(true(x, zone, shape)), true(x, zone, shape))
 
-    monkeypatch.setattr(method, "half_range", by_x)
+    monkeypatch.setattr(loading, "half_range", by_x)
     red.comparison("q", scene)
 
 

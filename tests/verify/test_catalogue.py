@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.halfplane import marching, method
+from partialslip.halfplane import loading, marching
 from partialslip.judge import Outcome
 from partialslip.verify import families, hard_cases, run_case
 from partialslip.verify.catalogue import document
@@ -87,11 +87,11 @@ def test_two_meshes_that_miss_a_zone_do_not_agree(monkeypatch):
 
 def test_a_wrong_zone_has_no_certificate(monkeypatch):
     """Deliberate fault: the exact stick zone is off by a millionth."""
-    right = method.stick_zone
+    right = loading.stick_zone
 
     def wrong(*loads):
         zone = right(*loads)
         return zone._replace(half_width=zone.half_width * (1 + 1e-6))
 
-    monkeypatch.setattr(method, "stick_zone", wrong)
+    monkeypatch.setattr(loading, "stick_zone", wrong)
     assert ("exact", "certificate") in {found[:2] for found in missed("no-tension", "exact")}
