@@ -43,7 +43,7 @@ def fitted() -> list[Case]:
     """The cheapest first, so that a list can be fitted before all are measured."""
     seeds: dict[str, list[int]] = {kind: [] for kind in KINDS}
     for seed in range(400, 500):
-        seeds[random_scene(seed, 1e-3).profile.kind].append(seed)
+        seeds[msgspec.to_builtins(random_scene(seed, 1e-3))["profile"]["kind"]].append(seed)
     found = []
     for (order, factor), ladder in LADDER.items():
         for asked in ladder:
@@ -64,7 +64,7 @@ def measured(ledger: Ledger, cases: list[Case]) -> list[dict[str, Any]]:
 
 
 def process(*options: str) -> tuple[float, int, str]:
-    """CPU seconds of ``partialslip run`` with these ``options``, exit code, and the last line but one of what it says."""
+    """CPU seconds of ``partialslip run`` with these ``options``, exit code, and what it says of the price."""
     with tempfile.TemporaryFile("w+") as text:
         child = subprocess.Popen([*RUN, *options], stdout=text, stderr=text)
         _, status, used = os.wait4(child.pid, 0)
@@ -85,7 +85,7 @@ def overheads(ledger: Ledger) -> dict[str, float]:
                 whole, _, _ = process("hertz-shear", "--accuracy", "1e-2", "--out", folder)
                 methods = json.loads((Path(folder) / "results.json").read_text("utf-8"))["methods"]
                 work = sum(method["cost"]["cpu_s"] for method in methods.values())
-                marched, _, _ = process("hertz-shear", "--with", "march", "--out", folder)
+                process("hertz-shear", "--with", "march", "--out", folder)
                 methods = json.loads((Path(folder) / "results.json").read_text("utf-8"))["methods"]
                 march = methods["march"]["cost"]["cpu_s"]
                 apart = solve_apart(Case(partialslip.load_scene("hertz-shear"), ("exact",), {}))

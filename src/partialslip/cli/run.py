@@ -121,7 +121,7 @@ def _price(
     """What --accuracy or ``budget`` asks for; None if the scene says it all."""
     if options.accuracy is None and budget is None:
         return None
-    import partialslip_fem.model  # noqa: F401, PLC0415 - the start ends here
+    import partialslip_fem.model  # noqa: F401 - the start ends here
     from partialslip.study.prices import load_prices
 
     prices, chosen = load_prices(), tuple(methods or default_methods(scene))

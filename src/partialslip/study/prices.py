@@ -1,7 +1,8 @@
 """The price list: what a run by finite elements of some accuracy will cost, fitted to a ledger of measured cases.
 
-CPU seconds of the method are taken as exp(c0 + c1 d + c2 d^2), d = log10(1/accuracy), by the order of the elements, times
-a factor of the profile's kind and one of SuperLU, that grows with d; twice that for bodies that are not mirror images.
+CPU seconds of the method are taken as exp(c0 + c1 d + c2 d^2), d = log10(1/accuracy), by the order of the elements,
+times a factor of the profile's kind and one of SuperLU, that grows with d; twice that for bodies that are not mirror
+images.
 Start, report and the other methods come on top. CPU seconds depend on the machine and on what else it does, so that all
 are scaled by what the start of this very process took. Long paths of loads cost more.
 """
@@ -93,7 +94,7 @@ class Prices(msgspec.Struct, frozen=True, kw_only=True):
         speed = float(np.clip(start / self.start, *_SPEEDS)) if start else 1.0
         digits = math.log10(1 / accuracy)
         cost = sum(c * digits**power for power, c in enumerate(self.orders[str(order)]))
-        cost += self.kinds.get(scene.profile.kind, 0.0) + math.log(_bodies(scene))
+        cost += self.kinds.get(_kind(scene), 0.0) + math.log(_bodies(scene))
         if _superlu(scene):
             cost += self.superlu[0] + self.superlu[1] * digits
         others = sum(self.methods.get(method, 0.0) for method in methods)
@@ -136,11 +137,11 @@ def load_prices() -> Prices:
 
 
 def fit(entries: Iterable[Mapping[str, Any]], overheads: Mapping[str, float], machine: str) -> Prices:
-    """The price list of the adapted finite elements in the ``entries`` of a ledger, measured on ``machine``.
+    """The price list of adapted finite elements by the ``entries`` of a ledger, measured on ``machine``.
 
-    Cases that :func:`partialslip.study.case.solve_apart` has measured are scaled by the start of their processes, as the
-    machine may have been busy with other things. ``overheads`` are the seconds "start" and "closing", and those of other
-    methods by their names.
+    Cases that :func:`partialslip.study.case.solve_apart` has measured are scaled by the start of their processes, as
+    the machine may have been busy with other things. ``overheads`` are the seconds "start" and "closing", and those of
+    other methods by their names.
 
     Raises
     ------
@@ -154,7 +155,7 @@ def fit(entries: Iterable[Mapping[str, Any]], overheads: Mapping[str, float], ma
             costs = {name: method["cost"]["cpu_s"] for name, method in entry["methods"].items()}
             start = entry["process"]["cpu_s"] - sum(costs.values()) if "process" in entry else 1.0
             digits = math.log10(1 / scene.fem.accuracy)
-            cases.append((scene.fem.order, scene.profile.kind, _superlu(scene), digits, _bodies(scene), start, costs))
+            cases.append((scene.fem.order, _kind(scene), _superlu(scene), digits, _bodies(scene), start, costs))
     if len(cases) < 10:
         raise InputError(f"a price list needs at least 10 measured cases of adapted finite elements, not {len(cases)}")
     orders, kinds = sorted({case[0] for case in cases}), sorted({case[1] for case in cases} - {"hertz"})
@@ -201,6 +202,11 @@ def to_json(prices: Prices) -> str:
 def _bodies(scene: Scene) -> int:
     """Bodies to mesh and to factor."""
     return 1 if scene.mirrored and scene.fem.lower_size == 1 and not plan(scene).needs("coupling") else 2
+
+
+def _kind(scene: Scene) -> str:
+    """Of its profile, as a scene file names it."""
+    return str(type(scene.profile).__struct_config__.tag)
 
 
 def _superlu(scene: Scene) -> bool:
