@@ -97,19 +97,20 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     level, meshes, factored = _first(problem, width, clock)
     expense.measure(level.dofs)
     iterations, known, before, size, finer = level.iterations, np.inf, np.inf, _FIRST, _FINER
-    aim, errors, at_ends = _Aim.at(accuracy, problem), {}, None
+    aim, errors, at_ends = _Aim.at(accuracy, problem), dict[str, float](), dict[str, float]()
     least, limit = aim.least, _limit(problem)
     coarsest = max(part.fineness for part in parts)  # what is not finer than that is to be fine enough
     while True:
         if expense.limited:
-            settled = _settle(expense, aim, level, problem, (size, finer, least), width, at_ends is not None)
-            if at_ends is not None and not settled:
+            done = bool(at_ends) and level.enclosed
+            settled = _settle(expense, aim, level, problem, (size, finer, least), width, done)
+            if at_ends and not settled:
                 if known == np.inf:
-                    other = neighbour(level, problem, width * level.half_width, clock)
+                    other = neighbour(level, problem, width * a, clock)
                     factored, iterations = factored + other.factored, iterations + other.iterations
                     errors = together(smooth_errors(level, other), at_ends)
-                reached = max(aim.accuracy, _worst(errors) / _BAR)
-                return Adapted(level, errors, meshes, factored, iterations, width, reached)
+                settled_for = max(aim.accuracy, _worst(errors) / _BAR)
+                return Adapted(level, errors, meshes, factored, iterations, width, settled_for)
             if settled and settled is not aim:
                 least, aim = least * settled.least / aim.least, settled
                 finer = finer if size > 1.01 * aim.goal(level, problem) else 1.0

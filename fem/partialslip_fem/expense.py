@@ -51,7 +51,7 @@ class Expense:
         steps = np.geomspace(size.min(), 2 * width, _POINTS)
         x = np.unique(np.clip(at[:, None] + np.concatenate([-steps, [0.0], steps]), -width, width))
         local = (size + growth * np.abs(x[:, None] - at)).min(axis=1)
-        return self._ratio * _PER_LENGTH * order**2 / growth * float(np.trapezoid(1 / local, x))
+        return float(self._ratio * _PER_LENGTH * order**2 / growth * np.trapezoid(1 / local, x))
 
     def affords(self, meshes: Iterable[float], again: float) -> bool:
         """Whether what is left suffices for meshes of so many unknowns, and for solving on the last one ``again`` times

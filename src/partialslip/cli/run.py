@@ -74,10 +74,10 @@ def _run(options: argparse.Namespace) -> int:
 
     messages = Console(stderr=True, highlight=False)
     price = _price(options, scene, methods, budget)
-    allowance = None
+    priced_at, allowance = time.process_time(), None
     if price:
         scene = load_scene(options.scene, [*price.overrides, *options.overrides])
-        allowance = Allowance(budget - price.closing_s - time.process_time()) if budget else None
+        allowance = Allowance(budget - price.closing_s - price.start_s) if budget else None
         messages.print(f"{price}, predicted", soft_wrap=True, markup=False)
     with messages.status(f"{scene.name} ...") as status:
         outcome = run(
@@ -93,7 +93,7 @@ def _run(options: argparse.Namespace) -> int:
             save = Path(options.save)
             files += write_files(save.parent, {save.name: _state(outcome).save})
         files += write_outcome(outcome, options, scene.name)
-    return print_outcome(outcome, options, files, _paid(price, outcome) if price else "")
+    return print_outcome(outcome, options, files, _paid(price, outcome, priced_at) if price else "")
 
 
 def _budget(options: argparse.Namespace, scene: "Scene", methods: list[str] | None) -> float | None:
@@ -125,19 +125,25 @@ def _price(
     from partialslip.study.prices import load_prices
 
     prices, chosen = load_prices(), tuple(methods or default_methods(scene))
+    start = time.process_time() if options.own_process else None
     if budget is not None:
-        return prices.best(scene, budget, chosen, time.process_time())
+        return prices.best(scene, budget, chosen, start)
     try:
         accuracy = float(options.accuracy)
     except ValueError:
         raise InputError(f"--accuracy {options.accuracy!r}: must be a number, for example 1e-4") from None
     check = load_scene(options.scene, [*options.overrides, f"fem.accuracy={accuracy!r}"])
-    return prices.cheapest(check, accuracy, chosen, time.process_time())
+    return prices.cheapest(check, accuracy, chosen, start)
 
 
-def _paid(price: "Price", outcome: Run) -> str:
+def _paid(price: "Price", outcome: Run, priced_at: float) -> str:
     """What was predicted and what the process took, with those that made meshes for it."""
-    taken = time.process_time() + sum(result.cost.meshing_cpu_s for result in outcome.results.values())
+    taken = (
+        price.start_s
+        + time.process_time()
+        - priced_at
+        + sum(result.cost.meshing_cpu_s for result in outcome.results.values())
+    )
     fem = outcome.results.get("fem")
     reached = f", for {fem.settings['accuracy']:.1e} a" if fem and "accuracy" in fem.settings else ""
     return f"{price}, predicted; {taken:.2g} CPU s, actual{reached}"

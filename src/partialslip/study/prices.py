@@ -84,12 +84,17 @@ class Prices(msgspec.Struct, frozen=True, kw_only=True):
     machine: str
 
     def price(
-        self, scene: Scene, accuracy: float, order: int, methods: Sequence[str] = ("exact", "fem"), start: float = 0.0
+        self,
+        scene: Scene,
+        accuracy: float,
+        order: int,
+        methods: Sequence[str] = ("exact", "fem"),
+        start: float | None = None,
     ) -> Price:
         """What ``scene`` costs by the ``methods``, fem with elements of ``order`` at ``accuracy``.
 
-        ``start`` is the CPU seconds that the start of this process has taken, 0 if it is as fast as the machine of the
-        list.
+        ``start`` is the CPU seconds that the start of this process has taken; without it, the process is taken to be as
+        fast as the machine of the list.
         """
         speed = float(np.clip(start / self.start, *_SPEEDS)) if start else 1.0
         digits = math.log10(1 / accuracy)
@@ -102,7 +107,7 @@ class Prices(msgspec.Struct, frozen=True, kw_only=True):
         return Price(order, accuracy, begun + speed * (others + math.exp(cost)) + closing, begun, closing)
 
     def cheapest(
-        self, scene: Scene, accuracy: float, methods: Sequence[str] = ("exact", "fem"), start: float = 0.0
+        self, scene: Scene, accuracy: float, methods: Sequence[str] = ("exact", "fem"), start: float | None = None
     ) -> Price:
         """The least price of ``accuracy`` for ``scene``; ``methods`` and ``start`` as for :meth:`price`."""
         least = min(self.finest.values())
@@ -110,7 +115,9 @@ class Prices(msgspec.Struct, frozen=True, kw_only=True):
         prices = (self.price(scene, accuracy, int(order), methods, start) for order in offered)
         return min(prices, key=lambda price: price.cpu_s)
 
-    def best(self, scene: Scene, budget: float, methods: Sequence[str] = ("exact", "fem"), start: float = 0.0) -> Price:
+    def best(
+        self, scene: Scene, budget: float, methods: Sequence[str] = ("exact", "fem"), start: float | None = None
+    ) -> Price:
         """The best accuracy to be had of ``scene`` for ``budget`` CPU seconds; ``methods`` and ``start`` as for
         :meth:`price`.
 
