@@ -96,7 +96,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     expense = Expense(clock, len(parts))
     level, meshes, factored = _first(problem, width, clock)
     expense.measure(level.dofs)
-    iterations, known, before, size, finer = level.iterations, np.inf, np.inf, _FIRST, _FINER
+    a, iterations, known, before, size, finer = level.half_width, level.iterations, np.inf, np.inf, _FIRST, _FINER
     aim, errors, at_ends = _Aim.at(accuracy, problem), dict[str, float](), dict[str, float]()
     least, limit = aim.least, _limit(problem)
     coarsest = max(part.fineness for part in parts)  # what is not finer than that is to be fine enough
