@@ -145,7 +145,8 @@ def _paid(price: "Price", outcome: Run, priced_at: float) -> str:
         + sum(result.cost.meshing_cpu_s for result in outcome.results.values())
     )
     fem = outcome.results.get("fem")
-    reached = f", for {fem.settings['accuracy']:.1e} a" if fem and "accuracy" in fem.settings else ""
+    accuracy = fem.settings.get("accuracy", price.accuracy) if fem else price.accuracy
+    reached = f", for {accuracy:.1e} a" if accuracy != price.accuracy else ""
     return f"{price}, predicted; {taken:.2g} CPU s, actual{reached}"
 
 
