@@ -19,7 +19,7 @@ from msgspec.structs import replace
 
 import partialslip
 from partialslip import Result, Scene
-from partialslip.compare import compare
+from partialslip.judge import compare
 from partialslip.condensed.threads import one_thread
 from partialslip.halfplane import contact
 from partialslip.halfplane.steady import transition
@@ -125,7 +125,7 @@ def _means(function: Any, cells: Array, breaks: Array) -> Array:
 def true_errors(scene: Scene, kind: str, found: Result) -> dict[str, float]:
     """Errors by key, without those that nothing is known of."""
     exact = partialslip.run(scene, ["exact"]).results["exact"]
-    compared = compare(found, exact, scene.friction.f, None)
+    compared = compare(found, exact, scene, None)
     errors = {"a": compared.a, "p": compared.p}
     if found.certificate.get("steady", 0.0) <= SETTLED * scene.fem.accuracy:
         errors |= {key: getattr(compared, key) for key in ("m", "n", "q") if key not in exact.undetermined}

@@ -25,6 +25,9 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 _SECONDS = 300  # a change that makes tests run for ever is seen, too
+_WITHOUT = [
+    word for name in ("cacheprovider", "hypothesispytest", "xdist", "benchmark") for word in ("-p", f"no:{name}")
+]
 _SWAPS: dict[type[ast.AST], type[ast.AST]] = {
     ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
     ast.Is: ast.IsNot, ast.IsNot: ast.Is, ast.In: ast.NotIn, ast.NotIn: ast.In, ast.And: ast.Or, ast.Or: ast.And,
@@ -89,7 +92,7 @@ def survives(module: str, path: Path, tree: ast.Module, tests: list[str]) -> boo
         sys.meta_path.insert(0, _Changed(module, path, tree))
         import pytest
 
-        os._exit(int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", "-p", "no:hypothesispytest", "-p", "no:xdist", "-p", "no:benchmark", *tests])) and 1)
+        os._exit(int(pytest.main(["-x", "-q", *_WITHOUT, *tests])) and 1)
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 
 

@@ -37,8 +37,7 @@ def printed(arguments, **environment):
             patch.delenv(name, raising=False)
         for name, value in environment.items():
             patch.setenv(name, value)
-        with contextlib.suppress(SystemExit):  # --help
-            main(arguments)
+        main(arguments)
     return out.getvalue()
 
 

@@ -71,7 +71,7 @@ PAGES = {name: found for name, found in PAGES.items() if found}
 
 def agrees(printed, shown):
     """Whether ``printed`` is what a page shows."""
-    printed, shown = (COSTS.sub("", text) for text in (printed, shown))
+    printed, shown = (re.sub("─+", "─", COSTS.sub("", text)) for text in (printed, shown))
     lines = [PARTS.split(" ".join(line.split())) for line in shown.splitlines() if line.strip()]
     numbers = [
         (part, _error(line))  # both values of a row are in its unit, and so is the error

@@ -71,8 +71,7 @@ def test_every_command_is_in_the_reference(built, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "100")
     text = page(built, "reference/commands")
     for command in ("run", "map", "page", "verify", "study cost", "study size", "score", "export", "completion"):
-        with pytest.raises(SystemExit):
-            main([*command.split(), "--help"])
+        assert main([*command.split(), "--help"]) == 0
         assert f'id="partialslip-{command.replace(" ", "-")}"' in text
         options = re.findall(r"--[a-z][\w-]+", capsys.readouterr().out)
         assert [option for option in options if option not in text] == []

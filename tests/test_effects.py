@@ -15,8 +15,6 @@ from partialslip import InputError, load_scene, plan
 from partialslip.cli import main
 from partialslip.condensed import friction
 from partialslip.halfplane import marching
-from partialslip.halfplane.hertz import Hertz
-from partialslip.halfplane.steady import transition
 from partialslip.plan import reduced
 from partialslip_fem import Kept, condensation, level, model
 
@@ -120,8 +118,8 @@ def test_left_out_effects_count_zero(name, spied):
 def test_work_of_the_cheapest_and_the_fullest():
     cheap, full = (fem(*overrides, subsurface=inside).counts for overrides, inside in (SIX["shear"], SIX["everything"]))
     assert (cheap["cycles"], cheap["load_steps"], cheap["normal_solves"]) == (0, 1, 1)
-    assert full["load_steps"] == 1 + 2 * full["cycles"] > 3
-    assert full["normal_solves"] == full["load_steps"] + 1  # one to press them together
+    assert full["load_steps"] >= 1 + 2 * full["cycles"] >= 3  # more where slip turns round on the way
+    assert full["normal_solves"] == full["load_steps"] + full["pressing_steps"]
     assert fem(LARGE).counts["opposing_nodes"] > 0
     assert full["factorizations"] - 2 * full["meshes"] in (0, 2)  # CHOLMOD's are taken apart, and made again
     assert cheap["factorizations"] == cheap["meshes"]
@@ -135,8 +133,9 @@ def test_shear_columns_that_nobody_needs_are_noticed(monkeypatch):
     assert counts["columns"] == 2 * counts["normal_unknowns"]
 
 
-HALF = {"shear": (), "large tension": (LARGE,), "cycles": ("load.cycles=7",), "equal blocks": (*EQUAL, LARGE),
-        "tension alone": ("load.Q=[0, 0]", LARGE)}  # fmt: skip
+LESS = "load.sigma=[-6e8, 6e8]"  # dsigma = 6 f p0, at which slip does not turn round
+HALF = {"shear": (), "large tension": ("load.Q=[-5e4, 5e4]", LESS), "cycles": ("load.cycles=7",), "equal blocks": EQUAL,
+        "tension alone": ("load.Q=[0, 0]", LESS)}  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -176,14 +175,14 @@ def test_half_a_cycle_of_mean_loads_is_another_answer():
 
 def test_a_gradual_way_is_followed():
     """Slip turns round on it: Masing's rule would be wrong."""
-    assert fem("load.steps=3", "load.Q=[-3e4, 3e4]", LARGE).counts["load_steps"] == 9
+    assert fem("load.steps=3", "load.Q=[-3e4, 3e4]", LARGE).counts["load_steps"] >= 9
 
 
 @pytest.mark.parametrize("load", [(), (LARGE,)])
 def test_mirror_images_as_two_coupled_bodies(load):
     one, two = fem(*load), fem(*load, "effects.coupling=true")
     assert (one.counts["bodies"], two.counts["bodies"]) == (1, 2)
-    assert two.counts["normal_solves"] == 1 + two.counts["load_steps"]
+    assert two.counts["normal_solves"] == two.counts["pressing_steps"] + two.counts["load_steps"]
     assert_same(one, two)
 
 
@@ -253,14 +252,13 @@ def test_finite_bodies_have_no_far_field_and_large_ones_need_none():
 
 @pytest.mark.parametrize("Qf", [0.1, 0.5, 0.9])
 def test_opposing_slip_is_left_out_where_tension_is_small(Qf):
-    """Up to the transition that the exact method knows, and on a gradual way up to where slip begins to turn round."""
+    """On a gradual way up to where slip begins to turn round, whatever the steps."""
     scene = load_scene("hertz-shear")
     f, P, Q = scene.friction.f, scene.P, Qf * scene.friction.f * scene.P
     p0 = partialslip.run(scene, ["exact"]).results["exact"].p0
-    turns, gradually = float(transition(Qf, Hertz())), 4 * Qf
-    for limit, steps in ((turns, 1), (gradually, 2)):
+    for steps in (1, 2):
         for share, needed in ((0.999, False), (1.001, True)):
-            sigma = share * limit * f * p0 / 2
+            sigma = share * 4 * Qf * f * p0 / 2
             settings = [f"load.Q=[{-Q}, {Q}]", f"load.sigma=[{-sigma}, {sigma}]", f"load.steps={steps}"]
             assert plan(load_scene("hertz-shear", settings)).needs("opposing-slip") == needed
     assert P > 0

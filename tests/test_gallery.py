@@ -15,6 +15,7 @@ DOCS = Path(__file__).parents[1] / "docs"
 PAGE = (DOCS / "gallery.md").read_text("utf-8")
 SCRIPT = runpy.run_path(str(DOCS / "gallery.py"))
 SCENES = SCRIPT["scenes"]()
+ROUNDING = 1e-9
 NUMBER = re.compile(r"-?\d+\.\d+(?:e-\d+)?|\d+e-\d+")
 
 
@@ -29,7 +30,10 @@ def texts(svg):
 def same(text, other):
     """Whether two texts have the same words, and numbers to 1e-5, those with an exponent to a factor of three."""
     pairs = list(zip(*(map(float, NUMBER.findall(each)) for each in (text, other)), strict=True))
-    near = (abs(a - b) <= (2 / 3 * max(a, b) if 0 < max(a, b) < 1e-2 else 1e-5 * abs(b)) for a, b in pairs)
+    near = (
+        abs(a - b) <= (2 / 3 * max(a, b) if 0 < max(a, b) < 1e-2 else 1e-5 * abs(b)) or max(abs(a), abs(b)) < ROUNDING
+        for a, b in pairs
+    )
     return NUMBER.sub("", text) == NUMBER.sub("", other) and all(near)
 
 

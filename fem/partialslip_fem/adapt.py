@@ -9,6 +9,7 @@ import numpy as np
 from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
+from partialslip.scene import ALLOWED
 from partialslip_fem.estimate import ENDS, NEIGHBOUR, end_errors, enough, kink_sizes, neighbour, smooth_errors, together
 from partialslip_fem.expense import Expense, again
 from partialslip_fem.level import Kept, Level, Part, Problem, solve_level
@@ -23,8 +24,6 @@ _FINEST = 1e-7  # element size at the ends, in contact half-widths; below, round
 _BESIDE = 0.005  # element size at an end, in contact half-widths, beyond which the mesh is only good for finding it
 _ANYWAY = 1.5  # of the size that a kink needs: a mesh that is not coarser there is left as it is
 _MOST = 200_000  # unknowns
-# of the accuracy asked: tractions may be off by 10 and 15 times as much
-_SHARES = {"p": 0.1, "q": 1 / 15, "q1": 1 / 15, "q2": 1 / 15}
 _FILLS = 0.95  # of a finite body's width: as much as the contact line may take
 _ROUNDING = 0.25  # of the accuracy: how far a round face may be from its elements, and the ends off for that
 _CORNERS = 10.0  # of the accuracy: what elements at corners of finite bodies may be off by, at most
@@ -108,7 +107,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
                 if known == np.inf:
                     other = neighbour(level, problem, width * a, clock)
                     factored, iterations = factored + other.factored, iterations + other.iterations
-                    errors = together(smooth_errors(level, other), at_ends)
+                    errors = together(level, smooth_errors(level, other), at_ends)
                 settled_for = max(aim.accuracy, _worst(errors) / _BAR)
                 return Adapted(level, errors, meshes, factored, iterations, width, settled_for)
             if settled and settled is not aim:
@@ -116,7 +115,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
                 finer = finer if size > 1.01 * aim.goal(level, problem) else 1.0
         goal = aim.goal(level, problem)
         size, growth, finer = _course(size, finer, goal, least, order)[0]
-        locked = kink_sizes(level, aim.share / _SHARES["q1"])
+        locked = kink_sizes(level, aim.share * ALLOWED["q1"])
         a = level.half_width
         margin = (0.1 + 2 * finer * size) * a  # of safety, and what the mesh before may have been off by
         contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
@@ -147,7 +146,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
             expense.pass_over()
             factored, iterations = factored + other.factored, iterations + other.iterations
             smooth = smooth_errors(level, other)
-            errors = together(smooth, at_ends)
+            errors = together(level, smooth, at_ends)
             known = _worst(errors)
             calmer = float(np.clip((3 * _worst(smooth) / aim.bar) ** (-0.5 / order), *_CALMER))
             found += f", {', '.join(errors)} known to {known:.1e} a"
@@ -320,4 +319,4 @@ def _too_narrow(problem: Problem) -> InputError:
 
 def _worst(errors: dict[str, float]) -> float:
     """As an error of an end."""
-    return max(error * _SHARES.get(key, 1.0) for key, error in errors.items())
+    return max(error / ALLOWED[key] for key, error in errors.items())

@@ -30,7 +30,7 @@ def held_exponent(angle: float, kappa: float) -> float:
 
 def size(tolerance: float, exponent: float) -> float:
     """Element size, in that of the body, which leaves an error of ``tolerance``."""
-    return min(tolerance ** (1 / (2 * exponent)), 1.0)
+    return float(min(tolerance ** (1 / (2 * exponent)), 1.0))
 
 
 def _first(values: Array, k: Array) -> float:

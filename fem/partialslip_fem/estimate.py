@@ -11,7 +11,7 @@ fitted to some elements beside them.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -38,6 +38,8 @@ _FIT = np.array([8.0, 2.0])
 _STICK = 1.5  # of what an end of the contact is off by: an end of the stick zone
 _SIDE = 0.5  # of the size of its element: an end is not off by more
 _KINK = 0.03  # of a kink's strength times the size of its element: what q is off by, in L2
+_STEEP = 0.3  # the same, times the size in the distance to the next end: where that is small, of the stick zone's ends
+_SHIFT = 1.5  # of a kink's strength times how far it is off: what q is off by, in L2
 _ACROSS = 3.0  # elements on either side of a kink that tell its strength
 _TRACTIONS = {"p": 12.0, "q": 40.0}  # of that in Hertz contacts, in proportion to :func:`_steepness` in others
 
@@ -85,21 +87,50 @@ def end_errors(level: Level, sizes: Array, gaps: Array, beside: Array) -> dict[s
         errors |= dict(zip("mn", fitted[2:4].tolist(), strict=True))
     if level.history:
         half, *both = _norms(level)
-        locked = np.hypot.reduce(_KINK * _strengths(level) * beside * level.half_width, axis=1)
+        a = level.half_width
+        if level.stick and half > 0:  # where slip strips are narrow, q is steep beside them
+            errors["q"] = math.hypot(errors["q"], *(_STEEP * _beside(level) * (sizes**2 / gaps.min(axis=0))[2:4]))
+        locked = np.hypot.reduce(_KINK * _locked(level) * beside * a, axis=1)
         for key, norm, kinks in zip(("q1", "q2"), both, locked.tolist(), strict=True):
             if norm > 0:
                 errors[key] = math.hypot(errors["q"] * half, kinks) / float(norm)
     return errors
 
 
-def together(smooth: Mapping[str, float], at_ends: Mapping[str, float]) -> dict[str, float]:
+def rounding(level: Level) -> float:
+    """What rounding leaves of the ends, in contact half-widths, and of tractions, relative.
+
+    The stiffness of a body that hardly changes its volume is the larger one, (lambda + 2 mu)/mu, and so is what its
+    factor loses of the rest; that adds up with the unknowns.
+    """
+    loses = max((half.body.kappa + 1) / (half.body.kappa - 1) for half in level.halves)
+    return float(np.finfo(float).eps) * loses * level.dofs
+
+
+def together(level: Level, smooth: Mapping[str, float], at_ends: Mapping[str, float]) -> dict[str, float]:
     """Both errors: of ends their sum; of tractions, which are in L2 and lie in different elements, the root of the sum
-    of squares."""
-    return {
+    of squares, and what q is off by where the stick zone's ends are."""
+    errors = {
         key: error + at_ends[key] if key in ENDS else math.hypot(error, at_ends[key])
         for key, error in smooth.items()
         if key in at_ends
     }
+    if "q" in errors:
+        norms = _norms(level)
+        moved = float(np.hypot.reduce(_SHIFT * _beside(level) * [errors["m"], errors["n"]])) * float(norms[0])
+        for key, norm in zip(("q", "q1", "q2"), norms.tolist(), strict=True):
+            if key in errors:
+                errors[key] = math.hypot(errors[key], moved / norm)
+    return errors
+
+
+def _beside(level: Level) -> Array:
+    """Strengths of the kinks of q = (q2 - q1)/2 at both ends of the stick zone, of lengths in contact half-widths and
+    relative to the L2 norm of q, (2,)."""
+    assert level.history
+    change = level.history.change / 2
+    strengths: Array = _strengths(level, [change], level.ends[2:4])[0] * level.half_width / _norm(level.shear(change))
+    return strengths
 
 
 def enough(level: Level, gaps: Array, error: float) -> float:
@@ -116,7 +147,7 @@ def kink_sizes(level: Level, error: float) -> Array:
     if not level.kinks or not level.history:
         return np.empty(0)
     norms = np.maximum(_norms(level)[1:], np.finfo(float).tiny)
-    relative = _KINK * _strengths(level) * level.half_width * math.sqrt(len(level.kinks)) / norms[:, None]
+    relative = _KINK * _locked(level) * level.half_width * math.sqrt(len(level.kinks)) / norms[:, None]
     sizes: Array = error / np.maximum(relative.max(axis=0), np.finfo(float).tiny)
     return sizes
 
@@ -133,23 +164,29 @@ def _norm(traction: PPoly) -> float:
     return float(np.sqrt(np.sum(force**2 / np.diff(traction.x))))
 
 
-def _strengths(level: Level) -> Array:
-    """Factors of the square root of the distance that q1 and q2 gain on one side of each kink, (2, k).
-
-    What two intervals of length d on either side of a kink bear differs by s d^2, s the slope, and by 2/3 of the factor
-    times d^(3/2); that of half the length tells the two apart.
-    """
-    history, kinks = level.history, np.array(level.kinks)
+def _locked(level: Level) -> Array:
+    """Strengths of the kinks of q1 and q2, (2, k)."""
+    history = level.history
     assert history
+    return _strengths(level, [history.q1, history.q2], np.array(level.kinks))
+
+
+def _strengths(level: Level, shears: Sequence[Array], points: Array) -> Array:
+    """Factors of the square root of the distance that tractions under the forces ``shears`` gain on one side of each of
+    the points, (s, k).
+
+    What two intervals of length d on either side of a point bear differs by s d^2, s the slope, and by 2/3 of the
+    factor times d^(3/2); that of half the length tells the two apart.
+    """
     vertices = level.body.x[:: level.body.order]
-    width = np.diff(vertices)[np.clip(np.searchsorted(vertices, kinks) - 1, 0, len(vertices) - 2)]
-    points = kinks + width * _ACROSS * np.array([[-1.0], [-0.5], [0.0], [0.5], [1.0]])
+    width = _ACROSS * np.diff(vertices)[np.clip(np.searchsorted(vertices, points) - 1, 0, len(vertices) - 2)]
+    places = points + width * np.array([[-1.0], [-0.5], [0.0], [0.5], [1.0]])
     found = []
-    for forces in (history.q1, history.q2):
+    for forces in shears:
         resultant = level.shear(forces).antiderivative()
-        before, close, at, near, after = resultant(np.clip(points, vertices[0], vertices[-1]))
+        before, close, at, near, after = resultant(np.clip(places, vertices[0], vertices[-1]))
         whole, half = after - 2 * at + before, near - 2 * at + close
-        found.append(1.5 * np.abs(4 * half - whole) / ((math.sqrt(2) - 1) * (width * _ACROSS) ** 1.5))
+        found.append(1.5 * np.abs(4 * half - whole) / ((math.sqrt(2) - 1) * width**1.5))
     return np.array(found)
 
 

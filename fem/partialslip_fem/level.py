@@ -12,7 +12,8 @@ from scipy.interpolate import PPoly
 
 from partialslip.condensed import coupled
 from partialslip.condensed.bounded import Solution
-from partialslip.condensed.friction import History, Path, march
+from partialslip.condensed.coupled import Pressed
+from partialslip.condensed.friction import History, Path, march, refined
 from partialslip.condensed.zones import Zone, finest, kinks, left_end, right_end, stick_zone
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
@@ -126,6 +127,8 @@ class Problem:
     coupled: bool = True
     inside: bool = True
     strain: float = 0.0
+    similar: bool = False
+    accuracy: float = 1e-3
 
 
 @dataclass(frozen=True)
@@ -149,6 +152,22 @@ class Level:
     others: tuple[float, float] | tuple[()] = ()
     kinks: tuple[float, ...] = ()
     coupled: bool = False
+    pressed: Pressed | None = None
+
+    @property
+    def slips_when_pressed(self) -> bool:
+        """Whether no load cycle acts, and coupled bodies have slipped while they were pressed: the stick zone is then
+        where they stuck all through."""
+        still = self.history is not None and not self.history.path.moves
+        return bool(still and self.pressed and self.pressed.slipped())
+
+    @property
+    def step_errors(self) -> dict[str, float]:
+        """What a (in half-widths), q1 and q2 (relative L2) may be off by for the sake of the steps in which coupled
+        bodies are pressed."""
+        if not self.pressed:
+            return {}
+        return {"a": self.pressed.errors.get("a", 0.0)} | dict.fromkeys(("q1", "q2"), self.pressed.errors["q"])
 
     @property
     def body(self) -> Body:
@@ -327,22 +346,22 @@ def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clo
         relative = relative_compliances(halves, problem.coupled)
     with clock.phase("contact"):
         line = halves[0].body
-        pressing, history, nodes = _solve(problem, relative, halves[0])
+        pressing, history, nodes, first = _solve(problem, relative, halves[0])
         left, right = _ends(line, pressing.x)
         others: tuple[float, float] | tuple[()] = ()
         if history and relative.xy is not None:
             at_first = np.zeros(len(line.x))
             at_first[nodes] = history.bounds[0]
             others = _ends(line, at_first)
-        stick = _stick_zone(line, nodes, history) if history else None
+        stick = _stick_zone(line, nodes, history, _grown(first, nodes, problem)) if history else None
         if stick:  # of both contacts, whatever a coarse mesh makes of its ends
             at_left, at_right = others or (left, right)
             stick = replace(stick, left=max(stick.left, left, at_left), right=min(stick.right, right, at_right))
-        first, last = min([left, *others[:1]]), max([right, *others[1:]])
+        ends = min([left, *others[:1]]), max([right, *others[1:]])
         locked = _kinks(problem, line, nodes, history) if history else ()
-        locked = tuple(kink for kink in locked if first < kink < last)
+        locked = tuple(kink for kink in locked if ends[0] < kink < ends[1])
         two = relative.xy is not None
-        return Level(halves, factored, nodes, pressing, history, left, right, stick, others, locked, two)
+        return Level(halves, factored, nodes, pressing, history, left, right, stick, others, locked, two, first)
 
 
 def _half(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) -> Half:
@@ -356,31 +375,45 @@ def _half(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) 
         return Half(mesh, half, Condensed(half, far, problem.backend, problem.path is not None, problem.inside))
 
 
-def _solve(problem: Problem, C: coupled.Relative, lower: Half) -> tuple[Solution, History | None, Indices]:
-    """Normal forces, the history of the tangential ones on the nodes in contact, and those nodes."""
+def _solve(
+    problem: Problem, C: coupled.Relative, lower: Half
+) -> tuple[Solution, History | None, Indices, Pressed | None]:
+    """Normal forces, the history of the tangential ones on the nodes in contact, those nodes, and how coupled bodies
+    were pressed."""
     line, stretch = lower.body, lower.stretch
     gap, path, pressed = problem.gap(line.x), problem.path, None
     if path and problem.start:
         pressed, before = (nodal_forces(line, traction) for traction in problem.start)
         path = replace(path, before=before)
     if path and C.xy is not None:
-        history, pressing = coupled.march(C, gap, stretch, problem.f, path, pressed)
+        weights = np.asarray(line.mass.sum(axis=1)).ravel()
+        along = coupled.Line(line.x, weights, lambda forces: _ends(line, forces), problem.similar)
+        history, pressing, first = coupled.march(C, gap, stretch, problem.f, path, pressed, along, problem.accuracy)
         nodes = np.flatnonzero(history.bound > 0)
-        return pressing, history.of(nodes), nodes
+        return pressing, history.of(nodes), nodes, first
     pressing = press(C.yy, gap if path else gap - problem.strain * stretch[1], 1.0)
     nodes = np.flatnonzero(pressing.x > 0)
     if not path:
-        return pressing, None, nodes
+        return pressing, None, nodes, None
     if path.before is not None:
         path = replace(path, before=path.before[nodes])
     assert C.xx is not None
-    inner = C.xx[np.ix_(nodes, nodes)]
-    return pressing, march(inner, stretch[0][nodes], problem.f * pressing.x[nodes], path), nodes
+    inner, bound = C.xx[np.ix_(nodes, nodes)], problem.f * pressing.x[nodes]
+    path = refined(inner, stretch[0][nodes], bound, path, problem.accuracy)
+    return pressing, march(inner, stretch[0][nodes], bound, path), nodes, None
 
 
-def _stick_zone(line: Body, nodes: Indices, history: History) -> Zone:
-    forces = partial(_forces_of, line, nodes)
-    return stick_zone(line.x[nodes], history.bound, history.change, line.x[:: line.order], forces)
+def _grown(first: Pressed | None, nodes: Indices, problem: Problem) -> tuple[Array, Array] | None:
+    """Bounds and tangential forces that grow with the last of P, where nothing but P has acted on coupled bodies."""
+    if not first or not problem.path or problem.path.moves:
+        return None
+    p, q = first.growth
+    return problem.f * np.maximum(p[nodes], 0.0), 2 * q[nodes]
+
+
+def _stick_zone(line: Body, nodes: Indices, history: History, grown: tuple[Array, Array] | None) -> Zone:
+    bound, change = grown or (history.bound, history.change)
+    return stick_zone(line.x[nodes], bound, change, line.x[:: line.order], partial(_forces_of, line, nodes))
 
 
 def _kinks(problem: Problem, line: Body, nodes: Indices, history: History) -> tuple[float, ...]:
@@ -390,7 +423,7 @@ def _kinks(problem: Problem, line: Body, nodes: Indices, history: History) -> tu
         return ()
     x, vertices, forces = line.x[nodes], line.x[:: line.order], partial(_forces_of, line, nodes)
     found = finest(problem.start[1].x) if problem.start else []
-    for bound, q in zip(history.bounds, history.at_ends, strict=True):
+    for bound, q in history.visited:
         found += kinks(x, bound, q, vertices, forces)
     return tuple(found)
 

@@ -8,15 +8,17 @@ from scipy.interpolate import PPoly
 
 from partialslip.allowance import Allowance
 from partialslip.bodies import Body
-from partialslip.condensed.friction import History, certificate, doubts, judge, load_path, lower_strain
+from partialslip.condensed.coupled import Pressed
+from partialslip.condensed.friction import certificate, doubts, judge, load_path, lower_strain
 from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Result, Slip, Traction
-from partialslip.scene import WIDTHS, Scene
+from partialslip.scene import ALLOWED, WIDTHS, Hertz, Scene
 from partialslip.state import State
 from partialslip_fem.adapt import Adapted, adapt, uniform
 from partialslip_fem.displacements import solve_back
+from partialslip_fem.estimate import rounding
 from partialslip_fem.factor import default_backend
 from partialslip_fem.fields import along_surfaces, deformed
 from partialslip_fem.level import Face, Kept, Level, Part, Problem, solve_on
@@ -124,6 +126,8 @@ def _scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
         strain=lower_strain(scene, scene.load.points[scene.load.ends[1]][1]),
+        similar=isinstance(scene.profile, Hertz) and not scene.finite,
+        accuracy=ALLOWED["q"] * scene.fem.accuracy,
     )
 
 
@@ -171,7 +175,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     p0 = 2 / (np.pi * level.half_width)
     unit = scene.material.A * scene.P  # of displacement
     certified = _certificate(problem, level, p0)
-    found = judge(scene, level.history, level.stick, level.half_width)
+    found = judge(scene, level.history, level.stick, level.half_width, level.slips_when_pressed)
 
     q1, q2, at1, at2, dq = np.zeros_like(x), np.zeros_like(x), None, None, None
     history, pressures = level.history, level.pressures(problem.f)
@@ -186,6 +190,11 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     def pair(first: PPoly | None, second: PPoly | None) -> Callable[[Array], tuple[Array, Array]]:
         return lambda points: (stress * inside(first, points / L), stress * inside(second, points / L))
 
+    shares = {"discretisation": adapted.errors, "rounding": dict.fromkeys(adapted.errors, rounding(level))}
+    if stepped := level.step_errors:
+        shares["steps"] = stepped
+    keys = [*adapted.errors, *(key for key in stepped if key not in adapted.errors)]
+    estimate = {key: float(sum(share.get(key, 0.0) for share in shares.values())) for key in keys}
     known = found.regime != "sliding"
     (left1, right1), (left2, right2) = level.contact_ends
     return Result(
@@ -219,8 +228,13 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         },
         counts=_counts(level, adapted, extra),
         certificate=certified,
-        estimate=adapted.errors,
-        notes=found.notes + _apart(level) + _settled(adapted, scene) + doubts(certified, adapted.errors, accuracy),
+        estimate=estimate,
+        shares=shares if estimate else {},
+        notes=found.notes
+        + _apart(level)
+        + _beside(scene, level, adapted)
+        + _settled(adapted, scene)
+        + doubts(certified, estimate, accuracy),
         bodies=tuple(deformed(body, L, unit, stress) for body in moved),
         contact_ends=((left1 * L, right1 * L), (left2 * L, right2 * L)),
         state=_state(scene, level),
@@ -255,7 +269,9 @@ def _counts(level: Level, adapted: Adapted, extra: dict[str, int]) -> dict[str, 
         "meshes": adapted.meshes,
         "cycles": history.cycles if history else 0,
         "load_steps": history.load_steps if history else 0,
-        "normal_solves": history.load_steps + _pressing_steps(history) if history and both else 1,
+        "steps": history.path.most_steps if history else 0,
+        "pressing_steps": _pressing_steps(level.pressed),
+        "normal_solves": history.load_steps + _pressing_steps(level.pressed) if history and both else 1,
         "normal_iterations": 0 if both else pressing.changes,
         "friction_iterations": (pressing.changes if both else history.changes) if history else 0,
         "opposing_nodes": history.opposing if history else 0,
@@ -264,9 +280,9 @@ def _counts(level: Level, adapted: Adapted, extra: dict[str, int]) -> dict[str, 
     }
 
 
-def _pressing_steps(history: History) -> int:
+def _pressing_steps(pressed: Pressed | None) -> int:
     """Steps that press coupled bodies together, before the loads of the path."""
-    return history.path.substeps if history.path.before is None else 0
+    return pressed.steps if pressed else 0
 
 
 def _extents(problem: Problem, width: float) -> dict[str, str | float]:
@@ -281,6 +297,16 @@ def _apart(level: Level) -> tuple[str, ...]:
     if level.pieces == 1:
         return ()
     return (f"the contact is in {level.pieces} pieces: a, m and n are of the outermost ends",)
+
+
+def _beside(scene: Scene, level: Level, adapted: Adapted) -> tuple[str, ...]:
+    """A note on a contact whose middle is off x = 0 by more than its ends are known to."""
+    a = level.half_width
+    middles = [(left + right) / 2 / a for left, right in level.contact_ends]
+    if not adapted.errors or max(map(abs, middles)) <= scene.fem.accuracy:
+        return ()
+    at = " and ".join(f"{middle:+.2g} a" for middle in middles)
+    return (f"the middle of the contact is off x = 0: by {at} at load points 1 and 2",)
 
 
 def _settled(adapted: Adapted, scene: Scene) -> tuple[str, ...]:

@@ -62,7 +62,8 @@ def block(
         If gmsh cannot make the mesh, or its process dies twice.
     """
     height = width if height is None else height
-    at_corners = {**({"notch": _CORNER * width} if holder else {}), **(corners or {})}
+    at_corners: dict[Corner, float] = {"notch": _CORNER * width} if holder else {}
+    at_corners.update(corners or {})
     outline = {"width": width, "height": height, "holder": holder, "facets": facets, "at_corners": at_corners}
     points, triangles, lines, cpu_s = _made(3, contact, sizes, growth, along, **outline)
     if face:
@@ -75,7 +76,7 @@ def quad_block(width: float, contact: tuple[float, float], sizes: Mapping[float,
                along: float | None = None) -> QuadMesh:  # fmt: skip
     """Mesh the block [-width, width] x [-width, 0] with quadrilaterals only; parameters and what is raised as for
     :func:`block`."""
-    outline = {"width": width, "height": width, "holder": None, "facets": None, "at_corners": {}}
+    outline: dict[str, Any] = {"width": width, "height": width, "holder": None, "facets": None, "at_corners": {}}
     return QuadMesh(*_made(4, contact, sizes, growth, along, **outline)[:3])
 
 

@@ -3,7 +3,6 @@
 Methods read the plan and build only what it calls for. A scene's ``[effects]`` force some on or off.
 """
 
-import math
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -11,7 +10,8 @@ import msgspec
 from msgspec.structs import replace
 
 from partialslip.errors import InputError
-from partialslip.scene import WIDTHS, Bodies, Effects, Friction, Hertz, Scene
+from partialslip.gradual import may_turn_round, small_tension
+from partialslip.scene import WIDTHS, Bodies, Effects, Friction, Scene
 
 Effect = Literal[
     "normal",
@@ -126,7 +126,7 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
         no_friction = "f = 0: no traction holds the surfaces along x"
     else:
         no_friction = "|Q| >= f P at a load point: the contact slides, and nothing is left to find"
-    small = _small_tension(scene)
+    small = "tension is small: both ends of a Hertz contact slip the same way" if small_tension(scene) else ""
     opposing = "tension may turn the slip at one end of the contact"
     history = _why_history(scene, coupled, start)
     return {
@@ -157,8 +157,8 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
 def _why_history(scene: Scene, coupled: bool, start: bool) -> str:
     """Why what is locked in depends on the path; empty where it does not.
 
-    On one step from load point 1 to 2 the shear changes by twice that of the first loading (Masing's rule): the
-    conditions of the one are those of the other, doubled. On a gradual way slip may turn round in between.
+    Where slip does not turn round on the way from load point 1 to 2, the shear changes by twice that of the first
+    loading (Masing's rule): the conditions of the one are those of the other, doubled.
     """
     load = scene.load
     if start:
@@ -169,23 +169,11 @@ def _why_history(scene: Scene, coupled: bool, start: bool) -> str:
         return "Q and sigma are out of phase: what is locked in depends on the path"
     if not load.fully_reversed:
         return "mean loads act: what the first cycles lock in depends on the path"
+    if may_turn_round(scene):
+        return "slip may turn round on the way between load points 1 and 2"
     if load.steps > 1 or len(load.points) > 2:
-        return "the way between load points 1 and 2 is gradual: slip may turn round on it"
+        return "steps, or load points, on the way between load points 1 and 2 were asked for"
     return ""
-
-
-def _small_tension(scene: Scene) -> str:
-    """Why tension turns no slip round, where that is known beforehand: of Hertz contacts of half-planes (paper, eq.
-    (23)), and on a gradual way only up to where the adhered contact would begin to slip opposite ways."""
-    load, f = scene.load, scene.friction.f
-    if not isinstance(scene.profile, Hertz) or scene.finite or not scene.mirrored or scene.slides:
-        return ""
-    p0 = math.sqrt(2 / math.pi) * scene.P / scene.length  # 2 P/(pi a), a^2 = 2 A R P/pi
-    Qf, sf = abs(load.dQ) / (2 * f * scene.P), abs(load.dsigma) / (f * p0)
-    at_once = load.steps == 1 and len(load.points) == 2
-    if not load.in_phase or sf == 0 or sf >= (8 * (1 - math.sqrt(1 - Qf)) if at_once else 4 * Qf):
-        return ""
-    return "tension is small: both ends of a Hertz contact slip the same way"
 
 
 def _refuse(scene: Scene, forced: dict[Effect, bool], own: _Decisions) -> None:

@@ -13,8 +13,15 @@ import msgspec
 import numpy as np
 
 from partialslip.errors import InputError
+from partialslip.inputfile import read_text
 from partialslip.scene import LARGEST, SMALLEST, Scene, Table
 
+_LARGEST_FILE = 500_000  # bytes: a profile and a cycle of 1,000 numbers each have 120,000
+_LONGEST = 1000  # numbers in an array
+_BITS = 8192  # of whole numbers that are shown in digits
+_DEEPEST = 10  # tables and arrays in each other; the keys of a scene have three
+# A key of many parts, for which tomllib takes time like their number squared, and more.
+_DEEP_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){20}""", re.ASCII)
 _KINDS = {
     "object": "a table",
     "array": "an array",
@@ -87,21 +94,24 @@ def parse_scene(data: Mapping[str, Any]) -> Scene:
 
 def _text(scene: str | Path) -> str:
     path = Path(scene)
-    try:
-        if path.suffix == ".toml" or path.is_file():
-            return path.read_text("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(f"{scene}: not UTF-8 text (byte {error.start})") from None
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(f"{scene}: cannot be read: {reason}") from None
+    if path.suffix == ".toml" or _is_file(path):
+        return read_text(path, _LARGEST_FILE)
     shipped = shipped_scenes()
     if str(scene) in shipped:
         return (resources.files("partialslip") / "scenes" / f"{scene}.toml").read_text("utf-8")
     raise InputError(f"scene {str(scene)!r}: neither a file nor a shipped scene{_nearest(str(scene), shipped)}")
 
 
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # a name that no file can have
+        return False
+
+
 def _parse(text: str, origin: str) -> dict[str, Any]:
+    if _DEEP_KEY.search(text):
+        raise InputError(f"{_shown(origin)}: a key of more than 20 parts: must not be nested so deep")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -111,22 +121,23 @@ def _parse(text: str, origin: str) -> dict[str, Any]:
 
 
 def _override(data: dict[str, Any], override: str) -> None:
+    origin = f"--set {_shown(override)}"
     path, equals, value = override.partition("=")
     keys = path.strip().split(".")
     if not (equals and all(keys)):
-        raise InputError(f"--set {override}: must be table.key=value, for example load.P=2e5")
+        raise InputError(f"{origin}: must be table.key=value, for example load.P=2e5")
     value = value.strip()
     if value[:1].isalpha() and value not in ("true", "false", "nan", "inf"):
         parsed: Any = value  # words are a string: fem.far_field=box
     else:
-        read = _parse(f"value = {value}", f"--set {override}")
+        read = _parse(f"value = {value}", origin)
         if list(read) != ["value"] or "\n" in value:
-            raise InputError(f"--set {override}: must be one value")
+            raise InputError(f"{origin}: must be one value")
         parsed = read["value"]
     for key in keys[:-1]:
         data = data.setdefault(key, {})
         if not isinstance(data, dict):
-            raise InputError(f"--set {override}: {key} is not a table")
+            raise InputError(f"{origin}: {_shown(key)} is not a table")
     data[keys[-1]] = parsed
 
 
@@ -138,21 +149,28 @@ def _find_meshes(data: dict[str, Any], scene: str | Path) -> None:
             body["mesh"] = str(Path(scene).parent / mesh)
 
 
-def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {key: _plain(child) for key, child in value.items()}
+def _plain(value: Any, path: str = "", depth: int = 0) -> Any:
+    """``value`` as tables, lists and Python's own numbers; refused where nested too deep, or too long."""
     if isinstance(value, (np.generic, np.ndarray)):
-        return value.tolist()
-    return [_plain(child) for child in value] if isinstance(value, (list, tuple)) else value
+        value = value.tolist()
+    if isinstance(value, (Mapping, list, tuple)) and depth == _DEEPEST:
+        raise InputError(f"{path}: must not be nested so deep")
+    if isinstance(value, Mapping):
+        if wrong := [key for key in value if not isinstance(key, str)]:
+            raise InputError(f"{_join(path, wrong[0])}: a key must be a string")
+        return {key: _plain(child, _join(path, key), depth + 1) for key, child in value.items()}
+    if isinstance(value, (list, tuple)):
+        if len(value) > _LONGEST:
+            raise InputError(f"{path}: must be an array of at most {_LONGEST} numbers, not {len(value)}")
+        return [_plain(child, f"{path}[{index}]", depth + 1) for index, child in enumerate(value)]
+    return value
 
 
 def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
-    if isinstance(value, Mapping):
+    if isinstance(value, dict):
         for key, child in value.items():
-            if not isinstance(key, str):
-                raise InputError(f"{_join(path, str(key))}: a key must be a string")
-            yield from _leaves(child, f"{path}.{key}" if path else str(key))
-    elif isinstance(value, (list, tuple)):
+            yield from _leaves(child, _join(path, key))
+    elif isinstance(value, list):
         for index, child in enumerate(value):
             yield from _leaves(child, f"{path}[{index}]")
     else:
@@ -222,17 +240,20 @@ def _keys(kind: Any) -> list[str]:
     return [*([chooser] if chooser else []), *_fields(kind)]
 
 
-def _join(path: str, key: str) -> str:
-    return f"{path}.{key}" if path else key
+def _join(path: str, key: object) -> str:
+    return f"{path}.{_shown(key)}" if path else _shown(key)
 
 
 def _shown(value: Any) -> str:
+    """A value, or a name, in at most 60 characters."""
+    if type(value) is int and value.bit_length() > _BITS:
+        return f"a whole number of {value.bit_length()} bits"
     text = repr(value) if isinstance(value, (int, float, list, dict)) else str(value)
     return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _nearest(key: str, known: Iterable[str]) -> str:
     by_lower = {name.lower(): name for name in known}
-    if near := difflib.get_close_matches(key.lower(), by_lower, n=1, cutoff=0.6):
+    if near := difflib.get_close_matches(key[:60].lower(), by_lower, n=1, cutoff=0.6):
         return f"; did you mean {by_lower[near[0]]!r}?"
     return f"; known are {', '.join(by_lower.values())}"

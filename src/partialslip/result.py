@@ -28,7 +28,7 @@ Array = npt.NDArray[np.float64]
 # A solver that has closed leaves residuals at rounding; on the finest meshes that is 1e-9 f p0.
 CERTIFICATE_BAR = 1e-7
 
-Regime = Literal["stuck", "small tension", "large tension", "out of phase", "sliding", "ratchets"]
+Regime = Literal["stuck", "small tension", "large tension", "out of phase", "sliding", "ratchets", "pressing"]
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from partialslip import views
 from partialslip.allowance import Allowance
 from partialslip.errors import InputError
 from partialslip.frame import frame
+from partialslip.gradual import may_turn_round
 from partialslip.judge import Comparison, Outcome, Verdict, compare, conditions, overall
 from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
@@ -121,10 +122,18 @@ class Run:
 
 def default_methods(scene: Scene) -> tuple[str, ...]:
     """Finite elements, and what they are compared with: the exact method, or march where Q and sigma are out of phase;
-    nothing where the bodies are of different materials."""
+    both where slip turns round between the load points of half-planes; nothing where the bodies are of different
+    materials."""
     if not scene.material.alike:
         return ("fem",)
-    return ("exact", "fem") if scene.load.in_phase else ("march", "fem")
+    if not scene.load.in_phase:
+        return ("march", "fem")
+    if not scene.finite and may_turn_round(scene):
+        from partialslip.halfplane.method import path_dependent
+
+        if path_dependent(scene):
+            return ("exact", "march", "fem")
+    return ("exact", "fem")
 
 
 def run(

@@ -23,9 +23,24 @@ SMALLEST, LARGEST = 1e-100, 1e100
 
 WIDTHS = {"half-plane": 16.0, "box": 4096.0}  # half-widths of a block in contact half-widths, as a rule
 
+# What may be off by how many times the accuracy asked for: ends of zones in a, tractions in relative L2.
+ALLOWED = {
+    **dict.fromkeys(("a", "left", "right", "m", "n"), 1.0),
+    "p": 10.0,
+    **dict.fromkeys(("q", "q1", "q2"), 15.0),
+}
+
 _ROUGH = 1e-9  # changes of slope and curvature in a table, in the largest one, that are taken for rounding
 _SHARP = 0.05
 _STEEPEST = 0.9  # sine of the angle to which a pad's round face may go
+
+# What may not be in text that terminals, pages and figures show: control characters, line and paragraph separators,
+# marks that turn the direction of writing round, halves of surrogate pairs, and what XML does not allow.
+_NO_TEXT = (
+    r"\x00-\x1f\x7f-\x9f\u2028\u2029"
+    r"\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"
+    r"\ud800-\udfff\ufffe\uffff"
+)
 
 Array = npt.NDArray[np.float64]
 
@@ -236,7 +251,7 @@ class Load(Table, frozen=True, kw_only=True):
     ``P`` (N/m) is constant; for Hertz ``a`` (m) or ``p0`` (Pa) may be given instead. ``Q`` (N/m) and ``sigma`` (Pa, the
     difference of the two bodies' bulk tensions) are their values at the load points: as a rule at points 1 and 2,
     between which they cycle in phase, or at more of them. The path begins without shear, goes to the last point, and
-    then ``cycles`` times through all of them; methods that follow it take ``steps`` from each to the next.
+    then ``cycles`` times through all of them; methods that follow it take ``steps`` from each to the next, or more.
     """
 
     P: Positive | None = None
@@ -354,7 +369,7 @@ class Scene(Table, frozen=True, kw_only=True):
     profile: Profile
     load: Load
     friction: Friction
-    title: Annotated[str, msgspec.Meta(pattern=r"^[^\x00-\x1f\x7f]*\Z", max_length=200)] = ""
+    title: Annotated[str, msgspec.Meta(pattern=rf"^[^{_NO_TEXT}]*\Z", max_length=200)] = ""
     bodies: Bodies = Bodies()
     fem: Fem = Fem()
     effects: Effects = Effects()
@@ -398,6 +413,11 @@ class Scene(Table, frozen=True, kw_only=True):
     def slides(self) -> bool:
         """Whether friction cannot carry Q: no forces within the bound could sum to it."""
         return max(abs(Q) for Q, _ in self.load.points) >= self.friction.f * self.P
+
+    @property
+    def free(self) -> bool:
+        """Whether there is neither friction nor shear force: nothing sticks, and nothing drives the bodies apart."""
+        return self.friction.f == 0 and not any(Q for Q, _ in self.load.points)
 
     @property
     def meshed(self) -> bool:

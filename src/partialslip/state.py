@@ -8,9 +8,11 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.errors import InputError
+from partialslip.inputfile import check_regular
 from partialslip.scene import Array, Scene
 
 _ARRAYS = ("loads", "cells", "p", "q")
+_LARGEST = 100_000_000  # bytes of a file, and of the arrays in it
 _HELD = 1e-6  # relative to P, how far a solver may be from equilibrium
 _SAME = 1e-9  # relative difference of P and A that is rounding
 
@@ -58,12 +60,15 @@ def load_state(path: str | Path) -> State:
     InputError
         If the file cannot be read, or holds no state, or tractions that are not in equilibrium with the loads.
     """
+    check_regular(path, _LARGEST)
     try:
         with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            if sum(part.file_size for part in file.zip.infolist()) > _LARGEST:
+                raise ValueError
             arrays = {name: file[name].astype(float, casting="safe") for name in _ARRAYS}
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
-    except (KeyError, ValueError, EOFError, AttributeError, TypeError, zipfile.BadZipFile):
+    except (KeyError, ValueError, EOFError, AttributeError, TypeError, MemoryError, zipfile.BadZipFile):
         raise InputError(f"{path}: not a state that partialslip has saved") from None
     loads, cells, p, q = (arrays[name] for name in _ARRAYS)
     if not _sound(loads, cells, p, q):

@@ -25,9 +25,10 @@ def ratio(name, *overrides):
 
 
 @pytest.mark.parametrize("scene", SCENES[2:4], ids=lambda scene: scene[1])
-def test_estimate_is_right_within_a_factor_of_3(scene):
+def test_estimate_bounds_the_error_by_less_than_6_times_it(scene):
+    """The estimate is to be below the error at one end in twenty; the error has no least size."""
     known, share = ratio(*scene, "fem.accuracy=2e-5")
-    assert 1 / 3 < known < 3
+    assert 1 < known < 6
     assert share < 1
 
 
@@ -36,7 +37,7 @@ def test_estimate_is_right_within_a_factor_of_3(scene):
 @pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene[1])
 def test_estimate_is_right_at_every_accuracy(scene, accuracy):
     known, share = ratio(*scene, f"fem.accuracy={accuracy}")
-    assert 1 / 3 < known < 3
+    assert 1 / 2 < known < 6
     assert share < 1
 
 
@@ -55,7 +56,7 @@ def test_elements_at_the_ends_are_counted(monkeypatch):
     monkeypatch.setattr(adapt, "_BESIDE", 0.06)
     monkeypatch.setattr(adapt, "_ENDS", 1e6)
     honest, _ = ratio(*SCENES[2], "fem.accuracy=1e-2")
-    monkeypatch.setattr(adapt, "end_errors", lambda *_: dict.fromkeys("amnpq", 1e-12))
+    monkeypatch.setattr(adapt, "end_errors", lambda *_: dict.fromkeys(estimate.KEYS, 1e-12))
     known, _ = ratio(*SCENES[2], "fem.accuracy=1e-2")
     assert known < 1 / 3 < honest
 
@@ -63,7 +64,7 @@ def test_elements_at_the_ends_are_counted(monkeypatch):
 def test_a_difference_of_tractions_is_relative_to_the_first():
     scene = partialslip.load_scene("hertz-shear", ["load.Q=[0, 0]", "fem.accuracy=1e-2"])
     fem = partialslip.run(scene, ["fem"]).results["fem"]
-    assert fem.estimate.keys() == {"a", "p"}  # neither shear nor a stick zone to estimate
+    assert fem.estimate.keys() == {"a", "left", "right", "p"}  # neither shear nor a stick zone to estimate
     assert 0 < fem.estimate["p"] < 0.1
 
 

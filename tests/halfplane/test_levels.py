@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from boundary_elements import march
 
 import partialslip
 from partialslip import halfplane
@@ -39,43 +40,6 @@ def of(Q, sigma, shape=None):
     pressed = Contact(1.0, P, shape or Hertz())
     load = Load(P=P, Q=tuple(P * each for each in Q), sigma=sigma)
     return levels(pressed, 1.0, load, loading(pressed, 1.0, load.dQ, load.dsigma, bound=2))
-
-
-def boundary_elements(shape, path, count=80, steps=12):
-    """q along a path of (Q in f P, sigma in f p0), from nothing: cells of constant traction, collocation, active sets.
-    Shares nothing with the package but the pressure."""
-    ends = -np.cos(np.linspace(0, np.pi, count + 1))
-    x, widths = (ends[1:] + ends[:-1]) / 2, np.diff(ends)
-
-    def primitive(apart):
-        return apart * np.log(np.abs(apart)) - apart
-
-    C = -(primitive(x[:, None] - ends[:-1]) - primitive(x[:, None] - ends[1:])) / np.pi
-    p, q, load, found = shape.pressure(x), np.zeros(count), np.zeros(2), []
-    for point in np.array(path) * [P, 1]:
-        side = np.zeros(count, int)
-        for share in np.arange(1, steps + 1) / steps:
-            Q = load[0] + share * (point[0] - load[0])
-            free = C @ q + x * (point[1] - load[1]) / steps / 4
-            for _ in range(200):
-                sticks = side == 0
-                known = np.where(sticks, 0.0, side * p)
-                system = np.block([[C[np.ix_(sticks, sticks)], -np.ones((sticks.sum(), 1))], [widths[sticks], 0.0]])
-                found_q = np.linalg.solve(system, np.append((free - C @ known)[sticks], Q - widths @ known))
-                new = known.copy()
-                new[sticks] = found_q[:-1]
-                slip = free - C @ new + found_q[-1]
-                turned = np.where(sticks, np.sign(new) * (np.abs(new) > p * (1 + 1e-11)), side)
-                turned = np.where(side * slip < -1e-13, 0, turned).astype(int)
-                if (turned == side).all():
-                    break
-                side = turned
-            else:
-                raise AssertionError("the active set cycles")
-            q = new
-        load = point
-        found.append(q)
-    return x, widths, p, found
 
 
 def test_mindlin_deresiewicz():
@@ -125,7 +89,7 @@ def test_tension_moves_the_ellipse_that_the_first_loading_locks_in():
 def test_boundary_elements_agree(Q, sigma, shape):
     """Relative L2, in p, of q at both load points after the first visits: cells leave up to 1e-2."""
     load_points = list(zip(Q, sigma, strict=True))
-    x, widths, p, (_, one, two) = boundary_elements(shape, [load_points[1], *load_points])
+    x, widths, p, (_, one, two) = march(shape, [load_points[1], *load_points])
     for mine, its in zip(of(Q, sigma, shape).at(x), (one, two), strict=True):
         assert np.sqrt((mine - its) ** 2 @ widths / (p**2 @ widths)) < 1.3e-2
 
@@ -134,7 +98,7 @@ def test_boundary_elements_agree(Q, sigma, shape):
 def test_the_first_loading_of_the_wrong_load_point_is_caught():
     """q2 by the first loading of load point 1, which slips less, and the change."""
     pressed, path = Contact(1.0, P, Hertz()), [(0.8, 0.0), (0.3, 0.0), (0.8, 0.0)]
-    x, widths, p, (_, _, two) = boundary_elements(Hertz(), path)
+    x, widths, p, (_, _, two) = march(Hertz(), path)
     first, cycle = (loading(pressed, 1.0, Q * P, 0.0, bound) for Q, bound in ((0.3, 1), (0.5, 2)))
     wrong = first.traction(x) + cycle.traction(x)
     assert np.sqrt((wrong - two) ** 2 @ widths / (p**2 @ widths)) > 5e-2

@@ -96,3 +96,12 @@ def test_limits_are_where_something_else_begins():
     assert still.regime == "stuck"
     assert still.limits["Q_mean"] == pytest.approx(still.limits["Q_sliding"])
     assert exact("hertz-large-tension", "friction.f=0").limits == {}
+
+
+def test_frictionless_contact_without_shear_force_does_not_slide_away():
+    for sigma in ("[0, 0]", "[-1e8, 1e8]"):
+        result = exact("hertz-shear", "friction.f=0", "load.Q=[0, 0]", f"load.sigma={sigma}")
+        assert not any("slides" in note for note in result.notes)
+        assert "nothing sticks" in result.notes[0]
+        assert result.m is None
+        assert not result.traction.dq.any()

@@ -12,6 +12,7 @@ from msgspec.structs import replace as changed
 from partialslip import compare
 from partialslip.judge import BARS, NO_BAR, Bar, Outcome, Verdict, conditions, judged, overall
 from partialslip.plan import plan
+from partialslip.result import SurfaceStress
 from partialslip.run import ALL_EFFECTS, METHODS, compared
 
 NAN = float("nan")
@@ -391,7 +392,7 @@ def test_the_width_that_the_regime_is_told_by_is_the_larger_bar_of_m_and_n():
             for key in ("x", "p", "dq", "q1", "q2", "p1")
         ),
     ],
-    ids=str,
+    ids=lambda spoil: next(iter(spoil)),
 )  # fmt: skip
 def test_a_number_that_is_none_is_counted(spoil):
     """Deliberate fault: one number of a result is not finite."""
@@ -469,3 +470,21 @@ def test_the_reference_is_the_first_that_can_judge():
 def test_units_of_the_scene():
     assert pytest.approx(P) == SCENE.P
     assert pytest.approx(2 * P / (np.pi * A)) == P0
+
+
+def test_stresses_have_rows_where_both_know_them():
+    x = np.linspace(-4, 4, 401) * A
+
+    def surface(scale):
+        def at(x):
+            return scale * np.stack([[np.cos(x / A), np.sin(x / A)], [0 * x, 0 * x]])
+
+        return SurfaceStress(x, at(x), at)
+
+    exact, found = replace(EXACT, surface=surface(1.0)), replace(result(), surface=surface(1.02))
+    both = verdicts(found, exact)
+    assert (both["largest"].reference, both["largest"].found) == (pytest.approx(1), pytest.approx(1.02))
+    assert (both["largest"].error, both["surface"].error) == (pytest.approx(0.02), pytest.approx(0.02))
+    assert {both[key].outcome for key in ("largest", "surface")} == {NOT_JUDGED}
+    for one, other in ((result(), exact), (found, EXACT)):
+        assert not {"largest", "surface", "inside"} & verdicts(one, other).keys()

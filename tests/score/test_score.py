@@ -11,6 +11,7 @@ import pytest
 import partialslip
 from partialslip import load_scene, run, score
 from partialslip.cli import main
+from partialslip.judge import Outcome
 
 SCENES = ("hertz-shear", "hertz-small-tension", "hertz-large-tension", "fretting-aluminium", "flat-rounded")
 FIXTURES = Path(__file__).parent
@@ -47,10 +48,11 @@ def test_errors_fall_with_the_spacing(exact, tmp_path, name):
         coarse, fine = getattr(found[0], key), getattr(found[2], key)
         assert np.log(coarse / fine) / np.log(16) > order
     for key in ("a", "m", "n"):
-        assert [getattr(c, key) for c in found] < [0.25 * 2.2 / 80] * 3
-        assert getattr(found[1], key) < 0.002 * 2.2 / 320
+        assert getattr(found[0], key) < 0.25 * 2.2 / 80
+        # of the flat's m the points within the corner, beside the kink of p, are few at that spacing
+        assert getattr(found[1], key) < (0.02 if name == "flat-rounded" else 0.002) * 2.2 / 320
         assert getattr(found[2], key) < 0.002 * 2.2 / 1280
-    assert all(c.passed for c in found)
+    assert {c.outcome for c in found} == {Outcome.NOT_JUDGED}  # without bars nothing passes
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -72,9 +74,11 @@ def test_noise_is_seen_and_told(exact, tmp_path, name):
         table = sampled(result, 80)
         table[:, 1:] += 0.01 * result.p0 * random.standard_normal((80, 2)) * [1, 2 * scene.friction.f]
         found, comparison = errors(scene, written(tmp_path / "t.csv", table))
-        off += [comparison.a, comparison.m, comparison.n]
-        told += [found.estimate[key] for key in "amn"]
+        given = "a" if found.m is None else "amn"
+        off += [getattr(comparison, key) for key in given]
+        told += [found.estimate[key] for key in given]
     spacing = 2.2 / 79
+    assert len(off) >= 20  # of 30, the others not given
     assert np.median(off) < 0.15 * spacing
     assert max(off) < 2 * spacing
     assert 0.3 < np.median(told) / np.median(off) < 10
@@ -126,7 +130,7 @@ def test_nodal_forces(exact, tmp_path, order):
     assert found.traction.p @ widths == pytest.approx(scene.P, rel=1e-5)
     assert max(comparison.a, comparison.m, comparison.n) < 0.15 * 2.2 / 80
     assert comparison.p < 0.02
-    if order == 2:  # deliberate fault: taken for elements of order 1
+    if order == 2:  # taken for elements of order 1
         with pytest.raises(partialslip.InputError, match="another order"):
             score(scene, path)
 
@@ -150,50 +154,67 @@ def test_meshes(exact, tmp_path, ending):
     assert (found.a, found.m, comparison.q) == pytest.approx((same.a, same.m, expected.q), rel=1e-6)
 
 
-@pytest.mark.parametrize(("ending", "off"), [("frd", 0.1), ("dat", 0.25)])
+@pytest.mark.parametrize(("ending", "off"), [("frd", 0.2), ("dat", 0.4)])
 def test_calculix(ending, off):
     """From a run of CalculiX 2.20 (elements of 0.16 a, surface-to-surface, blocks of 16 a): ends to part of an
-    element."""
+    element, with two points in a slip zone, so that f is not seen; errors are within the estimates."""
     scene = load_scene("hertz-shear")
     found, comparison = errors(scene, FIXTURES / f"calculix.{ending}")
     assert found.regime == "small tension"
     assert max(comparison.a, comparison.m, comparison.n) < off * 0.1625
+    assert all(getattr(comparison, key) < 3 * found.estimate[key] for key in "amn")
     assert comparison.p < 0.12
     chosen, _ = errors(scene, FIXTURES / f"calculix.{ending}", at=(1, 2))
     assert chosen.m == found.m
     turned, opposite = errors(scene, FIXTURES / f"calculix.{ending}", at=(2, 1))
     assert turned.traction.dq == pytest.approx(-found.traction.dq)
     assert opposite.q > 1.9
-    assert any("turned round?" in note for note in turned.notes)
+    assert any("dq looks like turned round" in note for note in turned.notes)
 
 
-FAULTS = {
-    "shifted by half a cell": (lambda t, h: t + np.array([h / 2, 0, 0]), "m n p q", "middle"),
-    "q of the other sign": (lambda t, _: t * [1, 1, -1], "q", "turned round?"),
-    "half a cycle": (lambda t, _: t * [1, 1, 0.5], "m n q", "half a cycle?"),
-    "without the right half": (lambda t, _: t[: len(t) // 2], "a p q", "of the scene's P"),
+MISTAKES = {
+    "shifted by half a cell": (lambda t, h: t + np.array([h / 2, 0, 0]), "m n p q", "middle is at x = 0.0069 a"),
+    "q of the other sign": (lambda t, _: t * [1, 1, -1], "q dQ", "dq looks like turned round: --factors 1,1,-1"),
+    "half a cycle": (lambda t, _: t * [1, 1, 0.5], "q dQ", "dq looks like of half a cycle: --factors 1,1,2"),
+    "without the right half": (lambda t, _: t[: len(t) // 2], "a p q P", "of the scene's P"),
     "a hole": (lambda t, _: np.delete(t, slice(12, 26), axis=0), "p q", ""),
-    "p and q exchanged": (lambda t, _: np.column_stack([t[:, 0], t[:, 2], t[:, 1]]), "p q", ""),
-    "mirrored": (lambda t, _: t * [-1, 1, 1], "m n q", ""),
-    "pressure scaled": (lambda t, _: t * [1, 1.1, 1], "p", "of the scene's P"),
-    "less friction": (lambda t, _: t * [1, 1, 0.987], "m n q", "nothing is seen to slip"),
-    "in MPa": (lambda t, _: t * [1, 1e-6, 1e-6], "p q", "in MPa?"),
+    "p and q exchanged": (lambda t, _: np.column_stack([t[:, 0], t[:, 2], t[:, 1]]), "p q P dQ", "of the scene's P"),
+    "mirrored": (lambda t, _: t * [-1, 1, 1], "m n q", "on the other side: is x, or the tension, turned round?"),
+    "pressure scaled": (lambda t, _: t * [1, 1.1, 1], "p P", "p adds up to 1.1 of the scene's P"),
+    "shear scaled": (lambda t, _: t * [1, 1, 1.05], "q dQ", "dq adds up to 1.05 of the scene's dQ"),
+    "less friction": (lambda t, _: t * [1, 1, 0.987], "q", "|dq|/(2 p) is 0.2961 where it slips, the scene's f is 0.3"),
+    "in MPa": (lambda t, _: t * [1, 1e-6, 1e-6], "p q P dQ", "MPa: --factors 1,1e+06,1e+06 would fit"),
+    "in mm and MPa": (lambda t, _: t * [1e3, 1e-6, 1e-6], "a p q P dQ", "--factors 0.001,1e+06,1e+06 would fit"),
+    "in mm": (lambda t, _: t * [1e3, 1, 1], "a p q P dQ", "x looks like mm: --factors 0.001,1,1 would fit"),
 }
 
 
-@pytest.mark.parametrize("fault", FAULTS)
-def test_faults_are_seen(exact, tmp_path, fault):
-    """Deliberate faults, against bars that the faultless table meets."""
+@pytest.mark.fault
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_mistakes_in_a_table_are_named(exact, tmp_path, mistake):
+    """Against bars that the table meets without the mistake."""
     scene, result = exact["fretting-aluminium"]
     table = sampled(result, 161)
     clean, good = errors(scene, written(tmp_path / "t.csv", table), bar=5e-4)
     assert good.passed
     assert not clean.notes
-    spoil, seen, note = FAULTS[fault]
+    spoil, seen, note = MISTAKES[mistake]
     found, comparison = errors(scene, written(tmp_path / "t.csv", spoil(table, table[1, 0] - table[0, 0])), bar=5e-4)
     missed = {what.split(":")[0] for what in comparison.missed}
     assert set(seen.split()) <= missed
     assert note in " ".join(found.notes)
+    if "x looks like" in note:
+        assert found.m is None
+        assert "another unit" in found.undetermined["m"]
+
+
+@pytest.mark.fault
+def test_tension_left_out_is_named(exact, tmp_path):
+    scene, _ = exact["fretting-aluminium"]
+    without = run(load_scene("fretting-aluminium", ["load.sigma=[0.0, 0.0]"]), ["exact"]).results["exact"]
+    found, comparison = errors(scene, written(tmp_path / "t.csv", sampled(without, 161)), bar=5e-4)
+    assert {"m", "n", "q"} <= {what.split(":")[0] for what in comparison.missed}
+    assert any("was the tension left out?" in note for note in found.notes)
 
 
 def test_other_references(tmp_path):

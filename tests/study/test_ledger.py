@@ -38,12 +38,28 @@ def test_a_torn_last_line_is_dropped_and_written_over(tmp_path):
     assert [entry["key"] for entry in Ledger(path)] == ["one", "two"]
 
 
-@pytest.mark.parametrize("line", ["[1, 2]", "{}", "not JSON", '"text"', "\x00"])
+@pytest.mark.parametrize(
+    "line",
+    ["[1, 2]", "{}", "not JSON", '"text"', "\x00", "[" * 100_000, '{"key": "one"}', '{"key": [1]}', '{"key": {}}',
+     '{"key": "one", "sum": "0123456789abcdef"}', '{"key": "one", "verdicts": 3, "labels": [], "methods": null}'],
+    ids=lambda line: line[:30],
+)  # fmt: skip
 def test_what_is_no_ledger_is_refused(tmp_path, line):
     path = tmp_path / "ledger.jsonl"
     path.write_text(line + "\n", "utf-8")
     with pytest.raises(partialslip.InputError, match=r"line 1: must be an entry"):
         Ledger(path)
+
+
+def test_a_line_that_was_changed_is_refused(tmp_path):
+    """Whichever of its bytes it is: what reads entries relies on their shape, and trusts their figures."""
+    path = tmp_path / "ledger.jsonl"
+    Ledger(path).add("one", {"found": 1.5})
+    whole = path.read_bytes()
+    for place in range(len(whole) - 1):
+        path.write_bytes(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
+        with pytest.raises(partialslip.InputError, match=r"line 1: must be an entry.* remove the line"):
+            Ledger(path)
 
 
 def test_a_killed_writer_leaves_whole_lines(tmp_path):

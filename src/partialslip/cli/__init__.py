@@ -1,15 +1,17 @@
-"""The command line. Exit codes: 0 fine, 1 a bar missed, 2 bad input (one line on stderr)."""
+"""The command line; :mod:`partialslip.cli.ending` has the exit codes."""
 
 import argparse
-import os
-import sys
 from collections.abc import Sequence
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from partialslip import __version__
 from partialslip.cli import completion, export, maps, page, run, score, study, verify
-from partialslip.errors import InputError, PartialslipError
+from partialslip.cli.ending import ended
+from partialslip.errors import InputError
 from partialslip.reading import shipped_scenes
+
+if TYPE_CHECKING:
+    from _typeshed import SupportsWrite
 
 
 class _Parser(argparse.ArgumentParser):
@@ -17,7 +19,12 @@ class _Parser(argparse.ArgumentParser):
 
     def __init__(self, examples: Sequence[str] = (), failure: str = "", **settings: Any) -> None:
         super().__init__(allow_abbrev=False, **settings)
-        codes = ["0    fine", *([f"1    {failure}"] if failure else []), "2    bad input", "130  interrupted"]
+        codes = [
+            "0    fine",
+            *([f"1    {failure}"] if failure else []),
+            "2    bad input, or output that cannot be written",
+            "130  interrupted",
+        ]
         self._end = {"examples": examples, "exit codes": codes}
 
     def format_help(self) -> str:
@@ -25,28 +32,22 @@ class _Parser(argparse.ArgumentParser):
         ends = ["\n  ".join([f"\n{head}:", *lines]) + "\n" for head, lines in self._end.items() if lines]
         return super().format_help() + "".join(ends)
 
+    def _print_message(self, message: str, file: "SupportsWrite[str] | None" = None) -> None:
+        """Print help and version as everything else is printed, so that a full disk is noticed."""
+        print(message, end="", file=file)
+
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} (see {self.prog} --help)")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code. With ``arguments`` it is not a process of its own that is run."""
-    try:
-        options = parser().parse_args(arguments, argparse.Namespace(own_process=arguments is None))
-        code: int = options.command(options)
-        sys.stdout.flush()
-    except PartialslipError as error:
-        print(f"partialslip: {error}", file=sys.stderr)
-        return 2
-    except MemoryError:
-        print("partialslip: not enough memory: ask for less accuracy, or larger elements", file=sys.stderr)
-        return 2
-    except BrokenPipeError:  # whoever read the output has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
-    except KeyboardInterrupt:
-        print("partialslip: interrupted", file=sys.stderr)
-        return 130
+    return ended(lambda: _command(arguments))
+
+
+def _command(arguments: Sequence[str] | None) -> int:
+    options = parser().parse_args(arguments, argparse.Namespace(own_process=arguments is None))
+    code: int = options.command(options)
     return code
 
 

@@ -1,6 +1,7 @@
 """What several commands share."""
 
 import json
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,10 +25,22 @@ def add_scene(parser: "argparse.ArgumentParser") -> None:
                         help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
 
 
+def held(folder: Path | None) -> AbstractContextManager[None]:
+    """Hold ``folder`` for this command, until the block ends. Raises InputError if another one writes there."""
+    from partialslip.report.lock import locked
+
+    return nullcontext() if folder is None else locked(folder)
+
+
 def check_folder(out: str | None) -> None:
     """Raise InputError if ``--out`` names nothing."""
     if out == "":
         raise InputError("--out '': must name a folder")
+
+
+def out_folder(options: "argparse.Namespace", name: str) -> Path | None:
+    """Where a run's files go: into ``--out``, or results/NAME; with ``--json`` into ``--out`` alone."""
+    return Path(options.out) if options.out else None if options.json else Path("results") / name
 
 
 def print_written(files: list[Path], console: "Console") -> None:
@@ -41,27 +54,17 @@ def print_outdated(ledger: "Ledger", console: "Console") -> None:
         console.print(f"{ledger.path}: {count:,} entries are by other source files: not used", markup=False)
 
 
-def write_outcome(outcome: "Run", options: "argparse.Namespace", name: str) -> list[Path]:
-    """Write the files of a run into ``--out``, or results/NAME; with ``--json`` into ``--out`` alone. Returns their
-    paths."""
-    from partialslip.report import write_run
-
-    folder = Path(options.out) if options.out else None if options.json else Path("results") / name
-    return write_run(outcome, folder) if folder else []
-
-
 def print_outcome(outcome: "Run", options: "argparse.Namespace", files: list[Path], last: str = "") -> int:
     """Print a run, a ``last`` line and which files there are, or with ``--json`` the record alone. Returns the exit
     code."""
-    from rich.console import Console
-
+    from partialslip.cli.consoles import output
     from partialslip.judge import Outcome
     from partialslip.report import print_run, record
 
     if options.json:
         print(json.dumps(record(outcome), indent=1, allow_nan=False))
     else:
-        console = Console(highlight=False)
+        console = output()
         print_run(outcome, console)
         if last:
             console.print(last, soft_wrap=True, markup=False)

@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_scene, check_folder, print_outdated, print_written
+from partialslip.cli.common import add_scene, check_folder, held, print_outdated, print_written
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
 
@@ -39,8 +39,7 @@ def _cost(options: argparse.Namespace) -> int:
         raise InputError(f"--repeats {options.repeats}: must be >= 1")
     scene = load_scene(options.scene, options.overrides)
 
-    from rich.console import Console
-
+    from partialslip.cli.consoles import messages, output, working
     from partialslip.report import print_table, write_texts
     from partialslip.report.files import csv_text
     from partialslip.study import cost
@@ -50,20 +49,17 @@ def _cost(options: argparse.Namespace) -> int:
     peers = cost.read_peers(Path(options.peers), scene.name) if options.peers is not None else []
     name = f"{scene.name}-cost"
     folder = Path(options.out) if options.out else Path("results") / name
-    ledger = Ledger(folder / "ledger.jsonl")
-    messages = Console(stderr=True, highlight=False)
-    print_outdated(ledger, messages)
-    with messages.status(f"{name} ...") as status:
-        found = cost.measure(
-            scene, ledger, options.repeats, lambda done, of, what: status.update(f"{name}: {done} of {of}, {what}")
-        )
-    texts = {
-        "cost.csv": csv_text(*cost.table([*found, *peers])),
-        "cost.svg": errors_svg(found, peers, f"{scene.name}: error against cost"),
-        "phases.svg": phases_svg(found, f"{scene.name}: where the time goes"),
-    }
-    files = [ledger.path, *write_texts(folder, texts)]
-    console = Console(highlight=False)
+    with held(folder), working(name) as tell:
+        ledger = Ledger(folder / "ledger.jsonl")
+        print_outdated(ledger, messages())
+        found = cost.measure(scene, ledger, options.repeats, lambda done, of, what: tell(f"{done} of {of}, {what}"))
+        texts = {
+            "cost.csv": csv_text(*cost.table([*found, *peers])),
+            "cost.svg": errors_svg(found, peers, f"{scene.name}: error against cost"),
+            "phases.svg": phases_svg(found, f"{scene.name}: where the time goes"),
+        }
+        files = [ledger.path, *write_texts(folder, texts)]
+    console = output()
     console.print(f"{scene.name}: what accuracy costs, medians of {options.repeats}", style="bold", markup=False)
     best = {id(point) for point in cost.front(found)}
     head = ["series (* on the front)", "setting", "m", "n", "q", "unknowns", "CPU s", "process"]

@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_scene, check_folder, print_written
+from partialslip.cli.common import add_scene, check_folder, held, print_written
 from partialslip.reading import load_scene
 
 if TYPE_CHECKING:
@@ -32,23 +32,22 @@ def _effects(options: argparse.Namespace) -> int:
     check_folder(options.out)
     scene = load_scene(options.scene, options.overrides)
 
-    from rich.console import Console
-
+    from partialslip.cli.consoles import output, working
     from partialslip.report import print_table, write_texts
     from partialslip.study import effects
     from partialslip.study.effectsfigure import effects_svg
 
-    messages = Console(stderr=True, highlight=False)
     name = f"{scene.name}-effects"
-    with messages.status(f"{name} ...") as status:
-        study = effects.study_effects(scene, lambda line: status.update(f"{name}: {line}"))
-    texts = {
-        "effects.json": json.dumps(effects.effects_record(study), indent=1, allow_nan=False) + "\n",
-        "effects.csv": effects.effects_csv(study),
-        "effects.svg": effects_svg(study),
-    }
-    files = write_texts(Path(options.out) if options.out else Path("results") / name, texts)
-    console = Console(highlight=False)
+    folder = Path(options.out) if options.out else Path("results") / name
+    with held(folder), working(name) as tell:
+        study = effects.study_effects(scene, tell)
+        texts = {
+            "effects.json": json.dumps(effects.effects_record(study), indent=1, allow_nan=False) + "\n",
+            "effects.csv": effects.effects_csv(study),
+            "effects.svg": effects_svg(study),
+        }
+        files = write_texts(folder, texts)
+    console = output()
     console.print(effects.heading(study), style="bold", markup=False)
     print_table(console, *effects.changes_table(study), words=(0, 1))
     print_table(console, *effects.costs_table(study))

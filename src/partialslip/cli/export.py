@@ -52,8 +52,7 @@ def add(commands: "Commands") -> None:
 
 
 def _export(options: argparse.Namespace) -> int:
-    from rich.console import Console
-
+    from partialslip.cli.consoles import output
     from partialslip.export import FORMATS, export
     from partialslip.report import write_files
 
@@ -79,7 +78,7 @@ def _export(options: argparse.Namespace) -> int:
         penalty=options.penalty,
     )
     path = Path(options.out) if options.out else Path("results") / f"{scene.name}{FORMATS[options.to]}"
-    print_written(write_files(path.parent, {path.name: write}), Console(highlight=False))
+    print_written(write_files(path.parent, {path.name: write}), output())
     return 0
 
 

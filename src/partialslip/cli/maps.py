@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import check_folder, print_written
+from partialslip.cli.common import check_folder, held, print_written
 from partialslip.reading import load_scene
 
 if TYPE_CHECKING:
@@ -32,15 +32,14 @@ def _map(options: argparse.Namespace) -> int:
     scene = None if options.scene is None else load_scene(options.scene)
     name = "map" if scene is None else f"{scene.name}-map"
 
-    from rich.console import Console
-
+    from partialslip.cli.consoles import output, working
     from partialslip.report import place, stick_map, write_map
 
-    messages = Console(stderr=True, highlight=False)
-    with messages.status(f"{name} ...") as status:
-        data = stick_map(scene, progress=lambda line: status.update(f"{name}: {line}"))
-        files = write_map(data, Path(options.out) if options.out else Path("results") / name)
-    console = Console(highlight=False)
+    folder = Path(options.out) if options.out else Path("results") / name
+    with held(folder), working(name) as tell:
+        data = stick_map(scene, progress=tell)
+        files = write_map(data, folder)
+    console = output()
     for line in place(data):
         console.print(line, soft_wrap=True, markup=False)
     print_written(files, console)

@@ -33,11 +33,10 @@ def _page(options: argparse.Namespace) -> int:
     check_folder(options.out)
     scene = load_scene(options.scene)
 
-    from rich.console import Console
-
+    from partialslip.cli.consoles import output
     from partialslip.report import live_page, write_texts
 
     folder = Path(options.out) if options.out else Path("results") / f"{scene.name}-page"
     files = write_texts(folder, {"page.html": live_page(scene)})
-    print_written(files, Console(highlight=False))
+    print_written(files, output())
     return 0

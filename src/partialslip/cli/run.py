@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from partialslip.allowance import Allowance
-from partialslip.cli.common import add_scene, check_folder, print_outcome, write_outcome
+from partialslip.cli.common import add_scene, check_folder, held, out_folder, print_outcome
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
 from partialslip.run import METHODS, Run, default_methods, run
@@ -68,31 +68,23 @@ def _run(options: argparse.Namespace) -> int:
     start = load_state(options.start) if options.start is not None else None
     budget = _budget(options, scene, methods)
 
-    from rich.console import Console
+    from partialslip.cli.consoles import messages, working
+    from partialslip.report import write_files, write_run
 
-    from partialslip.report import write_files
-
-    messages = Console(stderr=True, highlight=False)
     price = _price(options, scene, methods, budget)
     priced_at, allowance = time.process_time(), None
     if price:
         scene = load_scene(options.scene, [*price.overrides, *options.overrides])
         allowance = Allowance(budget - price.closing_s - price.start_s) if budget else None
-        messages.print(f"{price}, predicted", soft_wrap=True, markup=False)
-    with messages.status(f"{scene.name} ...") as status:
-        outcome = run(
-            scene,
-            methods,
-            subsurface=options.fields,
-            progress=lambda line: status.update(f"{scene.name}: {line}"),
-            start=start,
-            allowance=allowance,
-        )
+        messages().print(f"{price}, predicted", soft_wrap=True, markup=False)
+    folder = out_folder(options, scene.name)
+    with held(folder), working(scene.name) as tell:
+        outcome = run(scene, methods, subsurface=options.fields, progress=tell, start=start, allowance=allowance)
         files = []
         if options.save is not None:
             save = Path(options.save)
             files += write_files(save.parent, {save.name: _state(outcome).save})
-        files += write_outcome(outcome, options, scene.name)
+        files += write_run(outcome, folder) if folder else []
     return print_outcome(outcome, options, files, _paid(price, outcome, priced_at) if price else "")
 
 

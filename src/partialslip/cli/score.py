@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from partialslip.cli.common import add_scene, check_folder, print_outcome, write_outcome
+from partialslip.cli.common import add_scene, check_folder, held, out_folder, print_outcome
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
 from partialslip.run import METHODS
@@ -35,10 +35,14 @@ def add(commands: "Commands") -> None:
     )
     add_scene(scores)
     scores.add_argument("file", metavar="FILE", nargs="?",
-                        help="tractions: .csv (x, p, dq), .frd or .dat of CalculiX, .vtu, .xdmf, ...")  # fmt: skip
+                        help="tractions: a table (.csv, .txt, .tsv, .rpt), CalculiX's .frd, .dat, .vtu")  # fmt: skip
     scores.add_argument("--template", action="store_true", help="print a table to fill in, and nothing else")
     scores.add_argument("--factors", metavar="X,P,Q", default="1,1,1",
                         help="multiply x, p and q by these: 1e-3,1e6,1e6 for mm and MPa; -1 turns round")  # fmt: skip
+    scores.add_argument("--columns", metavar="NAMES",
+                        help="what the columns are: x=X,p=CPRESS,dq=S2-S1, by name or number (from 1)")  # fmt: skip
+    scores.add_argument("--centre", choices=("given", "auto"), default="given",
+                        help="auto puts x = 0 in the middle of the contact (default: given)")  # fmt: skip
     scores.add_argument("--order", metavar="1|2", default="1",
                         help="of the elements that nodal forces (columns Fn, Ft) are from (default: 1)")  # fmt: skip
     scores.add_argument("--at", metavar="I,J",
@@ -75,11 +79,12 @@ def _score(options: argparse.Namespace) -> int:
     if options.file is None:
         raise InputError("FILE: missing; --template prints one to fill in")
 
-    from rich.console import Console
+    from partialslip.cli.consoles import working
+    from partialslip.report import write_run
 
     file = Path(options.file)
-    messages = Console(stderr=True, highlight=False)
-    with messages.status(f"{scene.name} ...") as status:
+    folder = out_folder(options, f"{scene.name}-{file.stem}")
+    with held(folder), working(scene.name) as tell:
         outcome = score(
             scene,
             file,
@@ -88,10 +93,22 @@ def _score(options: argparse.Namespace) -> int:
             factors=(factors[0], factors[1], factors[2]),
             order=int(options.order),
             at=(at[0], at[1]) if at else None,
-            progress=lambda line: status.update(f"{scene.name}: {line}"),
+            columns=_columns(options.columns),
+            centre=options.centre,
+            progress=tell,
         )
-        files = write_outcome(outcome, options, f"{scene.name}-{file.stem}")
+        files = write_run(outcome, folder) if folder else []
     return print_outcome(outcome, options, files)
+
+
+def _columns(text: str | None) -> dict[str, str] | None:
+    """What --columns says."""
+    if text is None:
+        return None
+    pairs = [pair.partition("=") for pair in text.split(",")]
+    if not all(name.strip() and made.strip() for name, _, made in pairs):
+        raise InputError(f"--columns {text}: must be like x=X,p=CPRESS,dq=S2-S1")
+    return {name.strip(): made.strip() for name, _, made in pairs}
 
 
 def _numbers(text: str, kind: Callable[[str], _T], option: str, wanted: str, count: int) -> tuple[_T, ...]:

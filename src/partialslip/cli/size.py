@@ -5,12 +5,14 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_scene, check_folder, print_outdated, print_written
+from partialslip.cli.common import add_scene, check_folder, held, print_outdated, print_written
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
+    from partialslip.scene import Scene
+    from partialslip.study.axes import Axis
     from partialslip.study.size import Law, Sizes
 
 
@@ -47,34 +49,38 @@ def _size(options: argparse.Namespace) -> int:
         raise InputError(f"--processes {options.processes}: must be >= 1")
     if len(options.over) > 2:
         raise InputError("--over: at most twice")
-    scene = load_scene(options.scene, options.overrides)
+    from partialslip.study.axes import axis
 
-    from rich.console import Console
+    scene = load_scene(options.scene, options.overrides)
+    folder = Path(options.out) if options.out else Path("results") / f"{scene.name}-size"
+    axes = [axis(text) for text in options.over]
+    with held(folder):
+        return _swept(options, scene, axes, folder)
+
+
+def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", folder: Path) -> int:
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
+    from partialslip.cli.consoles import messages, output, shown
     from partialslip.report import print_table, write_texts
     from partialslip.report.files import csv_text
     from partialslip.study import size
-    from partialslip.study.axes import axis
     from partialslip.study.ledger import Ledger
     from partialslip.study.sizefigure import grid_svg, size_svg
     from partialslip.study.sweep import workers
 
-    axes = [axis(text) for text in options.over]
-    folder = Path(options.out) if options.out else Path("results") / f"{scene.name}-size"
     ledger = Ledger(folder / "ledger.jsonl")
     columns = (TextColumn(f"{scene.name}-size"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[left]}"))
-    messages = Console(stderr=True, highlight=False)
-    print_outdated(ledger, messages)
-    with Progress(*columns, console=messages, transient=True) as bar:
-        task = bar.add_task("", total=None, left="")
+    print_outdated(ledger, messages())
+    bar = Progress(*columns, console=messages(), transient=True)
+    task = bar.add_task("", total=None, left="")
 
-        def progress(done: int, total: int, left: float) -> None:
-            bar.update(task, completed=done, total=total, left="" if math.isnan(left) else f"{left:.0f} s left")
+    def progress(done: int, total: int, left: float) -> None:
+        bar.update(task, completed=done, total=total, left="" if math.isnan(left) else f"{left:.0f} s left")
 
-        with workers(options.cluster, options.processes) as executor:
-            entries = size.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
-    console = Console(highlight=False)
+    with shown(bar), workers(options.cluster, options.processes) as executor:
+        entries = size.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
+    console = output()
     texts = {"cases.csv": csv_text(*size.table(axes, entries))}
     unit = "in contact half-widths" if axes[0].in_a else "as in the scene"
     if len(axes) == 1:

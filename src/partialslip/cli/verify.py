@@ -46,24 +46,24 @@ def add(commands: "Commands") -> None:
 def _verify(options: argparse.Namespace) -> int:
     check_folder(options.out)
 
-    from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
+    from partialslip.cli.consoles import messages, output, shown
     from partialslip.judge import Outcome
     from partialslip.report.verdicts import print_verdicts
     from partialslip.study.verification import verify_suite
 
-    messages = Console(stderr=True, highlight=False)
+    told = messages()
     columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.fields[left]}"))
-    bar = Progress(*columns, console=messages, transient=True)
+    bar = Progress(*columns, console=told, transient=True)
     task = bar.add_task("", total=None, left="")
     with ExitStack() as running:  # what is refused is so before there is any progress
 
         def progress(done: int, total: int, left: float) -> None:
             if math.isnan(left):
-                running.enter_context(bar)
+                running.enter_context(shown(bar))
                 if done:
-                    messages.print(f"{done} cases were finished before", markup=False)
+                    told.print(f"{done} cases were finished before", markup=False)
             left_text = "" if math.isnan(left) else f"{left:.0f} s left" if done < total else "writing the report"
             bar.update(task, completed=done, total=total, left=left_text)
 
@@ -78,7 +78,7 @@ def _verify(options: argparse.Namespace) -> int:
             include=options.include,
             progress=progress,
         )
-    console = Console(highlight=False)
+    console = output()
     print_verdicts(verified.verdicts, console, every=options.suite != "stress" or bool(options.only))
     if verified.again:
         console.print(

@@ -6,7 +6,7 @@ lower's along x and apart along y, under normal forces p and tangential forces q
     u = C_xx q + C_xy p,    v = C_xy^T q + C_yy p.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,20 +15,34 @@ import scipy.linalg as la
 
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
 from partialslip.condensed.friction import History, Path, follow, resting
+from partialslip.condensed.pressing import Punch
 from partialslip.result import Array
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
+_STICKS = 1e-9  # relative difference that is rounding
+_LAST, _TIMES = 2.5e-3, 2  # of the half-width, the last small step of bodies pressed alike; and how often it is placed
+_FAR = 10.0  # half-widths: a gap that nothing closes
+_ENDS = 15.0  # times as well as q the ends are to be known
+_MOST, _WORK = 64, 16_000  # steps in which bodies are pressed, and these times the nodes
 _PATIENCE = 4  # iterations without progress before another way is taken
 
 
 @dataclass(frozen=True)
 class Relative:
     """Relative compliances (n, n) of two bodies' contact nodes; ``xy`` is None where it vanishes or is left out, and
-    so is ``xx`` without friction."""
+    so is ``xx`` without friction. ``yx`` is what q does to the gap, by reciprocity the transpose of ``xy``; zero in
+    Goodman's approximation, in which p moves the surfaces along x and q does not open the gap."""
 
     xx: Array | None
     yy: Array
     xy: Array | None
+    yx: Array | None = None
+
+    @property
+    def opening(self) -> Array:
+        """``yx``, or what reciprocity says that it is."""
+        assert self.xy is not None
+        return self.xy.T if self.yx is None else self.yx
 
 
 @dataclass(frozen=True)
@@ -39,6 +53,7 @@ class _Step:
     xx: Array
     yy: Array
     xy: Array
+    yx: Array
     f: float
     P: float
     gap: Array
@@ -47,7 +62,7 @@ class _Step:
 
     def sweep(self, p: Solution, q: Solution) -> tuple[Solution, Solution]:
         """One iteration of the fixed point: p for the old q, then q for that p, a convex problem each."""
-        n, pushed = len(self.gap), self.gap + self.xy.T @ q.x
+        n, pushed = len(self.gap), self.gap + self.yx @ q.x
         pressed = solve_bounded(self.yy, -pushed, np.zeros(n), np.full(n, np.inf), self.P, p.sides)
         on = np.flatnonzero(pressed.x > 0)
         bound = self.f * pressed.x[on]
@@ -55,7 +70,7 @@ class _Step:
         held = solve_bounded(self.xx[np.ix_(on, on)], free, -bound, bound, self.Q, q.sides[on])
         x, rest, residual = (_spread(values, on, n) for values in (held.x, held.rest, held.residual))
         sheared = replace(held, x=x, rest=rest, residual=residual)
-        moved = self.xy.T @ (sheared.x - q.x)  # what p does not know of yet
+        moved = self.yx @ (sheared.x - q.x)  # what p does not know of yet
         return replace(pressed, residual=np.abs(moved - moved[on].mean()) / np.diag(self.yy)), sheared
 
     def newton(self, p: Solution, q: Solution) -> tuple[Solution, Solution] | None:
@@ -95,8 +110,8 @@ class _Step:
         i, end = len(on), len(on) + len(sticks)
         dragged = self.f * slip[on]
         matrix, right = np.zeros((end + 2, end + 2)), np.zeros(end + 2)
-        matrix[:i, :i] = self.yy[np.ix_(on, on)] + self.xy[np.ix_(on, on)].T * dragged
-        matrix[:i, i:end] = self.xy[np.ix_(sticks, on)].T
+        matrix[:i, :i] = self.yy[np.ix_(on, on)] + self.yx[np.ix_(on, on)] * dragged
+        matrix[:i, i:end] = self.yx[np.ix_(on, sticks)]
         matrix[i:end, :i] = self.xx[np.ix_(sticks, on)] * dragged + self.xy[np.ix_(sticks, on)]
         matrix[i:end, i:end] = self.xx[np.ix_(sticks, sticks)]
         matrix[:i, -2] = matrix[i:end, -1] = -1  # rigid shifts
@@ -110,7 +125,7 @@ class _Step:
         p[on] = solution[:i]
         q[on] = dragged * p[on]
         q[sticks] = solution[i:end]
-        opening = self.yy @ p + self.xy.T @ q + self.gap - approach
+        opening = self.yy @ p + self.yx @ q + self.gap - approach
         rest = self.xx @ q + self.xy @ p - self.kept - shift
         total = np.abs(p).sum() + np.abs(q).sum()
         scale = total + np.stack(
@@ -122,13 +137,138 @@ class _Step:
         return p, q, opening, rest, scale
 
 
-def march(
-    C: Relative, gap: Array, stretch: Array, f: float, path: Path, pressed: Array | None = None
-) -> tuple[History, Solution]:
-    """Press the bodies together and go along the path; the history, and the normal forces at load point 2 with the
-    residuals of all steps.
+@dataclass(frozen=True)
+class Line:
+    """Where the nodes are: ``x`` (n,), the ``weights`` (n,) that turn tractions into forces, and the ends of the
+    contact under nodal normal forces (n,), ``ends(forces) -> (left, right)``. ``similar`` says whether bodies without a
+    size are pressed together by a parabola, so that all stages of it are alike."""
 
-    Friction acts while the bodies are pressed together, too, in as many steps as the path has from point to point.
+    x: Array
+    weights: Array
+    ends: Callable[[Array], tuple[float, float]]
+    similar: bool
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """The bodies pressed together: normal and tangential forces, the steps it took, what q may be off by for their sake
+    (relative L2) and the half-width (relative). ``growth`` are forces (n,) along y and x that grow with the last of P;
+    where q does not reach its bound with those, the surfaces have stuck since they touched."""
+
+    normal: Solution
+    tangential: Solution
+    steps: int
+    errors: dict[str, float]
+    growth: tuple[Array, Array]
+    f: float
+
+    def slipped(self) -> bool:
+        """Whether there has been slip."""
+        p, q = self.growth
+        return bool((np.abs(q)[p > 0] >= (1 - _STICKS) * self.f * p[p > 0]).any())
+
+
+def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accuracy: float) -> Pressed:
+    """Press the bodies together under P from 0 to 1 with friction and without Q.
+
+    What sticks early keeps its displacement. Half-planes under a parabola are pressed in one step from a stage that the
+    flat punch tells (:mod:`partialslip.condensed.pressing`); other bodies in steps, ``least`` of them or more, whose
+    number is doubled until q changes by less than ``accuracy`` (relative L2), or there are as many as are affordable.
+    """
+    assert C.xx is not None
+    assert C.xy is not None
+    zero, xx, xy = 0 * gap, C.xx, C.xy
+    apart = resting(zero), resting(zero)
+
+    def step(P: float, gap: Array, before: tuple[Solution, Solution]) -> tuple[Solution, Solution]:
+        kept = xx @ before[1].x + xy @ before[0].x
+        return _solve(_Step(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept), [before])
+
+    def steps(count: int) -> list[tuple[Solution, Solution]]:
+        found = [apart]
+        for P in np.linspace(0, 1, count + 1)[1:].tolist():
+            found.append(step(P, gap, found[-1]))
+        return found
+
+    norm = 1 / line.weights if line is not None else np.ones(len(gap))
+
+    def off(q: Array, other: Array) -> float:
+        size = float(norm @ q**2)
+        return float(np.sqrt(norm @ (q - other) ** 2 / size)) if size > 0 else 0.0
+
+    if line is not None and line.similar:
+        return _similar(gap, f, line, steps(1)[-1], step, off)
+    last, count = steps(least), least
+    while True:
+        before, last, count = last, steps(2 * count), 2 * count
+        errors = {"q": 2 * off(last[-1][1].x, before[-1][1].x)}
+        if line is not None:
+            errors["a"] = 2 * _moved(line, last[-1][0].x, before[-1][0].x)
+        grown = last[-1][0].x - last[-2][0].x, last[-1][1].x - last[-2][1].x
+        reached = errors["q"] <= accuracy and errors.get("a", 0.0) <= accuracy / _ENDS
+        if reached or 2 * count > max(_MOST, 2 * least) or 2 * count * len(gap) > _WORK:
+            return Pressed(*_certified(last[1:]), count, errors, grown, f)
+
+
+def _moved(line: Line, forces: Array, others: Array) -> float:
+    """How far the ends of two contacts are apart, in half-widths."""
+    (left, right), (l_other, r_other) = line.ends(forces), line.ends(others)
+    return max(abs(left - l_other), abs(right - r_other)) * 2 / (right - left)
+
+
+def _similar(
+    gap: Array,
+    f: float,
+    line: Line,
+    last: tuple[Solution, Solution],
+    step: Callable[[float, Array, tuple[Solution, Solution]], tuple[Solution, Solution]],
+    off: Callable[[Array, Array], float],
+) -> Pressed:
+    """The last small steps, the second of half the size, whose difference tells what the size is worth."""
+    for _ in range(_TIMES):
+        left, right = line.ends(last[0].x)
+        reach = (right - left) / 2
+        flat = np.where(np.abs(line.x) <= reach * (1 + _STICKS), 0.0, _FAR * reach)
+        punch = step(1.0, flat, (resting(0 * gap), resting(0 * gap)))
+        stages = Punch(reach, line.x, line.weights, punch[0].x, punch[1].x)
+        found = []
+        for size in (_LAST, _LAST / 2):
+            p, q = stages.stage(1 - size)
+            found.append(step(1.0, gap, (replace(last[0], x=p), replace(last[1], x=q))))
+        rough, last = found
+    errors = {"q": off(last[1].x, rough[1].x), "a": _moved(line, last[0].x, rough[0].x)}
+    return Pressed(*_certified([last]), 2 + 2 * _TIMES, errors, (punch[0].x, punch[1].x), f)
+
+
+def _certified(done: Sequence[tuple[Solution, Solution]]) -> tuple[Solution, Solution]:
+    """The last solution, with the residuals of all."""
+
+    def worst(steps: list[Solution]) -> Solution:
+        return replace(
+            steps[-1],
+            residual=np.max([step.residual for step in steps], axis=0),
+            imbalance=max(step.imbalance for step in steps),
+            iterations=sum(step.iterations for step in steps),
+            changes=sum(step.changes for step in steps),
+        )
+
+    return worst([p for p, _ in done]), worst([q for _, q in done])
+
+
+def march(
+    C: Relative,
+    gap: Array,
+    stretch: Array,
+    f: float,
+    path: Path,
+    pressed: Array | None = None,
+    line: Line | None = None,
+    accuracy: float = 1e-3,
+) -> tuple[History, Solution, Pressed | None]:
+    """Press the bodies together and go along the path: the history, the normal forces at load point 2 with the
+    residuals of all steps, and how the bodies were pressed.
+
+    Friction acts while the bodies are pressed together, too.
 
     Parameters
     ----------
@@ -142,36 +282,48 @@ def march(
     path : Path
     pressed : (n,) array, optional
         Normal forces where the path does not begin with bodies apart.
+    line : Line, optional
+        Where the nodes are.
+    accuracy : float
+        What q may be off by for the sake of the steps in which the bodies are pressed, relative L2.
     """
     assert C.xx is not None
     xx, xy = C.xx, C.xy if C.xy is not None else 0 * C.xx
-    done = [
-        (resting(0 * gap if pressed is None else pressed), resting(0 * gap if path.before is None else path.before))
-    ]
-    cycle = sum(len(way) for way in path.fractions[1:])
+    full = replace(C, xy=xy)
     gap = gap - path.begin[1] * stretch[1]
+    first: Pressed | None = None
+    if pressed is None:
+        first = press(full, gap, f, line, path.substeps, accuracy)
+        done = [(first.normal, first.tangential)]
+    else:
+        done = [(resting(pressed), resting(0 * gap if path.before is None else path.before))]
+    cycle = sum(len(way) for way in path.fractions[1:])
+    load = path.begin[0] if pressed is not None else 0.0
 
-    def advance(before: Solution, Q: float, strain: float, P: float = 1.0) -> tuple[Solution, Array]:
-        nonlocal gap
-        gap = gap - strain * stretch[1]
+    def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
+        nonlocal gap, load
+        if strain == 0 and load == Q:  # nothing moves
+            zero = 0 * gap
+            still = replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0)
+            done.append((replace(done[-1][0], residual=zero, imbalance=0.0, iterations=0, changes=0), still))
+            return still, f * done[-1][0].x
+        gap, load = gap - strain * stretch[1], Q
         kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0]
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the step before, and this one a cycle ago
-        pressed, sheared = _solve(_Step(xx, C.yy, xy, f, P, gap, Q, kept), starts)
-        done.append((replace(pressed, residual=np.maximum(pressed.residual, sheared.residual / f)), sheared))
-        return sheared, f * pressed.x
+        normal, sheared = _solve(_Step(xx, C.yy, xy, full.opening, f, 1.0, gap, Q, kept), starts)
+        done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
+        return sheared, f * normal.x
 
-    q = done[0][1]
-    for P in np.linspace(0, 1, path.substeps + 1)[1:].tolist() if pressed is None else ():
-        q, _ = advance(q, 0.0, 0.0, P)
-    history = follow(path, advance, q)
+    history = follow(path, advance, done[0][1])
     last, _ = done[-cycle:][sum(len(way) for way in path.fractions[1 : path.ends[1] + 2]) - 1]
-    return history, replace(
+    together = replace(
         last,
-        residual=np.max([pressed.residual for pressed, _ in done], axis=0),
-        imbalance=max(pressed.imbalance for pressed, _ in done),
-        iterations=sum(pressed.iterations for pressed, _ in done),
-        changes=sum(pressed.changes + sheared.changes for pressed, sheared in done),
+        residual=np.max([normal.residual for normal, _ in done], axis=0),
+        imbalance=max(normal.imbalance for normal, _ in done),
+        iterations=sum(normal.iterations for normal, _ in done),
+        changes=sum(normal.changes + sheared.changes for normal, sheared in done),
     )
+    return history, together, first
 
 
 def _solve(step: _Step, starts: Sequence[tuple[Solution, Solution]]) -> tuple[Solution, Solution]:

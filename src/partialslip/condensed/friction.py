@@ -15,13 +15,15 @@ from partialslip.condensed.bounded import Solution, solve_bounded
 from partialslip.condensed.zones import Zone
 from partialslip.plan import Plan
 from partialslip.result import Array, Regime
-from partialslip.scene import Scene
+from partialslip.scene import ALLOWED, Scene
 from partialslip.state import State
 
 _REPEATS = 1e-13  # change of a node's q in a cycle, in the sum of |q|, that is rounding
 _STEADY = 1e-6  # change of q from cycle to cycle, in its range or in f p0, that counts as none
 _SLIPS = 1e-9  # what is missing of the bound, relative, that is rounding
 _GROUPS, _HALVINGS, _SOLVES = 64, 6, 400  # of neighbours, on which steps are chosen; a step is halved so often at most
+_MANY = 4  # steps, of which each is tried in two only
+_TELLING = 1e-7  # change of the forces, relative to f P, that is more than rounding
 _TRIED = (0, 1 / 32, 1 / 8, 1 / 2, 3 / 4, 7 / 8, 1)  # fractions of a way on which slip that turns round is looked for
 _CLOSES = 3  # cycles at least where the first loading does not tell the whole of fully reversed loads
 _RATCHETS = 1e-3  # net slip of a cycle, in the slip of half a cycle, that counts where q has settled
@@ -64,6 +66,11 @@ class Path:
         )
         ways = (tuple(sorted([*way, *middle])) for way, middle in zip(self.fractions, middles, strict=True))
         return replace(self, ways=tuple(ways), half=False)
+
+    @property
+    def moves(self) -> bool:
+        """Whether any load changes."""
+        return len({self.begin, *self.cycle}) > 1
 
     @property
     def most_steps(self) -> int:
@@ -204,9 +211,7 @@ def lower_strain(scene: Scene, sigma: float) -> float:
     return scene.material.bodies[0].A / scene.material.A * sigma * scene.length / (4 * scene.P)
 
 
-def march(
-    tangential: Array, stretch: Array, bound: Array, path: Path, accuracy: float | None = None, x: Array | None = None
-) -> History:
+def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> History:
     """Tangential forces along the path at constant pressure, every step of it certified.
 
     A step is then a convex problem: where nothing slips, the relative displacement keeps what it was, so that
@@ -221,17 +226,31 @@ def march(
     bound : (n,) array
         f times its normal forces.
     path : Path
-    accuracy : float, optional
-        Refine the steps to what q may be off by for their sake, relative to f P; without it they stay as they are.
     """
-    if accuracy is not None:
-        path = refined(tangential, stretch, bound, path, accuracy)
 
     def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
         free = tangential @ before.x + strain * stretch
         return solve_bounded(tangential, free, -bound, bound, Q, before.sides), bound
 
     return follow(path, advance, resting(0 * bound if path.before is None else path.before))
+
+
+def march_refined(
+    tangential: Array, stretch: Array, bound: Array, path: Path, accuracy: float
+) -> tuple[History, History | None]:
+    """:func:`march` in as many steps as it takes for the forces to be right to ``accuracy``, relative to f P.
+
+    Where these are more than were asked for, the second one is the history in twice as many steps: errors being of
+    first order, the steps are off by twice the difference, or less. A path whose ``ways`` are known is followed as it
+    is.
+    """
+    if path.ways:
+        return march(tangential, stretch, bound, path), None
+    path = refined(tangential, stretch, bound, path, accuracy)
+    history = march(tangential, stretch, bound, path)
+    if path.most_steps == path.substeps:
+        return history, None
+    return history, march(tangential, stretch, bound, path.halved)
 
 
 Advance = Callable[[Solution, float, float], tuple[Solution, Array]]
@@ -251,7 +270,8 @@ def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accurac
     coarse = _Coarse(tangential, stretch, bound, accuracy)
     load = np.array(path.begin)
     q = coarse.sums(0 * bound if path.before is None else path.before)
-    ways, ends = [], []
+    ways: list[tuple[float, ...]] = []
+    ends: list[Array] = []
     for point in (*path.cycle[-1:], *path.cycle):
         end = np.array(point)
         fractions, q = coarse.way(q, load, end, path.substeps)
@@ -259,7 +279,7 @@ def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accurac
         ends.append(q)
         load = end
     if path.half and all(len(fractions) == 1 for fractions in ways) and coarse.same(ends[0], -ends[1]):
-        return path
+        return replace(path, ways=path.fractions)
     if path.half:  # the first loading does not tell the whole: the cycle is to close
         path = replace(path, half=False, cycles=max(path.cycles, _CLOSES))
     return replace(path, ways=tuple(ways))
@@ -275,7 +295,7 @@ class _Coarse:
         share = bound / np.repeat(self._bound, np.diff(self._first, append=len(bound)))
         self._C = np.add.reduceat(self.sums(share[:, None] * tangential) * share, self._first, axis=1)
         self._stretch = self.sums(share * stretch)
-        self._near, self._solves = accuracy * float(self._bound.sum()), 0
+        self._near, self._solves = max(accuracy, _TELLING) * float(self._bound.sum()), 0
 
     def sums(self, forces: Array) -> Array:
         """Sums over the groups."""
@@ -291,7 +311,7 @@ class _Coarse:
         fractions: list[float] = []
         self._solves = 0
         for number in range(substeps):
-            stops = [(number + part) / substeps for part in _TRIED]
+            stops = [(number + part) / substeps for part in (_TRIED if substeps < _MANY else (0, 1 / 2, 1))]
             loads = [load + stop * (end - load) for stop in stops]
             whole = self._step(q, loads[0], loads[-1])
             tried = [q]
@@ -373,7 +393,7 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
 
 def _reversed(path: Path, first: Solution, went: "_Way") -> History:
     """The cycle that a first loading to load point 2 tells: on the way from 1 to 2 all is doubled (Masing's rule)."""
-    forces, slip, bound = first.x, -2 * sum(step.rest for step, _ in went), went[-1][1]
+    forces, slip, bound = first.x, -2 * np.sum([step.rest for step, _ in went], axis=0), went[-1][1]
     way = replace(first, rest=-slip, iterations=0, changes=0)
     return History(
         path=path,
@@ -396,7 +416,7 @@ _Way = list[tuple[Solution, Array]]
 def _go(advance: Advance, before: Solution, start: Array, end: Array, fractions: tuple[float, ...]) -> _Way:
     """The steps from the loads at ``start`` to those at ``end``."""
     before = resting(before.x)  # the loads turn: what slips now says nothing of what will
-    load, way = start, []
+    load, way = start, list[tuple[Solution, Array]]()
     for fraction in fractions:
         next_load = start + fraction * (end - start) if fraction < 1 else end
         before, bound = advance(before, float(next_load[0]), float(next_load[1] - load[1]))
@@ -431,13 +451,21 @@ def certificate(history: History, weights: Array, f: float, p0: float) -> dict[s
     return closed | {"steady": float((np.abs(points[-1].x - points[-1 - len(history.path.cycle)].x) / held).max())}
 
 
-def judge(scene: Scene, history: History | None, stick: Zone | None, half_width: float) -> Verdict:
+def judge(
+    scene: Scene, history: History | None, stick: Zone | None, half_width: float, pressed: bool = False
+) -> Verdict:
     """What it means that the stick zone of ``scene`` has been found to be ``stick`` (None: there was no friction to
-    solve), in a contact of ``half_width``; lengths in any one unit."""
+    solve), in a contact of ``half_width``; lengths in any one unit. ``pressed`` says that coupled bodies slipped while
+    they were pressed, that no other load acts, and that what stuck all through is the stick zone."""
     load = scene.load
     if scene.slides:
         note = "the contact slides: |Q| >= f P at a load point; there is no steady partial slip"
+        if scene.free:
+            note = "f = 0 and Q = 0: nothing sticks, and without shear force the contact stays where it is"
         return Verdict("sliding", None, None, (note,))
+    if pressed and stick:
+        note = "no load but P acts: the stick zone is where the surfaces have stuck since they touched"
+        return Verdict("pressing", (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, (note,))
     if history is None or stick is None or (load.dQ == 0 and load.dsigma == 0):  # nothing changes: all of it sticks
         return Verdict("stuck", 0.0, half_width, ())
     notes: tuple[str, ...] = ()
@@ -458,10 +486,9 @@ def judge(scene: Scene, history: History | None, stick: Zone | None, half_width:
 def doubts(certificate: Mapping[str, float], errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:
     """Notes on an accuracy that was not reached, and on q that still changed in the last cycle."""
     notes: tuple[str, ...] = ()
-    ends = {key: error for key, error in errors.items() if key in ("a", "m", "n")}
-    if max(ends.values(), default=0.0) > accuracy:
-        known = ", ".join(f"{key} {error:.1e}" for key, error in ends.items())
-        notes += (f"accuracy {accuracy:g} not reached: the ends are known to {known} a",)
+    if beyond := {key: error for key, error in errors.items() if error > ALLOWED[key] * accuracy}:
+        known = ", ".join(f"{key} {error:.1e}" for key, error in beyond.items())
+        notes += (f"accuracy {accuracy:g} not reached: estimated errors are {known} (ends in a, tractions relative)",)
     if (change := certificate.get("steady", 0.0)) > max(accuracy, _STEADY):
         notes += (f"not steady: q changed by {change:.1e} f p0 in the last cycle; take more of them (load.cycles)",)
     return notes

@@ -120,7 +120,8 @@ def finest(vertices: Array) -> list[float]:
     wide = np.lib.stride_tricks.sliding_window_view(np.pad(smallest, _BESIDE, constant_values=np.inf), 2 * _BESIDE + 1)
     far = np.pad(widths, _BESIDE, mode="edge")
     larger = np.minimum(far[: len(smallest)], far[2 * _BESIDE + 1 :][: len(smallest)])
-    return vertices[1:-1][(smallest <= wide.min(axis=1)) & (smallest < _FINER * larger)].tolist()  # type: ignore[no-any-return]
+    places: list[float] = vertices[1:-1][(smallest <= wide.min(axis=1)) & (smallest < _FINER * larger)].tolist()
+    return places
 
 
 def apart(ends: list[float], size: float) -> list[float]:

@@ -6,7 +6,7 @@ rigid frame, on which P and Q act; that of the lower one is held, and moves as t
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,9 @@ from partialslip.errors import InputError
 from partialslip.halfplane.contact import contact
 from partialslip.result import Array
 from partialslip.scene import Constants, Scene
-from partialslip_meshes import QuadMesh, quad_block
+
+if TYPE_CHECKING:
+    from partialslip_meshes import QuadMesh
 
 SIZE, GROWTH = 0.05, 0.1
 Indices = npt.NDArray[np.int64]
@@ -39,7 +41,7 @@ class Part:
     """A body in plane strain: its name, mesh (m), Young's modulus (Pa) and Poisson's ratio."""
 
     name: str
-    mesh: QuadMesh
+    mesh: "QuadMesh"
     E: float
     nu: float
 
@@ -145,7 +147,9 @@ def modelled(
     points = dict.fromkeys([*ends, *kinks], fine if fine is not None else size / 10)
     wide = width if width is not None else _WIDE / min([size, *points.values()]) ** 0.5
 
-    def mesh(fineness: float) -> QuadMesh:
+    from partialslip_meshes import quad_block
+
+    def mesh(fineness: float) -> "QuadMesh":
         sizes = {x: least * fineness for x, least in points.items()}
         scaled = quad_block(wide, (-_REACH, _REACH), sizes, growth * fineness, size * fineness)
         return replace(scaled, points=scaled.points * a)
@@ -166,13 +170,14 @@ def _in_plane_strain(body: Constants) -> tuple[float, float]:
     return 2 * body.mu * (1 + nu), nu
 
 
-def _upper(mesh: QuadMesh, scene: Scene, a: float, stiffer: float) -> QuadMesh:
+def _upper(mesh: "QuadMesh", scene: Scene, a: float, stiffer: float) -> "QuadMesh":
     """The mirror image of ``mesh``, its face shaped by the profile; that fades out upwards. Beyond the contact line the
     gap stays as it is at its end. The bodies begin a little within each other, so that none of them is loose."""
     x, y = mesh.points[:, 0], -mesh.points[:, 1]
     gap = scene.profile.gap_at(np.clip(x, -_REACH * a, _REACH * a)) - _OVERLAP * scene.profile.gap_at(np.array(a))
     shaped = np.column_stack([x, y + gap / stiffer * (1 - y / y.max())])
-    return QuadMesh(shaped, mesh.quads[:, ::-1], {name: line[:, ::-1] for name, line in mesh.lines.items()})
+    lines = {name: line[:, ::-1] for name, line in mesh.lines.items()}
+    return replace(mesh, points=shaped, quads=mesh.quads[:, ::-1], lines=lines)
 
 
 def _steps(scene: Scene) -> tuple[Step, ...]:

@@ -11,18 +11,28 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 _NEAR = 4.0  # cells within so many of the wider one's widths are integrated in closed form
 
 
-def graded(points: Array, size: float, growth: float) -> Array:
+def graded(points: Array, size: float | Array, growth: float) -> Array:
     """Ends of cells from the first to the last of ``points`` (ascending), each of them an end.
 
-    Cells are about ``size`` wide at the points and gain ``growth`` times their distance from the nearest.
+    Cells are about ``size`` wide at the points (one size, or one for each) and gain ``growth`` times their distance
+    from the nearest.
     """
+    sizes = np.broadcast_to(size, points.shape)
     vertices = [points[:1]]
-    for left, right in itertools.pairwise(points):
-        reach = np.log1p(growth * (right - left) / 2 / size)
-        count = max(int(np.ceil(reach / growth)), 1)
-        steps = size / growth * np.expm1(np.linspace(0, reach, count + 1))
-        vertices += [left + steps[1:], right - steps[-2::-1]]
+    for (left, right), (first, last) in zip(itertools.pairwise(points), itertools.pairwise(sizes), strict=True):
+        # where the cells that grow from the left are as large as those from the right
+        middle = float(np.clip((right - left + (last - first) / growth) / 2, 0.0, right - left))
+        steps = _growing(first, growth, middle), _growing(last, growth, right - left - middle)
+        vertices += [left + steps[0][1:], right - steps[1][-2::-1]]
     return np.concatenate(vertices)
+
+
+def _growing(size: float, growth: float, distance: float) -> Array:
+    """Distances from a point of the ends of cells, up to ``distance``."""
+    reach = np.log1p(growth * distance / size)
+    count = max(int(np.ceil(reach / growth)), 1) if distance > 0 else 0
+    result: Array = size / growth * np.expm1(np.linspace(0, reach, count + 1))
+    return result
 
 
 def forces(shape: Shape, vertices: Array) -> Array:

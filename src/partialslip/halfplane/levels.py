@@ -48,8 +48,12 @@ def levels(pressed: Contact, f: float, load: Load, cycle: Loading) -> Levels | s
     - what was visited before slipped only beyond Z_k, and less than the first loading to k does: then the way to k
       makes up the difference;
     - slip does not turn round on the way.
+
+    Fully reversed loads fulfil all of it, in one step from load point to load point.
     """
     points = [load.points[end] for end in load.ends]
+    if load.fully_reversed:
+        return Levels(loading(pressed, f, *points[1], bound=1), cycle, 1)
     reason = ""
     for known in sorted((0, 1), key=lambda end: -abs(points[end][0])):
         found = _levels(pressed, f, load, cycle, points, known)
@@ -71,11 +75,11 @@ def _levels(pressed: Contact, f: float, load: Load, cycle: Loading, points: list
     ):
         return "mean loads act, and the cycle slips where the first loading sticks: march follows the path"
     before = _before(load, points, known)
-    if first.turns_round() if not before else cycle.turns_round(first.zone.half_width):
+    if first.left_end_turns() if not before else cycle.left_end_turns(first.zone.half_width):
         return f"{PATH_DEPENDENT}of the first loading; march with refined steps is the reference"
     for point in before:
         earlier = loading(pressed, f, *point, bound=1)
-        if earlier.turns_round():
+        if earlier.left_end_turns():
             return f"{PATH_DEPENDENT}of the first loading; march with refined steps is the reference"
         if not (earlier.ends[0] <= left + _ROUNDING and right - _ROUNDING <= earlier.ends[1]):
             return (
@@ -87,7 +91,7 @@ def _levels(pressed: Contact, f: float, load: Load, cycle: Loading, points: list
         if (signs * more < -_ROUNDING).any():
             return "mean loads act, and the way to the second load point slips back: march follows the path"
     found = Levels(first, cycle, known)
-    if not (load.fully_reversed or _bounded(pressed, f, load, found)):
+    if not _bounded(pressed, f, load, found):
         return "mean loads act, and the first loading less the change exceeds f p: march follows the path"
     return found
 

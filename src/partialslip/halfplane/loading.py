@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from partialslip.gradual import left_end_turns, turns_round
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.slip import slip
@@ -72,16 +73,17 @@ class Loading:
             return np.zeros_like(x)
         return self.turn * self.bound / 2 * slip(self.mirror * x, self.zone, self.shape)
 
-    def turns_round(self, half_width: float | None = None) -> bool:
-        """Whether the left slip zone turns round on a gradual way on which the stick zone shrinks to ``half_width``.
+    def left_end_turns(self, half_width: float | None = None) -> bool:
+        """Whether the slip zone on the left turns round on a gradual way, down to ``half_width``, as a rule that of the
+        stick zone (:func:`partialslip.gradual.left_end_turns`)."""
+        half_width = self.zone.half_width if half_width is None else half_width
+        return left_end_turns(self.Qf, self.sf, self.zone.s, half_width)
 
-        At a half-width c of the stick zone its left end is driven by dQ/pi - c dsigma/4 (the adhered traction of the
-        stick zone of that moment, for positive changes). One sign throughout is the positive one, from c = 1 on
-        (small tension), or the negative one, down to the last c (large tension).
-        """
-        if self.zone.s > 0:
-            return self.sf > 4 * self.Qf
-        return (self.zone.half_width if half_width is None else half_width) * self.sf < 4 * self.Qf
+    @property
+    def turns_round(self) -> bool:
+        """Whether slip turns round on a gradual way, if what slips at its end does so in a cycle
+        (:func:`partialslip.gradual.turns_round`)."""
+        return turns_round(self.Qf, self.sf, self.zone.s, self.zone.centre, self.zone.half_width)
 
 
 def loading(pressed: Contact, f: float, dQ: float, dsigma: float, bound: int) -> Loading:

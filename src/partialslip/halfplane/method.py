@@ -1,16 +1,19 @@
 """The exact method: scene and plan in, result out."""
 
+import functools
 from collections.abc import Callable
 
 import numpy as np
 
 from partialslip.errors import InputError
+from partialslip.gradual import may_turn_round
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.levels import PATH_DEPENDENT, Levels, levels
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.slip import dissipation
 from partialslip.halfplane.steady import NARROWEST, transition
 from partialslip.halfplane.stress import Stress
+from partialslip.halfplane.tables import table_error
 from partialslip.halfplane.traction import mean_load_bound
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Regime, Result, Slip, SurfaceStress, Traction
@@ -39,11 +42,10 @@ def solve(
     f, load = scene.friction.f, scene.load
     if not load.in_phase:
         raise InputError("load.sigma: out of phase with load.Q; the exact method is for loads in phase, take march")
-    pressed = contact(scene)
+    pressed, regime, cycle = _steady_state(scene, plan)
     a, p0 = pressed.a, pressed.p0
-    regime, cycle = _steady_state(scene, plan, pressed)
     found = _levels(scene, pressed, regime, cycle, start)
-    turns = cycle is not None and _turns_round(cycle)
+    turns = cycle is not None and cycle.turns_round
 
     def at(x: Array) -> tuple[Array, Array]:
         p = pressed.pressure(x)
@@ -63,6 +65,7 @@ def solve(
     surface = _surface(stress, np.concatenate([[-_BEYOND * a], breaks, [_BEYOND * a]])) if stress else None
     slips = cycle and not cycle.nothing
     undetermined = _undetermined(regime, turns, found)
+    table = table_error(scene, pressed, cycle)
     return Result(
         method="exact",
         a=a,
@@ -76,7 +79,9 @@ def solve(
         settings={"model": "two half-planes, steady state"},
         limits=_limits(scene, pressed, cycle) if plan.needs("friction") or (scene.slides and f > 0) else {},
         certificate=_certificate(pressed, cycle) if cycle and slips else {},
-        notes=_notes(regime, turns, undetermined),
+        estimate=table,
+        shares={"table": table} if table else {},
+        notes=_notes(scene, regime, turns, undetermined) + _coarse(table, scene.fem.accuracy),
         surface=surface,
         stress_at=stress.inside if stress else None,
         undetermined=undetermined,
@@ -84,20 +89,35 @@ def solve(
     )
 
 
-def _steady_state(scene: Scene, plan: Plan, pressed: Contact) -> tuple[Regime, Loading | None]:
-    """Regime, and the change from load point 1 to 2 (None where the contact slides)."""
-    f, load, limit = scene.friction.f, scene.load, scene.friction.f * scene.P
+def path_dependent(scene: Scene) -> bool:
+    """Whether slip turns round between the load points of ``scene``, two similar half-planes under loads in phase: the
+    closed form is then not what a gradual way ends with (:attr:`partialslip.Result.path_dependent`)."""
+    return may_turn_round(scene) and _change(scene)[1].turns_round
+
+
+@functools.lru_cache(maxsize=1)
+def _change(scene: Scene) -> tuple[Contact, Loading]:
+    """The contact, and the change from load point 1 to 2 if it does not slide: kept, as :func:`path_dependent` is asked
+    before :func:`solve`."""
+    pressed = contact(scene)
+    return pressed, loading(pressed, scene.friction.f, scene.load.dQ, scene.load.dsigma, bound=2)
+
+
+def _steady_state(scene: Scene, plan: Plan) -> tuple[Contact, Regime, Loading | None]:
+    """The contact, its regime, and the change from load point 1 to 2 (None where the contact slides)."""
+    load, limit = scene.load, scene.friction.f * scene.P
     if scene.slides:
-        return "sliding", None
+        return contact(scene), "sliding", None
     if not plan.needs("friction"):
-        return "stuck", loading(pressed, 1.0, 0.0, 0.0, bound=2)
-    cycle = loading(pressed, f, load.dQ, load.dsigma, bound=2)
+        pressed = contact(scene)
+        return pressed, "stuck", loading(pressed, 1.0, 0.0, 0.0, bound=2)
+    pressed, cycle = _change(scene)
     if cycle.nothing:
-        return "stuck", cycle
+        return pressed, "stuck", cycle
     # for small tension the bound is gross sliding, which has been ruled out
     if cycle.zone.s < 0 and abs(load.Q_mean) > limit * mean_load_bound(cycle.zone, pressed.shape):
-        return "ratchets", cycle
-    return ("small tension" if cycle.zone.s > 0 else "large tension"), cycle
+        return pressed, "ratchets", cycle
+    return pressed, ("small tension" if cycle.zone.s > 0 else "large tension"), cycle
 
 
 def _levels(scene: Scene, pressed: Contact, regime: Regime, cycle: Loading | None, start: State | None) -> Levels | str:
@@ -161,19 +181,6 @@ def _sample(breaks: Array) -> Array:
     return np.unique(breaks[:-1, None] + np.diff(breaks)[:, None] * crowd)
 
 
-def _turns_round(cycle: Loading) -> bool:
-    """Whether slip turns round somewhere on a gradual way between the load points.
-
-    The left slip zone may turn round (:meth:`Loading.turns_round`). And what is to slip must have been pushed that way
-    from the first, or it slips the other way when the loads turn: the adhered traction of the whole contact changes
-    sign at x = -4 dQ/(pi dsigma), which in large tension has to be in the last stick zone.
-    """
-    if cycle.nothing:
-        return False
-    zero = -4 * cycle.Qf / max(cycle.sf, np.finfo(float).tiny)
-    return cycle.turns_round() or (cycle.zone.s < 0 and abs(zero - cycle.zone.centre) > cycle.zone.half_width)
-
-
 def _undetermined(regime: Regime, turns: bool, found: Levels | str) -> dict[str, str]:
     reason = f"{PATH_DEPENDENT}between the load points; march with refined steps is the reference"
     if regime == "sliding":
@@ -183,7 +190,9 @@ def _undetermined(regime: Regime, turns: bool, found: Levels | str) -> dict[str,
     return dict.fromkeys(("q1", "q2"), found) if isinstance(found, str) else {}
 
 
-def _notes(regime: Regime, turns: bool, undetermined: dict[str, str]) -> tuple[str, ...]:
+def _notes(scene: Scene, regime: Regime, turns: bool, undetermined: dict[str, str]) -> tuple[str, ...]:
+    if scene.free:
+        return ("f = 0 and Q = 0: nothing sticks, and without shear force the contact stays where it is",)
     if regime == "sliding":
         return ("the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip",)
     notes: list[str] = []
@@ -196,3 +205,11 @@ def _notes(regime: Regime, turns: bool, undetermined: dict[str, str]) -> tuple[s
     if turns:
         notes.append(f"m, n, q: {undetermined['m']}")
     return tuple(notes)
+
+
+def _coarse(table: dict[str, float], accuracy: float) -> tuple[str, ...]:
+    ends = {key: error for key, error in table.items() if key in ("a", "m", "n")}
+    if max(ends.values(), default=0.0) <= accuracy:
+        return ()
+    known = ", ".join(f"{key} {error:.1e}" for key, error in ends.items())
+    return (f"the table of the profile is coarse: its spacing alone changes the ends by about {known} a",)

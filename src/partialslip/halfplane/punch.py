@@ -2,11 +2,23 @@
 :mod:`partialslip.halfplane.shape`."""
 
 import math
+from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from partialslip.halfplane.shape import Shape
 from partialslip.result import Array
+
+_FEW = 24  # flats whose pressures are summed as they are
+_NEAR = 6  # flats near a panel
+_NARROWEST = 1e-13  # panels are not halved any more
+_DEGREES = 22  # of a panel's polynomials, and nodes
+_NODES = np.cos(np.pi * (np.arange(_DEGREES) + 0.5) / _DEGREES)
+_TO_COEFFICIENTS = np.polynomial.chebyshev.chebvander(_NODES, _DEGREES - 1).T * 2 / _DEGREES
+_TO_COEFFICIENTS[0] /= 2
+# values at the nodes of either half of a panel by the panel's coefficients
+_VALUES = [np.polynomial.chebyshev.chebvander((_NODES + side) / 2, _DEGREES - 1) for side in (-1, 1)]
 
 
 class Punch(Shape):
@@ -31,8 +43,20 @@ class Punch(Shape):
         self._weights = steps / (steps @ punch_force(np.arccos(flats) if psi is None else psi))
         self.kinks = tuple(sorted({sign * float(flat) for flat in flats if flat > 0 for sign in (-1, 1)}))
 
+    @property
+    def strong_kinks(self) -> tuple[float, ...]:
+        if len(self.flats) <= _FEW:
+            return self.kinks
+        strong = self.flats[np.abs(self._weights) > np.abs(self._weights).sum() / _FEW]
+        return tuple(sorted({sign * float(flat) for flat in strong if flat > 0 for sign in (-1, 1)}))
+
     def pressure(self, x: Array) -> Array:
         x = np.minimum(np.abs(x), 1.0)
+        sum_ = self._all(x) if len(self.flats) <= _FEW else self._panels(x)
+        result: Array = np.where(x < 1, np.maximum(sum_, 0.0), 0.0)
+        return result
+
+    def _all(self, x: Array) -> Array:
         total = np.zeros_like(x)
         angle, cosine = np.arcsin(x), np.sqrt((1 - x) * (1 + x))
         for flat, end, weight in zip(self.flats, self._ends, self._weights, strict=True):
@@ -41,8 +65,90 @@ class Punch(Shape):
             # the two logarithms of the usual form, whose singularities at the flat's ends cancel, taken together
             rest = 2 * flat * np.log(np.sin((angle + end) / 2) / np.cos((angle - end) / 2)) if flat > 0 else 0.0
             total += weight * ((math.pi - 2 * end) * cosine + (x - flat) * logarithm + rest)
-        result: Array = np.where(x < 1, np.maximum(total, 0.0), 0.0)
-        return result
+        return total
+
+    @cached_property
+    def _panels(self) -> "_Panels":
+        return _Panels(self.flats, self._ends, self._weights)
+
+
+class _Panels:
+    """The pressure of many flats at any points, at a cost that does not grow with the number of flats.
+
+    In the angle, [0, pi/2] is halved into panels until hardly more than ``_NEAR`` kinks lie within a panel or a panel's
+    width of it. These are taken as they are; what all others make is smooth there, its nearest singularity being a
+    width away: Chebyshev interpolation converges like 5.8^-k. A half takes over what its parent has of far kinks and
+    adds those that have become far.
+    """
+
+    def __init__(self, flats: Array, ends: Array, weights: Array) -> None:
+        # the last one, without weight, fills up
+        flats, wedges, weights = (np.append(values, 0.0) for values in (flats, math.pi - 2 * ends, weights))
+        low, high, far = np.array([0.0]), np.array([np.pi / 2]), np.zeros((_DEGREES, 1))
+        near = np.arange(len(ends))[None]
+        done: list[tuple[Array, Array, Array, npt.NDArray[np.int64]]] = []
+        while len(low):
+            split = (near < len(ends)).sum(axis=1) > _NEAR
+            split &= high - low > _NARROWEST
+            done.append((low[~split], high[~split], far[:, ~split], near[~split]))
+            middle = (low[split] + high[split]) / 2
+            halves = (low[split], middle), (middle, high[split])
+            inherited = [_VALUES[side] @ far[:, split] for side in (0, 1)]
+            low, high = (np.concatenate(each) for each in zip(*halves, strict=True))
+            parents = np.concatenate([near[split], near[split]])
+            angles = np.append(ends, np.inf)[parents]
+            width = (high - low)[:, None]
+            stays = (angles > low[:, None] - width) & (angles < high[:, None] + width)
+            gone = np.where(stays, len(ends), parents)
+            x = np.sin((low + high) / 2 + width.T / 2 * _NODES[:, None])
+            unit = _unit(x[..., None], flats[gone], wedges[gone])
+            far = _TO_COEFFICIENTS @ (np.concatenate(inherited, axis=1) + (unit * weights[gone]).sum(axis=-1))
+            near = np.sort(np.where(stays, parents, len(ends)), axis=1)[:, : stays.sum(axis=1).max(initial=0)]
+        order = np.argsort(np.concatenate([each[0] for each in done]))
+        low, high = (np.concatenate([each[i] for each in done])[order] for i in (0, 1))
+        self._low, self._middles, self._halves = low, (low + high) / 2, (high - low) / 2
+        self._far = np.concatenate([each[2] for each in done], axis=1)[:, order]
+        most = max(int((each[3] < len(ends)).sum(axis=1).max(initial=0)) for each in done)
+        which = np.full((len(low), most), len(ends))
+        row = 0
+        for *_, near in done:
+            part = near[:, :most]
+            which[row : row + len(part), : part.shape[1]] = part
+            row += len(part)
+        which = which[order]
+        self._flats, self._wedges, self._weights = flats[which], wedges[which], weights[which]
+
+    def __call__(self, x: Array) -> Array:
+        """At ``x`` in [0, 1], of any shape."""
+        flat_x, angle = x.ravel(), np.arcsin(x).ravel()
+        panel = np.searchsorted(self._low, angle, "right") - 1
+        place = (angle - self._middles[panel]) / self._halves[panel]
+        result = _clenshaw(place, self._far, panel)
+        for flats, wedges, weights in zip(self._flats.T, self._wedges.T, self._weights.T, strict=True):
+            result += weights[panel] * _unit(flat_x, flats[panel], wedges[panel])
+        return result.reshape(x.shape)
+
+
+def _clenshaw(place: Array, coefficients: Array, column: npt.NDArray[np.int64]) -> Array:
+    """Sums of Chebyshev polynomials at ``place`` (n,), each with one ``column`` of the coefficients (k, columns)."""
+    one, two = np.zeros_like(place), np.zeros_like(place)
+    for row in coefficients[:0:-1]:
+        one, two = row[column] + 2 * place * one - two, one
+    result: Array = coefficients[0][column] + place * one - two
+    return result
+
+
+def _unit(x: Array, flats: Array, wedges: Array) -> Array:
+    """Pressure at ``x`` in [0, 1] of flats of half-width b = sin(end) with corners of curvature 1; ``wedges`` are
+    pi - 2 end. The usual form in t = tan(angle/2), x = sin(angle): its four logarithms are two, and each vanishes with
+    its factor."""
+    cosine = np.sqrt((1 - x) * (1 + x))
+    t, tau = x / (1 + cosine), flats / (1 + np.sqrt((1 - flats) * (1 + flats)))
+    both = t * tau
+    u, v = (t + tau) / (1 + both), np.abs(t - tau) / np.where(both == 1, 1.0, 1 - both)
+    u, v = np.where(u == 0, 1.0, u), np.where(v == 0, 1.0, v)
+    result: Array = wedges * cosine + (x + flats) * np.log(u) - (x - flats) * np.log(v)
+    return result
 
 
 def punch_force(psi: Array) -> Array:

@@ -7,6 +7,7 @@ when they are small; ``s`` is +1 where both ends slip the same way and -1 where 
 may be arrays.
 """
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
@@ -46,6 +47,11 @@ class Shape:
     """An even pressure, given by its values and the points where it is not smooth."""
 
     kinks: tuple[float, ...] = ()
+
+    @property
+    def strong_kinks(self) -> tuple[float, ...]:
+        """The strongest kinks, where there are too many to heed each: what is smoother than p needs no more."""
+        return self.kinks
 
     def pressure(self, x: Array) -> Array:
         """p/p0 at ``x``, zero outside [-1, 1]."""
@@ -103,7 +109,11 @@ class Shape:
         end = theta((1 - centre - c if side > 0 else edge)[..., None])
         inner = theta(side * (np.array(self.kinks) - centre[..., None]) - c[..., None])
         ends = np.concatenate([0 * end, end - 3.0, end, inner], axis=-1)
-        return np.sort(np.clip(ends, 0.0, end), axis=-1)
+        ends = np.sort(np.clip(ends, 0.0, end), axis=-1)
+        # pieces that are empty, as those of kinks elsewhere are, need no points
+        widest = np.diff(ends).reshape(-1, ends.shape[-1] - 1).max(axis=0, initial=0.0)
+        kept: Array = ends[..., np.append(True, (widest > 0) | (widest.max() == 0))]
+        return kept
 
     def _quotient(self, t: Array, values: Array, x: Array) -> Array:
         step = t - x
@@ -118,19 +128,27 @@ def rule_between(ends: Array, edge: Array | float, c: Array | float, side: int) 
     the points of every piece crowd double exponentially.
     """
     edge, c = np.asarray(edge, float), np.asarray(c, float)
+    nodes, to_end, factors = _rule_for(ends.shape[-1])
     half = np.diff(ends)[..., None] / 2
-    points = np.where(_NODES < 0, ends[..., :-1, None] + half * (1 + _NODES), ends[..., 1:, None] - half * _TO_END)
+    points = np.where(nodes < 0, ends[..., :-1, None] + half * (1 + nodes), ends[..., 1:, None] - half * to_end)
     points = points.reshape(*points.shape[:-2], -1)
     t = (edge + c - 1)[..., None] + side * c[..., None] * np.cosh(points)
-    return Rule(np.clip(t, -1.0, 1.0), points, (half * _WEIGHTS).reshape(points.shape))
+    return Rule(np.clip(t, -1.0, 1.0), points, (half * factors).reshape(points.shape))
 
 
-def double_exponential(count: int) -> tuple[Array, Array, Array]:
-    """Nodes in (-1, 1), their distances from 1, and weights of the tanh-sinh rule."""
-    k = np.linspace(-3.2, 3.2, count)
+def double_exponential(count: int, span: float = 3.2) -> tuple[Array, Array, Array]:
+    """Nodes in (-1, 1), their distances from 1, and weights of the tanh-sinh rule, cut at +-``span``; exact for
+    constants."""
+    k = np.linspace(-span, span, count)
     u = np.pi / 2 * np.sinh(k)
-    weights = (k[1] - k[0]) * np.pi / 2 * np.cosh(k) / np.cosh(u) ** 2
-    return np.tanh(u), 2 / (1 + np.exp(2 * u)), weights
+    weights = np.pi / 2 * np.cosh(k) / np.cosh(u) ** 2
+    return np.tanh(u), 2 / (1 + np.exp(2 * u)), 2 * weights / weights.sum()
 
 
-_NODES, _TO_END, _WEIGHTS = double_exponential(81)
+@functools.cache
+def _rule_for(ends: int) -> tuple[Array, Array, Array]:
+    """Of many pieces each is a small part of the whole, and its kinks are weak: fewer points will do."""
+    return double_exponential(*next(rule for most, rule in _RULES if ends <= most))
+
+
+_RULES = ((40, (81, 3.2)), (160, (33, 3.0)), (np.inf, (11, 2.2)))  # most ends of pieces, nodes and span

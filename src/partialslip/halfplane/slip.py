@@ -78,7 +78,7 @@ def dissipation(zone: StickZone, shape: Shape) -> tuple[Array, Array, float]:
     m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
     x, weights = [], []
     for low, high in ((-1.0, -m), (n, 1.0)):
-        ends = np.array([low, *(kink for kink in shape.kinks if low < kink < high), high])
+        ends = np.array([low, *(kink for kink in shape.strong_kinks if low < kink < high), high])
         nodes, factors = np.polynomial.legendre.leggauss(max(_NODES // (len(ends) - 1), _FEWEST))
         angle, half = np.pi / 2 * (1 + nodes), np.diff(ends)[:, None] / 2
         x.append((ends[:-1, None] + half * (1 - np.cos(angle))).ravel())

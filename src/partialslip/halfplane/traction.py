@@ -5,12 +5,11 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-from partialslip.halfplane.shape import Shape, double_exponential
+from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import StickZone
 from partialslip.result import Array
 
 _AT_ONCE = 2**22  # pairs of points in memory
-_NODES, _, _WEIGHTS = double_exponential(81)  # kinks of p are logarithms
 
 
 def half_range(x: Array, zone: StickZone, shape: Shape) -> Array:
@@ -39,22 +38,39 @@ def mean_load_bound(zone: StickZone, shape: Shape) -> float:
     Melan argument: Klarbring, Ciavarella and Barber, 2007).
     """
     centre, c = zone.centre, zone.half_width
-    kinks = [kink for kink in shape.kinks if abs(kink - centre) < c]
-    breaks = [math.acos((kink - centre) / c) for kink in kinks]
-    if zone.s < 0:  # dq changes sign on the way from n, where it is p > 0, to -m, where it is -p
+    edge = 1 + centre - c
+    rules = {side: shape.rule(edge, c, side) for side in (1, -1)}
+    slips = {side: (rule.weights * shape.pressure(rule.t), rule.theta) for side, rule in rules.items()}
+    # f P, half of pi/2, less the slip zones: int p dt, dt = c sinh(theta) dtheta
+    room = np.pi / 2 - sum(float(weights @ (c * np.sinh(theta))) for weights, theta in slips.values())
+    if zone.s > 0:
+        return (room - _resultant(np.pi, slips, zone)) * 2 / np.pi
 
-        def sign(angle: float) -> float:
-            if angle in (0.0, math.pi):
-                return 1.0 - 2.0 * (angle > 0)
-            return float(half_range(np.array([centre + c * math.cos(angle)]), zone, shape)[0])
+    def sign(angle: float) -> float:
+        """dq/2 changes sign on the way from n, where it is p > 0, to -m, where it is -p."""
+        if angle in (0.0, math.pi):
+            return 1.0 - 2.0 * (angle > 0)
+        return float(half_range(np.array([centre + c * math.cos(angle)]), zone, shape)[0])
 
-        breaks.append(brentq(sign, 0.0, math.pi))
-    ends = np.array([0.0, *sorted(breaks), math.pi])
-    angle = (ends[1:] + ends[:-1])[:, None] / 2 + np.diff(ends)[:, None] / 2 * _NODES
-    weights = np.diff(ends)[:, None] / 2 * _WEIGHTS * np.sin(angle)
-    x = (centre + c * np.cos(angle)).ravel()
-    room = shape.pressure(x) - np.abs(half_range(x, zone, shape))
-    return float(room @ weights.ravel()) * c * 2 / np.pi  # f P is pi/2
+    turn = brentq(sign, 0.0, math.pi)
+    return (room - 2 * _resultant(turn, slips, zone) + _resultant(math.pi, slips, zone)) * 2 / np.pi
+
+
+def _resultant(angle: float, slips: dict[int, tuple[Array, Array]], zone: StickZone) -> float:
+    """int dq/2 dx in the stick zone, from its right end to x = e + c cos(``angle``), the integrations turned round:
+
+        int sin^2(y)/(cosh(theta) -+ cos(y)) dy = y cosh(theta) +- sin(y) - 2 sinh(theta) arctan(tan(y/2) r),
+
+    r = coth(theta/2) for traction on the right and its inverse on the left.
+    """
+    total = 0.0
+    for side, (weights, theta) in slips.items():
+        half = np.tanh(theta / 2)
+        sine, cosine = math.sin(angle / 2), math.cos(angle / 2)
+        arc = np.arctan2(sine, cosine * half) if side > 0 else np.arctan2(sine * half, cosine)
+        kernel = angle * np.cosh(theta) + side * math.sin(angle) - 2 * np.sinh(theta) * arc
+        total += (1 if side > 0 else zone.s) * float(weights @ kernel)
+    return total * zone.half_width / np.pi
 
 
 def _inside(x: Array, zone: StickZone, shape: Shape) -> Array:

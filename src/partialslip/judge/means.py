@@ -19,6 +19,7 @@ def cell_errors(traction: Traction, reference: Traction, f: float = 0.0) -> tupl
     Parameters
     ----------
     traction, reference : Traction
+        Of the result and of the reference.
     f : float, optional
         The coefficient of friction: the error of q is relative to the larger of q's norm and 1e-3 of f p's.
     """
@@ -60,7 +61,7 @@ def fields(traction: Traction, x: Array, keys: tuple[str, ...]) -> Array:
 
 
 def cell_means(traction: Traction, cells: Array) -> tuple[Array, Array]:
-    """Means of p and dq over each of the cells with ends ``cells`` (ascending), (c,) each."""
+    """Means of p and dq of a ``traction`` over each of the cells with ends ``cells`` (ascending), (c,) each."""
     p, dq = means(lambda x: np.stack(traction.at(x)), cells, traction.breaks)
     return p, dq
 

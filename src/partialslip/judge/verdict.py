@@ -9,9 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from partialslip.result import CERTIFICATE_BAR, Result
+from partialslip.scene import ALLOWED
 
 # Bars on traction errors, in multiples of the accuracy asked of a, m and n.
-P_BAR, Q_BAR = 10.0, 15.0
+P_BAR, Q_BAR = ALLOWED["p"], ALLOWED["q"]
 
 NAN, NO_BAR = "not a number", "no bar"
 
@@ -32,8 +33,8 @@ class Outcome(StrEnum):
 
 
 class Bar(NamedTuple):
-    """The largest error that is allowed, None if the quantity is not judged; and the reason, where the bar is not the
-    usual one."""
+    """A bar: ``value``, the largest error that is allowed, None if nothing is judged; and the ``reason``, where the
+    bar is not the usual one."""
 
     value: float | None
     reason: str = ""
@@ -102,7 +103,7 @@ def _plain(value: Any) -> Any:
 
 
 def judged(error: float, bar: float) -> Outcome:
-    """Judge an error: it is passed if it is a number of at most ``bar``; NaN is missed."""
+    """Judge an ``error``: it is passed if it is a number of at most ``bar``; NaN is missed."""
     return Outcome.PASSED if error <= bar else Outcome.MISSED
 
 
@@ -118,8 +119,9 @@ def overall(verdicts: Iterable[Verdict], conditions: Iterable[Verdict] = ()) -> 
 
 
 def conditions(result: Result) -> tuple[Verdict, ...]:
-    """Judge what a result must meet by itself: every number is finite (``finite``; the error is the count of those that
-    are not), and every residual of its certificate is at most :data:`partialslip.result.CERTIFICATE_BAR`."""
+    """Judge what a ``result`` must meet by itself: every number is finite (``finite``, whose error is the count of
+    those that are not), and every residual of its certificate is at most
+    :data:`partialslip.result.CERTIFICATE_BAR`."""
     lost = _not_finite(result)
     reason = f"NaN or infinite: {lost:,} of the result's numbers" if lost else ""
     finite = Verdict("finite", judged(lost, 0.0), error=float(lost), bar=0.0, reason=reason, scale="numbers")

@@ -18,15 +18,11 @@ import tomli_w
 
 from partialslip.errors import InputError
 from partialslip.report.figure import traction_svg
+from partialslip.report.lock import lock
 from partialslip.report.page import page
 from partialslip.report.record import record
 from partialslip.run import Run
 from partialslip.scene import Scene
-
-try:
-    import fcntl
-except ImportError:  # Windows
-    fcntl = None  # type: ignore[assignment]
 
 
 def write_run(run: Run, folder: Path) -> list[Path]:
@@ -125,7 +121,7 @@ def _replacing(path: Path) -> Iterator[Path]:
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=beginning, suffix=ending)
     beside = Path(name)
     try:
-        _lock(handle)
+        lock(handle)
         yield beside
         beside.chmod(0o666 & ~_umask())
         os.fsync(handle)  # its content must be there before its name is
@@ -135,17 +131,6 @@ def _replacing(path: Path) -> Iterator[Path]:
         beside.unlink(missing_ok=True)
 
 
-def _lock(handle: int) -> bool:
-    """Whether the file is now locked to this process; the lock ends with the process, however that ends."""
-    if fcntl is None:
-        return False
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:  # another one's, or no locks here
-        return False
-    return True
-
-
 def _unlink_if_free(path: Path) -> None:
     """Remove a file that no process writes any more."""
     try:
@@ -153,7 +138,7 @@ def _unlink_if_free(path: Path) -> None:
     except OSError:
         return
     try:
-        if _lock(handle):
+        if lock(handle):
             path.unlink(missing_ok=True)
     finally:
         os.close(handle)

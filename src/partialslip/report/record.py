@@ -63,7 +63,6 @@ def _figures(result: Result) -> dict[str, Any]:
 
 
 def _curves(result: Result) -> dict[str, Any]:
-    traction = result.traction
     return {
         "slip": {"x": result.slip.x.tolist(), "slip": result.slip.slip.tolist(), "dissipated": result.slip.dissipated}
         if result.slip

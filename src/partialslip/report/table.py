@@ -11,6 +11,7 @@ from partialslip.report import rows
 from partialslip.run import Run
 
 _WIDEST = 1000
+_NARROW = 60
 
 
 def print_run(run: Run, console: Console) -> None:
@@ -32,13 +33,21 @@ def print_table(
     console: Console, headings: Sequence[str], rows: Iterable[Sequence[str]], words: Container[int] = (0,)
 ) -> None:
     """Print ``rows`` under ``headings``; columns ``words`` are of words, the others of numbers. A table is as wide as
-    its numbers are long: beyond a narrow terminal rather than with digits left out."""
+    its numbers are long: beyond a narrow terminal rather than with digits left out. On one of fewer than 60 columns
+    each row is printed as lines of its own, a heading and a value each."""
+    rows = list(rows)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for number, heading in enumerate(headings):
         table.add_column(Text(heading), justify="left" if number in words else "right", no_wrap=True)
     for row in rows:
         table.add_row(*row)
     needed = console.measure(table, options=console.options.update(width=_WIDEST)).maximum
+    if needed > console.width:  # narrower gaps
+        table.padding = (0, 0, 0, 0)
+        needed = console.measure(table, options=console.options.update(width=_WIDEST)).maximum
+    if needed > console.width and console.width < _NARROW:
+        _print_lines(console, [line for row in rows for line in (*zip(headings, row, strict=True), ("", ""))])
+        return
     table.width = needed if needed > console.width else None
     console.print(table, crop=False)
 

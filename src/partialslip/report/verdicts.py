@@ -41,7 +41,7 @@ def was_finished(folder: Path) -> bool:
     try:
         record = json.loads((folder / _FILE).read_text("utf-8"))
         return record["schema"] == SCHEMA and record["finished"] is True
-    except (OSError, ValueError, TypeError, KeyError):
+    except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return False
 
 

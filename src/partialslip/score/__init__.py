@@ -1,13 +1,16 @@
 """Scoring somebody else's results against a scene's exact solution."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Literal
 
 from partialslip.errors import InputError
+from partialslip.result import Result
 from partialslip.run import METHODS, Run, compared, run
 from partialslip.scene import Scene
-from partialslip.score.method import scored
+from partialslip.score.method import centred, scored
+from partialslip.score.mistakes import in_another_unit, mistakes
 from partialslip.score.read import read
 
 
@@ -20,6 +23,8 @@ def score(
     factors: tuple[float, float, float] = (1.0, 1.0, 1.0),
     order: int = 1,
     at: tuple[int, int] | None = None,
+    columns: Mapping[str, str] | None = None,
+    centre: Literal["given", "auto"] = "given",
     progress: Callable[[str], None] = lambda _: None,
 ) -> Run:
     """Compare the tractions in ``file`` with those of ``scene``. The result in the run has the file's name.
@@ -28,9 +33,10 @@ def score(
     ----------
     scene : Scene
     file : str or Path
-        A table (.csv) with a header line: x (m); p (Pa), or Fn (N per m of depth) of nodes; and one of dq = q2 - q1,
-        q = dq/2, q1 and q2, or of dFt, Ft, Ft1 and Ft2. Or CalculiX's .frd, or .dat with the .frd beside it; or a
-        format of meshio's with p and dq, q, or q1 and q2 as point data.
+        A table (.csv, .txt, .tsv, .rpt) with a header line: x (m); p (Pa), or Fn (N per m of depth) of nodes; and one
+        of dq = q2 - q1, q = dq/2, q1 and q2, or of dFt, Ft, Ft1 and Ft2; or the names that other codes give them. Or
+        CalculiX's .frd, or .dat with the .frd beside it; or a format of meshio's with p and dq, q, or q1 and q2 as
+        point data.
     bar : float, optional
         What errors of a, m and n may be, as fractions of a; p and q have 10 and 15 times that. Otherwise no bars.
     reference : str, optional
@@ -43,6 +49,11 @@ def score(
     at : (int, int), optional
         Of CalculiX's contact results, counted from 1, those of load points 1 and 2; as a rule those at the ends of the
         last steps.
+    columns : mapping of str to str, optional
+        Of tables: what x, p (or Fn) and the shear are made of, by name or number (from 1), or sums and differences:
+        ``{"x": "X", "p": "CPRESS", "dq": "S2-S1"}``.
+    centre : "given" or "auto"
+        Whether x = 0 is in the middle of the contact as the file has it, or is put there.
     progress : callable
         Called with a line of text now and then.
 
@@ -58,8 +69,25 @@ def score(
         reference = ("exact" if scene.load.in_phase else "march") if halfplanes else "fem"
     if reference not in METHODS:
         raise InputError(f"reference {reference!r}: must be one of {', '.join(METHODS)}")
-    result = scored(scene, read(file, scene, factors, order, at), name, str(file))
+    if centre not in ("given", "auto"):
+        raise InputError(f"centre {centre!r}: must be given or auto")
+    found = read(file, scene, factors, order, at, columns)
+    if centre == "auto":
+        found = centred(found, str(file))
+    result = scored(scene, found, name, str(file))
     outcome = run(scene, [reference], progress=progress)
-    if outcome.results[reference].regime == "ratchets":  # of slip that adds up, tractions say nothing
+    return compared(
+        scene, outcome.plan, outcome.results | {name: read_as(scene, result, outcome.results[reference])}, bar
+    )
+
+
+def read_as(scene: Scene, result: Result, reference: Result) -> Result:
+    """``result``, as it was read from a file, with notes on likely mistakes in it; what they make meaningless is taken
+    out."""
+    result = replace(result, notes=(*mistakes(scene, result, reference), *result.notes))
+    if in_another_unit(result, reference):
+        why = dict.fromkeys(("m", "n"), "x is in another unit than the scene")
+        result = replace(result, stick_centre=None, stick_half_width=None, undetermined=why)
+    if reference.regime == "ratchets":  # of slip that adds up, tractions say nothing
         result = replace(result, regime="ratchets")
-    return compared(scene, outcome.plan, outcome.results | {name: result}, bar)
+    return result

@@ -1,20 +1,41 @@
-"""Tractions as a table: comma-separated values with a header line."""
+"""Tractions as a table: values separated by commas, semicolons, tabs or blanks, with a header line."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
 from partialslip.errors import InputError
 from partialslip.scene import Array, Scene
+from partialslip.score.headers import headings, known, selected
 
-NORMAL = ("p", "Fn")
-SHEARS = (("dq",), ("q",), ("q1", "q2"), ("dFt",), ("Ft",), ("Ft1", "Ft2"))
+_NOTHING = ("", "-", "--", "novalue", "no value", "n/a", "na")
 _ROWS = 1_000_000
 _TEMPLATE_ROWS = 81
 _REACH = 1.1  # half-widths
 
 
-def read_csv(text: str, origin: str) -> dict[str, Array]:
-    """Columns x, p (or Fn) and shear by name, in that order. ``#`` begins a comment; columns of other names are left
-    out; separators are commas, semicolons or tabs.
+class Columns(NamedTuple):
+    """Columns by name, SI units; what they were made of, in words, if that is not their names; notes; and whether the
+    shear is that of one load point only."""
+
+    values: dict[str, Array]
+    made_of: str = ""
+    notes: tuple[str, ...] = ()
+    moment: bool = False
+
+
+def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None) -> Columns:
+    """Read columns x, p (or Fn) and shear from a table with a header line, SI units.
+
+    ``#`` begins a comment; separators are commas, semicolons, tabs or blanks; numbers may have a decimal comma where
+    commas do not separate. Names are those above or other codes' (:data:`partialslip.score.headers.NAMES`), with a unit
+    in brackets if it is not SI. Rows without values are left out and counted.
+
+    Parameters
+    ----------
+    chosen : mapping of str to str, optional
+        By column wanted, what it is made of: a name or a number (from 1) of the table's, or a sum or a difference.
 
     Raises
     ------
@@ -26,17 +47,42 @@ def read_csv(text: str, origin: str) -> dict[str, Array]:
         raise InputError(f"{origin}: empty: must have a header line with x, p and dq")
     if len(lines) > _ROWS:
         raise InputError(f"{origin}: {len(lines)} lines: must be at most {_ROWS}")
-    header = lines[0][1].partition("#")[0]
-    separator = max(",;\t", key=header.count)
-    names = [name.strip().strip('"') for name in header.split(separator)]
-    wanted = _wanted(names, origin)
-    columns = [names.index(name) for name in wanted]
-    rows = [line.partition("#")[0].split(separator) for _, line in lines[1:]]
-    numbers = [number for number, _ in lines[1:]]
+    numbers = [number for number, _ in lines]
+    bare = [line.partition("#")[0].strip(" \r") for _, line in lines]
+    separator = max(",;\t", key=bare[0].count)
+    separator = separator if separator in bare[0] else ""
+    rows = [_fields(line, separator) for line in bare]
+    names = headings(bare[0]) if not separator else [name.strip().strip('"').strip() for name in rows[0]]
+    headless = chosen is not None and all(map(_is_number, rows[0]))
+    if not headless and all(map(_is_number, rows[0])):
+        raise InputError(f"{origin}: line {numbers[0]}: must be a header line with x, p and dq (or name --columns)")
+    if headless:
+        names = [str(k + 1) for k in range(len(names))]
+    else:
+        rows, numbers = rows[1:], numbers[1:]
     if short := next((n for n, row in zip(numbers, rows, strict=True) if len(row) != len(names)), None):
         raise InputError(f"{origin}: line {short}: must have {len(names)} fields, like the header line")
-    table = [[row[column].strip() for row in rows] for column in columns]
-    return {name: _numbers(values, numbers, name, origin) for name, values in zip(wanted, table, strict=True)}
+    wanted = selected(names, chosen, origin) if chosen else known(names, origin)
+    used = sorted({column for each in wanted.values() for column in each.parts})
+    full = [all(row[column].lower() not in _NOTHING for column in used) for row in rows]
+    kept = [row for row, whole in zip(rows, full, strict=True) if whole]
+    numbers = [number for number, whole in zip(numbers, full, strict=True) if whole]
+    table = {column: _numbers([row[column] for row in kept], numbers, names[column], origin) for column in used}
+    values = {
+        name: sum((sign * table[column] for column, sign in each.parts.items()), np.zeros(len(kept))) * each.factor
+        for name, each in wanted.items()
+    }
+    notes = [f"{len(rows) - len(kept)} rows without values were left out"] if len(kept) < len(rows) else []
+    said = [f"{name} = {each.text}" for name, each in wanted.items() if each.text != name]
+    return Columns(values, ", ".join(said), tuple(notes), any(each.moment for each in wanted.values()))
+
+
+def _fields(line: str, separator: str) -> list[str]:
+    """Fields of a line; without a separator those between blanks. Commas that do not separate are decimal ones."""
+    fields = line.split(separator) if separator else line.split()
+    if separator == ",":
+        return [field.strip().strip('"') for field in fields]
+    return [field.strip().strip('"').replace(",", ".") for field in fields]
 
 
 def template(scene: Scene, a: float) -> str:
@@ -52,22 +98,6 @@ def template(scene: Scene, a: float) -> str:
         "x,p,dq\n"
     )
     return head + "".join(f"{point:.9e},0,0\n" for point in x)
-
-
-def _wanted(names: list[str], origin: str) -> list[str]:
-    for name in ("x", *NORMAL, *(name for shear in SHEARS for name in shear)):
-        if names.count(name) > 1:
-            raise InputError(f"{origin}: column {name!r}: must be there once, not {names.count(name)} times")
-    normal = [name for name in NORMAL if name in names]
-    shears = [shear for shear in SHEARS if set(shear) <= set(names)]
-    if "x" not in names or len(normal) != 1 or len(shears) != 1:
-        shown = ", ".join(repr(name) for name in names)[:100]
-        raise InputError(
-            f"{origin}: columns {shown}: must be x; p or Fn; and one of dq, q, q1 and q2, dFt, Ft, Ft1 and Ft2"
-        )
-    if (normal[0] == "Fn") != shears[0][0].endswith(("Ft", "Ft1")):
-        raise InputError(f"{origin}: columns {normal[0]} and {shears[0][0]}: must be both tractions or both forces")
-    return ["x", *normal, *shears[0]]
 
 
 def _numbers(values: list[str], lines: list[int], name: str, origin: str) -> Array:

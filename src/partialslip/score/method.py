@@ -1,6 +1,7 @@
 """Tractions from outside as a result, like that of any method."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -8,27 +9,28 @@ import numpy as np
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock, Regime, Result, Traction
 from partialslip.scene import Scene
-from partialslip.score.ends import NOISE, End, left_end, noise, right_end, zone
+from partialslip.score.ends import NOISE, ROUNDING, End, left_end, noise, right_end, zone
 from partialslip.score.samples import FEWEST, Samples
+from partialslip.score.slip import Friction, frictions
 
 _SLIDES = 0.02  # of 2 f p0: with less room than that, or than noise, nothing is seen to stick
-_ROUNDING = 1e-9
-_OFF = 0.05  # relative difference of resultants that is worth a note
-_LOOSE = 0.1  # by which |dq| may be beyond 2 f p
-_TIGHT = 1e-3  # by which it may stay below where it slips
+_APART = 3.0  # times the uncertainty of f, by which 2 f p may be off
+_SIGMAS = 2.0  # standard deviations of x, by which an end may be off
+_CERTAIN = 0.05  # of a: ends of the stick zone that may be off by more are not given
+_SPACINGS = 2.0  # likewise, of the points' spacing
 
 
 class Stick(NamedTuple):
-    """The stick zone, and the signs of dq in the slip zones on its left and right."""
+    """The stick zone, and friction in the slip zones on its left and right."""
 
     left: End
     right: End
-    signs: tuple[int, int]
+    sides: tuple[Friction, Friction]
 
 
 def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     """What ``samples`` say of ``scene``: contact, stick zone and regime are read from the tractions alone, with the
-    scene's coefficient of friction.
+    coefficient of friction that the slip zones show. Ends of the stick zone that are uncertain are not given.
 
     Parameters
     ----------
@@ -42,69 +44,143 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     """
     clock = Clock()
     x, p, dq, f = samples.x, samples.p, samples.dq, scene.friction.f
-    touching = zone(p, x)
-    if touching is None or touching[1] - touching[0] + 1 < FEWEST:
-        hint = "" if samples.cells is None else "; or are the elements of another order (--order)?"
-        raise InputError(f"{origin}: p: must stand out from its noise at {FEWEST} or more neighbouring points{hint}")
-    first, last = touching
-    skip = 0 if samples.cells is None else 1
-    left, right = left_end(x, p, first, last, skip), right_end(x, p, last, first, skip)
-    a = (right.x - left.x) / 2
-    if not a > 0:
-        raise InputError(f"{origin}: p: no contact of any width is found in it")
-    p0 = 2 * scene.P / (np.pi * a)
+    first, last, left, right = _contact(samples, origin)
+    cells, a, middle = samples.cells is not None, (right.x - left.x) / 2, (left.x + right.x) / 2
+    p0 = 2 * float(p @ _widths(samples)) / (np.pi * a)
     inside = slice(first, last + 1)
-    stick = _stick(x[inside], p[inside], dq[inside], f, p0, skip) if f > 0 else None
-    regime, ends = _regime(scene, x, dq, stick, left, right, p0)
-    uncertainty = {"a": float(np.hypot(left.uncertainty, right.uncertainty)) / 2 / a}
+    slips = f > 0 and bool(np.abs(dq).max() > max(ROUNDING * p0, NOISE * noise(dq, x)))
+    stick = _stick(x[inside], p[inside], dq[inside], f, p0, cells) if slips else None
+    regime, ends = _regime(scene, stick, left, right, slips)
+    # smoothing spreads all ends alike: those of the stick zone by as much as those of the contact
+    either = float(np.linalg.norm((left.uncertainty, right.uncertainty, _SIGMAS * samples.resolution)))
+    uncertainty = {"a": either / 2 / a, "left": left.uncertainty / a, "right": right.uncertainty / a}
     if ends:
-        uncertainty |= {"m": ends[0].uncertainty / a, "n": ends[1].uncertainty / a}
-    traction = _traction(samples, left.x, right.x)
+        shared = (
+            left.spread,
+            right.spread,
+            _SIGMAS * samples.resolution,
+            middle,
+        )
+        uncertainty |= {
+            key: float(np.linalg.norm((end.uncertainty, *shared))) / a for key, end in zip("mn", ends, strict=True)
+        }
+    spacing = float(np.median(np.diff(x[inside]))) / a
+    uncertain = ends is not None and max(uncertainty["m"], uncertainty["n"]) > max(_CERTAIN, _SPACINGS * spacing)
+    known = None if uncertain else ends
+    why = _why(stick, uncertainty) if uncertain else ""
+    notes = samples.notes
+    if why:
+        notes += (f"m and n are not given: {why}",)
+    if regime == "sliding" and not scene.slides:
+        notes += ("nothing is seen to stick: |dq|/(2 p) is the same everywhere, to within what the points tell",)
     return Result(
         method=name,
         a=a,
         p0=p0,
         regime=regime,
-        stick_centre=(ends[0].x + ends[1].x) / 2 if ends else None,
-        stick_half_width=(ends[1].x - ends[0].x) / 2 if ends else None,
-        traction=traction,
+        stick_centre=(known[0].x + known[1].x) / 2 if known else None,
+        stick_half_width=(known[1].x - known[0].x) / 2 if known else None,
+        traction=_traction(samples, left.x, right.x),
         cost=clock.cost(),
         settings={
-            "read": "means over cells" if samples.cells is not None else "values at points",
-            "spacing_over_a": _rounded(float(np.median(np.diff(x[inside]))) / a),
+            "read": "means over cells" if cells else "values at points",
+            "spacing_over_a": _rounded(spacing),
             "noise_over_p0": _rounded(noise(p[inside], x[inside]) / p0),
+            **(_friction(stick.sides, f) if stick else {}),
+            **({"columns": samples.made_of} if samples.made_of else {}),
         },
         counts={"points": len(x), "contact_nodes": last - first + 1},
         estimate=uncertainty,
-        notes=_notes(scene, traction, left, right),
+        notes=notes,
+        contact_ends=((left.x, right.x),) * 2,
+        undetermined=dict.fromkeys("mn", why) if why else {},
     )
 
 
-def _stick(x: Array, p: Array, dq: Array, f: float, p0: float, skip: int) -> Stick | None:
+def centred(samples: Samples, origin: str) -> Samples:
+    """``samples`` with x = 0 in the middle of the contact that they show. Raises InputError like :func:`scored`."""
+    _, _, left, right = _contact(samples, origin)
+    middle = (left.x + right.x) / 2
+    note = f"x = 0 was put in the middle of the contact, at x = {middle:.6g} m"
+    return replace(samples.moved(-middle), notes=(*samples.notes, note))
+
+
+def _contact(samples: Samples, origin: str) -> tuple[int, int, End, End]:
+    """First and last point in contact, and where the contact ends."""
+    x, p, cells = samples.x, samples.p, samples.cells is not None
+    least = NOISE * noise(p, x)
+    touching = zone(p, least)
+    if touching is None or touching[1] - touching[0] + 1 < FEWEST:
+        hint = "; or are the elements of another order (--order)?" if cells else ""
+        raise InputError(f"{origin}: p: must stand out from its noise at {FEWEST} or more neighbouring points{hint}")
+    first, last = touching
+    left = left_end(x, p, first, last, cells=cells, least=least)
+    right = right_end(x, p, last, first, cells=cells, least=least)
+    if not right.x > left.x:
+        raise InputError(f"{origin}: p: no contact of any width is found in it")
+    return first, last, left, right
+
+
+def _why(stick: Stick | None, uncertainty: dict[str, float]) -> str:
+    """Why ends of the stick zone are too uncertain to be given."""
+    known = f"they are known to {uncertainty['m']:.1g} and {uncertainty['n']:.1g} a only"
+    unseen = stick is not None and not any(side.seen for side in stick.sides)
+    return f"|dq|/(2 p) is flat nowhere, so that nothing is seen to slip; {known}" if unseen else f"{known}"
+
+
+def _friction(sides: tuple[Friction, Friction], asked: float) -> dict[str, str | float]:
+    """The coefficient of friction that the tractions show in the slip zones, as settings."""
+    seen = [side for side in sides if side.seen]
+    if not seen:
+        return {"f_seen": "nowhere", "f_asked": asked}
+    surest = min(seen, key=lambda side: side.uncertainty)
+    return {"f_seen": float(f"{surest.f:.6g}"), "f_seen_to": float(f"{surest.uncertainty:.1g}"), "f_asked": asked}
+
+
+def _widths(samples: Samples) -> Array:
+    """Length of line that belongs to each point, (n,), m."""
+    ends = samples.cells
+    if ends is None:
+        x = samples.x
+        ends = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]])
+    widths: Array = np.diff(ends)
+    return widths
+
+
+def _stick(x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool) -> Stick | None:
     """From the room 2 f p - |dq| that points in contact leave; None where nothing sticks."""
-    room = 2 * f * p - np.abs(dq)
-    found = zone(room, x)
-    if found is None or room.max() < 2 * f * p0 * min(_SLIDES, 4 / len(x)):
+    sides = frictions(p, dq, asked)
+    slacks = [2 * side.uncertainty * p for side in sides]
+    room = 2 * min(side.f for side in sides) * p - np.abs(dq)
+    hidden = [NOISE * (side.scatter if side.seen else noise(room, x)) for side in sides]
+    found = [zone(room, least + _APART * slack) for least, slack in zip(hidden, slacks, strict=True)]
+    if None in found or room.max() < 2 * max(side.f for side in sides) * p0 * min(_SLIDES, 4 / len(x)):
         return None
-    signs = (1 if dq[: found[0] + 1].sum() >= 0 else -1), (1 if dq[found[1] :].sum() >= 0 else -1)
-    first, last = found
-    left = left_end(x, 2 * f * p - signs[0] * dq, first, last, skip)
-    right = right_end(x, 2 * f * p - signs[1] * dq, last, first, skip)
-    return Stick(left, right if right.x > left.x else End(left.x, right.uncertainty), signs)
+    first, last = found[0][0], found[1][1]  # type: ignore[index]
+    beyond = dq[: first + 1].sum(), dq[last:].sum()
+    sides = tuple(  # type: ignore[assignment]
+        side if side.seen else side._replace(sign=1 if shear >= 0 else -1)
+        for side, shear in zip(sides, beyond, strict=True)
+    )
+    rooms = [2 * side.f * p - side.sign * dq for side in sides]
+    told = [least if side.seen else 0.0 for least, side in zip(hidden, sides, strict=True)]
+    left = left_end(x, rooms[0], first, last, cells=cells, slack=slacks[0], least=told[0])
+    right = right_end(x, rooms[1], last, first, cells=cells, slack=slacks[1], least=told[1])
+    return Stick(left, right if right.x > left.x else End(left.x, right.uncertainty), sides)
 
 
 def _regime(
-    scene: Scene, x: Array, dq: Array, stick: Stick | None, left: End, right: End, p0: float
+    scene: Scene, stick: Stick | None, left: End, right: End, slips: bool
 ) -> tuple[Regime, tuple[End, End] | None]:
     """What the tractions show, and the ends of the stick zone, within the contact's."""
+    if not slips:
+        return "stuck", (left, right)
     if stick is None:
         return "sliding", None
-    if not np.abs(dq).max() > max(_ROUNDING * p0, NOISE * noise(dq, x)):
-        return "stuck", (left, right)
     ends = (max(stick.left, left), min(stick.right, right))
     if not scene.load.in_phase:
         return "out of phase", ends
-    return ("small tension" if stick.signs[0] == stick.signs[1] else "large tension"), ends
+    return ("small tension" if stick.sides[0].sign == stick.sides[1].sign else "large tension"), ends
 
 
 def _traction(samples: Samples, left: float, right: float) -> Traction:
@@ -128,38 +204,6 @@ def _traction(samples: Samples, left: float, right: float) -> Traction:
             return np.where(within, p[cell], 0.0), np.where(within, dq[cell], 0.0)
 
     return Traction(x, p, dq, samples.q1, samples.q2, at, breaks, breaks)
-
-
-def _notes(scene: Scene, traction: Traction, left: End, right: End) -> tuple[str, ...]:
-    """What looks like a slip of whoever wrote the file."""
-    notes, f, a = [], scene.friction.f, (right.x - left.x) / 2
-    middle = (left.x + right.x) / 2
-    if abs(middle) > max(_ROUNDING * a, 2 * np.hypot(left.uncertainty, right.uncertainty)):
-        notes.append(f"the contact's middle is at x = {middle / a:.2g} a")
-    widths = np.diff(traction.breaks)
-    centres = (traction.breaks[1:] + traction.breaks[:-1]) / 2
-    P, dQ = (float(column @ widths) for column in traction.at(centres))
-    notes += _resultant("p", P, scene.P, "P")
-    notes += (of_dq := _resultant("dq", dQ, scene.load.dQ, "dQ"))
-    beyond = np.abs(traction.dq) > (1 + _LOOSE) * 2 * f * np.maximum(traction.p, 0.0)
-    if f > 0 and np.count_nonzero(beyond) > np.count_nonzero(traction.p > 0) / 4:
-        notes.append("|dq| is beyond 2 f p at many points: another coefficient of friction?")
-    pressed, shear = traction.p > _ROUNDING * traction.p.max(), np.abs(traction.dq)
-    share = float((shear[pressed] / (2 * f * traction.p[pressed])).max()) if f > 0 else 0.0
-    if 0 < share < 1 - _TIGHT and scene.load.dQ > 0 and not of_dq:
-        why = "points too far apart, or another coefficient of friction?"
-        notes.append(f"|dq| is {share:.3g} of 2 f p at most, so that nothing is seen to slip: {why}")
-    return tuple(notes)
-
-
-def _resultant(column: str, found: float, load: float, name: str) -> list[str]:
-    """A note where a traction does not add up to its load, with what it looks like."""
-    if load == 0 or abs(found / load - 1) <= _OFF:
-        return []
-    ratio = found / load
-    looks = {-1.0: ": turned round?", 0.5: ": of half a cycle?", 2.0: ": twice too much?", 1e-6: ": in MPa?"}
-    guess = next((text for value, text in looks.items() if abs(ratio / value - 1) < 0.1), "")
-    return [f"{column} adds up to {ratio:.3g} of the scene's {name}{guess}"]
 
 
 def _rounded(number: float) -> float:

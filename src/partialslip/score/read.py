@@ -1,5 +1,8 @@
 """Reading somebody else's results, by the ending of the file's name."""
 
+import codecs
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,9 +10,11 @@ import numpy as np
 from partialslip.errors import InputError
 from partialslip.scene import Array, Scene
 from partialslip.score.calculix import read_dat, read_frd
-from partialslip.score.csvfile import NORMAL, SHEARS, read_csv
+from partialslip.score.csvfile import Columns, read_csv
+from partialslip.score.headers import NORMAL, SHEARS
 from partialslip.score.samples import Samples, samples
 
+TABLES = (".csv", ".txt", ".tsv", ".rpt")
 _LARGEST = 1_000_000_000  # bytes
 _FLAT = 0.05  # of the points' extent along x: what they may lie apart across it
 
@@ -20,9 +25,10 @@ def read(
     factors: tuple[float, float, float] = (1.0, 1.0, 1.0),
     order: int = 1,
     at: tuple[int, int] | None = None,
+    chosen: Mapping[str, str] | None = None,
 ) -> Samples:
-    """Tractions from ``file``: .csv, .frd or .dat (CalculiX), or a format of meshio's with point data p and dq, q, or
-    q1 and q2. Parameters as of :func:`partialslip.score`.
+    """Tractions from ``file``: .csv, .txt, .tsv, .rpt (tables), .frd or .dat (CalculiX), or a format of meshio's with
+    point data p and dq, q, or q1 and q2. Parameters as of :func:`partialslip.score`, ``chosen`` being its columns.
 
     Raises
     ------
@@ -34,15 +40,26 @@ def read(
     ends = (*load.ends, len(load.points))
     if at is not None and suffix not in (".frd", ".dat"):
         raise InputError(f"--at {at[0]},{at[1]}: only for .frd and .dat files")
-    if suffix == ".csv":
-        columns = read_csv(text(file), origin)
+    if chosen and suffix not in TABLES:
+        raise InputError(f"--columns: only for tables ({', '.join(TABLES)})")
+    if suffix in TABLES:
+        columns = read_csv(text(file), origin, chosen)
     elif suffix == ".frd":
-        columns = read_frd(text(file), origin, at, ends)
+        columns = Columns(read_frd(text(file), origin, at, ends))
     elif suffix == ".dat":
-        columns = read_dat(text(file), text(file.with_suffix(".frd")), origin, at, ends)
+        columns = Columns(read_dat(text(file), text(file.with_suffix(".frd")), origin, at, ends))
     else:
-        columns = _point_data(file)
-    return samples(columns, origin, factors, order)
+        columns = Columns(_point_data(file))
+    notes = columns.notes
+    if columns.moment:
+        if not load.fully_reversed:
+            raise InputError(
+                f"{origin}: {columns.made_of}: shear at one load point, and the loads are not fully reversed: "
+                "--columns q1=...,q2=... says where both are"
+            )
+        notes += (f"{columns.made_of}: shear at load point 2, taken for half of its change",)
+    found = samples(columns.values, origin, factors, order)
+    return replace(found, made_of=columns.made_of, notes=notes)
 
 
 def text(file: Path) -> str:
@@ -50,7 +67,8 @@ def text(file: Path) -> str:
     try:
         if (size := file.stat().st_size) > _LARGEST:
             raise InputError(f"{file}: {size} bytes: must be at most {_LARGEST}")
-        return file.read_text("utf-8-sig")
+        data = file.read_bytes()
+        return data.decode("utf-16" if data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) else "utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(f"{file}: not UTF-8 text (byte {error.start})") from None
     except (OSError, ValueError) as error:
@@ -62,7 +80,7 @@ def _point_data(file: Path) -> dict[str, Array]:
     from partialslip_meshes.pointdata import FORMATS, read_point_data
 
     if file.suffix.lower() not in FORMATS:
-        raise InputError(f"{file}: must end in .csv, .frd, .dat or {', '.join(sorted(FORMATS))}")
+        raise InputError(f"{file}: must end in {', '.join(TABLES)}, .frd, .dat or {', '.join(sorted(FORMATS))}")
     try:
         with file.open("rb"):
             pass

@@ -1,12 +1,13 @@
 """Somebody else's tractions: what a file of results comes down to."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from partialslip.errors import InputError
 from partialslip.scene import LARGEST, SMALLEST, Array
 
+_DIGITS, _WHOLE = 8, 1e-5
 FEWEST = 6  # points in contact: fewer tell nothing of where it ends
 
 
@@ -24,6 +25,12 @@ class Samples:
         Shear traction at the load points, Pa, where it is known.
     cells : (n + 1,) array or None
         Where p and dq are means over cells (nodal forces over their widths): their ends, m. None: values at points.
+    resolution : float
+        By how much x may be off, m: where it is written with few digits, so that points lie unevenly.
+    made_of : str
+        What the columns were made of, in words, if that is not their names.
+    notes : tuple of str
+        What whoever wrote the file must know.
     """
 
     x: Array
@@ -32,6 +39,13 @@ class Samples:
     q1: Array | None = None
     q2: Array | None = None
     cells: Array | None = None
+    resolution: float = 0.0
+    made_of: str = ""
+    notes: tuple[str, ...] = ()
+
+    def moved(self, shift: float) -> "Samples":
+        """The same at x + ``shift`` (m)."""
+        return replace(self, x=self.x + shift, cells=None if self.cells is None else self.cells + shift)
 
 
 def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float, float], order: int) -> Samples:
@@ -61,7 +75,7 @@ def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float,
     _check(values, [*columns], origin)
     values = _merged(values)
     x, p, shears = values[0], values[1], values[2:]
-    cells = None
+    cells, resolution = None, abs(factors[0]) * _resolution(columns["x"])
     if normal == "Fn":
         if order == 2 and len(x) % 2 == 0:
             raise InputError(f"{origin}: {len(x)} nodes: of elements of order 2 it must be an odd number")
@@ -72,10 +86,10 @@ def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float,
         hint = "; pressure must be positive" if p.min(initial=0) < 0 else ""
         raise InputError(f"{origin}: {normal} > 0 at {touching} points: must be at least {FEWEST}{hint}")
     if len(tangential) == 2:
-        return Samples(x, p, shears[1] - shears[0], shears[0], shears[1], cells)
+        return Samples(x, p, shears[1] - shears[0], shears[0], shears[1], cells, resolution)
     half = tangential[0] in ("q", "Ft")
     dq = 2 * shears[0] if half else shears[0]
-    return Samples(x, p, dq, -dq / 2 if half else None, dq / 2 if half else None, cells)
+    return Samples(x, p, dq, -dq / 2 if half else None, dq / 2 if half else None, cells, resolution)
 
 
 def _check(values: Array, names: list[str], origin: str) -> None:
@@ -85,6 +99,21 @@ def _check(values: Array, names: list[str], origin: str) -> None:
         if wrong.any():
             value = column[wrong.argmax()]
             raise InputError(f"{origin}: {name} = {value:g}: must be zero or of a size from {SMALLEST} to {LARGEST}")
+
+
+def _resolution(x: Array) -> float:
+    """Standard deviation of ``x`` from where it was before it was rounded to few digits; 0 if there are many."""
+    x = np.unique(x)
+    large = x[np.abs(x) > 0.1 * np.abs(x).max(initial=0.0)]
+    if len(large) < FEWEST:
+        return 0.0
+    units = 10.0 ** (np.floor(np.log10(np.abs(large).max())) - np.arange(_DIGITS))
+    off = np.abs(large[:, None] / units - np.round(large[:, None] / units)).max(axis=0)
+    if not (off < _WHOLE).any():
+        return 0.0
+    unit = float(units[(off < _WHOLE).argmax()])
+    uneven = 1.4826 * float(np.median(np.abs(np.diff(x, 3)))) / np.sqrt(20)
+    return float(min(uneven, 5 * unit))  # the largest numbers are rounded to a place before that of the least
 
 
 def _merged(values: Array) -> Array:

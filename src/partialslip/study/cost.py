@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 
 from partialslip.errors import InputError
+from partialslip.inputfile import read_text
 from partialslip.plan import plan
 from partialslip.reading import parse_scene
 from partialslip.result import Array
@@ -28,6 +29,7 @@ _ADAPTED: dict[str, tuple[dict[str, Any], tuple[float, ...]]] = {
     "P4, box": ({"order": 4, "far_field": "box"}, (1e-3, 1e-4, 1e-5, 1e-6)),
     "P4, SuperLU": ({"order": 4, "factor": "superlu"}, (1e-2, 1e-3, 1e-4, 2e-5, 1e-6, 1e-7)),
 }
+_LARGEST_FILE = 100_000_000  # bytes
 _UNIFORM = {"P1": 1, "P2": 2, "P4": 4}
 _SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)
 
@@ -164,10 +166,10 @@ def read_peers(path: Path, scene: str) -> list[Point]:
     """
     found = []
     try:
-        lines = path.read_text("utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"--peers {path}: cannot be read: {error}") from None
-    for number, line in enumerate(lines, start=1):
+        text = read_text(path, _LARGEST_FILE)
+    except InputError as error:
+        raise InputError(f"--peers {error}") from None
+    for number, line in enumerate(text.splitlines(), start=1):
         try:
             data = json.loads(line)
             if data["scene"] == scene:
@@ -185,7 +187,7 @@ def read_peers(path: Path, scene: str) -> list[Point]:
                         counts={"dofs": int(data["dofs"])},
                     )
                 )
-        except (ValueError, KeyError, TypeError, AttributeError) as error:
+        except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
             raise InputError(f"--peers {path}: line {number}: must be a peer's result ({error})") from None
     return found
 

@@ -51,10 +51,13 @@ class Ledger:
             raise InputError(f"{path}: cannot be read: {error.strerror}") from None
         for number, line in enumerate(whole.splitlines(), start=1):
             try:
-                entry = json.loads(line)
+                entry = _unsealed(line)
                 self._entries[entry["key"]] = entry
-            except (ValueError, KeyError, TypeError):
-                raise InputError(f"{path}: line {number}: must be an entry of a ledger, a JSON object") from None
+            except ValueError:
+                raise InputError(
+                    f"{path}: line {number}: must be an entry of a ledger, as it was written: remove the line, and its "
+                    "case is solved again"
+                ) from None
 
     def __contains__(self, key: str) -> bool:
         return key in self._entries
@@ -76,7 +79,7 @@ class Ledger:
     def add(self, key: str, found: Mapping[str, Any]) -> None:
         """Append an entry, on the disk when this returns. Raises InputError if the file cannot be written."""
         entry = {"key": key, **found, "made": {"at": datetime.now(UTC).isoformat(timespec="seconds"), **_origin()}}
-        line = (json.dumps(entry, allow_nan=False) + "\n").encode()
+        line = _sealed(json.dumps(entry, allow_nan=False)) + b"\n"
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             with open(self.path, "ab", buffering=0) as file:
@@ -85,6 +88,29 @@ class Ledger:
         except OSError as error:
             raise InputError(f"{self.path}: cannot be written: {error.strerror}") from None
         self._entries[key] = entry
+
+
+_SEAL = b', "sum": "'
+
+
+def _sealed(entry: str) -> bytes:
+    """An entry, a JSON object, with a checksum of its text as its last key: what reads it can rely on its shape."""
+    text = entry.encode()
+    return text[:-1] + _SEAL + _sum(text) + b'"}'
+
+
+def _unsealed(line: bytes) -> dict[str, Any]:
+    """The entry of a line. Raises ValueError if it is not as :func:`_sealed` has made it."""
+    text, seal, end = line.rpartition(_SEAL)
+    text += b"}"
+    if not seal or end != _sum(text) + b'"}':
+        raise ValueError
+    entry: dict[str, Any] = json.loads(text)
+    return entry
+
+
+def _sum(text: bytes) -> bytes:
+    return hashlib.sha256(text).hexdigest()[:16].encode()
 
 
 def key_of(data: Mapping[str, Any]) -> str:

@@ -11,13 +11,15 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from queue import SimpleQueue
+from queue import Empty, SimpleQueue
 from typing import Any, NamedTuple
 
-from partialslip.errors import InputError, MissingLibraryError, PartialslipError
+from partialslip.errors import PartialslipError
+from partialslip.study.cluster import Cluster, dask
 from partialslip.study.ledger import Ledger
 
 Progress = Callable[[int, int, float], None]
+_PULSE = 2.0  # s
 _AHEAD = 256  # tasks that wait for a worker, or work: more than any cluster has workers, and few in memory
 
 
@@ -47,7 +49,7 @@ def sweep(tasks: Collection[Task], ledger: Ledger, executor: Executor, progress:
     finished: SimpleQueue[Future[Mapping[str, Any]]] = SimpleQueue()
 
     def keep() -> None:
-        future = finished.get()
+        future = _next(finished, executor)
         ledger.add(at_work[future], future.result())
         del at_work[future]
         done = next(added)
@@ -70,6 +72,15 @@ def sweep(tasks: Collection[Task], ledger: Ledger, executor: Executor, progress:
             future.cancel()
 
 
+def _next(finished: "SimpleQueue[Future[Any]]", executor: Executor) -> "Future[Any]":
+    """The next future that is finished. An executor that can lose all its workers is asked meanwhile if it has."""
+    while True:
+        try:
+            return finished.get(timeout=_PULSE if isinstance(executor, Cluster) else None)
+        except Empty:
+            executor.check()  # type: ignore[attr-defined]
+
+
 class _Here(Executor):
     """This process: work is done when it is submitted, and what it raises ends the sweep."""
 
@@ -87,7 +98,9 @@ def workers(cluster: str | None = None, processes: int | None = None) -> Iterato
     Raises
     ------
     InputError
-        If no scheduler answers there.
+        If no scheduler answers there, or a worker does not have this version of partialslip.
+    PartialslipError
+        If the scheduler, or all workers, are lost.
     MissingLibraryError
         If dask.distributed is not installed.
     """
@@ -107,16 +120,8 @@ def workers(cluster: str | None = None, processes: int | None = None) -> Iterato
             raise
         pool.shutdown()
         return
-    try:
-        from distributed import Client
-    except ImportError:
-        raise MissingLibraryError("--cluster: needs dask.distributed: pip install distributed") from None
-    try:
-        client = Client(cluster, timeout="10s", set_as_default=False)
-    except (OSError, ValueError) as error:
-        raise InputError(f"--cluster {cluster!r}: no scheduler answers there: {error}") from None
-    with client, client.get_executor(pure=False) as pool:
-        yield pool
+    with dask(cluster) as crew:
+        yield crew
 
 
 def _begin() -> None:

@@ -11,9 +11,10 @@ from typing import Any
 from partialslip.errors import InputError, MissingLibraryError
 from partialslip.judge import Outcome, overall
 from partialslip.plan import plan
-from partialslip.report.document import Account, document, read_study
+from partialslip.report.document import Account, Study, document, read_study
 from partialslip.report.figure import traction_svg
 from partialslip.report.files import scene_toml, tractions_csv, write_texts
+from partialslip.report.lock import locked
 from partialslip.report.pdf import write_pdf
 from partialslip.report.sheet import sheet
 from partialslip.report.verdicts import was_finished, write_verdicts
@@ -102,14 +103,27 @@ def verify_suite(
     Raises
     ------
     InputError
-        If something asked for does not exist, or the folder cannot be written.
+        If something asked for does not exist, or the folder cannot be written, or another process writes there.
     """
     if processes is not None and processes < 1:
         raise InputError(f"--processes {processes}: must be >= 1")
     settings, makers, contents = _cases(name, only, method, seed, count)
     studies = [read_study(Path(each)) for each in include]
     folder = Path(out) if out is not None else Path("results") / _folder(settings)
-    ledger = _ledger(folder)
+    with locked(folder):
+        return _verify(settings, makers, contents, studies, folder, processes, progress)
+
+
+def _verify(
+    settings: dict[str, Any],
+    makers: Makers,
+    contents: Mapping[str, Any],
+    studies: Sequence[Study],
+    folder: Path,
+    processes: int | None,
+    progress: Progress,
+) -> Verification:
+    ledger, name = _ledger(folder), settings["suite"]
     write_verdicts(folder, settings, {}, finished=False)
     keys = {case: key_of(content) for case, content in contents.items()}
     finished = {entry["case"] for entry in ledger}

@@ -1,0 +1,144 @@
+"""Header lines of tables: which column is what, in which unit, by this package's names and by other codes'."""
+
+import re
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from partialslip.errors import InputError
+
+NORMAL = ("p", "Fn")
+SHEARS = (("dq",), ("q",), ("q1", "q2"), ("dFt",), ("Ft",), ("Ft1", "Ft2"))
+
+_OWN = ("x", *NORMAL, *(name for shear in SHEARS for name in shear))
+
+#: Other names of x, p and the shear traction at one load point, in lower case, with the sign that makes p positive.
+NAMES = {
+    "x": dict.fromkeys(
+        ("x", "coor1", "coord1", "coor_x", "coord_x", "points:0", "points_0", "x location", "xloc"), 1
+    ),
+    "p": {
+        "cpress": 1, "contact pressure": 1, "contact_pressure": 1, "pressure": 1,  # Abaqus, CalculiX, MOOSE, ANSYS
+        "pres": 1, "contpres": 1, "cont,pres": 1,  # ANSYS
+        "lags_c": -1,  # Code_Aster: negative in contact
+        "normal_lm": 1, "frictional_normal_lm": 1, "lambda_n": 1,  # MOOSE, GetFEM's examples
+    },
+    "q": {
+        "cshear1": 1, "cshear": 1, "taur": 1, "lags_f1": 1, "tangential_lm": 1, "frictional_tangential_lm": 1,
+        "lambda_t": 1,
+    },
+}  # fmt: skip
+
+#: Units by name, in SI units.
+UNITS = {
+    "m": 1.0, "mm": 1e-3, "um": 1e-6, "\N{MICRO SIGN}m": 1e-6, "\N{GREEK SMALL LETTER MU}m": 1e-6, "cm": 1e-2,
+    "in": 0.0254, "pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9, "psi": 6894.757293168, "ksi": 6894757.293168,
+    "n/m": 1.0, "n/mm": 1e3, "n/m^2": 1.0, "n/mm^2": 1e6, "n/mm2": 1e6, "n/um^2": 1e12,
+}  # fmt: skip
+_UNIT = re.compile(r"^(?P<name>.*?\S)\s*[\[(](?P<unit>[^\[\]()]*)[\])]$")
+_TERM = re.compile(r"(?<=\S)\s*([+-])\s*(?=\S)")
+
+
+class Wanted(NamedTuple):
+    """What a column is made of: the table's columns by index with their signs, the ``factor`` of their unit, and the
+    same in words; ``moment`` says that it is the shear at one load point, by another code's name."""
+
+    parts: dict[int, float]
+    factor: float
+    text: str
+    moment: bool = False
+
+
+def headings(line: str) -> list[str]:
+    """Names in a header line that blanks separate: two or more of them if the names have blanks, too. A unit in
+    brackets goes with the name before it."""
+    wide = re.split(r"\s{2,}", line.strip())
+    parts = wide if len(wide) > 2 else line.split()
+    names: list[str] = []
+    for part in parts:
+        if names and part[0] in "[(":
+            names[-1] += f" {part}"
+        else:
+            names.append(part)
+    return names
+
+
+def known(names: list[str], origin: str) -> dict[str, Wanted]:
+    """Find x, p or Fn, and the shear by their names in a header line, in that order."""
+    plain = [_split(name) for name in names]
+    found = {
+        name: [Wanted({k: 1.0}, unit, names[k]) for k, (own, unit) in enumerate(plain) if own == name] for name in _OWN
+    }
+    for name, group in (("x", ("x",)), ("p", NORMAL), ("q", _OWN[3:])):
+        if not any(found[each] for each in group):
+            signs, others = NAMES[name], [(k, own.lower(), unit) for k, (own, unit) in enumerate(plain)]
+            found[name] = [
+                Wanted({k: 1.0}, unit * signs[own], names[k], name == "q") for k, own, unit in others if own in signs
+            ]
+    for name, places in found.items():
+        if len(places) > 1:
+            told = " and ".join(repr(place.text) for place in places)
+            raise InputError(
+                f"{origin}: column {name!r}: must be there once, not {len(places)} times ({told}); --columns chooses"
+            )
+    return _complete({name: each[0] for name, each in found.items() if each}, names, origin)
+
+
+def selected(names: list[str], chosen: Mapping[str, str], origin: str) -> dict[str, Wanted]:
+    """What ``chosen`` asks for, by column wanted: names or numbers of the table's columns, or sums and differences."""
+    if unknown := [name for name in chosen if name not in _OWN]:
+        raise InputError(f"--columns {unknown[0]}: must be one of {', '.join(_OWN)}")
+    wanted = {name: _made_of(chosen[name], names, origin) for name in _OWN if name in chosen}
+    return _complete(wanted, names, origin)
+
+
+def _complete(wanted: dict[str, Wanted], names: list[str], origin: str) -> dict[str, Wanted]:
+    """Check that there are x, one of p and Fn, and the shear that goes with it."""
+    normal = [name for name in NORMAL if name in wanted]
+    shears = [shear for shear in SHEARS if set(shear) <= set(wanted)]
+    if "x" not in wanted or len(normal) != 1 or len(shears) != 1:
+        shown = ", ".join(repr(name) for name in names)[:100]
+        raise InputError(
+            f"{origin}: columns {shown}: must be x; p or Fn; and one of dq, q, q1 and q2, dFt, Ft, Ft1 and Ft2; "
+            "--columns x=...,p=...,dq=... says which they are"
+        )
+    if (normal[0] == "Fn") != shears[0][0].endswith(("Ft", "Ft1")):
+        raise InputError(f"{origin}: columns {normal[0]} and {shears[0][0]}: must be both tractions or both forces")
+    return {name: wanted[name] for name in ("x", *normal, *shears[0])}
+
+
+def _made_of(text: str, names: list[str], origin: str) -> Wanted:
+    """A column of the table by its name, with or without its unit, or by its number; or a sum of such."""
+    plain = [_split(name) for name in names]
+    places = [k for k, name in enumerate(names) if text in (name, plain[k][0])]
+    if not places and text.isdigit() and 1 <= int(text) <= len(names):
+        places = [int(text) - 1]
+    if len(places) == 1:
+        return Wanted({places[0]: 1.0}, plain[places[0]][1], text)
+    for sign in reversed(list(_TERM.finditer(text))):
+        first = _made_of(text[: sign.start()], names, origin)
+        second = _made_of(text[sign.end() :], names, origin)
+        if first.factor != second.factor:
+            raise InputError(f"--columns {text}: {first.text} and {second.text} must be in the same unit")
+        turn = 1.0 if sign[1] == "+" else -1.0
+        parts = dict(first.parts)
+        for column, own in second.parts.items():
+            parts[column] = parts.get(column, 0.0) + turn * own
+        return Wanted(parts, first.factor, text)
+    if not places and text.startswith("-"):
+        first = _made_of(text[1:].strip(), names, origin)
+        return Wanted({column: -sign for column, sign in first.parts.items()}, first.factor, text)
+    shown = ", ".join(repr(name) for name in names)[:100]
+    raise InputError(
+        f"--columns {text}: {origin} has the columns {shown}; must be one of them once, or a number from 1"
+    )
+
+
+def _split(name: str) -> tuple[str, float]:
+    """A column's name without its unit, and that unit in SI units."""
+    parts = _UNIT.match(name)
+    if parts is None:
+        return name, 1.0
+    unit = parts["unit"].strip().lower()
+    if unit not in UNITS:
+        return name, 1.0
+    return parts["name"], UNITS[unit]

@@ -1,0 +1,115 @@
+"""Likely mistakes in a file of tractions, in words: units, signs, half a cycle, loads, friction, where x = 0 is."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from partialslip.result import Result
+from partialslip.scene import Scene
+
+_LENGTHS = {"mm": 1e-3, "um": 1e-6, "cm": 1e-2, "inches": 0.0254}
+_STRESSES = {"MPa": 1e6, "GPa": 1e9, "kPa": 1e3, "N/um^2": 1e12, "psi": 6894.757}
+_TURNS = {"": 1.0, "turned round": -1.0, "of half a cycle": 2.0, "of half a cycle and turned round": -2.0,
+          "twice too large": 0.5}  # fmt: skip
+_LIKE = 0.15  # relative difference up to which a sum is that of another unit
+_OFF = 0.01  # likewise, above which a sum is not that of the load
+_FRICTION = 3e-3  # likewise, above which a coefficient of friction is another one
+_LITTLE = 1e-3  # of a
+_SIGMAS = 3.0
+
+
+class _Guess(NamedTuple):
+    """What a column looks like, and the factor that would make it fit."""
+
+    name: str
+    factor: float
+
+
+def in_another_unit(result: Result, reference: Result) -> bool:
+    """Whether x is in another unit than the reference's."""
+    return _guess(result.a / reference.a, _LENGTHS) is not None
+
+
+def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]:
+    """Likely mistakes of whoever wrote the file behind ``result``: a note for each, with the ``--factors`` that would
+    fit where there are some."""
+    f_seen, f_known = (result.settings.get(key) for key in ("f_seen", "f_seen_to"))
+    seen = float(f_seen) if isinstance(f_seen, float) and scene.friction.f > 0 else None
+    (P, P_off), (dQ, dQ_off) = _sums(result)
+    x = _guess(result.a / reference.a, _LENGTHS) or _Guess("", 1.0)
+    P, dQ = P * x.factor, dQ * x.factor
+    p = _guess(P / scene.P, _STRESSES) or _Guess("", 1.0)
+    P *= p.factor
+    share = 1.0 if seen is None else seen / scene.friction.f / p.factor  # of dq in what it should be, by friction
+    q = _shear(dQ, share, seen is not None, scene)
+    dQ, share = dQ * q.factor, abs(share * q.factor)
+    columns = zip(("x", "p", "dq"), (x, p, q), strict=True)
+    notes = []
+    if found := [f"{column} looks like {guess.name}" for column, guess in columns if guess.name]:
+        factors = ",".join(f"{guess.factor:g}" for guess in (x, p, q))
+        notes.append(f"{', '.join(found)}: --factors {factors} would fit")
+    if abs(P / scene.P - 1) > max(_OFF, _SIGMAS * P_off):
+        notes.append(f"p adds up to {P / scene.P:.3g} of the scene's P")
+    slides, load = 2 * scene.friction.f * scene.P, scene.load.dQ
+    if abs(dQ - load) > max(_OFF, _SIGMAS * dQ_off) * max(abs(load), 0.1 * slides):
+        notes.append(
+            f"dq adds up to {dQ / load:.3g} of the scene's dQ" if load else f"dq adds up to {dQ:.3g} N/m, not 0"
+        )
+    unsure = float(f_known) / seen if seen and isinstance(f_known, float) else 0.0
+    if seen is not None and abs(share - 1) > max(_FRICTION, _SIGMAS * unsure):
+        f = scene.friction.f
+        notes.append(f"|dq|/(2 p) is {share * f:.4g} where it slips, the scene's f is {f:g}: another coefficient?")
+    return (*notes, *_places(scene, result, reference, x.factor))
+
+
+def _shear(dQ: float, share: float, seen: bool, scene: Scene) -> _Guess:
+    """What dq looks like, by what it adds up to and by the friction that it shows."""
+    turned = {f"{unit} {turn}".strip(): size * sign for unit, size in ({"": 1.0} | _STRESSES).items()
+              for turn, sign in _TURNS.items() if unit or turn}  # fmt: skip
+    of = dQ / scene.load.dQ if abs(scene.load.dQ) > 0.1 * scene.friction.f * scene.P else np.copysign(share, 1.0)
+    if scene.load.dQ == 0 and not seen:
+        return _Guess("", 1.0)
+    fits = [
+        _Guess(name, size)
+        for name, size in turned.items()
+        if abs(of * size - 1) < _LIKE and (not seen or abs(abs(share * size) - 1) < _LIKE)
+    ]
+    return fits[0] if fits and abs(of - 1) > _LIKE else _Guess("", 1.0)
+
+
+def _places(scene: Scene, result: Result, reference: Result, factor: float) -> list[str]:
+    """Notes on where the contact and the stick zone are; ``factor`` makes x fit."""
+    notes, a = [], result.a
+    left, right = result.ends[1]
+    middle, known = (left + right) / 2 / a, result.estimate.get("a", 0.0)
+    if abs(middle) > max(2 * known, 1e-9):
+        notes.append(f"the contact's middle is at x = {middle:.2g} a (--centre auto takes it for x = 0)")
+    centre, true = result.stick_centre, reference.stick_centre
+    if centre is None or true is None or not scene.load.dsigma or not scene.load.dQ:
+        return notes
+    centre, true = (centre - (left + right) / 2) * factor / reference.a, true / reference.a
+    little = max(_SIGMAS * max(result.estimate["m"], result.estimate["n"]), _LITTLE)
+    if abs(true) > 10 * little and abs(centre) <= little:
+        notes.append("the stick zone is in the middle of the contact: was the tension left out?")
+    elif abs(true) > 10 * little and abs(centre + true) <= 0.2 * abs(true):
+        notes.append("the stick zone is on the other side: is x, or the tension, turned round?")
+    return notes
+
+
+def _guess(ratio: float, units: dict[str, float]) -> _Guess | None:
+    """The unit in which a number is ``ratio`` of what it is in SI units."""
+    return next((_Guess(name, size) for name, size in units.items() if abs(ratio * size - 1) < _LIKE), None)
+
+
+def _sums(result: Result) -> tuple[tuple[float, float], tuple[float, float]]:
+    """What p and dq add up to, and by how much, relative to that of p, the points leave it open: by the change when
+    every second interval is taken together."""
+    traction = result.traction
+    breaks = traction.breaks
+    centres, widths = (breaks[1:] + breaks[:-1]) / 2, np.diff(breaks)
+    fine = np.stack(traction.at(centres)) @ widths
+    values = np.stack(traction.at(breaks))[:, ::2]
+    coarse = np.trapezoid(values, breaks[::2], axis=1)
+    means = result.settings["read"] == "means over cells"
+    off = 0.0 * fine if means else np.abs(fine - coarse) / max(abs(float(fine[0])), 1e-300)
+    return (float(fine[0]), float(off[0])), (float(fine[1]), float(off[1]))

@@ -1,0 +1,111 @@
+"""Coupled bodies that are pressed together with friction: Spence's self-similar solution, and one step of all of P.
+
+Steel on aluminium. Goodman's approximation keeps what pressure does to the displacements along x and drops what shear
+does to the gap; with it the part of the contact that sticks is c with K(c)/K'(c) = f/beta, beta = 1/7 (Spence 1975).
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from scipy.special import ellipk, ellipkm1
+
+import partialslip
+from partialslip import plan
+from partialslip.condensed import coupled
+from partialslip.condensed.pressing import Punch
+from partialslip_fem import level, solve
+
+BETA = 1 / 7
+
+
+def scene(f, **more):
+    steel = {"E": 70e9, "nu": 0.3, "upper": {"E": 210e9, "nu": 0.3}}
+    return partialslip.parse_scene(
+        {
+            "name": "steel-on-aluminium",
+            "material": steel,
+            "profile": {"kind": "hertz", "R": 0.05},
+            "friction": {"f": f},
+            "load": {"P": 1e6, **more},
+            "fem": {"accuracy": 1e-3},
+        }
+    )
+
+
+def spence(f):
+    return brentq(lambda c: ellipk(c**2) / ellipkm1(c**2) - f / BETA, 1e-6, 1 - 1e-12)
+
+
+@pytest.fixture(scope="module")
+def pressed():
+    return {f: solve(scene(f), plan(scene(f))) for f in (0.1, 0.3)}
+
+
+@pytest.mark.parametrize(("f", "c"), [(0.1, 0.4058), (0.3, 0.9891)])
+def test_goodmans_coupling_gives_spences_stick_zone(f, c, monkeypatch):
+    assert spence(f) == pytest.approx(c, abs=1e-4)
+    true = level.relative_compliances
+    monkeypatch.setattr(
+        level,
+        "relative_compliances",
+        lambda *args: replace(whole := true(*args), yx=None if whole.xy is None else 0 * whole.xy),
+    )
+    result = solve(scene(f), plan(scene(f)))
+    assert (result.m / result.a, result.n / result.a) == pytest.approx((c, c), abs=2e-3)
+    hertz = np.sqrt(2 / np.pi) * scene(f).length
+    assert result.a == pytest.approx(hertz, rel=1e-3)  # p does not know of q
+
+
+@pytest.mark.parametrize(("f", "c"), [(0.1, 0.3945), (0.3, 0.9862)])
+def test_slip_while_pressed_is_told(f, c, pressed):
+    """The regime does not say that nothing slipped; the stick zone is where the surfaces stuck since they touched."""
+    result = pressed[f]
+    assert result.regime == "pressing"
+    assert any("stuck since they touched" in note for note in result.notes)
+    assert (result.m / result.a, result.n / result.a) == pytest.approx((c, c), abs=1e-3)
+    x, p, q = result.traction.x / result.a, result.traction.p, result.traction.q2
+    slips = (np.abs(x) > c + 0.002) & (np.abs(x) < 0.999)
+    assert np.abs(q[slips]) == pytest.approx(f * p[slips], rel=0.02)
+    assert np.array_equal(np.sign(q[slips]), -np.sign(x[slips])) or np.array_equal(np.sign(q[slips]), np.sign(x[slips]))
+    assert max(result.estimate[key] for key in ("a", "m", "n")) <= 1e-3
+    assert result.estimate["q"] < 1e-2
+    assert result.shares["steps"]["q2"] <= 15e-3
+    assert result.certificate["kkt"] < 1e-9
+
+
+@pytest.mark.fault
+def test_one_step_of_pressing_forgets_what_stuck_early(monkeypatch, pressed):
+    """Deliberate fault: all of P in one step."""
+    assert pressed[0.3].m / pressed[0.3].a == pytest.approx(0.986, abs=2e-3)
+
+    def at_once(C, gap, f, *_):
+        zero = coupled.resting(0 * gap)
+        kept = 0 * gap
+        p, q = coupled._solve(coupled._Step(C.xx, C.yy, C.xy, C.opening, f, 1.0, gap, 0.0, kept), [(zero, zero)])
+        return coupled.Pressed(p, q, 1, {"q": 0.0, "a": 0.0}, (p.x, q.x), f)
+
+    monkeypatch.setattr(coupled, "press", at_once)
+    wrong = solve(scene(0.3), plan(scene(0.3)))
+    assert wrong.m / wrong.a < 0.8
+    assert abs(wrong.a - pressed[0.3].a) > 2e-3 * wrong.a
+
+
+def test_punches_add_up_to_a_parabola():
+    """The closed form: flat punches of all half-widths, 1/(pi sqrt(1 - x^2)), make 2/pi sqrt(1 - x^2)."""
+    x = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 201))
+    edges = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 402)[1:-1:2])
+    weights = np.diff(np.concatenate([[-1.0], edges, [1.0]]))[: len(x)]
+    with np.errstate(divide="ignore"):
+        traction = 1 / (np.pi * np.sqrt(1 - x**2))
+    traction[[0, -1]] = 0.0
+    stages = Punch(1.0, x, weights, weights * traction, 0 * x)
+    p, q = stages.stage(1.0)
+    inside = np.abs(x) < 0.99
+    assert p[inside] / weights[inside] == pytest.approx(2 / np.pi * np.sqrt(1 - x[inside] ** 2), abs=2e-4)
+    assert not q.any()
+    p, _ = stages.stage(0.9)
+    expected = 0.9 * 2 / np.pi * np.sqrt(np.maximum(1 - (x / 0.9) ** 2, 0.0))
+    inside = np.abs(x) < 0.88
+    assert p[inside] / weights[inside] == pytest.approx(expected[inside], abs=1e-3)

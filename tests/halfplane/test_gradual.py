@@ -1,0 +1,98 @@
+"""Slip that turns round on a gradual way: what the condition says, before and after solving, against the march."""
+
+import numpy as np
+import pytest
+from boundary_elements import march
+
+import partialslip
+from partialslip.gradual import _QF, _SF, _SLOPE, may_turn_round, turns_round
+from partialslip.halfplane.contact import contact
+from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.method import path_dependent
+from partialslip.halfplane.punch import Punch
+from partialslip.halfplane.steady import stick_zone, stick_zones
+from partialslip.run import default_methods
+
+
+def scene(Qf, sf, *overrides, name="hertz-large-tension"):
+    base = partialslip.load_scene(name)
+    unit, stress = base.friction.f * base.P, base.friction.f * contact(base).p0 / 2
+    loads = f"load.Q=[{-Qf * unit}, {Qf * unit}]", f"load.sigma=[{-sf * stress}, {sf * stress}]"
+    return partialslip.load_scene(name, [*loads, *overrides])
+
+
+def test_the_box_known_beforehand_lies_inside_the_exact_domain():
+    """Along its whole edge and inside, Hertz's slip does not turn round."""
+    Qf = np.linspace(1e-3, _QF, 60)
+    Qf, share = np.meshgrid(Qf, np.linspace(0, 1, 60), indexing="ij")
+    sf = _SLOPE * Qf + share * (_SF - _SLOPE * Qf)
+    for load in zip(Qf.ravel(), sf.ravel(), *(each.ravel() for each in stick_zones(Qf, sf, Hertz())), strict=True):
+        Q, tension, centre, half_width, s = map(float, load)
+        assert not turns_round(Q, tension, int(s), centre, half_width)
+
+
+@pytest.mark.parametrize("shape", [Hertz(), Punch(0.3), Punch(0.8), Punch([0.0, 0.5], [1.0, 2.0])])
+def test_the_condition_is_the_rate_along_the_way(shape):
+    """At every moment of the way the adhered traction of the stick zone drives both ends the way they slip, and what
+    is to slip is driven that way from the first: checked by following the way, at random loads."""
+    random = np.random.default_rng(5)
+    for Qf, sf in zip(random.uniform(0.02, 0.95, 40), 10 ** random.uniform(-1, 1.3, 40), strict=True):
+        zone = stick_zone(Qf, sf, shape)
+        share = np.linspace(0.02, 1, 50)
+        _, half_width, s = stick_zones(share * Qf, share * sf, shape)
+        left = s * (4 * Qf - half_width * sf) / max(sf, 4 * Qf)  # < 0: against the slip on the left
+        zero = -4 * Qf / sf  # where the adhered traction of the whole contact changes sign
+        wrong_way = zone.s < 0 and not (zone.centre - zone.half_width <= zero <= zone.centre + zone.half_width)
+        one_sign = abs(s.sum()) == len(s)
+        turns = bool((left < 0).any()) or wrong_way or not one_sign
+        near = np.abs(left).min() < 0.02
+        assert near or turns == turns_round(Qf, sf, zone.s, zone.centre, zone.half_width)
+
+
+@pytest.mark.parametrize(
+    ("Qf", "sf", "known", "turns"),
+    [
+        (0.75, 2.4, False, False),  # small tension
+        (0.4, 4.03, False, False),  # large tension, within the box
+        (0.55, 4.5, True, False),  # large tension, outside
+        (0.3, 1.3, True, True),  # around the transition
+        (0.3, 14.0, True, True),  # late
+    ],
+)
+def test_methods_and_plan_of_what_may_turn_round(Qf, sf, known, turns):
+    its = scene(Qf, sf)
+    assert (may_turn_round(its), path_dependent(its)) == (known, turns)
+    assert partialslip.plan(its).needs("history") == known
+    assert default_methods(its) == (("exact", "march", "fem") if turns else ("exact", "fem"))
+    result = partialslip.run(its, ["exact"]).results["exact"]
+    assert result.path_dependent == turns
+    assert set(result.undetermined) == ({"m", "n", "q", "q1", "q2"} if turns else set())
+    assert all(reason.startswith("path-dependent") for reason in result.undetermined.values())
+    assert result.m is not None
+    assert result.traction.q2 is not None
+
+
+def test_the_march_is_the_reference_where_slip_turns_round():
+    run = partialslip.run(scene(0.3, 1.3, "fem.accuracy=1e-2"), ["exact", "march"])
+    assert run.reference == "march"
+    assert partialslip.run(scene(0.4, 4.03, "fem.accuracy=1e-2"), ["exact", "march"]).reference == "exact"
+
+
+def test_other_profiles_are_decided_by_the_exact_method():
+    """Nothing is known of them beforehand; the contact is solved once."""
+    its = scene(0.4, 3.44, name="flat-rounded")
+    assert may_turn_round(its)
+    assert not path_dependent(its)
+    assert path_dependent(scene(0.375, 8.25, name="flat-rounded"))
+    assert not may_turn_round(partialslip.load_scene("flat-rounded", ["load.sigma=[0, 0]"]))
+
+
+def test_slip_that_turns_round_makes_the_difference():
+    """In boundary elements of a contact with a = p0 = f = 1 small steps and one step end alike where slip does not
+    turn round, and not where it does."""
+    for Qf, sf, turns in ((0.3, 4.0, False), (0.75, 4.5, True)):
+        path = [(Qf, sf / 2), (-Qf, -sf / 2)]
+        (_, widths, p, (_, once)), (*_, (_, gradual)) = (march(Hertz(), path, steps=steps) for steps in (1, 24))
+        apart = np.sqrt((once - gradual) ** 2 @ widths / (p**2 @ widths))
+        assert (apart > 2e-2) == turns
+        assert apart < 1e-9 or turns

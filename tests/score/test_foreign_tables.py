@@ -1,0 +1,113 @@
+"""Tables as codes write them: names, units, separators, decimals, encodings, rows without values."""
+
+import numpy as np
+import pytest
+
+from partialslip import InputError, load_scene, run
+from partialslip.cli import main
+from partialslip.score import score
+from partialslip.score.read import read
+
+SCENE = load_scene("fretting-aluminium")
+EXACT = run(SCENE, ["exact"]).results["exact"]
+X = 1.1 * EXACT.a * np.linspace(-1, 1.003, 61)
+P, DQ = EXACT.traction.at(X)
+
+
+def lines(*columns, separator=",", decimal="."):
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    return "\n".join(separator.join(repr(value).replace(".", decimal) for value in row) for row in rows)
+
+
+TABLES = {
+    "Abaqus": "COOR1 CPRESS CSHEAR1\n" + lines(X, P, DQ / 2, separator="   "),
+    "CalculiX": "x,CPRESS,CSHEAR1\n" + lines(X, P, DQ / 2),
+    "ANSYS": "Node\tX Location (mm)\tPressure (MPa)\tTAUR (MPa)\n"
+    + lines(X * 0 + 7, X * 1e3, P / 1e6, DQ / 2e6, separator="\t"),
+    "Code_Aster": "COOR_X;LAGS_C;LAGS_F1\n" + lines(X, -P, DQ / 2, separator=";"),
+    "MOOSE": "x,y,normal_lm,tangential_lm\n" + lines(X, 0 * X, P, DQ / 2),
+    "GetFEM": "x lambda_n lambda_t\n" + lines(X, P, DQ / 2, separator=" "),
+    "decimal commas": "x [mm];p [MPa];dq [MPa]\n" + lines(X * 1e3, P / 1e6, DQ / 1e6, separator=";", decimal=","),
+    "blanks": "  x [mm]   p (MPa)  dq [kPa]\n" + lines(X * 1e3, P / 1e6, DQ / 1e3, separator="     "),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("code", TABLES)
+def test_tables_of_other_codes(tmp_path, code):
+    path = tmp_path / "t.txt"
+    path.write_text(TABLES[code], "utf-8")
+    found = read(path, SCENE)
+    for column, wanted in ((found.x, X), (found.p, P), (found.dq, DQ)):
+        assert column == pytest.approx(wanted, rel=1e-12, abs=1e-9 * np.abs(wanted).max())
+    assert ("CPRESS" in found.made_of) == ("CPRESS" in TABLES[code])
+    if "dq" not in TABLES[code]:
+        assert any("at load point 2" in note for note in found.notes)
+        turning = load_scene("fretting-aluminium", ["load.Q=[0.0, 38750.0]", "load.sigma=[0.0, 1e8]"])
+        with pytest.raises(InputError, match="not fully reversed"):
+            read(path, turning)
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-8-sig", "utf-8"])
+def test_encodings(tmp_path, encoding):
+    path = tmp_path / "t.csv"
+    path.write_text("x,p,dq\n" + lines(X, P, DQ), encoding)
+    assert read(path, SCENE).p == pytest.approx(P)
+
+
+def test_columns_by_name_number_and_difference(tmp_path):
+    path = tmp_path / "t.csv"
+    table = lines(X * 1e3, DQ * 0.25 / 1e6, DQ * 1.25 / 1e6, P)
+    path.write_text(f"X (mm),S1 (MPa),S2 (MPa),PN\n{table}", "utf-8")
+    for shear in ("S2-S1", "3-2", "S2 (MPa) - S1", "-S1+S2"):
+        found = read(path, SCENE, chosen={"x": "X", "p": "4", "dq": shear})
+        assert found.dq == pytest.approx(DQ, abs=1e-9 * P.max())
+        assert found.x == pytest.approx(X)
+    path.write_text(table, "utf-8")  # no header line
+    found = read(path, SCENE, chosen={"x": "1", "p": "4", "q1": "2", "q2": "3"}, factors=(1e-3, 1, 1e6))
+    assert found.dq == pytest.approx(DQ, abs=1e-9 * P.max())
+
+
+def test_rows_without_values_are_left_out_and_counted(tmp_path):
+    path = tmp_path / "t.csv"
+    rows = lines(X, P, DQ).splitlines()
+    rows[5:5] = ["1.0,,", "2.0,NoValue,NoValue", "3.0,-,-"]
+    path.write_text("x,p,dq\n" + "\n".join(rows), "utf-8")
+    found = read(path, SCENE)
+    assert len(found.x) == len(X)
+    assert found.notes == ("3 rows without values were left out",)
+
+
+def test_centre_auto_puts_x_in_the_middle(tmp_path, capsys):
+    path = tmp_path / "t.csv"
+    path.write_text("x,p,dq\n" + lines(X + 3 * EXACT.a, P, DQ), "utf-8")
+    off = score(SCENE, path).results["t.csv"]
+    assert off.m is None
+    put = score(SCENE, path, centre="auto")
+    assert put.comparisons["t.csv"].m < 1e-9
+    assert f"at x = {3 * EXACT.a:.6g} m" in " ".join(put.results["t.csv"].notes)
+    folder = str(tmp_path / "out")
+    assert main(["score", "fretting-aluminium", str(path), "--centre", "auto", "--bar", "1e-2", "--out", folder]) == 0
+    assert main(["score", "fretting-aluminium", str(path), "--columns", "x=1,p=2,dq=dq", "--out", folder]) == 0
+    assert "not judged" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("table", "columns", "said"),
+    [
+        ("a,b,c\n1,2,3", None, "columns 'a', 'b', 'c': must be x; p or Fn"),
+        ("1,2,3\n4,5,6", None, "line 1: must be a header line"),
+        ("x,p,CSHEAR1,TAUR\n1,2,3,4", None, "column 'q': must be there once, not 2 times"),
+        ("x,p,dq\n1,2,3", {"x": "x", "p": "p", "dq": "s"}, "--columns s: .*has the columns 'x', 'p', 'dq'"),
+        ("x,p,dq\n1,2,3", {"x": "9", "p": "p", "dq": "dq"}, "--columns 9: "),
+        ("x,p,dq\n1,2,3", {"y": "x"}, "--columns y: must be one of x, p, Fn, dq"),
+        ("x,p,s [Pa],t [MPa]\n1,2,3,4", {"x": "x", "p": "p", "dq": "t-s"}, "must be in the same unit"),
+        ("x;p;dq\n1,5;2;1.000,5", None, "line 2: dq = '1.000.5': must be a number"),
+        ("x,p,dq\n1,2", None, "line 2: must have 3 fields"),
+    ],
+)
+def test_what_cannot_be_read_is_one_line(tmp_path, table, columns, said):
+    path = tmp_path / "t.csv"
+    path.write_text(table, "utf-8")
+    with pytest.raises(InputError, match=said) as raised:
+        read(path, SCENE, chosen=columns)
+    assert "\n" not in str(raised.value)

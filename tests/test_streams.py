@@ -1,0 +1,195 @@
+"""Standard streams that are full, closed or poor in characters; signals; two commands in one folder."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from partialslip.cli import main
+from partialslip.errors import InputError
+from partialslip.report.lock import NAME, locked
+
+COMMAND = (sys.executable, "-m", "partialslip")
+EXACT = ("run", "hertz-shear", "--with", "exact")
+FULL = pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
+
+
+def partialslip(folder, *arguments, **settings):
+    """Exit code, stdout and stderr of a process of its own."""
+    environment = {**os.environ, **settings.pop("env", {})}
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | settings
+    done = subprocess.run([*COMMAND, *arguments], cwd=folder, check=False, env=environment, **streams)
+    return done.returncode, done.stdout, (done.stderr or b"").decode()
+
+
+@FULL
+@pytest.mark.parametrize("arguments", [["scenes"], ["--help"], ["--version"], [*EXACT, "--json"]], ids=" ".join)
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_full_disk(tmp_path, arguments, unbuffered):
+    with Path("/dev/full").open("wb") as full:
+        code, _, said = partialslip(tmp_path, *arguments, stdout=full, env={"PYTHONUNBUFFERED": unbuffered})
+    assert (code, said) == (2, "partialslip: standard output: cannot be written: No space left on device\n")
+
+
+@pytest.mark.parametrize("arguments", [["scenes"], ["--help"], EXACT], ids=" ".join)
+def test_a_reader_that_has_gone(tmp_path, arguments):
+    """Nothing is said; the exit code is the shell's for SIGPIPE, not that of a missed bar, and files are written."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    code, _, said = partialslip(tmp_path, *arguments, stdout=writer)
+    os.close(writer)
+    assert (code, said) == (141, "")
+    assert (tmp_path / "results" / "hertz-shear" / "results.json").exists() == (arguments == EXACT)
+
+
+@pytest.mark.parametrize(("closing", "code"), [(">&-", 2), ("2>&-", 2), ("2>/dev/full", 2), ("<&-", 2)])
+def test_closed_streams(tmp_path, closing, code):
+    """What is wrong is never said on stdout; and no file takes a closed stream's number."""
+    line = f'"$0" -m partialslip run nosuch {closing}'
+    done = subprocess.run(["sh", "-c", line, sys.executable], cwd=tmp_path, capture_output=True, check=False)
+    assert (done.returncode, done.stdout) == (code, b"")
+    assert len(done.stderr.splitlines()) == (0 if closing.startswith("2") else 1)
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp932"])
+def test_poor_encodings(tmp_path, encoding):
+    """Every character is printed, or stands as its number, and tables are ruled in ASCII."""
+    title = "Größe ΔQ 接触"
+    code, out, said = partialslip(tmp_path, *EXACT, "--set", f"title={title}", env={"PYTHONIOENCODING": encoding})
+    assert (code, said) == (0, "")
+    shown = title.encode(encoding, "backslashreplace").decode(encoding)
+    assert out.decode(encoding).splitlines()[0] == f"hertz-shear: {shown}"
+
+
+def test_units_have_plain_letters():
+    assert [f"1 µm, {c}".encode("ascii", "partialslip") for c in "ö接"] == [b"1 um, \\xf6", rb"1 um, \u63a5"]
+    assert "1 µm".encode("latin-1", "partialslip").decode("latin-1") == "1 µm"
+
+
+@pytest.mark.parametrize("columns", ["0", "20", "100000000000"])
+def test_widths_out_of_the_ordinary(tmp_path, columns, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", columns)
+    assert main(["run", "hertz-shear", "--with", "exact,march", "--set", "fem.accuracy=0.1"]) == 0
+    out = capsys.readouterr().out
+    longest = max(len(line.rstrip()) for line in out.splitlines() if not line.startswith("written"))
+    assert 10 < longest <= (20 if columns == "20" else 1000)
+    assert "0.6324555" in out
+
+
+def test_no_word_of_matplotlib_where_home_cannot_be_written(tmp_path):
+    (tmp_path / "file").touch()
+    nowhere = {"HOME": str(tmp_path / "file"), "MPLCONFIGDIR": str(tmp_path / "file"), "XDG_CACHE_HOME": ""}
+    code, _, said = partialslip(tmp_path, *EXACT, env=nowhere)
+    assert (code, said) == (0, "")
+
+
+def test_a_fault_is_one_line_and_its_own_exit_code(monkeypatch, capsys):
+    def fault(*_):
+        raise ZeroDivisionError("none\nleft")
+
+    monkeypatch.setattr("partialslip.cli.shipped_scenes", fault)
+    assert main(["scenes"]) == 3
+    said = capsys.readouterr().err
+    assert re.fullmatch(r"partialslip: a fault of partialslip, .*: test_streams.py, line \d+: .*\n", said)
+    monkeypatch.setenv("PARTIALSLIP_TRACEBACK", "1")
+    with pytest.raises(ZeroDivisionError):
+        main(["scenes"])
+
+
+def test_an_error_without_a_progress_bar_is_one_line(tmp_path, monkeypatch, capsys):
+    """Where stderr is no terminal; the case beyond all proportion is refused after the bar would have begun."""
+    monkeypatch.chdir(tmp_path)
+    over = ["--over", "bodies.*.depth=1,2"]
+    assert main(["study", "size", "hertz-shear", *over, "--processes", "1"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+VERIFY = ("verify", "--suite", "stress", "--method", "march", "--count", "500", "--out", "out")
+
+
+def started(folder, *arguments):
+    """A command at work, its first results in the ledger."""
+    process = subprocess.Popen([*COMMAND, *arguments], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    ledger = folder / "out" / "ledger.jsonl"
+    for _ in range(2400):
+        if ledger.exists() or process.poll() is not None:
+            break
+        time.sleep(0.05)
+    assert process.poll() is None
+    return process
+
+
+def test_the_second_in_a_folder_is_told(tmp_path):
+    first = started(tmp_path, *VERIFY, "--processes", "1")
+    try:
+        for arguments in (VERIFY, ("run", "hertz-shear", "--with", "exact", "--out", "out")):
+            code, out, said = partialslip(tmp_path, *arguments)
+            assert (code, out) == (2, b"")
+            assert re.fullmatch(rf"partialslip: --out out: process {first.pid} on \S+ is writing there: .*\n", said)
+    finally:
+        first.kill()
+        first.communicate()
+    assert (tmp_path / "out" / NAME).exists()  # a killed one leaves the file, and no lock
+    assert partialslip(tmp_path, "run", "hertz-shear", "--with", "exact", "--out", "out")[0] == 0
+    assert not (tmp_path / "out" / NAME).exists()
+
+
+def test_terminated_in_order(tmp_path):
+    """One line, no worker and no lock left, no leaked semaphore."""
+    process = started(tmp_path, *VERIFY, "--processes", "2")
+    process.send_signal(signal.SIGTERM)
+    _, said = process.communicate(timeout=120)
+    assert (process.returncode, said.decode()) == (143, "partialslip: terminated\n")
+    assert not (tmp_path / "out" / NAME).exists()
+
+
+def test_a_lock_goes_and_takes_empty_folders_with_it(tmp_path):
+    folder = tmp_path / "a" / "b"
+    with locked(folder):
+        assert folder.exists()
+        with pytest.raises(InputError, match=rf"process {os.getpid()} on "), locked(folder):
+            pass
+        assert folder.exists()
+    assert list(tmp_path.iterdir()) == []
+    folder.mkdir(parents=True)
+    (folder / NAME).write_text("process 1 on another", "utf-8")  # of a killed one
+    with locked(folder):
+        (folder / "results.json").touch()
+    assert [path.name for path in folder.iterdir()] == ["results.json"]
+
+
+def test_without_locks_a_folder_is_written_all_the_same(tmp_path, monkeypatch):
+    """Some file systems know no locks."""
+
+    def none(*_):
+        raise OSError(95, "Operation not supported")
+
+    fcntl = pytest.importorskip("fcntl")
+    monkeypatch.setattr(fcntl, "flock", none)
+    with locked(tmp_path / "a"):
+        assert (tmp_path / "a").exists()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
+@pytest.mark.parametrize(
+    "arguments", [["run", "p.toml"], ["run", "hertz-shear", "--with", "march", "--start", "p.toml"]]
+)
+@pytest.mark.parametrize("endless", ["pipe", "/dev/zero"])
+def test_what_never_ends_is_not_read(tmp_path, monkeypatch, capsys, arguments, endless):
+    monkeypatch.chdir(tmp_path)
+    if endless == "pipe":
+        os.mkfifo("p.toml")
+    else:
+        Path("p.toml").symlink_to(endless)
+    assert main(arguments) == 2
+    assert (
+        capsys.readouterr().err
+        == "partialslip: p.toml: cannot be read: must be a regular file, not a pipe or a device\n"
+    )
