@@ -10,7 +10,8 @@ from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
 from partialslip.scene import ALLOWED
-from partialslip_fem.estimate import ENDS, end_errors, enough, kink_sizes, neighbour, smooth_errors, together
+from partialslip_fem.estimate import ENDS, NEIGHBOUR, end_errors, enough, kink_sizes, neighbour, smooth_errors, together
+from partialslip_fem.expense import Expense, again
 from partialslip_fem.level import Kept, Level, Part, Problem, solve_level
 
 _FIRST, _ROUGH = 0.1, 1.0  # element size of the first mesh, in its contact line's half-width; and growth
@@ -28,13 +29,15 @@ _ROUNDING = 0.25  # of the accuracy: how far a round face may be from its elemen
 _CORNERS = 10.0  # of the accuracy: what elements at corners of finite bodies may be off by, at most
 _LOOSEST = 1e-2  # the same, relative
 _TILTS = {"left": 1e-3, "right": 1e-3, "p": 5e-3, "q": 5e-3, "q1": 5e-3, "q2": 5e-3}  # of that, felt at the contact
+_CHOICES = 13  # accuracies between the one asked for and the loosest, to settle for
+_WORTH = 1.2  # of the unknowns of a mesh that is there: one with fewer is not worth another
 _FEWEST = 4  # elements of a mesh as it is that must lie in the contact
 
 
 @dataclass(frozen=True)
 class Adapted:
     """The last level, what it may still be off by (ends in contact half-widths, tractions relative), and the work of
-    all levels."""
+    all levels; ``settled`` is the accuracy that the allowance sufficed for, None if there was none."""
 
     level: Level
     errors: dict[str, float]
@@ -42,6 +45,42 @@ class Adapted:
     factorizations: int
     iterations: int
     width: float
+    settled: float | None = None
+
+
+@dataclass(frozen=True)
+class _Aim:
+    """What an ``accuracy`` asks of meshes: estimates within ``bar``, elements at ends, faces and corners that take no
+    more than their shares of it."""
+
+    accuracy: float
+    bar: float
+    share: float
+    least: float
+    rounding: float
+    corners: float
+    tilts: dict[str, float]
+
+    @classmethod
+    def at(cls, accuracy: float, problem: Problem) -> "_Aim":
+        """The aim for ``accuracy``."""
+        corners = min(_CORNERS * accuracy, _LOOSEST)
+        tilting = any(part.extent for part in problem.parts)
+        return cls(
+            accuracy=accuracy,
+            bar=_BAR * accuracy,
+            share=_ENDS * _AIM * accuracy,
+            least=_growth(_AIM * accuracy / 2, problem.order),
+            rounding=_ROUNDING * accuracy if any(part.face for part in problem.parts) else 0.0,
+            corners=corners,
+            tilts={key: share * corners * tilting for key, share in _TILTS.items()},
+        )
+
+    def goal(self, level: Level, problem: Problem) -> float:
+        """Element size at the ends that suffices, in contact half-widths."""
+        goal = self.share / _worst(end_errors(level, *_anywhere(level)))
+        goal = min(goal, enough(level, _gaps(level, problem), self.share))
+        return min(max(goal, _FINEST), _BESIDE / 2)
 
 
 def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progress: Callable[[str], None]) -> Adapted:
@@ -52,27 +91,31 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     enough. ``width`` is the block's half-width in contact half-widths. The first contact line is a guess, doubled
     until the contact does not reach its ends.
     """
-    order = problem.order
+    order, parts = problem.order, problem.parts
+    expense = Expense(clock, len(parts))
     level, meshes, factored = _first(problem, width, clock)
-    iterations, before, bar = level.iterations, np.inf, _BAR * accuracy
-    size, finer = _FIRST, _FINER
-    least = _growth(_AIM * accuracy / 2, order)
-    limit = _limit(problem)
-    coarsest = max(part.fineness for part in problem.parts)  # what is not finer than that is to be fine enough
-    rounding = _ROUNDING * accuracy if any(part.face for part in problem.parts) else 0.0
-    corners = min(_CORNERS * accuracy, _LOOSEST)
-    tilting = any(part.extent for part in problem.parts)
-    tilts = {key: share * corners * tilting for key, share in _TILTS.items()}
+    expense.measure(level.dofs)
+    a, iterations, known, before, size, finer = level.half_width, level.iterations, np.inf, np.inf, _FIRST, _FINER
+    aim, errors, at_ends = _Aim.at(accuracy, problem), dict[str, float](), dict[str, float]()
+    least, limit = aim.least, _limit(problem)
+    coarsest = max(part.fineness for part in parts)  # what is not finer than that is to be fine enough
     while True:
-        share = _ENDS * _AIM * accuracy
-        locked = kink_sizes(level, share * ALLOWED["q1"])
-        goal = share / _worst(end_errors(level, *_anywhere(level)))
-        goal = min(goal, enough(level, _gaps(level, problem), share))
-        goal = min(max(goal, _FINEST), _BESIDE / 2)
-        if size > 1.01 * goal:
-            finer = (size / goal) ** (1 / math.ceil(math.log(size / goal, _FINER)))
-        size = max(size / finer, _FINEST)
-        growth = max(least, _growth(size, order)) if size > 1.01 * goal else least
+        if expense.limited:
+            done = bool(at_ends) and level.enclosed
+            settled = _settle(expense, aim, level, problem, (size, finer, least), width, done)
+            if at_ends and not settled:
+                if known == np.inf:
+                    other = neighbour(level, problem, width * a, clock)
+                    factored, iterations = factored + other.factored, iterations + other.iterations
+                    errors = together(level, smooth_errors(level, other), at_ends)
+                settled_for = max(aim.accuracy, _worst(errors) / _BAR)
+                return Adapted(level, errors, meshes, factored, iterations, width, settled_for)
+            if settled and settled is not aim:
+                least, aim = least * settled.least / aim.least, settled
+                finer = finer if size > 1.01 * aim.goal(level, problem) else 1.0
+        goal = aim.goal(level, problem)
+        size, growth, finer = _course(size, finer, goal, least, order)[0]
+        locked = kink_sizes(level, aim.share * ALLOWED["q1"])
         a = level.half_width
         margin = (0.1 + 2 * finer * size) * a  # of safety, and what the mesh before may have been off by
         contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
@@ -81,9 +124,10 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         for kink, needed in zip(level.kinks, np.clip(locked, size, None).tolist(), strict=True):
             if _sizes(np.array([kink]), sizes, growth / coarsest)[0] > _ANYWAY * needed * a / coarsest:
                 sizes[kink] = needed * a / coarsest
-        level = solve_level(
-            problem, width * a, contact, sizes, growth / coarsest, clock, rounding=rounding, corners=corners
-        )
+        grading = (contact, sizes, growth / coarsest)
+        expected = expense.unknowns(*grading[1:], order, width * a) if expense.limited else None
+        level = solve_level(problem, width * a, *grading, clock, rounding=aim.rounding, corners=aim.corners)
+        expense.measure(level.dofs, expected)
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         if not level.enclosed and max(-level.left, level.right) >= limit:
             raise _too_narrow(problem)
@@ -91,27 +135,75 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
             _sizes(points, sizes, growth / coarsest) * coarsest / a for points in (level.ends, np.array(level.kinks))
         )
         errors = at_ends = {
-            key: error + rounding * (key in ENDS) + tilts.get(key, 0.0)
+            key: error + aim.rounding * (key in ENDS) + aim.tilts.get(key, 0.0)
             for key, error in end_errors(level, local, _gaps(level, problem), beside).items()
         }
         known, calmer = np.inf, 1.0
         found = f"mesh {meshes}: {level.dofs:,} unknowns"
         good = level.enclosed and local.max() <= _BESIDE
-        if (good and _worst(at_ends) <= bar) or size <= _FINEST or level.dofs > _MOST:
+        if (good and _worst(at_ends) <= aim.bar) or size <= _FINEST or level.dofs > _MOST:
             other = neighbour(level, problem, width * a, clock)
+            expense.pass_over()
             factored, iterations = factored + other.factored, iterations + other.iterations
             smooth = smooth_errors(level, other)
             errors = together(level, smooth, at_ends)
             known = _worst(errors)
-            calmer = float(np.clip((3 * _worst(smooth) / bar) ** (-0.5 / order), *_CALMER))
+            calmer = float(np.clip((3 * _worst(smooth) / aim.bar) ** (-0.5 / order), *_CALMER))
             found += f", {', '.join(errors)} known to {known:.1e} a"
         progress(found)
-        if (good and known <= bar) or known > before / 2 or level.dofs > _MOST * calmer**2:
-            return Adapted(level, errors, meshes, factored, iterations, width)
+        if (good and known <= aim.bar) or known > before / 2 or level.dofs > _MOST * calmer**2:
+            reached = max(aim.accuracy, known / _BAR) if expense.limited else None
+            return Adapted(level, errors, meshes, factored, iterations, width, reached)
         if size <= 1.01 * goal:
-            finer = min(max(3 * _worst(at_ends) / bar, 1.0), _FINER)
+            finer = min(max(3 * _worst(at_ends) / aim.bar, 1.0), _FINER)
         if known < np.inf:
             before, least = known, least * calmer
+
+
+def _course(size: float, finer: float, goal: float, least: float, order: int) -> list[tuple[float, float, float]]:
+    """Element size at the ends and growth of the meshes to come, from ``size`` to ``goal``, and by how much each is
+    finer than the one before it: ``finer``, unless there is still some way to go."""
+    if size > 1.01 * goal:
+        finer = (size / goal) ** (1 / math.ceil(math.log(size / goal, _FINER)))
+    course = []
+    while True:
+        size = max(size / finer, _FINEST)
+        growth = max(least, _growth(size, order)) if size > 1.01 * goal else least
+        course.append((size, growth, finer))
+        if size <= 1.01 * goal:
+            return course
+
+
+def _settle(
+    expense: Expense,
+    aim: _Aim,
+    level: Level,
+    problem: Problem,
+    state: tuple[float, float, float],
+    width: float,
+    done: bool,
+) -> _Aim | None:
+    """The best aim, none beyond ``aim``, that the rest of the allowance suffices for; None if ``level``, which is
+    ``done`` if it is good for an estimate, is about as good. ``state`` is element size, refinement and growth."""
+    size, finer, least = state
+    order, a = problem.order, level.half_width
+    once_more = again(order, NEIGHBOUR[order]) + problem.inside
+    best: _Aim = aim
+    for accuracy in np.geomspace(aim.accuracy, max(_LOOSEST, aim.accuracy), _CHOICES).tolist():
+        best = aim if accuracy == aim.accuracy else _Aim.at(accuracy, problem)
+        goal = best.goal(level, problem)
+        steps = _course(
+            size, finer if best is aim or size > 1.01 * goal else 1.0, goal, least * best.least / aim.least, order
+        )
+        unknowns = [
+            expense.unknowns(dict.fromkeys(level.ends.tolist(), each * a), growth, order, width * a)
+            for each, growth, _ in steps
+        ]
+        if done and best is not aim and unknowns[-1] < _WORTH * level.dofs:
+            return None
+        if expense.affords(unknowns, once_more):
+            return best
+    return None if done else best
 
 
 def uniform(problem: Problem, size: float | None, width: float, clock: Clock, keep: Kept | None = None) -> Adapted:

@@ -21,7 +21,7 @@ from partialslip.result import Array, Clock
 from partialslip_fem.level import Level, Problem, solve_on
 
 # The order below costs least, but where it locks (P2 and P1 towards nu = 0.5) its errors say nothing.
-_NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3}
+NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3}
 
 ENDS = ("a", "left", "right", "m", "n")
 KEYS = (*ENDS, "p", "q", "q1", "q2")
@@ -47,7 +47,7 @@ _TRACTIONS = {"p": 12.0, "q": 40.0}  # of that in Hertz contacts, in proportion 
 def neighbour(level: Level, problem: Problem, width: float, clock: Clock) -> Level:
     """The solution on the same mesh that the errors of ``level`` are estimated by."""
     return solve_on(
-        [half.mesh for half in level.halves], replace(problem, order=_NEIGHBOUR[problem.order]), width, clock
+        [half.mesh for half in level.halves], replace(problem, order=NEIGHBOUR[problem.order]), width, clock
     )
 
 

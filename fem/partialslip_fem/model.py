@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import PPoly
 
+from partialslip.allowance import Allowance
 from partialslip.bodies import Body
 from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.friction import certificate, doubts, judge, load_path, lower_strain
@@ -37,6 +38,7 @@ def solve(
     progress: Callable[[str], None] = lambda _: None,
     start: State | None = None,
     keep: Kept | None = None,
+    allowance: Allowance | None = None,
 ) -> Result:
     """Solve ``scene`` by finite elements: two blocks, Lagrange multipliers, Coulomb friction.
 
@@ -50,6 +52,9 @@ def solve(
         What the path of the loads begins with, instead of bodies without shear.
     keep : Kept, optional
         Condensed bodies to take, and to add to, where the size of the elements is given.
+    allowance : Allowance, optional
+        CPU seconds that meshes may take, where they follow an accuracy: if it takes more, the one that these suffice
+        for is settled for.
 
     Raises
     ------
@@ -66,7 +71,7 @@ def solve(
                 f"material{name}.nu = {elastic.nu}: must be <= {_LARGEST_NU} in plane strain by finite elements"
             )
     _check_sizes(scene)
-    clock = Clock()
+    clock = Clock(allowance)
     width = scene.fem.width or WIDTHS[scene.fem.far_field]
     with clock.phase("mesh"):
         problem = _scaled(scene, plan, start)
@@ -164,6 +169,7 @@ def _state(scene: Scene, level: Level) -> State | None:
 
 def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock: Clock) -> Result:
     level, L, stress = adapted.level, scene.length, scene.P / scene.length
+    accuracy = adapted.settled or scene.fem.accuracy
     pressure = level.pressure()
     x = level.body.x[level.nodes]
     p0 = 2 / (np.pi * level.half_width)
@@ -218,7 +224,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
             "elements": f"P{problem.order}",
             "factorisation": problem.backend,
             **_extents(problem, adapted.width),
-            **_fineness(scene, problem),
+            **_fineness(scene, problem, accuracy),
         },
         counts=_counts(level, adapted, extra),
         certificate=certified,
@@ -227,7 +233,8 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         notes=found.notes
         + _apart(level)
         + _beside(scene, level, adapted)
-        + doubts(certified, estimate, scene.fem.accuracy),
+        + _settled(adapted, scene)
+        + doubts(certified, estimate, accuracy),
         bodies=tuple(deformed(body, L, unit, stress) for body in moved),
         contact_ends=((left1 * L, right1 * L), (left2 * L, right2 * L)),
         state=_state(scene, level),
@@ -302,13 +309,20 @@ def _beside(scene: Scene, level: Level, adapted: Adapted) -> tuple[str, ...]:
     return (f"the middle of the contact is off x = 0: by {at} at load points 1 and 2",)
 
 
-def _fineness(scene: Scene, problem: Problem) -> dict[str, str | float]:
+def _settled(adapted: Adapted, scene: Scene) -> tuple[str, ...]:
+    """A note on an accuracy that the allowance did not suffice for."""
+    if not adapted.settled or adapted.settled <= scene.fem.accuracy:
+        return ()
+    return (f"the CPU seconds allowed suffice for an accuracy of {adapted.settled:.1e}, not {scene.fem.accuracy:.1e}",)
+
+
+def _fineness(scene: Scene, problem: Problem, accuracy: float) -> dict[str, str | float]:
     """What the size of the elements follows."""
     if all(part.mesh for part in problem.parts):
         return {"meshes": "as given"}
     if scene.fem.size is not None:
         return {"element_size_over_a": scene.fem.size}
-    return {"meshes": "of the size of the given one"} if scene.meshed else {"accuracy": scene.fem.accuracy}
+    return {"meshes": "of the size of the given one"} if scene.meshed else {"accuracy": accuracy}
 
 
 def _certificate(problem: Problem, level: Level, p0: float) -> dict[str, float]:

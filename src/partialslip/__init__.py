@@ -10,6 +10,7 @@
 from importlib.metadata import version
 
 from partialslip import notebook as notebook
+from partialslip.allowance import Allowance as Allowance
 from partialslip.errors import InputError as InputError
 from partialslip.errors import PartialslipError as PartialslipError
 from partialslip.export import export as export

@@ -1,5 +1,6 @@
 """What a method hands over: the same type from every one."""
 
+import math
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -11,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip import views
+from partialslip.allowance import Allowance
 from partialslip.frame import frame
 from partialslip.state import State
 
@@ -268,9 +270,10 @@ class Result:
 
 
 class Clock:
-    """Counts what a method costs, phase by phase."""
+    """Counts what a method costs, phase by phase, and what is left of its ``allowance``, if it has one."""
 
-    def __init__(self) -> None:
+    def __init__(self, allowance: Allowance | None = None) -> None:
+        self._allowance = allowance
         self._cpu, self._wall = time.process_time(), time.perf_counter()
         self._meshing = 0.0
         self.phases: dict[str, float] = {}
@@ -288,6 +291,12 @@ class Clock:
         """Add CPU seconds of the process that makes meshes to phase "mesh"."""
         self.phases["mesh"] = self.phases.get("mesh", 0.0) + seconds
         self._meshing += seconds
+        if self._allowance:
+            self._allowance.spend(seconds)
+
+    def remaining(self) -> float:
+        """CPU seconds that may still be spent; infinite without an allowance."""
+        return self._allowance.remaining() if self._allowance else math.inf
 
     def cost(self) -> Cost:
         """What it has cost up to now."""

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from msgspec.structs import replace
 
 from partialslip import views
+from partialslip.allowance import Allowance
 from partialslip.errors import InputError
 from partialslip.frame import frame
 from partialslip.gradual import may_turn_round
@@ -143,6 +144,7 @@ def run(
     progress: Progress = lambda _: None,
     start: State | None = None,
     keep: "Kept | None" = None,
+    allowance: Allowance | None = None,
 ) -> Run:
     """Solve ``scene`` by each of ``methods`` ("exact", "march", "fem") and compare.
 
@@ -162,6 +164,10 @@ def run(
         Factored meshes that runs share: where ``fem.size`` is given, runs that differ only in loads and friction then
         factor once. As a rule nothing is kept from one run to the next.
 
+    allowance : Allowance, optional
+        CPU seconds that the run may take. Finite elements then settle for the accuracy that these suffice for:
+        ``settings["accuracy"]`` of their result, which is the bar, too.
+
     Raises
     ------
     InputError
@@ -179,7 +185,7 @@ def run(
         whole = replace(scene, effects=Effects())
         tasks[ALL_EFFECTS] = _best(whole), whole, plan(whole, subsurface=subsurface, start=start is not None)
     results = {
-        name: _method(method, keep)(what, its, _told_by(name, progress), start)
+        name: _method(method, keep, allowance)(what, its, _told_by(name, progress), start)
         for name, (method, what, its) in tasks.items()
     }
     for result in results.values():
@@ -187,7 +193,8 @@ def run(
     # half-planes are no truth for finite bodies, a mesh of a given element size is as good as it is, and of effects
     # that are forced off errors are what they are worth
     judged = not scene.finite and scene.fem.size is None and not effects.missing
-    return compared(scene, effects, results, scene.fem.accuracy if judged else None)
+    reached = results["fem"].settings.get("accuracy") if allowance and "fem" in results else None
+    return compared(scene, effects, results, float(reached or scene.fem.accuracy) if judged else None)
 
 
 def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: float | None) -> Run:
@@ -209,7 +216,9 @@ def _told_by(name: str, progress: Progress) -> Progress:
     return lambda line: progress(f"{name}: {line}")
 
 
-def _method(name: str, keep: "Kept | None") -> Callable[[Scene, Plan, Progress, State | None], Result]:
+def _method(
+    name: str, keep: "Kept | None", allowance: Allowance | None
+) -> Callable[[Scene, Plan, Progress, State | None], Result]:
     """A method by its name, imported now: finite elements bring much along."""
     if name == "exact":
         from partialslip.halfplane.method import solve as solve_exactly
@@ -222,5 +231,5 @@ def _method(name: str, keep: "Kept | None") -> Callable[[Scene, Plan, Progress, 
     if name == "fem":
         from partialslip_fem.model import solve as solve_by_elements
 
-        return partial(solve_by_elements, keep=keep)
+        return partial(solve_by_elements, keep=keep, allowance=allowance)
     raise InputError(f"method {name!r}: must be one of {', '.join(METHODS)}")

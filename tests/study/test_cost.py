@@ -89,36 +89,82 @@ def test_what_is_no_peers_result_is_refused(tmp_path, capsys, line):
 # the price list
 
 
+OVERHEADS = {"start": 0.7, "closing": 0.5, "march": 0.2}
+
+
 def entries(spread=0.0):
-    """Made up by the model itself: CPU seconds of Hertz contacts and punches, orders 2 and 4."""
+    """Made up by the model itself: CPU seconds of Hertz contacts and punches, orders 2 and 4, both factorisations."""
     random = np.random.default_rng(3)
     for name in ("hertz-shear", "flat-rounded"):
-        for order, growth in ((2, 1.0), (4, 0.4)):
+        for order, growth, factor in ((2, 1.0, "cholmod"), (4, 0.4, "cholmod"), (4, 0.5, "superlu")):
             for digits in (2.0, 3.0, 4.0, 5.0, 6.0):
-                scene = partialslip.load_scene(name, [f"fem.order={order}", f"fem.accuracy={10**-digits!r}"])
-                ends = 4 if name == "hertz-shear" else 6
-                seconds = (0.2 + ends * 0.01 * math.exp(growth * digits)) * math.exp(spread * random.normal())
-                fem = {"cost": {"cpu_s": seconds}}
-                yield {"scene": msgspec.to_builtins(scene), "methods": {"exact": {}, "fem": fem}}
+                setting = [f"fem.order={order}", f"fem.accuracy={10**-digits!r}", f"fem.factor={factor}"]
+                scene, slow = partialslip.load_scene(name, setting), random.uniform(1, 3)
+                kind = 1.0 if name == "hertz-shear" else 1.5
+                seconds = kind * 0.1 * math.exp(growth * digits + spread * random.normal())
+                costs = {"exact": {"cost": {"cpu_s": 0.01 * slow}}, "fem": {"cost": {"cpu_s": seconds * slow}}}
+                process = {"cpu_s": (0.6 + 0.01 + seconds) * slow}
+                yield {"scene": msgspec.to_builtins(scene), "methods": costs, "process": process}
 
 
 def test_the_model_is_found_again():
-    known = prices.fit(entries(), "a machine")
-    assert known.spread == pytest.approx(1, abs=1e-3)
-    expected = 0.2 + 4 * 0.01 * math.exp(0.4 * 4)
-    assert known.price(partialslip.load_scene("hertz-shear"), 1e-4, 4).cpu_s == pytest.approx(expected, rel=1e-3)
-    assert prices.fit(entries(0.2), "a machine").spread < 1.6
+    """Whatever the machine was busy with, and apart for kinds of profiles, factorisations and orders."""
+    known = prices.fit(entries(), OVERHEADS, "a machine")
+    assert known.spread == pytest.approx(1, abs=1e-2)
+    slow = known.price(partialslip.load_scene("hertz-shear", ["fem.factor=cholmod"]), 1e-4, 4, ("fem",)).cpu_s - 1.2
+    for name, factor, expected in (("hertz-shear", "superlu", 0.4), ("flat-rounded", "cholmod", math.log(1.5))):
+        scene = partialslip.load_scene(name, [f"fem.factor={factor}"])
+        found = known.price(scene, 1e-4, 4, ("fem",)).cpu_s - 1.2
+        assert math.log(found / slow) == pytest.approx(expected, abs=1e-2)
+    assert prices.fit(entries(0.2), OVERHEADS, "a machine").spread < 1.6
+
+
+def test_start_report_and_other_methods_are_in_the_price():
+    known, scene = prices.fit(entries(), OVERHEADS, "a machine"), partialslip.load_scene("hertz-shear")
+    alone, marched = (known.price(scene, 1e-3, 4, methods) for methods in (("fem",), ("march", "fem")))
+    assert marched.cpu_s == pytest.approx(alone.cpu_s + 0.2)
+    assert (alone.start_s, alone.closing_s) == (0.7, 0.5)
+    assert known.price(scene, 1e-3, 4, ("fem",), 1.4).cpu_s == pytest.approx(2 * alone.cpu_s)
 
 
 def test_the_cheapest_and_the_best():
-    known, scene = prices.fit(entries(), "a machine"), partialslip.load_scene("hertz-shear")
+    known, scene = prices.fit(entries(), OVERHEADS, "a machine"), partialslip.load_scene("hertz-shear")
     assert known.cheapest(scene, 1e-5).order == 4
     budget = known.price(scene, 1e-5, 4).cpu_s
     assert known.best(scene, budget * 1.001).accuracy == pytest.approx(1e-5, rel=0.2)
-    with pytest.raises(partialslip.InputError, match=r"--budget 0.1s: finite elements take"):
+    assert known.best(scene, budget * 1.5, start=1.4).accuracy > 1.2e-5
+    least = known.cheapest(scene, 1e-2).cpu_s
+    with pytest.raises(partialslip.InputError, match=r"--budget 0.1s: must be at least") as refused:
         known.best(scene, 0.1)
+    named = float(str(refused.value).split("least ")[1].split("s ")[0])
+    assert least <= named <= least + 0.1
     with pytest.raises(partialslip.InputError, match="at least 10"):
-        prices.fit([], "a machine")
+        prices.fit([], OVERHEADS, "a machine")
+
+
+def test_the_shipped_list_rises_with_accuracy_and_covers_the_kinds():
+    known = prices.load_prices()
+    assert {*known.kinds} == {"hertz", "flat-rounded", "tabulated"}
+    for factor in ("cholmod", "superlu"):
+        scene = partialslip.load_scene("flat-rounded", [f"fem.factor={factor}"])
+        paid = [known.cheapest(scene, asked).cpu_s for asked in (1e-2, 1e-4, 1e-6, 1e-8)]
+        assert paid == sorted(paid)
+        assert paid[0] > known.start + known.closing
+
+
+@pytest.mark.parametrize("extra", [("--with", "exact"), ("--set", "fem.size=0.1")])
+def test_a_budget_needs_elements_that_follow_an_accuracy(capsys, extra):
+    assert main(["run", "hertz-shear", "--budget", "50s", *extra]) == 2
+    assert capsys.readouterr().err.startswith("partialslip: --budget: needs")
+
+
+def test_a_budget_below_the_least_price_is_refused_before_work_starts(monkeypatch, capsys):
+    monkeypatch.setattr("partialslip.cli.run.run", lambda *_, **__: pytest.fail("work has started"))
+    assert main(["run", "hertz-shear", "--budget", "0.01s"]) == 2
+    printed = capsys.readouterr()
+    assert printed.err.count("\n") == 1
+    assert "must be at least" in printed.err
+    assert not printed.out
 
 
 def test_a_price_is_told_and_the_accuracy_reached(tmp_path, capsys):

@@ -41,12 +41,12 @@ class _Parser(argparse.ArgumentParser):
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; returns the exit code."""
+    """Run the command line; returns the exit code. With ``arguments`` it is not a process of its own that is run."""
     return ended(lambda: _command(arguments))
 
 
 def _command(arguments: Sequence[str] | None) -> int:
-    options = parser().parse_args(arguments)
+    options = parser().parse_args(arguments, argparse.Namespace(own_process=arguments is None))
     code: int = options.command(options)
     return code
 

@@ -2,13 +2,15 @@
 
 import argparse
 import math
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from partialslip.allowance import Allowance
 from partialslip.cli.common import add_scene, check_folder, held, out_folder, print_outcome
 from partialslip.errors import InputError
 from partialslip.reading import load_scene
-from partialslip.run import METHODS, Run, run
+from partialslip.run import METHODS, Run, default_methods, run
 from partialslip.state import State, load_state
 
 if TYPE_CHECKING:
@@ -39,7 +41,8 @@ def add(commands: "Commands") -> None:
                       help="of a, m and n, as a fraction of a: fem takes the elements that reach it for the least, by "
                       "the price list, unless --set fem.order says which")  # fmt: skip
     runs.add_argument("--budget", metavar="SECONDS",
-                      help="CPU seconds, e.g. 5s: fem takes the best accuracy to be had for that")  # fmt: skip
+                      help="CPU seconds, e.g. 5s, from the start of the process to its end: fem takes the best "
+                      "accuracy to be had for that")  # fmt: skip
     runs.add_argument("--fields", action="store_true",
                       help="also stresses: compared, and written to surface.csv and bodies.vtu")  # fmt: skip
     runs.add_argument("--start", metavar="FILE",
@@ -62,53 +65,81 @@ def _run(options: argparse.Namespace) -> int:
     if options.fields and methods and "fem" not in methods:
         raise InputError("--fields: needs the method fem")
     scene = load_scene(options.scene, options.overrides)
-    price = _price(options, scene)
-    if price:
-        scene = load_scene(options.scene, [*price.overrides, *options.overrides])
     start = load_state(options.start) if options.start is not None else None
+    budget = _budget(options, scene, methods)
 
     from partialslip.cli.consoles import messages, working
     from partialslip.report import write_files, write_run
 
+    price = _price(options, scene, methods, budget)
+    priced_at, allowance = time.process_time(), None
     if price:
+        scene = load_scene(options.scene, [*price.overrides, *options.overrides])
+        allowance = Allowance(budget - price.closing_s - price.start_s) if budget else None
         messages().print(f"{price}, predicted", soft_wrap=True, markup=False)
     folder = out_folder(options, scene.name)
     with held(folder), working(scene.name) as tell:
-        outcome = run(scene, methods, subsurface=options.fields, progress=tell, start=start)
+        outcome = run(scene, methods, subsurface=options.fields, progress=tell, start=start, allowance=allowance)
         files = []
         if options.save is not None:
             save = Path(options.save)
             files += write_files(save.parent, {save.name: _state(outcome).save})
         files += write_run(outcome, folder) if folder else []
-    paid = ""
-    if price and "fem" in outcome.results:
-        paid = f"{price}, predicted; {outcome.results['fem'].cost.cpu_s:.2g} CPU s, actual"
-    return print_outcome(outcome, options, files, paid)
+    return print_outcome(outcome, options, files, _paid(price, outcome, priced_at) if price else "")
 
 
-def _price(options: argparse.Namespace, scene: "Scene") -> "Price | None":
-    """What --accuracy or --budget asks for."""
-    if options.accuracy is None and options.budget is None:
+def _budget(options: argparse.Namespace, scene: "Scene", methods: list[str] | None) -> float | None:
+    """CPU seconds for the whole process; None if it may take what it needs."""
+    if options.budget is None:
         return None
-    if options.accuracy is not None and options.budget is not None:
-        raise InputError("--budget: not together with --accuracy")
-    from partialslip.study.prices import load_prices
-
-    prices = load_prices()
     if options.accuracy is not None:
-        try:
-            accuracy = float(options.accuracy)
-        except ValueError:
-            raise InputError(f"--accuracy {options.accuracy!r}: must be a number, for example 1e-4") from None
-        check = load_scene(options.scene, [*options.overrides, f"fem.accuracy={accuracy!r}"])
-        return prices.cheapest(check, accuracy)
+        raise InputError("--budget: not together with --accuracy")
     try:
         budget = float(options.budget.removesuffix("s"))
     except ValueError:
         budget = 0.0
     if not 0 < budget < math.inf:
         raise InputError(f"--budget {options.budget!r}: must be seconds, more than 0, for example 5s")
-    return prices.best(scene, budget)
+    if methods and "fem" not in methods:
+        raise InputError("--budget: needs the method fem; the others take what they take")
+    if scene.fem.size is not None or scene.meshed:
+        raise InputError("--budget: needs meshes that follow an accuracy, not fem.size or meshes that are given")
+    return budget
+
+
+def _price(
+    options: argparse.Namespace, scene: "Scene", methods: list[str] | None, budget: float | None
+) -> "Price | None":
+    """What --accuracy or ``budget`` asks for; None if the scene says it all."""
+    if options.accuracy is None and budget is None:
+        return None
+    import partialslip_fem.model  # noqa: F401 - the start ends here
+    from partialslip.study.prices import load_prices
+
+    prices, chosen = load_prices(), tuple(methods or default_methods(scene))
+    start = time.process_time() if options.own_process else None
+    if budget is not None:
+        return prices.best(scene, budget, chosen, start)
+    try:
+        accuracy = float(options.accuracy)
+    except ValueError:
+        raise InputError(f"--accuracy {options.accuracy!r}: must be a number, for example 1e-4") from None
+    check = load_scene(options.scene, [*options.overrides, f"fem.accuracy={accuracy!r}"])
+    return prices.cheapest(check, accuracy, chosen, start)
+
+
+def _paid(price: "Price", outcome: Run, priced_at: float) -> str:
+    """What was predicted and what the process took, with those that made meshes for it."""
+    taken = (
+        price.start_s
+        + time.process_time()
+        - priced_at
+        + sum(result.cost.meshing_cpu_s for result in outcome.results.values())
+    )
+    fem = outcome.results.get("fem")
+    accuracy = fem.settings.get("accuracy", price.accuracy) if fem else price.accuracy
+    reached = f", for {accuracy:.1e} a" if accuracy != price.accuracy else ""
+    return f"{price}, predicted; {taken:.2g} CPU s, actual{reached}"
 
 
 def _state(outcome: Run) -> State:

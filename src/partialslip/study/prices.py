@@ -1,13 +1,16 @@
-"""The price list: what finite elements of some accuracy will cost, fitted to a ledger of measured cases.
+"""The price list: what a run by finite elements of some accuracy will cost, fitted to a ledger of measured cases.
 
-CPU seconds are taken as exp(start) + points exp(each + growth log10(1/accuracy)): elements crowd about ``points``, in
-each body the ends of the contact and of the stick zone and the kinks of the profile. That is for few load steps; long
-paths, and bodies that are not mirror images, cost more in the contact itself.
+CPU seconds of the method are taken as exp(c0 + c1 d + c2 d^2), d = log10(1/accuracy), by the order of the elements,
+times a factor of the profile's kind and one of SuperLU, that grows with d; twice that for bodies that are not mirror
+images.
+Start, report and the other methods come on top. CPU seconds depend on the machine and on what else it does, so that all
+are scaled by what the start of this very process took. Long paths of loads cost more.
 """
 
+import importlib.util
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from typing import Any
@@ -22,16 +25,21 @@ from partialslip.reading import parse_scene
 from partialslip.result import Array
 from partialslip.scene import Scene
 
-_FINEST, _COARSEST = 1e-7, 1e-2
+_FINEST, _COARSEST = 1e-9, 1e-2
+_CHOICES = 141  # accuracies between the two
+_SPEEDS = 0.2, 5.0  # of this process: a start that took longer had other reasons
 
 
 @dataclass(frozen=True)
 class Price:
-    """What finite elements of ``order`` at ``accuracy`` (of a) are expected to cost: ``cpu_s``, of the method."""
+    """What a run by finite elements of ``order`` at ``accuracy`` (of a) is expected to cost: ``cpu_s`` of the whole
+    process, ``start_s`` and ``closing_s`` of which go into its start and into report and end."""
 
     order: int
     accuracy: float
     cpu_s: float
+    start_s: float
+    closing_s: float
 
     @property
     def overrides(self) -> list[str]:
@@ -45,46 +53,88 @@ class Price:
 class Prices(msgspec.Struct, frozen=True, kw_only=True):
     """A fitted cost model.
 
-    ``orders`` holds start, each and growth by element order, and ``finest`` the finest accuracy that each was measured
-    at: it is not offered beyond, unless none is. ``spread`` is the factor within which nine of ten cases of
-    the fit are; ``machine`` what it was measured on.
+    Parameters
+    ----------
+    orders : dict
+        c0, c1 and c2 by element order, with CHOLMOD and a Hertz contact.
+    kinds : dict
+        Logarithms of the factors of the profiles' kinds.
+    superlu : tuple
+        Logarithm of SuperLU's factor, and how much it grows with each digit.
+    finest : dict
+        The finest accuracy that each order was measured at: it is not offered beyond, unless none is.
+    methods : dict
+        CPU seconds of the other methods.
+    start, closing : float
+        CPU seconds until the work starts, and of the report and the end.
+    spread : float
+        The factor within which nine of ten cases of the fit are.
+    machine : str
+        What it was measured on.
     """
 
     orders: dict[str, tuple[float, float, float]]
+    kinds: dict[str, float]
+    superlu: tuple[float, float]
     finest: dict[str, float]
+    methods: dict[str, float]
+    start: float
+    closing: float
     spread: float
     machine: str
 
-    def price(self, scene: Scene, accuracy: float, order: int) -> Price:
-        """The CPU seconds of ``order`` at ``accuracy`` for ``scene``, of the method fem."""
-        seconds = _seconds(*self.orders[str(order)], _points(scene), math.log10(1 / accuracy))
-        return Price(order, accuracy, float(seconds))
+    def price(
+        self,
+        scene: Scene,
+        accuracy: float,
+        order: int,
+        methods: Sequence[str] = ("exact", "fem"),
+        start: float | None = None,
+    ) -> Price:
+        """What ``scene`` costs by the ``methods``, fem with elements of ``order`` at ``accuracy``.
 
-    def cheapest(self, scene: Scene, accuracy: float) -> Price:
-        """The least price of ``accuracy`` for ``scene``."""
+        ``start`` is the CPU seconds that the start of this process has taken; without it, the process is taken to be as
+        fast as the machine of the list.
+        """
+        speed = float(np.clip(start / self.start, *_SPEEDS)) if start else 1.0
+        digits = math.log10(1 / accuracy)
+        cost = sum(c * digits**power for power, c in enumerate(self.orders[str(order)]))
+        cost += self.kinds.get(_kind(scene), 0.0) + math.log(_bodies(scene))
+        if _superlu(scene):
+            cost += self.superlu[0] + self.superlu[1] * digits
+        others = sum(self.methods.get(method, 0.0) for method in methods)
+        begun, closing = start or self.start, speed * self.closing
+        return Price(order, accuracy, begun + speed * (others + math.exp(cost)) + closing, begun, closing)
+
+    def cheapest(
+        self, scene: Scene, accuracy: float, methods: Sequence[str] = ("exact", "fem"), start: float | None = None
+    ) -> Price:
+        """The least price of ``accuracy`` for ``scene``; ``methods`` and ``start`` as for :meth:`price`."""
         least = min(self.finest.values())
         offered = [order for order, finest in self.finest.items() if finest <= max(accuracy, least) * 1.01]
-        return min((self.price(scene, accuracy, int(order)) for order in offered), key=lambda price: price.cpu_s)
+        prices = (self.price(scene, accuracy, int(order), methods, start) for order in offered)
+        return min(prices, key=lambda price: price.cpu_s)
 
-    def best(self, scene: Scene, budget: float) -> Price:
-        """The best accuracy to be had of ``scene`` for ``budget`` CPU seconds.
+    def best(
+        self, scene: Scene, budget: float, methods: Sequence[str] = ("exact", "fem"), start: float | None = None
+    ) -> Price:
+        """The best accuracy to be had of ``scene`` for ``budget`` CPU seconds; ``methods`` and ``start`` as for
+        :meth:`price`.
 
         Raises
         ------
         InputError
             If even 1e-2 costs more.
         """
-        least = self.cheapest(scene, _COARSEST)
+        least = self.cheapest(scene, _COARSEST, methods, start)
         if least.cpu_s > budget:
             raise InputError(
-                f"--budget {budget:g}s: finite elements take {least.cpu_s:.2g} s for {_COARSEST:g}, "
-                "which is the least; the exact method alone (--with exact) takes hundredths of a second"
+                f"--budget {budget:g}s: must be at least {math.ceil(10 * least.cpu_s) / 10:g}s here and now, the price "
+                f"of {_COARSEST:g} a by finite elements; the exact method alone (--with exact) takes less"
             )
-        accuracies = np.geomspace(_COARSEST, _FINEST, 101)
-        return min(
-            (price for asked in accuracies.tolist() if (price := self.cheapest(scene, asked)).cpu_s <= budget),
-            key=lambda price: price.accuracy,
-        )
+        accuracies = np.geomspace(_COARSEST, max(_FINEST, min(self.finest.values())), _CHOICES)
+        prices = (self.cheapest(scene, asked, methods, start) for asked in accuracies.tolist())
+        return min((price for price in prices if price.cpu_s <= budget), key=lambda price: price.accuracy)
 
 
 def load_prices() -> Prices:
@@ -93,8 +143,12 @@ def load_prices() -> Prices:
     return msgspec.json.decode(text, type=Prices)
 
 
-def fit(entries: Iterable[Mapping[str, Any]], machine: str) -> Prices:
-    """The price list of the adapted finite elements in the ``entries`` of a ledger, measured on ``machine``.
+def fit(entries: Iterable[Mapping[str, Any]], overheads: Mapping[str, float], machine: str) -> Prices:
+    """The price list of adapted finite elements by the ``entries`` of a ledger, measured on ``machine``.
+
+    Cases that :func:`partialslip.study.case.solve_apart` has measured are scaled by the start of their processes, as
+    the machine may have been busy with other things. ``overheads`` are the seconds "start" and "closing", and those of
+    other methods by their names.
 
     Raises
     ------
@@ -105,25 +159,44 @@ def fit(entries: Iterable[Mapping[str, Any]], machine: str) -> Prices:
     for entry in entries:
         if "error" not in entry and "fem" in entry["methods"] and entry["scene"]["fem"].get("size") is None:
             scene = parse_scene(entry["scene"])
-            found = entry["methods"]["fem"]["cost"]["cpu_s"]
-            cases.append((scene.fem.order, _points(scene), math.log10(1 / scene.fem.accuracy), found))
+            costs = {name: method["cost"]["cpu_s"] for name, method in entry["methods"].items()}
+            start = entry["process"]["cpu_s"] - sum(costs.values()) if "process" in entry else 1.0
+            digits = math.log10(1 / scene.fem.accuracy)
+            cases.append((scene.fem.order, _kind(scene), _superlu(scene), digits, _bodies(scene), start, costs))
     if len(cases) < 10:
         raise InputError(f"a price list needs at least 10 measured cases of adapted finite elements, not {len(cases)}")
-    order, sizes, digits, seconds = (np.array(column) for column in zip(*cases, strict=True))
-    orders, number = np.unique(order, return_inverse=True)
+    orders, kinds = sorted({case[0] for case in cases}), sorted({case[1] for case in cases} - {"hertz"})
+    starts = np.array([case[5] for case in cases])
+    found = np.log(np.array([case[6]["fem"] / case[4] for case in cases]) * np.median(starts) / starts)
+    columns = np.array(
+        [
+            [(order == each) * digits**power for each in orders for power in range(3)]
+            + [float(kind == each) for each in kinds]
+            + [float(other), other * digits]
+            for order, kind, other, digits, *_ in cases
+        ]
+    )
+    # prices do not fall with the digits
+    lower = np.concatenate([np.tile([-np.inf, 0.0, 0.0], len(orders)), np.full(len(kinds) + 2, -np.inf)])
+    guess = np.maximum(lower, np.zeros(columns.shape[1])) + 0.01
 
     def off(parameters: Array) -> Array:
-        start, each, growth = (column[number] for column in parameters.reshape(3, -1))
-        ratio: Array = np.log(_seconds(start, each, growth, sizes, digits) / seconds)
-        return ratio
+        difference: Array = columns @ parameters - found
+        return difference
 
-    guess = np.repeat([math.log(0.3), math.log(0.02), 0.5], len(orders))
-    found = least_squares(off, guess, loss="soft_l1", f_scale=0.3).x
-    rows = found.reshape(3, -1).T.tolist()
+    fitted = least_squares(off, guess, bounds=(lower, np.inf), loss="soft_l1", f_scale=0.3).x
+    rows, rest = fitted[: 3 * len(orders)].reshape(-1, 3).tolist(), fitted[3 * len(orders) :].tolist()
+    exact = [case[6]["exact"] for case in cases if "exact" in case[6]]
+    methods = {key: value for key, value in overheads.items() if key not in ("start", "closing")}
     return Prices(
-        orders={str(each): tuple(row) for each, row in zip(orders.tolist(), rows, strict=True)},
-        finest={str(each): float(10.0 ** -digits[order == each].max()) for each in orders.tolist()},
-        spread=float(np.exp(np.quantile(np.abs(off(found)), 0.9))),
+        orders={str(order): tuple(row) for order, row in zip(orders, rows, strict=True)},
+        kinds={"hertz": 0.0, **dict(zip(kinds, rest, strict=False))},
+        superlu=(rest[-2], rest[-1]),
+        finest={str(order): float(10.0 ** -max(case[3] for case in cases if case[0] == order)) for order in orders},
+        methods={**({"exact": float(np.median(exact))} if exact else {}), **methods},
+        start=overheads["start"],
+        closing=overheads["closing"],
+        spread=float(np.exp(np.quantile(np.abs(off(fitted)), 0.9))),
         machine=machine,
     )
 
@@ -133,12 +206,17 @@ def to_json(prices: Prices) -> str:
     return json.dumps(msgspec.to_builtins(prices), indent=1) + "\n"
 
 
-def _seconds(start: Any, each: Any, growth: Any, points: Any, digits: Any) -> Any:
-    return np.exp(start) + points * np.exp(each + growth * digits)
+def _bodies(scene: Scene) -> int:
+    """Bodies to mesh and to factor."""
+    return 1 if scene.mirrored and scene.fem.lower_size == 1 and not plan(scene).needs("coupling") else 2
 
 
-def _points(scene: Scene) -> float:
-    """Points that elements crowd about, in all bodies."""
-    effects = plan(scene)
-    bodies = 2 if effects.needs("coupling") else 1
-    return float(bodies * (2 + 2 * effects.needs("friction") + len(scene.profile.kinks)))
+def _kind(scene: Scene) -> str:
+    """Of its profile, as a scene file names it."""
+    return str(type(scene.profile).__struct_config__.tag)
+
+
+def _superlu(scene: Scene) -> bool:
+    if scene.fem.factor is None:
+        return importlib.util.find_spec("cvxopt") is None
+    return scene.fem.factor == "superlu"

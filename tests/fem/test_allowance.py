@@ -1,0 +1,82 @@
+"""An allowance of CPU seconds: finite elements settle for what it suffices for, and say so. Work counts as seconds."""
+
+import pytest
+
+from partialslip import Allowance, load_scene, plan, run
+from partialslip_fem import adapt, expense, solve
+
+ASKED = 1e-6
+SCENE = load_scene("hertz-small-tension", [f"fem.accuracy={ASKED!r}"])
+SECONDS = 1e4  # a thousand unknowns, beside which seconds of this machine are nothing
+
+
+class Counter:
+    """CPU seconds that pass only with solutions, in proportion to their unknowns."""
+
+    def __init__(self, monkeypatch):
+        self.seconds = 0.0
+        for name in ("solve_level", "neighbour"):
+            monkeypatch.setattr(adapt, name, self._counted(getattr(adapt, name)))
+
+    def _counted(self, solution):
+        def counted(*given, **settings):
+            level = solution(*given, **settings)
+            self.seconds += SECONDS * level.dofs / 1000
+            return level
+
+        return counted
+
+    def __call__(self):
+        return self.seconds
+
+
+@pytest.fixture
+def counter(monkeypatch):
+    return Counter(monkeypatch)
+
+
+def fem(allowance=None):
+    return solve(SCENE, plan(SCENE), allowance=allowance)
+
+
+def test_enough_changes_nothing(counter):
+    free, rich = fem(), fem(Allowance(1e9, counter))
+    assert (rich.m, rich.n, rich.a) == (free.m, free.n, free.a)
+    assert rich.estimate == free.estimate
+    assert rich.counts == free.counts
+    assert rich.settings == free.settings
+    assert not rich.notes
+
+
+def test_what_is_spent_after_the_first_mesh_gives_a_coarser_answer_that_says_so(counter):
+    outcome = run(SCENE, allowance=Allowance(SECONDS, counter))
+    found = outcome.results["fem"]
+    reached = found.settings["accuracy"]
+    assert found.counts["meshes"] == 2
+    assert reached > 10 * ASKED
+    assert max(found.estimate[key] for key in "amn") <= reached
+    assert outcome.accuracy == reached
+    assert outcome.passed
+    assert any("allowed suffice" in note for note in found.notes)
+
+
+def test_what_is_allowed_is_kept_and_buys_accuracy(counter):
+    reached = []
+    for allowed in (20, 40, 80):
+        counter.seconds = 0.0
+        reached.append(fem(Allowance(allowed * SECONDS, counter)).settings["accuracy"])
+        assert counter.seconds <= 1.1 * allowed * SECONDS
+    assert reached[0] > reached[1] > reached[2]
+
+
+@pytest.mark.fault
+def test_meshes_taken_to_cost_nothing(counter, monkeypatch):
+    monkeypatch.setattr(expense, "_work", lambda _: 1e-9)
+    fem(Allowance(10 * SECONDS, counter))
+    assert counter.seconds > 2 * 10 * SECONDS
+
+
+def test_seconds_elsewhere_count():
+    allowance = Allowance(5.0, lambda: 1.0)
+    allowance.spend(2.0)
+    assert allowance.remaining() == 3.0
