@@ -131,3 +131,15 @@ def test_the_largest_pressure_is_found_between_points():
     assert traction.p_max == pytest.approx(1, abs=(traction.x[1] - traction.x[0]) ** 4 / 8)  # the term left out
     corner = traction_of(lambda x: 1 - np.abs(x - traction.x[7]), root)  # a top that is none of a parabola is no less
     assert 1 <= corner.p_max <= 1.01
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_pressure_beyond_the_contact_is_an_error_in_the_cell_of_its_end(side):
+    """On 0.15 beyond the reference's end, in a cell of 0.3 that reaches beyond: a mean that is 0.5 off there."""
+    cells = np.array([-1.2, -0.9, -0.5, 0.1, 0.5, 0.9, 1.2])
+    beyond = lambda x: root(x) + ((side * x > 1) & (side * x < 1.15))  # noqa: E731
+    ends = sorted([-1.0, 1.0, 1.15 * side])
+    error, _ = cell_errors(traction_of(beyond, root, ends, cells), traction_of(root, root, cells=cells))
+    means, _ = cell_means(traction_of(root, root), cells)
+    norm = np.sqrt(means**2 @ np.diff(cells))
+    assert error == pytest.approx(0.15 / 0.3 * np.sqrt(0.3) / norm, rel=1e-9)

@@ -113,8 +113,9 @@ def right_end(
         windows = [at - np.arange(0, count, -(-count // _MANY))[::-1] for count in counts]
         levels.append([_roots(x[w], values[w], slack[w], x[at] - spacing, outermost) for w in windows])
     every = [root for level in levels for roots in level for root in roots if root]
-    close = [root for level in levels[-_NEAR:] for roots in level for root in roots if root]
-    few = [root.scatter for root in close if root.points <= _FEW]
+    # of the highest degree: what lower ones leave out is the curve's bend, too
+    close = [roots[-1] for level in levels[-_NEAR:] for roots in level if roots]
+    few = [root.scatter for root in close if root and root.points <= _FEW]
     floor = float(np.median(few)) if few else 0.0
     steepest = max((abs(root.slope) for root in every if root.points > _FEW), default=np.inf)
     every_level = [[end for roots in level for end in _estimates(roots, floor, steepest)] for level in levels]
