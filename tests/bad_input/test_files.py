@@ -29,20 +29,19 @@ TABLES = [
     ("# nothing\n", "empty: must have a header line"),
     ("\n\n", "empty: must have a header line"),
     ("x,p,dq\n", "p > 0 at 0 points: must be at least 6"),
-    (TABLE.partition("\n")[2], "must be x; p or Fn; and one of dq"),
-    (TABLE.replace("x,p,dq", "x,p"), "columns 'x', 'p': must be x; p or Fn"),
+    (TABLE.partition("\n")[2], "line 1: must be a header line with x, p and dq"),
+    (TABLE.replace("x,p,dq", "x,p"), "line 2: must have 2 fields, like the header line"),
     (TABLE.replace("x,p,dq", "x,p,tau"), "columns 'x', 'p', 'tau': must be"),
     (TABLE.replace("x,p,dq", "X,P,DQ"), "columns 'X', 'P', 'DQ': must be"),
     (TABLE.replace("x,p,dq", "x,p,dFt"), "columns p and dFt: must be both tractions or both forces"),
     (TABLE.replace("x,p,dq", "x,Fn,q"), "columns Fn and q: must be both tractions or both forces"),
     (TABLE.replace("x,p,dq", "x,x,dq"), "column 'x': must be there once, not 2 times"),
     (TABLE.replace("x,p,dq", "x,p,q1"), "columns 'x', 'p', 'q1': must be"),
-    (TABLE.replace("x,p,dq", "x p dq"), "columns 'x p dq': must be"),
+    (TABLE.replace("x,p,dq", "x p dq"), "line 2: must have 3 fields"),
     (TABLE.replace("\n", ",1\n").replace("x,p,dq,1", "x,p,dq,q"), "'dq', 'q': must be"),
     (lines(TABLE, L3="1,2"), "line 3: must have 3 fields"),
     (lines(TABLE, L3="1,2,3,4"), "line 3: must have 3 fields"),
     (lines(TABLE, L4="a,2,3"), "line 4: x = 'a': must be a number"),
-    (lines(TABLE, L4="1e-4,,3"), "line 4: p = '': must be a number"),
     (lines(TABLE, L4="1e-4,1 2,3"), "line 4: p = '1 2': must be a number"),
     (lines(TABLE, L4="1e-4,0x10,3"), "line 4: p = '0x10': must be a number"),
     (lines(TABLE, L4='1e-4,"1,3'), "line 4: p = '\"1': must be a number"),
@@ -74,7 +73,7 @@ def test_tables(rejected, tmp_path, text, expected):
     assert expected in message
 
 
-@pytest.mark.parametrize("content", [b"\xff\xfe" + TABLE.encode("utf-16-le"), b"\x80" * 50, b"x,p,dq\n\xe4,1,2\n"])
+@pytest.mark.parametrize("content", [b"\x80" * 50, b"x,p,dq\n\xe4,1,2\n"])
 @pytest.mark.parametrize("name", ["t.csv", "t.frd", "t.dat"])
 def test_no_text(rejected, tmp_path, content, name):
     (tmp_path / name).write_bytes(content)

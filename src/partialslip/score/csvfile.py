@@ -52,7 +52,7 @@ def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None) ->
     separator = max(",;\t", key=bare[0].count)
     separator = separator if separator in bare[0] else ""
     rows = [_fields(line, separator) for line in bare]
-    names = headings(bare[0]) if not separator else [name.strip().strip('"').strip() for name in rows[0]]
+    names = headings(bare[0]) if not separator else [name.strip() for name in rows[0]]
     headless = chosen is not None and all(map(_is_number, rows[0]))
     if not headless and all(map(_is_number, rows[0])):
         raise InputError(f"{origin}: line {numbers[0]}: must be a header line with x, p and dq (or name --columns)")
@@ -81,8 +81,14 @@ def _fields(line: str, separator: str) -> list[str]:
     """Fields of a line; without a separator those between blanks. Commas that do not separate are decimal ones."""
     fields = line.split(separator) if separator else line.split()
     if separator == ",":
-        return [field.strip().strip('"') for field in fields]
-    return [field.strip().strip('"').replace(",", ".") for field in fields]
+        return [_unquoted(field) for field in fields]
+    return [_unquoted(field).replace(",", ".") for field in fields]
+
+
+def _unquoted(field: str) -> str:
+    """The field without blanks and a pair of quotes around it."""
+    bare = field.strip()
+    return bare[1:-1] if len(bare) > 1 and bare[0] == bare[-1] == '"' else bare
 
 
 def template(scene: Scene, a: float) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from partialslip.errors import InputError
+from partialslip.inputfile import check_regular, read_bytes
 from partialslip.scene import Array, Scene
 from partialslip.score.calculix import read_dat, read_frd
 from partialslip.score.csvfile import Columns, read_csv
@@ -15,7 +16,7 @@ from partialslip.score.headers import NORMAL, SHEARS
 from partialslip.score.samples import Samples, samples
 
 TABLES = (".csv", ".txt", ".tsv", ".rpt")
-_LARGEST = 1_000_000_000  # bytes
+LARGEST = 1_000_000_000  # bytes
 _FLAT = 0.05  # of the points' extent along x: what they may lie apart across it
 
 
@@ -64,16 +65,11 @@ def read(
 
 def text(file: Path) -> str:
     """The text of ``file``. Raises InputError if there is none."""
+    data = read_bytes(file, LARGEST)
     try:
-        if (size := file.stat().st_size) > _LARGEST:
-            raise InputError(f"{file}: {size} bytes: must be at most {_LARGEST}")
-        data = file.read_bytes()
         return data.decode("utf-16" if data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) else "utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(f"{file}: not UTF-8 text (byte {error.start})") from None
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(f"{file}: cannot be read: {reason}") from None
 
 
 def _point_data(file: Path) -> dict[str, Array]:
@@ -81,12 +77,7 @@ def _point_data(file: Path) -> dict[str, Array]:
 
     if file.suffix.lower() not in FORMATS:
         raise InputError(f"{file}: must end in {', '.join(TABLES)}, .frd, .dat or {', '.join(sorted(FORMATS))}")
-    try:
-        with file.open("rb"):
-            pass
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(f"{file}: cannot be read: {reason}") from None
+    check_regular(file, LARGEST)
     points, data = read_point_data(file)
     shears = [shear for shear in SHEARS if set(shear) <= set(data) and shear[0].startswith(("q", "dq"))]
     if NORMAL[0] not in data or len(shears) != 1:
