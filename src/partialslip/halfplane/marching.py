@@ -223,10 +223,17 @@ def _result(
     q1, q2 = (P / a * force / widths for force in (history.q1, history.q2)) if history else (0 * x, 0 * x)
     unit = scene.material.A * P  # of displacement
 
-    def at(points: Array) -> tuple[Array, Array]:
+    known = found.centre is not None
+
+    def levels_at(points: Array) -> tuple[Array, Array]:
         scaled = points / a
         cell = np.clip(np.searchsorted(level.vertices, scaled) - 1, 0, len(x) - 1)
-        return pressed.pressure(points), np.where(np.abs(scaled) <= 1, (q2 - q1)[cell], 0.0)
+        inside = np.abs(scaled) <= 1
+        return np.where(inside, q1[cell], 0.0), np.where(inside, q2[cell], 0.0)
+
+    def at(points: Array) -> tuple[Array, Array]:
+        before, after = levels_at(points)
+        return pressed.pressure(points), after - before
 
     return Result(
         method="march",
@@ -239,11 +246,12 @@ def _result(
             x=x * a,
             p=pressed.pressure(x * a),
             dq=q2 - q1,
-            q1=q1 if found.regime != "sliding" else None,
-            q2=q2 if found.regime != "sliding" else None,
+            q1=q1 if known else None,
+            q2=q2 if known else None,
             at=at,
             breaks=level.vertices * a,
             cells=level.vertices * a,
+            levels_at=levels_at if known else None,
         ),
         cost=clock.cost(),
         state=_state(scene, level, a) if history else None,
