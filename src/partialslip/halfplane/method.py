@@ -81,7 +81,7 @@ def solve(
         certificate=_certificate(pressed, cycle) if cycle and slips else {},
         estimate=table,
         shares={"table": table} if table else {},
-        notes=_notes(scene, regime, turns, undetermined) + _coarse(table, scene.fem.accuracy),
+        notes=_notes(regime, turns, undetermined) + _coarse(table, scene.fem.accuracy),
         surface=surface,
         stress_at=stress.inside if stress else None,
         undetermined=undetermined,
@@ -194,7 +194,7 @@ def _undetermined(regime: Regime, turns: bool, found: Levels | str) -> dict[str,
     return dict.fromkeys(("q1", "q2"), found) if isinstance(found, str) else {}
 
 
-def _notes(scene: Scene, regime: Regime, turns: bool, undetermined: dict[str, str]) -> tuple[str, ...]:
+def _notes(regime: Regime, turns: bool, undetermined: dict[str, str]) -> tuple[str, ...]:
     if regime == "frictionless":
         return (FRICTIONLESS,)
     if regime == "sliding":
