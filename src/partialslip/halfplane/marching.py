@@ -111,11 +111,11 @@ def _cells(ends: list[float], inner: list[float], level: _Level | None, size: fl
     """Ends of cells of ``size`` at the ``ends`` and those of the stick zone that the ``level`` before has found, and of
     a larger size at the ``inner`` kinks of q and those found. Where ends are near to each other cells are small beside
     the distance: q is steep in narrow slip strips and beside tiny stick zones."""
-    fine = np.sort(apart([*ends, *(level.zone if level else ())], _SMALLEST))
+    fine: Array = np.sort(apart([*ends, *(level.zone if level else ())], _SMALLEST))
     gaps = np.diff(fine)
     gap = np.minimum(np.append(gaps, np.inf), np.append(np.inf, gaps))
-    points = apart([*fine.tolist(), *inner, *(level.kinks if level else ())], _INNER * size)
-    points = np.concatenate([fine, [kink for kink in points if kink not in fine]])
+    known = apart([*fine.tolist(), *inner, *(level.kinks if level else ())], _INNER * size)
+    points: Array = np.concatenate([fine, [kink for kink in known if kink not in fine]])
     sizes = np.full(len(points), _INNER * size)
     sizes[: len(fine)] = np.maximum(size * np.minimum(_NEAR * gap, 1.0), _SMALLEST)
     order = np.argsort(points)
