@@ -195,7 +195,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         shares["steps"] = stepped
     keys = [*adapted.errors, *(key for key in stepped if key not in adapted.errors)]
     estimate = {key: float(sum(share.get(key, 0.0) for share in shares.values())) for key in keys}
-    known = found.regime != "sliding"
+    known = found.centre is not None
     (left1, right1), (left2, right2) = level.contact_ends
     return Result(
         method="fem",

@@ -118,7 +118,7 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
     Q, sigma = zip(*load.points, strict=True)
     coupled = forced.get("coupling", not scene.mirrored)
     tangential = any(Q) or any(sigma) or forced.get("shear", False) or forced.get("tension", False)
-    friction = forced.get("friction", tangential or coupled) and not scene.slides
+    friction = forced.get("friction", tangential or coupled) and not (scene.slides or scene.free)
     why = f"tangential loads act and f = {f:g}" if tangential else f"pressure moves the surfaces along x and f = {f:g}"
     if not (tangential or coupled):
         no_friction = "no tangential load acts"
@@ -182,9 +182,10 @@ def _refuse(scene: Scene, forced: dict[Effect, bool], own: _Decisions) -> None:
     on = {effect for effect, on in forced.items() if on}
     coupled = "coupling" in on or (not scene.mirrored and "coupling" not in off)
     tangential: tuple[Effect, ...] = ("friction", "shear", "tension")
+    unheld = scene.slides or scene.free
     reasons: list[tuple[Effect, bool, str]] = [
         ("normal", "normal" in off, "without pressure there is no contact"),
-        *((each, each in on and scene.slides and not own[each][0], own["friction"][2]) for each in tangential),
+        *((each, each in on and unheld and not own[each][0], own["friction"][2]) for each in tangential),
         ("opposing-slip", "opposing-slip" in off and not scene.load.in_phase,
          "Q and sigma are out of phase, and slip turns round"),
         ("history", "history" in off and own["history"][0] and (coupled or not scene.load.in_phase),

@@ -27,8 +27,11 @@ except ImportError:  # Windows
 Array = npt.NDArray[np.float64]
 # A solver that has closed leaves residuals at rounding; on the finest meshes that is 1e-9 f p0.
 CERTIFICATE_BAR = 1e-7
+FRICTIONLESS = "f = 0 and Q = 0: nothing sticks, and without shear force the contact stays where it is"
 
-Regime = Literal["stuck", "small tension", "large tension", "out of phase", "sliding", "ratchets", "pressing"]
+Regime = Literal[
+    "stuck", "small tension", "large tension", "out of phase", "sliding", "ratchets", "pressing", "frictionless"
+]
 
 
 @dataclass(frozen=True)
@@ -179,7 +182,8 @@ class Result:
     ``a`` is the contact half-width (m) and ``p0`` = 2 P/(pi a) (Pa), for Hertz the largest pressure.
 
     The stick zone [-m, n] is kept as its centre, ``stick_centre`` = (n - m)/2, and ``stick_half_width`` = (n + m)/2
-    (m), because n + m cancels when it is tiny; both are None where nothing sticks (``regime`` says "sliding").
+    (m), because n + m cancels when it is tiny; both are None where nothing sticks (``regime`` says "sliding", or
+    "frictionless" where no shear force acts either).
     ``traction`` holds p, q1, q2 and dq along the contact, ``cost`` what it took.
     ``certificate`` holds residuals in units of f p0 (of p0 for the normal problem) and equilibrium relative to
     the load; ``estimate`` the method's own estimate of its errors in a, m and n, as fractions of a, and by finite

@@ -412,7 +412,7 @@ class Scene(Table, frozen=True, kw_only=True):
     @property
     def slides(self) -> bool:
         """Whether friction cannot carry Q: no forces within the bound could sum to it."""
-        return max(abs(Q) for Q, _ in self.load.points) >= self.friction.f * self.P
+        return not self.free and max(abs(Q) for Q, _ in self.load.points) >= self.friction.f * self.P
 
     @property
     def free(self) -> bool:

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+import partialslip
 from partialslip import load_scene, plan
 from partialslip.halfplane import solve
+from partialslip.judge import Outcome
 
 
 def exact(name, *overrides):
@@ -98,10 +100,17 @@ def test_limits_are_where_something_else_begins():
     assert exact("hertz-large-tension", "friction.f=0").limits == {}
 
 
-def test_frictionless_contact_without_shear_force_does_not_slide_away():
-    for sigma in ("[0, 0]", "[-1e8, 1e8]"):
-        result = exact("hertz-shear", "friction.f=0", "load.Q=[0, 0]", f"load.sigma={sigma}")
+@pytest.mark.parametrize("sigma", ["[0, 0]", "[-1e8, 1e8]"])
+def test_frictionless_contact_without_shear_force_neither_sticks_nor_slides(sigma):
+    scene = load_scene("hertz-shear", ["friction.f=0", "load.Q=[0, 0]", f"load.sigma={sigma}"])
+    run = partialslip.run(scene, ["exact", "march", "fem"])
+    for result in run.results.values():
+        assert result.regime == "frictionless"
         assert not any("slides" in note for note in result.notes)
         assert "nothing sticks" in result.notes[0]
         assert result.m is None
         assert not result.traction.dq.any()
+    for comparison in run.comparisons.values():
+        verdicts = {verdict.quantity: verdict for verdict in comparison.verdicts}
+        assert {verdicts[key].reason for key in ("m", "n", "q")} == {"there is no friction"}
+        assert verdicts["regime"].outcome is verdicts["a"].outcome is Outcome.PASSED

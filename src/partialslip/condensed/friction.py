@@ -14,7 +14,7 @@ import numpy.typing as npt
 from partialslip.condensed.bounded import Solution, solve_bounded
 from partialslip.condensed.zones import Zone
 from partialslip.plan import Plan
-from partialslip.result import Array, Regime
+from partialslip.result import FRICTIONLESS, Array, Regime
 from partialslip.scene import ALLOWED, Scene
 from partialslip.state import State
 
@@ -458,10 +458,10 @@ def judge(
     solve), in a contact of ``half_width``; lengths in any one unit. ``pressed`` says that coupled bodies slipped while
     they were pressed, that no other load acts, and that what stuck all through is the stick zone."""
     load = scene.load
+    if scene.free:
+        return Verdict("frictionless", None, None, (FRICTIONLESS,))
     if scene.slides:
         note = "the contact slides: |Q| >= f P at a load point; there is no steady partial slip"
-        if scene.free:
-            note = "f = 0 and Q = 0: nothing sticks, and without shear force the contact stays where it is"
         return Verdict("sliding", None, None, (note,))
     if pressed and stick:
         note = "no load but P acts: the stick zone is where the surfaces have stuck since they touched"

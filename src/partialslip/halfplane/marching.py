@@ -23,13 +23,14 @@ from partialslip.state import State
 
 _MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # cell size at the ends (in a), and growth
 _CELLS, _SOMEWHERE = 4.0, 0.5  # between zones with fewer cells than that an end is somewhere in one of them
+_NEAR = 10.0  # cells at ends nearer to each other than a tenth of a are smaller in proportion
+_SMALLEST = 1e-9  # in a: ends that lie nearer to each other are one, and no cell is smaller by much
 _INNER = 8.0  # times larger than at the ends are the cells at kinks of q, which do not decide about m and n
 _STEPS = 1.0  # of the accuracy: what a step may change of q, in f P
 _FINER, _FINEST = 16.0, 1 / 300  # so much less, and less still, where it is not enough
 # Shares of a change from mesh to mesh, and of the cube of the cells' growth, that m and n are off by
-_MOVED, _CUBIC = 0.1, 0.1
-# The same of q on the second mesh; of q1, q2 and later; and where a zone is a sliver, relative to the contact
-_CHANGED, _NARROW, _SLIVER = (0.15, 0.3), 0.5, 0.05
+_MOVED, _CUBIC = 0.1, 0.15
+_CHANGED = (0.4, 0.35)  # of a change of q, q1 and q2 to the second mesh, and to later ones
 _SHEARS: dict[str, Callable[[History], Array]] = {
     "q": lambda history: history.change,
     "q1": lambda history: history.q1,
@@ -95,7 +96,7 @@ def solve(
             if meshes == 2:  # steps are chosen on it, and kept
                 level, stepped = _with_steps(scene, pressed, path, start, level, clock)
                 path = level.history.path if level.history else None
-            meshed = _mesh_errors(level, before, size, growth, meshes == 2)
+            meshed = _mesh_errors(level, before, growth, meshes == 2)
             shares = {"discretisation": meshed, "steps": stepped}
             errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
             ends_known = max(errors["m"], errors["n"])
@@ -108,13 +109,17 @@ def solve(
 
 def _cells(ends: list[float], inner: list[float], level: _Level | None, size: float, growth: float) -> Array:
     """Ends of cells of ``size`` at the ``ends`` and those of the stick zone that the ``level`` before has found, and of
-    a larger size at the ``inner`` kinks of q and those found."""
-    fine = apart([*ends, *(level.zone if level else ())], size)
-    points = apart([*fine, *inner, *(level.kinks if level else ())], _INNER * size)
-    points = [*fine, *points[len(fine) :]]
-    sizes = np.where(np.arange(len(points)) < len(fine), size, _INNER * size)
+    a larger size at the ``inner`` kinks of q and those found. Where ends are near to each other cells are small beside
+    the distance: q is steep in narrow slip strips and beside tiny stick zones."""
+    fine: Array = np.sort(apart([*ends, *(level.zone if level else ())], _SMALLEST))
+    gaps = np.diff(fine)
+    gap = np.minimum(np.append(gaps, np.inf), np.append(np.inf, gaps))
+    known = apart([*fine.tolist(), *inner, *(level.kinks if level else ())], _INNER * size)
+    points: Array = np.concatenate([fine, [kink for kink in known if kink not in fine]])
+    sizes = np.full(len(points), _INNER * size)
+    sizes[: len(fine)] = np.maximum(size * np.minimum(_NEAR * gap, 1.0), _SMALLEST)
     order = np.argsort(points)
-    return graded(np.array(points)[order], sizes[order], growth)
+    return graded(points[order], sizes[order], growth)
 
 
 def _solve_level(
@@ -162,7 +167,7 @@ def _with_steps(
         level = _solve_level(scene, pressed, path, start, level.vertices, clock, finer)
 
 
-def _mesh_errors(level: _Level, before: _Level, size: float, growth: float, first: bool) -> dict[str, float]:
+def _mesh_errors(level: _Level, before: _Level, growth: float, first: bool) -> dict[str, float]:
     """What the cells make m and n (in contact half-widths), q, q1 and q2 (relative L2 of cell averages) off by.
 
     Ends of the stick zone are off by a share of the last change, or by what cells of that growth leave in between; q by
@@ -173,14 +178,16 @@ def _mesh_errors(level: _Level, before: _Level, size: float, growth: float, firs
     assert before.stick
     assert level.history
     assert before.history
-    gaps = np.diff([-1.0, level.stick.left, level.stick.right, 1.0])
-    unseen = _SOMEWHERE * size * (gaps < _CELLS * size)
+    gaps = np.diff([-1.0, *level.zone, 1.0])
+    gap = np.minimum(gaps[:-1], gaps[1:])
+    cells = np.clip(np.searchsorted(level.vertices, level.zone) - 1, 0, len(level.pressed) - 1)
+    size = np.diff(level.vertices)[cells]
+    unseen = _SOMEWHERE * size * (gap < _CELLS * size)
     moved = max(abs(level.stick.left - before.stick.left), abs(level.stick.right - before.stick.right))
-    known = np.maximum(np.maximum(unseen[:-1], unseen[1:]), max(_MOVED * moved, _CUBIC * growth**3))
-    least = _NARROW if gaps.min() < _SLIVER else 0.0
-    shares = {key: max(least, _CHANGED[key != "q" or not first]) for key in _SHEARS}
+    between = _CUBIC * growth**3 * np.minimum(_NEAR * gap, 1.0)
+    known = np.maximum(unseen, np.maximum(_MOVED * moved, between))
     return dict(zip("mn", known.tolist(), strict=True)) | {
-        key: shares[key] * _apart(of(level.history), level.vertices, of(before.history), before.vertices)
+        key: _CHANGED[not first] * _apart(of(level.history), level.vertices, of(before.history), before.vertices)
         for key, of in _SHEARS.items()
     }
 
@@ -223,10 +230,17 @@ def _result(
     q1, q2 = (P / a * force / widths for force in (history.q1, history.q2)) if history else (0 * x, 0 * x)
     unit = scene.material.A * P  # of displacement
 
-    def at(points: Array) -> tuple[Array, Array]:
+    known = found.centre is not None
+
+    def levels_at(points: Array) -> tuple[Array, Array]:
         scaled = points / a
         cell = np.clip(np.searchsorted(level.vertices, scaled) - 1, 0, len(x) - 1)
-        return pressed.pressure(points), np.where(np.abs(scaled) <= 1, (q2 - q1)[cell], 0.0)
+        inside = np.abs(scaled) <= 1
+        return np.where(inside, q1[cell], 0.0), np.where(inside, q2[cell], 0.0)
+
+    def at(points: Array) -> tuple[Array, Array]:
+        before, after = levels_at(points)
+        return pressed.pressure(points), after - before
 
     return Result(
         method="march",
@@ -239,11 +253,12 @@ def _result(
             x=x * a,
             p=pressed.pressure(x * a),
             dq=q2 - q1,
-            q1=q1 if found.regime != "sliding" else None,
-            q2=q2 if found.regime != "sliding" else None,
+            q1=q1 if known else None,
+            q2=q2 if known else None,
             at=at,
             breaks=level.vertices * a,
             cells=level.vertices * a,
+            levels_at=levels_at if known else None,
         ),
         cost=clock.cost(),
         state=_state(scene, level, a) if history else None,

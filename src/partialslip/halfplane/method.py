@@ -16,7 +16,7 @@ from partialslip.halfplane.stress import Stress
 from partialslip.halfplane.tables import table_error
 from partialslip.halfplane.traction import mean_load_bound
 from partialslip.plan import Plan
-from partialslip.result import Array, Clock, Regime, Result, Slip, SurfaceStress, Traction
+from partialslip.result import FRICTIONLESS, Array, Clock, Regime, Result, Slip, SurfaceStress, Traction
 from partialslip.scene import Scene
 from partialslip.state import State
 
@@ -81,7 +81,7 @@ def solve(
         certificate=_certificate(pressed, cycle) if cycle and slips else {},
         estimate=table,
         shares={"table": table} if table else {},
-        notes=_notes(scene, regime, turns, undetermined) + _coarse(table, scene.fem.accuracy),
+        notes=_notes(regime, turns, undetermined) + _coarse(table, scene.fem.accuracy),
         surface=surface,
         stress_at=stress.inside if stress else None,
         undetermined=undetermined,
@@ -104,8 +104,10 @@ def _change(scene: Scene) -> tuple[Contact, Loading]:
 
 
 def _steady_state(scene: Scene, plan: Plan) -> tuple[Contact, Regime, Loading | None]:
-    """The contact, its regime, and the change from load point 1 to 2 (None where the contact slides)."""
+    """The contact, its regime, and the change from load point 1 to 2 (None where nothing sticks)."""
     load, limit = scene.load, scene.friction.f * scene.P
+    if scene.free:
+        return contact(scene), "frictionless", None
     if scene.slides:
         return contact(scene), "sliding", None
     if not plan.needs("friction"):
@@ -122,6 +124,8 @@ def _steady_state(scene: Scene, plan: Plan) -> tuple[Contact, Regime, Loading | 
 
 def _levels(scene: Scene, pressed: Contact, regime: Regime, cycle: Loading | None, start: State | None) -> Levels | str:
     """q1 and q2, or why there are none."""
+    if regime == "frictionless":
+        return "there is no friction"
     if cycle is None:
         return "the contact slides"
     if regime == "ratchets":
@@ -183,16 +187,16 @@ def _sample(breaks: Array) -> Array:
 
 def _undetermined(regime: Regime, turns: bool, found: Levels | str) -> dict[str, str]:
     reason = f"{PATH_DEPENDENT}between the load points; march with refined steps is the reference"
-    if regime == "sliding":
+    if regime in ("sliding", "frictionless"):
         return {}
     if turns:
         return dict.fromkeys(("m", "n", "q", "q1", "q2"), reason)
     return dict.fromkeys(("q1", "q2"), found) if isinstance(found, str) else {}
 
 
-def _notes(scene: Scene, regime: Regime, turns: bool, undetermined: dict[str, str]) -> tuple[str, ...]:
-    if scene.free:
-        return ("f = 0 and Q = 0: nothing sticks, and without shear force the contact stays where it is",)
+def _notes(regime: Regime, turns: bool, undetermined: dict[str, str]) -> tuple[str, ...]:
+    if regime == "frictionless":
+        return (FRICTIONLESS,)
     if regime == "sliding":
         return ("the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip",)
     notes: list[str] = []

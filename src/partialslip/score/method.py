@@ -173,6 +173,8 @@ def _regime(
     scene: Scene, stick: Stick | None, left: End, right: End, slips: bool
 ) -> tuple[Regime, tuple[End, End] | None]:
     """What the tractions show, and the ends of the stick zone, within the contact's."""
+    if scene.free:
+        return "frictionless", None
     if not slips:
         return "stuck", (left, right)
     if stick is None:

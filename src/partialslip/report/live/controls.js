@@ -32,6 +32,7 @@ const page = (() => {
   function answer({ dQ, dsigma, f, turn, mirror }) {
     const Qf = dQ / (2 * f * P), sf = dsigma / (f * p0), mean = Math.abs(scene.Q_mean) / (f * P);
     const found = { Qf, sf, turn, mirror, f, zone: null, m: null, n: null, q: null, bound: null };
+    if (f === 0 && dQ === 0 && !scene.Q_mean) return { ...found, Qf: 0, sf: 0, regime: "frictionless" };
     if (!(Qf < 1) || Qf + mean >= 1) return { ...found, regime: "sliding" };
     const zone = hertz.stickZone(Qf, sf), bound = hertz.meanLoadBound(zone, Qf);
     const stuck = Qf === 0 && sf === 0;
@@ -46,6 +47,7 @@ const page = (() => {
     stuck: "the loads do not change",
     "small tension": "both ends slip the same way",
     "large tension": "the ends slip opposite ways",
+    frictionless: "there is neither friction nor shear force: nothing sticks, and nothing drives the bodies apart",
     sliding: "the whole contact slides: there is no stick zone",
     ratchets: "every cycle adds slip: the mean of Q is beyond what a steady state can hold, m and n are not reached",
   };
@@ -61,7 +63,7 @@ const page = (() => {
   function numbers({ zone, f, m, n, q, Qf, bound }) {
     const none = ["none", ""], length = (at) => engineering(at * a, "m", 6), turns = hertz.transition(Qf);
     const table = { m: none, n: none, width: none, q: none, turns: none, mean: none };
-    const mean = Math.min(Math.abs(scene.Q_mean) / (f * P), 1);
+    const mean = Math.min(Math.abs(scene.Q_mean) / (f * P) || 0, 1);  // 0/0 without friction
     table.slides = [mean ? `${+(1 - mean).toFixed(5)} \u00b7 2 f P` : "2 f P", engineering((1 - mean) * 2 * f * P, "N/m", 6)];
     if (Qf < 1) table.turns = [`${turns.toFixed(5)} f p0`, engineering(turns * f * p0, "Pa", 6)];
     if (!zone) return table;
