@@ -64,7 +64,7 @@ def test_mean_load_bounded_by_gross_sliding_alone(monkeypatch, red):
     outcome = partialslip.run(scene, ["exact", "march"])
     assert {result.regime for result in outcome.results.values()} == {"ratchets"}
     assert outcome.passed
-    monkeypatch.setattr(method, "mean_load_bound", lambda *_: 1 - 0.3)
+    monkeypatch.setattr("partialslip.halfplane.method.mean_load_bound", lambda *_: 1 - 0.3)
     found = partialslip.run(scene, ["exact", "march"]).comparisons["march"]
     assert any(what.startswith("regime: ratchets") for what in found.missed)
     red("compare: m", found.m, found.bars["m"])

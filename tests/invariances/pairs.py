@@ -226,9 +226,9 @@ def the_first_mesh() -> Any:
     true_uniform = model.uniform
     first: list[Adapted] = []
 
-    def uniform(problem: Problem, size: float, width: float, clock: Clock) -> Adapted:
+    def uniform(problem: Problem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
         if not first:
-            first.append(true_uniform(problem, size, width, clock))
+            first.append(true_uniform(problem, size, width, clock, *rest))
         return replace(first[0], level=level._level(problem, first[0].level.halves, 0, clock))
 
     return patch.object(model, "uniform", uniform)
@@ -315,18 +315,18 @@ def stretched(half: Half, kappa: float) -> Array:
 def shifted(shift: float, approach: float, method: str, kind: str, *settings: str) -> Apart:
     """All that is there moved along x, by so many lengths of the problem, and the bodies apart before they meet."""
     scene = scene_of(kind, *settings)
-    true_march, true_uniform = marching.march, model.uniform
+    true_march, true_uniform = marching.march_refined, model.uniform
 
     def march(C: Array, x: Array, *rest: Any) -> Any:
         return true_march(C, x + shift, *rest)
 
-    def uniform(problem: Problem, size: float, width: float, clock: Clock) -> Adapted:
-        here = true_uniform(problem, size, width, clock)
+    def uniform(problem: Problem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
+        here = true_uniform(problem, size, width, clock, *rest)
         meshes = [replace(half.mesh, points=half.mesh.points + np.array([shift, 0])) for half in here.level.halves]
         there = replace(problem, gap=lambda x: problem.gap(x - shift) + approach)
         return replace(here, level=level.solve_on(meshes, there, here.level.halves[0].mesh.points.max(), clock))
 
-    patches = patch.object(marching, "march", march), patch.object(model, "uniform", uniform)
+    patches = patch.object(marching, "march_refined", march), patch.object(model, "uniform", uniform)
     back = -shift * scene.length if method == "fem" else 0.0
     return compared(method, scene, scene, lambda found: found.moved(back), block, *patches)
 
@@ -344,14 +344,15 @@ def shuffled(seed: int, *args: Any) -> Mesh:
 
 def reordered(seed: int, method: str, kind: str, *settings: str) -> Apart:
     """Nodes, elements and cells in any order."""
-    true_march = marching.march
+    true_march = marching.march_refined
 
-    def march(C: Array, x: Array, bound: Array, path: Any) -> Any:
+    def march(C: Array, x: Array, bound: Array, path: Any, *rest: Any) -> Any:
         order = np.random.default_rng(seed).permutation(len(x))
-        return true_march(C[np.ix_(order, order)], x[order], bound[order], path).of(np.argsort(order))
+        found = true_march(C[np.ix_(order, order)], x[order], bound[order], path, *rest)
+        return tuple(each and each.of(np.argsort(order)) for each in found)
 
     scene = scene_of(kind, *settings)
-    return compared(method, scene, scene, same, partial(shuffled, seed), patch.object(marching, "march", march))
+    return compared(method, scene, scene, same, partial(shuffled, seed), patch.object(marching, "march_refined", march))
 
 
 def many_loads(seed: int) -> Apart:
