@@ -16,7 +16,7 @@ from unittest.mock import patch
 import numpy as np
 
 from partialslip import halfplane, load_scene, load_state, plan
-from partialslip.condensed import coupled
+from partialslip.condensed import coupled, friction
 from partialslip.halfplane import marching
 from partialslip.judge import Q_BAR, cell_means
 from partialslip.result import Array, Clock, Result
@@ -126,10 +126,13 @@ def times(scene: Scene, Q: float = 1.0, sigma: float = 1.0) -> tuple[str, ...]:
 @contextmanager
 def guise(mesh: Callable[..., Mesh] = block, *patches: Any, own: bool = False) -> Iterator[None]:
     """Meshes made by ``mesh``, and other patches. Unless every run is to make its ``own`` meshes, march takes its first
-    one only, and finite elements are to be of :data:`SIZE`."""
+    one only, finite elements are to be of :data:`SIZE`, and steps are those that are asked for: steps that are chosen
+    differ in both, as meshes do."""
     with ExitStack() as stack:
         if not own:
             stack.enter_context(patch.object(marching, "_MESHES", ((1e-3, 0.1),)))
+            for module in (friction, level):
+                stack.enter_context(patch.object(module, "refined", lambda *given: given[3]))
         stack.enter_context(patch.object(level, "block", mesh))
         for each in patches:
             stack.enter_context(each)

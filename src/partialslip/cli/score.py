@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, TypeVar
 
 from partialslip.cli.common import add_scene, check_folder, held, out_folder, print_outcome
 from partialslip.errors import InputError
-from partialslip.inputfile import check_regular
 from partialslip.reading import load_scene
 from partialslip.run import METHODS
 from partialslip.score import score
 from partialslip.score.csvfile import template
-from partialslip.score.read import LARGEST
+from partialslip.score.read import check
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -85,7 +84,7 @@ def _score(options: argparse.Namespace) -> int:
     from partialslip.report import write_run
 
     file = Path(options.file)
-    check_regular(file, LARGEST)  # before anything is made for it
+    check(file)  # before a folder is made for it
     folder = out_folder(options, f"{scene.name}-{file.stem}")
     with held(folder), working(scene.name) as tell:
         outcome = score(

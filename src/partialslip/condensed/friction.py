@@ -289,8 +289,7 @@ class _Coarse:
     """Tangential forces summed over groups of neighbours, which share them as they share the bounds."""
 
     def __init__(self, tangential: Array, stretch: Array, bound: Array, accuracy: float) -> None:
-        count = min(_GROUPS, len(bound))
-        self._first = np.arange(count) * len(bound) // count
+        self._first = _groups(len(bound))
         self._bound = self.sums(bound)
         share = bound / np.repeat(self._bound, np.diff(self._first, append=len(bound)))
         self._C = np.add.reduceat(self.sums(share[:, None] * tangential) * share, self._first, axis=1)
@@ -342,6 +341,14 @@ class _Coarse:
         self._solves += 1
         free = self._C @ q + (end[1] - load[1]) * self._stretch
         return solve_bounded(self._C, free, -self._bound, self._bound, float(end[0])).x
+
+
+def _groups(count: int) -> npt.NDArray[np.int64]:
+    """First members of groups of neighbours, about equally many in each; in the mirror image they are the same."""
+    groups = min(_GROUPS, count)
+    groups -= (count - groups) % 2
+    left = np.arange(groups // 2 + 1) * count // groups
+    return np.concatenate([left, count - left[1 : (groups + 1) // 2][::-1]])
 
 
 def resting(forces: Array) -> Solution:

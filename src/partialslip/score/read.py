@@ -20,6 +20,15 @@ LARGEST = 1_000_000_000  # bytes
 _FLAT = 0.05  # of the points' extent along x: what they may lie apart across it
 
 
+def check(file: Path) -> None:
+    """Raise InputError if ``file`` is of no known format, or cannot be read."""
+    from partialslip_meshes.pointdata import FORMATS
+
+    if file.suffix.lower() not in (*TABLES, ".frd", ".dat", *FORMATS):
+        raise InputError(f"{file}: must end in {', '.join(TABLES)}, .frd, .dat or {', '.join(sorted(FORMATS))}")
+    check_regular(file, LARGEST)
+
+
 def read(
     file: Path,
     scene: Scene,
@@ -73,11 +82,9 @@ def text(file: Path) -> str:
 
 
 def _point_data(file: Path) -> dict[str, Array]:
-    from partialslip_meshes.pointdata import FORMATS, read_point_data
+    from partialslip_meshes.pointdata import read_point_data
 
-    if file.suffix.lower() not in FORMATS:
-        raise InputError(f"{file}: must end in {', '.join(TABLES)}, .frd, .dat or {', '.join(sorted(FORMATS))}")
-    check_regular(file, LARGEST)
+    check(file)
     points, data = read_point_data(file)
     shears = [shear for shear in SHEARS if set(shear) <= set(data) and shear[0].startswith(("q", "dq"))]
     if NORMAL[0] not in data or len(shears) != 1:
