@@ -232,6 +232,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         shares=shares if estimate else {},
         notes=found.notes
         + _apart(level)
+        + _taken(level)
         + _beside(scene, level, adapted)
         + _settled(adapted, scene)
         + doubts(certified, estimate, accuracy),
@@ -297,6 +298,16 @@ def _apart(level: Level) -> tuple[str, ...]:
     if level.pieces == 1:
         return ()
     return (f"the contact is in {level.pieces} pieces: a, m and n are of the outermost ends",)
+
+
+def _taken(level: Level) -> tuple[str, ...]:
+    """A note on steps of coupled bodies, which are those that were asked for."""
+    if not level.history or not level.coupled or not level.history.path.moves:
+        return ()
+    steps = level.history.path.substeps
+    return (
+        f"coupled bodies go from load point to load point in {steps} steps (load.steps), whose error is not estimated",
+    )
 
 
 def _beside(scene: Scene, level: Level, adapted: Adapted) -> tuple[str, ...]:
