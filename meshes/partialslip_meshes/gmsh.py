@@ -8,10 +8,12 @@ import importlib.util
 import os
 import pkgutil
 import re
+import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -58,7 +60,8 @@ class _Mesher:
         """The answer to ``request``. Raises EOFError or OSError if the process dies."""
         assert self._process.stdin
         assert self._process.stdout
-        send(self._process.stdin.fileno(), request)
+        with _no_broken_pipe_signal():
+            send(self._process.stdin.fileno(), request)
         return receive(self._process.stdout.fileno())
 
     def end(self) -> int:
@@ -74,6 +77,22 @@ class _Mesher:
             if pipe:
                 pipe.close()
         self._process.returncode = self._process.returncode or 0  # nothing to wait for
+
+
+@contextmanager
+def _no_broken_pipe_signal() -> Iterator[None]:
+    """Leave a pipe that nobody reads to BrokenPipeError: where the caller's SIGPIPE is the system's, it would end this
+    process."""
+    if not hasattr(signal, "sigtimedwait"):  # Windows has no such signal, macOS no such call
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGPIPE})
+    try:
+        yield
+    finally:
+        if signal.SIGPIPE not in before and signal.SIGPIPE in signal.sigpending():
+            signal.sigtimedwait({signal.SIGPIPE}, 0)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 _lock = threading.Lock()

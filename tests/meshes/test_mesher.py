@@ -236,11 +236,24 @@ def killed(times):
         if left[0]:
             left[0] -= 1
             self._process.kill()
+            os.waitid(os.P_PID, self._process.pid, os.WEXITED | os.WNOWAIT)  # dead, so that its pipe is broken
         return true(self, request)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(mesher._Mesher, "ask", ask)
         yield
+
+
+@posix
+def test_replaced_where_a_broken_pipe_ends_programs(expected):
+    """The caller's SIGPIPE may be the system's, which ends the process that writes."""
+    before = signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    try:
+        for _ in range(5):
+            with killed(1):
+                assert same(block(*OUTLINE), expected)
+    finally:
+        signal.signal(signal.SIGPIPE, before)
 
 
 @posix

@@ -169,13 +169,13 @@ def test_without_weasyprint_there_is_the_page(tmp_path, monkeypatch, capsys):
 
 def test_random_scenes_are_summed_up(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "weasyprint", None)
-    verified = verify_suite("stress", method="march", seed=5, count=20, processes=1, out=tmp_path)
+    verified = verify_suite("stress", method="march", seed=5, count=10, processes=1, out=tmp_path)
     text = page(tmp_path)
     assert "<section" not in text
     assert not (tmp_path / "scenes").exists()
     by_kind = [row for row in words(text[text.index("<h2>Certificates") :]) if len(row) == 5][1:]
     found = [v.error for some in verified.verdicts.values() for v in some if v.quantity == "certificate"]
-    assert len(found) >= 15
+    assert len(found) >= 7
     assert sum(int(row[1]) for row in by_kind) == len(found)
     assert max(float(row[3]) for row in by_kind if row[3]) == pytest.approx(max(found), rel=0.05)
 

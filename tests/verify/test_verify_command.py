@@ -264,7 +264,7 @@ def test_a_random_scene_is_its_seed_and_number():
 @pytest.mark.parametrize(
     ("method", "count"),
     [
-        ("march", 20),
+        ("march", 8),
         ("fem", 8),
         pytest.param("march", 2000, marks=pytest.mark.slow),
         pytest.param("fem", 200, marks=pytest.mark.slow),

@@ -19,11 +19,11 @@ def print_run(run: Run, console: Console) -> None:
     title = f"{run.scene.name}: {run.scene.title}" if run.scene.title else run.scene.name
     console.print(title, style="bold", markup=False)
     if run.comparisons:
-        console.print(rows.units(run), soft_wrap=True, markup=False)
+        console.print(rows.units(run), markup=False)
     for name, comparison in run.comparisons.items():
         print_table(console, rows.headings(run, name), rows.error_rows(comparison), words=(0, 1, 7))
         for line in rows.unjudged(comparison):
-            console.print(line, soft_wrap=True, markup=False)
+            console.print(line, markup=False)
     methods = rows.methods(run.results, compared=bool(run.comparisons))
     _print_lines(console, [*methods, *rows.effects(run.plan)])
     console.print(rows.verdict(run), style="bold", markup=False)
