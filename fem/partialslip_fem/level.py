@@ -13,7 +13,8 @@ from scipy.interpolate import PPoly
 from partialslip.condensed import coupled
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.coupled import Pressed
-from partialslip.condensed.friction import History, Path, march, refined
+from partialslip.condensed.friction import History, Path, march
+from partialslip.condensed.steps import refined
 from partialslip.condensed.zones import Zone, finest, kinks, left_end, right_end, stick_zone
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock

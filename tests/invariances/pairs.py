@@ -16,7 +16,7 @@ from unittest.mock import patch
 import numpy as np
 
 from partialslip import halfplane, load_scene, load_state, plan
-from partialslip.condensed import coupled, friction
+from partialslip.condensed import coupled, steps
 from partialslip.halfplane import marching
 from partialslip.judge import Q_BAR, cell_means
 from partialslip.result import Array, Clock, Result
@@ -131,7 +131,7 @@ def guise(mesh: Callable[..., Mesh] = block, *patches: Any, own: bool = False) -
     with ExitStack() as stack:
         if not own:
             stack.enter_context(patch.object(marching, "_MESHES", ((1e-3, 0.1),)))
-            for module in (friction, level):
+            for module in (steps, level):
                 stack.enter_context(patch.object(module, "refined", lambda *given: given[3]))
         stack.enter_context(patch.object(level, "block", mesh))
         for each in patches:

@@ -21,11 +21,6 @@ from partialslip.state import State
 _REPEATS = 1e-13  # change of a node's q in a cycle, in the sum of |q|, that is rounding
 _STEADY = 1e-6  # change of q from cycle to cycle, in its range or in f p0, that counts as none
 _SLIPS = 1e-9  # what is missing of the bound, relative, that is rounding
-_GROUPS, _HALVINGS, _SOLVES = 64, 6, 400  # of neighbours, on which steps are chosen; a step is halved so often at most
-_MANY = 4  # steps, of which each is tried in two only
-_TELLING = 1e-7  # change of the forces, relative to f P, that is more than rounding
-_TRIED = (0, 1 / 32, 1 / 8, 1 / 2, 3 / 4, 7 / 8, 1)  # fractions of a way on which slip that turns round is looked for
-_CLOSES = 3  # cycles at least where the first loading does not tell the whole of fully reversed loads
 _RATCHETS = 1e-3  # net slip of a cycle, in the slip of half a cycle, that counts where q has settled
 
 
@@ -235,120 +230,7 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
     return follow(path, advance, resting(0 * bound if path.before is None else path.before))
 
 
-def march_refined(
-    tangential: Array, stretch: Array, bound: Array, path: Path, accuracy: float
-) -> tuple[History, History | None]:
-    """:func:`march` in as many steps as it takes for the forces to be right to ``accuracy``, relative to f P.
-
-    Where these are more than were asked for, the second one is the history in twice as many steps: errors being of
-    first order, the steps are off by twice the difference, or less. A path whose ``ways`` are known is followed as it
-    is.
-    """
-    if path.ways:
-        return march(tangential, stretch, bound, path), None
-    path = refined(tangential, stretch, bound, path, accuracy)
-    history = march(tangential, stretch, bound, path)
-    if path.most_steps == path.substeps:
-        return history, None
-    return history, march(tangential, stretch, bound, path.halved)
-
-
 Advance = Callable[[Solution, float, float], tuple[Solution, Array]]
-
-
-def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accuracy: float) -> Path:
-    """The path in as many steps as the answer needs: :func:`march` on groups of neighbours decides.
-
-    One step is the answer where no slip turns round on the way, for then the conditions of one step are those of the
-    gradual way. Otherwise each of some steps, smaller towards the load points, is halved as long as its two halves lead
-    elsewhere: slip turns round at a moment, so that few steps are halved often. Bulk tension that does not change
-    turns nothing round, as shear drives all slip one way.
-    """
-    strains = {strain for _, strain in (path.begin, *path.cycle)}
-    if len(strains) == 1:
-        return path
-    coarse = _Coarse(tangential, stretch, bound, accuracy)
-    load = np.array(path.begin)
-    q = coarse.sums(0 * bound if path.before is None else path.before)
-    ways: list[tuple[float, ...]] = []
-    ends: list[Array] = []
-    for point in (*path.cycle[-1:], *path.cycle):
-        end = np.array(point)
-        fractions, q = coarse.way(q, load, end, path.substeps)
-        ways.append(fractions)
-        ends.append(q)
-        load = end
-    if path.half and all(len(fractions) == 1 for fractions in ways) and coarse.same(ends[0], -ends[1]):
-        return replace(path, ways=path.fractions)
-    if path.half:  # the first loading does not tell the whole: the cycle is to close
-        path = replace(path, half=False, cycles=max(path.cycles, _CLOSES))
-    return replace(path, ways=tuple(ways))
-
-
-class _Coarse:
-    """Tangential forces summed over groups of neighbours, which share them as they share the bounds."""
-
-    def __init__(self, tangential: Array, stretch: Array, bound: Array, accuracy: float) -> None:
-        self._first = _groups(len(bound))
-        self._bound = self.sums(bound)
-        share = bound / np.repeat(self._bound, np.diff(self._first, append=len(bound)))
-        self._C = np.add.reduceat(self.sums(share[:, None] * tangential) * share, self._first, axis=1)
-        self._stretch = self.sums(share * stretch)
-        self._near, self._solves = max(accuracy, _TELLING) * float(self._bound.sum()), 0
-
-    def sums(self, forces: Array) -> Array:
-        """Sums over the groups."""
-        result: Array = np.add.reduceat(forces, self._first)
-        return result
-
-    def same(self, q: Array, other: Array) -> bool:
-        """Whether the two differ by less than what is asked for."""
-        return float(np.abs(q - other).sum()) <= self._near
-
-    def way(self, q: Array, load: Array, end: Array, substeps: int) -> tuple[tuple[float, ...], Array]:
-        """Fractions of the way from ``load`` to ``end`` that steps are to end at, and where they lead from ``q``."""
-        fractions: list[float] = []
-        self._solves = 0
-        for number in range(substeps):
-            stops = [(number + part) / substeps for part in (_TRIED if substeps < _MANY else (0, 1 / 2, 1))]
-            loads = [load + stop * (end - load) for stop in stops]
-            whole = self._step(q, loads[0], loads[-1])
-            tried = [q]
-            for start, stop in itertools.pairwise(loads):
-                tried.append(self._step(tried[-1], start, stop))
-            if self.same(tried[-1], whole):
-                fractions.append(stops[-1])
-                q = whole
-                continue
-            for (begins, start), (ends, stop) in itertools.pairwise(zip(stops, loads, strict=True)):
-                parts, q = self._halve(q, start, stop, self._step(q, start, stop), _HALVINGS)
-                fractions += [begins + part * (ends - begins) for part in parts]
-        fractions[-1] = 1.0
-        return tuple(fractions), q
-
-    def _halve(self, q: Array, load: Array, end: Array, whole: Array, depth: int) -> tuple[list[float], Array]:
-        """The same of steps that are halved until they lead where their halves do; ``whole`` is where one leads."""
-        middle = (load + end) / 2
-        first = self._step(q, load, middle)
-        second = self._step(first, middle, end)
-        if depth == 0 or self._solves > _SOLVES or self.same(second, whole):
-            return [1.0], second
-        left, at_middle = self._halve(q, load, middle, first, depth - 1)
-        right, at_end = self._halve(at_middle, middle, end, self._step(at_middle, middle, end), depth - 1)
-        return [0.5 * at for at in left] + [0.5 + 0.5 * at for at in right], at_end
-
-    def _step(self, q: Array, load: Array, end: Array) -> Array:
-        self._solves += 1
-        free = self._C @ q + (end[1] - load[1]) * self._stretch
-        return solve_bounded(self._C, free, -self._bound, self._bound, float(end[0])).x
-
-
-def _groups(count: int) -> npt.NDArray[np.int64]:
-    """First members of groups of neighbours, about equally many in each; in the mirror image they are the same."""
-    groups = min(_GROUPS, count)
-    groups -= (count - groups) % 2
-    left = np.arange(groups // 2 + 1) * count // groups
-    return np.concatenate([left, count - left[1 : (groups + 1) // 2][::-1]])
 
 
 def resting(forces: Array) -> Solution:

@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.condensed.friction import History, Path, certificate, doubts, judge, load_path, march_refined
+from partialslip.condensed.friction import History, Path, certificate, doubts, judge, load_path
+from partialslip.condensed.steps import march_refined
 from partialslip.condensed.threads import one_thread
 from partialslip.condensed.zones import Zone, apart, finest, kinks, stick_zone
 from partialslip.halfplane.cells import compliance, forces, graded
