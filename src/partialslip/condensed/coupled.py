@@ -14,7 +14,7 @@ import numpy.typing as npt
 import scipy.linalg as la
 
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
-from partialslip.condensed.friction import History, Path, follow, resting
+from partialslip.condensed.friction import History, Path, certified, follow, resting
 from partialslip.condensed.pressing import Punch
 from partialslip.result import Array
 
@@ -242,17 +242,7 @@ def _similar(
 
 def _certified(done: Sequence[tuple[Solution, Solution]]) -> tuple[Solution, Solution]:
     """The last solution, with the residuals of all."""
-
-    def worst(steps: list[Solution]) -> Solution:
-        return replace(
-            steps[-1],
-            residual=np.max([step.residual for step in steps], axis=0),
-            imbalance=max(step.imbalance for step in steps),
-            iterations=sum(step.iterations for step in steps),
-            changes=sum(step.changes for step in steps),
-        )
-
-    return worst([p for p, _ in done]), worst([q for _, q in done])
+    return certified([p for p, _ in done]), certified([q for _, q in done])
 
 
 def march(

@@ -4,7 +4,7 @@ Scaled: lengths by sqrt(A R P), forces by P and displacements by A P, so that no
 """
 
 import itertools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -249,14 +249,14 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
     first, *ways = path.fractions
     load = np.array(path.begin)
     went = [_go(advance, before, load, np.array(path.cycle[-1]), first)]
-    points, taken = [_certified(went[0])], len(first)
+    points, taken = [certified([step for step, _ in went[0]])], len(first)
     if path.half:
         return _reversed(path, points[0], went[0])
     for _ in range(path.cycles):
         went = []
         for start, end, fractions in zip((path.cycle[-1], *path.cycle), path.cycle, ways, strict=False):
             went.append(_go(advance, points[-1], np.array(start), np.array(end), fractions))
-            points.append(_certified(went[-1]))
+            points.append(certified([step for step, _ in went[-1]]))
             taken += len(fractions)
         if np.abs(points[-1].x - points[-1 - len(went)].x).max() <= _REPEATS * np.abs(points[-1].x).sum():
             break
@@ -314,9 +314,8 @@ def _go(advance: Advance, before: Solution, start: Array, end: Array, fractions:
     return way
 
 
-def _certified(way: _Way) -> Solution:
-    """The last solution of a way, with the residuals of all of it."""
-    steps = [step for step, _ in way]
+def certified(steps: Sequence[Solution]) -> Solution:
+    """The last of some steps' solutions, with the residuals and the work of all of them."""
     return replace(
         steps[-1],
         residual=np.max([step.residual for step in steps], axis=0),
