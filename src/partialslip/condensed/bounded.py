@@ -12,6 +12,7 @@ Sides = npt.NDArray[np.int8]
 
 _EPS = float(np.finfo(float).eps)
 _HALVINGS = 60  # of a step, after which less than rounding is left of it
+_CHANCES = 3  # rounds in which the members on a wrong side may not have become fewer
 
 
 @dataclass(frozen=True)
@@ -41,10 +42,11 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, 
     """Minimise x.C x/2 - g.x over lower <= x <= upper with sum(x) = total.
 
     The multiplier of the sum is a rigid shift. With it the conditions read, for r = C x - g - shift and any
-    rho > 0: x is the projection of the augmented multiplier x - rho r onto the bounds. At a given shift they are
-    solved by block pivoting, which ends for every positive definite C. Their sum(x) grows with the shift, piecewise
-    linearly: a Newton step ends at the root or leaves its piece towards the root, so that the bracket shuts that piece
-    out, and there are finitely many.
+    rho > 0: x is the projection of the augmented multiplier x - rho r onto the bounds. Block pivoting solves them with
+    the shift that each face needs for its sum, in a few rounds as a rule. Should these not end, it goes on at a given
+    shift, where it ends for every positive definite C. Their sum(x) grows with the shift, piecewise linearly: a Newton
+    step ends at the root or leaves its piece towards the root, so that the bracket shuts that piece out, and there are
+    finitely many.
 
     Parameters
     ----------
@@ -58,7 +60,7 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, 
         Sides to begin with, those of a problem like this one (:attr:`Solution.sides`); otherwise all are free.
     """
     pivoting = _BlockPivoting(C, g, lower, upper, start)
-    low, high, shift = -np.inf, np.inf, pivoting.first_shift(total)
+    low, high, shift = -np.inf, np.inf, pivoting.settle(total)
     while True:
         x, r, slope = pivoting.solve(shift)
         excess = float(x.sum() - total)
@@ -97,10 +99,26 @@ class _BlockPivoting:
         self._factored: npt.NDArray[np.bool_] | None = None
         self.iterations = self.changes = 0
 
-    def first_shift(self, total: float) -> float:
-        """The shift that gives the total with the sides to begin with."""
-        at_zero, slope = self._face(0.0)
-        return float((total - at_zero.sum()) / slope)
+    def settle(self, total: float) -> float:
+        """The shift that gives the total with the sides to begin with, and then with those that it calls for in turn,
+        until they call for no others or their number does not fall any more."""
+        fewest, chances, shift = len(self._g) + 1, _CHANCES, 0.0
+        while True:
+            at_zero, slope = self._face(0.0)
+            if slope <= 0:
+                return shift
+            shift = float((total - at_zero.sum()) / slope)
+            x = at_zero
+            x[self._side == 0] += shift * self._growth
+            _, wanted = self._conditions(x, shift)
+            wrong = np.count_nonzero(wanted != self._side)
+            if wrong < fewest:
+                fewest, chances = wrong, _CHANCES
+            else:
+                chances -= 1
+            if wrong == 0 or chances < 0:
+                return shift
+            self._turn(wanted)
 
     def to_next_free(self, r: Array, more: bool) -> float:
         """With every member at a bound: free the nearest one that can give more (or less); the shift to it."""
@@ -112,7 +130,7 @@ class _BlockPivoting:
 
     def solve(self, shift: float) -> tuple[Array, Array, float]:
         """The minimiser, its r = C x - g - shift, and how fast its sum grows with the shift."""
-        fewest, chances = len(self._g) + 1, 3
+        fewest, chances = len(self._g) + 1, _CHANCES
         while True:
             x, slope = self._face(shift)
             r, wanted = self._conditions(x, shift)
@@ -120,12 +138,12 @@ class _BlockPivoting:
             if len(wrong) == 0:
                 return x, r, slope
             if len(wrong) < fewest:
-                fewest, chances = len(wrong), 3
+                fewest, chances = len(wrong), _CHANCES
             elif chances > 0:
                 chances -= 1
             else:
                 return self._descend(x, shift)
-            self._change(np.where(self._side == 0, wanted, np.where(wanted == self._side, wanted, 0)))
+            self._turn(wanted)
 
     def _descend(self, x: Array, shift: float) -> tuple[Array, Array, float]:
         """The same by projected Newton steps, from near ``x``.
@@ -167,6 +185,10 @@ class _BlockPivoting:
         """What rounding makes of r."""
         noise: Array = 4 * _EPS * (self._diagonal * np.abs(x).sum() + np.abs(self._g) + abs(shift))
         return noise
+
+    def _turn(self, wanted: Sides) -> None:
+        """Members turn to the sides that are called for: from one bound to the other by way of neither."""
+        self._change(np.where((self._side == 0) | (wanted == self._side), wanted, 0))
 
     def _change(self, sides: Sides) -> None:
         self.changes += not np.array_equal(sides, self._side)

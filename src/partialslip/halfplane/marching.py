@@ -102,7 +102,9 @@ def solve(
             errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
             ends_known = max(errors["m"], errors["n"])
             progress(f"mesh {meshes}: {len(level.pressed):,} cells, m, n known to {ends_known:.1e} a")
-            if all(errors[key] <= ALLOWED[key] * scene.fem.accuracy for key in _JUDGED):
+            allowed = {key: ALLOWED[key] * scene.fem.accuracy for key in _JUDGED}
+            # what steps that cannot be refined further leave is not for the cells to make up for
+            if all(meshed[key] <= max(most - stepped.get(key, 0.0), most / 2) for key, most in allowed.items()):
                 break
     assert level is not None
     return _result(scene, pressed, level, errors, shares, {"meshes": meshes, "iterations": iterations}, clock)
