@@ -119,7 +119,7 @@ def together(level: Level, smooth: Mapping[str, float], at_ends: Mapping[str, fl
         norms = _norms(level)
         moved = float(np.hypot.reduce(_SHIFT * _beside(level) * [errors["m"], errors["n"]])) * float(norms[0])
         for key, norm in zip(("q", "q1", "q2"), norms.tolist(), strict=True):
-            if key in errors:
+            if key in errors and norm > 0:
                 errors[key] = math.hypot(errors[key], moved / norm)
     return errors
 
@@ -129,8 +129,9 @@ def _beside(level: Level) -> Array:
     relative to the L2 norm of q, (2,)."""
     assert level.history
     change = level.history.change / 2
-    strengths: Array = _strengths(level, [change], level.ends[2:4])[0] * level.half_width / _norm(level.shear(change))
-    return strengths
+    strengths: Array = _strengths(level, [change], level.ends[2:4])[0] * level.half_width
+    norm = _norm(level.shear(change))
+    return strengths / norm if norm > 0 else 0 * strengths  # nothing changes: there is no kink, either
 
 
 def enough(level: Level, gaps: Array, error: float) -> float:

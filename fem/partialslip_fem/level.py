@@ -166,9 +166,13 @@ class Level:
     def step_errors(self) -> dict[str, float]:
         """What a (in half-widths), q1 and q2 (relative L2) may be off by for the sake of the steps in which coupled
         bodies are pressed."""
-        if not self.pressed:
+        if not self.pressed or not self.history:
             return {}
-        return {"a": self.pressed.errors.get("a", 0.0)} | dict.fromkeys(("q1", "q2"), self.pressed.errors["q"])
+        errors, weights = self.pressed.errors, np.asarray(self.body.mass.sum(axis=1)).ravel()
+        off = errors["q"] * np.linalg.norm(self.pressed.tangential.x / np.sqrt(weights))
+        held = np.sqrt(weights[self.nodes])
+        norms = {key: float(np.linalg.norm(getattr(self.history, key) / held)) for key in ("q1", "q2")}
+        return {"a": errors.get("a", 0.0)} | {key: float(off / norm) for key, norm in norms.items() if norm > 0}
 
     @property
     def body(self) -> Body:
@@ -424,7 +428,7 @@ def _kinks(problem: Problem, line: Body, nodes: Indices, history: History) -> tu
         return ()
     x, vertices, forces = line.x[nodes], line.x[:: line.order], partial(_forces_of, line, nodes)
     found = finest(problem.start[1].x) if problem.start else []
-    for bound, q in history.visited:
+    for q, bound in history.visited:
         found += kinks(x, bound, q, vertices, forces)
     return tuple(found)
 

@@ -1,6 +1,6 @@
 """A run: one scene, one or more methods, every result compared with the exact one."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -44,12 +44,8 @@ class Run:
 
     @property
     def reference(self) -> str | None:
-        """The method that the others are compared with: the first of exact, march and fem that can judge. Where slip
-        turns on the way between the load points the exact one cannot, if there is the march."""
-        known = [name for name in (ALL_EFFECTS, *METHODS) if name in self.results]
-        if known[:1] == ["exact"] and self.results["exact"].path_dependent and "march" in known:
-            return "march"
-        return next(iter(known), None)
+        """The method that the others are compared with (:func:`reference_of`)."""
+        return reference_of(self.results)
 
     @property
     def judged(self) -> bool:
@@ -118,6 +114,15 @@ class Run:
 
     def _repr_html_(self) -> str:
         return views.html(self)
+
+
+def reference_of(results: Mapping[str, Result]) -> str | None:
+    """The method that the others are compared with: the first of exact, march and fem that can judge. Where slip turns
+    on the way between the load points the exact one cannot, if there is the march."""
+    known = [name for name in (ALL_EFFECTS, *METHODS) if name in results]
+    if known[:1] == ["exact"] and results["exact"].path_dependent and "march" in known:
+        return "march"
+    return next(iter(known), None)
 
 
 def default_methods(scene: Scene) -> tuple[str, ...]:

@@ -49,7 +49,7 @@ class Red:
         """One of the comparison's with the exact solution: error ``key`` of a run of the scene."""
         found = partialslip.run(scene, ["exact", "fem"]).comparisons["fem"]
         assert key in {what.split(":")[0] for what in found.missed}
-        self(f"compare: {key}", getattr(found, key), found.bars[key])
+        self(f"compare: {key}", found.errors[key], found.bars[key])
 
 
 @pytest.fixture

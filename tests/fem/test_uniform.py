@@ -55,7 +55,8 @@ def test_another_material_is_another_factorisation():
 def test_no_bars_and_no_verdict():
     _, found = solved("fem.size=0.2", "fem.order=1")
     assert found.bars == {}
-    assert found.passed
+    assert not found.passed
+    assert found.missed == ()
 
 
 @pytest.mark.parametrize("size", ["0", "1", "-0.1", "nan", "small"])

@@ -18,7 +18,7 @@ from partialslip.halfplane.method import solve
 from partialslip.plan import plan
 from partialslip.result import Array, Result
 from partialslip.scene import Scene
-from partialslip.score import read_as
+from partialslip.score import _read_as
 from partialslip.score.method import scored
 from partialslip.score.samples import samples
 
@@ -242,7 +242,7 @@ def readings(scene: Scene, sampling: str, seed: int = 0) -> Iterator[Reading]:
         truth, x = table.truth, np.unique(table.columns["x"])
         spacing = float(np.median(np.diff(x))) / truth.a
         try:
-            found = read_as(scene, scored(scene, samples(table.columns, way, (1, 1, 1), table.order), way, way), asked)
+            found = _read_as(scene, scored(scene, samples(table.columns, way, (1, 1, 1), table.order), way, way), asked)
         except InputError as error:
             yield Reading(way, size, None, None, spacing, (str(error),))
             continue

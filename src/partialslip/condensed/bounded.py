@@ -111,7 +111,7 @@ class _BlockPivoting:
             x = at_zero
             x[self._side == 0] += shift * self._growth
             _, wanted = self._conditions(x, shift)
-            wrong = np.count_nonzero(wanted != self._side)
+            wrong = int(np.count_nonzero(wanted != self._side))
             if wrong < fewest:
                 fewest, chances = wrong, _CHANCES
             else:

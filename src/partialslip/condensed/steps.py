@@ -14,7 +14,7 @@ _GROUPS, _HALVINGS, _SOLVES = 64, 6, 400  # of neighbours, on which steps are ch
 _TELLING = 1e-7  # change of the forces, relative to f P, that is more than rounding
 _TRIED = (0, 1 / 32, 1 / 8, 1 / 2, 3 / 4, 7 / 8, 1)  # fractions of a way on which slip that turns round is looked for
 _MANY = 4  # steps, of which each is tried in two only
-_CLOSES = 3  # cycles at least where the first loading does not tell the whole of fully reversed loads
+_CLOSES = 3  # cycles at least where the first loading does not tell the whole of fully reversed loads, or to look at
 
 
 def march_refined(
@@ -51,7 +51,8 @@ def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accurac
     q = coarse.sums(0 * bound if path.before is None else path.before)
     ways: list[tuple[float, ...]] = []
     ends: list[Array] = []
-    for point in (*path.cycle[-1:], *path.cycle):
+    followed = max(min(path.cycles, _CLOSES), 1)  # the first cycles differ most
+    for point in (*path.cycle[-1:], *followed * path.cycle):
         end = np.array(point)
         fractions, q = coarse.way(q, load, end, path.substeps)
         ways.append(fractions)
@@ -61,7 +62,10 @@ def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accurac
         return replace(path, ways=path.fractions)
     if path.half:  # the first loading does not tell the whole: the cycle is to close
         path = replace(path, half=False, cycles=max(path.cycles, _CLOSES))
-    return replace(path, ways=tuple(ways))
+    first, *others = ways
+    cycle = len(path.cycle)
+    united = (tuple(sorted(set(itertools.chain(*others[number::cycle])))) for number in range(cycle))
+    return replace(path, ways=(first, *united))
 
 
 class _Coarse:

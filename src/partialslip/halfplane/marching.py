@@ -29,6 +29,8 @@ _SMALLEST = 1e-9  # in a: ends that lie nearer to each other are one, and no cel
 _INNER = 8.0  # times larger than at the ends are the cells at kinks of q, which do not decide about m and n
 _STEPS = 1.0  # of the accuracy: what a step may change of q, in f P
 _FINER, _FINEST = 16.0, 1 / 300  # so much less, and less still, where it is not enough
+_GAINS = 0.9  # of the error of steps before: finer ones that leave more of it gain nothing
+_WORK = 5e11  # cells cubed, times load steps: a mesh that asks for more is not begun
 # Shares of a change from mesh to mesh, and of the cube of the cells' growth, that m and n are off by
 _MOVED, _CUBIC = 0.1, 0.15
 _CHANGED = (0.4, 0.35)  # of a change of q, q1 and q2 to the second mesh, and to later ones
@@ -86,10 +88,10 @@ def solve(
     stepped: dict[str, float] = {}
     meshes, iterations = 0, 0
     for size, growth in _MESHES:
-        before, level = (
-            level,
-            _solve_level(scene, pressed, path, start, _cells(ends, inner, level, size, growth), clock),
-        )
+        cells = _cells(ends, inner, level, size, growth)
+        if level and level.history and level.history.load_steps * len(cells) ** 3 > _WORK:
+            break
+        before, level = level, _solve_level(scene, pressed, path, start, cells, clock)
         meshes, iterations = meshes + 1, iterations + (level.history.iterations if level.history else 0)
         if level.stick is None:
             break
@@ -161,13 +163,14 @@ def _with_steps(
     scene: Scene, pressed: Contact, path: Path | None, start: State | None, level: _Level, clock: Clock
 ) -> tuple[_Level, dict[str, float]]:
     """The level in as many steps as it takes, and what these may be off by."""
-    finer = 1.0
+    finer, before = 1.0, np.inf
     while True:
         errors = _step_errors(level)
+        worst = max(errors.get(key, 0.0) / (ALLOWED[key] * scene.fem.accuracy) for key in _JUDGED)
         finer /= _FINER
-        if finer < _FINEST or all(errors.get(key, 0.0) <= ALLOWED[key] * scene.fem.accuracy / 2 for key in _JUDGED):
+        if worst <= 1 / 2 or finer < _FINEST or worst > _GAINS * before:
             return level, errors
-        level = _solve_level(scene, pressed, path, start, level.vertices, clock, finer)
+        level, before = _solve_level(scene, pressed, path, start, level.vertices, clock, finer), worst
 
 
 def _mesh_errors(level: _Level, before: _Level, growth: float, first: bool) -> dict[str, float]:

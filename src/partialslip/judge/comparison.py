@@ -116,13 +116,28 @@ def compare(
         so have the resultants P and dQ. With None no quantity has a bar but those in ``bars``.
     bars : mapping of str to Bar, optional
         By quantity, bars in place of the usual ones.
+
+    To a bar is added what the reference itself may be off by; if that is more than the bar, nothing is judged.
     """
     own = bars or {}
     usual = {} if accuracy is None else {key: Bar(share * accuracy) for key, share in BARS.items()}
     applied = {**usual, **own}
+    applied = {key: _beside(bar, key, reference) for key, bar in applied.items()}
     verdicts = [decide(each, applied.get(each.quantity), result) for each in measures(result, reference, scene)]
     nodal = _nodal_errors(result, reference, scene.friction.f)
     return Comparison((*verdicts, judge_regime(result, reference, applied)), conditions(result), *nodal)
+
+
+def _beside(bar: Bar, quantity: str, reference: Result) -> Bar:
+    """The bar for differences from a ``reference`` that has errors of its own. What the spacing of a tabulated profile
+    makes is no difference: every method is given the same table."""
+    key = quantity.removesuffix("_1").removesuffix("_2")
+    own = reference.estimate.get(key, 0.0) - reference.shares.get("table", {}).get(key, 0.0)
+    if bar.value is None or not own > 0:
+        return bar
+    if own > bar.value:
+        return Bar(None, f"{reference.method} itself is known to {own:.1e} only")
+    return Bar(bar.value + own, bar.reason or f"{bar.value:.1e}, and {own:.1e} of {reference.method}'s own")
 
 
 def decide(measure: Measure, bar: Bar | None, result: Result) -> Verdict:
@@ -162,7 +177,7 @@ def _decided(measure: Measure, bar: Bar | None) -> tuple[Outcome, str]:
 
 def judge_regime(result: Result, reference: Result, bars: Mapping[str, Bar]) -> Verdict:
     """Judge the name of the regime. It is not judged if a slip zone or the stick zone that tells two names apart is
-    narrower than the bars of m and n, or if no quantity has a bar."""
+    narrower than the bars of m and n, if no quantity has a bar, or if another way leads to another stick zone."""
     found, true = result.regime, reference.regime
     own = bars.get("regime", Bar(1.0))
     known = [bar.value for bar in bars.values() if bar.value is not None]
@@ -171,11 +186,18 @@ def judge_regime(result: Result, reference: Result, bars: Mapping[str, Bar]) -> 
         outcome, reason = Outcome.NOT_JUDGED, own.reason or NO_BAR
     elif found == true:
         outcome, reason = Outcome.PASSED, ""
+    elif why := _undetermined_regime(result, reference):
+        outcome, reason = Outcome.NOT_JUDGED, why
     elif near := _too_near(result, reference, width * reference.a):
         outcome, reason = Outcome.NOT_JUDGED, near
     else:
         outcome, reason = Outcome.MISSED, f"{found}, not {true}"
     return Verdict("regime", outcome, true, found, reason=reason)
+
+
+def _undetermined_regime(result: Result, reference: Result) -> str:
+    """Say which of both is of one way among several; empty if none is."""
+    return next((f"{each.method}: {each.undetermined['m']}" for each in (reference, result) if each.path_dependent), "")
 
 
 def _too_near(result: Result, reference: Result, width: float) -> str:

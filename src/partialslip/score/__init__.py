@@ -77,11 +77,11 @@ def score(
     result = scored(scene, found, name, str(file))
     outcome = run(scene, [reference], progress=progress)
     return compared(
-        scene, outcome.plan, outcome.results | {name: read_as(scene, result, outcome.results[reference])}, bar
+        scene, outcome.plan, outcome.results | {name: _read_as(scene, result, outcome.results[reference])}, bar
     )
 
 
-def read_as(scene: Scene, result: Result, reference: Result) -> Result:
+def _read_as(scene: Scene, result: Result, reference: Result) -> Result:
     """``result``, as it was read from a file, with notes on likely mistakes in it; what they make meaningless is taken
     out."""
     result = replace(result, notes=(*mistakes(scene, result, reference), *result.notes))

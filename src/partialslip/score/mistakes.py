@@ -81,7 +81,7 @@ def _places(scene: Scene, result: Result, reference: Result, factor: float) -> l
     """Notes on where the contact and the stick zone are; ``factor`` makes x fit."""
     notes, a = [], result.a
     left, right = result.ends[1]
-    middle, known = (left + right) / 2 / a, result.estimate.get("a", 0.0)
+    middle, known = (left + right) / 2 / a, max(result.estimate.get(key, 0.0) for key in ("a", "left", "right"))
     if abs(middle) > max(2 * known, 1e-9):
         notes.append(f"the contact's middle is at x = {middle:.2g} a (--centre auto takes it for x = 0)")
     centre, true = result.stick_centre, reference.stick_centre

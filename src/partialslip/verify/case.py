@@ -12,7 +12,7 @@ import numpy as np
 from partialslip.judge import BARS, Bar, Outcome, Verdict, compare, conditions
 from partialslip.plan import plan
 from partialslip.result import Result
-from partialslip.run import run
+from partialslip.run import reference_of, run
 from partialslip.scene import Scene
 from partialslip_meshes.mesh import Mesh
 
@@ -128,9 +128,10 @@ def solve_case(case: Case) -> Found:
 
 def judge(case: Case, found: Found) -> list[CaseVerdict]:
     """The verdicts on what the methods of a case have found. An exact solution that is missing is missed, too, where
-    others are to be compared with it."""
-    reference = found["exact"] if case.compared else None
-    lost = ["exact"] if isinstance(reference, Failure) else []
+    others are to be compared with it; the march stands in for one that cannot judge."""
+    lost = ["exact"] if case.compared and isinstance(found["exact"], Failure) else []
+    results = {method: result for method, result in found.items() if isinstance(result, Result)}
+    judging = reference_of(results) if case.compared and not lost else None
     verdicts = []
     for method in dict.fromkeys([*lost, *case.methods]):
         result = found[method]
@@ -138,8 +139,7 @@ def judge(case: Case, found: Found) -> list[CaseVerdict]:
             each: Iterator[Verdict] = iter([Verdict("finishes", Outcome.MISSED, reason=result.error)])
             iterations, cpu_s = 0, result.cpu_s
         else:
-            known = reference if isinstance(reference, Result) and method != "exact" else None
-            each = _judged(case, method, result, known)
+            each = _judged(case, method, result, results[judging] if judging and method != judging else None)
             iterations, cpu_s = result.counts.get("iterations", 0), result.cost.cpu_s
         verdicts += [
             CaseVerdict(
