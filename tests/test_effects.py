@@ -13,7 +13,7 @@ import pytest
 import partialslip
 from partialslip import InputError, load_scene, plan
 from partialslip.cli import main
-from partialslip.condensed import friction
+from partialslip.condensed import friction, steps
 from partialslip.halfplane import marching
 from partialslip.plan import reduced
 from partialslip_fem import Kept, condensation, level, model
@@ -85,7 +85,7 @@ def spied(monkeypatch):
     spy(condensation, "factor", "factor")
     spy(level, "half_plane", "half_plane")
     spy(level, "press", "press")
-    spy(level, "march", "march")
+    spy(steps, "march", "march")
     spy(level.coupled, "march", "coupled")
     spy(condensation.Condensed, "displace", "displace")
     return calls

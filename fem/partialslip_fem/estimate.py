@@ -11,13 +11,14 @@ fitted to some elements beside them.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.result import Array, Clock
+from partialslip.scene import LEAST_SHEAR
 from partialslip_fem.level import Level, Problem, solve_on
 
 # The order below costs least, but where it locks (P2 and P1 towards nu = 0.5) its errors say nothing.
@@ -89,7 +90,8 @@ def end_errors(level: Level, sizes: Array, gaps: Array, beside: Array) -> dict[s
         half, *both = _norms(level)
         a = level.half_width
         if level.stick and half > 0:  # where slip strips are narrow, q is steep beside them
-            errors["q"] = math.hypot(errors["q"], *(_STEEP * _beside(level) * (sizes**2 / gaps.min(axis=0))[2:4]))
+            near = (sizes * np.minimum(sizes / gaps.min(axis=0), 1.0))[2:4]
+            errors["q"] = math.hypot(errors["q"], *(_STEEP * _beside(level) * near))
         locked = np.hypot.reduce(_KINK * _locked(level) * beside * a, axis=1)
         for key, norm, kinks in zip(("q1", "q2"), both, locked.tolist(), strict=True):
             if norm > 0:
@@ -130,8 +132,8 @@ def _beside(level: Level) -> Array:
     assert level.history
     change = level.history.change / 2
     strengths: Array = _strengths(level, [change], level.ends[2:4])[0] * level.half_width
-    norm = _norm(level.shear(change))
-    return strengths / norm if norm > 0 else 0 * strengths  # nothing changes: there is no kink, either
+    norm = float(_norms(level)[0])
+    return strengths / norm if norm > 0 else 0 * strengths
 
 
 def enough(level: Level, gaps: Array, error: float) -> float:
@@ -154,10 +156,12 @@ def kink_sizes(level: Level, error: float) -> Array:
 
 
 def _norms(level: Level) -> Array:
-    """L2 norms of the cell averages of (q2 - q1)/2, q1 and q2."""
+    """L2 norms of the cell averages of (q2 - q1)/2, q1 and q2, or what their errors are relative to at least."""
     history = level.history
     assert history
-    return np.array([_norm(level.shear(forces)) for forces in (history.change / 2, history.q1, history.q2)])
+    norms = [_norm(level.shear(forces)) for forces in (history.change / 2, history.q1, history.q2)]
+    result: Array = np.maximum(norms, LEAST_SHEAR * _norm(level.shear(history.bound)))
+    return result
 
 
 def _norm(traction: PPoly) -> float:
@@ -208,19 +212,24 @@ def _changes(level: Level, other: Level) -> dict[str, float]:
     a = level.half_width
     ends = np.abs(np.subtract(level.contact_ends, other.contact_ends)).max(axis=0) / a
     changes = {"a": abs(other.half_width - a) / a, "left": float(ends[0]), "right": float(ends[1])}
-    changes["p"] = _apart(level.pressure(), other.pressure())
+    pressure = level.pressure()
+    changes["p"] = _apart(pressure, other.pressure(), _norm(pressure))
     if level.stick and other.stick and level.history and other.history:
         changes["m"] = abs(other.stick.left - level.stick.left) / a
         changes["n"] = abs(other.stick.right - level.stick.right) / a
-        changes["q"] = _apart(level.shear(level.history.change), other.shear(other.history.change))
-        for key in ("q1", "q2"):
-            changes[key] = _apart(*(each.shear(getattr(each.history, key)) for each in (level, other)))
+        for key, (of, at), norm in zip(("q", "q1", "q2"), _shears(level, other), _norms(level).tolist(), strict=True):
+            changes[key] = _apart(of, at, norm)
     return {key: changes[key] for key in KEYS if key in changes}
 
 
-def _apart(traction: PPoly, other: PPoly) -> float:
-    """Relative L2 difference of their means over the cells."""
+def _shears(*levels: Level) -> Iterator[tuple[PPoly, ...]]:
+    """Half the change of the shear, and shear at load points 1 and 2, of each level."""
+    for share, key in ((0.5, "change"), (1.0, "q1"), (1.0, "q2")):
+        yield tuple(level.shear(share * getattr(level.history, key)) for level in levels)
+
+
+def _apart(traction: PPoly, other: PPoly, norm: float) -> float:
+    """L2 difference of their means over the cells, relative to ``norm``."""
     widths = np.diff(traction.x)
     force, otherwise = (np.diff(each.antiderivative()(traction.x)) for each in (traction, other))
-    norm = np.sum(force**2 / widths)
-    return float(np.sqrt(np.sum((otherwise - force) ** 2 / widths) / norm)) if norm > 0 else 0.0
+    return float(np.sqrt(np.sum((otherwise - force) ** 2 / widths))) / norm if norm > 0 else 0.0

@@ -3,7 +3,7 @@
 import math
 import threading
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Literal
 
@@ -13,12 +13,13 @@ from scipy.interpolate import PPoly
 from partialslip.condensed import coupled
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.coupled import Pressed
-from partialslip.condensed.friction import History, Path, march
-from partialslip.condensed.steps import refined
-from partialslip.condensed.zones import Zone, finest, kinks, left_end, right_end, stick_zone
+from partialslip.condensed.friction import History, Path
+from partialslip.condensed.steps import march_refined
+from partialslip.condensed.zones import Zone, apart, finest, kinks, left_end, right_end, stick_zone
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
-from partialslip.scene import Profile
+from partialslip.scene import ALLOWED, Profile
+from partialslip_fem import stepping
 from partialslip_fem.condensation import Condensed
 from partialslip_fem.contact import Half, press, relative_compliances
 from partialslip_fem.corners import free_exponent, held_exponent, size
@@ -139,7 +140,8 @@ class Level:
     ``nodes`` of the lower one's contact line are in contact at load point 1 or 2, at 2 it is over [left, right], and
     the ends at 1 are ``others``, where they differ. ``kinks`` are points where q1 or q2 is not smooth, beside the ends
     of the stick zone, while the change of q is. ``factored`` counts the factorisations made for it; pressure and
-    shear are solved together where bodies are ``coupled``.
+    shear are solved together where bodies are ``coupled``. ``stepped`` is what the steps make it off by
+    (:mod:`partialslip_fem.stepping`), where there are several.
     """
 
     halves: tuple[Half, ...]
@@ -154,6 +156,7 @@ class Level:
     kinks: tuple[float, ...] = ()
     coupled: bool = False
     pressed: Pressed | None = None
+    stepped: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def slips_when_pressed(self) -> bool:
@@ -161,18 +164,6 @@ class Level:
         where they stuck all through."""
         still = self.history is not None and not self.history.path.moves
         return bool(still and self.pressed and self.pressed.slipped())
-
-    @property
-    def step_errors(self) -> dict[str, float]:
-        """What a (in half-widths), q1 and q2 (relative L2) may be off by for the sake of the steps in which coupled
-        bodies are pressed."""
-        if not self.pressed or not self.history:
-            return {}
-        errors, weights = self.pressed.errors, np.asarray(self.body.mass.sum(axis=1)).ravel()
-        off = errors["q"] * np.linalg.norm(self.pressed.tangential.x / np.sqrt(weights))
-        held = np.sqrt(weights[self.nodes])
-        norms = {key: float(np.linalg.norm(getattr(self.history, key) / held)) for key in ("q1", "q2")}
-        return {"a": errors.get("a", 0.0)} | {key: float(off / norm) for key, norm in norms.items() if norm > 0}
 
     @property
     def body(self) -> Body:
@@ -247,6 +238,7 @@ class Level:
 
 
 _ROUNDING = 1e-9  # of a contact line's length
+_ONE = 1e-3  # of the half-width: kinks of q that are nearer to each other are one
 _KEPT = 2  # sets of bodies: those of a rough mesh, and of the uniform one made from it
 
 
@@ -351,7 +343,7 @@ def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clo
         relative = relative_compliances(halves, problem.coupled)
     with clock.phase("contact"):
         line = halves[0].body
-        pressing, history, nodes, first = _solve(problem, relative, halves[0])
+        pressing, history, nodes, first, finer = _solve(problem, relative, halves[0])
         left, right = _ends(line, pressing.x)
         others: tuple[float, float] | tuple[()] = ()
         if history and relative.xy is not None:
@@ -365,8 +357,15 @@ def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clo
         ends = min([left, *others[:1]]), max([right, *others[1:]])
         locked = _kinks(problem, line, nodes, history) if history else ()
         locked = tuple(kink for kink in locked if ends[0] < kink < ends[1])
-        two = relative.xy is not None
-        return Level(halves, factored, nodes, pressing, history, left, right, stick, others, locked, two, first)
+        two, stepped, weights = relative.xy is not None, stepping.Errors(), np.asarray(line.mass.sum(axis=1)).ravel()
+        if history and first:
+            stepped = stepping.pressed_together(history, first, weights, nodes)
+        elif history and finer and stick:
+            zones = stick, _stick_zone(line, nodes, finer, None)
+            stepped = stepping.halved(history, finer, zones, weights[nodes], (right - left) / 2)
+        return Level(
+            halves, factored, nodes, pressing, history, left, right, stick, others, locked, two, first, stepped
+        )
 
 
 def _half(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) -> Half:
@@ -382,9 +381,9 @@ def _half(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) 
 
 def _solve(
     problem: Problem, C: coupled.Relative, lower: Half
-) -> tuple[Solution, History | None, Indices, Pressed | None]:
-    """Normal forces, the history of the tangential ones on the nodes in contact, those nodes, and how coupled bodies
-    were pressed."""
+) -> tuple[Solution, History | None, Indices, Pressed | None, History | None]:
+    """Normal forces, the history of the tangential ones on the nodes in contact, those nodes, how coupled bodies were
+    pressed, and the history in twice as many steps where it took several."""
     line, stretch = lower.body, lower.stretch
     gap, path, pressed = problem.gap(line.x), problem.path, None
     if path and problem.start:
@@ -395,17 +394,17 @@ def _solve(
         along = coupled.Line(line.x, weights, lambda forces: _ends(line, forces), problem.similar)
         history, pressing, first = coupled.march(C, gap, stretch, problem.f, path, pressed, along, problem.accuracy)
         nodes = np.flatnonzero(history.bound > 0)
-        return pressing, history.of(nodes), nodes, first
+        return pressing, history.of(nodes), nodes, first, None
     pressing = press(C.yy, gap if path else gap - problem.strain * stretch[1], 1.0)
     nodes = np.flatnonzero(pressing.x > 0)
     if not path:
-        return pressing, None, nodes, None
+        return pressing, None, nodes, None, None
     if path.before is not None:
         path = replace(path, before=path.before[nodes])
     assert C.xx is not None
     inner, bound = C.xx[np.ix_(nodes, nodes)], problem.f * pressing.x[nodes]
-    path = refined(inner, stretch[0][nodes], bound, path, problem.accuracy)
-    return pressing, march(inner, stretch[0][nodes], bound, path), nodes, None
+    history, finer = march_refined(inner, stretch[0][nodes], bound, path, problem.accuracy / ALLOWED["q"])
+    return pressing, history, nodes, None, finer
 
 
 def _grown(first: Pressed | None, nodes: Indices, problem: Problem) -> tuple[Array, Array] | None:
@@ -428,9 +427,9 @@ def _kinks(problem: Problem, line: Body, nodes: Indices, history: History) -> tu
         return ()
     x, vertices, forces = line.x[nodes], line.x[:: line.order], partial(_forces_of, line, nodes)
     found = finest(problem.start[1].x) if problem.start else []
-    for q, bound in history.visited:
+    for q, bound in reversed(history.visited):
         found += kinks(x, bound, q, vertices, forces)
-    return tuple(found)
+    return tuple(apart(found, _ONE * (x[-1] - x[0]) / 2))
 
 
 def _forces_of(line: Body, nodes: Indices, forces: Array) -> Array:

@@ -191,8 +191,8 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         return lambda points: (stress * inside(first, points / L), stress * inside(second, points / L))
 
     shares = {"discretisation": adapted.errors, "rounding": dict.fromkeys(adapted.errors, rounding(level))}
-    if stepped := level.step_errors:
-        shares["steps"] = stepped
+    if stepped := level.stepped:
+        shares["steps"] = dict(stepped)
     keys = [*adapted.errors, *(key for key in stepped if key not in adapted.errors)]
     estimate = {key: float(sum(share.get(key, 0.0) for share in shares.values())) for key in keys}
     known = found.centre is not None

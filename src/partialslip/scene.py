@@ -30,6 +30,9 @@ ALLOWED = {
     **dict.fromkeys(("q", "q1", "q2"), 15.0),
 }
 
+# Errors of q are relative to q's norm, or to so much of f p's norm where q's is less.
+LEAST_SHEAR = 1e-3
+
 _ROUGH = 1e-9  # changes of slope and curvature in a table, in the largest one, that are taken for rounding
 _SHARP = 0.05
 _STEEPEST = 0.9  # sine of the angle to which a pad's round face may go

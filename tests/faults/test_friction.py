@@ -9,7 +9,7 @@ from scipy.interpolate import PPoly
 from test_random_cycles import CERTIFIED, forces
 
 import partialslip
-from partialslip.condensed import coupled, friction, zones
+from partialslip.condensed import coupled, friction, steps, zones
 from partialslip.condensed.bounded import _BlockPivoting, solve_bounded
 from partialslip.condensed.friction import march as true_march
 from partialslip.condensed.zones import Zone
@@ -32,21 +32,21 @@ def march_with(change):
 @pytest.mark.fault
 def test_tension_of_the_wrong_sign(monkeypatch, sound, red):
     scene = sound(LARGE)
-    monkeypatch.setattr(level, "march", march_with(lambda Q, strain: (Q, -strain)))
+    monkeypatch.setattr(steps, "march", march_with(lambda Q, strain: (Q, -strain)))
     red.comparison("m", scene)
 
 
 @pytest.mark.fault
 def test_tension_left_out(monkeypatch, sound, red):
     scene = sound(LARGE)
-    monkeypatch.setattr(level, "march", march_with(lambda Q, _: (Q, 0.0)))
+    monkeypatch.setattr(steps, "march", march_with(lambda Q, _: (Q, 0.0)))
     red.comparison("n", scene)
 
 
 @pytest.mark.fault
 def test_friction_silently_smaller(monkeypatch, sound, red):
     scene = sound(LARGE)
-    monkeypatch.setattr(level, "march", lambda C, x, bound, path: true_march(C, x, 0.9 * bound, path))
+    monkeypatch.setattr(steps, "march", lambda C, x, bound, path: true_march(C, x, 0.9 * bound, path))
     red.comparison("q", scene)
 
 
@@ -94,7 +94,7 @@ def test_history_not_committed_between_steps(monkeypatch, sound, red):
         return replace(true_march(C, x, bound, path), q1=first, q2=second)
 
     scene = sound(LARGE, *MEAN)
-    monkeypatch.setattr(level, "march", forgetful)
+    monkeypatch.setattr(steps, "march", forgetful)
     red.comparison("q", scene)
 
 
@@ -114,7 +114,7 @@ def test_stick_that_is_a_stiff_spring(monkeypatch, sound, red):
     """Penalty: what sticks creeps in proportion to its traction, here by about a hundredth of the slip."""
     scene = sound(LARGE)
     springs = lambda C, x, bound, path: true_march(C + 0.01 * np.diag(1 / bound), x, bound, path)  # noqa: E731
-    monkeypatch.setattr(level, "march", springs)
+    monkeypatch.setattr(steps, "march", springs)
     red.comparison("n", scene)
 
 
@@ -132,7 +132,7 @@ def test_slip_of_the_other_body(monkeypatch, sound, red):
 
     scene = sound(LARGE)
     assert off() <= 1e-3
-    monkeypatch.setattr(level, "march", turned)
+    monkeypatch.setattr(steps, "march", turned)
     red("dissipated energy", off(), 1e-3)
 
 
@@ -183,4 +183,4 @@ def test_iteration_that_ends_before_it_has_converged(monkeypatch, sound, red):
 
 def test_faults_touch_what_is_used():
     """The names patched above are the ones the model calls."""
-    assert level.march is friction.march
+    assert steps.march is friction.march

@@ -101,11 +101,21 @@ def test_punches_add_up_to_a_parabola():
         traction = 1 / (np.pi * np.sqrt(1 - x**2))
     traction[[0, -1]] = 0.0
     stages = Punch(1.0, x, weights, weights * traction, 0 * x)
-    p, q = stages.stage(1.0)
-    inside = np.abs(x) < 0.99
-    assert p[inside] / weights[inside] == pytest.approx(2 / np.pi * np.sqrt(1 - x[inside] ** 2), abs=2e-4)
-    assert not q.any()
-    p, _ = stages.stage(0.9)
-    expected = 0.9 * 2 / np.pi * np.sqrt(np.maximum(1 - (x / 0.9) ** 2, 0.0))
-    inside = np.abs(x) < 0.88
-    assert p[inside] / weights[inside] == pytest.approx(expected[inside], abs=1e-3)
+    for share, nodes, error in ((1.0, 0.99, 2e-4), (0.9, 0.88, 1e-3)):
+        p, q = stages.stage(share)
+        expected = share * 2 / np.pi * np.sqrt(np.maximum(1 - (x / share) ** 2, 0.0))
+        expected *= share**2 / (weights @ expected)  # at nodes, too, the sum is the load
+        inside = np.abs(x) < nodes
+        assert p[inside] / weights[inside] == pytest.approx(expected[inside], abs=error)
+        assert not q.any()
+
+
+def test_a_stage_bears_its_load_and_no_shear():
+    """Whatever the nodes are: a sum of q left over would have to slip in the last step, on one side only."""
+    random = np.random.default_rng(1)
+    x = np.sort(random.uniform(-1, 1, 301))
+    weights = np.gradient(x)
+    normal = weights / np.sqrt(1 - x**2)
+    p, q = Punch(1.0, x, weights, normal, 0.3 * np.sign(x) * normal).stage(0.95)
+    assert p.sum() == pytest.approx(0.95**2)
+    assert abs(q.sum()) < 1e-12

@@ -131,8 +131,7 @@ def guise(mesh: Callable[..., Mesh] = block, *patches: Any, own: bool = False) -
     with ExitStack() as stack:
         if not own:
             stack.enter_context(patch.object(marching, "_MESHES", ((1e-3, 0.1),)))
-            for module in (steps, level):
-                stack.enter_context(patch.object(module, "refined", lambda *given: given[3]))
+            stack.enter_context(patch.object(steps, "refined", lambda *given: given[3]))
         stack.enter_context(patch.object(level, "block", mesh))
         for each in patches:
             stack.enter_context(each)

@@ -19,7 +19,7 @@ from partialslip.halfplane.cells import compliance, forces, graded
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Result, Slip, Traction
-from partialslip.scene import ALLOWED, Scene
+from partialslip.scene import ALLOWED, LEAST_SHEAR, Scene
 from partialslip.state import State
 
 _MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # cell size at the ends (in a), and growth
@@ -193,8 +193,7 @@ def _mesh_errors(level: _Level, before: _Level, growth: float, first: bool) -> d
     between = _CUBIC * growth**3 * np.minimum(_NEAR * gap, 1.0)
     known = np.maximum(unseen, np.maximum(_MOVED * moved, between))
     return dict(zip("mn", known.tolist(), strict=True)) | {
-        key: _CHANGED[not first] * _apart(of(level.history), level.vertices, of(before.history), before.vertices)
-        for key, of in _SHEARS.items()
+        key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices) for key, of in _SHEARS.items()
     }
 
 
@@ -206,18 +205,23 @@ def _step_errors(level: _Level) -> dict[str, float]:
     assert level.stick
     ends = (2 * abs(getattr(level.stick, way) - getattr(level.finer_stick, way)) for way in ("left", "right"))
     return dict(zip("mn", ends, strict=True)) | {
-        key: 2 * _apart(of(level.history), level.vertices, of(level.finer), level.vertices)
-        for key, of in _SHEARS.items()
+        key: 2 * _apart(level, of, level.finer, level.vertices) for key, of in _SHEARS.items()
     }
 
 
-def _apart(forces: Array, vertices: Array, others: Array, cells: Array) -> float:
-    """Relative L2 difference of the means over ``cells`` (c + 1,) of ``forces`` on those between ``vertices`` and of
-    ``others`` (c,)."""
-    resultant = np.concatenate([[0.0], np.cumsum(forces)])
-    means, widths = np.diff(np.interp(cells, vertices, resultant)), np.diff(cells)
-    norm = float(np.sum(means**2 / widths))
-    return float(np.sqrt(np.sum((others - means) ** 2 / widths) / norm)) if norm > 0 else 0.0
+def _apart(level: _Level, of: Callable[[History], Array], other: History, cells: Array) -> float:
+    """Relative L2 difference of the means over ``cells`` (c + 1,) of forces ``of`` the level and of the ``other``, of
+    which these are the cells."""
+    assert level.history
+
+    def means(forces: Array) -> Array:
+        resultant = np.concatenate([[0.0], np.cumsum(forces)])
+        result: Array = np.diff(np.interp(cells, level.vertices, resultant)) / np.sqrt(np.diff(cells))
+        return result
+
+    known = means(of(level.history))
+    size = max(np.linalg.norm(known), LEAST_SHEAR * np.linalg.norm(means(level.history.bound)))
+    return float(np.linalg.norm(of(other) / np.sqrt(np.diff(cells)) - known) / size) if size > 0 else 0.0
 
 
 def _result(

@@ -6,11 +6,9 @@ from functools import partial
 import numpy as np
 
 from partialslip.result import Array, Traction
+from partialslip.scene import LEAST_SHEAR
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
-
-# Errors of q are relative to q's norm, or to so much of f p's norm where q's is less.
-LEAST_SHEAR = 1e-3
 
 
 def cell_errors(traction: Traction, reference: Traction, f: float = 0.0) -> tuple[float, float]:

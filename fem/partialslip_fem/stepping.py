@@ -1,0 +1,55 @@
+"""What the steps of the load path make the ends and tractions off by."""
+
+import numpy as np
+import numpy.typing as npt
+
+from partialslip.condensed.coupled import Pressed
+from partialslip.condensed.friction import History
+from partialslip.condensed.zones import Zone
+from partialslip.result import Array
+from partialslip.scene import LEAST_SHEAR
+
+Errors = dict[str, float]
+Indices = npt.NDArray[np.int64]
+
+_SHEARS = ("change", "q1", "q2")
+
+
+def halved(history: History, finer: History, zones: tuple[Zone, Zone], weights: Array, half_width: float) -> Errors:
+    """m and n (in contact half-widths), q, q1 and q2 (relative L2): twice what halving all steps changes, as errors are
+    of first order.
+
+    Parameters
+    ----------
+    history, finer : History
+        In the steps taken, and in twice as many.
+    zones : two Zone
+        Their stick zones.
+    weights : (n,) array
+        What turns tractions at their nodes into forces.
+    half_width : float
+        Of the contact.
+    """
+    held, (zone, other) = np.sqrt(weights), zones
+    found = {"m": 2 * abs(zone.left - other.left) / half_width, "n": 2 * abs(zone.right - other.right) / half_width}
+    for key in _SHEARS:
+        forces = getattr(history, key)
+        size = max(float(np.linalg.norm(forces / held)), _least(history, held) * (2 if key == "change" else 1))
+        if size > 0:
+            off = float(np.linalg.norm((getattr(finer, key) - forces) / held))
+            found["q" if key == "change" else key] = 2 * off / size
+    return found
+
+
+def pressed_together(history: History, pressed: Pressed, weights: Array, nodes: Indices) -> Errors:
+    """a (in half-widths), q1 and q2 (relative L2), of coupled bodies that are pressed together in steps: what q is off
+    by then may stay. ``weights`` are those of all nodes of the contact line."""
+    off = pressed.errors["q"] * np.linalg.norm(pressed.tangential.x / np.sqrt(weights))
+    held = np.sqrt(weights[nodes])
+    least = _least(history, held)
+    norms = {key: max(float(np.linalg.norm(getattr(history, key) / held)), least) for key in ("q1", "q2")}
+    return {"a": pressed.errors.get("a", 0.0)} | {key: float(off / norm) for key, norm in norms.items() if norm > 0}
+
+
+def _least(history: History, held: Array) -> float:
+    return LEAST_SHEAR * float(np.linalg.norm(history.bound / held))
