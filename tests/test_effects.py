@@ -13,7 +13,7 @@ import pytest
 import partialslip
 from partialslip import InputError, load_scene, plan
 from partialslip.cli import main
-from partialslip.condensed import friction, steps
+from partialslip.condensed import friction
 from partialslip.halfplane import marching
 from partialslip.plan import reduced
 from partialslip_fem import Kept, condensation, level, model
@@ -85,7 +85,7 @@ def spied(monkeypatch):
     spy(condensation, "factor", "factor")
     spy(level, "half_plane", "half_plane")
     spy(level, "press", "press")
-    spy(steps, "march", "march")
+    spy(level, "march_refined", "march")
     spy(level.coupled, "march", "coupled")
     spy(condensation.Condensed, "displace", "displace")
     return calls
@@ -257,10 +257,10 @@ def test_opposing_slip_is_left_out_where_tension_is_small(Qf):
     scene = load_scene("hertz-shear")
     f, P, Q = scene.friction.f, scene.P, Qf * scene.friction.f * scene.P
     p0 = partialslip.run(scene, ["exact"]).results["exact"].p0
-    for steps in (1, 2):
+    for count in (1, 2):
         for share, needed in ((0.999, False), (1.001, True)):
             sigma = share * 4 * Qf * f * p0 / 2
-            settings = [f"load.Q=[{-Q}, {Q}]", f"load.sigma=[{-sigma}, {sigma}]", f"load.steps={steps}"]
+            settings = [f"load.Q=[{-Q}, {Q}]", f"load.sigma=[{-sigma}, {sigma}]", f"load.steps={count}"]
             assert plan(load_scene("hertz-shear", settings)).needs("opposing-slip") == needed
     assert P > 0
 

@@ -134,7 +134,7 @@ def right():
 def rig():
     scene = load_scene(SCENE, [COARSE, *RIG])
     problem = model._scaled(scene, plan(scene, subsurface=True))
-    return scene, problem, adapt.adapt(problem, 1e-4, 16.0, Clock(), lambda _: None).level
+    return scene, problem, adapt.adapt(problem, 1e-2, 16.0, Clock(), lambda _: None).level
 
 
 def test_supports_hold_what_acts(rig):

@@ -93,14 +93,13 @@ def test_mean_loads_reach_the_steady_range_cycle_by_cycle():
     overrides = ["load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]"]  # 0.1 .. 0.7 fP, 1 .. 5 f p0
     exact_m, exact_n = 0.749058362969, 0.370590356334  # dQ/(2fP) = 0.3, dsigma/(f p0) = 4
     steady, off = [], []
-    for cycles in (1, 2, 8, 16):
+    for cycles in (1, 2, 8):
         result = fem("hertz-large-tension", *overrides, f"load.cycles={cycles}")
         steady.append(result.certificate["steady"])
         assert any("not steady" in note for note in result.notes) == (steady[-1] > 1e-3)
         off.append(max(abs(result.m / result.a - exact_m), abs(result.n / result.a - exact_n)))
-    assert steady[0] > 1e-3 > steady[2] > steady[3]
-    assert steady[3] < 1e-4
-    assert off[3] < 5e-4
+    assert steady[0] > 10 * 1e-3 > steady[2]
+    assert off[2] < 1e-5 < off[0]
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.49, 0.4999])

@@ -222,8 +222,14 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
         f times its normal forces.
     path : Path
     """
+    load = path.begin[0]
 
     def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
+        nonlocal load
+        if strain == 0 and load == Q:  # nothing moves
+            zero = 0 * bound
+            return replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0), bound
+        load = Q
         free = tangential @ before.x + strain * stretch
         return solve_bounded(tangential, free, -bound, bound, Q, before.sides), bound
 
