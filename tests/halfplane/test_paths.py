@@ -38,11 +38,13 @@ def test_load_points_of_a_cycle():
 
 
 def test_points_on_the_way_of_loads_in_phase_do_not_matter():
-    """Proportional loading: as long as slip does not turn round, a path may be cut into pieces."""
+    """Proportional loading: as long as slip does not turn round, a path may be cut into pieces. Cells are finer where
+    those end."""
     two = marched([-0.3, 0.3], [-2, 2])
     many = marched([-0.3, 0, 0.3, 0.1, 0], [-2, 0, 2, 2 / 3, 0], "load.cycles=2")
-    assert ends(many) == pytest.approx(ends(two), abs=1e-6)
-    assert many.slip.dissipated == pytest.approx(two.slip.dissipated, rel=1e-6)
+    known = sum(max(each.estimate["m"], each.estimate["n"]) for each in (two, many))
+    assert ends(many) == pytest.approx(ends(two), abs=known)
+    assert many.slip.dissipated == pytest.approx(two.slip.dissipated, rel=1e-3)
     outcome = partialslip.run(scene([-0.3, 0, 0.3, 0], [-2, 0, 2, 0]), ["exact", "march"])
     assert outcome.passed
     assert outcome.results["exact"].regime == "large tension"
