@@ -34,7 +34,8 @@ def test_a_table_of_a_parabola_is_hertz():
     x = np.array([0, 1e-4, 1.5e-4, 3e-4, 4e-4])
     table = partialslip.run(tabulated(x, x**2 / 0.02), ["fem"]).results["fem"]
     hertz = partialslip.run(partialslip.load_scene("fretting-aluminium", ["fem.accuracy=1e-4"]), ["fem"]).results["fem"]
-    assert (table.a, table.m, table.n) == pytest.approx((hertz.a, hertz.m, hertz.n), rel=1e-9, abs=1e-12)
+    # what a table locks in is followed, and a parabola locks in nothing: meshes differ
+    assert (table.a, table.m, table.n) == pytest.approx((hertz.a, hertz.m, hertz.n), abs=1e-4 * hertz.a)
 
 
 def test_a_table_goes_on_far_beyond_the_contact():

@@ -75,6 +75,6 @@ def test_shear_stays_within_friction_and_leaves_room_for_a_mean(Qf, sf, shape):
     q = half_range(np.clip(x, -1, 1), zone, shape)
     assert (np.abs(q) <= shape.pressure(np.clip(x, -1, 1)) + 1e-11).all()
     bound = mean_load_bound(zone, shape)
-    assert -1e-12 <= bound <= 1 - Qf + 1e-11
+    assert -1e-10 <= bound <= 1 - Qf + 1e-10  # rounding of moments times sf
     if zone.s > 0:
         assert bound == pytest.approx(1 - Qf, abs=1e-10)

@@ -116,8 +116,10 @@ def _steady_state(scene: Scene, plan: Plan) -> tuple[Contact, Regime, Loading | 
     pressed, cycle = _change(scene)
     if cycle.nothing:
         return pressed, "stuck", cycle
-    # for small tension the bound is gross sliding, which has been ruled out
-    if cycle.zone.s < 0 and abs(load.Q_mean) > limit * mean_load_bound(cycle.zone, pressed.shape):
+    # for small tension the bound is gross sliding, which has been ruled out; no mean is always held, whatever rounding
+    # makes of a bound of next to nothing
+    mean = abs(load.Q_mean)
+    if cycle.zone.s < 0 and mean > 0 and mean > limit * mean_load_bound(cycle.zone, pressed.shape):
         return pressed, "ratchets", cycle
     return pressed, ("small tension" if cycle.zone.s > 0 else "large tension"), cycle
 
