@@ -40,7 +40,16 @@ def test_another_load_or_material_is_refused():
 
 def test_on_the_command_line(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    common = ["run", "hertz-large-tension", "--with", "march", "--set", "load.Q=[31415.9, 219911.5]"]
+    common = [
+        "run",
+        "hertz-large-tension",
+        "--with",
+        "march",
+        "--set",
+        "load.Q=[31415.9, 219911.5]",
+        "--accuracy",
+        "1e-3",
+    ]
     assert main([*common, "--save", "half.npz"]) == 0
     assert "half.npz" in capsys.readouterr().out
     assert main([*common, "--start", "half.npz", "--out", "rest"]) == 0

@@ -63,6 +63,7 @@ def middle():
     return sum(result.ends[1]) / 2 / result.a, result
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_corners_left_coarse_move_the_contact(monkeypatch):
     """-0.0699260 a with meshes a hundred times finer at the corners; a corner left as it is moves the contact by more

@@ -89,6 +89,7 @@ def test_two_hundred_cycles_all_certified():
     assert result.regime == "large tension"
 
 
+@pytest.mark.slow
 def test_ratchets_beyond_the_mean_load_bound():
     """The bound is 0.4725 f P; all methods say so, and what is not reached is not judged."""
     outcome = partialslip.run(scene([0.22, 0.82], [1, 5], "load.cycles=20"), ["exact", "march", "fem"])

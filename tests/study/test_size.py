@@ -197,6 +197,7 @@ def test_maps_leave_out_what_was_not_solved():
     assert "<svg" in grid_svg(x, y, off, ("width", "height"), "a")
 
 
+@pytest.mark.slow
 def test_blocks_come_near_the_half_plane_with_the_square_of_their_size(tmp_path):
     """And meshes get finer until they do not matter, where they do."""
     axis, ledger = read("bodies.*.width+bodies.*.height=16a..128a:4"), Ledger(tmp_path / "ledger.jsonl")

@@ -16,7 +16,7 @@ from partialslip_fem.model import solve_meshed
 
 CASES = {case.name: case for case in hard_cases()}
 CHEAP = (
-    "near-sliding-1e-6", "near-stuck-1e-9", "transition-above", "huge-tension-1e-3", "no-shear", "beside-large", "nu-0",
+    "near-stuck-1e-9", "transition-above", "no-shear", "nu-0",
     "friction-10", "mean-load-1.02", "one-stick-node", "no-stick-node", "one-contact-node", "aspect-1e4",
     "shifted-0.25h", "mirrored-large",
 )  # fmt: skip
@@ -76,7 +76,7 @@ def test_flat_triangles_are_flat():
 def test_ends_of_a_zone_that_no_element_sees_are_not_believed(monkeypatch):
     """Deliberate fault: the errors of a stick zone's ends are estimated as if it had elements enough."""
     monkeypatch.setattr(estimate, "_FIT", np.full(2, 1e-9))
-    assert ("fem", "m") in {found[:2] for found in missed("near-sliding-1e-6", "fem")}
+    assert ("fem", "m") in {found[:2] for found in missed("fem")}
 
 
 @pytest.mark.xfail(
