@@ -380,6 +380,7 @@ def test_every_effect_is_on_or_off_for_a_reason(scene):
         assert all(why.strip() for why in (effects.called_for | effects.left_out).values())
 
 
+@pytest.mark.slow
 def test_ledger_of_effects(tmp_path, capsys):
     assert main(["study", "effects", "fretting-aluminium", "--set", "fem.size=0.2", "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out

@@ -77,6 +77,7 @@ def test_far_from_a_clamped_grip_the_bar_is_stretched_uniformly():
     assert strain == pytest.approx(1.0, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_long_pulled_specimen_is_strained_as_if_that_were_imposed():
     """Without Q a long sliding specimen that is pulled is one whose surface is given the strain sigma/E'."""
     free = ("load.Q=[0, 0]", "load.sigma=[-100e6, 100e6]", "bodies.upper={width=30e-3, height=10e-3}", "load.cycles=3")
@@ -137,6 +138,7 @@ def rig():
     return scene, problem, adapt.adapt(problem, 1e-2, 16.0, Clock(), lambda _: None).level
 
 
+@pytest.mark.slow
 def test_supports_hold_what_acts(rig):
     """Forces and moments of what holds the bodies against p, q and the tension, at load point 2."""
     scene, problem, found = rig
@@ -169,6 +171,7 @@ def test_a_roller_lets_slide_and_the_sides_hold(rig):
     assert set(np.abs(upper.held_points[0])) == {half_width}
 
 
+@pytest.mark.slow
 def test_every_step_is_certified(right):
     assert right.certificate["kkt"] < 1e-8
     assert right.certificate["equilibrium"] < 1e-10
@@ -232,6 +235,7 @@ def test_steep_pads_are_meshed():
     assert area(mesh) > 0
 
 
+@pytest.mark.slow
 def test_straight_sides_of_a_round_face_do_not_matter(monkeypatch, right):
     """Within what the estimate says."""
     result = right
@@ -242,6 +246,7 @@ def test_straight_sides_of_a_round_face_do_not_matter(monkeypatch, right):
     assert (off < [result.estimate[key] for key in "amn"]).all()
 
 
+@pytest.mark.slow
 def test_a_rig_turned_round_has_m_and_n_exchanged():
     """A sliding specimen held at both ends under a symmetric pad: turned round, with Q, it is the same."""
     sides = (PAD, "bodies.lower={width=60e-3, height=5e-3, support='roller'}", "load.cycles=3", "load.sigma=[0, 0]")
@@ -249,6 +254,7 @@ def test_a_rig_turned_round_has_m_and_n_exchanged():
     assert ends(one) == pytest.approx(ends(other)[[0, 2, 1]], abs=1e-4 * one.a)
 
 
+@pytest.mark.slow
 def test_the_pad_may_be_the_lower_body():
     """Q on the one is -Q on the other: with the bodies swapped m and n change places."""
     pad, flat = "{kind='pad', width=20e-3, height=8e-3}", "{width=30e-3, height=10e-3, support='sides'}"
@@ -310,6 +316,7 @@ def test_a_plate_that_lies_down_is_refused():
 # deliberate faults
 
 
+@pytest.mark.slow
 def test_tension_of_the_wrong_sign_is_seen(monkeypatch, right):
     true = Half.stretch.fget
     monkeypatch.setattr(Half, "stretch", property(lambda half: -true(half)))

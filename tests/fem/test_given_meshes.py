@@ -63,6 +63,7 @@ def results(formats):
     return {suffix: fem(path) for suffix, path in formats.items()}
 
 
+@pytest.mark.slow
 def test_all_formats_give_the_same_result(results):
     """To the last bit."""
     first, *others = results.values()
@@ -73,6 +74,7 @@ def test_all_formats_give_the_same_result(results):
     assert first.settings["meshes"] == "of the size of the given one"
 
 
+@pytest.mark.slow
 def test_the_result_is_that_of_the_arrays(found, results):
     """The same without any file: the mesh's arrays, laid where they belong by hand."""
     chosen = scene(SPECIMEN)
@@ -94,6 +96,7 @@ def counter_clockwise(mesh):
     return np.where(turned[:, None], mesh.triangles[:, ::-1], mesh.triangles)
 
 
+@pytest.mark.slow
 def test_the_result_is_that_of_the_block(results):
     """Another mesh of the same body, refined to 1e-3 a: off by no more than a quarter of the given elements, whose size
     is 0.1 a: that much ends of zones are off that lie anywhere in an element."""

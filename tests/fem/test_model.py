@@ -120,6 +120,7 @@ def test_half_plane_far_field_makes_the_width_irrelevant(large, width):
     assert result.settings["block_half_width_over_a"] == width
 
 
+@pytest.mark.slow
 def test_tiny_stick_zone_is_reported_not_failed():
     result = fem("hertz-large-tension", "load.sigma=[-4e10, 4e10]")  # 1.5e-36 a
     assert result.regime == "large tension"

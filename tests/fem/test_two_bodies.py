@@ -87,11 +87,13 @@ def different():
     return fem(*BLOCKS, *STIFF, FINER, "load.cycles=6", subsurface=True)
 
 
+@pytest.mark.slow
 def test_every_step_is_certified(different):
     assert different.certificate["kkt"] < 1e-9
     assert different.certificate["equilibrium"] < 1e-12
 
 
+@pytest.mark.slow
 def test_matching_and_not_matching_agree(different):
     """But for the discretisation: well within the accuracy that was asked of both."""
     matching = fem(*BLOCKS, *STIFF, "load.cycles=6")
@@ -99,6 +101,7 @@ def test_matching_and_not_matching_agree(different):
         assert getattr(matching, key) == pytest.approx(getattr(different, key), abs=3e-4 * matching.a)
 
 
+@pytest.mark.slow
 def test_third_law_and_moment_balance():
     """What each body's own stiffness says that it feels at its contact nodes, and what its back holds against it."""
     scene = load_scene("hertz-large-tension", [COARSE, *BLOCKS, *STIFF, FINER, "load.cycles=3"])

@@ -40,6 +40,7 @@ def test_order_of_convergence(monkeypatch):
     assert errors[-1][0] < 1e-4
 
 
+@pytest.mark.slow
 def test_transients_die_out_and_leave_the_steady_range():
     """What a cycle still changes falls about with the cube of the cycles: only where a mesh is too coarse to follow the
     last strips that slip does it fall geometrically."""

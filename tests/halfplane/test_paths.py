@@ -50,6 +50,7 @@ def test_points_on_the_way_of_loads_in_phase_do_not_matter():
     assert outcome.results["exact"].regime == "large tension"
 
 
+@pytest.mark.slow
 def test_loads_out_of_phase():
     """Both step-by-step methods find one answer: the part that never slips, the tractions' range, the energy."""
     outcome = partialslip.run(scene(0.5 * np.cos(CIRCLE), 3 * np.sin(CIRCLE), "load.cycles=3"))

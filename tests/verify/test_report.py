@@ -167,6 +167,7 @@ def test_without_weasyprint_there_is_the_page(tmp_path, monkeypatch, capsys):
     assert page(tmp_path).endswith("</html>\n")
 
 
+@pytest.mark.slow
 def test_random_scenes_are_summed_up(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "weasyprint", None)
     verified = verify_suite("stress", method="march", seed=5, count=10, processes=1, out=tmp_path)
