@@ -58,6 +58,12 @@ class Body:
     pull: Array | None = None
 
     @property
+    def weights(self) -> Array:
+        """What turns tractions at the nodes of the contact line into forces, (n,): row sums of ``mass``."""
+        result: Array = np.asarray(self.mass.sum(axis=1)).ravel()
+        return result
+
+    @property
     def held_points(self) -> Array:
         """Nodes of what is held along x, (2, h)."""
         result: Array = self.points[:, self.held[self.held < self.points.shape[1]]]

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.condensed import coupled
+from partialslip.condensed import coupled, stepping
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.friction import History, Path
@@ -19,7 +19,6 @@ from partialslip.condensed.zones import Zone, apart, finest, kinks, left_end, ri
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
 from partialslip.scene import ALLOWED, Profile
-from partialslip_fem import stepping
 from partialslip_fem.condensation import Condensed
 from partialslip_fem.contact import Half, press, relative_compliances
 from partialslip_fem.corners import free_exponent, held_exponent, size
@@ -357,12 +356,12 @@ def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clo
         ends = min([left, *others[:1]]), max([right, *others[1:]])
         locked = _kinks(problem, line, nodes, history) if history else ()
         locked = tuple(kink for kink in locked if ends[0] < kink < ends[1])
-        two, stepped, weights = relative.xy is not None, stepping.Errors(), np.asarray(line.mass.sum(axis=1)).ravel()
+        two, stepped = relative.xy is not None, stepping.Errors()
         if history and first:
-            stepped = stepping.pressed_together(history, first, weights, nodes)
+            stepped = stepping.pressed_together(history, first, line.weights, nodes)
         elif history and finer and stick:
             zones = stick, _stick_zone(line, nodes, finer, None)
-            stepped = stepping.halved(history, finer, zones, weights[nodes], (right - left) / 2)
+            stepped = stepping.halved(history, finer, zones, line.weights[nodes], (right - left) / 2)
         return Level(
             halves, factored, nodes, pressing, history, left, right, stick, others, locked, two, first, stepped
         )
@@ -390,8 +389,7 @@ def _solve(
         pressed, before = (nodal_forces(line, traction) for traction in problem.start)
         path = replace(path, before=before)
     if path and C.xy is not None:
-        weights = np.asarray(line.mass.sum(axis=1)).ravel()
-        along = coupled.Line(line.x, weights, lambda forces: _ends(line, forces), problem.similar)
+        along = coupled.Line(line.x, line.weights, lambda forces: _ends(line, forces), problem.similar)
         history, pressing, first = coupled.march(C, gap, stretch, problem.f, path, pressed, along, problem.accuracy)
         nodes = np.flatnonzero(history.bound > 0)
         return pressing, history.of(nodes), nodes, first, None

@@ -338,7 +338,7 @@ def _fineness(scene: Scene, problem: Problem, accuracy: float) -> dict[str, str 
 
 def _certificate(problem: Problem, level: Level, p0: float) -> dict[str, float]:
     """That of friction, together with normal contact's: residuals in p0, equilibrium relative to P."""
-    weights = np.asarray(level.body.mass.sum(axis=1)).ravel()
+    weights = level.body.weights
     pressing = level.pressing
     closed = {"kkt": float((pressing.residual / weights).max() / p0), "equilibrium": pressing.imbalance}
     if not level.history:

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.condensed.friction import History, Path, certificate, doubts, judge, load_path
+from partialslip.condensed.stepping import halved
 from partialslip.condensed.steps import march_refined
 from partialslip.condensed.threads import one_thread
 from partialslip.condensed.zones import Zone, apart, finest, kinks, stick_zone
@@ -198,15 +199,12 @@ def _mesh_errors(level: _Level, before: _Level, growth: float, first: bool) -> d
 
 
 def _step_errors(level: _Level) -> dict[str, float]:
-    """The same for the sake of the steps: twice what halving all of them changes, as errors are of first order."""
+    """The same for the sake of the steps."""
     if not level.finer or not level.finer_stick:
         return {}
     assert level.history
     assert level.stick
-    ends = (2 * abs(getattr(level.stick, way) - getattr(level.finer_stick, way)) for way in ("left", "right"))
-    return dict(zip("mn", ends, strict=True)) | {
-        key: 2 * _apart(level, of, level.finer, level.vertices) for key, of in _SHEARS.items()
-    }
+    return halved(level.history, level.finer, (level.stick, level.finer_stick), np.diff(level.vertices), 1.0)
 
 
 def _apart(level: _Level, of: Callable[[History], Array], other: History, cells: Array) -> float:

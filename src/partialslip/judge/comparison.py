@@ -121,8 +121,7 @@ def compare(
     """
     own = bars or {}
     usual = {} if accuracy is None else {key: Bar(share * accuracy) for key, share in BARS.items()}
-    applied = {**usual, **own}
-    applied = {key: _beside(bar, key, reference) for key, bar in applied.items()}
+    applied = {key: _beside(bar, key, reference) for key, bar in {**usual, **own}.items()}
     verdicts = [decide(each, applied.get(each.quantity), result) for each in measures(result, reference, scene)]
     nodal = _nodal_errors(result, reference, scene.friction.f)
     return Comparison((*verdicts, judge_regime(result, reference, applied)), conditions(result), *nodal)
