@@ -170,7 +170,7 @@ def _course(size: float, finer: float, goal: float, least: float, order: int) ->
         size = max(size / finer, _FINEST)
         growth = max(least, _growth(size, order)) if size > 1.01 * goal else least
         course.append((size, growth, finer))
-        if size <= 1.01 * goal:
+        if size <= max(1.01 * goal, _FINEST):
             return course
 
 
