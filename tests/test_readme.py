@@ -24,7 +24,7 @@ def test_two_commands_set_up_one_runs_one_tests():
     set_up, run, tests = blocks("sh")
     assert len(set_up.strip().splitlines()) == 2
     assert run.strip() == ".venv/bin/partialslip run fretting-aluminium"
-    assert tests.strip() == ".venv/bin/python -m pytest -n auto --dist loadfile"
+    assert tests.strip() == ".venv/bin/python -m pytest -n auto --dist worksteal"
     assert all(f"<!-- {name} -->\n```sh" in README for name in ("set-up", "run", "tests"))
 
 

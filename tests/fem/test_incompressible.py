@@ -14,6 +14,7 @@ from partialslip_fem.level import solve_level
 
 SCENES = ["hertz-small-tension", "hertz-large-tension"]
 NU = (0.0, 0.45, 0.49, 0.499, 0.4999)
+COARSEST = 0.7  # growth of the elements
 
 
 def scene_of(name, nu, *overrides):
@@ -42,10 +43,12 @@ def errors(name, order, nu, growth):
 
 
 @pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize("growth", [0.7, *(pytest.param(growth, marks=pytest.mark.slow) for growth in (0.5, 0.35))])
+@pytest.mark.parametrize(
+    "growth", [COARSEST, *(pytest.param(growth, marks=pytest.mark.slow) for growth in (0.5, 0.35))]
+)
 def test_errors_of_fourth_order_do_not_depend_on_nu(name, growth):
     reference = errors(name, 4, 0.3, growth)
-    for nu in NU:
+    for nu in NU if growth < COARSEST else NU[-1:]:
         assert (errors(name, 4, nu, growth) < 3 * reference).all(), nu
 
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.condensed.bounded import Solution, solve_bounded
+from partialslip.condensed.bounded import Sides, Solution, solve_bounded
 from partialslip.condensed.zones import Zone
 from partialslip.plan import Plan
 from partialslip.result import FRICTIONLESS, Array, Regime
@@ -223,15 +223,22 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
     path : Path
     """
     load = path.begin[0]
+    first, *ways = (len(way) for way in path.fractions)
+    cycle = sum(ways)
+    sides: list[Sides] = []
 
     def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
         nonlocal load
         if strain == 0 and load == Q:  # nothing moves
+            sides.append(before.sides)
             zero = 0 * bound
             return replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0), bound
         load = Q
         free = tangential @ before.x + strain * stretch
-        return solve_bounded(tangential, free, -bound, bound, Q, before.sides), bound
+        near = sides[-cycle] if len(sides) >= first + cycle else before.sides  # this step a cycle ago is the nearest
+        found = solve_bounded(tangential, free, -bound, bound, Q, near)
+        sides.append(found.sides)
+        return found, bound
 
     return follow(path, advance, resting(0 * bound if path.before is None else path.before))
 
