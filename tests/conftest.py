@@ -2,11 +2,15 @@
 
 Rounding decides which of two equal edges gmsh cuts, so that its meshes differ a little from processor to processor. Its
 own factors are 1e-9 and 1. The second one changes which triangles there are; the first one hardly ever does.
+
+Tests run side by side, one on each core: linear algebra on one thread each, as in a run.
 """
 
 import os
 
-from partialslip_meshes import gmsh
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # is read when NumPy and SciPy are imported
+
+from partialslip_meshes import gmsh  # noqa: E402
 
 _FACTORS = {"MESH_RANDOM_FACTOR": "RandomFactor", "MESH_SIZE_FACTOR": "MeshSizeFactor"}
 

@@ -203,6 +203,7 @@ def test_stick_zones_to_12_digits(flat):
         assert max(errors(case, found)) <= 1e-12, case
 
 
+@pytest.mark.slow
 def test_the_sample_reaches_all_ends():
     sample = [case for flat in FLATS for case in cases(flat)]
     assert len(sample) >= 200

@@ -138,7 +138,7 @@ main(sys.argv[1:])
 
 
 @pytest.mark.fault
-@pytest.mark.parametrize("edited", [False, True])
+@pytest.mark.parametrize("edited", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_a_killed_verification_takes_up_nothing_of_other_code(edited, tmp_path):
     """Deliberate fault: between kill -9 and the next run a source file is edited, with no commit and no other version.
     The case that was finished is solved again, and that is said."""
