@@ -10,7 +10,7 @@ import os
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # is read when NumPy and SciPy are imported
 
-from partialslip_meshes import gmsh  # noqa: E402
+from partialslip_meshes import gmsh
 
 _FACTORS = {"MESH_RANDOM_FACTOR": "RandomFactor", "MESH_SIZE_FACTOR": "MeshSizeFactor"}
 
