@@ -25,6 +25,7 @@ from partialslip.halfplane.steady import transition
 from partialslip.judge import compare
 from partialslip.reading import parse_scene
 from partialslip.result import Array, Traction
+from partialslip.scene import LEAST_SHEAR
 
 KEYS = ("a", "left", "right", "m", "n", "p", "q", "q1", "q2")
 KINDS = (
@@ -100,15 +101,18 @@ def loads(random: np.random.Generator, kind: str, shape: Any) -> tuple[Array, Ar
     return Q, sigma
 
 
-def level_errors(found: Traction, at: Any, breaks: Array) -> tuple[float, float]:
-    """Relative L2 errors of q1 and q2 as averages over the cells."""
+def level_errors(found: Traction, truth: Traction, f: float) -> tuple[float, float]:
+    """Relative L2 errors of q1 and q2 as averages over the cells: as in comparisons, where less than LEAST_SHEAR of f p
+    is taken for that."""
     assert found.cells is not None
     assert found.levels_at is not None
     cells = found.cells
-    cells = cells[(cells > 1.2 * breaks.min()) & (cells < 1.2 * breaks.max())]
-    means = [_means(function, cells, pieces) for function, pieces in ((found.levels_at, found.breaks), (at, breaks))]
-    off, true = ((value**2) @ np.diff(cells) for value in (means[0] - means[1], means[1]))
-    q1, q2 = np.sqrt(off / true).tolist()
+    assert truth.levels_at is not None
+    cells = cells[(cells > 1.2 * truth.breaks.min()) & (cells < 1.2 * truth.breaks.max())]
+    means, true = _means(found.levels_at, cells, found.breaks), _means(truth.levels_at, cells, truth.breaks)
+    p = _means(truth.at, cells, truth.breaks)[0]
+    norms = [np.sqrt((value**2) @ np.diff(cells)) for value in (means - true, true, LEAST_SHEAR * f * p)]
+    q1, q2 = (norms[0] / np.maximum(norms[1], norms[2])).tolist()
     return q1, q2
 
 
@@ -136,7 +140,7 @@ def true_errors(scene: Scene, kind: str, found: Result) -> dict[str, float]:
         finer = replace(scene, fem=replace(scene.fem, accuracy=TRUTH))
         truth = partialslip.run(finer, ["march"]).results["march"].traction
     if truth and truth.levels_at and found.traction.levels_at:
-        known = level_errors(found.traction, truth.levels_at, truth.breaks)
+        known = level_errors(found.traction, truth, scene.friction.f)
         errors |= dict(zip(("q1", "q2"), known, strict=True))
     return {key: error for key, error in errors.items() if error is not None}
 

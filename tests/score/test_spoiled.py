@@ -2,6 +2,7 @@
 
 import importlib
 
+import numpy as np
 import pytest
 import spoiling
 
@@ -9,6 +10,7 @@ from partialslip import load_scene
 from partialslip.reading import shipped_scenes
 
 method = importlib.import_module("partialslip.score.method")
+ends = importlib.import_module("partialslip.score.ends")
 SCENE = load_scene("fretting-aluminium")
 
 
@@ -41,6 +43,24 @@ def test_friction_taken_from_the_scene_hides_slip(monkeypatch):
     monkeypatch.setattr(method, "frictions", asked)
     wrong = method.scored(SCENE, found, "t", "t")
     assert wrong.m is None or abs(wrong.m - spoiled.truth.m) > 0.1 * spoiled.truth.a
+
+
+@pytest.mark.fault
+def test_an_end_is_looked_for_where_shear_fades_out(monkeypatch):
+    """Soft penalty friction beside the flat: 2 f p - |dq| fades away over half of the contact, and polynomials through
+    its last points have their root at the contact's end."""
+    scene = load_scene("flat-rounded")
+    clean = spoiling.sampled(scene, spoiling.points(spoiling.exact(scene), "151"))
+    ((at, slip),) = spoiling.penalty(scene, 1e-1, 1e-1).values()
+    x, p = clean.columns["x"], clean.columns["p"]
+    shear = 2 * scene.friction.f * p * np.tanh(np.interp(x / clean.truth.a, at, slip))
+    spoiled = spoiling.samples({"x": x, "p": p, "dq": shear}, "t", (1, 1, 1), 1)
+    found = method.scored(scene, spoiled, "t", "t")
+    assert found.n is None
+    assert "m and n are not given" in found.notes[-1]
+    monkeypatch.setattr(ends, "_FADED", np.inf)
+    wrong = method.scored(scene, spoiled, "t", "t")
+    assert abs(wrong.n - clean.truth.n) > 10 * wrong.estimate["n"] * clean.truth.a
 
 
 @pytest.mark.slow

@@ -23,8 +23,12 @@ _NEAREST = 2.0  # of the points skipped: windows are at least half as long as th
 _NEAR = 3  # of the levels, which are near the end
 _AGREE = 3.0  # times their uncertainties, by which ends seen from near and from afar may differ
 _FADES = 0.35
+_RISEN, _FADED = 0.1, 0.1  # of the mean, to which a square root has risen by far less than that much of the zone
+_STEEP = 3.0  # times the median slope: what is steeper is due to noise
+_ABOVE = 2.0  # times the noise, to which points tell how steep the square is
 _FALL = 0.05  # at best, from one degree to the next, of what polynomials leave out
-_SAFE = 2.0  # times the uncertainty of the best one: it is the best by some luck, too
+_SAFE = 2.6  # times the uncertainty of the best one: it is the best by some luck, too
+_LEVEL = 5.0  # times the uncertainty of the best one, up to which others that lie elsewhere count
 _SPREAD = 0.5  # of the length over which an end is spread, that it may be off
 _CELL = 0.06  # of a cell, that means over cells displace the end of a square root
 NOISE = 4.0  # times the standard deviation, below which a value is no more than noise
@@ -50,11 +54,13 @@ class _Estimate(NamedTuple):
 
 
 class _Root(NamedTuple):
-    """Root ``x`` of a polynomial through so many ``points``, m, and its ``slope`` there; the mean square ``scatter`` of
-    the points about it, by which factor (``gain``) its root gives standard errors, and how far the slack moves it."""
+    """Root ``x`` of a polynomial through so many ``points``, the ``highest`` of the values there, m, and its ``slope``
+    there; the mean square ``scatter`` of the points about it, by which factor (``gain``) its root gives standard
+    errors, and how far the slack moves it."""
 
     x: float
     points: int
+    highest: float
     slope: float
     scatter: float
     gain: float
@@ -86,7 +92,8 @@ def zone(values: Array, least: Array | float) -> tuple[int, int] | None:
 def right_end(
     x: Array, values: Array, last: int, first: int, *, cells: bool = False, slack: Array | None = None, least: float = 0
 ) -> End:
-    """Where ``values`` vanish like a square root.
+    """Where ``values`` vanish like a square root; where they fade out instead, the end may be as far in as they have
+    risen.
 
     Parameters
     ----------
@@ -101,7 +108,15 @@ def right_end(
     least : float
         Values that are no more than noise.
     """
-    slack = np.zeros_like(values) if slack is None else slack
+    end = _end(x, values, last, first, cells, np.zeros_like(values) if slack is None else slack, least)
+    mean = float(np.trapezoid(values[first : last + 1], x[first : last + 1])) / max(x[last] - x[first], 1e-300)
+    risen = x[first + np.flatnonzero(values[first : last + 1] >= _RISEN * mean)[-1]]
+    faded = end.x - risen
+    return End(end.x, faded, faded) if faded > _FADED * (x[last] - x[first]) else end
+
+
+def _end(x: Array, values: Array, last: int, first: int, cells: bool, slack: Array, least: float) -> End:
+    """The end and its uncertainty, by polynomials through the squares of the values."""
     spacing = x[last] - x[max(last - 1, 0)]
     beyond = x[last + 1] if last + 1 < len(x) else x[last] + 2 * spacing
     outermost = max(x[-1], beyond) + (beyond - x[last]) / 2
@@ -117,7 +132,9 @@ def right_end(
     close = [roots[-1] for level in levels[-_NEAR:] for roots in level if roots]
     few = [root.scatter for root in close if root and root.points <= _FEW]
     floor = float(np.median(few)) if few else 0.0
-    steepest = max((abs(root.slope) for root in every if root.points > _FEW), default=np.inf)
+    told = [root for root in every if root.points > _FEW and root.highest > _ABOVE * least]
+    slope = float(np.median([abs(root.slope) for root in told])) if told else np.inf
+    hidden, steepest = least**2 / slope, _STEEP * slope
     every_level = [[end for roots in level for end in _estimates(roots, floor, steepest)] for level in levels]
     found = _agreeing(every_level)
     # over three points before the last a square root falls to half; what falls by more fades out
@@ -135,9 +152,10 @@ def right_end(
     outside = [max(end.x - beyond - least**2 / abs(end.slope), 0.0) for end in found]  # noise hides as much of the zone
     off, best = min(zip(outside, found, strict=True), key=lambda pair: np.hypot(pair[0], pair[1].uncertainty))
     spread = _SPREAD * max(x[last] - cells * spacing - best.x, off, 0.0)
-    own = float(np.hypot(_SAFE * best.uncertainty, _SPREAD * apart))
-    if x[last] <= best.x <= beyond and not fades:  # the points are on either side of it
-        own = min(own, beyond - x[last])
+    drift = max(abs(end.x - best.x) for end in found if end.uncertainty <= _LEVEL * best.uncertainty)
+    own = float(np.linalg.norm((_SAFE * best.uncertainty, _SPREAD * apart, drift)))
+    if x[last] <= best.x <= beyond and not fades:  # the points are on either side of it, but for what noise hides
+        own = min(own, beyond - x[last] + hidden)
     return End(best.x, float(np.linalg.norm((own, spread, _CELL * cells * spacing))), spread)
 
 
@@ -166,7 +184,7 @@ def _agreeing(levels: list[list[_Estimate]]) -> list[_Estimate]:
 
 def _estimates(roots: list[_Root | None], floor: float, steepest: float) -> list[_Estimate]:
     """Ends from polynomials of neighbouring degrees. The mean square of the noise is no less than ``floor``; so much of
-    y^2 is noise. Slopes steeper than the ``steepest`` of many points are due to it."""
+    y^2 is noise. Slopes beyond the ``steepest`` are due to it."""
     found, before = [], np.inf
     for lower, higher in pairwise(roots):
         if lower and higher:
@@ -210,5 +228,7 @@ def _roots(x: Array, y: Array, slack: Array, near: float, far: float) -> list[_R
         powers, per = root ** np.arange(degree, -1, -1), scale / abs(slope)
         few = 1 + 2 / freedom  # degrees of freedom, which may show too little scatter
         gain, moved = few * per * np.linalg.norm(powers @ inverse), per * abs(powers @ shift)
-        found.append(_Root(x[-1] + root * scale, len(x), slope / scale, scatter, float(gain), float(moved)))
+        found.append(
+            _Root(x[-1] + root * scale, len(x), float(size.max()), slope / scale, scatter, float(gain), float(moved))
+        )
     return found
