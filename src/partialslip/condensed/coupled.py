@@ -308,7 +308,7 @@ def march(
     last, _ = done[-cycle:][sum(len(way) for way in path.fractions[1 : path.ends[1] + 2]) - 1]
     together = replace(
         last,
-        residual=np.max([normal.residual for normal, _ in done], axis=0),
+        residual=np.maximum.reduce([normal.residual for normal, _ in done]),
         imbalance=max(normal.imbalance for normal, _ in done),
         iterations=sum(normal.iterations for normal, _ in done),
         changes=sum(normal.changes + sheared.changes for normal, sheared in done),

@@ -331,7 +331,7 @@ def certified(steps: Sequence[Solution]) -> Solution:
     """The last of some steps' solutions, with the residuals and the work of all of them."""
     return replace(
         steps[-1],
-        residual=np.max([step.residual for step in steps], axis=0),
+        residual=np.maximum.reduce([step.residual for step in steps]),
         imbalance=max(step.imbalance for step in steps),
         iterations=sum(step.iterations for step in steps),
         changes=sum(step.changes for step in steps),

@@ -135,7 +135,7 @@ def changes(random: np.random.Generator, kind: str, shape: Shape) -> tuple[float
     if kind in ("any", "near-sliding", "out of phase"):
         return Qf, float(random.choice([random.uniform(0, 10), 10 ** random.uniform(-6, 1)]))
     at = float(transition(Qf, shape))
-    times = {
+    times: dict[str, float] = {
         "small": random.random(),
         "large": 1 + 10 ** random.uniform(-3, 0.5),
         "transition": 1 + random.choice([-1, 0, 1]) * 10 ** random.uniform(-15, -1),
