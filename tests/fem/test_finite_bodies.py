@@ -98,6 +98,7 @@ def test_boxes_are_off_by_the_square_of_a_over_their_size(support):
     assert np.log2(errors[:-1] / errors[1:]) == pytest.approx(2, abs=0.2)
 
 
+@pytest.mark.slow
 def test_large_pads_are_half_planes():
     """A pad of R = 50 a, three quarters of R to each side: the arc and the size are felt as (a/R)^2."""
     overrides = ["profile.R=0.4", "bodies.upper={kind='pad', width=0.6, height=0.3}"]
@@ -178,6 +179,7 @@ def test_every_step_is_certified(right):
     assert right.regime == "small tension"
 
 
+@pytest.mark.slow
 def test_stresses_are_those_of_the_bodies_as_they_are():
     """Far from the contact the pulled specimen bears sigma, and beyond the narrower pad there is none of it."""
     result = fem(*RIG, "load.Q=[0, 0]", subsurface=True)

@@ -87,6 +87,7 @@ def test_static_mean_load_sticks():
     assert result.traction.q2.max() > 0
 
 
+@pytest.mark.slow
 def test_mean_loads_reach_the_steady_range_cycle_by_cycle():
     """The first cycles differ; the range tends to that of the reversed loads of the same changes, with the cube of the
     cycles (tests/halfplane/test_marching.py)."""

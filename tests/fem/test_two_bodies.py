@@ -134,6 +134,7 @@ def on_surface(body, x):
     return np.array([CubicSpline(body.points[line, 0], field)(x) for field in fields])
 
 
+@pytest.mark.slow
 def test_bodies_meet(different):
     """Where they touch the surfaces have closed the gap, and where they stick they have moved alike between the
     load points: interpolated, as the nodes do not match."""

@@ -22,7 +22,7 @@ from partialslip.halfplane.traction import half_range
 DIGITS = 40
 ROUNDING = 2.0**-53
 FLATS = (0.0, 0.05, 0.3, 0.5, 0.8, 0.95)  # half-width of the flat; 0 is Hertz
-ON_DEMAND = (0.05, 0.3, 0.8)
+ON_DEMAND = (0.05, 0.3, 0.8, 0.95)
 EACH = [pytest.param(flat, marks=[pytest.mark.slow] * (flat in ON_DEMAND)) for flat in FLATS]
 TOUCHING = 1e-9
 GRID = np.linspace(-3.5, 3.5, 281)

@@ -106,7 +106,7 @@ def test_coarse_finite_elements_close_every_step_of_any_path(scene, mesh):
             assert abs(force.sum() - scene.load.points[end][0]) <= unit
 
 
-@settings(max_examples=settings().max_examples // 4)
+@settings(max_examples=settings().max_examples // 8)
 @given(scenes())
 def test_coarse_finite_elements_are_turned_round_with_the_loads(scene):
     one, other = (

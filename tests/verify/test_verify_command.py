@@ -265,7 +265,7 @@ def test_a_random_scene_is_its_seed_and_number():
     ("method", "count"),
     [
         ("march", 8),
-        ("fem", 4),
+        ("fem", 2),
         pytest.param("march", 2000, marks=pytest.mark.slow),
         pytest.param("fem", 200, marks=pytest.mark.slow),
     ],
