@@ -7,7 +7,7 @@ import pytest
 
 from partialslip import compare, load_scene, plan
 from partialslip.halfplane import solve
-from partialslip.judge import cell_errors, cell_means
+from partialslip.judge import Outcome, cell_errors, cell_means
 from partialslip.result import CERTIFICATE_BAR, Traction
 
 SCENE = load_scene("hertz-large-tension")
@@ -143,3 +143,31 @@ def test_pressure_beyond_the_contact_is_an_error_in_the_cell_of_its_end(side):
     means, _ = cell_means(traction_of(root, root), cells)
     norm = np.sqrt(means**2 @ np.diff(cells))
     assert error == pytest.approx(0.15 / 0.3 * np.sqrt(0.3) / norm, rel=1e-9)
+
+
+def of(comparison, quantity):
+    (verdict,) = (verdict for verdict in comparison.verdicts if verdict.quantity == quantity)
+    return verdict
+
+
+@pytest.mark.parametrize(
+    ("own", "table", "bar", "outcome"),
+    [
+        (0.0, 0.0, 1e-3, Outcome.MISSED),  # m is off by 1.5e-3 a
+        (6e-4, 0.0, 1.6e-3, Outcome.PASSED),
+        (6e-4, 6e-4, 1e-3, Outcome.MISSED),  # every method is given the same table
+        (9e-4, 5e-4, 1.4e-3, Outcome.MISSED),
+        (1e-3, 0.0, 2e-3, Outcome.PASSED),
+        (1.1e-3, 0.0, None, Outcome.NOT_JUDGED),  # what the reference itself does not know to the bar
+    ],
+)
+def test_what_the_reference_is_off_by_is_added_to_the_bar(exact, own, table, bar, outcome):
+    reference = replace(exact, estimate={"m": own}, shares={"table": {"m": table}})
+    off = 1.5e-3 * exact.a
+    found = replace(with_cells(exact), stick_centre=exact.stick_centre - off / 2)
+    found = replace(found, stick_half_width=exact.stick_half_width + off / 2)
+    verdict = of(compare(found, reference, SCENE, 1e-3), "m")
+    assert verdict.error == pytest.approx(1.5e-3, rel=1e-9)
+    assert verdict.bar == (None if bar is None else pytest.approx(bar, rel=1e-6))
+    assert verdict.outcome is outcome
+    assert (f"{exact.method}" in verdict.reason) == (own > table)

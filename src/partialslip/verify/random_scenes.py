@@ -138,8 +138,8 @@ def changes(random: np.random.Generator, kind: str, shape: Shape) -> tuple[float
     times: dict[str, float] = {
         "small": random.random(),
         "large": 1 + 10 ** random.uniform(-3, 0.5),
-        "transition": 1 + random.choice([-1, 0, 1]) * 10 ** random.uniform(-15, -1),
-        "mean loads": random.choice([random.random(), random.uniform(1.1, 2.5)]),
+        "transition": 1 + int(random.choice([-1, 0, 1])) * 10 ** random.uniform(-15, -1),
+        "mean loads": float(random.choice([random.random(), random.uniform(1.1, 2.5)])),
         "ratchets": random.uniform(1.3, 2.5),
     }
     return Qf, at * times.get(kind, 10 ** random.uniform(-2, 1))
