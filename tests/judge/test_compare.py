@@ -153,7 +153,8 @@ def of(comparison, quantity):
 @pytest.mark.parametrize(
     ("own", "table", "bar", "outcome"),
     [
-        (0.0, 0.0, 1e-3, Outcome.MISSED),  # m is off by 1.5e-3 a
+        (None, 0.0, 1e-3, Outcome.MISSED),  # m is off by 1.5e-3 a
+        (0.0, 0.0, 1e-3, Outcome.MISSED),
         (6e-4, 0.0, 1.6e-3, Outcome.PASSED),
         (6e-4, 6e-4, 1e-3, Outcome.MISSED),  # every method is given the same table
         (9e-4, 5e-4, 1.4e-3, Outcome.MISSED),
@@ -162,7 +163,7 @@ def of(comparison, quantity):
     ],
 )
 def test_what_the_reference_is_off_by_is_added_to_the_bar(exact, own, table, bar, outcome):
-    reference = replace(exact, estimate={"m": own}, shares={"table": {"m": table}})
+    reference = replace(exact, estimate={} if own is None else {"m": own}, shares={"table": {"m": table}})
     off = 1.5e-3 * exact.a
     found = replace(with_cells(exact), stick_centre=exact.stick_centre - off / 2)
     found = replace(found, stick_half_width=exact.stick_half_width + off / 2)
@@ -170,4 +171,4 @@ def test_what_the_reference_is_off_by_is_added_to_the_bar(exact, own, table, bar
     assert verdict.error == pytest.approx(1.5e-3, rel=1e-9)
     assert verdict.bar == (None if bar is None else pytest.approx(bar, rel=1e-6))
     assert verdict.outcome is outcome
-    assert (f"{exact.method}" in verdict.reason) == (own > table)
+    assert (f"{exact.method}" in verdict.reason) == ((own or 0.0) > table)

@@ -67,7 +67,10 @@ def test_an_end_is_looked_for_where_shear_fades_out(monkeypatch):
 @pytest.mark.parametrize("sampling", spoiling.SAMPLINGS)
 @pytest.mark.parametrize("name", shipped_scenes())
 def test_all_spoiled_tables(name, sampling):
-    """Printed with -s: how many tables are read, withheld and wrong, by way of spoiling. A few percent are wrong."""
+    """Printed with -s: how many tables are read, withheld and wrong, by way of spoiling. Of 1,595 tables four are off by
+    three to six times their estimates, none by more than a hundredth of a spacing."""
     read = list(spoiling.readings(load_scene(name), sampling))
     print(*spoiling.counts(read), sep="\n")
-    assert sum(not reading.honest for reading in read) <= 0.06 * len(read)
+    wrong = [reading for reading in read if not reading.honest]
+    assert len(wrong) <= 2
+    assert all(max(reading.errors) < 0.01 * reading.spacing for reading in wrong)
