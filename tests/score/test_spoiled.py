@@ -67,8 +67,8 @@ def test_an_end_is_looked_for_where_shear_fades_out(monkeypatch):
 @pytest.mark.parametrize("sampling", spoiling.SAMPLINGS)
 @pytest.mark.parametrize("name", shipped_scenes())
 def test_all_spoiled_tables(name, sampling):
-    """Printed with -s: how many tables are read, withheld and wrong, by way of spoiling. Of 1,595 tables four are off by
-    three to six times their estimates, none by more than a hundredth of a spacing."""
+    """Printed with -s: how many tables are read, withheld and wrong, by way of spoiling. Of 1,595 tables four are off
+    by three to six times their estimates, none by more than a hundredth of a spacing."""
     read = list(spoiling.readings(load_scene(name), sampling))
     print(*spoiling.counts(read), sep="\n")
     wrong = [reading for reading in read if not reading.honest]
