@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.condensed import coupled, stepping
+from partialslip.condensed import coupled, step_errors
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.friction import History, Path
@@ -140,7 +140,7 @@ class Level:
     the ends at 1 are ``others``, where they differ. ``kinks`` are points where q1 or q2 is not smooth, beside the ends
     of the stick zone, while the change of q is. ``factored`` counts the factorisations made for it; pressure and
     shear are solved together where bodies are ``coupled``. ``stepped`` is what the steps make it off by
-    (:mod:`partialslip_fem.stepping`), where there are several.
+    (:mod:`partialslip.condensed.step_errors`), where there are several.
     """
 
     halves: tuple[Half, ...]
@@ -356,12 +356,12 @@ def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clo
         ends = min([left, *others[:1]]), max([right, *others[1:]])
         locked = _kinks(problem, line, nodes, history) if history else ()
         locked = tuple(kink for kink in locked if ends[0] < kink < ends[1])
-        two, stepped = relative.xy is not None, stepping.Errors()
+        two, stepped = relative.xy is not None, step_errors.Errors()
         if history and first:
-            stepped = stepping.pressed_together(history, first, line.weights, nodes)
+            stepped = step_errors.pressed_together(history, first, line.weights, nodes)
         elif history and finer and stick:
             zones = stick, _stick_zone(line, nodes, finer, None)
-            stepped = stepping.halved(history, finer, zones, line.weights[nodes], (right - left) / 2)
+            stepped = step_errors.halved(history, finer, zones, line.weights[nodes], (right - left) / 2)
         return Level(
             halves, factored, nodes, pressing, history, left, right, stick, others, locked, two, first, stepped
         )

@@ -145,11 +145,6 @@ def test_pressure_beyond_the_contact_is_an_error_in_the_cell_of_its_end(side):
     assert error == pytest.approx(0.15 / 0.3 * np.sqrt(0.3) / norm, rel=1e-9)
 
 
-def of(comparison, quantity):
-    (verdict,) = (verdict for verdict in comparison.verdicts if verdict.quantity == quantity)
-    return verdict
-
-
 @pytest.mark.parametrize(
     ("own", "table", "bar", "outcome"),
     [
@@ -167,8 +162,8 @@ def test_what_the_reference_is_off_by_is_added_to_the_bar(exact, own, table, bar
     off = 1.5e-3 * exact.a
     found = replace(with_cells(exact), stick_centre=exact.stick_centre - off / 2)
     found = replace(found, stick_half_width=exact.stick_half_width + off / 2)
-    verdict = of(compare(found, reference, SCENE, 1e-3), "m")
+    verdict = next(each for each in compare(found, reference, SCENE, 1e-3).verdicts if each.quantity == "m")
     assert verdict.error == pytest.approx(1.5e-3, rel=1e-9)
     assert verdict.bar == (None if bar is None else pytest.approx(bar, rel=1e-6))
     assert verdict.outcome is outcome
-    assert (f"{exact.method}" in verdict.reason) == ((own or 0.0) > table)
+    assert (exact.method in verdict.reason) == ((own or 0.0) > table)

@@ -58,7 +58,7 @@ def test_an_end_is_looked_for_where_shear_fades_out(monkeypatch):
     found = method.scored(scene, spoiled, "t", "t")
     assert found.n is None
     assert "m and n are not given" in found.notes[-1]
-    monkeypatch.setattr(ends, "_FADED", np.inf)
+    monkeypatch.setattr(ends, "_RISE", np.inf)
     wrong = method.scored(scene, spoiled, "t", "t")
     assert abs(wrong.n - clean.truth.n) > 10 * wrong.estimate["n"] * clean.truth.a
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.condensed.friction import History, Path, certificate, doubts, judge, load_path
-from partialslip.condensed.stepping import halved
+from partialslip.condensed.step_errors import halved
 from partialslip.condensed.steps import march_refined
 from partialslip.condensed.threads import one_thread
 from partialslip.condensed.zones import Zone, apart, finest, kinks, stick_zone

@@ -22,8 +22,9 @@ _PART = 0.6  # of the zone: farther points know of its other end
 _NEAREST = 2.0  # of the points skipped: windows are at least half as long as they are far from the end
 _NEAR = 3  # of the levels, which are near the end
 _AGREE = 3.0  # times their uncertainties, by which ends seen from near and from afar may differ
-_FADES = 0.35
-_RISEN, _FADED = 0.1, 0.1  # of the mean, to which a square root has risen by far less than that much of the zone
+_FADES = 0.35  # of the value three points further in: less of it at the last points fades out
+_RISEN = 0.1  # of their mean, to which values that vanish like a square root rise within a fortieth of the zone
+_RISE = 0.1  # of the zone: values that take longer for that fade out
 _STEEP = 3.0  # times the median slope: what is steeper is due to noise
 _ABOVE = 2.0  # times the noise, to which points tell how steep the square is
 _FALL = 0.05  # at best, from one degree to the next, of what polynomials leave out
@@ -92,8 +93,8 @@ def zone(values: Array, least: Array | float) -> tuple[int, int] | None:
 def right_end(
     x: Array, values: Array, last: int, first: int, *, cells: bool = False, slack: Array | None = None, least: float = 0
 ) -> End:
-    """Where ``values`` vanish like a square root; where they fade out instead, the end may be as far in as they have
-    risen.
+    """Where ``values`` vanish like a square root. Where they fade out instead, the end is known no better than the
+    length over which they do.
 
     Parameters
     ----------
@@ -112,7 +113,7 @@ def right_end(
     mean = float(np.trapezoid(values[first : last + 1], x[first : last + 1])) / max(x[last] - x[first], 1e-300)
     risen = x[first + np.flatnonzero(values[first : last + 1] >= _RISEN * mean)[-1]]
     faded = end.x - risen
-    return End(end.x, faded, faded) if faded > _FADED * (x[last] - x[first]) else end
+    return End(end.x, faded, faded) if faded > _RISE * (x[last] - x[first]) else end
 
 
 def _end(x: Array, values: Array, last: int, first: int, cells: bool, slack: Array, least: float) -> End:
