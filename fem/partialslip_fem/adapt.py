@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -89,7 +89,8 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     Errors of elements of order k fall with the 2 k-th power of their growth away from the ends, which gives the growth
     that the next mesh needs. What costs a second solution is estimated only where the elements at the ends are small
     enough. ``width`` is the block's half-width in contact half-widths. The first contact line is a guess, doubled
-    until the contact does not reach its ends.
+    until the contact does not reach its ends. Steps of the load path are chosen on the first mesh that is fine enough
+    to tell, and kept; elements are not to make up for what these leave.
     """
     order, parts = problem.order, problem.parts
     expense = Expense(clock, len(parts))
@@ -97,6 +98,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     expense.measure(level.dofs)
     a, iterations, known, before, size, finer = level.half_width, level.iterations, np.inf, np.inf, _FIRST, _FINER
     aim, errors, at_ends = _Aim.at(accuracy, problem), dict[str, float](), dict[str, float]()
+    stepped: Mapping[str, float] | None = None  # what steps leave, once they are chosen
     least, limit = aim.least, _limit(problem)
     coarsest = max(part.fineness for part in parts)  # what is not finer than that is to be fine enough
     while True:
@@ -126,7 +128,13 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
                 sizes[kink] = needed * a / coarsest
         grading = (contact, sizes, growth / coarsest)
         expected = expense.unknowns(*grading[1:], order, width * a) if expense.limited else None
-        level = solve_level(problem, width * a, *grading, clock, rounding=aim.rounding, corners=aim.corners)
+        choose = stepped is None and size <= _BESIDE
+        level = solve_level(problem, width * a, *grading, clock, None, None, aim.rounding, aim.corners, choose)
+        if choose and level.enclosed and level.history and not level.coupled:
+            stepped, problem = level.stepped, replace(problem, path=replace(level.history.path, before=None))
+            aim = _Aim.at(max(aim.accuracy, _worst(stepped)), problem)
+        elif stepped is not None:
+            level = replace(level, stepped=stepped)
         expense.measure(level.dofs, expected)
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         if not level.enclosed and max(-level.left, level.right) >= limit:
@@ -140,22 +148,23 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         }
         known, calmer = np.inf, 1.0
         found = f"mesh {meshes}: {level.dofs:,} unknowns"
+        bar = max(aim.bar - _worst(stepped or {}), aim.bar / 2)  # steps have their share of it
         good = level.enclosed and local.max() <= _BESIDE
-        if (good and _worst(at_ends) <= aim.bar) or size <= _FINEST or level.dofs > _MOST:
+        if (good and _worst(at_ends) <= bar) or size <= _FINEST or level.dofs > _MOST:
             other = neighbour(level, problem, width * a, clock)
             expense.pass_over()
             factored, iterations = factored + other.factored, iterations + other.iterations
             smooth = smooth_errors(level, other)
             errors = together(level, smooth, at_ends)
             known = _worst(errors)
-            calmer = float(np.clip((3 * _worst(smooth) / aim.bar) ** (-0.5 / order), *_CALMER))
+            calmer = float(np.clip((3 * _worst(smooth) / bar) ** (-0.5 / order), *_CALMER))
             found += f", {', '.join(errors)} known to {known:.1e} a"
         progress(found)
-        if (good and known <= aim.bar) or known > before / 2 or level.dofs > _MOST * calmer**2:
+        if (good and known <= bar) or known > before / 2 or level.dofs > _MOST * calmer**2:
             reached = max(aim.accuracy, known / _BAR) if expense.limited else None
             return Adapted(level, errors, meshes, factored, iterations, width, reached)
         if size <= 1.01 * goal:
-            finer = min(max(3 * _worst(at_ends) / aim.bar, 1.0), _FINER)
+            finer = min(max(3 * _worst(at_ends) / bar, 1.0), _FINER)
         if known < np.inf:
             before, least = known, least * calmer
 
@@ -223,7 +232,7 @@ def uniform(problem: Problem, size: float | None, width: float, clock: Clock, ke
     reach, limit = 1.25 * max(-level.left, level.right), _limit(problem)
     while True:
         reach = min(float(f"{reach:.2g}"), limit)
-        level = solve_level(problem, width * a, (-reach, reach), {}, growth, clock, size * a, keep)
+        level = solve_level(problem, width * a, (-reach, reach), {}, growth, clock, size * a, keep, stepped=True)
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         if level.enclosed:
             return Adapted(level, {}, meshes, factored, iterations, width)
@@ -252,10 +261,11 @@ def _first(problem: Problem, width: float, clock: Clock, keep: Kept | None = Non
     """A level on a mesh that is fine all over a contact line which the contact does not fill, and how many meshes and
     factorisations that took."""
     reach, limit, meshes, factored = 1.5 + max(problem.kinks, default=0.0), _limit(problem), 0, 0
+    meshed = all(part.mesh for part in problem.parts)  # then there will be no other
     while True:
         reach = min(reach, limit)
         guess = dict.fromkeys(np.linspace(-reach, reach, 16).tolist(), 2 * _FIRST * reach)
-        level = solve_level(problem, width * reach, (-reach, reach), guess, _ROUGH, clock, keep=keep)
+        level = solve_level(problem, width * reach, (-reach, reach), guess, _ROUGH, clock, keep=keep, stepped=meshed)
         meshes, factored = meshes + 1, factored + level.factored
         if level.enclosed:
             return level, meshes, factored
@@ -317,6 +327,6 @@ def _too_narrow(problem: Problem) -> InputError:
     )
 
 
-def _worst(errors: dict[str, float]) -> float:
+def _worst(errors: Mapping[str, float]) -> float:
     """As an error of an end."""
-    return max(error / ALLOWED[key] for key, error in errors.items())
+    return max((error / ALLOWED[key] for key, error in errors.items()), default=0.0)

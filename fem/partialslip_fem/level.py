@@ -140,7 +140,7 @@ class Level:
     the ends at 1 are ``others``, where they differ. ``kinks`` are points where q1 or q2 is not smooth, beside the ends
     of the stick zone, while the change of q is. ``factored`` counts the factorisations made for it; pressure and
     shear are solved together where bodies are ``coupled``. ``stepped`` is what the steps make it off by
-    (:mod:`partialslip.condensed.step_errors`), where there are several.
+    (:mod:`partialslip.condensed.step_errors`), where that was asked for.
     """
 
     halves: tuple[Half, ...]
@@ -272,6 +272,7 @@ def solve_level(
     keep: Kept | None = None,
     rounding: float | None = None,
     corners: float | None = None,
+    stepped: bool = False,
 ) -> Level:
     """Mesh the bodies, blocks of half-width ``width`` unless they have an extent or a mesh of their own, and solve on
     them.
@@ -279,19 +280,20 @@ def solve_level(
     ``contact``, ``sizes``, ``growth`` and ``along`` are as for :func:`partialslip_meshes.block`. ``rounding`` is how
     far a round face may be from its elements' straight sides, in half-widths of the contact line; ``corners`` what
     elements at the corners of finite bodies may change at the contact, relative. Condensed bodies are taken from
-    ``keep`` and added to it.
+    ``keep`` and added to it. ``stepped`` says whether the load path is to be followed in as many steps as the accuracy
+    takes, and what these leave to be told (:attr:`Level.stepped`).
     """
     kind = (problem.parts, problem.order, problem.far_field, problem.backend, problem.path is None, problem.inside)
     key = (*kind, width, contact, tuple(sizes.items()), growth, along, rounding, corners)
     if keep and (known := keep.find(key)):
-        return _level(problem, known, 0, clock)
+        return _level(problem, known, 0, clock, stepped)
     meshes = []
     for part in problem.parts:
         with clock.phase("mesh"):
             mesh = part.mesh or _block(part, width, contact, sizes, growth, along, rounding, corners)
         clock.add_meshing(mesh.cpu_s)
         meshes.append(mesh)
-    level = solve_on(meshes, problem, width, clock)
+    level = solve_on(meshes, problem, width, clock, stepped)
     if keep:
         keep.add(key, level.halves)
     return level
@@ -329,20 +331,21 @@ def _block(
     return block(half_width, contact, finer, growth * part.fineness, height, everywhere, *shape)
 
 
-def solve_on(meshes: Sequence[Mesh], problem: Problem, width: float, clock: Clock) -> Level:
-    """Solve on meshes of the bodies, in the order of the problem's parts; ``width`` as for :func:`solve_level`."""
+def solve_on(meshes: Sequence[Mesh], problem: Problem, width: float, clock: Clock, stepped: bool = False) -> Level:
+    """Solve on meshes of the bodies, in the order of the problem's parts; ``width`` and ``stepped`` as for
+    :func:`solve_level`."""
     if len(meshes) > 1 and any(part.mesh for part in problem.parts):
         meshes = [_opposite(*meshes), *meshes[1:]]
     halves = tuple(_half(*pair, problem, width, clock) for pair in zip(meshes, problem.parts, strict=True))
-    return _level(problem, halves, len(halves), clock)
+    return _level(problem, halves, len(halves), clock, stepped)
 
 
-def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clock) -> Level:
+def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clock, stepped: bool) -> Level:
     with clock.phase("condensation"):
         relative = relative_compliances(halves, problem.coupled)
     with clock.phase("contact"):
         line = halves[0].body
-        pressing, history, nodes, first, finer = _solve(problem, relative, halves[0])
+        pressing, history, nodes, first, left_by_steps = _solve(problem, relative, halves[0], stepped)
         left, right = _ends(line, pressing.x)
         others: tuple[float, float] | tuple[()] = ()
         if history and relative.xy is not None:
@@ -356,14 +359,11 @@ def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clo
         ends = min([left, *others[:1]]), max([right, *others[1:]])
         locked = _kinks(problem, line, nodes, history) if history else ()
         locked = tuple(kink for kink in locked if ends[0] < kink < ends[1])
-        two, stepped = relative.xy is not None, step_errors.Errors()
         if history and first:
-            stepped = step_errors.pressed_together(history, first, line.weights, nodes)
-        elif history and finer and stick:
-            zones = stick, _stick_zone(line, nodes, finer, None)
-            stepped = step_errors.halved(history, finer, zones, line.weights[nodes], (right - left) / 2)
+            left_by_steps = step_errors.pressed_together(history, first, line.weights, nodes)
+        two = relative.xy is not None
         return Level(
-            halves, factored, nodes, pressing, history, left, right, stick, others, locked, two, first, stepped
+            halves, factored, nodes, pressing, history, left, right, stick, others, locked, two, first, left_by_steps
         )
 
 
@@ -379,10 +379,10 @@ def _half(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) 
 
 
 def _solve(
-    problem: Problem, C: coupled.Relative, lower: Half
-) -> tuple[Solution, History | None, Indices, Pressed | None, History | None]:
+    problem: Problem, C: coupled.Relative, lower: Half, stepped: bool
+) -> tuple[Solution, History | None, Indices, Pressed | None, step_errors.Errors]:
     """Normal forces, the history of the tangential ones on the nodes in contact, those nodes, how coupled bodies were
-    pressed, and the history in twice as many steps where it took several."""
+    pressed, and what the steps of others leave."""
     line, stretch = lower.body, lower.stretch
     gap, path, pressed = problem.gap(line.x), problem.path, None
     if path and problem.start:
@@ -390,19 +390,27 @@ def _solve(
         path = replace(path, before=before)
     if path and C.xy is not None:
         along = coupled.Line(line.x, line.weights, lambda forces: _ends(line, forces), problem.similar)
-        history, pressing, first = coupled.march(C, gap, stretch, problem.f, path, pressed, along, problem.accuracy)
+        near = ALLOWED["q"] * problem.accuracy
+        history, pressing, first = coupled.march(C, gap, stretch, problem.f, path, pressed, along, near)
         nodes = np.flatnonzero(history.bound > 0)
-        return pressing, history.of(nodes), nodes, first, None
+        return pressing, history.of(nodes), nodes, first, {}
     pressing = press(C.yy, gap if path else gap - problem.strain * stretch[1], 1.0)
     nodes = np.flatnonzero(pressing.x > 0)
     if not path:
-        return pressing, None, nodes, None, None
+        return pressing, None, nodes, None, {}
     if path.before is not None:
         path = replace(path, before=path.before[nodes])
     assert C.xx is not None
     inner, bound = C.xx[np.ix_(nodes, nodes)], problem.f * pressing.x[nodes]
-    history, finer = march_refined(inner, stretch[0][nodes], bound, path, problem.accuracy / ALLOWED["q"])
-    return pressing, history, nodes, None, finer
+    half_width = float(np.subtract(*_ends(line, pressing.x)[::-1])) / 2
+
+    def errors(history: History, finer: History) -> step_errors.Errors:
+        zones = _stick_zone(line, nodes, history, None), _stick_zone(line, nodes, finer, None)
+        return step_errors.halved(history, finer, zones, line.weights[nodes], half_width)
+
+    tangential = inner, stretch[0][nodes], bound, path, problem.accuracy
+    history, left = march_refined(*tangential, errors if stepped else None)
+    return pressing, history, nodes, None, left
 
 
 def _grown(first: Pressed | None, nodes: Indices, problem: Problem) -> tuple[Array, Array] | None:

@@ -14,7 +14,7 @@ from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
 from partialslip.plan import Plan
 from partialslip.result import Array, Clock, Result, Slip, Traction
-from partialslip.scene import ALLOWED, WIDTHS, Hertz, Scene
+from partialslip.scene import WIDTHS, Hertz, Scene
 from partialslip.state import State
 from partialslip_fem.adapt import Adapted, adapt, uniform
 from partialslip_fem.displacements import solve_back
@@ -102,7 +102,7 @@ def solve_meshed(scene: Scene, plan: Plan, meshes: Sequence[Mesh]) -> Result:
     problem = _scaled(scene, plan)
     scaled = [replace(mesh, points=mesh.points / scene.length) for mesh in meshes]
     width = float(np.abs(scaled[0].points[:, 0]).max())
-    level = solve_on(scaled, problem, width, clock)
+    level = solve_on(scaled, problem, width, clock, stepped=True)
     adapted = Adapted(level, {}, 1, level.factored, level.iterations, width / level.half_width)
     return _result(scene, plan, problem, adapted, clock)
 
@@ -127,7 +127,7 @@ def _scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         inside=plan.needs("subsurface"),
         strain=lower_strain(scene, scene.load.points[scene.load.ends[1]][1]),
         similar=isinstance(scene.profile, Hertz) and not scene.finite,
-        accuracy=ALLOWED["q"] * scene.fem.accuracy,
+        accuracy=scene.fem.accuracy,
     )
 
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from partialslip import halfplane, load_scene, load_state, plan
 from partialslip.condensed import coupled, steps
+from partialslip.condensed.friction import History
 from partialslip.halfplane import marching
 from partialslip.judge import Q_BAR, cell_means
 from partialslip.result import Array, Clock, Result
@@ -231,7 +232,7 @@ def the_first_mesh() -> Any:
     def uniform(problem: Problem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
         if not first:
             first.append(true_uniform(problem, size, width, clock, *rest))
-        return replace(first[0], level=level._level(problem, first[0].level.halves, 0, clock))
+        return replace(first[0], level=level._level(problem, first[0].level.halves, 0, clock, True))
 
     return patch.object(model, "uniform", uniform)
 
@@ -326,7 +327,9 @@ def shifted(shift: float, approach: float, method: str, kind: str, *settings: st
         here = true_uniform(problem, size, width, clock, *rest)
         meshes = [replace(half.mesh, points=half.mesh.points + np.array([shift, 0])) for half in here.level.halves]
         there = replace(problem, gap=lambda x: problem.gap(x - shift) + approach)
-        return replace(here, level=level.solve_on(meshes, there, here.level.halves[0].mesh.points.max(), clock))
+        return replace(
+            here, level=level.solve_on(meshes, there, here.level.halves[0].mesh.points.max(), clock, stepped=True)
+        )
 
     patches = patch.object(marching, "march_refined", march), patch.object(model, "uniform", uniform)
     back = -shift * scene.length if method == "fem" else 0.0
@@ -348,10 +351,17 @@ def reordered(seed: int, method: str, kind: str, *settings: str) -> Apart:
     """Nodes, elements and cells in any order."""
     true_march = marching.march_refined
 
-    def march(C: Array, x: Array, bound: Array, path: Any, *rest: Any) -> Any:
+    def march(C: Array, x: Array, bound: Array, path: Any, accuracy: float, errors: Any) -> Any:
         order = np.random.default_rng(seed).permutation(len(x))
-        found = true_march(C[np.ix_(order, order)], x[order], bound[order], path, *rest)
-        return tuple(each and each.of(np.argsort(order)) for each in found)
+        back = np.argsort(order)
+
+        def told(*histories: History) -> dict[str, float]:
+            left: dict[str, float] = errors(*(each.of(back) for each in histories))
+            return left
+
+        asked = told if errors else None
+        found, left = true_march(C[np.ix_(order, order)], x[order], bound[order], path, accuracy, asked)
+        return found.of(back), left
 
     scene = scene_of(kind, *settings)
     return compared(method, scene, scene, same, partial(shuffled, seed), patch.object(marching, "march_refined", march))

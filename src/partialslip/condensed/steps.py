@@ -1,6 +1,7 @@
 """Steps from load point to load point: as many as the answer needs where slip turns round on the way."""
 
 import itertools
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -8,31 +9,55 @@ import numpy.typing as npt
 
 from partialslip.condensed.bounded import solve_bounded
 from partialslip.condensed.friction import History, Path, march
+from partialslip.condensed.step_errors import Errors
 from partialslip.result import Array
+from partialslip.scene import ALLOWED
 
 _GROUPS, _HALVINGS, _SOLVES = 64, 6, 400  # of neighbours, on which steps are chosen; a step is halved so often at most
 _TELLING = 1e-7  # change of the forces, relative to f P, that is more than rounding
 _TRIED = (0, 1 / 32, 1 / 8, 1 / 2, 3 / 4, 7 / 8, 1)  # fractions of a way on which slip that turns round is looked for
 _MANY = 4  # steps, of which each is tried in two only
+_FINER = 16.0  # times less a step may change, and less still, if what steps leave is too much
+_MOST = 64  # steps from load point to load point, of which twice as many are not followed any more
 _CLOSES = 3  # cycles at least where the first loading does not tell the whole of fully reversed loads, or to look at
 
 
 def march_refined(
-    tangential: Array, stretch: Array, bound: Array, path: Path, accuracy: float
-) -> tuple[History, History | None]:
-    """:func:`march` in as many steps as it takes for the forces to be right to ``accuracy``, relative to f P.
+    tangential: Array,
+    stretch: Array,
+    bound: Array,
+    path: Path,
+    accuracy: float,
+    errors: Callable[[History, History], Errors] | None = None,
+) -> tuple[History, Errors]:
+    """:func:`march` in as many steps as it takes, and what these leave where ``errors`` tells.
 
-    Where these are more than were asked for, the second one is the history in twice as many steps: errors being of
-    first order, the steps are off by twice the difference, or less. A path whose ``ways`` are known is followed as it
-    is.
+    Steps are those of :func:`refined`; a path whose ``ways`` are known is followed as it is. With ``errors``, which
+    tells them from a history and the one in twice as many steps, there are so many that no error is more than half of
+    what ``accuracy`` allows, or as many as are worth while. It is asked where one step seems to be enough, too: a stick
+    zone that is small beside the groups which steps are chosen on bears next to nothing. Steps leave nothing where no
+    slip turns round on the way.
     """
-    if path.ways:
-        return march(tangential, stretch, bound, path), None
-    path = refined(tangential, stretch, bound, path, accuracy)
-    history = march(tangential, stretch, bound, path)
-    if path.most_steps == path.substeps:
-        return history, None
-    return history, march(tangential, stretch, bound, path.halved)
+    known = bool(path.ways)
+    history = march(tangential, stretch, bound, path if known else refined(tangential, stretch, bound, path, accuracy))
+    if errors is None or known or history.path.half or _stretched(path):
+        return history, {}
+    finer = accuracy
+    while True:
+        halved = march(tangential, stretch, bound, history.path.halved)
+        left = errors(history, halved)
+        enough = all(error <= ALLOWED[key] * accuracy / 2 for key, error in left.items())
+        if enough or halved.path.most_steps > _MOST:
+            return history, left
+        finer /= _FINER
+        chosen = refined(tangential, stretch, bound, path, finer)
+        more = chosen.most_steps > history.path.most_steps
+        history = march(tangential, stretch, bound, chosen) if more else halved
+
+
+def _stretched(path: Path) -> bool:
+    """Whether the bulk tension never changes: shear then drives all slip one way, and nothing turns it round."""
+    return len({strain for _, strain in (path.begin, *path.cycle)}) == 1
 
 
 def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accuracy: float) -> Path:
@@ -40,11 +65,9 @@ def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accurac
 
     One step is the answer where no slip turns round on the way, for then the conditions of one step are those of the
     gradual way. Otherwise each of some steps, smaller towards the load points, is halved as long as its two halves lead
-    elsewhere: slip turns round at a moment, so that few steps are halved often. Bulk tension that does not change
-    turns nothing round, as shear drives all slip one way.
+    elsewhere: slip turns round at a moment, so that few steps are halved often.
     """
-    strains = {strain for _, strain in (path.begin, *path.cycle)}
-    if len(strains) == 1:
+    if _stretched(path):
         return path
     coarse = _Coarse(tangential, stretch, bound, accuracy)
     load = np.array(path.begin)

@@ -6,7 +6,7 @@ ends of the contact and of the stick zone that it finds itself; each step is a c
 
 import itertools
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.interpolate import PPoly
@@ -28,9 +28,6 @@ _CELLS, _SOMEWHERE = 4.0, 0.5  # between zones with fewer cells than that an end
 _NEAR = 10.0  # cells at ends nearer to each other than a tenth of a are smaller in proportion
 _SMALLEST = 1e-9  # in a: ends that lie nearer to each other are one, and no cell is smaller by much
 _INNER = 8.0  # times larger than at the ends are the cells at kinks of q, which do not decide about m and n
-_STEPS = 1.0  # of the accuracy: what a step may change of q, in f P
-_FINER, _FINEST = 16.0, 1 / 300  # so much less, and less still, where it is not enough
-_GAINS = 0.9  # of the error of steps before: finer ones that leave more of it gain nothing
 _WORK = 5e11  # cells cubed, times load steps: a mesh that asks for more is not begun
 # Shares of a change from mesh to mesh, and of the cube of the cells' growth, that m and n are off by
 _MOVED, _CUBIC = 0.1, 0.15
@@ -46,7 +43,7 @@ _JUDGED = ("m", "n", "q", "q1", "q2")
 @dataclass(frozen=True)
 class _Level:
     """The solution on one mesh of cells; lengths in contact half-widths, forces in P. ``kinks`` are those of q at the
-    load points, and ``finer`` is the history in twice as many steps, where these were chosen on this mesh.
+    load points, and ``stepped`` is what its steps make it off by, where these were chosen on this mesh.
     """
 
     vertices: Array
@@ -54,8 +51,7 @@ class _Level:
     history: History | None
     stick: Zone | None
     kinks: tuple[float, ...] = ()
-    finer: History | None = None
-    finer_stick: Zone | None = None
+    stepped: dict[str, float] = field(default_factory=dict)
 
     @property
     def zone(self) -> tuple[float, ...]:
@@ -92,14 +88,14 @@ def solve(
         cells = _cells(ends, inner, level, size, growth)
         if level and level.history and level.history.load_steps * len(cells) ** 3 > _WORK:
             break
-        before, level = level, _solve_level(scene, pressed, path, start, cells, clock)
+        # steps are chosen on the second mesh, and kept
+        before, level = level, _solve_level(scene, pressed, path, start, cells, clock, choose=meshes == 1)
         meshes, iterations = meshes + 1, iterations + (level.history.iterations if level.history else 0)
         if level.stick is None:
             break
         if before:
-            if meshes == 2:  # steps are chosen on it, and kept
-                level, stepped = _with_steps(scene, pressed, path, start, level, clock)
-                path = level.history.path if level.history else None
+            if meshes == 2:
+                path, stepped = level.history.path if level.history else None, level.stepped
             meshed = _mesh_errors(level, before, growth, meshes == 2)
             shares = {"discretisation": meshed, "steps": stepped}
             errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
@@ -135,7 +131,7 @@ def _solve_level(
     start: State | None,
     vertices: Array,
     clock: Clock,
-    finer: float = 1.0,
+    choose: bool,
 ) -> _Level:
     normal = forces(pressed.shape, vertices)
     if not path:
@@ -150,28 +146,17 @@ def _solve_level(
         tangential = compliance(vertices / 2)  # a change of length is a rigid shift, which is free
     with clock.phase("contact"):
         moved = x * pressed.a / scene.length
-        history, halved = march_refined(tangential, moved, bound, path, finer * _STEPS * scene.fem.accuracy)
 
         def zone(of: History) -> Zone:
             return stick_zone(x, bound, of.change, vertices, lambda values: values)
 
+        def errors(of: History, finer: History) -> dict[str, float]:
+            return halved(of, finer, (zone(of), zone(finer)), np.diff(vertices), 1.0)
+
+        problem = tangential, moved, bound, path, scene.fem.accuracy
+        history, stepped = march_refined(*problem, errors if choose else None)
         inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in history.visited]
-        found = tuple(itertools.chain.from_iterable(inner))
-        return _Level(vertices, normal, history, zone(history), found, halved, zone(halved) if halved else None)
-
-
-def _with_steps(
-    scene: Scene, pressed: Contact, path: Path | None, start: State | None, level: _Level, clock: Clock
-) -> tuple[_Level, dict[str, float]]:
-    """The level in as many steps as it takes, and what these may be off by."""
-    finer, before = 1.0, np.inf
-    while True:
-        errors = _step_errors(level)
-        worst = max(errors.get(key, 0.0) / (ALLOWED[key] * scene.fem.accuracy) for key in _JUDGED)
-        finer /= _FINER
-        if worst <= 1 / 2 or finer < _FINEST or worst > _GAINS * before:
-            return level, errors
-        level, before = _solve_level(scene, pressed, path, start, level.vertices, clock, finer), worst
+        return _Level(vertices, normal, history, zone(history), tuple(itertools.chain.from_iterable(inner)), stepped)
 
 
 def _mesh_errors(level: _Level, before: _Level, growth: float, first: bool) -> dict[str, float]:
@@ -196,15 +181,6 @@ def _mesh_errors(level: _Level, before: _Level, growth: float, first: bool) -> d
     return dict(zip("mn", known.tolist(), strict=True)) | {
         key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices) for key, of in _SHEARS.items()
     }
-
-
-def _step_errors(level: _Level) -> dict[str, float]:
-    """The same for the sake of the steps."""
-    if not level.finer or not level.finer_stick:
-        return {}
-    assert level.history
-    assert level.stick
-    return halved(level.history, level.finer, (level.stick, level.finer_stick), np.diff(level.vertices), 1.0)
 
 
 def _apart(level: _Level, of: Callable[[History], Array], other: History, cells: Array) -> float:
