@@ -63,10 +63,12 @@ def changes(node: ast.AST) -> Iterator[tuple[str, Callable[[ast.AST], None]]]:
 
 
 def mutants(source: str) -> list[tuple[int, str, ast.Module]]:
-    """Line, words and tree of every change of a module, in which annotations and imports for types stay."""
+    """Line, words and tree of every change of a module, in which annotations, imports for types
+    and the ``strict`` of zip stay: that guards against mistakes in the code, which no result shows."""
     tree = ast.parse(source)
     kept = {id(below) for node in ast.walk(tree) for field in ("annotation", "returns") for below in
             ast.walk(getattr(node, field, None) or ast.Pass())}  # fmt: skip
+    kept |= {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.keyword) and node.arg == "strict"}
     kept |= {
         id(node) for node in ast.walk(tree) if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
     }

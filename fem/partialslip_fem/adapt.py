@@ -22,6 +22,7 @@ _AIM, _BAR = 0.5, 0.9  # of the accuracy: estimates are right within a factor of
 _ENDS = 0.33  # share of what is aimed at that the elements at the ends may take
 _FINEST = 1e-7  # element size at the ends, in contact half-widths; below, rounding takes over
 _BESIDE = 0.005  # element size at an end, in contact half-widths, beyond which the mesh is only good for finding it
+_WAITS = 2  # meshes that may be too coarse at the ends and kinks found on them, once the errors of one are known
 _ANYWAY = 1.5  # of the size that a kink needs: a mesh that is not coarser there is left as it is
 _MOST = 200_000  # unknowns
 _FILLS = 0.95  # of a finite body's width: as much as the contact line may take
@@ -99,6 +100,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
     a, iterations, known, before, size, finer = level.half_width, level.iterations, np.inf, np.inf, _FIRST, _FINER
     aim, errors, at_ends = _Aim.at(accuracy, problem), dict[str, float](), dict[str, float]()
     stepped: Mapping[str, float] | None = None  # what steps leave, once they are chosen
+    waited = 0
     least, limit = aim.least, _limit(problem)
     coarsest = max(part.fineness for part in parts)  # what is not finer than that is to be fine enough
     while True:
@@ -150,7 +152,8 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         found = f"mesh {meshes}: {level.dofs:,} unknowns"
         bar = max(aim.bar - _worst(stepped or {}), aim.bar / 2)  # steps have their share of it
         good = level.enclosed and local.max() <= _BESIDE
-        if (good and _worst(at_ends) <= bar) or size <= _FINEST or level.dofs > _MOST:
+        waited = waited + 1 if before < np.inf else 0
+        if (good and _worst(at_ends) <= bar) or size <= _FINEST or level.dofs > _MOST or waited > _WAITS:
             other = neighbour(level, problem, width * a, clock)
             expense.pass_over()
             factored, iterations = factored + other.factored, iterations + other.iterations
@@ -158,9 +161,10 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
             errors = together(level, smooth, at_ends)
             known = _worst(errors)
             calmer = float(np.clip((3 * _worst(smooth) / bar) ** (-0.5 / order), *_CALMER))
+            waited = 0
             found += f", {', '.join(errors)} known to {known:.1e} a"
         progress(found)
-        if (good and known <= bar) or known > before / 2 or level.dofs > _MOST * calmer**2:
+        if (good and known <= bar) or before / 2 < known < np.inf or level.dofs > _MOST * calmer**2:
             reached = max(aim.accuracy, known / _BAR) if expense.limited else None
             return Adapted(level, errors, meshes, factored, iterations, width, reached)
         if size <= 1.01 * goal:

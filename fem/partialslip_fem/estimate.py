@@ -4,6 +4,7 @@ Away from the ends of zones the solution is smooth, and on meshes graded to the 
 r^(2 k), r depending on the mesh: ends of zones and means of tractions converge like the energy, whose prefactor is
 about one in the units used here. Errors of orders k and k - 1 are therefore r^(2 k) and r^(2 (k-1)), and the
 difference d between the two is the latter: d^(k/(k-1)) is left of order k. Against the order above, d itself is.
+Where shear is confined to narrow strips the prefactor is its norm rather than one.
 
 At an end itself, where tractions are square roots, the order does not matter; the size of the element does. So does
 the distance to the next end, or kink of the profile, over which tractions are square roots: ends of the stick zone are
@@ -25,11 +26,13 @@ from partialslip_fem.level import Level, Problem, solve_on
 NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3}
 
 ENDS = ("a", "left", "right", "m", "n")
-KEYS = (*ENDS, "p", "q", "q1", "q2")
+_SHEARS = ("q", "q1", "q2")
+KEYS = (*ENDS, "p", *_SHEARS)
 
 # The difference of the orders bounds an error up to a factor, that of meshes (see benchmarks/estimates.py).
-_SAFE = 2.0
-_SAME = 0.5  # of the error of a: no end is known better than that
+_SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 2.0, "n": 2.0, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
+_SAME = 1 / 3  # of the error of a: no end is known better than that
+_SMALL = 0.1  # of the norm of f p: shear whose norm is less is confined to narrow strips, and errors start from less
 
 # What an end, p and q are off by, measured as multiples of the size of the element that the end lies in.
 AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002}
@@ -56,8 +59,10 @@ def smooth_errors(level: Level, other: Level) -> dict[str, float]:
     """Errors of the contact's half-width and ends, m and n (in contact half-widths), p, q, q1 and q2 (relative L2 of
     cell averages), but for those of the elements at the ends; ``other`` is the neighbour."""
     order = level.body.order
+    power = order / min(order, other.body.order) - 1
     errors = {
-        key: _SAFE * change ** (order / min(order, other.body.order)) for key, change in _changes(level, other).items()
+        key: _SAFE[key] * change * (change / _prefactor(level, key)) ** power
+        for key, change in _changes(level, other).items()
     }
     least = _SAME * errors["a"]  # two solutions may meet in one of the ends by chance
     return {key: max(error, least) if key in ENDS else error for key, error in errors.items()}
@@ -120,7 +125,7 @@ def together(level: Level, smooth: Mapping[str, float], at_ends: Mapping[str, fl
     if "q" in errors:
         norms = _norms(level)
         moved = float(np.hypot.reduce(_SHIFT * _beside(level) * [errors["m"], errors["n"]])) * float(norms[0])
-        for key, norm in zip(("q", "q1", "q2"), norms.tolist(), strict=True):
+        for key, norm in zip(_SHEARS, norms.tolist(), strict=True):
             if key in errors and norm > 0:
                 errors[key] = math.hypot(errors[key], moved / norm)
     return errors
@@ -162,6 +167,14 @@ def _norms(level: Level) -> Array:
     norms = [_norm(level.shear(forces)) for forces in (history.change / 2, history.q1, history.q2)]
     result: Array = np.maximum(norms, LEAST_SHEAR * _norm(level.shear(history.bound)))
     return result
+
+
+def _prefactor(level: Level, key: str) -> float:
+    """Of the errors of tractions and ends: about one, but for shear that is small beside f p."""
+    if key not in _SHEARS or not level.history:
+        return 1.0
+    norm = _norms(level)[_SHEARS.index(key)] / _norm(level.shear(level.history.bound))
+    return min(float(norm) / _SMALL, 1.0)
 
 
 def _norm(traction: PPoly) -> float:
@@ -217,7 +230,7 @@ def _changes(level: Level, other: Level) -> dict[str, float]:
     if level.stick and other.stick and level.history and other.history:
         changes["m"] = abs(other.stick.left - level.stick.left) / a
         changes["n"] = abs(other.stick.right - level.stick.right) / a
-        for key, (of, at), norm in zip(("q", "q1", "q2"), _shears(level, other), _norms(level).tolist(), strict=True):
+        for key, (of, at), norm in zip(_SHEARS, _shears(level, other), _norms(level).tolist(), strict=True):
             changes[key] = _apart(of, at, norm)
     return {key: changes[key] for key in KEYS if key in changes}
 

@@ -150,6 +150,7 @@ def test_pressure_beyond_the_contact_is_an_error_in_the_cell_of_its_end(side):
     [
         (None, 0.0, 1e-3, Outcome.MISSED),  # m is off by 1.5e-3 a
         (0.0, 0.0, 1e-3, Outcome.MISSED),
+        (6e-4, None, 1.6e-3, Outcome.PASSED),
         (6e-4, 0.0, 1.6e-3, Outcome.PASSED),
         (6e-4, 6e-4, 1e-3, Outcome.MISSED),  # every method is given the same table
         (9e-4, 5e-4, 1.4e-3, Outcome.MISSED),
@@ -158,7 +159,8 @@ def test_pressure_beyond_the_contact_is_an_error_in_the_cell_of_its_end(side):
     ],
 )
 def test_what_the_reference_is_off_by_is_added_to_the_bar(exact, own, table, bar, outcome):
-    reference = replace(exact, estimate={} if own is None else {"m": own}, shares={"table": {"m": table}})
+    shares = {} if table is None else {"table": {"m": table}}
+    reference = replace(exact, estimate={} if own is None else {"m": own}, shares=shares)
     off = 1.5e-3 * exact.a
     found = replace(with_cells(exact), stick_centre=exact.stick_centre - off / 2)
     found = replace(found, stick_half_width=exact.stick_half_width + off / 2)
@@ -166,4 +168,29 @@ def test_what_the_reference_is_off_by_is_added_to_the_bar(exact, own, table, bar
     assert verdict.error == pytest.approx(1.5e-3, rel=1e-9)
     assert verdict.bar == (None if bar is None else pytest.approx(bar, rel=1e-6))
     assert verdict.outcome is outcome
-    assert (exact.method in verdict.reason) == ((own or 0.0) > table)
+    assert (exact.method in verdict.reason) == ((own or 0.0) > (table or 0.0))
+
+
+def test_nodes_that_all_lie_beyond_the_contact_have_no_relative_error(exact):
+    elsewhere = replace(exact.traction, x=exact.traction.x + 3 * exact.a, p=0 * exact.traction.p)
+    comparison = compare(
+        replace(with_cells(exact), traction=replace(elsewhere, cells=exact.traction.x)), exact, SCENE, 1e-4
+    )
+    assert comparison.p_nodal is None
+    assert comparison.p_nodal_max == 0
+
+
+def test_a_reference_that_is_known_by_its_cells_is_compared_on_these():
+    """The true means over cells, a constant in each, as marching in time knows them: no finer cell says more."""
+    coarse = np.array([-1.0, -0.9, -0.5, 0.1, 0.3, 0.97, 1.0])
+    p, _ = cell_means(traction_of(root, root), coarse)
+
+    def constant(x):
+        inside = np.abs(x) < 1
+        return np.where(inside, p[np.clip(np.searchsorted(coarse, x) - 1, 0, len(p) - 1)], 0.0)
+
+    for count in (7, 50, 333):
+        fine = traction_of(root, root, cells=np.linspace(-1.2, 1.2, count))
+        reference = traction_of(constant, constant, breaks=coarse, cells=coarse)
+        assert cell_errors(fine, reference) == (pytest.approx(0, abs=1e-12), pytest.approx(0, abs=1e-12))
+        assert cell_errors(traction_of(lambda x: 1.02 * root(x), root, cells=fine.cells), reference)[0] > 0.019

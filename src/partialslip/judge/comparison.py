@@ -31,12 +31,12 @@ class Comparison:
 
     ``conditions`` are verdicts on what the result must meet by itself: finite numbers and small residuals.
     ``p_nodal``, ``q_nodal``: relative L2 of nodal values; ``p_nodal_max``, ``q_nodal_max``: the largest error of a
-    node, in p0 and f p0; None if there is no shear.
+    node, in p0 and f p0; None if there is no shear, and of p if no node lies within the true contact.
     """
 
     verdicts: tuple[Verdict, ...]
     conditions: tuple[Verdict, ...]
-    p_nodal: float
+    p_nodal: float | None
     q_nodal: float | None
     p_nodal_max: float
     q_nodal_max: float | None
@@ -215,7 +215,9 @@ def _too_near(result: Result, reference: Result, width: float) -> str:
     return ""
 
 
-def _nodal_errors(result: Result, reference: Result, f: float) -> tuple[float, float | None, float, float | None]:
+def _nodal_errors(
+    result: Result, reference: Result, f: float
+) -> tuple[float | None, float | None, float, float | None]:
     """Relative L2 errors of nodal p and q, and the largest of them, in p0 and f p0."""
     x = result.traction.x
     p, dq = reference.traction.at(x)
@@ -226,6 +228,6 @@ def _nodal_errors(result: Result, reference: Result, f: float) -> tuple[float, f
     return _relative(p_off, p, x), _relative(q_off, dq / 2, x), largest, float(np.abs(q_off).max() / (f * reference.p0))
 
 
-def _relative(error: Array, true: Array, x: Array) -> float:
+def _relative(error: Array, true: Array, x: Array) -> float | None:
     norm = np.trapezoid(true**2, x)
-    return float(np.sqrt(np.trapezoid(error**2, x) / norm)) if norm > 0 else 0.0
+    return float(np.sqrt(np.trapezoid(error**2, x) / norm)) if norm > 0 else None

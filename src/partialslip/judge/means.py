@@ -84,12 +84,18 @@ def means(function: Callable[[Array], Array], cells: Array, breaks: Array) -> Ar
 
 def _cells(traction: Traction, reference: Traction) -> Array:
     """Ends of the cells to average over: those that overlap the reference's contact, and what they leave of it. They
-    are the method's own; else the reference's; else the spaces between the method's points."""
+    are the method's own; else the reference's; else the spaces between the method's points. A reference that is itself
+    known by its cells says nothing of what is finer: then the method's cells end at the nearest of its cell ends."""
     known = (each.cells for each in (traction, reference) if each.cells is not None)
     cells = next(known, np.unique(traction.x))
     left, right = reference.breaks.min(), reference.breaks.max()
     first, last = np.searchsorted(cells, left, "right") - 1, np.searchsorted(cells, right, "left")
     own = cells[max(first, 0) : last + 1]
+    if traction.cells is not None and reference.cells is not None:
+        ends = reference.cells
+        nearest = ends[np.searchsorted((ends[1:] + ends[:-1]) / 2, own)]
+        within = (own > left) & (own < right) & (nearest > left) & (nearest < right)
+        own = np.union1d(own[(own <= left) | (own >= right)], nearest[within])
     return np.union1d(own, [end for end in (left, right) if not own[0] <= end <= own[-1]])
 
 
