@@ -1,0 +1,49 @@
+"""What CalculiX writes: faces of elements, and nodes that touch at one load point only."""
+
+from collections import Counter
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from partialslip.score import calculix
+
+FRD = (Path(__file__).parent / "calculix.frd").read_text()
+
+
+@pytest.mark.parametrize(("solid", "edges"), [(1, 12), (2, 9), (3, 6)])
+def test_each_edge_of_a_solid_belongs_to_two_of_its_faces(solid, edges):
+    """Faces are numbered as in its manual: the first one's corners are the element's first ones, in their order."""
+    faces = calculix._FACES[solid]
+    of_faces = Counter(frozenset(edge) for face in faces for edge in pairwise((*face, face[0])))
+    assert list(of_faces.values()) == [2] * edges
+    assert faces[0] == tuple(range(len(faces[0])))
+    assert calculix._FACES[solid + 3] == faces  # those of elements with nodes in the middle of their edges
+
+
+@pytest.mark.parametrize(("plane", "corners"), [(7, 3), (9, 4)])
+def test_edges_of_plane_elements_follow_the_two_faces_of_the_solid(plane, corners):
+    around = [(corner, (corner + 1) % corners) for corner in range(corners)]
+    assert calculix._FACES[plane] == calculix._FACES[plane + 1] == ((), (), *around)
+
+
+@pytest.mark.parametrize("point", [0, 1])
+def test_a_node_that_touches_at_one_load_point_is_in_contact(monkeypatch, point):
+    whole = calculix.read_frd(FRD, "a.frd", None, (0, 1, 2))
+    true_pair = calculix._pair
+
+    def pair(*args):
+        blocks = list(true_pair(*args))
+        stress = np.array(blocks[point].stress)
+        stress[np.flatnonzero(stress.any(axis=1))[5]] = 0  # it opens there
+        blocks[point] = replace(blocks[point], stress=stress)
+        return tuple(blocks)
+
+    monkeypatch.setattr(calculix, "_pair", pair)
+    found = calculix.read_frd(FRD, "a.frd", None, (0, 1, 2))
+    assert np.array_equal(found["x"], whole["x"])
+    lost = ["q1"] if point == 0 else ["p", "q2"]
+    for key in whole:
+        assert (found[key] != whole[key]).sum() == (key in lost)
