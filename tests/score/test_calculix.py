@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from partialslip.errors import InputError
 from partialslip.score import calculix
 
 FRD = (Path(__file__).parent / "calculix.frd").read_text()
@@ -47,3 +48,11 @@ def test_a_node_that_touches_at_one_load_point_is_in_contact(monkeypatch, point)
     lost = ["q1"] if point == 0 else ["p", "q2"]
     for key in whole:
         assert (found[key] != whole[key]).sum() == (key in lost)
+
+
+def test_a_word_that_is_no_number_is_named_with_its_line():
+    lines = FRD.splitlines()
+    line = next(place for place, text in enumerate(lines) if text.startswith(" -1"))
+    lines[line] = lines[line][:3] + "       abc" + lines[line][13:]
+    with pytest.raises(InputError, match=f"line {line + 1}: 'abc'"):
+        calculix.read_frd("\n".join(lines), "a.frd", None, (0, 1, 2))
