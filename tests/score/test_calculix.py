@@ -51,8 +51,6 @@ def test_a_node_that_touches_at_one_load_point_is_in_contact(monkeypatch, point)
 
 
 def test_a_word_that_is_no_number_is_named_with_its_line():
-    lines = FRD.splitlines()
-    line = next(place for place, text in enumerate(lines) if text.startswith(" -1"))
-    lines[line] = lines[line][:3] + "       abc" + lines[line][13:]
-    with pytest.raises(InputError, match=f"line {line + 1}: 'abc'"):
-        calculix.read_frd("\n".join(lines), "a.frd", None, (0, 1, 2))
+    assert calculix._whole(" 12 ", 4, "a.dat") == 12
+    with pytest.raises(InputError, match="a.dat: line 5: 'abc'"):
+        calculix._whole(" abc ", 4, "a.dat")
