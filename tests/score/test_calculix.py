@@ -52,5 +52,5 @@ def test_a_node_that_touches_at_one_load_point_is_in_contact(monkeypatch, point)
 
 def test_a_word_that_is_no_number_is_named_with_its_line():
     assert calculix._whole(" 12 ", 4, "a.dat") == 12
-    with pytest.raises(InputError, match="a.dat: line 5: 'abc'"):
+    with pytest.raises(InputError, match="line 5: 'abc'"):
         calculix._whole(" abc ", 4, "a.dat")
