@@ -30,7 +30,7 @@ _SHEARS = ("q", "q1", "q2")
 KEYS = (*ENDS, "p", *_SHEARS)
 
 # The difference of the orders bounds an error up to a factor, that of meshes (see benchmarks/estimates.py).
-_SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 2.0, "n": 2.0, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
+_SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.9, "n": 1.9, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
 _SAME = 1 / 3  # of the error of a: no end is known better than that
 _SMALL = 0.1  # of the norm of f p: shear whose norm is less is confined to narrow strips, and errors start from less
 

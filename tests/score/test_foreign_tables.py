@@ -5,7 +5,7 @@ import pytest
 
 from partialslip import InputError, load_scene, run
 from partialslip.cli import main
-from partialslip.score import score
+from partialslip.score import headers, score
 from partialslip.score.read import read
 
 SCENE = load_scene("fretting-aluminium")
@@ -111,3 +111,10 @@ def test_what_cannot_be_read_is_one_line(tmp_path, table, columns, said):
     with pytest.raises(InputError, match=said) as raised:
         read(path, SCENE, chosen=columns)
     assert "\n" not in str(raised.value)
+
+
+def test_names_of_other_codes_change_a_sign_at_most():
+    """Only Code_Aster gives the pressure as a force on the body, negative in contact."""
+    signs = {(key, name): sign for key, names in headers.NAMES.items() for name, sign in names.items()}
+    assert {name: sign for name, sign in signs.items() if sign != 1} == {("p", "lags_c"): -1}
+    assert all(name == name.lower() for _, name in signs)
