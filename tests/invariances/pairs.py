@@ -389,6 +389,9 @@ _QUICK = {  # of the scenes of a pair of fem's, the one that is no slow test; as
     "swap of bodies": "unlike bodies",
     "order of nodes and elements": "unlike bodies",
     "restart": "out of phase",
+    "units: 1e12": "large tension",
+    "units: 1e-12": "large tension",
+    "f = 1e-9, loads in proportion": "large tension",
 }
 _UNITS = {"mm, MPa": (1e3, 1e-6), "1e12": (1e12, 1e12), "1e-12": (1e-12, 1e-12), "1e12 m, 1e-12 Pa": (1e12, 1e-12)}
 

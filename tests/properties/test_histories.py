@@ -90,7 +90,7 @@ def test_march_does_not_mind_sub_steps_of_proportional_loading(Qf, share, large,
     assert off.ends <= 1e-9
 
 
-@settings(max_examples=settings().max_examples // 2)
+@settings(max_examples=settings().max_examples // 3)
 @given(scenes(), FEM)
 def test_coarse_finite_elements_close_every_step_of_any_path(scene, mesh):
     order, size = mesh

@@ -9,9 +9,11 @@ from known import EXACT, SCENE, A, result, traction
 
 from partialslip.judge import Bar, Outcome
 from partialslip.report.verdicts import nearest, room
+from partialslip.run import Run
 from partialslip.verify import REQUIREMENTS, Case, CaseVerdict, judge, number_of, requirement_of, run_case
 from partialslip.verify import case as module
 from partialslip.verify.case import Failure, solve_case
+from partialslip_fem import model
 
 NAN = float("nan")
 CASE = Case("made", SCENE, ("fem",))
@@ -115,8 +117,9 @@ def test_an_exact_solution_that_is_missing_is_missed():
     assert {v.quantity for v in verdicts if v.method == "fem"} == {"finishes", "finite", "certificate"}
     both = judge(replace(CASE, methods=("exact", "fem")), {"exact": EXACT, "fem": SOUND})
     assert {v.quantity for v in both if v.method == "exact"} == {"finishes", "finite"} | {"certificate"}
-    alone = judge(replace(CASE, compared=False), {"fem": SOUND})
-    assert {v.quantity for v in alone} == {"finishes", "finite", "certificate"}
+    for results in ({"fem": SOUND}, {"exact": EXACT, "fem": SOUND}):  # not compared, whatever there is
+        alone = judge(replace(CASE, compared=False), results)
+        assert {v.quantity for v in alone} == {"finishes", "finite", "certificate"}
 
 
 def test_verdicts_come_back_from_their_data():
@@ -138,6 +141,31 @@ def test_a_case_is_solved_by_what_it_needs(monkeypatch):
     assert missed(run_case(CASE)) == set()
     assert asked == ["exact", "fem"]
     assert list(solve_case(replace(CASE, compared=False))) == ["fem"]
+
+
+def test_finite_elements_are_solved_on_the_meshes_of_a_case(monkeypatch):
+    """The other methods have no meshes, and finite elements of a case without any make their own."""
+    meshed = replace(CASE, methods=("exact", "march", "fem"), meshes=lambda scene: [scene.name])
+    monkeypatch.setattr(model, "solve_meshed", lambda scene, _, meshes: (scene, meshes))
+    monkeypatch.setattr(module, "run", lambda scene, methods: Run(scene, None, {methods[0]: methods[0]}, {}))
+    own = {"exact": "exact", "march": "march", "fem": "fem"}
+    assert solve_case(meshed) == own | {"fem": (SCENE, [SCENE.name])}
+    assert solve_case(replace(meshed, meshes=None)) == own
+
+
+def test_what_a_method_raises_is_kept_with_its_time(monkeypatch):
+    def raises(*_):
+        raise ZeroDivisionError("none")
+
+    monkeypatch.setattr(module, "run", raises)
+    times = iter([100.0, 102.5])
+    monkeypatch.setattr(module.time, "process_time", lambda: next(times))
+    assert solve_case(replace(CASE, compared=False)) == {"fem": Failure("ZeroDivisionError: none", 2.5)}
+
+
+def test_a_verdict_without_work_has_none():
+    verdict = CaseVerdict("a", Outcome.PASSED, case="made", method="fem", requirement="R5")
+    assert (verdict.iterations, verdict.cpu_s) == (0, 0.0)
 
 
 def test_what_is_not_judged_is_nearer_to_no_bar_than_what_is():
