@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from partialslip.condensed.steps import MOST
 from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
 from partialslip.result import Array, Clock
@@ -131,7 +132,8 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         grading = (contact, sizes, growth / coarsest)
         expected = expense.unknowns(*grading[1:], order, width * a) if expense.limited else None
         choose = stepped is None and size <= _BESIDE
-        level = solve_level(problem, width * a, *grading, clock, None, None, aim.rounding, aim.corners, choose)
+        steps = (0 if expense.limited else MOST) if choose else None  # more steps have no price
+        level = solve_level(problem, width * a, *grading, clock, None, None, aim.rounding, aim.corners, steps)
         if choose and level.enclosed and level.history and not level.coupled:
             stepped, problem = level.stepped, replace(problem, path=replace(level.history.path, before=None))
             aim = _Aim.at(max(aim.accuracy, _worst(stepped)), problem)
@@ -236,7 +238,7 @@ def uniform(problem: Problem, size: float | None, width: float, clock: Clock, ke
     reach, limit = 1.25 * max(-level.left, level.right), _limit(problem)
     while True:
         reach = min(float(f"{reach:.2g}"), limit)
-        level = solve_level(problem, width * a, (-reach, reach), {}, growth, clock, size * a, keep, stepped=True)
+        level = solve_level(problem, width * a, (-reach, reach), {}, growth, clock, size * a, keep, steps=MOST)
         meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
         if level.enclosed:
             return Adapted(level, {}, meshes, factored, iterations, width)
@@ -269,7 +271,9 @@ def _first(problem: Problem, width: float, clock: Clock, keep: Kept | None = Non
     while True:
         reach = min(reach, limit)
         guess = dict.fromkeys(np.linspace(-reach, reach, 16).tolist(), 2 * _FIRST * reach)
-        level = solve_level(problem, width * reach, (-reach, reach), guess, _ROUGH, clock, keep=keep, stepped=meshed)
+        level = solve_level(
+            problem, width * reach, (-reach, reach), guess, _ROUGH, clock, keep=keep, steps=MOST if meshed else None
+        )
         meshes, factored = meshes + 1, factored + level.factored
         if level.enclosed:
             return level, meshes, factored

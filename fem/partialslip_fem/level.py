@@ -272,7 +272,7 @@ def solve_level(
     keep: Kept | None = None,
     rounding: float | None = None,
     corners: float | None = None,
-    stepped: bool = False,
+    steps: int | None = None,
 ) -> Level:
     """Mesh the bodies, blocks of half-width ``width`` unless they have an extent or a mesh of their own, and solve on
     them.
@@ -280,20 +280,21 @@ def solve_level(
     ``contact``, ``sizes``, ``growth`` and ``along`` are as for :func:`partialslip_meshes.block`. ``rounding`` is how
     far a round face may be from its elements' straight sides, in half-widths of the contact line; ``corners`` what
     elements at the corners of finite bodies may change at the contact, relative. Condensed bodies are taken from
-    ``keep`` and added to it. ``stepped`` says whether the load path is to be followed in as many steps as the accuracy
-    takes, and what these leave to be told (:attr:`Level.stepped`).
+    ``keep`` and added to it. With ``steps`` the load path is followed in as many as the accuracy
+    takes, but not many more than that from load point to load point, and what they leave is told
+    (:attr:`Level.stepped`).
     """
     kind = (problem.parts, problem.order, problem.far_field, problem.backend, problem.path is None, problem.inside)
     key = (*kind, width, contact, tuple(sizes.items()), growth, along, rounding, corners)
     if keep and (known := keep.find(key)):
-        return _level(problem, known, 0, clock, stepped)
+        return _level(problem, known, 0, clock, steps)
     meshes = []
     for part in problem.parts:
         with clock.phase("mesh"):
             mesh = part.mesh or _block(part, width, contact, sizes, growth, along, rounding, corners)
         clock.add_meshing(mesh.cpu_s)
         meshes.append(mesh)
-    level = solve_on(meshes, problem, width, clock, stepped)
+    level = solve_on(meshes, problem, width, clock, steps)
     if keep:
         keep.add(key, level.halves)
     return level
@@ -331,21 +332,21 @@ def _block(
     return block(half_width, contact, finer, growth * part.fineness, height, everywhere, *shape)
 
 
-def solve_on(meshes: Sequence[Mesh], problem: Problem, width: float, clock: Clock, stepped: bool = False) -> Level:
-    """Solve on meshes of the bodies, in the order of the problem's parts; ``width`` and ``stepped`` as for
+def solve_on(meshes: Sequence[Mesh], problem: Problem, width: float, clock: Clock, steps: int | None = None) -> Level:
+    """Solve on meshes of the bodies, in the order of the problem's parts; ``width`` and ``steps`` as for
     :func:`solve_level`."""
     if len(meshes) > 1 and any(part.mesh for part in problem.parts):
         meshes = [_opposite(*meshes), *meshes[1:]]
     halves = tuple(_half(*pair, problem, width, clock) for pair in zip(meshes, problem.parts, strict=True))
-    return _level(problem, halves, len(halves), clock, stepped)
+    return _level(problem, halves, len(halves), clock, steps)
 
 
-def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clock, stepped: bool) -> Level:
+def _level(problem: Problem, halves: tuple[Half, ...], factored: int, clock: Clock, steps: int | None) -> Level:
     with clock.phase("condensation"):
         relative = relative_compliances(halves, problem.coupled)
     with clock.phase("contact"):
         line = halves[0].body
-        pressing, history, nodes, first, left_by_steps = _solve(problem, relative, halves[0], stepped)
+        pressing, history, nodes, first, left_by_steps = _solve(problem, relative, halves[0], steps)
         left, right = _ends(line, pressing.x)
         others: tuple[float, float] | tuple[()] = ()
         if history and relative.xy is not None:
@@ -379,7 +380,7 @@ def _half(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) 
 
 
 def _solve(
-    problem: Problem, C: coupled.Relative, lower: Half, stepped: bool
+    problem: Problem, C: coupled.Relative, lower: Half, steps: int | None
 ) -> tuple[Solution, History | None, Indices, Pressed | None, step_errors.Errors]:
     """Normal forces, the history of the tangential ones on the nodes in contact, those nodes, how coupled bodies were
     pressed, and what the steps of others leave."""
@@ -409,7 +410,7 @@ def _solve(
         return step_errors.halved(history, finer, zones, line.weights[nodes], half_width)
 
     tangential = inner, stretch[0][nodes], bound, path, problem.accuracy
-    history, left = march_refined(*tangential, errors if stepped else None)
+    history, left = march_refined(*tangential, None if steps is None else errors, steps or 0)
     return pressing, history, nodes, None, left
 
 

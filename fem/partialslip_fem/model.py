@@ -10,6 +10,7 @@ from partialslip.allowance import Allowance
 from partialslip.bodies import Body
 from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.friction import certificate, doubts, judge, load_path, lower_strain
+from partialslip.condensed.steps import MOST
 from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
 from partialslip.plan import Plan
@@ -102,7 +103,7 @@ def solve_meshed(scene: Scene, plan: Plan, meshes: Sequence[Mesh]) -> Result:
     problem = _scaled(scene, plan)
     scaled = [replace(mesh, points=mesh.points / scene.length) for mesh in meshes]
     width = float(np.abs(scaled[0].points[:, 0]).max())
-    level = solve_on(scaled, problem, width, clock, stepped=True)
+    level = solve_on(scaled, problem, width, clock, steps=MOST)
     adapted = Adapted(level, {}, 1, level.factored, level.iterations, width / level.half_width)
     return _result(scene, plan, problem, adapted, clock)
 

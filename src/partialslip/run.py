@@ -232,7 +232,7 @@ def _method(
     if name == "march":
         from partialslip.halfplane.marching import solve as solve_by_marching
 
-        return solve_by_marching
+        return partial(solve_by_marching, allowance=allowance)
     if name == "fem":
         from partialslip_fem.model import solve as solve_by_elements
 

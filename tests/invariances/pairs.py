@@ -232,7 +232,7 @@ def the_first_mesh() -> Any:
     def uniform(problem: Problem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
         if not first:
             first.append(true_uniform(problem, size, width, clock, *rest))
-        return replace(first[0], level=level._level(problem, first[0].level.halves, 0, clock, True))
+        return replace(first[0], level=level._level(problem, first[0].level.halves, 0, clock, 64))
 
     return patch.object(model, "uniform", uniform)
 
@@ -328,7 +328,7 @@ def shifted(shift: float, approach: float, method: str, kind: str, *settings: st
         meshes = [replace(half.mesh, points=half.mesh.points + np.array([shift, 0])) for half in here.level.halves]
         there = replace(problem, gap=lambda x: problem.gap(x - shift) + approach)
         return replace(
-            here, level=level.solve_on(meshes, there, here.level.halves[0].mesh.points.max(), clock, stepped=True)
+            here, level=level.solve_on(meshes, there, here.level.halves[0].mesh.points.max(), clock, steps=64)
         )
 
     patches = patch.object(marching, "march_refined", march), patch.object(model, "uniform", uniform)
@@ -351,7 +351,7 @@ def reordered(seed: int, method: str, kind: str, *settings: str) -> Apart:
     """Nodes, elements and cells in any order."""
     true_march = marching.march_refined
 
-    def march(C: Array, x: Array, bound: Array, path: Any, accuracy: float, errors: Any) -> Any:
+    def march(C: Array, x: Array, bound: Array, path: Any, accuracy: float, errors: Any, *rest: Any) -> Any:
         order = np.random.default_rng(seed).permutation(len(x))
         back = np.argsort(order)
 
@@ -360,7 +360,7 @@ def reordered(seed: int, method: str, kind: str, *settings: str) -> Apart:
             return left
 
         asked = told if errors else None
-        found, left = true_march(C[np.ix_(order, order)], x[order], bound[order], path, accuracy, asked)
+        found, left = true_march(C[np.ix_(order, order)], x[order], bound[order], path, accuracy, asked, *rest)
         return found.of(back), left
 
     scene = scene_of(kind, *settings)

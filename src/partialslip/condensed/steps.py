@@ -18,7 +18,7 @@ _TELLING = 1e-7  # change of the forces, relative to f P, that is more than roun
 _TRIED = (0, 1 / 32, 1 / 8, 1 / 2, 3 / 4, 7 / 8, 1)  # fractions of a way on which slip that turns round is looked for
 _MANY = 4  # steps, of which each is tried in two only
 _FINER = 16.0  # times less a step may change, and less still, if what steps leave is too much
-_MOST = 64  # steps from load point to load point, of which twice as many are not followed any more
+MOST = 64  # steps from load point to load point, of which twice as many are not followed any more
 _CLOSES = 3  # cycles at least where the first loading does not tell the whole of fully reversed loads, or to look at
 
 
@@ -29,12 +29,13 @@ def march_refined(
     path: Path,
     accuracy: float,
     errors: Callable[[History, History], Errors] | None = None,
+    most: int = MOST,
 ) -> tuple[History, Errors]:
     """:func:`march` in as many steps as it takes, and what these leave where ``errors`` tells.
 
     Steps are those of :func:`refined`; a path whose ``ways`` are known is followed as it is. With ``errors``, which
     tells them from a history and the one in twice as many steps, there are so many that no error is more than half of
-    what ``accuracy`` allows, or as many as are worth while. It is asked where one step seems to be enough, too: a stick
+    what ``accuracy`` allows, or as many as ``most`` allows. It is asked where one step seems to be enough, too: a stick
     zone that is small beside the groups which steps are chosen on bears next to nothing. Steps leave nothing where no
     slip turns round on the way.
     """
@@ -47,7 +48,7 @@ def march_refined(
         halved = march(tangential, stretch, bound, history.path.halved)
         left = errors(history, halved)
         enough = all(error <= ALLOWED[key] * accuracy / 2 for key, error in left.items())
-        if enough or halved.path.most_steps > _MOST:
+        if enough or halved.path.most_steps > most:
             return history, left
         finer /= _FINER
         chosen = refined(tangential, stretch, bound, path, finer)

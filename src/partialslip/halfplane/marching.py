@@ -11,9 +11,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.interpolate import PPoly
 
+from partialslip.allowance import Allowance
 from partialslip.condensed.friction import History, Path, certificate, doubts, judge, load_path
 from partialslip.condensed.step_errors import halved
-from partialslip.condensed.steps import march_refined
+from partialslip.condensed.steps import MOST, march_refined
 from partialslip.condensed.threads import one_thread
 from partialslip.condensed.zones import Zone, apart, finest, kinks, stick_zone
 from partialslip.halfplane.cells import compliance, forces, graded
@@ -28,6 +29,7 @@ _CELLS, _SOMEWHERE = 4.0, 0.5  # between zones with fewer cells than that an end
 _NEAR = 10.0  # cells at ends nearer to each other than a tenth of a are smaller in proportion
 _SMALLEST = 1e-9  # in a: ends that lie nearer to each other are one, and no cell is smaller by much
 _INNER = 8.0  # times larger than at the ends are the cells at kinks of q, which do not decide about m and n
+_SHARE = 1 / 3  # of the CPU seconds that are left: what a mesh may take
 _WORK = 5e11  # cells cubed, times load steps: a mesh that asks for more is not begun
 # Shares of a change from mesh to mesh, and of the cube of the cells' growth, that m and n are off by
 _MOVED, _CUBIC = 0.1, 0.15
@@ -61,7 +63,11 @@ class _Level:
 
 @one_thread
 def solve(
-    scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None, start: State | None = None
+    scene: Scene,
+    plan: Plan,
+    progress: Callable[[str], None] = lambda _: None,
+    start: State | None = None,
+    allowance: Allowance | None = None,
 ) -> Result:
     """Solve ``scene`` by marching through its load history, as two elastically similar half-planes.
 
@@ -73,8 +79,11 @@ def solve(
         Called with one line after each mesh.
     start : State, optional
         What the path of the loads begins with, instead of bodies without shear.
+    allowance : Allowance, optional
+        CPU seconds of this and of what else is to be done: from the third on, a mesh that is likely to take more than a
+        third of what is left is not begun, and steps are not halved more than once.
     """
-    clock = Clock()
+    clock = Clock(allowance)
     pressed = contact(scene)
     path = load_path(scene, plan, start)
     ends = [-1.0, 1.0, *(kink / pressed.a for kink in scene.profile.kinks if abs(kink) < pressed.a)]
@@ -83,13 +92,17 @@ def solve(
     errors: dict[str, float] = {}
     shares: dict[str, dict[str, float]] = {}
     stepped: dict[str, float] = {}
-    meshes, iterations = 0, 0
+    meshes, iterations, spent = 0, 0, 0.0
     for size, growth in _MESHES:
         cells = _cells(ends, inner, level, size, growth)
-        if level and level.history and level.history.load_steps * len(cells) ** 3 > _WORK:
-            break
+        if level and level.history:
+            work, likely = level.history.load_steps * len(cells) ** 3, spent * (len(cells) / len(level.vertices)) ** 3
+            if work > _WORK or (meshes > 1 and likely > _SHARE * clock.remaining()):
+                break
+        began = clock.cost().cpu_s
         # steps are chosen on the second mesh, and kept
         before, level = level, _solve_level(scene, pressed, path, start, cells, clock, choose=meshes == 1)
+        spent = clock.cost().cpu_s - began
         meshes, iterations = meshes + 1, iterations + (level.history.iterations if level.history else 0)
         if level.stick is None:
             break
@@ -154,7 +167,8 @@ def _solve_level(
             return halved(of, finer, (zone(of), zone(finer)), np.diff(vertices), 1.0)
 
         problem = tangential, moved, bound, path, scene.fem.accuracy
-        history, stepped = march_refined(*problem, errors if choose else None)
+        most = MOST if clock.remaining() == np.inf else 0  # more steps have no price
+        history, stepped = march_refined(*problem, errors if choose else None, most)
         inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in history.visited]
         return _Level(vertices, normal, history, zone(history), tuple(itertools.chain.from_iterable(inner)), stepped)
 
