@@ -144,6 +144,7 @@ def test_coupling_of_the_wrong_sign(monkeypatch, red):
     red("a of unlike bodies", abs(half_width() / right - 1), 1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_forces_handed_over_node_by_node(monkeypatch, sound, red):
     """Node to segment: displacements of the other body interpolated at the nodes, in place of the projection."""

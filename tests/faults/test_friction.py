@@ -87,6 +87,7 @@ def test_bound_of_the_pressure_before(monkeypatch, red):
     red("friction bound", beyond(), CERTIFIED)
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_history_not_committed_between_steps(monkeypatch, sound, red):
     """Every step starts from nothing: reversed proportional loads cannot tell, a mean load does."""
@@ -139,6 +140,7 @@ def test_slip_of_the_other_body(monkeypatch, sound, red):
     red("dissipated energy", off(), 1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_stick_zone_from_flags_of_one_instant(monkeypatch, sound, red):
     """With a mean load nodes rest on the bound without slipping any more: who is on it at load point 2 says little."""

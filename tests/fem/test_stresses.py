@@ -64,6 +64,7 @@ def test_only_where_they_were_asked_for():
     assert result.bodies == ()
 
 
+@pytest.mark.slow
 def test_different_materials_carry_different_stresses():
     """Along the surface both bodies strain alike where they stick; the stiffer one carries more stress for it."""
     scene = load_scene(

@@ -68,6 +68,7 @@ def test_steady_below_the_mean_load_bound_ratchets_above(level, steady):
     assert (exact.regime != "ratchets") == steady
 
 
+@pytest.mark.slow
 def test_marching_and_finite_elements_lock_in_the_same():
     """Two discretisations of one history: q at both load points after three cycles of a mean load."""
     overrides = [*MEAN, "load.cycles=3", "fem.accuracy=1e-4"]

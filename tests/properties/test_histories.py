@@ -2,6 +2,7 @@
 finite elements."""
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from pairs import answer, apart, guise, loads, solved, times
@@ -106,6 +107,7 @@ def test_coarse_finite_elements_close_every_step_of_any_path(scene, mesh):
             assert abs(force.sum() - scene.load.points[end][0]) <= unit
 
 
+@pytest.mark.slow  # tests/invariances has mirror images of given scenes
 @settings(max_examples=settings().max_examples // 8)
 @given(scenes())
 def test_coarse_finite_elements_are_turned_round_with_the_loads(scene):
