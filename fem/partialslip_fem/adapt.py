@@ -133,7 +133,9 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         expected = expense.unknowns(*grading[1:], order, width * a) if expense.limited else None
         choose = stepped is None and size <= _BESIDE
         steps = (0 if expense.limited else MOST) if choose else None  # more steps have no price
-        level = solve_level(problem, width * a, *grading, clock, None, None, aim.rounding, aim.corners, steps)
+        level = solve_level(
+            problem, width * a, *grading, clock, rounding=aim.rounding, corners=aim.corners, steps=steps
+        )
         if choose and level.enclosed and level.history and not level.coupled:
             stepped, problem = level.stepped, replace(problem, path=replace(level.history.path, before=None))
             aim = _Aim.at(max(aim.accuracy, _worst(stepped)), problem)
@@ -230,7 +232,7 @@ def uniform(problem: Problem, size: float | None, width: float, clock: Clock, ke
     """
     level, meshes, factored = _first(problem, width, clock, keep)
     iterations, sizes = level.iterations, _sizes_given(problem, level)
-    if all(part.mesh for part in problem.parts):
+    if problem.meshed:
         return Adapted(level, {}, meshes, factored, iterations, width)
     size = size or min(sizes) / level.half_width
     growth = _growth(size / 10, problem.order)  # what is deeper is not to be worse
@@ -267,13 +269,11 @@ def _first(problem: Problem, width: float, clock: Clock, keep: Kept | None = Non
     """A level on a mesh that is fine all over a contact line which the contact does not fill, and how many meshes and
     factorisations that took."""
     reach, limit, meshes, factored = 1.5 + max(problem.kinks, default=0.0), _limit(problem), 0, 0
-    meshed = all(part.mesh for part in problem.parts)  # then there will be no other
+    steps = MOST if problem.meshed else None  # of given meshes it is the last level, too
     while True:
         reach = min(reach, limit)
         guess = dict.fromkeys(np.linspace(-reach, reach, 16).tolist(), 2 * _FIRST * reach)
-        level = solve_level(
-            problem, width * reach, (-reach, reach), guess, _ROUGH, clock, keep=keep, steps=MOST if meshed else None
-        )
+        level = solve_level(problem, width * reach, (-reach, reach), guess, _ROUGH, clock, keep=keep, steps=steps)
         meshes, factored = meshes + 1, factored + level.factored
         if level.enclosed:
             return level, meshes, factored

@@ -60,9 +60,9 @@ def smooth_errors(level: Level, other: Level) -> dict[str, float]:
     cell averages), but for those of the elements at the ends; ``other`` is the neighbour."""
     order = level.body.order
     power = order / min(order, other.body.order) - 1
+    changes, prefactors = _changes(level, other), _prefactors(level)
     errors = {
-        key: _SAFE[key] * change * (change / _prefactor(level, key)) ** power
-        for key, change in _changes(level, other).items()
+        key: _SAFE[key] * change * (change / prefactors.get(key, 1.0)) ** power for key, change in changes.items()
     }
     least = _SAME * errors["a"]  # two solutions may meet in one of the ends by chance
     return {key: max(error, least) if key in ENDS else error for key, error in errors.items()}
@@ -169,12 +169,12 @@ def _norms(level: Level) -> Array:
     return result
 
 
-def _prefactor(level: Level, key: str) -> float:
-    """Of the errors of tractions and ends: about one, but for shear that is small beside f p."""
-    if key not in _SHEARS or not level.history:
-        return 1.0
-    norm = _norms(level)[_SHEARS.index(key)] / _norm(level.shear(level.history.bound))
-    return min(float(norm) / _SMALL, 1.0)
+def _prefactors(level: Level) -> dict[str, float]:
+    """Of the errors of shear, which are less than one where it is small beside f p."""
+    if not level.history:
+        return {}
+    relative = _norms(level) / _norm(level.shear(level.history.bound))
+    return dict(zip(_SHEARS, np.minimum(relative / _SMALL, 1.0).tolist(), strict=True))
 
 
 def _norm(traction: PPoly) -> float:

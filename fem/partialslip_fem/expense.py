@@ -28,7 +28,7 @@ class Expense:
     @property
     def limited(self) -> bool:
         """Whether there is an allowance."""
-        return self._before < np.inf
+        return self._clock.limited
 
     def measure(self, unknowns: int, expected: float | None = None) -> None:
         """Take the seconds spent since the last call for those of a mesh of so many ``unknowns``, of which there were

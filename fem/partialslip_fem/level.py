@@ -131,6 +131,11 @@ class Problem:
     similar: bool = False
     accuracy: float = 1e-3
 
+    @property
+    def meshed(self) -> bool:
+        """Whether the meshes of all bodies are given."""
+        return all(part.mesh for part in self.parts)
+
 
 @dataclass(frozen=True)
 class Level:
@@ -280,9 +285,8 @@ def solve_level(
     ``contact``, ``sizes``, ``growth`` and ``along`` are as for :func:`partialslip_meshes.block`. ``rounding`` is how
     far a round face may be from its elements' straight sides, in half-widths of the contact line; ``corners`` what
     elements at the corners of finite bodies may change at the contact, relative. Condensed bodies are taken from
-    ``keep`` and added to it. With ``steps`` the load path is followed in as many as the accuracy
-    takes, but not many more than that from load point to load point, and what they leave is told
-    (:attr:`Level.stepped`).
+    ``keep`` and added to it. With ``steps`` the load path is followed in as many as the accuracy takes, but not many
+    more than that from load point to load point, and what they leave is told (:attr:`Level.stepped`).
     """
     kind = (problem.parts, problem.order, problem.far_field, problem.backend, problem.path is None, problem.inside)
     key = (*kind, width, contact, tuple(sizes.items()), growth, along, rounding, corners)

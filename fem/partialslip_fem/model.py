@@ -330,7 +330,7 @@ def _settled(adapted: Adapted, scene: Scene) -> tuple[str, ...]:
 
 def _fineness(scene: Scene, problem: Problem, accuracy: float) -> dict[str, str | float]:
     """What the size of the elements follows."""
-    if all(part.mesh for part in problem.parts):
+    if problem.meshed:
         return {"meshes": "as given"}
     if scene.fem.size is not None:
         return {"element_size_over_a": scene.fem.size}

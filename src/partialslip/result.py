@@ -298,6 +298,11 @@ class Clock:
         if self._allowance:
             self._allowance.spend(seconds)
 
+    @property
+    def limited(self) -> bool:
+        """Whether there is an allowance."""
+        return self._allowance is not None
+
     def remaining(self) -> float:
         """CPU seconds that may still be spent; infinite without an allowance."""
         return self._allowance.remaining() if self._allowance else math.inf

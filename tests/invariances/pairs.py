@@ -232,7 +232,7 @@ def the_first_mesh() -> Any:
     def uniform(problem: Problem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
         if not first:
             first.append(true_uniform(problem, size, width, clock, *rest))
-        return replace(first[0], level=level._level(problem, first[0].level.halves, 0, clock, 64))
+        return replace(first[0], level=level._level(problem, first[0].level.halves, 0, clock, steps.MOST))
 
     return patch.object(model, "uniform", uniform)
 
@@ -328,7 +328,7 @@ def shifted(shift: float, approach: float, method: str, kind: str, *settings: st
         meshes = [replace(half.mesh, points=half.mesh.points + np.array([shift, 0])) for half in here.level.halves]
         there = replace(problem, gap=lambda x: problem.gap(x - shift) + approach)
         return replace(
-            here, level=level.solve_on(meshes, there, here.level.halves[0].mesh.points.max(), clock, steps=64)
+            here, level=level.solve_on(meshes, there, here.level.halves[0].mesh.points.max(), clock, steps=steps.MOST)
         )
 
     patches = patch.object(marching, "march_refined", march), patch.object(model, "uniform", uniform)

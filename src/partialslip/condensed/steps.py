@@ -41,7 +41,7 @@ def march_refined(
     """
     known = bool(path.ways)
     history = march(tangential, stretch, bound, path if known else refined(tangential, stretch, bound, path, accuracy))
-    if errors is None or known or history.path.half or _stretched(path):
+    if errors is None or known or history.path.half or _tension_stays(path):
         return history, {}
     finer = accuracy
     while True:
@@ -56,7 +56,7 @@ def march_refined(
         history = march(tangential, stretch, bound, chosen) if more else halved
 
 
-def _stretched(path: Path) -> bool:
+def _tension_stays(path: Path) -> bool:
     """Whether the bulk tension never changes: shear then drives all slip one way, and nothing turns it round."""
     return len({strain for _, strain in (path.begin, *path.cycle)}) == 1
 
@@ -68,7 +68,7 @@ def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accurac
     gradual way. Otherwise each of some steps, smaller towards the load points, is halved as long as its two halves lead
     elsewhere: slip turns round at a moment, so that few steps are halved often.
     """
-    if _stretched(path):
+    if _tension_stays(path):
         return path
     coarse = _Coarse(tangential, stretch, bound, accuracy)
     load = np.array(path.begin)

@@ -167,7 +167,7 @@ def _solve_level(
             return halved(of, finer, (zone(of), zone(finer)), np.diff(vertices), 1.0)
 
         problem = tangential, moved, bound, path, scene.fem.accuracy
-        most = MOST if clock.remaining() == np.inf else 0  # more steps have no price
+        most = 0 if clock.limited else MOST  # more steps have no price
         history, stepped = march_refined(*problem, errors if choose else None, most)
         inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in history.visited]
         return _Level(vertices, normal, history, zone(history), tuple(itertools.chain.from_iterable(inner)), stepped)
