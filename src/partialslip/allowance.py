@@ -1,7 +1,10 @@
 """What a run may cost: CPU seconds, handed to the methods, which settle for the accuracy that these suffice for."""
 
+import math
 import time
 from collections.abc import Callable
+
+from partialslip.errors import InputError
 
 
 class Allowance:
@@ -13,9 +16,16 @@ class Allowance:
         Of this process, and of those that make meshes for it.
     spent : callable, optional
         ``spent() -> float``: the CPU seconds of this process up to now.
+
+    Raises
+    ------
+    InputError
+        If ``seconds`` is not a number.
     """
 
     def __init__(self, seconds: float, spent: Callable[[], float] = time.process_time) -> None:
+        if math.isnan(seconds):
+            raise InputError(f"allowance of {seconds} s: must be a number of CPU seconds")
         self.seconds = seconds
         self._spent = spent
         self._began = spent()

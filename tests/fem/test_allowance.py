@@ -2,7 +2,7 @@
 
 import pytest
 
-from partialslip import Allowance, load_scene, plan, run
+from partialslip import Allowance, InputError, load_scene, plan, run
 from partialslip_fem import adapt, expense, solve
 
 ASKED = 1e-6
@@ -80,3 +80,19 @@ def test_seconds_elsewhere_count():
     allowance = Allowance(5.0, lambda: 1.0)
     allowance.spend(2.0)
     assert allowance.remaining() == 3.0
+
+
+def test_seconds_are_a_number():
+    """A limit that is no number would limit nothing, in silence."""
+    with pytest.raises(InputError, match="must be a number of CPU seconds"):
+        Allowance(float("nan"))
+
+
+def test_the_march_begins_no_mesh_that_nothing_is_left_for():
+    """Two meshes at least, as the errors of one are not known; and it says what these leave."""
+    scene = load_scene("hertz-small-tension", ["load.Q=[-1e4, 8e4]", "load.sigma=[0, 1e8]", "fem.accuracy=1e-4"])
+    free, poor = (run(scene, ["march"], allowance=limit).results["march"] for limit in (None, Allowance(0.0)))
+    assert free.counts["meshes"] > poor.counts["meshes"] == 2
+    assert abs(free.m - poor.m) < poor.estimate["m"] * poor.a
+    assert any("not reached" in note for note in poor.notes)
+    assert not any("not reached" in note for note in free.notes)

@@ -101,7 +101,7 @@ def _budget(options: argparse.Namespace, scene: "Scene", methods: list[str] | No
     if not 0 < budget < math.inf:
         raise InputError(f"--budget {options.budget!r}: must be seconds, more than 0, for example 5s")
     if methods and "fem" not in methods:
-        raise InputError("--budget: needs the method fem; the others take what they take")
+        raise InputError("--budget: needs the method fem, whose accuracy it chooses")
     if scene.fem.size is not None or scene.meshed:
         raise InputError("--budget: needs meshes that follow an accuracy, not fem.size or meshes that are given")
     return budget
