@@ -19,13 +19,13 @@ from msgspec.structs import replace
 
 import partialslip
 from partialslip import Result, Scene
+from partialslip.arrays import Array
 from partialslip.condensed.threads import one_thread
 from partialslip.halfplane import contact
 from partialslip.halfplane.steady import transition
 from partialslip.judge import compare
 from partialslip.judge.means import norm_errors
-from partialslip.reading import parse_scene
-from partialslip.result import Array
+from partialslip.scene.reading import parse_scene
 
 KEYS = ("a", "left", "right", "m", "n", "p", "q", "q1", "q2")
 KINDS = (
@@ -106,7 +106,7 @@ def true_errors(scene: Scene, kind: str, found: Result) -> dict[str, float]:
     exact = partialslip.run(scene, ["exact"]).results["exact"]
     compared = compare(found, exact, scene, None)
     errors = {"a": compared.a, "p": compared.p}
-    if found.certificate.get("steady", 0.0) <= SETTLED * scene.fem.accuracy:
+    if (found.last_cycle_change or 0.0) <= SETTLED * scene.fem.accuracy:
         errors |= {key: getattr(compared, key) for key in ("m", "n", "q") if key not in exact.undetermined}
     left, right = found.ends[1]
     errors |= {"left": abs(left + exact.a) / exact.a, "right": abs(right - exact.a) / exact.a}

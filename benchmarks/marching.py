@@ -8,16 +8,17 @@ import time
 
 import numpy as np
 
-from partialslip.condensed.friction import History, Path, march
+from partialslip.arrays import Array
+from partialslip.condensed.ends import stick_zone as read_zone
+from partialslip.condensed.history import History, march
+from partialslip.condensed.path import Path
 from partialslip.condensed.threads import one_thread
-from partialslip.condensed.zones import stick_zone as read_zone
 from partialslip.halfplane.cells import compliance, forces, graded
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import StickZone, stick_zone
 from partialslip.halfplane.traction import half_range, mean_load_bound
-from partialslip.result import Array
 
 P0 = 2 / np.pi  # a = P = 1
 

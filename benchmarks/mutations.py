@@ -134,7 +134,7 @@ def _not(node: ast.AST) -> ast.UnaryOp:
 
 def _preload() -> None:
     """Import everything, then forget this project's own: what it needs from elsewhere stays."""
-    for name in ("pytest", "partialslip", "partialslip.verify", "partialslip.report", "partialslip.study.verification"):
+    for name in ("pytest", "partialslip", "partialslip.verify", "partialslip.report", "partialslip.verify.driver"):
         importlib.import_module(name)
     for name in [name for name in sys.modules if name.startswith("partialslip")]:
         del sys.modules[name]

@@ -20,9 +20,9 @@ import numpy as np
 from accuracy import random_scene
 
 import partialslip
+from partialslip.batch.job import Job, Solved, solve_apart
+from partialslip.batch.ledger import Ledger, key_of
 from partialslip.study import prices
-from partialslip.study.case import Case, solve_apart
-from partialslip.study.ledger import Ledger, key_of
 
 # accuracies by order and factorisation
 LADDER = {
@@ -35,11 +35,11 @@ EACH = {"cholmod": 2, "superlu": 1}  # scenes of each kind
 FINE = 1e-6  # beyond that one scene of each kind
 BUDGETS = (2.0, 5.0, 20.0)
 CHECKED = range(500, 520)
-SHIPPED = Path(partialslip.__file__).parent / "study" / "prices.json"
+SHIPPED = Path(partialslip.__file__).parent / "study" / "cost" / "prices.json"
 RUN = [sys.executable, "-m", "partialslip", "run"]
 
 
-def fitted() -> list[Case]:
+def fitted() -> list[Job]:
     """The cheapest first, so that a list can be fitted before all are measured."""
     seeds: dict[str, list[int]] = {kind: [] for kind in KINDS}
     for seed in range(400, 500):
@@ -51,16 +51,16 @@ def fitted() -> list[Case]:
                 for seed in seeds[kind][: EACH[factor] if asked >= FINE else 1]:
                     data: dict[str, Any] = msgspec.to_builtins(random_scene(seed, asked))
                     data["fem"] |= {"order": order, "factor": factor}
-                    found.append(Case(partialslip.parse_scene(data), ("exact", "fem"), {"seed": seed}))
+                    found.append(Job(partialslip.parse_scene(data), ("exact", "fem"), {"seed": seed}))
     return sorted(found, key=lambda case: -case.scene.fem.accuracy)
 
 
-def measured(ledger: Ledger, cases: list[Case]) -> list[dict[str, Any]]:
+def measured(ledger: Ledger, cases: list[Job]) -> list[Solved]:
     for number, each in enumerate(cases):
         print(f"{number} of {len(cases)}", end="\r", file=sys.stderr, flush=True)
         if each.key not in ledger:
             ledger.add(each.key, solve_apart(each))
-    return [ledger[each.key] for each in cases]
+    return [Solved.of(ledger[each.key]) for each in cases]
 
 
 def process(*options: str) -> tuple[float, int, str]:
@@ -83,13 +83,12 @@ def overheads(ledger: Ledger) -> dict[str, float]:
             for _ in range(3):
                 refused, _, _ = process("hertz-shear", "--budget", "1e-3s")
                 whole, _, _ = process("hertz-shear", "--accuracy", "1e-2", "--out", folder)
-                methods = json.loads((Path(folder) / "results.json").read_text("utf-8"))["methods"]
-                work = sum(method["cost"]["cpu_s"] for method in methods.values())
+                methods = partialslip.load_result(Path(folder) / "results.json").methods
+                work = sum(method.cost.cpu_s for method in methods.values())
                 process("hertz-shear", "--with", "march", "--out", folder)
-                methods = json.loads((Path(folder) / "results.json").read_text("utf-8"))["methods"]
-                march = methods["march"]["cost"]["cpu_s"]
-                apart = solve_apart(Case(partialslip.load_scene("hertz-shear"), ("exact",), {}))
-                start = apart["process"]["cpu_s"] - apart["methods"]["exact"]["cost"]["cpu_s"]
+                march = partialslip.load_result(Path(folder) / "results.json").methods["march"].cost.cpu_s
+                apart = solve_apart(Job(partialslip.load_scene("hertz-shear"), ("exact",), {}))
+                start = apart.process.cpu_s - apart.run.methods["exact"].cost.cpu_s
                 found.append([refused / start, (whole - work - refused) / start, march / start])
         medians = np.median(found, axis=0).tolist()
         ledger.add(key, {"overheads": dict(zip(("start", "closing", "march"), medians, strict=True))})
@@ -100,9 +99,9 @@ def overheads(ledger: Ledger) -> dict[str, float]:
 def fit(ledger: Ledger, _: list[float]) -> None:
     extra = overheads(ledger)
     entries = measured(ledger, fitted())
-    costs = [sum(method["cost"]["cpu_s"] for method in entry["methods"].values()) for entry in entries]
-    start = float(np.median([entry["process"]["cpu_s"] - cost for entry, cost in zip(entries, costs, strict=True)]))
-    machine = entries[0]["made"]["machine"]
+    costs = [sum(method.cost.cpu_s for method in entry.run.methods.values()) for entry in entries]
+    start = float(np.median([entry.process.cpu_s - cost for entry, cost in zip(entries, costs, strict=True)]))
+    machine = ledger[fitted()[0].key]["made"]["machine"]
     found = prices.fit(
         entries,
         {key: value * start for key, value in extra.items()},

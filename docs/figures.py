@@ -10,9 +10,9 @@ from partialslip.halfplane import Contact, adhered, hysteresis
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range
-from partialslip.report.figure import svg
-from partialslip.report.mapfigure import ends_svg
-from partialslip.report.stickmap import stick_map
+from partialslip.map.figure import ends_svg
+from partialslip.map.grid import stick_map
+from partialslip.output.svg import svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,7 +12,7 @@ import sys
 import pytest
 
 from partialslip.cli import main, parser
-from partialslip.reading import shipped_scenes
+from partialslip.scene.reading import shipped_scenes
 
 ESCAPE = "\x1b["
 EXACT = ("run", "hertz-shear", "--with", "exact")

@@ -25,9 +25,10 @@ from unittest import mock
 import pytest
 
 from partialslip.cli import main
-from partialslip.reading import load_scene, parse_scene
+from partialslip.scene.reading import load_scene, parse_scene
 
 DOCS = Path(__file__).parents[1] / "docs"
+SHIPPED = "src/partialslip/scene/shipped/fretting-aluminium.toml"
 BLOCK = re.compile(r"^(?:<!-- (not run: [^\n]+|slow) -->\n)?```(\w+)\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
 NUMBER = r"-?\d+(?:\.\d+)?e[-+]\d+|-?\d+\.\d+"
 PARTS = re.compile(rf"(\.\.\.|(?<![\w.])(?:{NUMBER})(?![\w.]))")
@@ -137,7 +138,7 @@ def scene(code):
     elif "name" in data:
         parse_scene(data)
     else:
-        whole = tomllib.loads((DOCS.parent / "src/partialslip/scenes/fretting-aluminium.toml").read_text("utf-8"))
+        whole = tomllib.loads((DOCS.parent / SHIPPED).read_text("utf-8"))
         parse_scene(whole | data)
 
 

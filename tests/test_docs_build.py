@@ -12,8 +12,9 @@ from typing import get_args
 import msgspec
 import pytest
 
-from partialslip import bodies, scene
+from partialslip import scene
 from partialslip.cli import main
+from partialslip.scene import bodies
 
 DOCS = Path(__file__).parents[1] / "docs"
 TABLES = {

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from partialslip.cli import main
-from partialslip.report.files import write_files
-from partialslip.report.lock import NAME  # a file that may stay; the lock does not
+from partialslip.output.files import write_files
+from partialslip.output.lock import NAME  # a file that may stay; the lock does not
 
 RUN = (
     "run",
@@ -61,7 +61,7 @@ def whole(folder):
     for name in names:
         path = folder / name
         if name == "results.json":
-            assert json.loads(path.read_text("utf-8"))["schema"] == "partialslip/result/2"
+            assert json.loads(path.read_text("utf-8"))["schema"] == "partialslip/result/3"
         elif name == "report.html":
             assert path.read_text("utf-8").rstrip().endswith("</html>")
         elif name == "tractions.csv":

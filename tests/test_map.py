@@ -15,9 +15,9 @@ from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.steady import stick_zone, stick_zones, transition
 from partialslip.halfplane.traction import mean_load_bound
-from partialslip.reading import load_scene
-from partialslip.report import map as map_files
-from partialslip.report import place, stick_map, stickmap
+from partialslip.map import files as map_files
+from partialslip.map import grid, place, stick_map
+from partialslip.scene.reading import load_scene
 
 FILES = ["ends.svg", "map.csv", "map.svg"]
 DOCS = Path(__file__).parents[1] / "docs"
@@ -49,9 +49,9 @@ def scene(*overrides):
 @pytest.fixture
 def coarse(monkeypatch):
     """Small maps, where it does not matter how fine they are."""
-    monkeypatch.setattr(stickmap, "_COUNT", 4)
-    monkeypatch.setattr(stickmap, "_COUNT_KINKED", 4)
-    monkeypatch.setattr(stickmap, "_RATIOS", np.linspace(0, 8, 5))
+    monkeypatch.setattr(grid, "_COUNT", 4)
+    monkeypatch.setattr(grid, "_COUNT_KINKED", 4)
+    monkeypatch.setattr(grid, "_RATIOS", np.linspace(0, 8, 5))
 
 
 @pytest.fixture(scope="module")
@@ -100,20 +100,20 @@ def test_table_against_closed_forms(hertz):
 @pytest.mark.parametrize("shape", [Hertz(), Punch(0.6)], ids=["hertz", "punch"])
 @pytest.mark.usefixtures("coarse")
 def test_lines_lead_through_their_stick_zones(shape):
-    data = stickmap._mapped(shape, 10.0, lambda _: None)
+    data = grid._mapped(shape, 10.0, lambda _: None)
     for lines, way in ((data.m_lines, -1), (data.n_lines, 1)):
         for line in lines:
             some = (line.Qf >= 0) & (line.Qf < 1 - 1e-6) & (line.sf >= 0) & (line.sf < 20)
             Qf, sf = line.Qf[some][::9], line.sf[some][::9]
             centre, half_width, _ = stick_zones(Qf, sf, shape)
             np.testing.assert_allclose(half_width + way * centre, line.at, rtol=0, atol=1e-9)
-    assert {line.at for line in data.n_lines} == set(stickmap.N_LEVELS)
+    assert {line.at for line in data.n_lines} == set(grid.N_LEVELS)
 
 
 @pytest.mark.parametrize("shape", [Hertz(), Punch(0.6)], ids=["hertz", "punch"])
 @pytest.mark.usefixtures("coarse")
 def test_border_is_where_the_regime_turns(shape):
-    data = stickmap._mapped(shape, 10.0, lambda _: None)
+    data = grid._mapped(shape, 10.0, lambda _: None)
     Qf, sf = data.border.Qf[20:-1], data.border.sf[20:-1]
     np.testing.assert_allclose(sf, transition(Qf, shape), rtol=1e-9)
     for way, s in ((1 - 1e-6, 1), (1 + 1e-6, -1)):
@@ -222,7 +222,7 @@ def test_words_on_a_scene(overrides, expected):
     assert (data.point is None) != ("the scene's loads" in map_files.map_svg(data))
 
 
-GOOD = (Path(__file__).parents[1] / "src/partialslip/scenes/hertz-large-tension.toml").read_text("utf-8")
+GOOD = (Path(__file__).parents[1] / "src/partialslip/scene/shipped/hertz-large-tension.toml").read_text("utf-8")
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip import views
 from partialslip.report import rows
 from partialslip.report.files import tractions_csv
 
@@ -141,13 +140,6 @@ def test_without_pandas(run, monkeypatch):
     for what in (run, run.results["exact"]):
         with pytest.raises(partialslip.PartialslipError, match="pandas is not installed: pip install"):
             what.to_dataframe()
-
-
-def test_views_of_something_else():
-    with pytest.raises(TypeError, match="int has no"):
-        views.html(1)
-    with pytest.raises(TypeError, match="str has no plot"):
-        views.plot("")
 
 
 def test_nothing_is_imported_before_it_is_asked_for():

@@ -8,8 +8,8 @@ import pytest
 
 from partialslip import shipped_scenes
 from partialslip.cli import main
-from partialslip.reading import parse_scene
-from partialslip.report import pdf
+from partialslip.output import pdf
+from partialslip.scene.reading import parse_scene
 from partialslip_meshes.gmsh import DEBIAN_PACKAGES
 
 ROOT = Path(__file__).parents[1]
@@ -38,7 +38,7 @@ def test_scene_in_the_readme_is_the_shipped_one(capsys):
     scene = parse_scene(tomllib.loads(text))
     assert main(["run", scene.name, "--with", "exact", "--json"]) == 0
     printed = capsys.readouterr().out
-    shipped = tomllib.loads((ROOT / f"src/partialslip/scenes/{scene.name}.toml").read_text("utf-8"))
+    shipped = tomllib.loads((ROOT / f"src/partialslip/scene/shipped/{scene.name}.toml").read_text("utf-8"))
     assert scene.load == parse_scene(shipped).load
     assert f'"name": "{scene.name}"' in printed
 

@@ -11,8 +11,8 @@ import pytest
 import partialslip
 from partialslip.errors import InputError, PartialslipError
 from partialslip.plan import Effect, plan
-from partialslip.reading import load_scene, parse_scene, shipped_scenes
 from partialslip.scene import Material, Scene
+from partialslip.scene.reading import load_scene, parse_scene, shipped_scenes
 
 SHIPPED = sorted(shipped_scenes())
 EFFECTS = set(Effect.__args__)

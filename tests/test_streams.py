@@ -12,7 +12,7 @@ import pytest
 
 from partialslip.cli import main
 from partialslip.errors import InputError
-from partialslip.report.lock import NAME, locked
+from partialslip.output.lock import NAME, locked
 
 COMMAND = (sys.executable, "-m", "partialslip")
 EXACT = ("run", "hertz-shear", "--with", "exact")

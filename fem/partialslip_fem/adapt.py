@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from partialslip.arrays import Array
+from partialslip.bars import BARS
+from partialslip.condensed.ends import apart
 from partialslip.condensed.steps import MOST
-from partialslip.condensed.zones import apart
 from partialslip.errors import InputError
-from partialslip.result import Array, Clock
-from partialslip.scene import ALLOWED
+from partialslip.result import Clock
 from partialslip_fem.estimate import ENDS, NEIGHBOUR, end_errors, enough, kink_sizes, neighbour, smooth_errors, together
 from partialslip_fem.expense import Expense, again
 from partialslip_fem.level import Kept, Level, Part, Problem, solve_level
@@ -120,7 +121,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
                 finer = finer if size > 1.01 * aim.goal(level, problem) else 1.0
         goal = aim.goal(level, problem)
         size, growth, finer = _course(size, finer, goal, least, order)[0]
-        locked = kink_sizes(level, aim.share * ALLOWED["q1"])
+        locked = kink_sizes(level, aim.share * BARS["q1"])
         a = level.half_width
         margin = (0.1 + 2 * finer * size) * a  # of safety, and what the mesh before may have been off by
         contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
@@ -337,4 +338,4 @@ def _too_narrow(problem: Problem) -> InputError:
 
 def _worst(errors: Mapping[str, float]) -> float:
     """As an error of an end."""
-    return max((error / ALLOWED[key] for key, error in errors.items()), default=0.0)
+    return max((error / BARS[key] for key, error in errors.items()), default=0.0)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from partialslip.result import Array
+from partialslip.arrays import Array
 from partialslip_fem.elasticity import Body
 from partialslip_fem.factor import Backend, Factor, factor
 from partialslip_fem.farfield import FarField

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.condensed.bounded import Solution, solve_bounded
 from partialslip.condensed.coupled import Relative
-from partialslip.result import Array
 from partialslip_fem.condensation import Condensed
 from partialslip_fem.elasticity import Body
 from partialslip_fem.mortar import transfer

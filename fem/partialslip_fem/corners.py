@@ -9,7 +9,7 @@ corners of plates in extension, J. Appl. Mech. 19 (1952) 526-528.
 
 import numpy as np
 
-from partialslip.result import Array
+from partialslip.arrays import Array
 
 _LEAST, _COUNT = 0.2, 4001  # exponents that are tried: from this one to 1
 

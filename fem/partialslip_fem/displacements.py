@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.result import Array
+from partialslip.arrays import Array
 from partialslip_fem.contact import Half
 from partialslip_fem.level import Level, Part, Problem
 from partialslip_fem.mortar import transfer

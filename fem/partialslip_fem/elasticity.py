@@ -8,7 +8,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 import skfem
 
-from partialslip.result import Array
+from partialslip.arrays import Array
 from partialslip_meshes import Mesh
 
 _ELEMENTS = {1: skfem.ElementTriP1, 2: skfem.ElementTriP2, 3: skfem.ElementTriP3, 4: skfem.ElementTriP4}

@@ -18,8 +18,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.result import Array, Clock
-from partialslip.scene import LEAST_SHEAR
+from partialslip.arrays import Array
+from partialslip.bars import LEAST_SHEAR
+from partialslip.result import Clock
 from partialslip_fem.level import Level, Problem, solve_on
 
 # The order below costs least, but where it locks (P2 and P1 towards nu = 0.5) its errors say nothing.

@@ -14,9 +14,8 @@ import scipy.linalg as la
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
+from partialslip.arrays import Array, Indices
 from partialslip.errors import MissingLibraryError
-from partialslip.result import Array
-from partialslip_fem.elasticity import Indices
 
 Backend = Literal["superlu", "cholmod"]
 _options = threading.Lock()  # those of CHOLMOD are one dictionary for all threads

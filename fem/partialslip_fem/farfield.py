@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip.result import Array
+from partialslip.arrays import Array
 
 
 @dataclass(frozen=True)

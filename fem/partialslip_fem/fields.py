@@ -1,16 +1,51 @@
 """Fields for the result: stresses along the surfaces and inside, the displaced bodies."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.result import Array, DeformedBody, SurfaceStress
+from partialslip.arrays import Array
+from partialslip.result import DeformedBody, SurfaceStress
 from partialslip_fem.displacements import Moved
 from partialslip_fem.elasticity import gradients
 from partialslip_fem.recovery import inside, polynomials
 
 _CELLS, _TERMS = 6, 4  # in the fit at the ends of the contact
+
+
+@dataclass(frozen=True)
+class _Surface:
+    """What the stress along a body's surface is computed from; ``displacements`` along x and ``pressures`` by load
+    point, scaled."""
+
+    compliance: float
+    kappa: float
+    displacements: tuple[PPoly, ...]
+    pressures: tuple[PPoly, ...]
+
+    def at(self, x: Array) -> list[Array]:
+        """sigma_xx at the points ``x`` (k,), by load point, scaled."""
+        return [
+            4 / self.compliance * inside(u.derivative(), x) - (3 - self.kappa) / (self.kappa + 1) * inside(p, x)
+            for u, p in zip(self.displacements, self.pressures, strict=True)
+        ]
+
+
+@dataclass(frozen=True)
+class _Surfaces:
+    """The surfaces of the lower and the upper body; lengths are scaled by ``length`` (m), stresses by ``stress``
+    (Pa)."""
+
+    bodies: tuple[_Surface, ...]
+    length: float
+    stress: float
+
+    def at(self, x: Array) -> Array:
+        """sigma_xx at ``x`` (k,), m: (2, 2, k) by body and load point, Pa."""
+        scaled = np.asarray(x, float) / self.length
+        return self.stress * np.array([body.at(scaled) for body in self.bodies])
 
 
 def along_surfaces(
@@ -32,33 +67,26 @@ def along_surfaces(
     length, stress : float
         What lengths and stresses are scaled by, m and Pa.
     """
-    moved = [
-        [polynomials(half.face_x, u, half.order) for u in body.u[:, 0, half.face]]
+    surfaces = tuple(
+        _Surface(
+            body.part.compliance,
+            body.part.kappa,
+            tuple(polynomials(half.face_x, u, half.order) for u in body.u[:, 0, half.face]),
+            tuple(body.pressures),
+        )
         for body in bodies
         for half in (body.half.body,)
-    ]
-
-    def at(points: Array) -> Array:
-        x = np.asarray(points, float) / length
-        sigma = [
-            [
-                4 / body.part.compliance * inside(u.derivative(), x)
-                - (3 - body.part.kappa) / (body.part.kappa + 1) * inside(p, x)
-                for u, p in zip(of_body, body.pressures, strict=True)
-            ]
-            for body, of_body in zip(bodies, moved, strict=True)
-        ]
-        return stress * np.array(sigma)
-
+    )
+    stresses = _Surfaces(surfaces, length, stress)
     nodes = bodies[0].half.body.face_x
     x = np.union1d(nodes, ends)
-    sigma = at(length * x)
-    for number, (body, of_body) in enumerate(zip(bodies, moved, strict=True)):
-        for load, (u, (left, right)) in enumerate(zip(of_body, ends, strict=True)):
+    sigma = stresses.at(length * x)
+    for number, surface in enumerate(surfaces):
+        for load, (u, (left, right)) in enumerate(zip(surface.displacements, ends, strict=True)):
             for end, side in ((left, -1), (right, 1)):
-                at_end = stress * 4 / body.part.compliance * _strain_beyond(u, end, side)
+                at_end = stress * 4 / surface.compliance * _strain_beyond(u, end, side)
                 sigma[number, load, np.searchsorted(x, end)] = at_end
-    return SurfaceStress(length * x, sigma, at)
+    return SurfaceStress(length * x, sigma, stresses.at)
 
 
 def _strain_beyond(u: PPoly, end: float, side: int) -> float:

@@ -10,19 +10,22 @@ from typing import Literal
 import numpy as np
 from scipy.interpolate import PPoly
 
+from partialslip.arrays import Array, Indices
+from partialslip.bars import BARS
 from partialslip.condensed import coupled, step_errors
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.coupled import Pressed
-from partialslip.condensed.friction import History, Path
+from partialslip.condensed.ends import Zone, apart, finest, kinks, left_end, right_end, stick_zone
+from partialslip.condensed.history import History
+from partialslip.condensed.path import Path
 from partialslip.condensed.steps import march_refined
-from partialslip.condensed.zones import Zone, apart, finest, kinks, left_end, right_end, stick_zone
 from partialslip.errors import InputError
-from partialslip.result import Array, Clock
-from partialslip.scene import ALLOWED, Profile
+from partialslip.result import Clock
+from partialslip.scene import Profile
 from partialslip_fem.condensation import Condensed
 from partialslip_fem.contact import Half, press, relative_compliances
 from partialslip_fem.corners import free_exponent, held_exponent, size
-from partialslip_fem.elasticity import ALL_AROUND, Body, Held, Indices, body
+from partialslip_fem.elasticity import ALL_AROUND, Body, Held, body
 from partialslip_fem.factor import Backend
 from partialslip_fem.farfield import half_plane
 from partialslip_fem.mortar import nodal_forces
@@ -395,7 +398,7 @@ def _solve(
         path = replace(path, before=before)
     if path and C.xy is not None:
         along = coupled.Line(line.x, line.weights, lambda forces: _ends(line, forces), problem.similar)
-        near = ALLOWED["q"] * problem.accuracy
+        near = BARS["q"] * problem.accuracy
         history, pressing, first = coupled.march(C, gap, stretch, problem.f, path, pressed, along, near)
         nodes = np.flatnonzero(history.bound > 0)
         return pressing, history.of(nodes), nodes, first, {}

@@ -7,23 +7,25 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.allowance import Allowance
-from partialslip.bodies import Body
 from partialslip.condensed.coupled import Pressed
-from partialslip.condensed.friction import certificate, doubts, judge, load_path, lower_strain
+from partialslip.condensed.history import certificate, last_cycle_change
+from partialslip.condensed.path import load_path, lower_strain
+from partialslip.condensed.regime import doubts, steady_state
 from partialslip.condensed.steps import MOST
 from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
 from partialslip.plan import Plan
-from partialslip.result import Array, Clock, Result, Slip, Traction
+from partialslip.result import Clock, Result, Slip, Traction
+from partialslip.result.state import State
 from partialslip.scene import WIDTHS, Hertz, Scene
-from partialslip.state import State
+from partialslip.scene.bodies import Body
 from partialslip_fem.adapt import Adapted, adapt, uniform
 from partialslip_fem.displacements import solve_back
 from partialslip_fem.estimate import rounding
 from partialslip_fem.factor import default_backend
 from partialslip_fem.fields import along_surfaces, deformed
 from partialslip_fem.level import Face, Kept, Level, Part, Problem, solve_on
-from partialslip_fem.recovery import inside
+from partialslip_fem.recovery import Pair
 from partialslip_meshes import Mesh, read
 
 _SIZES = 1e-3, 1e5  # of finite bodies, in sqrt(A R P)
@@ -176,7 +178,9 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     p0 = 2 / (np.pi * level.half_width)
     unit = scene.material.A * scene.P  # of displacement
     certified = _certificate(problem, level, p0)
-    found = judge(scene, level.history, level.stick, level.half_width, level.slips_when_pressed)
+    weights = level.body.weights[level.nodes]
+    change = last_cycle_change(level.history, weights, problem.f, p0) if level.history else None
+    found = steady_state(scene, level.history, level.stick, level.half_width, level.slips_when_pressed)
 
     q1, q2, at1, at2, dq = np.zeros_like(x), np.zeros_like(x), None, None, None
     history, pressures = level.history, level.pressures(problem.f)
@@ -187,9 +191,6 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
     made = _factorizations(level)
     moved = solve_back(level, problem) if plan.needs("subsurface") else ()
     extra = {"back_solves": len(moved), "factorizations": adapted.factorizations + _factorizations(level) - made}
-
-    def pair(first: PPoly | None, second: PPoly | None) -> Callable[[Array], tuple[Array, Array]]:
-        return lambda points: (stress * inside(first, points / L), stress * inside(second, points / L))
 
     shares = {"discretisation": adapted.errors, "rounding": dict.fromkeys(adapted.errors, rounding(level))}
     if stepped := level.stepped:
@@ -211,12 +212,12 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
             dq=q2 - q1,
             q1=q1 if known else None,
             q2=q2 if known else None,
-            at=pair(pressure, dq),
+            at=Pair(pressure, dq, L, stress).at,
             breaks=np.unique([*level.ends, *level.kinks, *problem.kinks]) * L,
             cells=level.body.x[:: level.body.order] * L,
-            levels_at=pair(at1, at2) if known else None,
+            levels_at=Pair(at1, at2, L, stress).at if known else None,
             p1=stress * pressures[0](x) if pressures else None,
-            pressures_at=pair(*pressures) if pressures else None,
+            pressures_at=Pair(*pressures, L, stress).at if pressures else None,
         ),
         cost=clock.cost(),
         slip=Slip(x * L, history.slip * unit, history.dissipated * unit * scene.P) if history else None,
@@ -229,6 +230,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         },
         counts=_counts(level, adapted, extra),
         certificate=certified,
+        last_cycle_change=change,
         estimate=estimate,
         shares=shares if estimate else {},
         notes=found.notes
@@ -236,7 +238,7 @@ def _result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock:
         + _taken(level)
         + _beside(scene, level, adapted)
         + _settled(adapted, scene)
-        + doubts(certified, estimate, accuracy),
+        + doubts(change, estimate, accuracy),
         bodies=tuple(deformed(body, L, unit, stress) for body in moved),
         contact_ends=((left1 * L, right1 * L), (left2 * L, right2 * L)),
         state=_state(scene, level),
@@ -345,4 +347,4 @@ def _certificate(problem: Problem, level: Level, p0: float) -> dict[str, float]:
     if not level.history:
         return closed
     slid = certificate(level.history, weights[level.nodes], problem.f, p0)
-    return slid | {key: max(closed[key], slid[key]) for key in closed}
+    return {key: max(closed[key], slid[key]) for key in closed}

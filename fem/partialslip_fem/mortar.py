@@ -5,8 +5,8 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from scipy.interpolate import PPoly
 
-from partialslip.result import Array
-from partialslip_fem.elasticity import Body, Indices
+from partialslip.arrays import Array, Indices
+from partialslip_fem.elasticity import Body
 from partialslip_fem.recovery import inside
 
 

@@ -1,10 +1,12 @@
 """Functions along the contact line from what is known at its nodes."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import scipy.sparse.linalg as spla
 from scipy.interpolate import PPoly
 
-from partialslip.result import Array
+from partialslip.arrays import Array
 from partialslip_fem.elasticity import Body
 
 
@@ -31,3 +33,19 @@ def inside(polynomial: PPoly | None, points: Array) -> Array:
         return np.zeros_like(points)
     values: Array = np.nan_to_num(polynomial(points, extrapolate=False), nan=0.0)
     return values
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two functions along the contact line, piecewise polynomials in lengths of ``length`` (m) and stresses of
+    ``stress`` (Pa); None is zero."""
+
+    first: PPoly | None
+    second: PPoly | None
+    length: float
+    stress: float
+
+    def at(self, x: Array) -> tuple[Array, Array]:
+        """Both at ``x`` (m), Pa; zero off their cells."""
+        points = x / self.length
+        return self.stress * inside(self.first, points), self.stress * inside(self.second, points)

@@ -9,7 +9,6 @@
 
 from importlib.metadata import version
 
-from partialslip import notebook as notebook
 from partialslip.allowance import Allowance as Allowance
 from partialslip.errors import InputError as InputError
 from partialslip.errors import PartialslipError as PartialslipError
@@ -20,17 +19,19 @@ from partialslip.judge import Verdict as Verdict
 from partialslip.judge import compare as compare
 from partialslip.plan import Plan as Plan
 from partialslip.plan import plan as plan
-from partialslip.reading import load_scene as load_scene
-from partialslip.reading import parse_scene as parse_scene
-from partialslip.reading import shipped_scenes as shipped_scenes
+from partialslip.record import Record as Record
+from partialslip.record import load_result as load_result
 from partialslip.result import Result as Result
 from partialslip.result import Slip as Slip
 from partialslip.result import Traction as Traction
+from partialslip.result.state import State as State
+from partialslip.result.state import load_state as load_state
 from partialslip.run import Run as Run
 from partialslip.run import run as run
 from partialslip.scene import Scene as Scene
+from partialslip.scene.reading import load_scene as load_scene
+from partialslip.scene.reading import parse_scene as parse_scene
+from partialslip.scene.reading import shipped_scenes as shipped_scenes
 from partialslip.score import score as score
-from partialslip.state import State as State
-from partialslip.state import load_state as load_state
 
 __version__ = version("partialslip")

@@ -1,6 +1,6 @@
-"""A run: one scene, one or more methods, every result compared with the exact one."""
+"""A run: one scene is solved by one or more methods, and every result is compared with the reference."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -9,32 +9,41 @@ import numpy as np
 import numpy.typing as npt
 from msgspec.structs import replace
 
-from partialslip import views
 from partialslip.allowance import Allowance
 from partialslip.errors import InputError
 from partialslip.frame import frame
 from partialslip.gradual import may_turn_round
 from partialslip.judge import Comparison, Outcome, Verdict, compare, conditions, overall
+from partialslip.judge.reference import ALL_EFFECTS, METHODS, reference_for, reference_of
 from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
+from partialslip.result.state import State
 from partialslip.scene import Effects, Scene
-from partialslip.state import State
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from partialslip.frame import DataFrame
     from partialslip_fem.level import Kept
 
-METHODS = ("exact", "march", "fem")
-ALL_EFFECTS = "all effects"
 Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class Run:
-    """A ``scene``, its ``plan``, the ``results`` by method, and ``comparisons`` of all others with the reference: the
-    exact one, or, where there is none, the march's, or else that of the finite elements; with :data:`ALL_EFFECTS` where
-    some that matter have been forced off. ``accuracy`` is the bar for a, m and n, as a fraction of a; None if there are
-    no bars."""
+    """A solved ``scene``.
+
+    Parameters
+    ----------
+    scene : Scene
+    plan : Plan
+    results : dict of str to Result
+        By method; also "all effects" where effects of the scene were forced off.
+    comparisons : dict of str to Comparison
+        By method: each result but the reference's, compared with the reference.
+    accuracy : float or None
+        The bar for a, m and n, as a fraction of a; None if there are no bars.
+    """
 
     scene: Scene
     plan: Plan
@@ -54,7 +63,7 @@ class Run:
 
     @property
     def conditions(self) -> dict[str, tuple[Verdict, ...]]:
-        """What each result must meet by itself: finite numbers and small residuals."""
+        """Verdicts on each result by itself: its numbers are finite, and its residuals are small."""
         return {name: conditions(result) for name, result in self.results.items()}
 
     @property
@@ -107,28 +116,22 @@ class Run:
         """
         return frame(self.columns)
 
-    def plot(self, axes: "views.Axes | None" = None) -> "views.Axes":
+    def plot(self, axes: "Axes | None" = None) -> "Axes":
         """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of every method over x/a on matplotlib ``axes``, as a rule new ones;
         returns them."""
-        return views.plot(self, axes)
+        from partialslip.report.notebook import plot
+
+        return plot(self, axes)
 
     def _repr_html_(self) -> str:
-        return views.html(self)
+        from partialslip.report.notebook import html
 
-
-def reference_of(results: Mapping[str, Result]) -> str | None:
-    """The method that the others are compared with: the first of exact, march and fem that can judge. Where slip turns
-    on the way between the load points the exact one cannot, if there is the march."""
-    known = [name for name in (ALL_EFFECTS, *METHODS) if name in results]
-    if known[:1] == ["exact"] and results["exact"].path_dependent and "march" in known:
-        return "march"
-    return next(iter(known), None)
+        return html(self)
 
 
 def default_methods(scene: Scene) -> tuple[str, ...]:
-    """Finite elements, and what they are compared with: the exact method, or march where Q and sigma are out of phase;
-    both where slip turns round between the load points of half-planes; nothing where the bodies are of different
-    materials."""
+    """The methods that solve ``scene`` unless others are asked for: finite elements, and the reference of half-planes.
+    Both exact and march where slip turns round between the load points of half-planes."""
     if not scene.material.alike:
         return ("fem",)
     if not scene.load.in_phase:
@@ -188,33 +191,30 @@ def run(
     tasks = {name: (name, reduced(scene), effects) for name in chosen}
     if effects.missing:
         whole = replace(scene, effects=Effects())
-        tasks[ALL_EFFECTS] = _best(whole), whole, plan(whole, subsurface=subsurface, start=start is not None)
+        tasks[ALL_EFFECTS] = reference_for(whole), whole, plan(whole, subsurface=subsurface, start=start is not None)
     results = {
         name: _method(method, keep, allowance)(what, its, _told_by(name, progress), start)
         for name, (method, what, its) in tasks.items()
     }
     for result in results.values():
         effects.accept(result.regime)
-    # half-planes are no truth for finite bodies, a mesh of a given element size is as good as it is, and of effects
-    # that are forced off errors are what they are worth
+    # no bars for finite bodies or for a fixed element size: there is no reference; nor for effects that are forced off:
+    # their errors are the effects' worth
     judged = not scene.finite and scene.fem.size is None and not effects.missing
     reached = results["fem"].settings.get("accuracy") if allowance and "fem" in results else None
     return compared(scene, effects, results, float(reached or scene.fem.accuracy) if judged else None)
 
 
 def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: float | None) -> Run:
-    """Results with their comparisons; ``accuracy`` is the bar for a, m and n (fractions of a), None for no bars."""
-    outcome = Run(scene, plan, results, {}, accuracy)
-    for name, result in results.items():
-        if outcome.reference and name != outcome.reference:
-            reference = results[outcome.reference]
-            outcome.comparisons[name] = compare(result, reference, scene, accuracy)
-    return outcome
-
-
-def _best(scene: Scene) -> str:
-    """The method that knows most of ``scene``: what is missing is measured by it."""
-    return "fem" if scene.finite else default_methods(scene)[0]
+    """Compare all ``results`` with the reference among them; ``accuracy`` is the bar for a, m and n (fractions of a),
+    None for no bars."""
+    reference = reference_of(results)
+    comparisons = {
+        name: compare(result, results[reference], scene, accuracy)
+        for name, result in results.items()
+        if reference and name != reference
+    }
+    return Run(scene, plan, results, comparisons, accuracy)
 
 
 def _told_by(name: str, progress: Progress) -> Progress:

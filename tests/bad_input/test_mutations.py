@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from partialslip.cli import main
-from partialslip.reading import shipped_scenes
+from partialslip.scene.reading import shipped_scenes
 
 resource = pytest.importorskip("resource")
 
@@ -25,7 +25,7 @@ SECONDS, BYTES = 60, 2 * 2**30
 BATCH = 25
 COUNTS = {"exact": 50, "fem": 3, "score": 5}
 
-SCENES = Path(__file__).parents[2] / "src" / "partialslip" / "scenes"
+SCENES = Path(__file__).parents[2] / "src" / "partialslip" / "scene" / "shipped"
 NUMBERS = [
     "0",
     "-0.0",

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import partialslip
+from partialslip.bars import CERTIFICATE_BAR
 from partialslip.halfplane import hertz, loading, steady
 from partialslip.halfplane import traction as exact_traction
 from partialslip.halfplane.hertz import Hertz
 from partialslip.judge import compare
-from partialslip.result import CERTIFICATE_BAR
 
 LARGE = "hertz-large-tension"
 

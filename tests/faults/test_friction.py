@@ -9,12 +9,12 @@ from scipy.interpolate import PPoly
 from test_random_cycles import CERTIFIED, forces
 
 import partialslip
-from partialslip.condensed import coupled, friction, steps, zones
+from partialslip.bars import CERTIFICATE_BAR
+from partialslip.condensed import coupled, ends, history, steps
 from partialslip.condensed.bounded import _BlockPivoting, solve_bounded
-from partialslip.condensed.friction import march as true_march
-from partialslip.condensed.zones import Zone
-from partialslip.result import CERTIFICATE_BAR
-from partialslip.state import State
+from partialslip.condensed.ends import Zone
+from partialslip.condensed.history import march as true_march
+from partialslip.result.state import State
 from partialslip_fem import level, model
 
 LARGE = "hertz-large-tension"
@@ -158,7 +158,7 @@ def test_stick_zone_from_flags_of_one_instant(monkeypatch, sound, red):
 def test_stick_zone_up_to_the_last_node_that_sticks(monkeypatch, sound, red):
     """It is the end of the contact, read in the same way, that shows it first."""
     scene = sound(LARGE, "fem.accuracy=1e-4")
-    monkeypatch.setattr(zones, "right_end", lambda *args: float(args[2][-1]))
+    monkeypatch.setattr(ends, "right_end", lambda *args: float(args[2][-1]))
     red.comparison("left", scene)
 
 
@@ -181,11 +181,11 @@ def test_iteration_that_ends_before_it_has_converged(monkeypatch, sound, red):
             return solve_bounded(*args)
 
     scene = sound(LARGE)
-    monkeypatch.setattr(friction, "solve_bounded", in_haste)
+    monkeypatch.setattr(history, "solve_bounded", in_haste)
     certificate = partialslip.run(scene, ["march"]).results["march"].certificate
     red("certificate: kkt", certificate["kkt"], CERTIFICATE_BAR)
 
 
 def test_faults_touch_what_is_used():
     """The names patched above are the ones the model calls."""
-    assert steps.march is friction.march
+    assert steps.march is history.march

@@ -167,7 +167,7 @@ def test_paths_are_relative_to_the_scene(tmp_path, monkeypatch, capsys):
     scenes = tmp_path / "scenes"
     scenes.mkdir()
     (scenes / "specimen.inp").write_bytes(SPECIMEN.read_bytes())
-    shipped = Path(partialslip.__file__).parent / "scenes" / f"{SCENE}.toml"
+    shipped = Path(partialslip.__file__).parent / "scene" / "shipped" / f"{SCENE}.toml"
     (scenes / "mine.toml").write_text(shipped.read_text("utf-8") + "\n" + text, "utf-8")
     monkeypatch.chdir(tmp_path)
     assert main(["run", "scenes/mine.toml", "--with", "fem", "--json"]) == 0

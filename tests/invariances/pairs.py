@@ -16,11 +16,12 @@ from unittest.mock import patch
 import numpy as np
 
 from partialslip import halfplane, load_scene, load_state, plan
+from partialslip.arrays import Array
 from partialslip.condensed import coupled, steps
-from partialslip.condensed.friction import History
+from partialslip.condensed.history import History
 from partialslip.halfplane import marching
 from partialslip.judge import Q_BAR, cell_means
-from partialslip.result import Array, Clock, Result
+from partialslip.result import Clock, Result
 from partialslip.scene import Scene
 from partialslip_fem import level, model
 from partialslip_fem.adapt import Adapted

@@ -60,7 +60,12 @@ def result(method="fem", centre=0.0, half_width=C, a=1.0, regime="small tension"
         stick_half_width=None if centre is None else half_width * A,
         traction=of or traction(),
         cost=Cost(1.0, 1.0, None),
-        **{"certificate": {"kkt": 1e-12, "steady": 1.0}, "estimate": {"a": 2e-4, "m": 1e-4, "left": 3e-4}, **more},
+        **{
+            "certificate": {"kkt": 1e-12},
+            "last_cycle_change": 1.0,
+            "estimate": {"a": 2e-4, "m": 1e-4, "left": 3e-4},
+            **more,
+        },
     )
 
 

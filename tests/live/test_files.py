@@ -13,8 +13,8 @@ from partialslip.errors import InputError
 from partialslip.halfplane import contact
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.steady import stick_zones
-from partialslip.reading import load_scene
-from partialslip.report import live_page
+from partialslip.live import live_page
+from partialslip.scene.reading import load_scene
 
 
 class Outline(html.parser.HTMLParser):

@@ -12,8 +12,8 @@ from partialslip import halfplane
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.steady import stick_zone, stick_zones, transition
 from partialslip.halfplane.traction import half_range, mean_load_bound
-from partialslip.reading import load_scene
-from partialslip.report import live_page
+from partialslip.live import live_page
+from partialslip.scene.reading import load_scene
 
 LARGE = "hertz-large-tension"
 made = functools.cache(live_page)

@@ -17,9 +17,9 @@ import numpy as np
 import pytest
 
 import partialslip
+from partialslip.batch.job import Job, solve
 from partialslip.cli import main
 from partialslip.errors import MissingLibraryError, PartialslipError
-from partialslip.study.case import Case, solve
 from partialslip_meshes import block
 from partialslip_meshes import gmsh as mesher
 from partialslip_meshes import mesher as process
@@ -161,10 +161,10 @@ def test_in_daemonic_workers_after_a_fork(expected):
 
 
 def test_in_daemonic_workers_that_are_spawned():
-    case = Case(partialslip.load_scene("hertz-shear", ["fem.size=0.5"]), ("fem",))
+    case = Job(partialslip.load_scene("hertz-shear", ["fem.size=0.5"]), ("fem",))
     with multiprocessing.get_context("spawn").Pool(1) as pool:
-        (found,) = pool.map_async(solve, [case.data]).get(60)
-    assert found["methods"]["fem"]["a"] == solve(case.data)["methods"]["fem"]["a"]
+        (found,) = pool.map_async(solve, [case]).get(60)
+    assert found.run.methods["fem"].a == solve(case).run.methods["fem"].a
 
 
 @posix

@@ -10,13 +10,14 @@ from functools import cache
 import msgspec
 import numpy as np
 
-from partialslip.condensed.friction import load_path
+from partialslip.arrays import Array
+from partialslip.condensed.path import load_path
 from partialslip.errors import InputError
 from partialslip.halfplane.cells import compliance, forces, graded
 from partialslip.halfplane.contact import contact
 from partialslip.halfplane.method import solve
 from partialslip.plan import plan
-from partialslip.result import Array, Result
+from partialslip.result import Result
 from partialslip.scene import Scene
 from partialslip.score import _read_as
 from partialslip.score.method import scored

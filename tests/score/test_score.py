@@ -244,7 +244,7 @@ def test_on_the_command_line(exact, tmp_path, monkeypatch, capsys):
     assert sorted(path.name for path in folder.iterdir()) == ["report.html", "results.json", "tractions.csv"]
     assert "p/p0, $a_[red]$.csv" in (folder / "report.html").read_text("utf-8")
     record = json.loads((folder / "results.json").read_text("utf-8"))
-    assert record["comparison"]["$a_[red]$.csv"]["m"] < 1e-6
+    assert record["comparison"]["$a_[red]$.csv"]["errors"]["m"] < 1e-6
     for bar, code in (("2e-3", 0), ("1e-5", 1)):
         assert main(["score", "hertz-shear", "$a_[red]$.csv", "--bar", bar, "--json"]) == code
         assert json.loads(capsys.readouterr().out)["methods"].keys() == {"exact", "$a_[red]$.csv"}

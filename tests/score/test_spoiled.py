@@ -7,7 +7,7 @@ import pytest
 import spoiling
 
 from partialslip import load_scene
-from partialslip.reading import shipped_scenes
+from partialslip.scene.reading import shipped_scenes
 
 method = importlib.import_module("partialslip.score.method")
 ends = importlib.import_module("partialslip.score.ends")

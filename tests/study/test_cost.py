@@ -3,15 +3,16 @@
 import json
 import math
 
-import msgspec
+import made
 import numpy as np
 import pytest
 
 import partialslip
+from partialslip.batch.job import Job, ProcessCost, solve_apart
+from partialslip.batch.ledger import Ledger
 from partialslip.cli import main
-from partialslip.study import cost, prices
-from partialslip.study.case import Case, solve_apart
-from partialslip.study.ledger import Ledger
+from partialslip.study.cost import ladder as cost
+from partialslip.study.cost import prices
 
 SCENE = partialslip.load_scene("hertz-large-tension")
 
@@ -35,10 +36,12 @@ def test_the_ladder_is_of_every_kind():
 
 
 def test_a_case_in_a_process_of_its_own_is_the_same_as_here():
-    found = solve_apart(Case(SCENE, ("exact",), {"series": "exact", "setting": ""}))
+    found = solve_apart(Job(SCENE, ("exact",), {"series": "exact", "setting": ""}))
     here = partialslip.run(SCENE, ["exact"]).results["exact"]
-    assert found["methods"]["exact"]["m"] == here.m
-    assert 0 < found["methods"]["exact"]["cost"]["cpu_s"] < found["process"]["cpu_s"]
+    exact = found.run.methods["exact"]
+    assert exact.m == here.m
+    assert 0 < exact.cost.cpu_s < found.process.cpu_s
+    assert found.process.wall_s > 0
 
 
 def test_what_was_measured_is_not_measured_again(tmp_path, monkeypatch):
@@ -47,13 +50,12 @@ def test_what_was_measured_is_not_measured_again(tmp_path, monkeypatch):
 
     def apart(case):
         solved.append(case.labels["setting"])
-        fem = {"cost": {"cpu_s": float(len(solved)), "phases": {"mesh": 0.1}}, "counts": {"dofs": 10}}
+        fem = {"cost": made.cost(float(len(solved)), mesh=0.1), "counts": {"dofs": 10}}
         errors = dict.fromkeys(cost.KEYS, 1e-3)
-        process = {"cpu_s": 1.0, "report_cpu_s": 0.5, "wall_s": 1.0, "peak_rss_mb": 100.0}
-        return {**case.data, "methods": {"exact": fem, "fem": fem}, "comparison": {"fem": errors}, "process": process}
+        return made.solved(case.scene, case.labels, errors, ProcessCost(1.0, 0.5, 100.0, 1.0), exact=fem, fem=fem)
 
     monkeypatch.setattr(cost, "solve_apart", apart)
-    monkeypatch.setattr(cost, "ladder", lambda scene: [Case(scene, ("exact", "fem"), {"series": "P4", "setting": "1"})])
+    monkeypatch.setattr(cost, "ladder", lambda scene: [Job(scene, ("exact", "fem"), {"series": "P4", "setting": "1"})])
     cost.measure(SCENE, Ledger(tmp_path / "ledger.jsonl"), 1)
     (found,) = cost.measure(SCENE, Ledger(tmp_path / "ledger.jsonl"), 3)
     assert len(solved) == 3
@@ -102,9 +104,9 @@ def entries(spread=0.0):
                 scene, slow = partialslip.load_scene(name, setting), random.uniform(1, 3)
                 kind = 1.0 if name == "hertz-shear" else 1.5
                 seconds = kind * 0.1 * math.exp(growth * digits + spread * random.normal())
-                costs = {"exact": {"cost": {"cpu_s": 0.01 * slow}}, "fem": {"cost": {"cpu_s": seconds * slow}}}
-                process = {"cpu_s": (0.6 + 0.01 + seconds) * slow}
-                yield {"scene": msgspec.to_builtins(scene), "methods": costs, "process": process}
+                costs = {"exact": {"cost": made.cost(0.01 * slow)}, "fem": {"cost": made.cost(seconds * slow)}}
+                process = ProcessCost((0.6 + 0.01 + seconds) * slow, 0.0, 100.0)
+                yield made.solved(scene, process=process, **costs)
 
 
 def test_the_model_is_found_again():
@@ -172,7 +174,7 @@ def test_a_price_is_told_and_the_accuracy_reached(tmp_path, capsys):
     printed = capsys.readouterr()
     assert "predicted" in printed.err
     assert "actual" in printed.out
-    found = json.loads((tmp_path / "results.json").read_text("utf-8"))["comparison"]["fem"]
+    found = json.loads((tmp_path / "results.json").read_text("utf-8"))["comparison"]["fem"]["errors"]
     assert max(found[key] for key in ("a", "m", "n")) <= 1e-3
 
 

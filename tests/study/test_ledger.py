@@ -10,9 +10,9 @@ import time
 import pytest
 
 import partialslip
-from partialslip.study import ledger as module
-from partialslip.study.case import Case
-from partialslip.study.ledger import Ledger, checksum_of, scene_content, source_checksum
+from partialslip.batch import ledger as module
+from partialslip.batch.job import Job
+from partialslip.batch.ledger import Ledger, checksum_of, scene_content, source_checksum
 
 
 def test_entries_are_there_again(tmp_path):
@@ -66,7 +66,7 @@ def test_a_killed_writer_leaves_whole_lines(tmp_path):
     """kill -9 in the middle of many entries: every line that is there is one, and the study can go on."""
     path = tmp_path / "ledger.jsonl"
     code = (
-        "import sys, itertools, pathlib\nfrom partialslip.study.ledger import Ledger\n"
+        "import sys, itertools, pathlib\nfrom partialslip.batch.ledger import Ledger\n"
         "ledger = Ledger(pathlib.Path(sys.argv[1]))\n"
         "for n in itertools.count(): ledger.add(str(n), {'text': 'x' * 5000})\n"
     )
@@ -105,13 +105,13 @@ def test_a_case_of_a_study_is_another_one(change, tmp_path, monkeypatch):
     mesh.write_text("one", "utf-8")
     settings = [f"bodies.lower={{mesh='{mesh}'}}"] if change == "mesh" else []
     scene = partialslip.load_scene("hertz-shear", settings)
-    case = Case(scene, ("fem",))
-    assert case.key == Case(scene, ("fem",)).key
+    case = Job(scene, ("fem",))
+    assert case.key == Job(scene, ("fem",)).key
     ledger = Ledger(tmp_path / "ledger.jsonl")
     ledger.add(case.key, {})
     assert ledger.outdated == 0
     if change == "scene":
-        case = Case(partialslip.load_scene("hertz-shear", ["friction.f=0.49"]), ("fem",))
+        case = Job(partialslip.load_scene("hertz-shear", ["friction.f=0.49"]), ("fem",))
     elif change == "mesh":
         mesh.write_text("two", "utf-8")
         content = scene_content(scene)["mesh files"]

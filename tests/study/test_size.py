@@ -9,17 +9,18 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import made
 import numpy as np
 import pytest
 
 import partialslip
-from partialslip.study import size
-from partialslip.study.axes import axis as read
-from partialslip.study.axes import cases as make
-from partialslip.study.case import Case, solve
-from partialslip.study.ledger import Ledger
-from partialslip.study.sizefigure import grid_svg
-from partialslip.study.sweep import Task, sweep, workers
+from partialslip.batch.job import Job, Solved, solve
+from partialslip.batch.ledger import Ledger
+from partialslip.batch.sweep import Task, sweep, workers
+from partialslip.study.size import sizes as size
+from partialslip.study.size.axes import axis as read
+from partialslip.study.size.axes import cases as make
+from partialslip.study.size.figure import grid_svg
 
 BLOCKS = {"upper": {"width": 1.0, "height": 1.0}, "lower": {"width": 1.0, "height": 1.0}}
 
@@ -72,14 +73,14 @@ def test_stars_stand_for_every_table_and_a_for_the_half_planes_half_width():
 def test_a_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
     """What is in the ledger is not solved again; what cannot be solved is told, and does not stop the rest."""
     path, solved = tmp_path / "ledger.jsonl", []
-    cases = [Case(scene(), ("exact",), {"number": number}) for number in range(6)]
-    broken = Case(scene(), ("nothing",), {"number": 6})
+    cases = [Job(scene(), ("exact",), {"number": number}) for number in range(6)]
+    broken = Job(scene(), ("nothing",), {"number": 6})
 
-    def counted(data):
-        solved.append(data["labels"]["number"])
-        return solve(data)
+    def counted(job):
+        solved.append(job.labels["number"])
+        return solve(job)
 
-    monkeypatch.setattr("partialslip.study.case.solve", counted)
+    monkeypatch.setattr("partialslip.batch.job.solve", counted)
     with ThreadPoolExecutor(1) as executor:
         sweep([case.task for case in cases[:4]], Ledger(path), executor)
         seen = []
@@ -127,7 +128,7 @@ def test_in_this_process_each_case_is_kept_before_the_next_begins(tmp_path):
 
 WORKERS = """
 import os, time
-from partialslip.study.sweep import workers
+from partialslip.batch.sweep import workers
 with workers(processes=2) as pool:
     print(*{pool.submit(os.getpid).result() for _ in range(8)}, flush=True)
     list(pool.map(time.sleep, [60] * 4))
@@ -183,13 +184,14 @@ def test_maps_leave_out_what_was_not_solved():
     """Each change in its place: the first axis across, the second one up."""
     axes = [read("bodies.*.width=2a,4a,8a"), read("bodies.*.height=3a,9a")]
     entries = [
-        {"labels": {"bodies.*.width": x, "bodies.*.height": y, "accuracy": 1.0},
-         "methods": {"fem": {"a": 1 + 0.1 / x / y, "p_max": 1.0, "m": None, "n": None, "estimate": {}},
-                     "exact": {"a": 1.0, "p_max": 1.0, "m": None, "n": None}},
-         "comparison": {"fem": {"p": None, "q": None}}}
+        made.solved(
+            scene(), {"bodies.*.width": x, "bodies.*.height": y, "accuracy": 1.0}, {"p": None, "q": None},
+            fem={"a": 1 + 0.1 / x / y, "p_max": 1.0, "m": None, "n": None, "estimate": {}},
+            exact={"a": 1.0, "p_max": 1.0, "m": None, "n": None},
+        )
         for x in axes[0].values for y in axes[1].values
     ]  # fmt: skip
-    entries[0] = {"labels": entries[0]["labels"], "error": "too narrow"}
+    entries[0] = Solved(scene=scene(), labels=entries[0].labels, error="too narrow")
     x, y, off = size.grid(axes, entries, "a")
     expected = 0.1 / x / y[:, None]
     expected[0, 0] = np.nan
@@ -207,9 +209,7 @@ def test_blocks_come_near_the_half_plane_with_the_square_of_their_size(tmp_path)
     for quantity in ("a", "m"):
         assert all(10 * sizes.mesh[quantity] < sizes.off[quantity])
         assert size.law(sizes, quantity).k == pytest.approx(2, abs=0.1)
-    meshes = [
-        sum(entry["labels"]["bodies.*.width = bodies.*.height"] == each for entry in found) for each in sizes.size
-    ]
+    meshes = [sum(entry.labels["bodies.*.width = bodies.*.height"] == each for entry in found) for each in sizes.size]
     assert meshes[0] < meshes[-1]
 
 
@@ -221,7 +221,7 @@ def test_a_dask_cluster_goes_on_where_a_worker_is_killed(tmp_path):
         command = [sys.executable, "-m", f"distributed.cli.dask_{what}", "--scheduler-file", str(file), *options]
         return subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.DEVNULL)
 
-    cases = [Case(scene(), ("exact",), {"number": number}) for number in range(40)]
+    cases = [Job(scene(), ("exact",), {"number": number}) for number in range(40)]
     ledger, done = Ledger(tmp_path / "ledger.jsonl"), []
     scheduler = start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
     crew = [start("worker", "--no-nanny", "--nthreads", "1", "--no-dashboard", *folder) for _ in range(2)]
@@ -264,11 +264,11 @@ import sys
 from pathlib import Path
 from partialslip import load_scene
 from partialslip.cli.ending import ended
-from partialslip.study.case import Case
-from partialslip.study.ledger import Ledger
-from partialslip.study.sweep import sweep, workers
+from partialslip.batch.job import Job
+from partialslip.batch.ledger import Ledger
+from partialslip.batch.sweep import sweep, workers
 def main():
-    tasks = [Case(load_scene("hertz-shear"), ("exact",), {"number": n}).task for n in range(int(sys.argv[3]))]
+    tasks = [Job(load_scene("hertz-shear"), ("exact",), {"number": n}).task for n in range(int(sys.argv[3]))]
     with workers(sys.argv[1]) as executor:
         sweep(tasks, Ledger(Path(sys.argv[2])), executor, lambda done, *_: print(done, flush=True))
     return 0

@@ -13,8 +13,8 @@ import pytest
 import partialslip
 from partialslip.cli import main
 from partialslip.run import run
-from partialslip.study.verification import verify_suite
 from partialslip.verify import REQUIREMENTS, case
+from partialslip.verify.driver import verify_suite
 
 CASES = ["no-shear", "one-contact-node"]
 SVG = '<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg"><title>picture of costs</title></svg>'

@@ -5,7 +5,7 @@ import itertools
 import pytest
 
 from partialslip import InputError, shipped_scenes
-from partialslip.verify.catalogue import hard_cases
+from partialslip.verify.hard_cases.catalogue import hard_cases
 from partialslip.verify.random_scenes import kind_of
 from partialslip.verify.stress import stress_numbers
 from partialslip.verify.suites import stress_suite, suite

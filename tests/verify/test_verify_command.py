@@ -12,20 +12,22 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+import msgspec
 import pytest
 
+from partialslip.batch import ledger
+from partialslip.batch.ledger import Ledger
 from partialslip.cli import main
 from partialslip.cli import verify as command
 from partialslip.judge import Bar, Outcome, verdict
-from partialslip.reading import load_scene
 from partialslip.run import run
-from partialslip.study import ledger, verification
-from partialslip.study.ledger import Ledger
-from partialslip.verify import Case, run_case, stress_suite, suite
-from partialslip.verify.meshes import shifted
+from partialslip.scene.reading import load_scene
+from partialslip.verify import Case, driver, run_case, stress_suite, suite
+from partialslip.verify.hard_cases.meshes import shifted
 from partialslip.verify.random_scenes import KINDS, draw
 from partialslip.verify.stress import stress_numbers
 from partialslip.verify.suites import _same
+from partialslip.verify.verdicts import VerificationRecord
 
 ROOT = Path(__file__).parents[2]
 ROOTS = ("src/partialslip", "fem/partialslip_fem", "meshes/partialslip_meshes")
@@ -109,12 +111,12 @@ def test_interrupted_it_goes_on(tmp_path, capsys, monkeypatch):
 def test_what_another_run_takes_over(change, solved_again, tmp_path, monkeypatch):
     """What was finished by another method or other source files is done again, and that is said."""
     settings = {"only": ["1"], "method": "march", "seed": 5, "processes": 1, "out": tmp_path}
-    verification.verify_suite("stress", **settings)
+    driver.verify_suite("stress", **settings)
     (tmp_path / "results.json").write_text("{", "utf-8")  # as if that had been stopped
     if "code" in change:
         monkeypatch.setattr(ledger, "source_checksum", lambda: "another")
     known = []
-    verified = verification.verify_suite(
+    verified = driver.verify_suite(
         "stress", **settings | {key: value for key, value in change.items() if key != "code"},
         progress=lambda done, *_: known.append(done),
     )  # fmt: skip
@@ -125,8 +127,9 @@ def test_what_another_run_takes_over(change, solved_again, tmp_path, monkeypatch
 # A verification with one case a worker, stopped by kill -9 when that one is in the ledger.
 KILLED = """
 import os, signal, sys
-from partialslip.study import ledger, verification
-from partialslip.study.ledger import Ledger
+from partialslip.batch import ledger
+from partialslip.verify import driver
+from partialslip.batch.ledger import Ledger
 add = Ledger.add
 def added(self, key, found):
     add(self, key, found)
@@ -181,13 +184,11 @@ def test_a_case_that_changed_under_its_name_is_solved_again(change, tmp_path, mo
         "meshes": replace(one, meshes=partial(shifted, share=0.5)),
     }[change]
     solved = []
-    judged = verification.solve_case
-    monkeypatch.setattr(
-        verification, "solve_case", lambda case: (solved.append(case.scene.friction.f), judged(case))[1]
-    )
+    judged = driver.solve_case
+    monkeypatch.setattr(driver, "solve_case", lambda case: (solved.append(case.scene.friction.f), judged(case))[1])
     for case in (one, other):
-        monkeypatch.setattr(verification, "suite", lambda *_, case=case: {case.name: partial(_same, case)})
-        verified = verification.verify_suite("quick", processes=1, out=tmp_path)
+        monkeypatch.setattr(driver, "suite", lambda *_, case=case: {case.name: partial(_same, case)})
+        verified = driver.verify_suite("quick", processes=1, out=tmp_path)
         (tmp_path / "results.json").write_text("{", "utf-8")  # as if it had been stopped
     assert len(solved) == (1 if change == "nothing" else 2)
     assert verified.again == (() if change == "nothing" else ("made",))
@@ -196,7 +197,7 @@ def test_a_case_that_changed_under_its_name_is_solved_again(change, tmp_path, mo
 def test_two_processes_find_what_one_finds(tmp_path):
     """And in Python what the command writes."""
     one, two = (
-        verification.verify_suite("stress", method="march", seed=5, count=6, processes=processes, out=tmp_path / f"{n}")
+        driver.verify_suite("stress", method="march", seed=5, count=6, processes=processes, out=tmp_path / f"{n}")
         for n, processes in enumerate((1, 2))
     )
     assert list(one.verdicts) == list(two.verdicts)
@@ -207,13 +208,24 @@ def test_two_processes_find_what_one_finds(tmp_path):
     assert {entry["case"] for entry in Ledger(tmp_path / "1" / "ledger.jsonl")} == set(two.verdicts)
 
 
+def test_verdicts_are_kept_as_they_are_read_back(tmp_path):
+    """Of shear below a thousandth of f p, too, whose norm stands in for it: a NumPy number that was left in one of
+    these verdicts ended every verification of the full suite once."""
+    verified = driver.verify_suite("full", only=["near-stuck-1e-9"], processes=1, out=tmp_path)
+    (verdicts,) = verified.verdicts.values()
+    kept = msgspec.json.decode((tmp_path / "results.json").read_bytes(), type=VerificationRecord)
+    assert kept.finished
+    assert kept.settings.only == ("near-stuck-1e-9",)
+    assert kept.cases == {"near-stuck-1e-9": tuple(verdicts)}
+
+
 def test_a_finished_run_begins_anew(tmp_path):
     """What was verified is not taken for verified when it is asked for again: the program may have changed."""
     settings = {"only": ["1"], "method": "march", "seed": 5, "processes": 1, "out": tmp_path}
-    verification.verify_suite("stress", **settings)
+    driver.verify_suite("stress", **settings)
     first = (tmp_path / "ledger.jsonl").read_text("utf-8")
     known = []
-    verification.verify_suite(
+    driver.verify_suite(
         "stress", **settings, progress=lambda done, *_: known.append((done, (tmp_path / "report.html").exists()))
     )
     assert known == [(0, False), (1, False)]  # nor is its report

@@ -8,7 +8,7 @@ from partialslip import __version__
 from partialslip.cli import completion, export, maps, page, run, score, study, verify
 from partialslip.cli.ending import ended
 from partialslip.errors import InputError
-from partialslip.reading import shipped_scenes
+from partialslip.scene.reading import shipped_scenes
 
 if TYPE_CHECKING:
     from _typeshed import SupportsWrite

@@ -1,6 +1,5 @@
 """What several commands share."""
 
-import json
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,8 +11,8 @@ if TYPE_CHECKING:
 
     from rich.console import Console
 
+    from partialslip.batch.ledger import Ledger
     from partialslip.run import Run
-    from partialslip.study.ledger import Ledger
 
     Commands = argparse._SubParsersAction[Any]
 
@@ -27,7 +26,7 @@ def add_scene(parser: "argparse.ArgumentParser") -> None:
 
 def held(folder: Path | None) -> AbstractContextManager[None]:
     """Hold ``folder`` for this command, until the block ends. Raises InputError if another one writes there."""
-    from partialslip.report.lock import locked
+    from partialslip.output.lock import locked
 
     return nullcontext() if folder is None else locked(folder)
 
@@ -62,7 +61,7 @@ def print_outcome(outcome: "Run", options: "argparse.Namespace", files: list[Pat
     from partialslip.report import print_run, record
 
     if options.json:
-        print(json.dumps(record(outcome), indent=1, allow_nan=False))
+        print(record(outcome).json, end="")
     else:
         console = output()
         print_run(outcome, console)

@@ -5,7 +5,7 @@ import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from partialslip.reading import shipped_scenes
+from partialslip.scene.reading import shipped_scenes
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 from partialslip.cli.common import add_scene, check_folder, held, print_outdated, print_written
 from partialslip.errors import InputError
-from partialslip.reading import load_scene
+from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
-    from partialslip.study.cost import Point
+    from partialslip.study.cost.ladder import Point
 
 
 def add(topics: "Commands") -> None:
@@ -39,33 +39,34 @@ def _cost(options: argparse.Namespace) -> int:
         raise InputError(f"--repeats {options.repeats}: must be >= 1")
     scene = load_scene(options.scene, options.overrides)
 
+    from partialslip.batch.ledger import Ledger
     from partialslip.cli.consoles import messages, output, working
-    from partialslip.report import print_table, write_texts
-    from partialslip.report.files import csv_text
-    from partialslip.study import cost
-    from partialslip.study.costfigure import errors_svg, phases_svg
-    from partialslip.study.ledger import Ledger
+    from partialslip.output.csv import csv_text
+    from partialslip.output.files import write_texts
+    from partialslip.output.tables import print_table
+    from partialslip.study.cost import ladder
+    from partialslip.study.cost.figure import errors_svg, phases_svg
 
-    peers = cost.read_peers(Path(options.peers), scene.name) if options.peers is not None else []
+    peers = ladder.read_peers(Path(options.peers), scene.name) if options.peers is not None else []
     name = f"{scene.name}-cost"
     folder = Path(options.out) if options.out else Path("results") / name
     with held(folder), working(name) as tell:
         ledger = Ledger(folder / "ledger.jsonl")
         print_outdated(ledger, messages())
-        found = cost.measure(scene, ledger, options.repeats, lambda done, of, what: tell(f"{done} of {of}, {what}"))
+        found = ladder.measure(scene, ledger, options.repeats, lambda done, of, what: tell(f"{done} of {of}, {what}"))
         texts = {
-            "cost.csv": csv_text(*cost.table([*found, *peers])),
-            "cost.svg": errors_svg(found, peers, f"{scene.name}: error against cost"),
+            "ladder.csv": csv_text(*ladder.table([*found, *peers])),
+            "ladder.svg": errors_svg(found, peers, f"{scene.name}: error against cost"),
             "phases.svg": phases_svg(found, f"{scene.name}: where the time goes"),
         }
         files = [ledger.path, *write_texts(folder, texts)]
     console = output()
     console.print(f"{scene.name}: what accuracy costs, medians of {options.repeats}", style="bold", markup=False)
-    best = {id(point) for point in cost.front(found)}
+    best = {id(point) for point in ladder.front(found)}
     head = ["series (* on the front)", "setting", "m", "n", "q", "unknowns", "CPU s", "process"]
     rows = [_row(point, id(point) in best) for point in [*found, *peers]]
     print_table(console, head, rows, words=(0, 1))
-    slopes = cost.slopes(found)
+    slopes = ladder.slopes(found)
     print_table(
         console,
         ["exponent against unknowns", "m, n", "q", "CPU"],
@@ -90,7 +91,7 @@ def _number(value: float, form: str) -> str:
 
 def _against(found: "list[Point]", peers: "list[Point]") -> list[str]:
     """How the finite elements here do beside each peer."""
-    from partialslip.study.cost import against
+    from partialslip.study.cost.ladder import against
 
     ours = [point for point in found if point.series.startswith("P")]
     lines = []

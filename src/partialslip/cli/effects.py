@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from partialslip.cli.common import add_scene, check_folder, held, print_written
-from partialslip.reading import load_scene
+from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -33,25 +33,26 @@ def _effects(options: argparse.Namespace) -> int:
     scene = load_scene(options.scene, options.overrides)
 
     from partialslip.cli.consoles import output, working
-    from partialslip.report import print_table, write_texts
-    from partialslip.study import effects
-    from partialslip.study.effectsfigure import effects_svg
+    from partialslip.output.files import write_texts
+    from partialslip.output.tables import print_table
+    from partialslip.study.effects import worth
+    from partialslip.study.effects.figure import effects_svg
 
     name = f"{scene.name}-effects"
     folder = Path(options.out) if options.out else Path("results") / name
     with held(folder), working(name) as tell:
-        study = effects.study_effects(scene, tell)
+        study = worth.study_effects(scene, tell)
         texts = {
-            "effects.json": json.dumps(effects.effects_record(study), indent=1, allow_nan=False) + "\n",
-            "effects.csv": effects.effects_csv(study),
-            "effects.svg": effects_svg(study),
+            "worth.json": json.dumps(worth.effects_record(study), indent=1, allow_nan=False) + "\n",
+            "worth.csv": worth.effects_csv(study),
+            "worth.svg": effects_svg(study),
         }
         files = write_texts(folder, texts)
     console = output()
-    console.print(effects.heading(study), style="bold", markup=False)
-    print_table(console, *effects.changes_table(study), words=(0, 1))
-    print_table(console, *effects.costs_table(study))
-    for line in effects.notes(study):
+    console.print(worth.heading(study), style="bold", markup=False)
+    print_table(console, *worth.changes_table(study), words=(0, 1))
+    print_table(console, *worth.costs_table(study))
+    for line in worth.notes(study):
         console.print(line, soft_wrap=True, markup=False)
     print_written(files, console)
     return 0

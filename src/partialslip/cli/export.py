@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from partialslip.cli.common import print_written
 from partialslip.errors import InputError
-from partialslip.reading import load_scene
+from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -54,7 +54,7 @@ def add(commands: "Commands") -> None:
 def _export(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import output
     from partialslip.export import FORMATS, export
-    from partialslip.report import write_files
+    from partialslip.output.files import write_files
 
     if options.out == "":
         raise InputError("--out '': must name a file")

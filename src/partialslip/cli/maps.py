@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from partialslip.cli.common import check_folder, held, print_written
-from partialslip.reading import load_scene
+from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -33,7 +33,7 @@ def _map(options: argparse.Namespace) -> int:
     name = "map" if scene is None else f"{scene.name}-map"
 
     from partialslip.cli.consoles import output, working
-    from partialslip.report import place, stick_map, write_map
+    from partialslip.map import place, stick_map, write_map
 
     folder = Path(options.out) if options.out else Path("results") / name
     with held(folder), working(name) as tell:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from partialslip.cli.common import check_folder, print_written
-from partialslip.reading import load_scene
+from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -34,7 +34,8 @@ def _page(options: argparse.Namespace) -> int:
     scene = load_scene(options.scene)
 
     from partialslip.cli.consoles import output
-    from partialslip.report import live_page, write_texts
+    from partialslip.live import live_page
+    from partialslip.output.files import write_texts
 
     folder = Path(options.out) if options.out else Path("results") / f"{scene.name}-page"
     files = write_texts(folder, {"page.html": live_page(scene)})

@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING
 from partialslip.allowance import Allowance
 from partialslip.cli.common import add_scene, check_folder, held, out_folder, print_outcome
 from partialslip.errors import InputError
-from partialslip.reading import load_scene
-from partialslip.run import METHODS, Run, default_methods, run
-from partialslip.state import State, load_state
+from partialslip.judge.reference import METHODS
+from partialslip.result.state import State, load_state
+from partialslip.run import Run, default_methods, run
+from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
     from partialslip.scene import Scene
-    from partialslip.study.prices import Price
+    from partialslip.study.cost.prices import Price
 
 
 def add(commands: "Commands") -> None:
@@ -69,7 +70,8 @@ def _run(options: argparse.Namespace) -> int:
     budget = _budget(options, scene, methods)
 
     from partialslip.cli.consoles import messages, working
-    from partialslip.report import write_files, write_run
+    from partialslip.output.files import write_files
+    from partialslip.report import write_run
 
     price = _price(options, scene, methods, budget)
     priced_at, allowance = time.process_time(), None
@@ -114,7 +116,7 @@ def _price(
     if options.accuracy is None and budget is None:
         return None
     import partialslip_fem.model  # noqa: F401 - the start ends here
-    from partialslip.study.prices import load_prices
+    from partialslip.study.cost.prices import load_prices
 
     prices, chosen = load_prices(), tuple(methods or default_methods(scene))
     start = time.process_time() if options.own_process else None

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 from partialslip.cli.common import add_scene, check_folder, held, out_folder, print_outcome
 from partialslip.errors import InputError
-from partialslip.reading import load_scene
-from partialslip.run import METHODS
+from partialslip.judge.reference import METHODS
+from partialslip.scene.reading import load_scene
 from partialslip.score import score
 from partialslip.score.csvfile import template
 from partialslip.score.read import check

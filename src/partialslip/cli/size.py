@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 from partialslip.cli.common import add_scene, check_folder, held, print_outdated, print_written
 from partialslip.errors import InputError
-from partialslip.reading import load_scene
+from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
     from partialslip.scene import Scene
-    from partialslip.study.axes import Axis
-    from partialslip.study.size import Law, Sizes
+    from partialslip.study.size.axes import Axis
+    from partialslip.study.size.sizes import Law, Sizes
 
 
 def add(topics: "Commands") -> None:
@@ -49,7 +49,7 @@ def _size(options: argparse.Namespace) -> int:
         raise InputError(f"--processes {options.processes}: must be >= 1")
     if len(options.over) > 2:
         raise InputError("--over: at most twice")
-    from partialslip.study.axes import axis
+    from partialslip.study.size.axes import axis
 
     scene = load_scene(options.scene, options.overrides)
     folder = Path(options.out) if options.out else Path("results") / f"{scene.name}-size"
@@ -61,13 +61,14 @@ def _size(options: argparse.Namespace) -> int:
 def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", folder: Path) -> int:
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
+    from partialslip.batch.ledger import Ledger
+    from partialslip.batch.sweep import workers
     from partialslip.cli.consoles import messages, output, shown
-    from partialslip.report import print_table, write_texts
-    from partialslip.report.files import csv_text
-    from partialslip.study import size
-    from partialslip.study.ledger import Ledger
-    from partialslip.study.sizefigure import grid_svg, size_svg
-    from partialslip.study.sweep import workers
+    from partialslip.output.csv import csv_text
+    from partialslip.output.files import write_texts
+    from partialslip.output.tables import print_table
+    from partialslip.study.size import sizes
+    from partialslip.study.size.figure import grid_svg, size_svg
 
     ledger = Ledger(folder / "ledger.jsonl")
     columns = (TextColumn(f"{scene.name}-size"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[left]}"))
@@ -79,34 +80,34 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", fold
         bar.update(task, completed=done, total=total, left="" if math.isnan(left) else f"{left:.0f} s left")
 
     with shown(bar), workers(options.cluster, options.processes) as executor:
-        entries = size.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
+        entries = sizes.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
     console = output()
-    texts = {"cases.csv": csv_text(*size.table(axes, entries))}
+    texts = {"cases.csv": csv_text(*sizes.table(axes, entries))}
     unit = "in contact half-widths" if axes[0].in_a else "as in the scene"
     if len(axes) == 1:
-        sizes = size.along(axes[0], entries)
-        laws = [law for quantity in size.QUANTITIES if (law := size.law(sizes, quantity))]
-        texts["size.svg"] = size_svg(sizes, laws, scene.name, unit)
+        found = sizes.along(axes[0], entries)
+        laws = [law for quantity in sizes.QUANTITIES if (law := sizes.law(found, quantity))]
+        texts["sizes.svg"] = size_svg(found, laws, scene.name, unit)
         console.print(f"{scene.name}: change from the half-plane, over {axes[0].name} {unit}", style="bold")
         rows = [
-            [f"{value:.4g}", *(_number(sizes.off[quantity][k]) for quantity in size.QUANTITIES), _share(sizes, k)]
-            for k, value in enumerate(sizes.size)
+            [f"{value:.4g}", *(_number(found.off[quantity][k]) for quantity in sizes.QUANTITIES), _share(found, k)]
+            for k, value in enumerate(found.size)
         ]
-        print_table(console, ["size", *size.QUANTITIES, "mesh"], rows)
+        print_table(console, ["size", *sizes.QUANTITIES, "mesh"], rows)
         if laws:
-            needed = [f"{level:.1%}" for level in size.LEVELS]
+            needed = [f"{level:.1%}" for level in sizes.LEVELS]
             head = ["change = C size^-k", "C", "k", "95 %", "points", *needed]
             console.print("the law, and the size from which on the change is below", markup=False)
             print_table(console, head, [_law(law) for law in laws])
     else:
-        for quantity in size.QUANTITIES:
-            grid = size.grid(axes, entries, quantity)
+        for quantity in sizes.QUANTITIES:
+            grid = sizes.grid(axes, entries, quantity)
             names = tuple(f"{each.name}{', in a' if each.in_a else ''}" for each in axes)
             texts[f"map-{quantity}.svg"] = grid_svg(*grid, (names[0], names[1]), f"{scene.name}: change of {quantity}")
-    failed = [entry for entry in entries if "error" in entry]
+    failed = [entry for entry in entries if entry.error]
     for entry in failed:
-        labels = ", ".join(f"{key} {value}" for key, value in entry["labels"].items())
-        console.print(f"not solved: {labels}: {entry['error']}", soft_wrap=True, markup=False)
+        labels = ", ".join(f"{key} {value}" for key, value in entry.labels.items())
+        console.print(f"not solved: {labels}: {entry.error}", soft_wrap=True, markup=False)
     print_written([ledger.path, *write_texts(folder, texts)], console)
     return 1 if failed else 0
 

@@ -50,8 +50,8 @@ def _verify(options: argparse.Namespace) -> int:
 
     from partialslip.cli.consoles import messages, output, shown
     from partialslip.judge import Outcome
-    from partialslip.report.verdicts import print_verdicts
-    from partialslip.study.verification import verify_suite
+    from partialslip.verify.driver import verify_suite
+    from partialslip.verify.verdicts import print_verdicts
 
     told = messages()
     columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.fields[left]}"))

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.linalg as la
 
-from partialslip.result import Array
+from partialslip.arrays import Array
 
 Sides = npt.NDArray[np.int8]
 

@@ -13,10 +13,11 @@ import numpy as np
 import numpy.typing as npt
 import scipy.linalg as la
 
+from partialslip.arrays import Array
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
-from partialslip.condensed.friction import History, Path, certified, follow, resting
+from partialslip.condensed.history import History, certified, follow, resting
+from partialslip.condensed.path import Path
 from partialslip.condensed.pressing import Punch
-from partialslip.result import Array
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
 _STICKS = 1e-9  # relative difference that is rounding

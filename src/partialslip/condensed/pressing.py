@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip.result import Array
+from partialslip.arrays import Array
 
 _TELLING = 1e-9  # of the half-width
 

@@ -3,11 +3,11 @@
 import numpy as np
 import numpy.typing as npt
 
+from partialslip.arrays import Array
+from partialslip.bars import LEAST_SHEAR
 from partialslip.condensed.coupled import Pressed
-from partialslip.condensed.friction import History
-from partialslip.condensed.zones import Zone
-from partialslip.result import Array
-from partialslip.scene import LEAST_SHEAR
+from partialslip.condensed.ends import Zone
+from partialslip.condensed.history import History
 
 Errors = dict[str, float]
 Indices = npt.NDArray[np.int64]

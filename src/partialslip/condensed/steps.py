@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from partialslip.arrays import Array
+from partialslip.bars import BARS
 from partialslip.condensed.bounded import solve_bounded
-from partialslip.condensed.friction import History, Path, march
+from partialslip.condensed.history import History, march
+from partialslip.condensed.path import Path
 from partialslip.condensed.step_errors import Errors
-from partialslip.result import Array
-from partialslip.scene import ALLOWED
 
 _GROUPS, _HALVINGS, _SOLVES = 64, 6, 400  # of neighbours, on which steps are chosen; a step is halved so often at most
 _TELLING = 1e-7  # change of the forces, relative to f P, that is more than rounding
@@ -47,7 +48,7 @@ def march_refined(
     while True:
         halved = march(tangential, stretch, bound, history.path.halved)
         left = errors(history, halved)
-        enough = all(error <= ALLOWED[key] * accuracy / 2 for key, error in left.items())
+        enough = all(error <= BARS[key] * accuracy / 2 for key, error in left.items())
         if enough or halved.path.most_steps > most:
             return history, left
         finer /= _FINER

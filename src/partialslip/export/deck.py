@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from partialslip.export.model import Indices, Model
-from partialslip.result import Array
+from partialslip.arrays import Array, Indices
+from partialslip.export.model import Model
 from partialslip.scene import Scene
 
 

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import contact
-from partialslip.result import Array
 from partialslip.scene import Constants, Scene
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from partialslip.result import Array
+from partialslip.arrays import Array
 
 
 def adhered(x: Array, a: float, dQ: float, dsigma: float) -> Array:

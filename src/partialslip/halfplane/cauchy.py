@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.result import Array
+from partialslip.arrays import Array
 
 Complex = npt.NDArray[np.complex128]
 

@@ -4,8 +4,8 @@ import itertools
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.halfplane.shape import Shape
-from partialslip.result import Array
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 _NEAR = 4.0  # cells within so many of the wider one's widths are integrated in closed form

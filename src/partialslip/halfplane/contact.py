@@ -9,13 +9,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
+from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.given import Given
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch, punch_force
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zones
-from partialslip.result import Array
 from partialslip.scene import Hertz as HertzProfile
 from partialslip.scene import Scene
 

@@ -4,9 +4,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.shape import Shape
-from partialslip.result import Array
 
 _CHECKED = 1000
 _EVEN = 1e-9  # differences of p(x) and p(-x), in the largest p, that count as none

@@ -4,8 +4,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import ellipe, ellipkm1, elliprj
 
+from partialslip.arrays import Array
 from partialslip.halfplane.shape import Conditions, Shape
-from partialslip.result import Array
 
 
 class Hertz(Shape):

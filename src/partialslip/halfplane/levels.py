@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.result import Array
 from partialslip.scene import Load
 
 _ROUNDING = 1e-9  # lengths in a, tractions in f p0, slip in A f p0 a

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.gradual import left_end_turns, turns_round
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.slip import slip
 from partialslip.halfplane.steady import StickZone, stick_zone
 from partialslip.halfplane.traction import half_range
-from partialslip.result import Array
 
 _NOTHING = StickZone(0.0, 1.0, 1)
 

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact, stick_zone
-from partialslip.result import Array
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 

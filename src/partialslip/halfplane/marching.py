@@ -12,17 +12,22 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.allowance import Allowance
-from partialslip.condensed.friction import History, Path, certificate, doubts, judge, load_path
+from partialslip.arrays import Array
+from partialslip.bars import BARS, LEAST_SHEAR
+from partialslip.condensed.ends import Zone, apart, finest, kinks, stick_zone
+from partialslip.condensed.history import History, certificate, last_cycle_change
+from partialslip.condensed.path import Path, load_path
+from partialslip.condensed.regime import doubts, steady_state
 from partialslip.condensed.step_errors import halved
 from partialslip.condensed.steps import MOST, march_refined
 from partialslip.condensed.threads import one_thread
-from partialslip.condensed.zones import Zone, apart, finest, kinks, stick_zone
 from partialslip.halfplane.cells import compliance, forces, graded
 from partialslip.halfplane.contact import Contact, contact
+from partialslip.halfplane.tractions import CellTractions
 from partialslip.plan import Plan
-from partialslip.result import Array, Clock, Result, Slip, Traction
-from partialslip.scene import ALLOWED, LEAST_SHEAR, Scene
-from partialslip.state import State
+from partialslip.result import Clock, Result, Slip, Traction
+from partialslip.result.state import State
+from partialslip.scene import Scene
 
 _MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # cell size at the ends (in a), and growth
 _CELLS, _SOMEWHERE = 4.0, 0.5  # between zones with fewer cells than that an end is somewhere in one of them
@@ -114,7 +119,7 @@ def solve(
             errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
             ends_known = max(errors["m"], errors["n"])
             progress(f"mesh {meshes}: {len(level.pressed):,} cells, m, n known to {ends_known:.1e} a")
-            allowed = {key: ALLOWED[key] * scene.fem.accuracy for key in _JUDGED}
+            allowed = {key: BARS[key] * scene.fem.accuracy for key in _JUDGED}
             # what steps that cannot be refined further leave is not for the cells to make up for
             if all(meshed[key] <= max(most - stepped.get(key, 0.0), most / 2) for key, most in allowed.items()):
                 break
@@ -223,22 +228,14 @@ def _result(
 ) -> Result:
     P, a, p0, widths, history = scene.P, pressed.a, pressed.p0, np.diff(level.vertices), level.history
     certified = certificate(history, widths, scene.friction.f, 2 / np.pi) if history else {}
-    found = judge(scene, history, level.stick, 1.0)
+    change = last_cycle_change(history, widths, scene.friction.f, 2 / np.pi) if history else None
+    found = steady_state(scene, history, level.stick, 1.0)
     x = (level.vertices[1:] + level.vertices[:-1]) / 2
     q1, q2 = (P / a * force / widths for force in (history.q1, history.q2)) if history else (0 * x, 0 * x)
     unit = scene.material.A * P  # of displacement
 
     known = found.centre is not None
-
-    def levels_at(points: Array) -> tuple[Array, Array]:
-        scaled = points / a
-        cell = np.clip(np.searchsorted(level.vertices, scaled) - 1, 0, len(x) - 1)
-        inside = np.abs(scaled) <= 1
-        return np.where(inside, q1[cell], 0.0), np.where(inside, q2[cell], 0.0)
-
-    def at(points: Array) -> tuple[Array, Array]:
-        before, after = levels_at(points)
-        return pressed.pressure(points), after - before
+    tractions = CellTractions(pressed, level.vertices, q1, q2)
 
     return Result(
         method="march",
@@ -253,10 +250,10 @@ def _result(
             dq=q2 - q1,
             q1=q1 if known else None,
             q2=q2 if known else None,
-            at=at,
+            at=tractions.change,
             breaks=level.vertices * a,
             cells=level.vertices * a,
-            levels_at=levels_at if known else None,
+            levels_at=tractions.at_load_points if known else None,
         ),
         cost=clock.cost(),
         state=_state(scene, level, a) if history else None,
@@ -273,9 +270,10 @@ def _result(
             **counts,
         },
         certificate=certified,
+        last_cycle_change=change,
         estimate=errors,
         shares=shares,
-        notes=found.notes + doubts(certified, errors, scene.fem.accuracy),
+        notes=found.notes + doubts(change, errors, scene.fem.accuracy),
     )
 
 

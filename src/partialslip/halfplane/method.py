@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.gradual import may_turn_round
 from partialslip.halfplane.contact import Contact, contact
@@ -15,10 +16,11 @@ from partialslip.halfplane.steady import NARROWEST, transition
 from partialslip.halfplane.stress import Stress
 from partialslip.halfplane.tables import table_error
 from partialslip.halfplane.traction import mean_load_bound
+from partialslip.halfplane.tractions import ExactTractions
 from partialslip.plan import Plan
-from partialslip.result import FRICTIONLESS, Array, Clock, Regime, Result, Slip, SurfaceStress, Traction
+from partialslip.result import FRICTIONLESS, Clock, Regime, Result, Slip, SurfaceStress, Traction
+from partialslip.result.state import State
 from partialslip.scene import Scene
-from partialslip.state import State
 
 _POINTS_PER_ZONE = 101
 _BEYOND = 4.0  # surface stresses are reported up to so many half-widths
@@ -46,20 +48,12 @@ def solve(
     a, p0 = pressed.a, pressed.p0
     found = _levels(scene, pressed, regime, cycle, start)
     turns = cycle is not None and cycle.turns_round
-
-    def at(x: Array) -> tuple[Array, Array]:
-        p = pressed.pressure(x)
-        return p, f * p0 * cycle.traction(x / a) if cycle else np.zeros_like(p)
-
-    def levels_at(x: Array) -> tuple[Array, Array]:
-        assert isinstance(found, Levels)
-        q1, q2 = found.at(x / a)
-        return f * p0 * q1, f * p0 * q2
-
+    tractions = ExactTractions(pressed, f, cycle, found if isinstance(found, Levels) else None)
     breaks = _breaks(scene, a, cycle, found)
     x = _sample(np.union1d(breaks, [0.0]))
-    p, dq = at(x)
-    q1, q2 = levels_at(x) if isinstance(found, Levels) else (None, None)
+    p, dq = tractions.change(x)
+    levels_at = tractions.at_load_points if tractions.levels else None
+    q1, q2 = levels_at(x) if levels_at else (None, None)
     reversed_ = load.fully_reversed and isinstance(found, Levels)
     stress = Stress(pressed, f, load.dQ, load.dsigma) if plan.needs("subsurface") and reversed_ else None
     surface = _surface(stress, np.concatenate([[-_BEYOND * a], breaks, [_BEYOND * a]])) if stress else None
@@ -73,7 +67,7 @@ def solve(
         regime=regime,
         stick_centre=cycle.mirror * cycle.zone.centre * a if cycle else None,
         stick_half_width=cycle.zone.half_width * a if cycle else None,
-        traction=Traction(x, p, dq, q1, q2, at, breaks, levels_at=levels_at if isinstance(found, Levels) else None),
+        traction=Traction(x, p, dq, q1, q2, tractions.change, breaks, levels_at=levels_at),
         cost=clock.cost(),
         slip=_slip(scene, pressed, cycle) if cycle and slips and regime != "ratchets" else None,
         settings={"model": "two half-planes, steady state"},

@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from partialslip.arrays import Array
 from partialslip.halfplane.shape import Shape
-from partialslip.result import Array
 
 _FEW = 24  # flats whose pressures are summed as they are
 _NEAR = 6  # flats near a panel

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.result import Array
+from partialslip.arrays import Array
 
 _THIN = 1e-12
 NARROW = 1e-5

@@ -9,9 +9,9 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from partialslip.arrays import Array
 from partialslip.halfplane.shape import Rule, Shape, rule_between
 from partialslip.halfplane.steady import StickZone
-from partialslip.result import Array
 
 _NODES, _FEWEST = 32, 6  # Gauss points in a slip zone, and in each of its pieces
 _TINY = 1e-300

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize.elementwise import find_root
 
+from partialslip.arrays import Array
 from partialslip.halfplane.shape import NARROW, Conditions, Shape
-from partialslip.result import Array
 
 NARROWEST = 1e-100  # stick zones narrower than that are not told apart
 _CHUNK = 2**14  # zones at a time: what they need stays in the processor's cache

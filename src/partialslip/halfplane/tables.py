@@ -3,10 +3,10 @@
 import numpy as np
 from msgspec.structs import replace
 
+from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.result import Array
 from partialslip.scene import Scene, Tabulated
 
 _LESS = 3.0  # halving the spacing of a table of second order leaves a quarter: the rest is a third of the change

@@ -5,9 +5,9 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
+from partialslip.arrays import Array
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import StickZone
-from partialslip.result import Array
 
 _AT_ONCE = 2**22  # pairs of points in memory
 

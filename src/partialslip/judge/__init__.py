@@ -1,10 +1,10 @@
 """Judge a result: error measures, bars and verdicts. No other module says that a result has passed or missed a bar."""
 
+from partialslip.bars import BARS as BARS
 from partialslip.judge.comparison import Comparison as Comparison
 from partialslip.judge.comparison import compare as compare
 from partialslip.judge.means import cell_errors as cell_errors
 from partialslip.judge.means import cell_means as cell_means
-from partialslip.judge.verdict import BARS as BARS
 from partialslip.judge.verdict import NO_BAR as NO_BAR
 from partialslip.judge.verdict import P_BAR as P_BAR
 from partialslip.judge.verdict import Q_BAR as Q_BAR

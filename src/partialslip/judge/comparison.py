@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip import views
+from partialslip.arrays import Array
+from partialslip.bars import BARS
 from partialslip.judge.measures import Measure, measures
-from partialslip.judge.verdict import BARS, NAN, NO_BAR, Bar, Outcome, Verdict, conditions, judged, overall
-from partialslip.result import Array, Result
+from partialslip.judge.verdict import NAN, NO_BAR, Bar, Outcome, Verdict, conditions, judged, overall
+from partialslip.result import Result
 from partialslip.scene import Scene
 
 _TENSIONS = {"small tension", "large tension"}
@@ -93,7 +94,9 @@ class Comparison:
         return self.errors["q"]
 
     def _repr_html_(self) -> str:
-        return views.html(self)
+        from partialslip.report.notebook import html
+
+        return html(self)
 
 
 def compare(

@@ -1,12 +1,14 @@
 """Means of tractions over cells, relative L2 errors of these means, and resultants."""
 
+import math
 from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 
-from partialslip.result import Array, Traction
-from partialslip.scene import LEAST_SHEAR
+from partialslip.arrays import Array
+from partialslip.bars import LEAST_SHEAR
+from partialslip.result import Traction
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
@@ -100,4 +102,4 @@ def _cells(traction: Traction, reference: Traction) -> Array:
 
 
 def _ratio(error: float, norm: float) -> float:
-    return 0.0 if error == 0 else error / norm if norm else float("inf")
+    return 0.0 if error == 0 else float(error / norm) if norm else math.inf

@@ -2,17 +2,17 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any, NamedTuple
+from typing import NamedTuple, Self, TypeVar
 
 import numpy as np
 
-from partialslip.result import CERTIFICATE_BAR, Result
-from partialslip.scene import ALLOWED
+from partialslip.bars import BARS, CERTIFICATE_BAR
+from partialslip.result import Result
 
 # Bars on traction errors, in multiples of the accuracy asked of a, m and n.
-P_BAR, Q_BAR = ALLOWED["p"], ALLOWED["q"]
+P_BAR, Q_BAR = BARS["p"], BARS["q"]
 
 NAN, NO_BAR = "not a number", "no bar"
 
@@ -22,6 +22,9 @@ BARS = {
     **dict.fromkeys(("P", "P_1", "p", "p_1"), P_BAR),
     **dict.fromkeys(("dQ", "q", "q1", "q2"), Q_BAR),
 }
+
+
+_Value = TypeVar("_Value", float | str | None, float | None)
 
 
 class Outcome(StrEnum):
@@ -84,9 +87,16 @@ class Verdict:
         return (self.reference, self.found, self.error) != (None, None, None)
 
     @property
-    def data(self) -> dict[str, Any]:
-        """The verdict as plain data, for JSON: null for what is not a number."""
-        return {key: _plain(value) for key, value in vars(self).items()}
+    def finite(self) -> Self:
+        """The verdict as JSON has it: Python's floats, and None for those that are NaN or infinite."""
+        return replace(
+            self,
+            reference=_known(self.reference),
+            found=_known(self.found),
+            error=_known(self.error),
+            bar=_known(self.bar),
+            estimate=_known(self.estimate),
+        )
 
     @property
     def text(self) -> str:
@@ -96,10 +106,10 @@ class Verdict:
         return f"{self.quantity}: error {self.error:.3g} {'<=' if self.error <= self.bar else '>'} {self.bar:.3g}"
 
 
-def _plain(value: Any) -> Any:
-    if isinstance(value, Outcome):
-        return str(value)
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+def _known(value: _Value) -> _Value | None:
+    if not isinstance(value, float):
+        return value
+    return float(value) if math.isfinite(value) else None
 
 
 def judged(error: float, bar: float) -> Outcome:
@@ -135,7 +145,6 @@ def conditions(result: Result) -> tuple[Verdict, ...]:
             scale="f p0 or f P",
         )
         for name, residual in result.certificate.items()
-        if name != "steady"
     )
     return finite, *certificate
 

@@ -1,47 +1,27 @@
 """The traction plot: exact line, finite-element markers, stick zone shaded; x/a against q/(f p0)."""
 
-import io
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from partialslip.result import Array, Result
-from partialslip.run import ALL_EFFECTS, Run
+from partialslip.arrays import Array
+from partialslip.judge.reference import ALL_EFFECTS
+from partialslip.output.svg import svg
+from partialslip.result import Result
+from partialslip.run import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _MARKERS = 41
 _P_MARKS = {"march": "x", "fem": "+", ALL_EFFECTS: "1"}
 _Q_MARKS = {"march": "s", "fem": "o", ALL_EFFECTS: "D"}
-_STYLE: dict[Any, Any] = {
-    "svg.fonttype": "none",  # text stays text
-    "svg.hashsalt": "partialslip",  # the same run gives the same file
-    "font.size": 10,
-    "font.family": "sans-serif",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-}
 
 
 def traction_svg(run: Run) -> str:
     """The traction plot of a run as SVG."""
     return svg(lambda figure: draw_run(figure.subplots(), run))
-
-
-def svg(draw: Callable[["Figure"], None], size: tuple[float, float] = (7.4, 4.4)) -> str:
-    """What ``draw`` puts on a figure of ``size`` (inches) as SVG, in the style of all figures."""
-    from matplotlib import rc_context
-    from matplotlib.figure import Figure
-
-    with rc_context(_STYLE):
-        figure = Figure(figsize=size, layout="constrained")
-        draw(figure)
-        text = io.StringIO()
-        figure.savefig(text, format="svg", metadata=dict.fromkeys(("Date", "Creator", "Format", "Type")))
-    return text.getvalue()
 
 
 def draw_run(axes: "Axes", run: Run) -> None:

@@ -241,8 +241,11 @@ def certificate(result: Result) -> str:
     residuals = ", ".join(
         f"{name.replace('_', ' ')} {_power(residual)}" for name, residual in result.certificate.items()
     )
+    change = result.last_cycle_change
     estimate = ", ".join(f"{name} {error:.1e}" for name, error in result.estimate.items())
-    return "; ".join(part for part in (residuals, f"own estimate of errors: {estimate}" if estimate else "") if part)
+    told = "" if change is None else f"q changed by {_power(change)} f p0 in the last cycle"
+    parts = (residuals, told, f"own estimate of errors: {estimate}" if estimate else "")
+    return "; ".join(part for part in parts if part)
 
 
 def cost(result: Result) -> str:

@@ -1,16 +1,25 @@
-"""What a document shows of a run, in words and table cells: plain data, which can wait in a file for its turn."""
+"""Summary of a run in words and table cells, as the ledger of a verification keeps it."""
 
-from typing import Any
+import msgspec
 
 from partialslip.report import rows
 from partialslip.run import Run
 
 
-def sheet(run: Run) -> dict[str, Any]:
-    """Title, settings and effects of the scene, and facts of every method: texts."""
-    return {
-        "title": run.scene.title,
-        "settings": rows.settings_of_tables(run.scene),
-        "effects": rows.effects(run.plan),
-        "methods": rows.methods(run.results, compared=True),
-    }
+class Sheet(msgspec.Struct, frozen=True):
+    """Title, settings and effects of a scene, and facts of every method, as the texts of tables."""
+
+    title: str
+    settings: tuple[tuple[str, str], ...]
+    effects: tuple[tuple[str, str, str], ...]
+    methods: tuple[tuple[str, str, str], ...]
+
+
+def sheet(run: Run) -> Sheet:
+    """The sheet of ``run``."""
+    return Sheet(
+        run.scene.title,
+        tuple(rows.settings_of_tables(run.scene)),
+        tuple(rows.effects(run.plan)),
+        tuple(rows.methods(run.results, compared=True)),
+    )

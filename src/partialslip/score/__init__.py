@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Literal
 
 from partialslip.errors import InputError
+from partialslip.judge.reference import METHODS
 from partialslip.result import Result
-from partialslip.run import METHODS, Run, compared, run
+from partialslip.run import Run, compared, run
 from partialslip.scene import Scene
 from partialslip.score.method import centred, scored
 from partialslip.score.mistakes import in_another_unit, mistakes

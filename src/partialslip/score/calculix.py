@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.scene import Array
 
 _Corners = tuple[tuple[int, ...], ...]
 

@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.scene import Array, Scene
+from partialslip.scene import Scene
 from partialslip.score.headers import headings, known, selected
 
 _NOTHING = ("", "-", "--", "novalue", "no value", "n/a", "na")

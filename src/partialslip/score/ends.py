@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.result import Array
+from partialslip.arrays import Array
 
 _POINTS = (4, 5, 6, 8, 11, 16, 24, 36, 54, 80, 120, 180, 270, 400, 600, 900)
 _MANY = 60  # points that tell as much as more of them

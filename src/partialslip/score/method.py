@@ -1,13 +1,13 @@
 """Tractions from outside as a result, like that of any method."""
 
-from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.result import Array, Clock, Regime, Result, Traction
+from partialslip.result import Clock, Regime, Result, Traction
 from partialslip.scene import Scene
 from partialslip.score.ends import NOISE, ROUNDING, End, left_end, noise, right_end, zone
 from partialslip.score.samples import FEWEST, Samples
@@ -185,27 +185,41 @@ def _regime(
     return ("small tension" if stick.sides[0].sign == stick.sides[1].sign else "large tension"), ends
 
 
+@dataclass(frozen=True)
+class _Lines:
+    """Functions that go linearly from point to point; zero outside. ``x`` (n,), m, and ``values`` (2, n), Pa."""
+
+    x: Array
+    values: Array
+
+    def at(self, x: Array) -> tuple[Array, Array]:
+        p, dq = (np.interp(x, self.x, column, left=0.0, right=0.0) for column in self.values)
+        return p, dq
+
+
+@dataclass(frozen=True)
+class _Steps:
+    """Functions that are constant on cells; zero outside. ``cells`` (n + 1,), m, and ``values`` (2, n), Pa."""
+
+    cells: Array
+    values: Array
+
+    def at(self, x: Array) -> tuple[Array, Array]:
+        cell = np.clip(np.searchsorted(self.cells, x) - 1, 0, self.values.shape[1] - 1)
+        within = (x >= self.cells[0]) & (x <= self.cells[-1])
+        p, dq = np.where(within, self.values[:, cell], 0.0)
+        return p, dq
+
+
 def _traction(samples: Samples, left: float, right: float) -> Traction:
     """Means over cells are as they are; between points tractions go linearly, and to zero at the contact's ends."""
     x, p, dq, cells = samples.x, samples.p, samples.dq, samples.cells
-    at: Callable[[Array], tuple[Array, Array]]
     if cells is None:
         ends = np.array([end for end in (left, right) if not x[0] <= end <= x[-1]])
         breaks, order = np.unique(np.concatenate([x, ends]), return_index=True)
-        values = [np.concatenate([column, np.zeros(len(ends))])[order] for column in (p, dq)]
-
-        def at(points: Array) -> tuple[Array, Array]:
-            on_p, on_dq = (np.interp(points, breaks, column, left=0.0, right=0.0) for column in values)
-            return on_p, on_dq
-    else:
-        breaks = cells
-
-        def at(points: Array) -> tuple[Array, Array]:
-            cell = np.clip(np.searchsorted(cells, points) - 1, 0, len(x) - 1)
-            within = (points >= cells[0]) & (points <= cells[-1])
-            return np.where(within, p[cell], 0.0), np.where(within, dq[cell], 0.0)
-
-    return Traction(x, p, dq, samples.q1, samples.q2, at, breaks, breaks)
+        values = np.array([np.concatenate([column, np.zeros(len(ends))])[order] for column in (p, dq)])
+        return Traction(x, p, dq, samples.q1, samples.q2, _Lines(breaks, values).at, breaks, breaks)
+    return Traction(x, p, dq, samples.q1, samples.q2, _Steps(cells, np.array([p, dq])).at, cells, cells)
 
 
 def _rounded(number: float) -> float:

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.inputfile import check_regular, read_bytes
-from partialslip.scene import Array, Scene
+from partialslip.scene import Scene
 from partialslip.score.calculix import read_dat, read_frd
 from partialslip.score.csvfile import Columns, read_csv
 from partialslip.score.headers import NORMAL, SHEARS

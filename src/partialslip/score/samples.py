@@ -4,8 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.scene import LARGEST, SMALLEST, Array
+from partialslip.scene import LARGEST, SMALLEST
 
 _DIGITS, _WHOLE = 8, 1e-5
 FEWEST = 6  # points in contact: fewer tell nothing of where it ends

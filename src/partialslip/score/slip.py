@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.result import Array
+from partialslip.arrays import Array
 
 _POINTS = (3, 4, 5, 6, 8, 11, 16, 24, 36, 54, 80, 120, 180, 270, 400, 600, 900)
 _FLAT = 0.02  # relative uncertainty of f, above which |dq|/(2 p) is not flat

@@ -4,15 +4,16 @@ of one method against its bar, and answers one of the requirements, R1 to R9."""
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import msgspec
 import numpy as np
 
-from partialslip.judge import BARS, Bar, Outcome, Verdict, compare, conditions
+from partialslip.bars import BARS
+from partialslip.judge import Bar, Outcome, Verdict, compare, conditions
+from partialslip.judge.reference import reference_of
 from partialslip.plan import plan
 from partialslip.result import Result
-from partialslip.run import reference_of, run
+from partialslip.run import run
 from partialslip.scene import Scene
 from partialslip_meshes.mesh import Mesh
 
@@ -99,11 +100,6 @@ class CaseVerdict(Verdict):
     iterations: int = 0
     cpu_s: float = 0.0
 
-    @classmethod
-    def of(cls, data: Mapping[str, Any]) -> "CaseVerdict":
-        """Make a verdict of its plain data (:attr:`Verdict.data`)."""
-        return msgspec.convert(data, cls)
-
 
 def requirement_of(quantity: str) -> str:
     """The key in :data:`REQUIREMENTS` of what is required of a quantity."""
@@ -117,7 +113,7 @@ def number_of(quantity: str) -> str:
 
 def run_case(case: Case) -> list[CaseVerdict]:
     """Solve the case by each of its methods and judge what they find; what they raise is a verdict, too."""
-    return judge(case, solve_case(case))
+    return judge_case(case, solve_case(case))
 
 
 def solve_case(case: Case) -> Found:
@@ -126,7 +122,7 @@ def solve_case(case: Case) -> Found:
     return {method: _solve(case, method) for method in dict.fromkeys([*needed, *case.methods])}
 
 
-def judge(case: Case, found: Found) -> list[CaseVerdict]:
+def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
     """The verdicts on what the methods of a case have found. An exact solution that is missing is missed, too, where
     others are to be compared with it; the march stands in for one that cannot judge."""
     lost = ["exact"] if case.compared and isinstance(found["exact"], Failure) else []

@@ -6,13 +6,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.halfplane.contact import contact
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone, transition
 from partialslip.halfplane.traction import mean_load_bound
-from partialslip.reading import parse_scene
-from partialslip.result import Array
 from partialslip.scene import Material, Scene, Tabulated
+from partialslip.scene.reading import parse_scene
 
 PROFILES = ("hertz", "flat-rounded", "tabulated")
 KINDS = (

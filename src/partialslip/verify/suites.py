@@ -9,7 +9,7 @@ from typing import Literal, get_args
 
 from partialslip.errors import InputError
 from partialslip.verify.case import Case
-from partialslip.verify.catalogue import hard_cases, shipped
+from partialslip.verify.hard_cases.catalogue import hard_cases, shipped
 from partialslip.verify.stress import stress_case, stress_numbers
 
 Suite = Literal["quick", "full", "stress"]

@@ -1,0 +1,140 @@
+"""One job of a study: a scene solved by some methods, as figures without curves, here or in a process of its own."""
+
+import subprocess
+import sys
+import tempfile
+import time
+import uuid
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from partialslip.batch.ledger import key_of, scene_content
+from partialslip.batch.sweep import Task
+from partialslip.errors import InputError, PartialslipError
+from partialslip.report import Record, record, write_run
+from partialslip.run import Run, run
+from partialslip.scene import Scene
+
+if TYPE_CHECKING:
+    from partialslip_fem import Kept
+
+Labels = Mapping[str, str | float]
+
+
+@dataclass(frozen=True)
+class Job:
+    """A scene, the methods to solve it by, and ``labels`` that say which point of the study it is."""
+
+    scene: Scene
+    methods: tuple[str, ...]
+    labels: Labels = field(default_factory=dict)
+
+    @property
+    def key(self) -> str:
+        """A key that is the same only for the same job by the same source files."""
+        return key_of({**msgspec.to_builtins(self), "scene": scene_content(self.scene)})
+
+    @property
+    def task(self) -> Task:
+        """The job as work for a sweep."""
+        return Task(self.key, solve, self)
+
+
+class ProcessCost(msgspec.Struct, frozen=True):
+    """What a process took, start and imports included: CPU seconds in all, and of writing the report; peak memory (MB);
+    wall seconds."""
+
+    cpu_s: float
+    report_cpu_s: float
+    peak_rss_mb: float
+    wall_s: float = 0.0
+
+
+class Solved(msgspec.Struct, frozen=True, kw_only=True):
+    """What came of a job, as a ledger keeps it: the ``run``, or the ``error`` in one line; and what the ``process``
+    took, if the job had one of its own."""
+
+    scene: Scene
+    labels: Labels
+    run: Record | None = None
+    error: str = ""
+    process: ProcessCost | None = None
+
+    @classmethod
+    def of(cls, entry: Mapping[str, Any]) -> "Solved":
+        """The entry of a ledger as this type."""
+        return msgspec.convert(entry, cls)
+
+
+def solve(job: Job, keep: "Kept | None" = None) -> Solved:
+    """Solve ``job``. ``keep`` is as for :func:`partialslip.run`."""
+    return _solved(job, keep)[0]
+
+
+def _solved(job: Job, keep: "Kept | None" = None) -> tuple[Solved, Run | None]:
+    try:
+        outcome = run(job.scene, job.methods, keep=keep)
+    except InputError as error:  # what this machine lacks is no finding, and is not to be kept as one
+        return Solved(scene=job.scene, labels=job.labels, error=str(error)), None
+    return Solved(scene=job.scene, labels=job.labels, run=record(outcome, curves=False)), outcome
+
+
+class Sharing:
+    """:func:`solve` for a sweep: jobs that one process solves share their factored meshes. It can be pickled."""
+
+    def __init__(self) -> None:
+        self._sweep = uuid.uuid4().hex
+
+    def __call__(self, job: Job) -> Solved:
+        return solve(job, keep=_kept_in(self._sweep) if "fem" in job.methods else None)
+
+
+@lru_cache(maxsize=1)
+def _kept_in(_sweep: str) -> "Kept":
+    """What this process keeps in a sweep, until it works for another one."""
+    from partialslip_fem import Kept
+
+    return Kept()
+
+
+def solve_apart(job: Job) -> Solved:
+    """Solve ``job`` in a new process, whose cost is the ``process`` of what is returned. Raises PartialslipError if the
+    process dies."""
+    command = [sys.executable, "-m", "partialslip.batch.job"]
+    began = time.perf_counter()
+    done = subprocess.run(command, input=msgspec.json.encode(job), capture_output=True, check=False)
+    if done.returncode != 0:
+        last = (done.stderr.decode(errors="replace").strip().splitlines() or [f"exit code {done.returncode}"])[-1]
+        raise PartialslipError(f"{job.scene.name} {dict(job.labels)}: the process died: {last}")
+    found = msgspec.json.decode(done.stdout, type=Solved)
+    if found.process is None:
+        return found
+    wall_s = time.perf_counter() - began
+    return msgspec.structs.replace(found, process=msgspec.structs.replace(found.process, wall_s=wall_s))
+
+
+def _costs(outcome: Run) -> ProcessCost:
+    """Of this process up to now, and of writing the report."""
+    cpu = time.process_time() + sum(each.cost.meshing_cpu_s for each in outcome.results.values())
+    began = time.process_time()
+    with tempfile.TemporaryDirectory() as folder:
+        write_run(outcome, Path(folder))
+    report = time.process_time() - began
+    return ProcessCost(cpu, report, max(each.cost.peak_rss_mb or 0.0 for each in outcome.results.values()))
+
+
+def _apart() -> None:
+    """Solve the job that stdin has, as JSON, and write what came of it to stdout."""
+    found, outcome = _solved(msgspec.json.decode(sys.stdin.buffer.read(), type=Job))
+    if outcome:
+        found = msgspec.structs.replace(found, process=_costs(outcome))
+    sys.stdout.buffer.write(msgspec.json.encode(found))
+
+
+if __name__ == "__main__":
+    _apart()

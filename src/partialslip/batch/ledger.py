@@ -1,0 +1,192 @@
+"""A ledger: finished cases as JSON lines, written one at a time and never changed, so that a study can be continued.
+
+A case is known by the content of its scene and settings, and by a checksum of the packages' source files. What does not
+fit is solved again. Commit and versions are written down, but decide nothing.
+"""
+
+import hashlib
+import json
+import os
+import platform
+import subprocess
+from collections.abc import Iterable, Iterator, Mapping
+from datetime import UTC, datetime
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from partialslip.errors import InputError
+from partialslip.record import versions
+from partialslip.scene import Scene
+
+_PACKAGES = ("partialslip", "partialslip_fem", "partialslip_meshes")
+
+
+class Machine(msgspec.Struct, frozen=True):
+    """The machine that a case was solved on."""
+
+    system: str
+    processor: str
+    cores: int | None
+
+
+class Made(msgspec.Struct, frozen=True, kw_only=True):
+    """When (``at``, UTC) and with what an entry was made: versions, machine, the commit in a clone, and the checksum of
+    the source files (``code``)."""
+
+    at: str = ""
+    versions: dict[str, str]
+    machine: Machine
+    commit: str | None
+    code: str
+
+
+class Ledger:
+    """Entries by key, kept in a file of JSON lines.
+
+    Parameters
+    ----------
+    path : Path
+        Made with the first entry. A last line that a killed study left unfinished is dropped.
+
+    Raises
+    ------
+    InputError
+        If the file is not a ledger, or cannot be read or written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._entries: dict[str, dict[str, Any]] = {}
+        try:
+            text = path.read_bytes() if path.exists() else b""
+            whole, _, torn = text.rpartition(b"\n")
+            if torn:
+                os.truncate(path, len(text) - len(torn))
+        except OSError as error:
+            raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+        for number, line in enumerate(whole.splitlines(), start=1):
+            try:
+                entry = _unsealed(line)
+                self._entries[entry["key"]] = entry
+            except ValueError:
+                raise InputError(
+                    f"{path}: line {number}: must be an entry of a ledger, as it was written: remove the line, and its "
+                    "case is solved again"
+                ) from None
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._entries
+
+    def __getitem__(self, key: str) -> dict[str, Any]:
+        return self._entries[key]
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        return iter(self._entries.values())
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    @property
+    def outdated(self) -> int:
+        """How many entries are from other source files than today's: their cases are solved again."""
+        return sum(entry.get("made", {}).get("code") != source_checksum() for entry in self)
+
+    def add(self, key: str, found: object) -> None:
+        """Append what was ``found``, a table or a type whose fields are one; it is on the disk when this returns.
+        Raises InputError if the file cannot be written."""
+        made = msgspec.structs.replace(_origin(), at=datetime.now(UTC).isoformat(timespec="seconds"))
+        entry = {"key": key, **msgspec.to_builtins(found), "made": msgspec.to_builtins(made)}
+        line = _sealed(json.dumps(entry, allow_nan=False)) + b"\n"
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            with open(self.path, "ab", buffering=0) as file:
+                file.write(line)
+                os.fsync(file.fileno())
+        except OSError as error:
+            raise InputError(f"{self.path}: cannot be written: {error.strerror}") from None
+        self._entries[key] = entry
+
+
+_SEAL = b', "sum": "'
+
+
+def _sealed(entry: str) -> bytes:
+    """An entry, a JSON object, with a checksum of its text as its last key: what reads it can rely on its shape."""
+    text = entry.encode()
+    return text[:-1] + _SEAL + _sum(text) + b'"}'
+
+
+def _unsealed(line: bytes) -> dict[str, Any]:
+    """The entry of a line. Raises ValueError if it is not as :func:`_sealed` has made it."""
+    text, seal, end = line.rpartition(_SEAL)
+    text += b"}"
+    if not seal or end != _sum(text) + b'"}':
+        raise ValueError
+    entry: dict[str, Any] = json.loads(text)
+    return entry
+
+
+def _sum(text: bytes) -> bytes:
+    return hashlib.sha256(text).hexdigest()[:16].encode()
+
+
+def key_of(data: Mapping[str, Any]) -> str:
+    """A key that is the same for the same plain data by the same source files only."""
+    text = json.dumps({"data": data, "code": source_checksum()}, sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def scene_content(scene: Scene) -> dict[str, Any]:
+    """The plain data of a scene, and the checksums of the mesh files that it names (None for a file that cannot be
+    read)."""
+    files = [body.mesh for _, body in scene.bodies if body.mesh is not None]
+    return {**msgspec.to_builtins(scene), "mesh files": {file: _checksum([Path(file)]) for file in files}}
+
+
+@cache
+def source_checksum() -> str:
+    """Checksum of all files of the packages, as they are installed: code and data."""
+    roots = [Path(place) for name in _PACKAGES for place in find_spec(name).submodule_search_locations]  # type: ignore[union-attr]
+    return checksum_of(roots)
+
+
+def checksum_of(folders: Iterable[Path]) -> str:
+    """Checksum of the names and contents of the files in ``folders``, without what Python compiles from them."""
+    files = [path for folder in folders for path in sorted(folder.rglob("*")) if path.is_file()]
+    return _checksum([path for path in files if "__pycache__" not in path.parts]) or ""
+
+
+def _checksum(files: Iterable[Path]) -> str | None:
+    found = hashlib.sha256()
+    try:
+        for path in files:
+            found.update(f"{path.name}\0{path.stat().st_size}\0".encode())
+            found.update(path.read_bytes())
+    except OSError:
+        return None
+    return found.hexdigest()[:16]
+
+
+@cache
+def _origin() -> Made:
+    """Versions, machine, checksum of the source files and, in a clone, the commit."""
+    here = Path(__file__).parent
+    git = ["git", "-C", str(here), "describe", "--always", "--dirty", "--abbrev=12"]
+    try:
+        commit = subprocess.run(git, capture_output=True, text=True, check=True, timeout=10).stdout.strip()
+    except (OSError, subprocess.SubprocessError):
+        commit = None
+    machine = Machine(platform.system(), _processor(), os.cpu_count())
+    return Made(versions=versions(), machine=machine, commit=commit, code=source_checksum())
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text("utf-8").splitlines()
+        return next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration, IndexError):
+        return platform.processor() or platform.machine()

@@ -1,0 +1,137 @@
+"""Many cases at once, on this machine or a Dask cluster; every finished one is in the ledger before the next is heard
+of."""
+
+import itertools
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Collection, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from queue import Empty, SimpleQueue
+from typing import Any, NamedTuple
+
+from partialslip.batch.cluster import Cluster, dask
+from partialslip.batch.ledger import Ledger
+from partialslip.errors import PartialslipError
+
+Progress = Callable[[int, int, float], None]
+_PULSE = 2.0  # s
+_AHEAD = 256  # tasks that wait for a worker, or work: more than any cluster has workers, and few in memory
+
+
+class Task(NamedTuple):
+    """Work for a sweep: what ``do`` makes of ``argument`` is an entry of a ledger under ``key``
+    (:meth:`partialslip.batch.ledger.Ledger.add`). All of them can be pickled."""
+
+    key: str
+    do: Callable[[Any], object]
+    argument: Any
+
+
+def sweep(tasks: Collection[Task], ledger: Ledger, executor: Executor, progress: Progress = lambda *_: None) -> None:
+    """Do those of ``tasks`` that are not in ``ledger`` and add what they find, in the order they finish.
+
+    ``progress`` is called with how many are done, how many there are, and the seconds left by the pace so far.
+
+    Raises
+    ------
+    PartialslipError
+        If a worker process dies; what was finished is kept.
+    """
+    to_do = {task.key: task for task in tasks if task.key not in ledger}
+    added = itertools.count(1)
+    total = len({task.key for task in tasks})
+    known, began = total - len(to_do), time.monotonic()
+    at_work: dict[Future[object], str] = {}
+    finished: SimpleQueue[Future[object]] = SimpleQueue()
+
+    def keep() -> None:
+        future = _next(finished, executor)
+        ledger.add(at_work[future], future.result())
+        del at_work[future]
+        done = next(added)
+        progress(known + done, total, (time.monotonic() - began) / done * (len(to_do) - done))
+
+    progress(known, total, float("nan"))
+    try:
+        for task in to_do.values():
+            future = executor.submit(task.do, task.argument)
+            at_work[future] = task.key
+            future.add_done_callback(finished.put)
+            while len(at_work) >= _AHEAD or not finished.empty():
+                keep()
+        while at_work:
+            keep()
+    except BrokenProcessPool:
+        raise PartialslipError("a worker process died, perhaps for want of memory; run it again to go on") from None
+    finally:
+        for future in at_work:
+            future.cancel()
+
+
+def _next(finished: "SimpleQueue[Future[Any]]", executor: Executor) -> "Future[Any]":
+    """The next future that is finished. An executor that can lose all its workers is asked meanwhile if it has."""
+    while True:
+        try:
+            return finished.get(timeout=_PULSE if isinstance(executor, Cluster) else None)
+        except Empty:
+            executor.check()  # type: ignore[attr-defined]
+
+
+class _Here(Executor):
+    """This process: work is done when it is submitted, and what it raises ends the sweep."""
+
+    def submit(self, do: Callable[..., Any], /, *arguments: Any, **named: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        future.set_result(do(*arguments, **named))
+        return future
+
+
+@contextmanager
+def workers(cluster: str | None = None, processes: int | None = None) -> Iterator[Executor]:
+    """Local ``processes`` (as a rule as many as there are cores; one is this one), or the workers of the Dask cluster
+    whose scheduler is at the address ``cluster``.
+
+    Raises
+    ------
+    InputError
+        If no scheduler answers there, or a worker does not have this version of partialslip.
+    PartialslipError
+        If the scheduler, or all workers, are lost.
+    MissingLibraryError
+        If dask.distributed is not installed.
+    """
+    if cluster is None and processes == 1:
+        yield _Here()
+        return
+    if cluster is None:
+        context = multiprocessing.get_context("spawn")  # BLAS threads and gmsh do not survive a fork
+        others = set(multiprocessing.active_children())
+        pool = ProcessPoolExecutor(processes or os.cpu_count(), context, _begin)
+        try:
+            yield pool
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            for process in set(multiprocessing.active_children()) - others:
+                process.terminate()
+            raise
+        pool.shutdown()
+        return
+    with dask(cluster) as crew:
+        yield crew
+
+
+def _begin() -> None:
+    """A worker ends with the process that it works for, which Ctrl-C reaches, too, and however that ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    if parent := multiprocessing.parent_process():
+        parent.join()
+        os._exit(1)

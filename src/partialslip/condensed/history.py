@@ -1,0 +1,281 @@
+"""What happens along a path of loads: Coulomb friction, step by step.
+
+Scaled: lengths by sqrt(A R P), forces by P and displacements by A P, so that nothing depends on units.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from partialslip.arrays import Array
+from partialslip.condensed.bounded import Sides, Solution, solve_bounded
+from partialslip.condensed.path import Path
+
+_REPEATS = 1e-13  # change of a node's q in a cycle, in the sum of |q|, that is rounding
+
+
+STEADY = 1e-6  # change of q from cycle to cycle, in its range or in f p0, that counts as none
+
+
+_SLIPS = 1e-9  # what is missing of the bound, relative, that is rounding
+
+
+@dataclass(frozen=True)
+class History:
+    """What a path has done.
+
+    Parameters
+    ----------
+    path : Path
+    points : list of Solution
+        At the load points in turn, certified over the way there.
+    at_ends : two (n,) arrays
+        Tangential forces at load points 1 and 2 of the last cycle.
+    q1, q2 : (n,) arrays
+        The same; where Q and sigma are out of phase the least and the largest ones of that cycle.
+    bounds : two (n,) arrays
+        f times the normal forces at load points 1 and 2.
+    slip : (n,) array
+        From load point 1 to 2 of the last cycle.
+    net_slip : (n,) array
+        What the last cycle has added to the slip: in a steady state nothing.
+    dissipated : float
+        Work against friction over the last cycle.
+    end : two (n,) arrays
+        Tangential forces, and f times the normal forces, at the end of the path.
+    load_steps : int
+        Steps solved.
+    """
+
+    path: Path
+    points: list[Solution]
+    at_ends: tuple[Array, Array]
+    q1: Array
+    q2: Array
+    bounds: tuple[Array, Array]
+    slip: Array
+    net_slip: Array
+    dissipated: float
+    end: tuple[Array, Array]
+    load_steps: int
+
+    def of(self, nodes: npt.NDArray[np.int64]) -> "History":
+        """That of some of the nodes."""
+        points = [
+            replace(step, x=step.x[nodes], rest=step.rest[nodes], residual=step.residual[nodes]) for step in self.points
+        ]
+        fields: dict[str, Any] = {key: getattr(self, key)[nodes] for key in ("q1", "q2", "slip", "net_slip")} | {
+            key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "bounds", "end")
+        }
+        return replace(self, points=points, **fields)
+
+    @property
+    def visited(self) -> list[tuple[Array, Array]]:
+        """q at the load points, of the first two cycles and of the last, and the bounds f p there: where q leaves its
+        bound (:func:`partialslip.condensed.ends.kinks`) the mesh is to be fine."""
+        cycle = len(self.path.cycle)
+        bounds = dict(zip(self.path.ends, self.bounds, strict=True))
+        numbers = sorted({*range(2 * cycle + 1), *range(len(self.points) - cycle, len(self.points))})
+        known = [number for number in numbers if 0 <= number < len(self.points)]
+        return [(self.points[number].x, bounds.get((number - 1) % cycle, self.bound)) for number in known]
+
+    @property
+    def bound(self) -> Array:
+        """The mean of the bounds: half of the range that q has."""
+        result: Array = (self.bounds[0] + self.bounds[1]) / 2
+        return result
+
+    @property
+    def change(self) -> Array:
+        """q2 - q1."""
+        result: Array = self.q2 - self.q1
+        return result
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the last cycle has changed next to nothing of q, in what q changes by over half a cycle."""
+        changed = np.abs(self.points[-1].x - self.points[-1 - len(self.path.cycle)].x)
+        return bool(changed.max() <= STEADY * np.abs(self.change).max())
+
+    @property
+    def ratchets(self) -> float:
+        """The largest net slip of the last cycle, in the largest slip of half a cycle."""
+        held = (self.bounds[0] > 0) & (self.bounds[1] > 0)  # what opens comes back elsewhere
+        half = float(np.abs(self.slip[held]).max())
+        return float(np.abs(self.net_slip[held]).max()) / half if half > 0 else 0.0
+
+    @property
+    def cycles(self) -> int:
+        """Cycles followed; none where the first loading tells the whole."""
+        return 0 if self.path.half else len(self.points) // len(self.path.cycle)
+
+    @property
+    def opposing(self) -> int:
+        """Nodes that slip against the others from load point 1 to 2."""
+        held = self.bound > 0
+        slips = np.abs(self.change[held]) >= (2 - _SLIPS) * self.bound[held]
+        ways = np.sign(self.change[held][slips])
+        return int(min((ways > 0).sum(), (ways < 0).sum()))
+
+    @property
+    def iterations(self) -> int:
+        """Faces solved."""
+        return sum(step.iterations for step in self.points)
+
+    @property
+    def changes(self) -> int:
+        """How often what sticks and what slips had to be changed: never where linear solves did."""
+        return sum(step.changes for step in self.points)
+
+
+def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> History:
+    """Tangential forces along the path at constant pressure, every step of it certified.
+
+    A step is then a convex problem: where nothing slips, the relative displacement keeps what it was, so that
+    C (T - T_before) follows the increment of the free relative displacement.
+
+    Parameters
+    ----------
+    tangential : (n, n) array
+        Relative compliance C of what is in contact.
+    stretch : (n,) array
+        Displacements of the lower surface along x under the tension that strains it by 1: where it is.
+    bound : (n,) array
+        f times its normal forces.
+    path : Path
+    """
+    load = path.begin[0]
+    first, *ways = (len(way) for way in path.fractions)
+    cycle = sum(ways)
+    sides: list[Sides] = []
+
+    def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
+        nonlocal load
+        if strain == 0 and load == Q:  # nothing moves
+            sides.append(before.sides)
+            zero = 0 * bound
+            return replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0), bound
+        load = Q
+        free = tangential @ before.x + strain * stretch
+        near = sides[-cycle] if len(sides) >= first + cycle else before.sides  # this step a cycle ago is the nearest
+        found = solve_bounded(tangential, free, -bound, bound, Q, near)
+        sides.append(found.sides)
+        return found, bound
+
+    return follow(path, advance, resting(0 * bound if path.before is None else path.before))
+
+
+Advance = Callable[[Solution, float, float], tuple[Solution, Array]]
+
+
+def resting(forces: Array) -> Solution:
+    """A solution that is only its tangential ``forces`` (n,)."""
+    zero = 0 * forces
+    return Solution(forces, zero, zero, 0.0, 0)
+
+
+def follow(path: Path, advance: Advance, before: Solution) -> History:
+    """Go along the path, step by step: to its last load point, and then cycle after cycle, until one has changed
+    nothing (what comes then is that cycle again) or all of them are done. Half a cycle is the first of these steps.
+
+    ``advance`` takes the solution before a step, Q after it and the increment of the free relative strain to the
+    solution after it, whose ``rest`` is the slip, turned round; and f times the normal forces after it.
+    """
+    first, *ways = path.fractions
+    load = np.array(path.begin)
+    went = [_go(advance, before, load, np.array(path.cycle[-1]), first)]
+    points, taken = [certified([step for step, _ in went[0]])], len(first)
+    if path.half:
+        return _reversed(path, points[0], went[0])
+    for _ in range(path.cycles):
+        went = []
+        for start, end, fractions in zip((path.cycle[-1], *path.cycle), path.cycle, ways, strict=False):
+            went.append(_go(advance, points[-1], np.array(start), np.array(end), fractions))
+            points.append(certified([step for step, _ in went[-1]]))
+            taken += len(fractions)
+        if np.abs(points[-1].x - points[-1 - len(went)].x).max() <= _REPEATS * np.abs(points[-1].x).sum():
+            break
+    steps = [step for way in went for step, _ in way]
+    ends = [way[-1] for way in went]
+    slips = np.cumsum([sum(-step.rest for step, _ in way) for way in went], axis=0)
+    (q1, bound1), (q2, bound2) = ((ends[end][0].x, ends[end][1]) for end in path.ends)
+    forces = np.array([step.x for step in steps])
+    return History(
+        path=path,
+        points=points,
+        at_ends=(q1, q2),
+        q1=q1 if path.in_phase else forces.min(axis=0),
+        q2=q2 if path.in_phase else forces.max(axis=0),
+        bounds=(bound1, bound2),
+        slip=slips[path.ends[1]] - slips[path.ends[0]],
+        net_slip=slips[-1],
+        dissipated=-sum(float(step.x @ step.rest) for step in steps),
+        end=(ends[-1][0].x, ends[-1][1]),
+        load_steps=taken,
+    )
+
+
+def _reversed(path: Path, first: Solution, went: "_Way") -> History:
+    """The cycle that a first loading to load point 2 tells: on the way from 1 to 2 all is doubled (Masing's rule)."""
+    forces, slip, bound = first.x, -2 * np.sum([step.rest for step, _ in went], axis=0), went[-1][1]
+    way = replace(first, rest=-slip, iterations=0, changes=0)
+    return History(
+        path=path,
+        points=[first, replace(way, x=-forces, rest=-way.rest), way],
+        at_ends=(-forces, forces),
+        q1=-forces,
+        q2=forces,
+        bounds=(bound, bound),
+        slip=slip,
+        net_slip=0 * slip,
+        dissipated=2 * float(forces @ slip),
+        end=(forces, bound),
+        load_steps=len(went),
+    )
+
+
+_Way = list[tuple[Solution, Array]]
+
+
+def _go(advance: Advance, before: Solution, start: Array, end: Array, fractions: tuple[float, ...]) -> _Way:
+    """The steps from the loads at ``start`` to those at ``end``."""
+    before = resting(before.x)  # the loads turn: what slips now says nothing of what will
+    load, way = start, list[tuple[Solution, Array]]()
+    for fraction in fractions:
+        next_load = start + fraction * (end - start) if fraction < 1 else end
+        before, bound = advance(before, float(next_load[0]), float(next_load[1] - load[1]))
+        way.append((before, bound))
+        load = next_load
+    return way
+
+
+def certified(steps: Sequence[Solution]) -> Solution:
+    """The last of some steps' solutions, with the residuals and the work of all of them."""
+    return replace(
+        steps[-1],
+        residual=np.maximum.reduce([step.residual for step in steps]),
+        imbalance=max(step.imbalance for step in steps),
+        iterations=sum(step.iterations for step in steps),
+        changes=sum(step.changes for step in steps),
+    )
+
+
+def certificate(history: History, weights: Array, f: float, p0: float) -> dict[str, float]:
+    """``kkt``: residuals as tractions, in f p0; ``equilibrium``: of Q, relative to f P. ``weights`` (n,) turn tractions
+    into forces."""
+    return {
+        "kkt": max(float((step.residual / (weights * f * p0)).max()) for step in history.points),
+        "equilibrium": max(step.imbalance for step in history.points) / f,
+    }
+
+
+def last_cycle_change(history: History, weights: Array, f: float, p0: float) -> float | None:
+    """Largest change of q between the last two visits of the last load point, in f p0; None where no whole cycle has
+    been followed. ``weights`` (n,) turn tractions into forces."""
+    if history.path.half:
+        return None
+    last, before = history.points[-1].x, history.points[-1 - len(history.path.cycle)].x
+    return float((np.abs(last - before) / (weights * f * p0)).max())

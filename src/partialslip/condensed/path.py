@@ -1,0 +1,76 @@
+"""The path of the loads, scaled: lengths by sqrt(A R P), forces by P, displacements by A P."""
+
+import itertools
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.plan import Plan
+from partialslip.result.state import State
+from partialslip.scene import Scene
+
+
+@dataclass(frozen=True)
+class Path:
+    """Where the loads go: (Q, relative strain of the surfaces due to bulk tension) at the points of a cycle, scaled.
+
+    ``ends`` are the indices of load points 1 and 2, the extremes of the cycle. The path begins at ``begin``, with the
+    tangential forces ``before`` (n,); without those there are none. Of one that is fully reversed, from nothing on, and
+    on whose way no slip turns round, ``half`` a cycle will do: the first loading.
+
+    ``substeps`` is the least number of steps from each point to the next. ``ways`` are the steps that are taken, as
+    ascending fractions of the way up to 1: to the last point at first, and then to each point of the cycle. Without
+    them they are ``substeps`` equal ones.
+    """
+
+    cycle: tuple[tuple[float, float], ...]
+    ends: tuple[int, int]
+    in_phase: bool
+    cycles: int
+    substeps: int
+    begin: tuple[float, float] = (0.0, 0.0)
+    before: Array | None = None
+    half: bool = False
+    ways: tuple[tuple[float, ...], ...] = ()
+
+    @property
+    def fractions(self) -> tuple[tuple[float, ...], ...]:
+        """``ways``, or equal steps."""
+        equal = tuple(np.linspace(0, 1, self.substeps + 1)[1:].tolist())
+        return self.ways or (equal,) * (1 + len(self.cycle))
+
+    @property
+    def halved(self) -> "Path":
+        """The path with every step in two."""
+        middles = (
+            [(before + after) / 2 for before, after in itertools.pairwise([0.0, *way])] for way in self.fractions
+        )
+        ways = (tuple(sorted([*way, *middle])) for way, middle in zip(self.fractions, middles, strict=True))
+        return replace(self, ways=tuple(ways), half=False)
+
+    @property
+    def moves(self) -> bool:
+        """Whether any load changes."""
+        return len({self.begin, *self.cycle}) > 1
+
+    @property
+    def most_steps(self) -> int:
+        """The largest number of steps from one load point to the next."""
+        return max(len(way) for way in self.fractions)
+
+
+def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | None:
+    """The path of the loads, from ``start`` if there is one, scaled; None where there is no friction to solve."""
+    if not plan.needs("friction"):
+        return None
+    P, load = scene.P, scene.load
+    begins = (start.Q, start.sigma) if start else (0.0, 0.0)
+    begin, *cycle = ((Q / P, lower_strain(scene, sigma)) for Q, sigma in (begins, *load.points))
+    half = start is None and not plan.needs("history")
+    return Path(tuple(cycle), load.ends, load.in_phase, load.cycles, load.steps, begin, half=half)
+
+
+def lower_strain(scene: Scene, sigma: float) -> float:
+    """Of a long body under the tension ``sigma``, scaled."""
+    return scene.material.bodies[0].A / scene.material.A * sigma * scene.length / (4 * scene.P)

@@ -1,0 +1,64 @@
+"""The regime that a history ends in, and what must be said of it."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from partialslip.bars import BARS
+from partialslip.condensed.ends import Zone
+from partialslip.condensed.history import STEADY, History
+from partialslip.result import FRICTIONLESS, Regime
+from partialslip.scene import Scene
+
+_RATCHETS = 1e-3  # net slip of a cycle, in the slip of half a cycle, that counts where q has settled
+
+
+class SteadyState(NamedTuple):
+    """Regime, the stick zone's centre and half-width (None where nothing sticks), and what must be said of them."""
+
+    regime: Regime
+    centre: float | None
+    half_width: float | None
+    notes: tuple[str, ...]
+
+
+def steady_state(
+    scene: Scene, history: History | None, stick: Zone | None, half_width: float, pressed: bool = False
+) -> SteadyState:
+    """What it means that the stick zone of ``scene`` has been found to be ``stick`` (None: there was no friction to
+    solve), in a contact of ``half_width``; lengths in any one unit. ``pressed`` says that coupled bodies slipped while
+    they were pressed, that no other load acts, and that what stuck all through is the stick zone."""
+    load = scene.load
+    if scene.free:
+        return SteadyState("frictionless", None, None, (FRICTIONLESS,))
+    if scene.slides:
+        note = "the contact slides: |Q| >= f P at a load point; there is no steady partial slip"
+        return SteadyState("sliding", None, None, (note,))
+    if pressed and stick:
+        note = "no load but P acts: the stick zone is where the surfaces have stuck since they touched"
+        return SteadyState("pressing", (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, (note,))
+    if history is None or stick is None or (load.dQ == 0 and load.dsigma == 0):  # nothing changes: all of it sticks
+        return SteadyState("stuck", 0.0, half_width, ())
+    notes: tuple[str, ...] = ()
+    if stick.left == stick.right:
+        notes = ("the stick zone is smaller than an element: m and n are where the slip turns round",)
+    regime: Regime = "small tension" if stick.signs[0] == stick.signs[1] else "large tension"
+    if not load.in_phase:
+        regime = "out of phase"
+    if history.repeats and history.ratchets > _RATCHETS:
+        regime = "ratchets"
+        notes += (
+            "tractions repeat, slip does not: every cycle adds up to "
+            f"{history.ratchets:.1g} times the slip of half a cycle",
+        )
+    return SteadyState(regime, (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, notes)
+
+
+def doubts(change: float | None, errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:
+    """Notes on an accuracy that was not reached, and on q that still changed in the last cycle."""
+    notes: tuple[str, ...] = ()
+    if beyond := {key: error for key, error in errors.items() if error > BARS[key] * accuracy}:
+        known = ", ".join(f"{key} {error:.1e}" for key, error in beyond.items())
+        notes += (f"accuracy {accuracy:g} not reached: estimated errors are {known} (ends in a, tractions relative)",)
+    if change is not None and change > max(accuracy, STEADY):
+        notes += (f"not steady: q changed by {change:.1e} f p0 in the last cycle; take more of them (load.cycles)",)
+    return notes

@@ -1,0 +1,60 @@
+"""Tractions of the half-planes at any points: plain data, from which they are computed. SI units."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.halfplane.contact import Contact
+from partialslip.halfplane.levels import Levels
+from partialslip.halfplane.loading import Loading
+
+
+@dataclass(frozen=True)
+class ExactTractions:
+    """Tractions of the steady state in closed form: the contact ``pressed``, the coefficient of friction ``f``, the
+    change of shear traction over half a ``cycle`` (None where nothing sticks) and the shear tractions at the load
+    points, ``levels`` (None where no closed form has them)."""
+
+    pressed: Contact
+    f: float
+    cycle: Loading | None
+    levels: Levels | None
+
+    def change(self, x: Array) -> tuple[Array, Array]:
+        """p and dq at ``x`` (m), Pa; zero outside the contact."""
+        p = self.pressed.pressure(x)
+        return p, self._unit * self.cycle.traction(x / self.pressed.a) if self.cycle else np.zeros_like(p)
+
+    def at_load_points(self, x: Array) -> tuple[Array, Array]:
+        """q1 and q2 at ``x`` (m), Pa; zero outside the contact."""
+        assert self.levels
+        q1, q2 = self.levels.at(x / self.pressed.a)
+        return self._unit * q1, self._unit * q2
+
+    @property
+    def _unit(self) -> float:
+        return self.f * self.pressed.p0
+
+
+@dataclass(frozen=True)
+class CellTractions:
+    """The exact pressure of the contact ``pressed``, and shear tractions ``q1`` and ``q2`` (c,), Pa, constant on cells
+    between ``vertices`` (c + 1,), fractions of a."""
+
+    pressed: Contact
+    vertices: Array
+    q1: Array
+    q2: Array
+
+    def change(self, x: Array) -> tuple[Array, Array]:
+        """p and dq at ``x`` (m), Pa; zero outside the contact."""
+        before, after = self.at_load_points(x)
+        return self.pressed.pressure(x), after - before
+
+    def at_load_points(self, x: Array) -> tuple[Array, Array]:
+        """q1 and q2 at ``x`` (m), Pa; zero outside the contact."""
+        scaled = x / self.pressed.a
+        cell = np.clip(np.searchsorted(self.vertices, scaled) - 1, 0, len(self.q1) - 1)
+        inside = np.abs(scaled) <= 1
+        return np.where(inside, self.q1[cell], 0.0), np.where(inside, self.q2[cell], 0.0)

@@ -1,0 +1,88 @@
+"""The live page: one self-contained HTML file. Its mechanics are in ``hertz.js``, beside this file."""
+
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.errors import InputError
+from partialslip.map.grid import Line, StickMap, stick_map
+from partialslip.output.labels import label_places
+from partialslip.output.template import template
+from partialslip.report import rows
+from partialslip.scene import Hertz, Scene
+
+_SHAPE = 1.5  # of the map on the page, width over height, for which lines are labelled
+_NAMES = np.array([(0.05, 0.94), (0.12, 0.94), (0.19, 0.94), (0.8, 0.03), (0.88, 0.03), (0.96, 0.03)])  # of the regimes
+_ROUNDED = 5  # digits after the point of the map's lines
+
+
+def live_page(scene: Scene) -> str:
+    """The page of ``scene`` as HTML: tractions and stick zone under loads that are moved, beginning with the scene's.
+
+    Raises
+    ------
+    InputError
+        If the profile is not ``hertz``, there is no friction, Q and sigma are out of phase, or the bodies' materials
+        differ.
+    """
+    if not isinstance(scene.profile, Hertz):
+        kind = type(scene.profile).__struct_config__.tag
+        raise InputError(f'profile.kind = "{kind}": must be "hertz" for a live page, which has its closed form only')
+    if not scene.load.in_phase:
+        raise InputError("load.sigma: out of phase with load.Q; a live page is for loads in phase")
+    return (
+        template("partialslip.live", "live.html").render(data=_data(scene), rows=rows, version=version("partialslip"))
+        + "\n"
+    )
+
+
+def _data(scene: Scene) -> dict[str, Any]:
+    """What the page knows of the scene; SI units, but for the map's lines."""
+    found = stick_map(scene)
+    assert found.pressed
+    pressed, load, f = found.pressed, scene.load, scene.friction.f
+    return {
+        "name": scene.name,
+        "title": scene.title,
+        "a": pressed.a,
+        "p0": pressed.p0,
+        "P": pressed.P,
+        "f": f,
+        "most_friction": max(1.5, 2 * f),
+        "dQ": load.dQ,
+        "dsigma": load.dsigma,
+        "Q_mean": load.Q_mean,
+        "map": _lines(found),
+    }
+
+
+def _lines(found: StickMap) -> dict[str, Any]:
+    """Lines of equal m and n and the border between the regimes, by (Qf, sf), each with the place of its label."""
+    top = float(found.grid.sf.max())
+    border, lines = _points(found.border, top), [_points(line, top) for line in (*found.m_lines, *found.n_lines)]
+    paper = np.array([_SHAPE, 1 / top])
+    avoided = np.vstack([border, _NAMES * (1, top)])
+    labelled = [
+        {"value": line.at, "points": _listed(points), "label": None if place is None else _listed(place[0] / paper)}
+        for line, points, place in zip(
+            (*found.m_lines, *found.n_lines),
+            lines,
+            label_places([points * paper for points in lines], avoided * paper, _SHAPE),
+            strict=True,
+        )
+    ]
+    count = len(found.m_lines)
+    return {"m": labelled[:count], "n": labelled[count:], "border": _listed(border), "top": top}
+
+
+def _points(line: Line, top: float) -> Array:
+    """(k, 2), as far as they are on the map and a little beyond."""
+    on = (line.Qf <= 1) & (line.sf <= 1.5 * top)
+    return np.column_stack([line.Qf[on], line.sf[on]])
+
+
+def _listed(points: Array) -> list[Any]:
+    listed: list[Any] = points.round(_ROUNDED).tolist()
+    return listed

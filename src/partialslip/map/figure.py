@@ -1,0 +1,79 @@
+"""The figures of the stick-zone map, legible in black and white: m/a solid, n/a dashed."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.map.grid import StickMap
+from partialslip.output.labels import label_lines
+from partialslip.output.svg import svg
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_STRIP = 0.025  # of sliding, beyond dQ = 2 f P
+
+
+def map_svg(data: StickMap) -> str:
+    """m/a and n/a over dQ/(2 f P) and dsigma/(f p0)."""
+
+    def draw(figure: "Figure") -> None:
+        axes = figure.subplots()
+        axes.set(xlabel="ΔQ/(2 f P)", ylabel="Δσ/(f p0)", xlim=(0, 1 + _STRIP), ylim=(0, data.grid.sf.max()))
+        axes.plot([], color="black", lw=1, label="m/a, stick from -m")
+        axes.plot([], color="black", lw=1, ls="--", label="n/a, stick to n")
+        axes.plot(*data.border[1:], color="black", lw=2.8, label="m = a: large tension above,\nsmall tension below")
+        axes.axvspan(1, 1 + _STRIP, color="0.7", lw=0, label="sliding")
+        avoided = np.column_stack(data.border[1:])  # no label on the border, nor on the scene's loads
+        if data.point:
+            place = data.point.Qf, data.point.sf
+            axes.plot(*place, "*", ms=15, mfc="white", mec="black", clip_on=False, zorder=5, label="the scene's loads")
+            avoided = np.vstack([avoided, place])
+        axes.tick_params(pad=9)  # a scene without dQ or dsigma is marked on an axis
+        axes.set_title(data.scene.name if data.scene else "hertz", loc="left", fontsize=10)
+        axes.legend(loc="upper left", bbox_to_anchor=(1.03, 1.0), frameon=False)
+        figure.draw_without_rendering()  # labels must know how large the axes are
+        _draw_lines(axes, data, avoided)
+
+    return svg(draw, (7.4, 4.6))
+
+
+def _draw_lines(axes: "Axes", data: StickMap, avoided: Array) -> None:
+    """Lines of equal m and n, labelled."""
+    lines, texts = [], []
+    for of, style, found in (("m", "-", data.m_lines), ("n", "--", data.n_lines)):
+        for at, Qf, sf in found:
+            axes.plot(Qf, sf, color="black", lw=1, ls=style)
+            lines.append(np.column_stack([Qf, sf]))
+            texts.append(f"{of} {at:.1f}".replace("-", "−"))
+    label_lines(axes, lines, texts, avoided)
+
+
+def ends_svg(data: StickMap) -> str:
+    """The ends of the stick zone against dsigma a/dQ, one panel for each constant dQ (the paper's last figure)."""
+
+    def draw(figure: "Figure") -> None:
+        panels = figure.subplots(2, 2, sharex=True, sharey=True)
+        for number, axes in enumerate(panels.flat):
+            _draw_ends(axes, data, number)
+        for axes in panels[1]:
+            axes.set_xlabel("Δσ a/ΔQ")
+        for axes in panels[:, 0]:
+            axes.set_ylabel("x/a")
+        figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside right upper", frameon=False)
+
+    return svg(draw, (7.4, 5.0))
+
+
+def _draw_ends(axes: "Axes", data: StickMap, number: int) -> None:
+    """The stick zone of one of the curves, and where small tension turns large."""
+    Qf, sf, m, n = (values[number] for values in data.curves[:4])
+    ratio, turn = sf / (np.pi * Qf), data.turns.sf[number] / (np.pi * data.turns.Qf[number])
+    axes.fill_between(ratio, -m, n, color="0.88", lw=0, label="stick zone [-m, n]")
+    axes.plot(ratio, n, color="black", lw=1.4, ls="--", label="n/a")
+    axes.plot(ratio, -m, color="black", lw=1.4, label="-m/a")
+    axes.axvline(turn, color="black", lw=1, ls=":", label="from small (left)\nto large tension")
+    axes.set(title=f"ΔQ/(2 f P) = {Qf[0]:g}", xlim=(0, ratio[-1]), ylim=(-1.05, 1.05))
+    axes.title.set_fontsize(10)

@@ -1,0 +1,47 @@
+"""The files of a stick-zone map, and a scene's place on it in words."""
+
+from pathlib import Path
+
+import numpy as np
+
+from partialslip.map.figure import ends_svg, map_svg
+from partialslip.map.grid import StickMap
+from partialslip.output.csv import csv_text
+from partialslip.output.files import write_texts
+from partialslip.report import rows
+
+
+def write_map(data: StickMap, folder: Path) -> list[Path]:
+    """Write map.svg, ends.svg and map.csv of the map ``data`` into ``folder``. Returns the files' paths. Raises
+    InputError if the folder cannot be written.
+    """
+    texts = {"map.svg": map_svg(data), "ends.svg": ends_svg(data), "map.csv": map_csv(data)}
+    return write_texts(folder, texts)
+
+
+def map_csv(data: StickMap) -> str:
+    """The grid's stick zones, one row a point; dQ (N/m) and dsigma (Pa) where there is a scene."""
+    grid = data.grid
+    regime = np.where(grid.s > 0, "small tension", "large tension")
+    regime[(grid.Qf == 0) & (grid.sf == 0)] = "stuck"
+    columns = {"Qf": grid.Qf, "sf": grid.sf}
+    if data.scene and data.pressed:
+        f = data.scene.friction.f
+        columns |= {"dQ": 2 * f * data.pressed.P * grid.Qf, "dsigma": f * data.pressed.p0 * grid.sf}
+    columns |= {"m_over_a": grid.m, "n_over_a": grid.n, "half_width_over_a": grid.half_width}
+    values = (column.ravel().tolist() for column in (*columns.values(), regime))
+    return csv_text([*columns, "regime"], zip(*values, strict=True))
+
+
+def place(data: StickMap) -> list[str]:
+    """Where the scene of the map ``data`` is on it, and its limits, in lines of text; none without a scene."""
+    if data.scene is None:
+        return []
+    name, point = data.scene.name, data.point
+    if point is None:
+        return [f"{name}: not on the map: {data.missing}"]
+    exact, ends = point.exact, ", ".join(f"{key} = {rows.value(point.exact, key)}" for key in ("m", "n"))
+    reached = ", which are not reached" if exact.regime == "ratchets" else ""
+    mirrored = " (dQ and dsigma differ in sign: on the map m and n change places)" if point.mirrored else ""
+    limits = rows.limits(exact)
+    return [f"{name}: {exact.regime}, {ends}{reached}{mirrored}", *([limits] if limits else [])]

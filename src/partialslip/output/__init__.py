@@ -1,0 +1,1 @@
+"""Files, tables, figures and pages: a toolkit that knows no scene, no result and no run."""

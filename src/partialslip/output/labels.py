@@ -1,0 +1,78 @@
+"""Labels on lines, where there is most room for them."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from partialslip.arrays import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# in heights of the axes
+_MARGIN = 0.055  # along the border, without labels
+_PACE = 0.01  # between places for a label
+_ROOM = 0.05  # that a label needs
+_CLEAR = 0.07  # from where no label may be
+_CROSSING = 2.0  # how much closer another line may come than another label
+
+
+def label_lines(axes: "Axes", lines: Sequence[Array], texts: Sequence[str], avoided: Array) -> None:
+    """Write its text on each of ``lines`` (n, 2), where it is farthest from other lines and labels, and clear of the
+    ``avoided`` points (k, 2); none where there is no room. The axes must have their final size."""
+    to_paper = axes.transData - axes.transAxes
+    width = axes.bbox.width / axes.bbox.height
+    scale = np.array([width, 1.0])
+    places = label_places(
+        [to_paper.transform(line) * scale for line in lines], to_paper.transform(avoided) * scale, width
+    )
+    for place, text in zip(places, texts, strict=True):
+        if place is None:
+            continue
+        (x, y), along = place[0] / scale, place[1]
+        axes.text(
+            x,
+            y,
+            text,
+            transform=axes.transAxes,
+            rotation=np.degrees(np.arctan(along[1] / along[0])),
+            ha="center",
+            va="center",
+            fontsize=8,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
+        )
+
+
+def label_places(lines: Sequence[Array], avoided: Array, width: float) -> list[tuple[Array, Array] | None]:
+    """Place and direction (2,) of the label of each line, or None; everything in heights of axes of that ``width``."""
+    shape = np.array([width, 1.0])
+    paced = [_paced(line) for line in lines]
+    paced = [line[((line > 0) & (line < shape)).all(axis=1)] for line in paced]
+    places: list[tuple[Array, Array] | None] = []
+    labels = np.empty((0, 2))
+    for number, line in enumerate(paced):
+        others = np.concatenate([*paced[:number], *paced[number + 1 :]])
+        room = np.minimum(_CROSSING * _distance(line, others), _distance(line, labels))
+        room[((line < _MARGIN) | (line > shape - _MARGIN)).any(axis=1) | (_distance(line, avoided) < _CLEAR)] = 0
+        if room.max(initial=0) < _ROOM:
+            places.append(None)
+            continue
+        best = int(room.argmax())
+        labels = np.vstack([labels, line[best]])
+        places.append((line[best], line[min(best + 1, len(line) - 1)] - line[max(best - 1, 0)]))
+    return places
+
+
+def _paced(line: Array) -> Array:
+    """Points along ``line`` (n, 2), _PACE apart."""
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+    at = np.arange(0.0, way[-1], _PACE)
+    return np.column_stack([np.interp(at, way, along) for along in line.T])
+
+
+def _distance(points: Array, others: Array) -> Array:
+    """Of each of ``points`` (n, 2) to the nearest of ``others`` (k, 2)."""
+    apart = points[:, None] - others
+    result: Array = np.sqrt((apart**2).sum(axis=-1)).min(axis=1, initial=1.0)
+    return result

@@ -1,0 +1,34 @@
+"""The same page on paper: HTML as PDF, by WeasyPrint."""
+
+from pathlib import Path
+from typing import NoReturn
+
+from partialslip.errors import MissingLibraryError
+from partialslip.output.files import write_files
+
+LIBRARIES = "libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
+
+
+def write_pdf(html: str, folder: Path, name: str) -> list[Path]:
+    """Write a self-contained page as the file ``name`` in ``folder``; returns its path.
+
+    Raises
+    ------
+    MissingLibraryError
+        If WeasyPrint, or a system library that it needs, is not there.
+    InputError
+        If the folder cannot be written.
+    """
+    try:
+        from weasyprint import HTML
+    except ImportError:
+        raise MissingLibraryError(f"{name} needs WeasyPrint: pip install 'partialslip[pdf]'") from None
+    except OSError:
+        raise MissingLibraryError(f"{name} needs libraries of Pango: apt-get install {LIBRARIES}") from None
+    page = HTML(string=html, url_fetcher=_refuse)
+    return write_files(folder, {name: page.write_pdf})
+
+
+def _refuse(url: str, *_: object, **__: object) -> NoReturn:
+    """Everything is in the page: nothing is fetched."""
+    raise ValueError(f"{url}: not fetched")

@@ -1,0 +1,143 @@
+"""A run as plain data: what ``results.json`` holds. Its types are the file's schema."""
+
+import platform
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from partialslip.errors import InputError
+from partialslip.inputfile import read_bytes
+from partialslip.judge import Comparison, Outcome, Verdict
+from partialslip.output.json import json_text
+from partialslip.plan import Effect, Plan
+from partialslip.result.record import Number, ResultRecord, number
+from partialslip.run import Run
+from partialslip.scene import Scene
+
+SCHEMA = "partialslip/result/3"
+_LARGEST = 500_000_000  # bytes of a file that is read back
+_PACKAGES = ("partialslip", "numpy", "scipy", "scikit-fem", "gmsh", "meshio")
+
+
+class PlanRecord(msgspec.Struct, frozen=True):
+    """Effects that the scene calls for, that are left out, and that are called for and forced off; the reason of
+    each."""
+
+    called_for: tuple[Effect, ...]
+    left_out: tuple[Effect, ...]
+    missing: tuple[Effect, ...]
+    reasons: dict[Effect, str]
+
+    @classmethod
+    def of(cls, plan: Plan) -> "PlanRecord":
+        """The record of ``plan``."""
+        return cls(
+            called_for=tuple(plan.called_for),
+            left_out=tuple(plan.left_out),
+            missing=tuple(plan.missing),
+            reasons={**plan.called_for, **plan.left_out},
+        )
+
+
+class ComparisonRecord(msgspec.Struct, frozen=True):
+    """A :class:`partialslip.Comparison`: ``errors`` and ``bars`` by quantity, and the verdicts that they are from."""
+
+    outcome: Outcome
+    errors: dict[str, Number]
+    p_nodal: Number
+    q_nodal: Number
+    p_nodal_max: Number
+    q_nodal_max: Number
+    bars: dict[str, Number]
+    missed: tuple[str, ...]
+    verdicts: tuple[Verdict, ...]
+    conditions: tuple[Verdict, ...]
+
+    @classmethod
+    def of(cls, comparison: Comparison) -> "ComparisonRecord":
+        """The record of ``comparison``."""
+        return cls(
+            outcome=comparison.outcome,
+            errors={key: number(error) for key, error in comparison.errors.items()},
+            p_nodal=number(comparison.p_nodal),
+            q_nodal=number(comparison.q_nodal),
+            p_nodal_max=number(comparison.p_nodal_max),
+            q_nodal_max=number(comparison.q_nodal_max),
+            bars={key: number(bar) for key, bar in comparison.bars.items()},
+            missed=comparison.missed,
+            verdicts=tuple(verdict.finite for verdict in comparison.verdicts),
+            conditions=tuple(verdict.finite for verdict in comparison.conditions),
+        )
+
+
+class Record(msgspec.Struct, frozen=True):
+    """Everything that a run found: the content of ``results.json``. SI units.
+
+    ``outcome`` is the verdict on the whole run, ``missed`` says in words what is missed, ``reference`` names the method
+    that others are compared with. ``methods`` and ``comparison`` are by method; ``versions`` are those of the packages
+    that the figures depend on.
+    """
+
+    schema: str
+    outcome: Outcome
+    reference: str | None
+    missed: tuple[str, ...]
+    scene: Scene
+    plan: PlanRecord
+    methods: dict[str, ResultRecord]
+    comparison: dict[str, ComparisonRecord]
+    versions: dict[str, str]
+
+    @property
+    def json(self) -> str:
+        """The record as JSON."""
+        return json_text(self)
+
+
+def record(run: Run, *, curves: bool = True) -> Record:
+    """The record of ``run``; with ``curves`` (tractions, slip, stresses along the surfaces), or without."""
+    return Record(
+        schema=SCHEMA,
+        outcome=run.outcome,
+        reference=run.reference,
+        missed=run.missed,
+        scene=run.scene,
+        plan=PlanRecord.of(run.plan),
+        methods={name: ResultRecord.of(result, curves) for name, result in run.results.items()},
+        comparison={name: ComparisonRecord.of(comparison) for name, comparison in run.comparisons.items()},
+        versions=versions(),
+    )
+
+
+def load_result(path: str | Path) -> Record:
+    """Read what a run has written to ``path``, a ``results.json``.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or is none of this version's.
+    """
+    text = read_bytes(path, _LARGEST)
+    try:
+        found = msgspec.json.decode(text, type=_Schema).schema
+        if found != SCHEMA:
+            raise InputError(f"{path}: schema {found!r}: must be {SCHEMA!r}; run the scene again")
+        return msgspec.json.decode(text, type=Record)
+    except (msgspec.DecodeError, msgspec.ValidationError, UnicodeDecodeError, RecursionError) as error:
+        raise InputError(f"{path}: must be a results.json that partialslip has written: {error}") from None
+
+
+class _Schema(msgspec.Struct):
+    schema: str = ""
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema (draft 2020-12) of ``results.json``."""
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(Record)}
+
+
+def versions() -> dict[str, str]:
+    """Versions of what the figures depend on."""
+    return {"python": platform.python_version(), **{package: version(package) for package in _PACKAGES}}

@@ -1,3 +1,0 @@
-"""The live page: the steady state of Hertz's contact, calculated in the browser."""
-
-from partialslip.report.live.page import live_page as live_page

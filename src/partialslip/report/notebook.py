@@ -1,0 +1,32 @@
+"""What a notebook's cell shows: the tables of the page, and the plot of the tractions."""
+
+from typing import TYPE_CHECKING
+
+from partialslip.judge import Comparison
+from partialslip.output.template import template
+from partialslip.report import rows
+from partialslip.report.figure import draw_run, draw_tractions
+from partialslip.result import Result
+from partialslip.run import Run
+from partialslip.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def html(what: Scene | Result | Comparison | Run) -> str:
+    """The tables of ``what``."""
+    return template("partialslip.report", "notebook.html").render(kind=type(what).__name__, what=what, rows=rows)
+
+
+def plot(what: Result | Run, axes: "Axes | None" = None) -> "Axes":
+    """The tractions of ``what`` on ``axes``, or on those of a new figure of pyplot."""
+    if axes is None:
+        from matplotlib import pyplot
+
+        axes = pyplot.subplots(layout="constrained")[1]
+    if isinstance(what, Result):
+        draw_tractions(axes, {what.method: what})
+    else:
+        draw_run(axes, what)
+    return axes

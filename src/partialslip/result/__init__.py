@@ -1,0 +1,13 @@
+"""What a method hands over: plain data, the same types from every method."""
+
+from partialslip.result.cost import Clock as Clock
+from partialslip.result.cost import Cost as Cost
+from partialslip.result.fields import DeformedBody as DeformedBody
+from partialslip.result.fields import Slip as Slip
+from partialslip.result.fields import SurfaceStress as SurfaceStress
+from partialslip.result.result import FRICTIONLESS as FRICTIONLESS
+from partialslip.result.result import Regime as Regime
+from partialslip.result.result import Result as Result
+from partialslip.result.state import State as State
+from partialslip.result.state import load_state as load_state
+from partialslip.result.traction import Traction as Traction

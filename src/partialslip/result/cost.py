@@ -1,0 +1,75 @@
+"""What a method costs: CPU and wall seconds, and memory."""
+
+import math
+import sys
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+from partialslip.allowance import Allowance
+
+try:
+    import resource
+except ImportError:  # Windows
+    resource = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True)
+class Cost:
+    """CPU and wall seconds, ``cpu_s`` and ``wall_s``; peak resident memory of this process, ``peak_rss_mb`` (None where
+    the system does not tell); CPU seconds by phase, ``phases``; ``meshing_cpu_s``, the CPU seconds of ``cpu_s`` that
+    the process which makes meshes took."""
+
+    cpu_s: float
+    wall_s: float
+    peak_rss_mb: float | None
+    phases: Mapping[str, float] = field(default_factory=dict)
+    meshing_cpu_s: float = 0.0
+
+
+class Clock:
+    """Counts what a method costs, phase by phase, and what is left of its ``allowance``, if it has one."""
+
+    def __init__(self, allowance: Allowance | None = None) -> None:
+        self._allowance = allowance
+        self._cpu, self._wall = time.process_time(), time.perf_counter()
+        self._meshing = 0.0
+        self.phases: dict[str, float] = {}
+
+    @contextmanager
+    def phase(self, name: str) -> Iterator[None]:
+        """Add the CPU seconds of the block to phase ``name``."""
+        start = time.process_time()
+        try:
+            yield
+        finally:
+            self.phases[name] = self.phases.get(name, 0.0) + time.process_time() - start
+
+    def add_meshing(self, seconds: float) -> None:
+        """Add CPU seconds of the process that makes meshes to phase "mesh"."""
+        self.phases["mesh"] = self.phases.get("mesh", 0.0) + seconds
+        self._meshing += seconds
+        if self._allowance:
+            self._allowance.spend(seconds)
+
+    @property
+    def limited(self) -> bool:
+        """Whether there is an allowance."""
+        return self._allowance is not None
+
+    def remaining(self) -> float:
+        """CPU seconds that may still be spent; infinite without an allowance."""
+        return self._allowance.remaining() if self._allowance else math.inf
+
+    def cost(self) -> Cost:
+        """What it has cost up to now."""
+        own, wall = time.process_time() - self._cpu, time.perf_counter() - self._wall
+        return Cost(own + self._meshing, wall, _peak_rss_mb(), self.phases, self._meshing)
+
+
+def _peak_rss_mb() -> float | None:
+    if resource is None:
+        return None
+    peak: int = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # bytes on macOS, kilobytes elsewhere
+    return peak / (1024**2 if sys.platform == "darwin" else 1024)

@@ -1,0 +1,90 @@
+"""The state that a history leaves behind: what the contact remembers, to go on from. SI units."""
+
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import PPoly
+
+from partialslip.arrays import Array
+from partialslip.errors import InputError
+from partialslip.inputfile import check_regular
+from partialslip.scene import Scene
+
+_ARRAYS = ("loads", "cells", "p", "q")
+_LARGEST = 100_000_000  # bytes of a file, and of the arrays in it
+_HELD = 1e-6  # relative to P, how far a solver may be from equilibrium
+_SAME = 1e-9  # relative difference of P and A that is rounding
+
+
+@dataclass(frozen=True)
+class State:
+    """Loads and tractions at one moment. Under a constant normal force the shear traction is all that remains of the
+    loads before.
+
+    Parameters
+    ----------
+    P, A : float
+        Normal force, N/m, and compliance of the pair, 1/Pa: those of the scene it is from.
+    Q, sigma : float
+        Tangential force, N/m, and differential bulk tension, Pa.
+    p, q : PPoly
+        Tractions, Pa, over the cells of the contact line, m.
+    """
+
+    P: float
+    A: float
+    Q: float
+    sigma: float
+    p: PPoly
+    q: PPoly
+
+    def check(self, scene: Scene) -> None:
+        """Raise InputError if ``scene`` cannot go on from here: at another P, or of other bodies."""
+        for name, mine, its in (("P", self.P, scene.P), ("A", self.A, scene.material.A)):
+            if abs(mine - its) > _SAME * abs(its):
+                raise InputError(f"state: is of {name} = {mine:.10g}; this scene has {its:.10g}")
+
+    def save(self, path: Path) -> None:
+        """Write an .npz file to ``path``."""
+        loads = np.array([self.P, self.A, self.Q, self.sigma])
+        with path.open("wb") as file:
+            np.savez(file, loads=loads, cells=self.q.x, p=self.p.c, q=self.q.c)
+
+
+def load_state(path: str | Path) -> State:
+    """Read what :meth:`State.save` has written to ``path``.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or holds no state, or tractions that are not in equilibrium with the loads.
+    """
+    check_regular(path, _LARGEST)
+    try:
+        with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            if sum(part.file_size for part in file.zip.infolist()) > _LARGEST:
+                raise ValueError
+            arrays = {name: file[name].astype(float, casting="safe") for name in _ARRAYS}
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except (KeyError, ValueError, EOFError, AttributeError, TypeError, MemoryError, zipfile.BadZipFile):
+        raise InputError(f"{path}: not a state that partialslip has saved") from None
+    loads, cells, p, q = (arrays[name] for name in _ARRAYS)
+    if not _sound(loads, cells, p, q):
+        raise InputError(f"{path}: not a state that partialslip has saved")
+    P, A, Q, sigma = loads.tolist()
+    state = State(P, A, Q, sigma, PPoly(p, cells), PPoly(q, cells))
+    held = [float(traction.integrate(cells[0], cells[-1])) for traction in (state.p, state.q)]
+    if not np.allclose(held, (P, Q), rtol=0.0, atol=_HELD * abs(P)):
+        raise InputError(f"{path}: its tractions hold P = {held[0]:g} and Q = {held[1]:g}, not {P:g} and {Q:g}")
+    return state
+
+
+def _sound(loads: Array, cells: Array, *coefficients: Array) -> bool:
+    if not all(np.isfinite(array).all() for array in (loads, cells, *coefficients)):
+        return False
+    line = cells.ndim == 1 and len(cells) > 1 and cells[0] < 0 < cells[-1] and bool((np.diff(cells) > 0).all())
+    shapes = line and all(c.ndim == 2 and len(c) >= 1 and c.shape[1] == len(cells) - 1 for c in coefficients)
+    return loads.shape == (4,) and shapes

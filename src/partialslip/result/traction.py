@@ -1,0 +1,65 @@
+"""Tractions along the contact."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from partialslip.arrays import Array
+
+
+@dataclass(frozen=True)
+class Traction:
+    """Tractions over the contact line.
+
+    Parameters
+    ----------
+    x : (n,) array
+        Points, ascending, m.
+    p, dq : (n,) arrays
+        Pressure and the change of shear traction q2 - q1, Pa.
+    q1, q2 : (n,) arrays or None
+        Shear traction at load points 1 and 2, Pa. None where the method determines the change only (with
+        mean loads a closed form cannot know what the first cycles lock in). Where Q and sigma are out of phase,
+        the least and the largest of the last cycle.
+    at : callable
+        ``at(x) -> (p, dq)``: tractions at any points, as this method represents them; zero outside the contact.
+    breaks : (k,) array
+        Points where the tractions are not smooth (ends of the contact and of the stick zone), m.
+    cells : (c + 1,) array or None
+        The ends of the cells (contact edges) that the method's accuracy is judged on, m; None if it has none.
+    levels_at : callable or None
+        ``levels_at(x) -> (q1, q2)`` at any points, zero outside the contact; None where ``q1`` and ``q2`` are.
+    p1 : (n,) array or None
+        Pressure at load point 1, Pa, where it differs from ``p``, which is that at load point 2.
+    pressures_at : callable or None
+        ``pressures_at(x) -> (p1, p2)`` at any points; None where the pressure is the same at both load points.
+    """
+
+    x: Array
+    p: Array
+    dq: Array
+    q1: Array | None
+    q2: Array | None
+    at: Callable[[Array], tuple[Array, Array]]
+    breaks: Array
+    cells: Array | None = None
+    levels_at: Callable[[Array], tuple[Array, Array]] | None = None
+    p1: Array | None = None
+    pressures_at: Callable[[Array], tuple[Array, Array]] | None = None
+
+    @property
+    def p_max(self) -> float:
+        """The largest pressure, Pa: of the parabola through the largest value and those beside it, as points need not
+        fall on the top."""
+        if len(self.x) < 3:
+            return float(self.p.max())
+        near = np.clip(int(self.p.argmax()), 1, len(self.x) - 2) + np.array([-1, 0, 1])
+        x, p = self.x[near], self.p[near]
+        if np.diff(x).min() <= 0:
+            return float(p.max())
+        before, after = np.diff(p) / np.diff(x)
+        bend = (after - before) / (x[2] - x[0])
+        slope = before + bend * (x[1] - x[0])
+        rise = -(slope**2) / (4 * bend) if bend < 0 and abs(slope) < -bend * (x[2] - x[0]) else 0.0
+        return float(max(p.max(), p[1] + rise))

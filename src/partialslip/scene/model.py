@@ -1,0 +1,113 @@
+"""The scene as a whole. Signs: positive ``dQ`` and positive ``dsigma`` add up at x -> +a, so that the stick zone moves
+towards -a."""
+
+import math
+from typing import Annotated
+
+import msgspec
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.errors import InputError
+from partialslip.scene.bodies import Bodies
+from partialslip.scene.limits import LARGEST, NO_TEXT, SMALLEST, STEEPEST
+from partialslip.scene.loads import Load
+from partialslip.scene.materials import Material
+from partialslip.scene.profiles import Hertz, Profile
+from partialslip.scene.settings import Effects, Fem
+from partialslip.scene.table import Table
+
+
+class Friction(Table, frozen=True, kw_only=True):
+    """Coulomb friction with the coefficient ``f``: |q| <= f p. Without friction (f = 0) any tangential load slides."""
+
+    f: Annotated[float, msgspec.Meta(ge=0, le=1000)]
+
+
+class Scene(Table, frozen=True, kw_only=True):
+    """A whole scene file, whose keys docs/reference/scene.md lists; :func:`partialslip.load_scene` reads one, and
+    :func:`partialslip.parse_scene` makes one from nested tables. Both check it, the constructor does not.
+
+    Its ``name`` (letters, digits, ".", "_" and "-") and ``title``, and the tables ``material``, ``profile``, ``load``,
+    ``friction``, ``bodies``, ``fem`` and ``effects``.
+    """
+
+    name: Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*\Z", max_length=100)]
+    material: Material
+    profile: Profile
+    load: Load
+    friction: Friction
+    title: Annotated[str, msgspec.Meta(pattern=rf"^[^{NO_TEXT}]*\Z", max_length=200)] = ""
+    bodies: Bodies = Bodies()
+    fem: Fem = Fem()
+    effects: Effects = Effects()
+
+    def __post_init__(self) -> None:
+        given = [key for key in ("P", "a", "p0") if getattr(self.load, key) is not None]
+        if len(given) != 1:
+            raise InputError(f"load: exactly one of P, a, p0 must be given, not {' and '.join(given) or 'none'}")
+        if given != ["P"] and not isinstance(self.profile, Hertz):
+            raise InputError(f"load.{given[0]}: only for the profile hertz; give load.P")
+        try:
+            derived = self.P, self.length
+        except (OverflowError, ZeroDivisionError):
+            derived = math.nan, math.nan
+        if not all(SMALLEST <= value <= LARGEST for value in derived):
+            raise InputError(f"load.{given[0]} = {getattr(self.load, given[0])!r}: out of range with this E and R")
+        for name, body in self.bodies:
+            if body.kind == "pad" and body.width is not None and body.height is not None:
+                self._check_pad(name, body.width, body.height)
+
+    def _check_pad(self, name: str, width: float, height: float) -> None:
+        if not width <= 2 * self.profile.widest:
+            raise InputError(f"{name}.width = {width}: must be <= {2 * self.profile.widest}, as the profile is")
+        if not (edge := float(self.profile.face_at(np.array(width / 2)))) <= STEEPEST * height:
+            raise InputError(f"{name}.height = {height}: must be > {edge / STEEPEST:g}, as its face goes back so far")
+
+    def _repr_html_(self) -> str:
+        from partialslip.report.notebook import html
+
+        return html(self)
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether the two bodies are mirror images of each other."""
+        return self.material.alike and self.bodies.upper == self.bodies.lower
+
+    @property
+    def finite(self) -> bool:
+        """Whether a body is finite."""
+        return self.bodies != Bodies()
+
+    @property
+    def slides(self) -> bool:
+        """Whether friction cannot carry Q: no forces within the bound could sum to it."""
+        return not self.free and max(abs(Q) for Q, _ in self.load.points) >= self.friction.f * self.P
+
+    @property
+    def free(self) -> bool:
+        """Whether there is neither friction nor shear force: nothing sticks, and nothing drives the bodies apart."""
+        return self.friction.f == 0 and not any(Q for Q, _ in self.load.points)
+
+    @property
+    def meshed(self) -> bool:
+        """Whether a body's mesh is given."""
+        return any(body.mesh is not None for _, body in self.bodies)
+
+    def gap_at(self, x: Array) -> Array:
+        """Gap before loading at ``x`` (m), m: the profile's, and of a pad the true distance of its face."""
+        return self.profile.face_at(x) if self.bodies.pad else self.profile.gap_at(x)
+
+    @property
+    def P(self) -> float:
+        """Normal force, N/m; for Hertz P = pi a^2/(2 A R) and p0 = a/(A R)."""
+        A, R = self.material.A, self.profile.R
+        if self.load.P is not None:
+            return self.load.P
+        a = self.load.a if self.load.a is not None else (self.load.p0 or 0.0) * A * R
+        return math.pi * a**2 / (2 * A * R)
+
+    @property
+    def length(self) -> float:
+        """The scene's own length sqrt(A R P), m: the one that dimensional analysis gives."""
+        return math.sqrt(self.material.A * self.profile.R * self.P)

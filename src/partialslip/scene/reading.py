@@ -1,0 +1,259 @@
+"""Reading scene files: TOML in, a :class:`Scene` out, or one line that says what is wrong."""
+
+import difflib
+import math
+import re
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Any, get_args
+
+import msgspec
+import numpy as np
+
+from partialslip.errors import InputError
+from partialslip.inputfile import read_text
+from partialslip.scene import LARGEST, SMALLEST, Scene, Table
+
+_LARGEST_FILE = 500_000  # bytes: a profile and a cycle of 1,000 numbers each have 120,000
+_LONGEST = 1000  # numbers in an array
+_BITS = 8192  # of whole numbers that are shown in digits
+_DEEPEST = 10  # tables and arrays in each other; the keys of a scene have three
+# A key of many parts, for which tomllib takes time like their number squared, and more.
+_DEEP_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){20}""", re.ASCII)
+_KINDS = {
+    "object": "a table",
+    "array": "an array",
+    "float": "a number",
+    "int": "a whole number",
+    "str": "a string",
+    "bool": "true or false",
+    "date": "a date",
+    "time": "a time",
+    "datetime": "a date and time",
+}
+
+
+def shipped_scenes() -> dict[str, str]:
+    """Names and titles of the scenes that come with the package, sorted by name."""
+    files = resources.files("partialslip.scene") / "shipped"
+    texts = {f.name.removesuffix(".toml"): f.read_text("utf-8") for f in files.iterdir() if f.name.endswith(".toml")}
+    return {name: tomllib.loads(texts[name]).get("title", "") for name in sorted(texts)}
+
+
+def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
+    """Read a scene.
+
+    Parameters
+    ----------
+    scene : str or Path
+        The name of a shipped scene or the path of a TOML file.
+    overrides : iterable of str
+        Settings to change, each as ``"table.key=value"`` with a TOML value, e.g. ``"load.P=2e5"``.
+
+    Raises
+    ------
+    InputError
+        With one line that names the field, its value and what is allowed.
+    """
+    data = _parse(_text(scene), str(scene))
+    for override in overrides:
+        _override(data, override)
+    _find_meshes(data, scene)
+    try:
+        return parse_scene(data)
+    except InputError as error:
+        raise InputError(f"{scene}: {error}") from None
+
+
+def parse_scene(data: Mapping[str, Any]) -> Scene:
+    """Make a scene from nested tables ``data``, as in a scene file or in ``results.json``; NumPy numbers and arrays
+    will do.
+
+    Raises
+    ------
+    InputError
+        With one line that names the field, its value and what is allowed.
+    """
+    if not isinstance(data, Mapping):
+        raise InputError(f"scene = {_shown(data)}: must be a table")
+    data = _plain(data)
+    for path, value in _leaves(data):
+        if isinstance(value, float) and not math.isfinite(value):
+            raise InputError(f"{path} = {value}: must be finite")
+        if type(value) in (int, float) and value != 0 and not SMALLEST <= abs(value) <= LARGEST:
+            raise InputError(f"{path} = {_shown(value)}: must be zero or of a size from {SMALLEST} to {LARGEST}")
+    try:
+        return msgspec.convert(data, Scene)
+    except msgspec.ValidationError as error:
+        if isinstance(error.__cause__, InputError):
+            raise error.__cause__ from None
+        raise InputError(_explain(str(error), data)) from None
+
+
+def _text(scene: str | Path) -> str:
+    path = Path(scene)
+    if path.suffix == ".toml" or _is_file(path):
+        return read_text(path, _LARGEST_FILE)
+    shipped = shipped_scenes()
+    if str(scene) in shipped:
+        return (resources.files("partialslip.scene") / "shipped" / f"{scene}.toml").read_text("utf-8")
+    raise InputError(f"scene {str(scene)!r}: neither a file nor a shipped scene{_nearest(str(scene), shipped)}")
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # a name that no file can have
+        return False
+
+
+def _parse(text: str, origin: str) -> dict[str, Any]:
+    if _DEEP_KEY.search(text):
+        raise InputError(f"{_shown(origin)}: a key of more than 20 parts: must not be nested so deep")
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{_shown(origin)}: not valid TOML: {error}") from None
+    except (ValueError, RecursionError):
+        raise InputError(f"{_shown(origin)}: not valid TOML: a number too long or a value nested too deep") from None
+
+
+def _override(data: dict[str, Any], override: str) -> None:
+    origin = f"--set {_shown(override)}"
+    path, equals, value = override.partition("=")
+    keys = path.strip().split(".")
+    if not (equals and all(keys)):
+        raise InputError(f"{origin}: must be table.key=value, for example load.P=2e5")
+    value = value.strip()
+    if value[:1].isalpha() and value not in ("true", "false", "nan", "inf"):
+        parsed: Any = value  # words are a string: fem.far_field=box
+    else:
+        read = _parse(f"value = {value}", origin)
+        if list(read) != ["value"] or "\n" in value:
+            raise InputError(f"{origin}: must be one value")
+        parsed = read["value"]
+    for key in keys[:-1]:
+        data = data.setdefault(key, {})
+        if not isinstance(data, dict):
+            raise InputError(f"{origin}: {_shown(key)} is not a table")
+    data[keys[-1]] = parsed
+
+
+def _find_meshes(data: dict[str, Any], scene: str | Path) -> None:
+    """Paths of meshes are relative to the scene's file."""
+    bodies = data.get("bodies")
+    for body in bodies.values() if isinstance(bodies, dict) else ():
+        if isinstance(body, dict) and isinstance(mesh := body.get("mesh"), str) and mesh:
+            body["mesh"] = str(Path(scene).parent / mesh)
+
+
+def _plain(value: Any, path: str = "", depth: int = 0) -> Any:
+    """``value`` as tables, lists and Python's own numbers; refused where nested too deep, or too long."""
+    if isinstance(value, (np.generic, np.ndarray)):
+        value = value.tolist()
+    if isinstance(value, (Mapping, list, tuple)) and depth == _DEEPEST:
+        raise InputError(f"{path}: must not be nested so deep")
+    if isinstance(value, Mapping):
+        if wrong := [key for key in value if not isinstance(key, str)]:
+            raise InputError(f"{_join(path, wrong[0])}: a key must be a string")
+        return {key: _plain(child, _join(path, key), depth + 1) for key, child in value.items()}
+    if isinstance(value, (list, tuple)):
+        if len(value) > _LONGEST:
+            raise InputError(f"{path}: must be an array of at most {_LONGEST} numbers, not {len(value)}")
+        return [_plain(child, f"{path}[{index}]", depth + 1) for index, child in enumerate(value)]
+    return value
+
+
+def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    if isinstance(value, dict):
+        for key, child in value.items():
+            yield from _leaves(child, _join(path, key))
+    elif isinstance(value, list):
+        for index, child in enumerate(value):
+            yield from _leaves(child, f"{path}[{index}]")
+    else:
+        yield path, value
+
+
+def _explain(message: str, data: Any) -> str:
+    """Turn the decoder's message into: field = value: what is allowed."""
+    what, _, where = message.partition(" - at `$")
+    path = where.rstrip("`").lstrip(".")
+    value: Any = data
+    kind: Any = Scene
+    for key, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", path):
+        kind = kind if index else _fields(_table(kind, value)).get(key)
+        value = value[int(index)] if index else value[key]
+    kind = _table(kind, value)
+    if unknown := re.fullmatch(r"(?s)Object contains unknown field `(.*)`", what):
+        return f"{_join(path, unknown[1])}: unknown key{_nearest(unknown[1], _keys(kind))}"
+    if missing := re.fullmatch(r"Object missing required field `(.*)`", what):
+        return f"{_join(path, missing[1])}: missing"
+    return f"{path} = {_shown(repr(value) if isinstance(value, str) else value)}: must be {_allowed(what, kind)}"
+
+
+def _table(kind: Any, value: Any) -> Any:
+    """The table that is meant, where a key ``kind`` chooses between several."""
+    tables = [table for table in get_args(kind) if isinstance(table, type) and issubclass(table, Table)]
+    tag = value.get("kind") if isinstance(value, Mapping) else None
+    return next((table for table in tables if len(tables) == 1 or table.__struct_config__.tag == tag), kind)
+
+
+def _allowed(what: str, kind: Any) -> str:
+    if what.startswith("Invalid value"):  # of the key that chooses
+        return "one of " + ", ".join(
+            repr(table.__struct_config__.tag) for table in get_args(Scene.__annotations__["profile"])
+        )
+    if what.startswith("Invalid enum value"):
+        words = [
+            word for option in (kind, *get_args(kind)) for word in get_args(option) if isinstance(word, (str, int))
+        ]
+        return "one of " + ", ".join(map(repr, words))
+    if length := re.fullmatch(r"Expected `array` of length (>=|<=) (\d+)", what):
+        return f"an array of at {'least' if length[1] == '>=' else 'most'} {length[2]} numbers"
+    if wrong := re.fullmatch(r"Expected `([a-z]+)(?: \| null)?`, got `(?:datetime\.)?([a-z]+)`", what):
+        return f"{_KINDS.get(wrong[1], wrong[1])}, not {_KINDS.get(wrong[2], wrong[2])}"
+    if bound := re.fullmatch(r"Expected `(?:float|int)(?: \| null)?` (.*)", what):
+        return bound[1]
+    if what == "Number out of range":
+        return f"of a size from {SMALLEST} to {LARGEST}"
+    if "`str` of length >=" in what:
+        return "a name"
+    if "of length <=" in what:
+        return f"at most {what.split()[-1]} characters"
+    if "regex" in what and "\\x00" in what:
+        return "one line of text"
+    if "regex" in what:
+        return "letters, digits, '.', '_' or '-', and begin with a letter or digit"
+    return what.replace("`", "").removeprefix("Expected ")
+
+
+def _fields(kind: Any) -> dict[str, Any]:
+    tables = isinstance(kind, type) and issubclass(kind, Table)
+    return {field.encode_name: field.type for field in msgspec.structs.fields(kind)} if tables else {}
+
+
+def _keys(kind: Any) -> list[str]:
+    chooser = kind.__struct_config__.tag_field
+    return [*([chooser] if chooser else []), *_fields(kind)]
+
+
+def _join(path: str, key: object) -> str:
+    return f"{path}.{_shown(key)}" if path else _shown(key)
+
+
+def _shown(value: Any) -> str:
+    """A value, or a name, in at most 60 characters."""
+    if type(value) is int and value.bit_length() > _BITS:
+        return f"a whole number of {value.bit_length()} bits"
+    text = repr(value) if isinstance(value, (int, float, list, dict)) else str(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _nearest(key: str, known: Iterable[str]) -> str:
+    by_lower = {name.lower(): name for name in known}
+    if near := difflib.get_close_matches(key[:60].lower(), by_lower, n=1, cutoff=0.6):
+        return f"; did you mean {by_lower[near[0]]!r}?"
+    return f"; known are {', '.join(by_lower.values())}"

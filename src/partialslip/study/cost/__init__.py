@@ -1,0 +1,1 @@
+"""What accuracy costs: the study of cost, and the price list made from it."""

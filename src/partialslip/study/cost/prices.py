@@ -1,0 +1,224 @@
+"""The price list: what a run by finite elements of some accuracy will cost, fitted to a ledger of measured cases.
+
+CPU seconds of the method are taken as exp(c0 + c1 d + c2 d^2), d = log10(1/accuracy), by the order of the elements,
+times a factor of the profile's kind and one of SuperLU, that grows with d; twice that for bodies that are not mirror
+images.
+Start, report and the other methods come on top. CPU seconds depend on the machine and on what else it does, so that all
+are scaled by what the start of this very process took. Long paths of loads cost more.
+"""
+
+import importlib.util
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import resources
+from typing import TYPE_CHECKING
+
+import msgspec
+import numpy as np
+from scipy.optimize import least_squares
+
+from partialslip.arrays import Array
+from partialslip.errors import InputError
+from partialslip.plan import plan
+from partialslip.scene import Scene
+
+if TYPE_CHECKING:
+    from partialslip.batch.job import Solved
+
+_FINEST, _COARSEST = 1e-9, 1e-2
+_CHOICES = 141  # accuracies between the two
+_SPEEDS = 0.2, 5.0  # of this process: a start that took longer had other reasons
+
+
+@dataclass(frozen=True)
+class Price:
+    """What a run by finite elements of ``order`` at ``accuracy`` (of a) is expected to cost: ``cpu_s`` of the whole
+    process, ``start_s`` and ``closing_s`` of which go into its start and into report and end."""
+
+    order: int
+    accuracy: float
+    cpu_s: float
+    start_s: float
+    closing_s: float
+
+    @property
+    def overrides(self) -> list[str]:
+        """The setting, as :func:`partialslip.load_scene` takes it."""
+        return [f"fem.order={self.order}", f"fem.accuracy={self.accuracy!r}"]
+
+    def __str__(self) -> str:
+        return f"P{self.order} at {self.accuracy:.1e} a: {self.cpu_s:.2g} CPU s"
+
+
+class Prices(msgspec.Struct, frozen=True, kw_only=True):
+    """A fitted cost model.
+
+    Parameters
+    ----------
+    orders : dict
+        c0, c1 and c2 by element order, with CHOLMOD and a Hertz contact.
+    kinds : dict
+        Logarithms of the factors of the profiles' kinds.
+    superlu : tuple
+        Logarithm of SuperLU's factor, and how much it grows with each digit.
+    finest : dict
+        The finest accuracy that each order was measured at: it is not offered beyond, unless none is.
+    methods : dict
+        CPU seconds of the other methods.
+    start, closing : float
+        CPU seconds until the work starts, and of the report and the end.
+    spread : float
+        The factor within which nine of ten cases of the fit are.
+    machine : str
+        What it was measured on.
+    """
+
+    orders: dict[str, tuple[float, float, float]]
+    kinds: dict[str, float]
+    superlu: tuple[float, float]
+    finest: dict[str, float]
+    methods: dict[str, float]
+    start: float
+    closing: float
+    spread: float
+    machine: str
+
+    def price(
+        self,
+        scene: Scene,
+        accuracy: float,
+        order: int,
+        methods: Sequence[str] = ("exact", "fem"),
+        start: float | None = None,
+    ) -> Price:
+        """What ``scene`` costs by the ``methods``, fem with elements of ``order`` at ``accuracy``.
+
+        ``start`` is the CPU seconds that the start of this process has taken; without it, the process is taken to be as
+        fast as the machine of the list.
+        """
+        speed = float(np.clip(start / self.start, *_SPEEDS)) if start else 1.0
+        digits = math.log10(1 / accuracy)
+        cost = sum(c * digits**power for power, c in enumerate(self.orders[str(order)]))
+        cost += self.kinds.get(_kind(scene), 0.0) + math.log(_bodies(scene))
+        if _superlu(scene):
+            cost += self.superlu[0] + self.superlu[1] * digits
+        others = sum(self.methods.get(method, 0.0) for method in methods)
+        begun, closing = start or self.start, speed * self.closing
+        return Price(order, accuracy, begun + speed * (others + math.exp(cost)) + closing, begun, closing)
+
+    def cheapest(
+        self, scene: Scene, accuracy: float, methods: Sequence[str] = ("exact", "fem"), start: float | None = None
+    ) -> Price:
+        """The least price of ``accuracy`` for ``scene``; ``methods`` and ``start`` as for :meth:`price`."""
+        least = min(self.finest.values())
+        offered = [order for order, finest in self.finest.items() if finest <= max(accuracy, least) * 1.01]
+        prices = (self.price(scene, accuracy, int(order), methods, start) for order in offered)
+        return min(prices, key=lambda price: price.cpu_s)
+
+    def best(
+        self, scene: Scene, budget: float, methods: Sequence[str] = ("exact", "fem"), start: float | None = None
+    ) -> Price:
+        """The best accuracy to be had of ``scene`` for ``budget`` CPU seconds; ``methods`` and ``start`` as for
+        :meth:`price`.
+
+        Raises
+        ------
+        InputError
+            If even 1e-2 costs more.
+        """
+        least = self.cheapest(scene, _COARSEST, methods, start)
+        if least.cpu_s > budget:
+            raise InputError(
+                f"--budget {budget:g}s: must be at least {math.ceil(10 * least.cpu_s) / 10:g}s here and now, the price "
+                f"of {_COARSEST:g} a by finite elements; the exact method alone (--with exact) takes less"
+            )
+        accuracies = np.geomspace(_COARSEST, max(_FINEST, min(self.finest.values())), _CHOICES)
+        prices = (self.cheapest(scene, asked, methods, start) for asked in accuracies.tolist())
+        return min((price for price in prices if price.cpu_s <= budget), key=lambda price: price.accuracy)
+
+
+def load_prices() -> Prices:
+    """The shipped price list."""
+    text = (resources.files("partialslip.study.cost") / "prices.json").read_text("utf-8")
+    return msgspec.json.decode(text, type=Prices)
+
+
+def fit(entries: "Iterable[Solved]", overheads: Mapping[str, float], machine: str) -> Prices:
+    """The price list of adapted finite elements by the ``entries`` of a ledger, measured on ``machine``.
+
+    Cases that :func:`partialslip.batch.job.solve_apart` has measured are scaled by the start of their processes, as
+    the machine may have been busy with other things. ``overheads`` are the seconds "start" and "closing", and those of
+    other methods by their names.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than ten.
+    """
+    cases = []
+    for entry in entries:
+        scene = entry.scene
+        if entry.run and "fem" in entry.run.methods and scene.fem.size is None:
+            costs = {name: method.cost.cpu_s for name, method in entry.run.methods.items()}
+            start = entry.process.cpu_s - sum(costs.values()) if entry.process else 1.0
+            digits = math.log10(1 / scene.fem.accuracy)
+            cases.append((scene.fem.order, _kind(scene), _superlu(scene), digits, _bodies(scene), start, costs))
+    if len(cases) < 10:
+        raise InputError(f"a price list needs at least 10 measured cases of adapted finite elements, not {len(cases)}")
+    orders, kinds = sorted({case[0] for case in cases}), sorted({case[1] for case in cases} - {"hertz"})
+    starts = np.array([case[5] for case in cases])
+    found = np.log(np.array([case[6]["fem"] / case[4] for case in cases]) * np.median(starts) / starts)
+    columns = np.array(
+        [
+            [(order == each) * digits**power for each in orders for power in range(3)]
+            + [float(kind == each) for each in kinds]
+            + [float(other), other * digits]
+            for order, kind, other, digits, *_ in cases
+        ]
+    )
+    # prices do not fall with the digits
+    lower = np.concatenate([np.tile([-np.inf, 0.0, 0.0], len(orders)), np.full(len(kinds) + 2, -np.inf)])
+    guess = np.maximum(lower, np.zeros(columns.shape[1])) + 0.01
+
+    def off(parameters: Array) -> Array:
+        difference: Array = columns @ parameters - found
+        return difference
+
+    fitted = least_squares(off, guess, bounds=(lower, np.inf), loss="soft_l1", f_scale=0.3).x
+    rows, rest = fitted[: 3 * len(orders)].reshape(-1, 3).tolist(), fitted[3 * len(orders) :].tolist()
+    exact = [case[6]["exact"] for case in cases if "exact" in case[6]]
+    methods = {key: value for key, value in overheads.items() if key not in ("start", "closing")}
+    return Prices(
+        orders={str(order): tuple(row) for order, row in zip(orders, rows, strict=True)},
+        kinds={"hertz": 0.0, **dict(zip(kinds, rest, strict=False))},
+        superlu=(rest[-2], rest[-1]),
+        finest={str(order): float(10.0 ** -max(case[3] for case in cases if case[0] == order)) for order in orders},
+        methods={**({"exact": float(np.median(exact))} if exact else {}), **methods},
+        start=overheads["start"],
+        closing=overheads["closing"],
+        spread=float(np.exp(np.quantile(np.abs(off(fitted)), 0.9))),
+        machine=machine,
+    )
+
+
+def to_json(prices: Prices) -> str:
+    """``prices`` as :func:`load_prices` reads them."""
+    return json.dumps(msgspec.to_builtins(prices), indent=1) + "\n"
+
+
+def _bodies(scene: Scene) -> int:
+    """Bodies to mesh and to factor."""
+    return 1 if scene.mirrored and scene.fem.lower_size == 1 and not plan(scene).needs("coupling") else 2
+
+
+def _kind(scene: Scene) -> str:
+    """Of its profile, as a scene file names it."""
+    return str(type(scene.profile).__struct_config__.tag)
+
+
+def _superlu(scene: Scene) -> bool:
+    if scene.fem.factor is None:
+        return importlib.util.find_spec("cvxopt") is None
+    return scene.fem.factor == "superlu"

@@ -1,0 +1,195 @@
+"""When is a body a half-plane? Sweeps over sizes, or anything else in a scene, against the half-plane's solution."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.stats import t as student
+
+from partialslip.arrays import Array
+from partialslip.batch.job import Sharing, Solved
+from partialslip.batch.ledger import Ledger
+from partialslip.batch.sweep import Progress, sweep
+from partialslip.scene import Scene
+from partialslip.study.size.axes import ACCURACY, Axis, cases
+
+QUANTITIES = ("a", "p0", "p", "m", "n", "q")
+LEVELS = (0.05, 0.01, 0.001)
+_COARSER = 8.0  # accuracy of one mesh in the next one's
+_FINER = 3  # meshes at most that follow where the size changes hardly more than the mesh
+_FINEST = 1e-8  # accuracy that rounding allows
+_CLEAR = 10.0  # a change counts where it is so many times what the mesh may be off by
+
+
+def measure(
+    scene: Scene,
+    axes: Sequence[Axis],
+    ledger: Ledger,
+    executor: Executor,
+    progress: Progress = lambda *_: None,
+    control: bool = True,
+) -> list[Solved]:
+    """Solve the grid of ``axes``, but for what ``ledger`` has; returns its entries.
+
+    With ``control`` each point is solved on two meshes at least, for the accuracy that the scene asks for and for one
+    eight times coarser. Where a change is not ten times what the mesh may be off by, another one follows that is eight
+    times finer, up to three of them.
+
+    Raises
+    ------
+    InputError
+        If a key is not in the scene, or a value not allowed.
+    PartialslipError
+        If a worker process dies; what was finished is in the ledger.
+    """
+    solve, asked = Sharing(), cases(scene, axes, (_COARSER, 1.0) if control else (1.0,))
+    sweep([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
+    finer = [_COARSER**-k for k in range(1, _FINER + 1)] if control else []
+    for accuracy in (each for each in finer if each * scene.fem.accuracy >= _FINEST):
+        points = _by_point(axes, (Solved.of(ledger[case.key]) for case in asked))
+        unclear = {point for point, meshes in points.items() if not _clear(meshes)}
+        asked += [
+            case
+            for case in cases(scene, axes, (accuracy,))
+            if tuple(case.labels[each.name] for each in axes) in unclear
+        ]
+        sweep([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
+    return [Solved.of(ledger[case.key]) for case in asked]
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """A sweep along one axis.
+
+    ``size`` (k,), in a or as swept; ``off`` (k,) by quantity: what the body changes: a and p0, the largest p, relative,
+    m and n in a, p and q in the relative L2 norm; ``mesh`` (k,): what of it may be due to the mesh.
+    """
+
+    name: str
+    size: Array
+    off: Mapping[str, Array]
+    mesh: Mapping[str, Array]
+
+
+@dataclass(frozen=True)
+class Law:
+    """off = C size^-k, fitted by least squares in logarithms where the size dominates, k with bounds of 95 %; and the
+    sizes ``needed`` for LEVELS, infinite where there is no law to go by."""
+
+    quantity: str
+    C: float
+    k: float
+    bounds: tuple[float, float]
+    points: int
+    needed: tuple[float, ...]
+
+
+def along(axis: Axis, entries: Iterable[Solved]) -> Sizes:
+    """The sweep along ``axis``, from the entries of a ledger with its label; cases that failed are left out."""
+    points = {point[0]: _change(meshes) for point, meshes in sorted(_by_point([axis], entries).items())}
+    return Sizes(
+        axis.name,
+        np.array(list(points)),
+        {key: np.array([off[key] for off, _ in points.values()]) for key in QUANTITIES},
+        {key: np.array([mesh[key] for _, mesh in points.values()]) for key in QUANTITIES},
+    )
+
+
+def _by_point(axes: Sequence[Axis], entries: Iterable[Solved]) -> dict[tuple[float, ...], list[Solved]]:
+    """The entries of each point of the grid, from the coarsest mesh to the finest; without those that failed."""
+    points: dict[tuple[float, ...], list[Solved]] = {}
+    for entry in sorted(entries, key=lambda entry: -float(entry.labels[ACCURACY])):
+        if entry.run:
+            points.setdefault(tuple(float(entry.labels[each.name]) for each in axes), []).append(entry)
+    return points
+
+
+def _change(meshes: Sequence[Solved]) -> tuple[dict[str, float], dict[str, float]]:
+    """What the body changes at one point, by its finest mesh, and what of it may be due to that mesh: its own estimate,
+    or an eighth of what the last refinement changed, if that is more."""
+    found, estimate = _off(meshes[-1]), _estimate(meshes[-1])
+    estimate["p0"] = estimate.get("p", math.nan)
+    rough = _off(meshes[-2]) if len(meshes) > 1 else {}
+    changed = {key: abs(rough.get(key, math.nan) - found.get(key, math.nan)) / _COARSER for key in QUANTITIES}
+    mesh = {key: float(np.fmax(estimate.get(key, math.nan), np.nan_to_num(changed[key]))) for key in QUANTITIES}
+    return {key: abs(found.get(key, math.nan)) for key in QUANTITIES}, mesh
+
+
+def _clear(meshes: Sequence[Solved]) -> bool:
+    off, mesh = _change(meshes)
+    return all(not off[key] < _CLEAR * mesh[key] for key in QUANTITIES)
+
+
+def _estimate(entry: Solved) -> dict[str, float]:
+    """What the finite elements may be off by, by quantity."""
+    assert entry.run
+    return {key: error for key, error in entry.run.methods["fem"].estimate.items() if error is not None}
+
+
+def _off(entry: Solved) -> dict[str, float]:
+    """What the body changes at one point, by one mesh."""
+    assert entry.run
+    fem, exact, errors = entry.run.methods["fem"], entry.run.methods["exact"], entry.run.comparison["fem"].errors
+    a = exact.a or math.nan
+    found = {"a": (fem.a or math.nan) / a - 1, "p0": (fem.p_max or math.nan) / (exact.p_max or math.nan) - 1}
+    for key, mine, its in (("m", fem.m, exact.m), ("n", fem.n, exact.n)):
+        if mine is not None and its is not None:
+            found[key] = (mine - its) / a
+    return found | {key: error for key in ("p", "q") if (error := errors[key]) is not None}
+
+
+def law(sizes: Sizes, quantity: str) -> Law | None:
+    """The law of a quantity, from the larger half of the sizes at which the mesh is ten times better than the size is
+    bad; None where there are fewer than three."""
+    off = sizes.off[quantity]
+    clear = np.flatnonzero((off > _CLEAR * sizes.mesh[quantity]) & (off > 0))
+    used = clear[len(clear) // 2 :] if len(clear) >= 6 else clear[-3:]
+    if len(used) < 3:
+        return None
+    x, y = np.log(sizes.size[used]), np.log(off[used])
+    slope, start = np.polyfit(x, y, 1)
+    spread = math.sqrt(np.sum((y - slope * x - start) ** 2) / (len(used) - 2) / np.sum((x - x.mean()) ** 2))
+    beside = float(student.ppf(0.975, len(used) - 2)) * spread
+    needed = tuple(_needed(sizes.size[clear], off[clear], level, math.exp(start), -slope) for level in LEVELS)
+    return Law(quantity, math.exp(start), -slope, (-slope - beside, -slope + beside), len(used), needed)
+
+
+def _needed(size: Array, off: Array, level: float, C: float, k: float) -> float:
+    """The size from which on the error is below ``level``: between those measured, or beyond them by the law."""
+    above = np.flatnonzero(off > level)
+    if len(above) == 0:
+        return float(size[0])
+    last = above[-1]
+    if last == len(size) - 1:
+        return float((C / level) ** (1 / k)) if k > 0 else math.inf
+    ends = slice(last, last + 2)
+    return float(np.exp(np.interp(-np.log(level), -np.log(off[ends]), np.log(size[ends]))))
+
+
+def grid(axes: Sequence[Axis], entries: Iterable[Solved], quantity: str) -> tuple[Array, Array, Array]:
+    """The values of two ``axes``, and |change| of ``quantity`` over them, (second, first); NaN where not solved."""
+    x, y = (np.array(each.values) for each in axes)
+    points = {point: _change(meshes)[0][quantity] for point, meshes in _by_point(axes, entries).items()}
+    return x, y, np.array([[points.get((first, second), math.nan) for first in x.tolist()] for second in y.tolist()])
+
+
+def table(axes: Sequence[Axis], entries: Iterable[Solved]) -> tuple[list[str], list[list[Any]]]:
+    """Headings and rows for a CSV file: one row a case."""
+    figures = ("a", "p_max", "m", "n", "regime")
+    head = [*(each.name for each in axes), ACCURACY, *figures, *(f"change of {key}" for key in QUANTITIES)]
+    head += ["dofs", "cpu_s", "error"]
+    rows: list[list[Any]] = []
+    for entry in entries:
+        row = [entry.labels[name] for name in (*(each.name for each in axes), ACCURACY)]
+        if entry.run is None:
+            rows.append([*row, *[""] * (len(head) - len(row) - 1), entry.error])
+        else:
+            fem, off = entry.run.methods["fem"], _off(entry)
+            costs = [fem.counts["dofs"], fem.cost.cpu_s, ""]
+            rows.append(
+                [*row, *(getattr(fem, key) for key in figures), *(off.get(key, "") for key in QUANTITIES), *costs]
+            )
+    return head, rows

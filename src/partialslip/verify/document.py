@@ -1,0 +1,236 @@
+"""The verification report: one self-contained page, which prints, on what was verified and how near to its bars."""
+
+import shlex
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from msgspec.structs import replace
+
+from partialslip.bars import CERTIFICATE_BAR
+from partialslip.batch.ledger import Made
+from partialslip.errors import InputError
+from partialslip.judge import P_BAR, Q_BAR, Outcome
+from partialslip.output.svg import svg
+from partialslip.output.template import template
+from partialslip.report import rows
+from partialslip.verify.case import REQUIREMENTS, CaseVerdict, number_of, requirement_of
+from partialslip.verify.entry import Entry, Settings
+from partialslip.verify.verdicts import Verdicts, every_one, missed, nearest, room
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_LEAST = 1e-18  # of a certificate in the figure: a residual can be zero
+
+
+class Study(NamedTuple):
+    """Figures of a study by their files' names, SVG, and the names of its tables."""
+
+    folder: Path
+    figures: dict[str, str]
+    tables: list[str]
+
+
+@dataclass(frozen=True)
+class Account:
+    """What there is to report.
+
+    Parameters
+    ----------
+    settings : Settings
+        What was asked for.
+    entries : mapping of str to Entry
+        By case, its entry in the ledger.
+    figures : mapping of str to str
+        By case, its tractions as SVG.
+    studies : sequence of Study
+    """
+
+    settings: Settings
+    entries: Mapping[str, Entry]
+    figures: Mapping[str, str]
+    studies: Sequence[Study] = ()
+
+    @property
+    def verdicts(self) -> dict[str, list[CaseVerdict]]:
+        """By case."""
+        return {case: list(entry.verdicts) for case, entry in self.entries.items()}
+
+
+def read_study(folder: Path) -> Study:
+    """The figures that ``partialslip study`` has left in a folder. Raises InputError if it has none."""
+    try:
+        figures = {path.name: path.read_text("utf-8") for path in sorted(folder.glob("*.svg"))}
+    except (OSError, ValueError):
+        raise InputError(f"--include {folder}: has figures that cannot be read") from None
+    if not figures or any("<svg" not in figure for figure in figures.values()):
+        raise InputError(f"--include {folder}: must be the folder of a study, with figures (.svg)")
+    return Study(folder, figures, sorted(path.name for path in folder.glob("*.csv")))
+
+
+def document(account: Account) -> str:
+    """The report as HTML."""
+    settings, verdicts = account.settings, account.verdicts
+    listed, stress = every_one(verdicts), account.settings.suite == "stress"
+    page = template("partialslip.verify", "document.html").render(
+        account=account,
+        title=_title(settings),
+        asked=_asked(settings, [entry.made for entry in account.entries.values() if entry.made]),
+        verdicts=verdicts,
+        again={case: command(settings, [case.rpartition("-")[2] if stress else case]) for case in verdicts},
+        stress=stress,
+        count=f"{len(listed):,}",
+        missed=list(filter(missed, listed)),
+        headline=_headline(listed),
+        summary=_summary(verdicts),
+        requirements=_requirements(listed),
+        usual={"certificate": CERTIFICATE_BAR, "p": P_BAR, "q": Q_BAR},
+        closest=[_close(verdict) for verdict in sorted(nearest(verdicts), key=room)],
+        found={case: list(map(_found, some)) for case, some in verdicts.items()},
+        reasons={case: _reasons(some) for case, some in verdicts.items()},
+        kinds=_kinds(account) if stress else [],
+        spread=_spread(listed) if stress else None,
+    )
+    return page + "\n"
+
+
+def _title(settings: Settings) -> str:
+    parts = [f"{key} {value}" for key, value in settings.asked.items()]
+    return ", ".join(["Verification of partialslip", *parts, *(["in part"] if settings.only else [])])
+
+
+def command(settings: Settings, only: Sequence[str]) -> str:
+    """What repeats a verification, or the ``only`` cases of it."""
+    words = [f"--{key} {value}" for key, value in replace(settings, only=tuple(only)).asked.items()]
+    return " ".join(["partialslip verify", *words, *(f"--only {shlex.quote(name)}" for name in only)])
+
+
+def _asked(settings: Settings, origins: Sequence[Made]) -> list[tuple[str, str]]:
+    """What was asked for; when, where and with what it was found, each thing once."""
+    times = sorted(origin.at.replace("T", " ").replace("+00:00", " UTC") for origin in origins)
+    machines = [origin.machine for origin in origins]
+    found = {
+        "finished": [times[0] if times[0] == times[-1] else f"{times[0]} to {times[-1]}"],
+        "commit": [origin.commit or "none: not from a clone" for origin in origins],
+        "versions": [", ".join(map(" ".join, origin.versions.items())) for origin in origins],
+        "machine": [f"{each.processor}, {each.cores} cores, {each.system}" for each in machines],
+    }
+    lines = [(key, "; ".join(dict.fromkeys(texts))) for key, texts in found.items()]
+    return [("command", command(settings, settings.only)), *lines]
+
+
+def _headline(verdicts: Sequence[CaseVerdict]) -> str:
+    """How many verdicts are missed, or else passed and not judged."""
+    counts = {outcome: sum(verdict.outcome is outcome for verdict in verdicts) for outcome in Outcome}
+    if counts[Outcome.MISSED]:
+        return f"{counts[Outcome.MISSED]:,} of {len(verdicts):,} verdicts missed"
+    unjudged = f", {counts[Outcome.NOT_JUDGED]:,} not judged" if counts[Outcome.NOT_JUDGED] else ""
+    return f"{counts[Outcome.PASSED]:,} verdicts passed, none missed{unjudged}"
+
+
+def _summary(verdicts: Verdicts) -> list[tuple[str, ...]]:
+    """By method, and in all: cases, verdicts, missed, not judged, CPU seconds."""
+    closest, listed = nearest(verdicts), every_one(verdicts)
+    table: list[tuple[str, ...]] = []
+    for method in (*dict.fromkeys(verdict.method for verdict in closest), None):
+        some = [verdict for verdict in listed if method in (None, verdict.method)]
+        cpu_s = sum(verdict.cpu_s for verdict in closest if method in (None, verdict.method))
+        unjudged = sum(verdict.outcome is Outcome.NOT_JUDGED for verdict in some)
+        counts = len({verdict.case for verdict in some}), len(some), sum(map(missed, some)), unjudged
+        table.append((method or "in all", *(f"{count:,}" for count in counts), f"{cpu_s:.1f}", ""))
+    return table
+
+
+def _requirements(verdicts: Sequence[CaseVerdict]) -> list[tuple[str, ...]]:
+    """Number, requirement, how many verdicts, how many missed, the largest share of a bar, and where."""
+    table: list[tuple[str, ...]] = []
+    for key, text in REQUIREMENTS.items():
+        some = [
+            each for each in verdicts if requirement_of(each.quantity) == key and each.outcome is not Outcome.NOT_JUDGED
+        ]
+        worst = min(some, key=room, default=None)
+        told = worst is not None and (worst.share is not None or missed(worst))
+        where = f"{worst.case}, {worst.method}" if worst and told else ""
+        share = _share(worst) if worst else ""
+        table.append((number_of(key), text, f"{len(some):,}", f"{sum(map(missed, some)):,}", share, where))
+    return table
+
+
+def _close(verdict: CaseVerdict) -> tuple[str, ...]:
+    """Case, requirement, check, error, bar, its share, CPU seconds and verdict."""
+    numbers = _number(verdict.error), _number(verdict.bar), _share(verdict), f"{verdict.cpu_s:.2f}"
+    return (
+        verdict.case,
+        number_of(verdict.quantity),
+        f"{verdict.method}.{verdict.quantity}",
+        *numbers,
+        rows.word(verdict),
+    )
+
+
+def _found(verdict: CaseVerdict) -> tuple[str, ...]:
+    """Requirement, check, unit, the exact method's value and the method's own, error or residual, bar, its share, and
+    verdict."""
+    unit, *pair = rows.numbers(verdict)[:3]
+    numbers = _number(verdict.error), _number(verdict.bar), _share(verdict)
+    check = f"{verdict.method}.{verdict.quantity}"
+    return number_of(verdict.quantity), check, unit, *pair, *numbers, rows.word(verdict)
+
+
+def _reasons(verdicts: Sequence[CaseVerdict]) -> list[str]:
+    """Why bars are not the usual ones, or quantities are missed or not judged, each reason once."""
+    reasons: dict[str, list[str]] = {}
+    for verdict in verdicts:
+        if verdict.reason:
+            reasons.setdefault(verdict.reason, []).append(f"{verdict.method}.{verdict.quantity}")
+    return [f"{', '.join(checks)}: {reason}." for reason, checks in reasons.items()]
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.1e}" if value else "0"
+
+
+def _share(verdict: CaseVerdict) -> str:
+    if verdict.share is None:
+        return ""
+    return "< 0.1 %" if verdict.share < 1e-3 else f"{100 * verdict.share:.1f} %"
+
+
+def _kinds(account: Account) -> list[tuple[str, ...]]:
+    """By kind of loads: how many scenes, median and largest of the certificates, and where that is."""
+    groups: dict[str, list[CaseVerdict]] = {}
+    for case, verdicts in account.verdicts.items():
+        groups.setdefault(account.entries[case].hard, []).extend(_certificates(verdicts))
+    table: list[tuple[str, ...]] = []
+    for kind, some in groups.items():
+        values = [verdict.error or 0.0 for verdict in some]
+        worst = max(some, key=lambda verdict: verdict.error or 0.0, default=None)
+        figures = (f"{np.median(values):.1e}", f"{max(values):.1e}", worst.case) if worst else ("", "", "")
+        table.append((kind, f"{len(some):,}", *figures))
+    return table
+
+
+def _spread(verdicts: Sequence[CaseVerdict]) -> str | None:
+    """How the certificates are spread, as SVG; None where there are none."""
+    some = _certificates(verdicts)
+    if not some:
+        return None
+    tens = np.log10([max(verdict.error or 0.0, _LEAST) for verdict in some])
+    bar = np.log10(some[0].bar or np.nan)
+
+    def draw(figure: "Figure") -> None:
+        axes = figure.subplots()
+        bins = np.arange(np.floor(tens.min()), max(np.ceil(tens.max()), bar) + 1, 0.5)
+        axes.hist(tens, bins.tolist(), color="0.75", edgecolor="black", lw=0.6)
+        axes.axvline(bar, color="black", lw=1.4, ls="--", label="bar")
+        axes.set(xlabel="log10 of the certificate", ylabel="scenes", yscale="log")
+        axes.legend(frameon=False)
+
+    return svg(draw, (7.4, 3.2))
+
+
+def _certificates(verdicts: Sequence[CaseVerdict]) -> list[CaseVerdict]:
+    return [verdict for verdict in verdicts if verdict.quantity == "certificate" and verdict.error is not None]

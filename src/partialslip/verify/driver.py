@@ -1,0 +1,258 @@
+"""Verification from end to end: the cases of a suite, solved on several processes and kept in a ledger, their verdicts,
+and the document about them."""
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from msgspec.structs import replace
+
+from partialslip.batch.ledger import Ledger, key_of, scene_content
+from partialslip.batch.sweep import Progress, Task, sweep, workers
+from partialslip.errors import InputError, MissingLibraryError
+from partialslip.judge import Outcome, overall
+from partialslip.judge.reference import METHODS
+from partialslip.output.files import write_texts
+from partialslip.output.lock import locked
+from partialslip.output.pdf import write_pdf
+from partialslip.plan import plan
+from partialslip.report.figure import traction_svg
+from partialslip.report.files import tractions_csv
+from partialslip.report.sheet import Sheet, sheet
+from partialslip.result import Result
+from partialslip.run import compared
+from partialslip.scene.writing import scene_toml
+from partialslip.verify.case import Case, CaseVerdict, Found, judge_case, solve_case
+from partialslip.verify.document import Account, Study, document, read_study
+from partialslip.verify.entry import Entry, Settings
+from partialslip.verify.suites import SUITES, Maker, Makers, Suite, stress_suite, suite
+from partialslip.verify.verdicts import was_finished, write_verdicts
+
+_SCENES, _FIGURE = "scenes", "tractions.svg"
+_PAGE, _PDF = "report.html", "report.pdf"
+_MOST = 999_999_999
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What came of a suite.
+
+    Parameters
+    ----------
+    verdicts : dict of str to list of CaseVerdict
+        By case.
+    files : list of Path
+        What was written.
+    missing : str
+        What the PDF would need, where there is none.
+    again : tuple of str
+        Cases that an earlier, stopped run had finished, but of another scene, other settings or by other source files,
+        so that they were solved again.
+    """
+
+    verdicts: dict[str, list[CaseVerdict]]
+    files: list[Path]
+    missing: str = ""
+    again: tuple[str, ...] = ()
+
+    @property
+    def outcome(self) -> Outcome:
+        """Passed, missed or not judged, as a whole (:func:`partialslip.judge.overall`)."""
+        return overall(verdict for some in self.verdicts.values() for verdict in some)
+
+    @property
+    def passed(self) -> bool:
+        """Whether something was judged and nothing is missed."""
+        return self.outcome is Outcome.PASSED
+
+
+def verify_suite(
+    name: Suite = "quick",
+    only: Sequence[str] = (),
+    *,
+    method: str | None = None,
+    seed: int | None = None,
+    count: int | None = None,
+    processes: int | None = None,
+    out: str | Path | None = None,
+    include: Sequence[str | Path] = (),
+    progress: Progress = lambda *_: None,
+) -> Verification:
+    """Hold the methods against their bars on the cases of a suite, and write the verdicts and the report on them.
+
+    A run that was stopped goes on where it was, but for cases whose scene, settings or source files have changed
+    meanwhile: these are solved again. A run that had come to its end begins anew.
+
+    Parameters
+    ----------
+    name : str
+        "quick": the shipped scenes; "full": these and the hard cases; "stress": random scenes.
+    only : sequence of str
+        Only these cases, by names in which * and ? stand for anything; of random scenes by their numbers.
+    method, seed, count : optional
+        Of random scenes only: by which method (as a rule "exact"), which (0), and how many (100).
+    processes : int, optional
+        At once; as a rule as many as there are cores. With more than one, a script must call this under
+        ``if __name__ == "__main__":``, as each of them imports it.
+    out : str or Path, optional
+        Folder for ``ledger.jsonl``, ``results.json``, ``results.csv``, ``report.html``, ``report.pdf`` and ``scenes``
+        (``scene.toml``, ``tractions.csv`` and ``tractions.svg`` of each; not of random ones); as a rule
+        ``results/verify-SUITE``.
+    include : sequence of str or Path
+        Folders of studies (``partialslip study``), whose figures go into the report.
+    progress : callable
+        Called with how many cases are done, how many there are, and the seconds left.
+
+    Raises
+    ------
+    InputError
+        If something asked for does not exist, or the folder cannot be written, or another process writes there.
+    """
+    if processes is not None and processes < 1:
+        raise InputError(f"--processes {processes}: must be >= 1")
+    settings, makers, contents = _cases(name, only, method, seed, count)
+    studies = [read_study(Path(each)) for each in include]
+    folder = Path(out) if out is not None else Path("results") / _folder(settings)
+    with locked(folder):
+        return _verify(settings, makers, contents, studies, folder, processes, progress)
+
+
+def _verify(
+    settings: Settings,
+    makers: Makers,
+    contents: Mapping[str, Any],
+    studies: Sequence[Study],
+    folder: Path,
+    processes: int | None,
+    progress: Progress,
+) -> Verification:
+    ledger = _ledger(folder)
+    write_verdicts(folder, settings, {}, finished=False)
+    keys = {case: key_of(content) for case, content in contents.items()}
+    finished = {entry["case"] for entry in ledger}
+    again = tuple(case for case, key in keys.items() if case in finished and key not in ledger)
+    work = partial(solve_and_judge, folder=None if settings.suite == "stress" else folder / _SCENES)
+    tasks = [Task(keys[case], work, make) for case, make in makers.items()]
+    try:
+        with workers(processes=min(processes or os.cpu_count() or 1, len(tasks))) as executor:
+            sweep(tasks, ledger, executor, progress)
+        entries = {case: Entry.of(ledger[key]) for case, key in keys.items()}
+        page = document(Account(settings, entries, _figures(folder / _SCENES, entries), studies))
+        files, missing = write_texts(folder, {_PAGE: page}), ""
+        try:
+            files += write_pdf(page, folder, _PDF)
+        except MissingLibraryError as error:
+            missing = str(error)
+        verdicts = _verdicts(ledger, keys)
+    except BaseException:
+        write_verdicts(folder, settings, _verdicts(ledger, keys), finished=False)
+        raise
+    files = [ledger.path, *write_verdicts(folder, settings, verdicts, finished=True), *files]
+    return Verification(verdicts, files, missing, again)
+
+
+def solve_and_judge(make: Maker, folder: Path | None) -> Entry:
+    """The verdicts on a case, as an entry of a ledger. With a ``folder`` also what a document shows of it; its scene,
+    tractions and their figure go into a folder of its name in there."""
+    case = make()
+    found = solve_case(case)
+    return Entry(
+        case=case.name,
+        hard=case.hard,
+        verdicts=tuple(verdict.finite for verdict in judge_case(case, found)),
+        sheet=_file(case, found, folder / case.name) if folder else None,
+        own_meshes=case.meshes is not None,
+    )
+
+
+def _file(case: Case, found: Found, folder: Path) -> Sheet | None:
+    results = {method: result for method, result in found.items() if isinstance(result, Result)}
+    texts, shown = {"scene.toml": scene_toml(case.scene)}, None
+    if results:
+        run = compared(case.scene, plan(case.scene), results, None)
+        texts |= {"tractions.csv": tractions_csv(run), _FIGURE: traction_svg(run)}
+        shown = sheet(run)
+    write_texts(folder, texts)
+    return shown
+
+
+def _cases(
+    name: Suite, only: Sequence[str], method: str | None, seed: int | None, count: int | None
+) -> tuple[Settings, Makers, dict[str, Any]]:
+    """What was asked for, the cases, and the content that a ledger knows each of them by."""
+    if name not in SUITES:
+        raise InputError(f"--suite {name!r}: must be one of {', '.join(SUITES)}")
+    settings = Settings(suite=name, only=tuple(only))
+    own = {"method": method, "seed": seed, "count": count}
+    if name != "stress":
+        for key, value in own.items():
+            if value is not None:
+                raise InputError(f"--{key} {value}: only with --suite stress")
+        makers = suite(name, only)
+        return settings, makers, {case: _content(make()) for case, make in makers.items()}
+    method = "exact" if method is None else method
+    if method not in METHODS:
+        raise InputError(f"--method {method!r}: must be one of {', '.join(METHODS)}")
+    seed, count = _within("seed", seed, 0, 0), _within("count", count, 100, 1)
+    makers = stress_suite(method, seed, count, only)
+    # a random scene is made of its name, by the source files
+    contents = {case: {"method": method, "case": case} for case in makers}
+    return replace(settings, method=method, seed=seed, count=count), makers, contents
+
+
+def _content(case: Case) -> dict[str, Any]:
+    """A case as plain data: its scene and what is asked of the methods."""
+    meshes = [case.meshes.func, case.meshes.keywords] if isinstance(case.meshes, partial) else [case.meshes]
+    own = {
+        "methods": list(case.methods),
+        "bars": dict(case.bars),
+        "compared": case.compared,
+        "meshes": list(map(_named, meshes)),
+    }
+    return {"scene": scene_content(case.scene), **own}
+
+
+def _named(part: Any) -> Any:
+    """A function by its name."""
+    return getattr(part, "__qualname__", part)
+
+
+def _within(key: str, value: int | None, usual: int, least: int) -> int:
+    number = usual if value is None else value
+    if not least <= number <= _MOST:
+        raise InputError(f"--{key} {number}: must be a whole number from {least} to {_MOST}")
+    return number
+
+
+def _folder(settings: Settings) -> str:
+    """What the folder of a verification is called."""
+    parts = ["verify", settings.suite, settings.method, "only" if settings.only else None]
+    return "-".join(filter(None, parts))
+
+
+def _ledger(folder: Path) -> Ledger:
+    """That of a run that was stopped; of one that was finished nothing stays that could be taken for the next one's."""
+    if was_finished(folder):
+        try:
+            for name in ("ledger.jsonl", _PAGE, _PDF):
+                (folder / name).unlink(missing_ok=True)
+        except OSError as error:
+            raise InputError(f"{folder / name}: cannot be removed: {error.strerror}") from None
+    return Ledger(folder / "ledger.jsonl")
+
+
+def _verdicts(ledger: Ledger, keys: Mapping[str, str]) -> dict[str, list[CaseVerdict]]:
+    """Those that are in the ledger, in the order of ``keys``."""
+    return {case: list(Entry.of(ledger[key]).verdicts) for case, key in keys.items() if key in ledger}
+
+
+def _figures(folder: Path, entries: Mapping[str, Entry]) -> dict[str, str]:
+    """The figures of those cases that have one."""
+    paths = {case: folder / case / _FIGURE for case, entry in entries.items() if entry.sheet}
+    try:
+        return {case: path.read_text("utf-8") for case, path in paths.items()}
+    except (OSError, ValueError):
+        raise InputError(f"{folder}: figures of finished cases are gone: remove ledger.jsonl to begin anew") from None

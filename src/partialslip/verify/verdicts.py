@@ -1,0 +1,123 @@
+"""Verdicts for people and files: results.json, results.csv and the terminal's table."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields
+from pathlib import Path
+
+import msgspec
+from rich.console import Console
+
+from partialslip.judge import Outcome
+from partialslip.output.csv import csv_text
+from partialslip.output.files import write_texts
+from partialslip.output.json import json_text
+from partialslip.output.tables import print_table
+from partialslip.record import versions
+from partialslip.report import rows
+from partialslip.verify.case import CaseVerdict
+from partialslip.verify.entry import Settings
+
+SCHEMA = "partialslip/verify/2"
+_FILE = "results.json"
+
+Verdicts = Mapping[str, Sequence[CaseVerdict]]
+
+
+class VerificationRecord(msgspec.Struct, frozen=True):
+    """The content of a verification's ``results.json``: what was asked for, whether the run came to its end, versions,
+    and the verdicts by case."""
+
+    schema: str
+    settings: Settings
+    finished: bool
+    versions: dict[str, str]
+    cases: dict[str, tuple[CaseVerdict, ...]]
+
+
+class _Finished(msgspec.Struct):
+    schema: str
+    finished: bool
+
+
+def write_verdicts(folder: Path, settings: Settings, verdicts: Verdicts, finished: bool) -> list[Path]:
+    """Write results.json and results.csv into ``folder``: the verdicts by case, and what was asked for. Returns their
+    paths. Raises InputError if the folder cannot be written."""
+    found = VerificationRecord(
+        schema=SCHEMA,
+        settings=settings,
+        finished=finished,
+        versions=versions(),
+        cases={name: tuple(verdict.finite for verdict in some) for name, some in verdicts.items()},
+    )
+    texts = {
+        _FILE: json_text(found),
+        "results.csv": _csv(every_one(verdicts)),
+    }
+    return write_texts(folder, texts)
+
+
+def was_finished(folder: Path) -> bool:
+    """Whether ``folder`` holds the verdicts of a run that came to its end."""
+    try:
+        found = msgspec.json.decode((folder / _FILE).read_bytes(), type=_Finished)
+    except (OSError, ValueError, RecursionError):
+        return False
+    return found.schema == SCHEMA and found.finished
+
+
+def print_verdicts(verdicts: Verdicts, console: Console, every: bool = True) -> None:
+    """Print a line for each case and method, of its quantity nearest to its bar (or without ``every`` for what is
+    missed only), and the sum of all."""
+    closest = nearest(verdicts)
+    shown = closest if every else [row for row in closest if missed(row)]
+    if shown:
+        headings = ("case", "method", "closest", "error", "bar", "iterations", "CPU s", "")
+        print_table(console, headings, map(_row, shown), words=(0, 1, 2, 7))
+    listed = every_one(verdicts)
+    for verdict in filter(missed, listed):
+        console.print(f"missed: {verdict.case}, {verdict.method}: {verdict.text}", soft_wrap=True, markup=False)
+    if closest:
+        most = max(closest, key=lambda row: row.iterations)
+        unjudged = sum(verdict.outcome is Outcome.NOT_JUDGED for verdict in listed)
+        console.print(
+            f"{len(verdicts):,} cases, {sum(map(missed, closest)):,} with something missed"
+            f"{f', {unjudged:,} of {len(listed):,} verdicts not judged' if unjudged else ''}, "
+            f"{sum(row.cpu_s for row in closest):.1f} CPU s, at most {most.iterations:,} iterations ({most.case})",
+            style="bold", soft_wrap=True, markup=False,
+        )  # fmt: skip
+
+
+def _csv(verdicts: Iterable[CaseVerdict]) -> str:
+    names = [each.name for each in fields(CaseVerdict)]
+    return csv_text(names, ([getattr(verdict.finite, name) for name in names] for verdict in verdicts))
+
+
+def _row(row: CaseVerdict) -> list[str]:
+    error, bar = ("" if number is None else f"{number:.1e}" for number in (row.error, row.bar))
+    work = f"{row.iterations:,}", f"{row.cpu_s:.2f}"
+    return [row.case, row.method, row.quantity, error, bar, *work, rows.word(row)]
+
+
+def missed(verdict: CaseVerdict) -> bool:
+    """Whether a verdict says so."""
+    return verdict.outcome is Outcome.MISSED
+
+
+def every_one(verdicts: Verdicts) -> list[CaseVerdict]:
+    """All of them in one list."""
+    return [verdict for some in verdicts.values() for verdict in some]
+
+
+def nearest(verdicts: Verdicts) -> list[CaseVerdict]:
+    """Of each case and method the verdict that is missed, or nearest to its bar."""
+    groups: dict[tuple[str, str], list[CaseVerdict]] = {}
+    for verdict in every_one(verdicts):
+        groups.setdefault((verdict.case, verdict.method), []).append(verdict)
+    return [min(some, key=room) for some in groups.values()]
+
+
+def room(verdict: CaseVerdict) -> tuple[bool, float]:
+    """To sort by: what is missed first, then by how much of the bar is left."""
+    share = verdict.share if verdict.outcome is not Outcome.NOT_JUDGED else None
+    return not missed(verdict), math.inf if share is None else 1 - share

@@ -1,0 +1,36 @@
+"""What came of a job, made up."""
+
+from known import EXACT
+
+from partialslip.batch.job import Solved
+from partialslip.judge import Outcome
+from partialslip.record import SCHEMA, ComparisonRecord, PlanRecord, Record
+from partialslip.result import Cost
+from partialslip.result.record import ResultRecord
+
+
+def cost(cpu_s, **phases):
+    return Cost(cpu_s, cpu_s, 100.0, phases)
+
+
+def method(**changes):
+    """The record of a result, with some fields of its own."""
+    fields = {name: getattr(ResultRecord.of(EXACT, curves=False), name) for name in ResultRecord.__struct_fields__}
+    return ResultRecord(**fields | changes)
+
+
+def solved(scene, labels=None, errors=None, process=None, **methods):
+    """A job by ``methods``, each the fields of its record, with ``errors`` of the finite elements by quantity."""
+    compared = ComparisonRecord(Outcome.NOT_JUDGED, errors or {}, None, None, None, None, {}, (), (), ())
+    run = Record(
+        schema=SCHEMA,
+        outcome=Outcome.NOT_JUDGED,
+        reference="exact",
+        missed=(),
+        scene=scene,
+        plan=PlanRecord((), (), (), {}),
+        methods={name: method(**fields) for name, fields in methods.items()},
+        comparison={"fem": compared},
+        versions={},
+    )
+    return Solved(scene=scene, labels=labels or {}, run=run, process=process)

@@ -1,0 +1,42 @@
+"""The scripts in examples/ run as they are, and print what they are there to show."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+SHOWN = {
+    "first_run": ["small tension", "m: error", "passed; the finite elements took"],
+    "mean_loads": ["1 cycles followed", "x = +0.9 a", "against the exact solution: passed"],
+    "score_a_table": ["f = 0.4995 (the scene has 0.5)", "passed; notes: none"],
+    "stick_zones": ["2,001 stick zones", "tension turns large at dsigma = 287.8 MPa"],
+    "size_of_a_body": ["4 of them solved now", "blocks of 64 a"],
+}
+
+
+def run(name, folder):
+    done = subprocess.run(
+        [sys.executable, "-W", "error", str(EXAMPLES / f"{name}.py")],
+        capture_output=True, text=True, check=False, cwd=folder, env=os.environ | {"MPLBACKEND": "Agg"},
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
+def test_every_example_is_here():
+    assert {path.stem for path in EXAMPLES.glob("*.py")} == SHOWN.keys()
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_an_example_shows_what_it_is_for(name, tmp_path):
+    printed = run(name, tmp_path)
+    assert [text for text in SHOWN[name] if text not in printed] == []
+
+
+def test_a_second_run_of_the_sweep_solves_nothing(tmp_path):
+    first, second = run("size_of_a_body", tmp_path), run("size_of_a_body", tmp_path)
+    assert "0 of them solved now" in second
+    assert first.splitlines()[1:] == second.splitlines()[1:]
