@@ -22,8 +22,9 @@ _PACKAGES = ("partialslip", "numpy", "scipy", "scikit-fem", "gmsh", "meshio")
 
 
 class PlanRecord(msgspec.Struct, frozen=True):
-    """Effects that the scene calls for, that are left out, and that are called for and forced off; the reason of
-    each."""
+    """The effects of a scene: ``called_for``, ``left_out``, and ``missing`` (called for, but forced off); ``reasons`` by
+    effect.
+    """
 
     called_for: tuple[Effect, ...]
     left_out: tuple[Effect, ...]
@@ -42,7 +43,12 @@ class PlanRecord(msgspec.Struct, frozen=True):
 
 
 class ComparisonRecord(msgspec.Struct, frozen=True):
-    """A :class:`partialslip.Comparison`: ``errors`` and ``bars`` by quantity, and the verdicts that they are from."""
+    """A :class:`partialslip.Comparison` as plain data.
+
+    ``outcome`` is the verdict on the whole, ``missed`` lists in words what is missed. ``errors`` and ``bars`` are by
+    quantity and belong to ``verdicts``; ``conditions`` are the verdicts on the certificate. ``p_nodal``, ``q_nodal``,
+    ``p_nodal_max`` and ``q_nodal_max`` are as in :class:`partialslip.Comparison`.
+    """
 
     outcome: Outcome
     errors: dict[str, Number]
@@ -75,9 +81,10 @@ class ComparisonRecord(msgspec.Struct, frozen=True):
 class Record(msgspec.Struct, frozen=True):
     """Everything that a run found: the content of ``results.json``. SI units.
 
-    ``outcome`` is the verdict on the whole run, ``missed`` says in words what is missed, ``reference`` names the method
-    that others are compared with. ``methods`` and ``comparison`` are by method; ``versions`` are those of the packages
-    that the figures depend on.
+    ``schema`` names the version of the format. ``outcome`` is the verdict on the whole run, ``missed`` lists in words
+    what is missed, ``reference`` names the method that others are compared with. ``scene`` and ``plan`` are those of the
+    run. ``methods`` (results) and ``comparison`` (with the reference) are by method; ``versions`` are those of the
+    packages that the figures depend on.
     """
 
     schema: str

@@ -41,9 +41,14 @@ class TractionRecord(msgspec.Struct, frozen=True, omit_defaults=True):
 
 
 class ResultRecord(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """A :class:`partialslip.Result` without what is computed at other points, and without bodies and state. Fields have
-    the result's names, units and meaning. ``slip``, ``surface`` and ``traction`` are None where there are none, and in
-    ledgers, which keep no curves."""
+    """A :class:`partialslip.Result` as plain data, without bodies, state and fields at other points.
+
+    Fields have the names, units and meaning of the result: ``a``, ``p0``, ``regime``, ``m``, ``n``,
+    ``stick_half_width``, ``stick_centre``, ``p_max``, ``settings``, ``counts``, ``limits``, ``certificate``,
+    ``last_cycle_change``, ``estimate``, ``shares``, ``undetermined``, ``path_dependent``, ``notes``, ``cost``.
+    ``contact_ends`` are the left and right end (m) at load point 1 and at load point 2. ``slip``, ``surface`` and
+    ``traction`` are None if the result has none, and in ledgers, which keep no curves.
+    """
 
     a: Number
     p0: Number
