@@ -38,7 +38,7 @@ def main(folder: Path) -> None:
 
 
 def _adhered(figure: "Figure") -> None:
-    """Change of shear if nothing slips (1): shear force alone, no longer singular at -a, and turned round there."""
+    """Change of shear if nothing slips (1), for shear force alone, for no singularity at -a, and for a change of sign."""
     axes = figure.subplots()
     x = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 803)[1:-1])
     for (ratio, text), style in zip(((0.0, "0"), (4 / np.pi, "4/π"), (4.0, "4")), _STYLES, strict=True):
@@ -48,7 +48,7 @@ def _adhered(figure: "Figure") -> None:
 
 
 def _tractions(figure: "Figure", Qf: float, sf: float) -> None:
-    """Shear at both load points, fully reversed, between the bounds that friction sets."""
+    """Shear at both load points under fully reversed loads, and the friction bounds."""
     axes, shape = figure.subplots(), Hertz()
     zone = stick_zone(Qf, sf, shape)
     m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
@@ -67,7 +67,7 @@ def _tractions(figure: "Figure", Qf: float, sf: float) -> None:
 
 
 def _loops(figure: "Figure") -> None:
-    """Shear force against displacement by slip: A = f = 1, so that the unit of displacement is A f p0 a."""
+    """Shear force against displacement by slip. With A = f = 1 the unit of displacement is A f p0 a."""
     axes = figure.subplots()
     for Qf, style in zip((0.9, 0.7, 0.5), _STYLES, strict=True):
         dQ = Qf * np.pi  # 2 f P is pi

@@ -16,10 +16,12 @@ OWN = ("mean-loads", "out-of-phase", "finite-pad")  # in docs/scenes
 _HEAD = """\
 # Gallery
 
-The shipped scenes, then three of one's own, whose files are in `docs/scenes`; each at its own settings. Lines are the
-reference, markers the finite elements; half the change of shear between the load points is drawn, q = (q2 - q1)/2, in f
-p0, and p in p0. Errors are those of `partialslip run`: a, m and n as fractions of a, p and q in the relative L2 norm of
-cell averages.
+The gallery has the shipped scenes, and three other scenes from `docs/scenes`. Each scene is solved at its own settings.
+
+- Lines are the reference, and markers are the finite elements.
+- The figures show p in units of p0, and half the change of shear between the load points, q = (q2 - q1)/2, in units of
+  f p0.
+- Errors are those of `partialslip run`: a, m and n as fractions of a, p and q in the relative L2 norm of cell averages.
 """
 _ENTRY = """
 ## {name}
@@ -48,13 +50,13 @@ def main(folder: Path) -> None:
 
 
 def scenes() -> dict[str, str]:
-    """What ``partialslip run`` takes, by the name of the scene."""
+    """Argument of ``partialslip run`` (shipped name or path), by the name of the scene."""
     own = {name: str((DOCS / "scenes" / f"{name}.toml").relative_to(DOCS.parent)) for name in OWN}
     return {name: name for name in partialslip.shipped_scenes()} | own
 
 
 def entry(name: str, scene: str, run: Run) -> str:
-    """The section of a run: command, errors, what limits and slip there are, and the figure."""
+    """Section of a run: command, errors, limits, slip and figure, in Markdown."""
     title = run.scene.title.rstrip(".")
     lines = [rows.units(run), *(table(run, each) for each in run.comparisons)]
     facts = fact(run.results[run.reference or "fem"])
@@ -62,14 +64,14 @@ def entry(name: str, scene: str, run: Run) -> str:
 
 
 def table(run: Run, method: str) -> str:
-    """Errors of a method, as a table of Markdown."""
+    """Errors of a method as a Markdown table."""
     cells = [rows.headings(run, method), *rows.error_rows(run.comparisons[method])]
     lines = ["| " + " | ".join(row).rstrip() + " |" for row in cells]
     return "\n".join([lines[0], "|---" * len(cells[0]) + "|", *lines[1:]])
 
 
 def fact(result: Result) -> str:
-    """Regime, limits and slip in a sentence or two."""
+    """Regime, limits and slip in one or two sentences."""
     found = rows.facts(result)
     parts = [found["regime"], found.get("limits", ""), "slip " + found["slip"] if "slip" in found else ""]
     text = " ".join(part[0].upper() + part[1:] + "." for part in [*parts, found.get("note", "")] if part)

@@ -22,9 +22,7 @@ _PACKAGES = ("partialslip", "numpy", "scipy", "scikit-fem", "gmsh", "meshio")
 
 
 class PlanRecord(msgspec.Struct, frozen=True):
-    """The effects of a scene: ``called_for``, ``left_out``, and ``missing`` (called for, but forced off); ``reasons`` by
-    effect.
-    """
+    """Effects: ``called_for``, ``left_out``, ``missing`` (called for, but forced off), and the ``reasons`` by effect."""
 
     called_for: tuple[Effect, ...]
     left_out: tuple[Effect, ...]
@@ -46,8 +44,8 @@ class ComparisonRecord(msgspec.Struct, frozen=True):
     """A :class:`partialslip.Comparison` as plain data.
 
     ``outcome`` is the verdict on the whole, ``missed`` lists in words what is missed. ``errors`` and ``bars`` are by
-    quantity and belong to ``verdicts``; ``conditions`` are the verdicts on the certificate. ``p_nodal``, ``q_nodal``,
-    ``p_nodal_max`` and ``q_nodal_max`` are as in :class:`partialslip.Comparison`.
+    quantity and belong to ``verdicts``; ``conditions`` are verdicts that need no reference: finite numbers and small
+    residuals. ``p_nodal``, ``q_nodal``, ``p_nodal_max`` and ``q_nodal_max`` are as in :class:`partialslip.Comparison`.
     """
 
     outcome: Outcome
@@ -82,9 +80,9 @@ class Record(msgspec.Struct, frozen=True):
     """Everything that a run found: the content of ``results.json``. SI units.
 
     ``schema`` names the version of the format. ``outcome`` is the verdict on the whole run, ``missed`` lists in words
-    what is missed, ``reference`` names the method that others are compared with. ``scene`` and ``plan`` are those of the
-    run. ``methods`` (results) and ``comparison`` (with the reference) are by method; ``versions`` are those of the
-    packages that the figures depend on.
+    what is missed, ``reference`` names the method that others are compared with. The run solved ``scene`` by ``plan``.
+    ``methods`` (results) and ``comparison`` (with the reference) are by method. ``versions`` are those of the packages
+    that the figures depend on.
     """
 
     schema: str

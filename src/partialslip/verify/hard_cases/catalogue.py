@@ -1,6 +1,6 @@
-"""The catalogue of hard cases: scenes that go wrong in contact codes, why they do, and what is asked of each method.
+"""The catalogue of hard cases: scenes that make contact codes fail, the reasons, and the bars of each method.
 
-Cases come in families, each with a paragraph (:attr:`Family.hard`), which is also what docs/hard-cases.md prints.
+Cases come in families. The paragraph of a family (:attr:`Family.hard`) is printed in docs/hard-cases.md.
 """
 
 import math
@@ -25,11 +25,17 @@ from partialslip.verify.hard_cases.meshes import flat_triangles, one_node, shift
 
 _HEAD = """# Hard cases
 
-Scenes that go wrong in contact codes, why they do, and what is asked here. `partialslip verify --suite full` runs all
-of them after the shipped scenes, `partialslip verify --suite full --only NAME` one. Each is solved by the methods in
-brackets. Unless something else is said, every result is finite and certified, it has the regime of the exact solution,
-and the ends of the contact and of the stick zone are within the accuracy that the scene asks for (2e-5 of a), however
-narrow the zone is; pressure is within ten times and shear within fifteen times that (relative L2 of cell averages)."""
+These scenes make contact codes fail. For each family of scenes this page gives the reason and the requirements.
+`partialslip verify --suite full` runs all scenes after the shipped scenes, and `partialslip verify --suite full --only
+NAME` runs one scene. The methods in brackets solve the scene.
+
+Unless an entry has other bars, every result must meet these requirements:
+
+- The result is finite and certified.
+- The regime is that of the exact solution.
+- The ends of the contact and of the stick zone are within the accuracy of the scene (2e-5 of a), however narrow the
+  zone is.
+- Pressure is within ten times and shear within fifteen times this accuracy (relative L2 of cell averages)."""
 
 
 @dataclass(frozen=True)
