@@ -38,7 +38,7 @@ def main(folder: Path) -> None:
 
 
 def _adhered(figure: "Figure") -> None:
-    """Change of shear if nothing slips (1), for shear force alone, for no singularity at -a, and for a change of sign."""
+    """Change of shear if nothing slips (1): shear force alone, no singularity at -a, and a change of sign there."""
     axes = figure.subplots()
     x = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 803)[1:-1])
     for (ratio, text), style in zip(((0.0, "0"), (4 / np.pi, "4/π"), (4.0, "4")), _STYLES, strict=True):

@@ -22,7 +22,7 @@ _PACKAGES = ("partialslip", "numpy", "scipy", "scikit-fem", "gmsh", "meshio")
 
 
 class PlanRecord(msgspec.Struct, frozen=True):
-    """Effects: ``called_for``, ``left_out``, ``missing`` (called for, but forced off), and the ``reasons`` by effect."""
+    """Effects: ``called_for``, ``left_out``, ``missing`` (called for, but forced off), and ``reasons`` by effect."""
 
     called_for: tuple[Effect, ...]
     left_out: tuple[Effect, ...]
