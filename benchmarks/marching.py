@@ -17,8 +17,9 @@ from partialslip.halfplane.cells import compliance, forces, graded
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
-from partialslip.halfplane.steady import StickZone, stick_zone
+from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range, mean_load_bound
+from partialslip.result import StickZone
 
 P0 = 2 / np.pi  # a = P = 1
 

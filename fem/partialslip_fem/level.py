@@ -15,7 +15,7 @@ from partialslip.bars import BARS
 from partialslip.condensed import coupled, step_errors
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.coupled import Pressed
-from partialslip.condensed.ends import Zone, apart, finest, kinks, left_end, right_end, stick_zone
+from partialslip.condensed.ends import StickInterval, apart, finest, kinks, left_end, right_end, stick_zone
 from partialslip.condensed.history import History
 from partialslip.condensed.path import Path
 from partialslip.condensed.steps import march_refined
@@ -158,7 +158,7 @@ class Level:
     history: History | None
     left: float
     right: float
-    stick: Zone | None
+    stick: StickInterval | None
     others: tuple[float, float] | tuple[()] = ()
     kinks: tuple[float, ...] = ()
     coupled: bool = False
@@ -429,7 +429,7 @@ def _grown(first: Pressed | None, nodes: Indices, problem: Problem) -> tuple[Arr
     return problem.f * np.maximum(p[nodes], 0.0), 2 * q[nodes]
 
 
-def _stick_zone(line: Body, nodes: Indices, history: History, grown: tuple[Array, Array] | None) -> Zone:
+def _stick_zone(line: Body, nodes: Indices, history: History, grown: tuple[Array, Array] | None) -> StickInterval:
     bound, change = grown or (history.bound, history.change)
     return stick_zone(line.x[nodes], bound, change, line.x[:: line.order], partial(_forces_of, line, nodes))
 

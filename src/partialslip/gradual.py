@@ -14,7 +14,7 @@ from partialslip.scene import Hertz, Scene
 _QF, _SLOPE, _SF = 0.44, 6.0, 10.0
 
 
-def left_end_turns(Qf: float, sf: float, s: int, half_width: float) -> bool:
+def left_end_turns(Qf: float, sf: float, s: float, half_width: float) -> bool:
     """Whether the slip zone at the left end turns round while the stick zone shrinks to ``half_width``.
 
     At a half-width c of the stick zone its left end is driven by dQ/pi - c dsigma/4 (the adhered traction of the
@@ -24,7 +24,7 @@ def left_end_turns(Qf: float, sf: float, s: int, half_width: float) -> bool:
     return sf > 4 * Qf if s > 0 else half_width * sf < 4 * Qf
 
 
-def turns_round(Qf: float, sf: float, s: int, centre: float, half_width: float) -> bool:
+def turns_round(Qf: float, sf: float, s: float, centre: float, half_width: float) -> bool:
     """Whether slip turns round between the load points of a cycle that one step from one to the other leaves with the
     stick zone of that ``centre`` and ``half_width`` (for positive changes of both loads), at any pressure.
 

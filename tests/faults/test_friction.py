@@ -12,7 +12,7 @@ import partialslip
 from partialslip.bars import CERTIFICATE_BAR
 from partialslip.condensed import coupled, ends, history, steps
 from partialslip.condensed.bounded import _BlockPivoting, solve_bounded
-from partialslip.condensed.ends import Zone
+from partialslip.condensed.ends import StickInterval
 from partialslip.condensed.history import march as true_march
 from partialslip.result.state import State
 from partialslip_fem import level, model
@@ -147,7 +147,7 @@ def test_stick_zone_from_flags_of_one_instant(monkeypatch, sound, red):
 
     def flagged(line, nodes, history, _):
         sticks = line.x[nodes][np.abs(history.q2) < (1 - 1e-9) * history.bound]
-        return Zone(float(sticks[0]), float(sticks[-1]), (-1, 1))
+        return StickInterval(float(sticks[0]), float(sticks[-1]), (-1, 1))
 
     scene = sound(LARGE, *MEAN)
     monkeypatch.setattr(level, "_stick_zone", flagged)

@@ -17,8 +17,9 @@ from partialslip.errors import InputError
 from partialslip.halfplane import Contact, contact, contact_of, stick_zone
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.slip import dissipation
-from partialslip.halfplane.steady import StickZone, transition
+from partialslip.halfplane.steady import transition
 from partialslip.halfplane.traction import half_range, mean_load_bound
+from partialslip.result import StickZone
 from partialslip.verify.random_scenes import KINDS, PROFILES, changes, draw, kind_of, without_shear
 from partialslip.verify.stress import stress_numbers
 

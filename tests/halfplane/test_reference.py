@@ -16,8 +16,9 @@ from partialslip.halfplane import hertz
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
-from partialslip.halfplane.steady import StickZone, stick_zone
+from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range
+from partialslip.result import StickZone
 
 DIGITS = 40
 ROUNDING = 2.0**-53

@@ -9,7 +9,8 @@ import pytest
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
-from partialslip.halfplane.steady import StickZone, stick_zone, transition
+from partialslip.halfplane.steady import stick_zone, transition
+from partialslip.result import StickZone
 
 HERTZ = Hertz()
 SHAPES = [HERTZ, Punch(0.05), Punch(0.5), Punch(0.95)]

@@ -7,8 +7,9 @@ from partialslip.halfplane.adhered import adhered
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
-from partialslip.halfplane.steady import StickZone, stick_zone
+from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range, mean_load_bound
+from partialslip.result import StickZone
 
 LOADS = [(0.19, 0.4), (0.75, 2.4), (0.4, 4.03), (0.3, 8.0), (0.0, 3.0), (0.9, 20.0), (0.4, 87.8), (0.5, 2.3431457535)]
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(400)

@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 from partialslip import halfplane, load_scene
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch
-from partialslip.halfplane.steady import StickZone, stick_zone
+from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range, mean_load_bound
+from partialslip.result import StickZone
 
 HERTZ, LOADED = Hertz(), halfplane.contact(load_scene("hertz-large-tension"))
 SHAPES = st.one_of(st.just(HERTZ), st.sampled_from([Punch(flat) for flat in (0.5, 0.95)]))

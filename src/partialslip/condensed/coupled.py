@@ -15,7 +15,7 @@ import scipy.linalg as la
 
 from partialslip.arrays import Array
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
-from partialslip.condensed.history import History, certified, follow, resting
+from partialslip.condensed.history import History, certified, follow, resting, still
 from partialslip.condensed.path import Path
 from partialslip.condensed.pressing import Punch
 
@@ -294,10 +294,9 @@ def march(
     def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
         nonlocal gap, load
         if strain == 0 and load == Q:  # nothing moves
-            zero = 0 * gap
-            still = replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0)
-            done.append((replace(done[-1][0], residual=zero, imbalance=0.0, iterations=0, changes=0), still))
-            return still, f * done[-1][0].x
+            normal = done[-1][0]
+            done.append((replace(still(normal), rest=normal.rest), still(before)))
+            return done[-1][1], f * normal.x
         gap, load = gap - strain * stretch[1], Q
         kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0]
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the step before, and this one a cycle ago

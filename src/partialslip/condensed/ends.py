@@ -24,7 +24,7 @@ _RUN = 4  # nodes in a row that make a zone; fewer are noise
 
 
 @dataclass(frozen=True)
-class Zone:
+class StickInterval:
     """The stick zone and the signs of dq in the slip zones on its left and right."""
 
     left: float
@@ -32,7 +32,9 @@ class Zone:
     signs: tuple[int, int]
 
 
-def stick_zone(x: Array, bound: Array, change: Array, vertices: Array, cell_forces: Callable[[Array], Array]) -> Zone:
+def stick_zone(
+    x: Array, bound: Array, change: Array, vertices: Array, cell_forces: Callable[[Array], Array]
+) -> StickInterval:
     """Read the stick zone from the range 2 f p - |dq|, never from what sticks at one instant.
 
     Parameters
@@ -50,10 +52,10 @@ def stick_zone(x: Array, bound: Array, change: Array, vertices: Array, cell_forc
     if len(sticks) == 0:  # a stick zone smaller than a cell: it is where the slip turns round
         turn = int(np.argmax(np.sign(change) != np.sign(change[0])))
         point = float(x[max(turn - 1, 0)] + x[turn]) / 2
-        return Zone(point, point, signs)
+        return StickInterval(point, point, signs)
     left = left_end(vertices, cell_forces(2 * bound - signs[0] * change), x[sticks])
     right = right_end(vertices, cell_forces(2 * bound - signs[1] * change), x[sticks])
-    return Zone(left, max(right, left), signs)
+    return StickInterval(left, max(right, left), signs)
 
 
 def _around(most: int, x: Array, sticks: npt.NDArray[np.bool_], vertices: Array) -> npt.NDArray[np.int64]:

@@ -156,8 +156,7 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
         nonlocal load
         if strain == 0 and load == Q:  # nothing moves
             sides.append(before.sides)
-            zero = 0 * bound
-            return replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0), bound
+            return still(before), bound
         load = Q
         free = tangential @ before.x + strain * stretch
         near = sides[-cycle] if len(sides) >= first + cycle else before.sides  # this step a cycle ago is the nearest
@@ -175,6 +174,12 @@ def resting(forces: Array) -> Solution:
     """A solution that is only its tangential ``forces`` (n,)."""
     zero = 0 * forces
     return Solution(forces, zero, zero, 0.0, 0)
+
+
+def still(before: Solution) -> Solution:
+    """The solution ``before`` a step in which no load changes, as the solution of this step: without slip or work."""
+    zero = 0 * before.x
+    return replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0)
 
 
 def follow(path: Path, advance: Advance, before: Solution) -> History:

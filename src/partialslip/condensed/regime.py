@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from partialslip.bars import BARS
-from partialslip.condensed.ends import Zone
+from partialslip.condensed.ends import StickInterval
 from partialslip.condensed.history import STEADY, History
 from partialslip.result import FRICTIONLESS, Regime
 from partialslip.scene import Scene
@@ -22,7 +22,7 @@ class SteadyState(NamedTuple):
 
 
 def steady_state(
-    scene: Scene, history: History | None, stick: Zone | None, half_width: float, pressed: bool = False
+    scene: Scene, history: History | None, stick: StickInterval | None, half_width: float, pressed: bool = False
 ) -> SteadyState:
     """What it means that the stick zone of ``scene`` has been found to be ``stick`` (None: there was no friction to
     solve), in a contact of ``half_width``; lengths in any one unit. ``pressed`` says that coupled bodies slipped while

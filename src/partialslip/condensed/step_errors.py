@@ -6,7 +6,7 @@ import numpy.typing as npt
 from partialslip.arrays import Array
 from partialslip.bars import LEAST_SHEAR
 from partialslip.condensed.coupled import Pressed
-from partialslip.condensed.ends import Zone
+from partialslip.condensed.ends import StickInterval
 from partialslip.condensed.history import History
 
 Errors = dict[str, float]
@@ -15,7 +15,9 @@ Indices = npt.NDArray[np.int64]
 _SHEARS = ("change", "q1", "q2")
 
 
-def halved(history: History, finer: History, zones: tuple[Zone, Zone], weights: Array, half_width: float) -> Errors:
+def halved(
+    history: History, finer: History, zones: tuple[StickInterval, StickInterval], weights: Array, half_width: float
+) -> Errors:
     """m and n (in contact half-widths), q, q1 and q2 (relative L2): twice what halving all steps changes, as errors are
     of first order.
 
@@ -23,7 +25,7 @@ def halved(history: History, finer: History, zones: tuple[Zone, Zone], weights: 
     ----------
     history, finer : History
         In the steps taken, and in twice as many.
-    zones : two Zone
+    zones : two StickInterval
         Their stick zones.
     weights : (n,) array
         What turns tractions at their nodes into forces.

@@ -11,7 +11,6 @@
 
 from partialslip.halfplane.adhered import adhered as adhered
 from partialslip.halfplane.contact import Contact as Contact
-from partialslip.halfplane.contact import StickZones as StickZones
 from partialslip.halfplane.contact import contact as contact
 from partialslip.halfplane.contact import contact_of as contact_of
 from partialslip.halfplane.contact import stick_zone as stick_zone
@@ -19,3 +18,4 @@ from partialslip.halfplane.loop import Loop as Loop
 from partialslip.halfplane.loop import hysteresis as hysteresis
 from partialslip.halfplane.method import solve as solve
 from partialslip.halfplane.stress import Stress as Stress
+from partialslip.result import StickZone as StickZone

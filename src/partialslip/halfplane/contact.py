@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +15,7 @@ from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch, punch_force
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zones
+from partialslip.result import StickZone
 from partialslip.scene import Hertz as HertzProfile
 from partialslip.scene import Scene
 
@@ -108,21 +108,7 @@ def contact_of(pressure: Callable[[Array], Array], a: float, kinks: Sequence[flo
     return Contact(a, shape.scale * math.pi * a / 2, shape)
 
 
-class StickZones(NamedTuple):
-    """Stick zones [-m, n], m; arrays of the shape to which the loads broadcast.
-
-    ``centre`` is (n - m)/2 and ``half_width`` (n + m)/2, which does not cancel in a narrow zone; ``s`` is +1 where both
-    ends slip the same way (small tension) and -1 where they slip opposite ways (large tension).
-    """
-
-    m: Array
-    n: Array
-    centre: Array
-    half_width: Array
-    s: Array
-
-
-def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: npt.ArrayLike) -> StickZones:
+def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: npt.ArrayLike) -> StickZone[Array]:
     """Permanent stick zones of the steady state (paper, eqs. (17) and (18)), many at once.
 
     Parameters
@@ -151,5 +137,4 @@ def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: np
         raise InputError(f"dQ = {dQ_[slides].flat[0]}: must be less than 2 f P in size, or the contact slides")
     centre, half_width, s = stick_zones(Qf, sf, contact.shape)
     mirror = np.where((dQ_ < 0) == (dsigma_ < 0), 1, -1)
-    centre, half_width = mirror * centre * contact.a, half_width * contact.a
-    return StickZones(half_width - centre, half_width + centre, centre, half_width, s)
+    return StickZone(mirror * centre * contact.a, half_width * contact.a, s)

@@ -11,8 +11,9 @@ from partialslip.gradual import left_end_turns, turns_round
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.slip import slip
-from partialslip.halfplane.steady import StickZone, stick_zone
+from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range
+from partialslip.result import StickZone
 
 _NOTHING = StickZone(0.0, 1.0, 1)
 
@@ -42,18 +43,18 @@ class Loading:
     turn: int
     mirror: int
     bound: int
-    zone: StickZone
+    zone: StickZone[float]
 
     @property
     def ends(self) -> tuple[float, float]:
         """Left and right end of the stick zone."""
-        centre = self.mirror * self.zone.centre
-        return centre - self.zone.half_width, centre + self.zone.half_width
+        zone = self.zone._replace(centre=self.mirror * self.zone.centre)
+        return zone.left, zone.right
 
     @property
     def signs(self) -> tuple[int, int]:
         """Signs of the change on the left and on the right of the stick zone."""
-        left, right = (self.turn * self.zone.s, self.turn)[:: self.mirror]
+        left, right = (self.turn * int(self.zone.s), self.turn)[:: self.mirror]
         return left, right
 
     @property

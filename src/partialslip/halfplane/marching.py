@@ -14,7 +14,7 @@ from scipy.interpolate import PPoly
 from partialslip.allowance import Allowance
 from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
-from partialslip.condensed.ends import Zone, apart, finest, kinks, stick_zone
+from partialslip.condensed.ends import StickInterval, apart, finest, kinks, stick_zone
 from partialslip.condensed.history import History, certificate, last_cycle_change
 from partialslip.condensed.path import Path, load_path
 from partialslip.condensed.regime import doubts, steady_state
@@ -56,7 +56,7 @@ class _Level:
     vertices: Array
     pressed: Array
     history: History | None
-    stick: Zone | None
+    stick: StickInterval | None
     kinks: tuple[float, ...] = ()
     stepped: dict[str, float] = field(default_factory=dict)
 
@@ -119,12 +119,17 @@ def solve(
             errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
             ends_known = max(errors["m"], errors["n"])
             progress(f"mesh {meshes}: {len(level.pressed):,} cells, m, n known to {ends_known:.1e} a")
-            allowed = {key: BARS[key] * scene.fem.accuracy for key in _JUDGED}
+            allowed = {key: BARS[key] * _accuracy(scene) for key in _JUDGED}
             # what steps that cannot be refined further leave is not for the cells to make up for
             if all(meshed[key] <= max(most - stepped.get(key, 0.0), most / 2) for key, most in allowed.items()):
                 break
     assert level is not None
     return _result(scene, pressed, level, errors, shares, {"meshes": meshes, "iterations": iterations}, clock)
+
+
+def _accuracy(scene: Scene) -> float:
+    """Accuracy asked of m and n, as a fraction of a: one setting for march and fem."""
+    return scene.fem.accuracy
 
 
 def _cells(ends: list[float], inner: list[float], level: _Level | None, size: float, growth: float) -> Array:
@@ -165,13 +170,13 @@ def _solve_level(
     with clock.phase("contact"):
         moved = x * pressed.a / scene.length
 
-        def zone(of: History) -> Zone:
+        def zone(of: History) -> StickInterval:
             return stick_zone(x, bound, of.change, vertices, lambda values: values)
 
         def errors(of: History, finer: History) -> dict[str, float]:
             return halved(of, finer, (zone(of), zone(finer)), np.diff(vertices), 1.0)
 
-        problem = tangential, moved, bound, path, scene.fem.accuracy
+        problem = tangential, moved, bound, path, _accuracy(scene)
         most = 0 if clock.limited else MOST  # more steps have no price
         history, stepped = march_refined(*problem, errors if choose else None, most)
         inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in history.visited]
@@ -258,7 +263,7 @@ def _result(
         cost=clock.cost(),
         state=_state(scene, level, a) if history else None,
         slip=Slip(x * a, history.slip * unit, history.dissipated * unit * P) if history else None,
-        settings={"model": "two half-planes, exact pressure, cells of constant shear", "accuracy": scene.fem.accuracy},
+        settings={"model": "two half-planes, exact pressure, cells of constant shear", "accuracy": _accuracy(scene)},
         counts={
             "cells": len(x),
             "tangential_unknowns": len(x) if history else 0,
@@ -273,7 +278,7 @@ def _result(
         last_cycle_change=change,
         estimate=errors,
         shares=shares,
-        notes=found.notes + doubts(change, errors, scene.fem.accuracy),
+        notes=found.notes + doubts(change, errors, _accuracy(scene)),
     )
 
 

@@ -11,7 +11,6 @@ import functools
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from partialslip.arrays import Array
 
@@ -84,13 +83,6 @@ class Shape:
         left = (left + self.pressure(ends[1]) * (1 / to_left - s * to_right)) / np.pi
         skew = np.where(c > NARROW, (right - left) / c, 0.0)
         return Conditions(8 / np.pi * first, 2 / np.pi * second, right, left, skew)
-
-    def guess(self, Qf: Array, sf: Array) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
-        """Roughly where the stick zone is: s * edge, c, and whether that is exact."""
-        from partialslip.halfplane.hertz import Hertz
-
-        edge, c, _ = Hertz().guess(Qf, sf)
-        return edge, c, np.zeros(np.shape(c), bool)
 
     def rule(self, edge: Array | float, c: Array | float, side: int) -> Rule:
         """Points in the slip zone on the right (``side`` = 1) or left (-1): see :func:`rule_between`."""

@@ -11,13 +11,13 @@ import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.halfplane.shape import Rule, Shape, rule_between
-from partialslip.halfplane.steady import StickZone
+from partialslip.result import StickZone
 
 _NODES, _FEWEST = 32, 6  # Gauss points in a slip zone, and in each of its pieces
 _TINY = 1e-300
 
 
-def density(x: Array, zone: StickZone, shape: Shape) -> Array:
+def density(x: Array, zone: StickZone[float], shape: Shape) -> Array:
     """Slope of the slip, the density of the paper's glide dislocations, in A f p0 at ``x``; zero outside the slip
     zones. For y on the side tau = +-1,
 
@@ -46,7 +46,7 @@ def density(x: Array, zone: StickZone, shape: Shape) -> Array:
     return result
 
 
-def slip(x: Array, zone: StickZone, shape: Shape) -> Array:
+def slip(x: Array, zone: StickZone[float], shape: Shape) -> Array:
     """Slip in A f p0 a at ``x``, zero in the stick zone: the integral of the density, from the stick zone on, with
     the order of the integrations turned round."""
     result = np.zeros_like(x)
@@ -72,12 +72,11 @@ def slip(x: Array, zone: StickZone, shape: Shape) -> Array:
     return result
 
 
-def dissipation(zone: StickZone, shape: Shape) -> tuple[Array, Array, float]:
+def dissipation(zone: StickZone[float], shape: Shape) -> tuple[Array, Array, float]:
     """Points over the slip zones (ascending, with the contact's ends), the slip there, and the energy that a whole
     cycle dissipates, 2 int f p |slip| dx, in A (f p0 a)^2."""
-    m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
     x, weights = [], []
-    for low, high in ((-1.0, -m), (n, 1.0)):
+    for low, high in ((-1.0, zone.left), (zone.right, 1.0)):
         ends = np.array([low, *(kink for kink in shape.strong_kinks if low < kink < high), high])
         nodes, factors = np.polynomial.legendre.leggauss(max(_NODES // (len(ends) - 1), _FEWEST))
         angle, half = np.pi / 2 * (1 + nodes), np.diff(ends)[:, None] / 2
@@ -88,7 +87,7 @@ def dissipation(zone: StickZone, shape: Shape) -> tuple[Array, Array, float]:
     return points, slips, 2 * float(np.concatenate(weights) @ (shape.pressure(points) * np.abs(slips))[1:-1])
 
 
-def _slips(x: Array, zone: StickZone, side: int) -> npt.NDArray[np.bool_]:
+def _slips(x: Array, zone: StickZone[float], side: int) -> npt.NDArray[np.bool_]:
     result: npt.NDArray[np.bool_] = (side * (x - zone.centre) > zone.half_width) & (np.abs(x) <= 1)
     return result
 

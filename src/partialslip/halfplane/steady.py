@@ -3,13 +3,14 @@
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize.elementwise import find_root
 
 from partialslip.arrays import Array
+from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.shape import NARROW, Conditions, Shape
+from partialslip.result import StickZone
 
 NARROWEST = 1e-100  # stick zones narrower than that are not told apart
 _CHUNK = 2**14  # zones at a time: what they need stays in the processor's cache
@@ -19,22 +20,13 @@ _ROUNDING = 4 * np.finfo(float).eps
 _STEPS = 40
 
 
-class StickZone(NamedTuple):
-    """Stick zone [-m, n] as fractions of a, by its centre (n - m)/2 and half-width (n + m)/2; ``s`` is +1 where
-    both ends slip the same way (small tension) and -1 where they slip opposite ways (large tension)."""
-
-    centre: float
-    half_width: float
-    s: int
-
-
-def stick_zone(Qf: float, sf: float, shape: Shape) -> StickZone:
+def stick_zone(Qf: float, sf: float, shape: Shape) -> StickZone[float]:
     """The stick zone for 0 <= ``Qf`` < 1 and ``sf`` >= 0; see :func:`stick_zones`."""
     centre, half_width, s = stick_zones(Qf, sf, shape)
     return StickZone(float(centre), float(half_width), int(s))
 
 
-def stick_zones(Qf: Array | float, sf: Array | float, shape: Shape) -> tuple[Array, Array, Array]:
+def stick_zones(Qf: Array | float, sf: Array | float, shape: Shape) -> StickZone[Array]:
     """Centres, half-widths and s of the stick zones for many loads, of the shape to which these broadcast.
 
     For 0 <= ``Qf`` < 1 and ``sf`` >= 0. Other signs follow: mirroring x turns dQ round and keeps dsigma, turning q
@@ -54,7 +46,7 @@ def stick_zones(Qf: Array | float, sf: Array | float, shape: Shape) -> tuple[Arr
         part = slice(start, start + _CHUNK)
         edge[part], c[part] = _solve(flat_Qf[part], flat_sf[part], shape)
     centre, s = np.abs(edge) + c - 1, np.where(edge < 0, -1, 1)
-    return centre.reshape(Qf.shape), c.reshape(Qf.shape), s.reshape(Qf.shape)
+    return StickZone(centre.reshape(Qf.shape), c.reshape(Qf.shape), s.reshape(Qf.shape))
 
 
 def transition(Qf: Array | float, shape: Shape) -> Array:
@@ -70,8 +62,8 @@ def _solve(Qf: Array, sf: Array, shape: Shape) -> tuple[Array, Array]:
     The derivative is known: what is added to the loads adds the adhered traction of the stick zone, singular at its
     ends, and the ends move so that the sum is bounded. Narrow zones are taken by log c.
     """
-    edge, c, done = shape.guess(Qf, sf)
-    active = np.flatnonzero(~done)
+    edge, c, exact = Hertz().guess(Qf, sf)
+    active = np.flatnonzero(~exact | (not isinstance(shape, Hertz)))
     for _ in range(_STEPS):
         if not len(active):
             return edge, c

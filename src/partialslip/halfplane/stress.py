@@ -7,8 +7,8 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.halfplane.cauchy import Cauchy
 from partialslip.halfplane.contact import Contact, stick_zone
-from partialslip.halfplane.steady import StickZone
 from partialslip.halfplane.traction import half_range
+from partialslip.result import StickZone
 
 _SURFACE = 1e-30  # depth at which the surface is taken, as a fraction of a
 _APART = 1e-12  # ends of zones closer to each other than that fraction of a are one

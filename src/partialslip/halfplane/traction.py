@@ -7,12 +7,12 @@ from scipy.optimize import brentq
 
 from partialslip.arrays import Array
 from partialslip.halfplane.shape import Shape
-from partialslip.halfplane.steady import StickZone
+from partialslip.result import StickZone
 
 _AT_ONCE = 2**22  # pairs of points in memory
 
 
-def half_range(x: Array, zone: StickZone, shape: Shape) -> Array:
+def half_range(x: Array, zone: StickZone[float], shape: Shape) -> Array:
     """dq/(2 f p0) at ``x`` (fractions of a), for loads of positive dQ and dsigma; zero outside [-1, 1].
 
     In the slip zones dq/2 = p on the right and s p on the left. In the stick zone, from the bounded inversion of
@@ -22,16 +22,15 @@ def half_range(x: Array, zone: StickZone, shape: Shape) -> Array:
 
     w(t) = sqrt((t-n)(t+m)). For small tension and Hertz it is p - sqrt((n-x)(x+m)).
     """
-    m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
     p = shape.pressure(x)
     result = np.where(x < zone.centre, zone.s * p, p)
-    sticks = (x > -m) & (x < n)
+    sticks = (x > zone.left) & (x < zone.right)
     if sticks.any():
         result[sticks] = _inside(x[sticks], zone, shape)
     return result
 
 
-def mean_load_bound(zone: StickZone, shape: Shape) -> float:
+def mean_load_bound(zone: StickZone[float], shape: Shape) -> float:
     """The largest \\|Q_mean\\|/(f P) that a steady state can hold: int (f p - \\|dq\\|/2) dx over the stick zone.
 
     Beyond it no locked-in mean traction fits under the friction bound and the contact ratchets (the frictional
@@ -56,7 +55,7 @@ def mean_load_bound(zone: StickZone, shape: Shape) -> float:
     return (room - 2 * _resultant(turn, slips, zone) + _resultant(math.pi, slips, zone)) * 2 / np.pi
 
 
-def _resultant(angle: float, slips: dict[int, tuple[Array, Array]], zone: StickZone) -> float:
+def _resultant(angle: float, slips: dict[int, tuple[Array, Array]], zone: StickZone[float]) -> float:
     """int dq/2 dx in the stick zone, from its right end to x = e + c cos(``angle``), the integrations turned round:
 
         int sin^2(y)/(cosh(theta) -+ cos(y)) dy = y cosh(theta) +- sin(y) - 2 sinh(theta) arctan(tan(y/2) r),
@@ -73,7 +72,7 @@ def _resultant(angle: float, slips: dict[int, tuple[Array, Array]], zone: StickZ
     return total * zone.half_width / np.pi
 
 
-def _inside(x: Array, zone: StickZone, shape: Shape) -> Array:
+def _inside(x: Array, zone: StickZone[float], shape: Shape) -> Array:
     """The stick zone's traction: p(t) is split into p(x), whose integrals are arc tangents, and p(t) - p(x), which
     the factor t - x divides without a pole."""
     centre, c = zone.centre, zone.half_width

@@ -17,7 +17,7 @@ from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zones, transition
-from partialslip.result import Result
+from partialslip.result import Result, StickZone
 from partialslip.run import run
 from partialslip.scene import Scene
 
@@ -33,16 +33,12 @@ _RATIOS = np.linspace(0, 8, 51)
 _ALONG = 101  # points of a line
 
 
-class Zones(NamedTuple):
-    """Stick zones [-m, n] as fractions of a, and their loads: arrays of one shape. ``s`` is +1 where both ends slip
-    the same way and -1 where they slip opposite ways."""
+class LoadedZones(NamedTuple):
+    """Loads ``Qf`` and ``sf`` and their stick zones ``zone``, as fractions of a: arrays of one shape."""
 
     Qf: Array
     sf: Array
-    m: Array
-    n: Array
-    half_width: Array
-    s: Array
+    zone: StickZone[Array]
 
 
 class Line(NamedTuple):
@@ -74,12 +70,12 @@ class StickMap:
     not on the map: ``missing`` says why.
     """
 
-    grid: Zones
+    grid: LoadedZones
     m_lines: list[Line]
     n_lines: list[Line]
     border: Line
-    curves: Zones
-    turns: Zones
+    curves: LoadedZones
+    turns: LoadedZones
     scene: Scene | None = None
     pressed: Contact | None = None
     point: Point | None = None
@@ -143,15 +139,15 @@ def _half_widths(low: float, high: float) -> Array:
     return low + (high - low) * np.linspace(1e-4, 1, _ALONG) ** 3
 
 
-def _zones(Qf: Array, sf: Array, shape: Shape, progress: Callable[[float], None] = lambda _: None) -> Zones:
+def _zones(Qf: Array, sf: Array, shape: Shape, progress: Callable[[float], None] = lambda _: None) -> LoadedZones:
     """Some at a time, as corners in the pressure take their time; ``progress`` is told the share that is done."""
     parts = []
     for start in range(0, Qf.size, _AT_ONCE):
         progress(start / Qf.size)
         part = slice(start, start + _AT_ONCE)
         parts.append(stick_zones(Qf.ravel()[part], sf.ravel()[part], shape))
-    centre, half_width, s = (np.concatenate(values).reshape(Qf.shape) for values in zip(*parts, strict=True))
-    return Zones(Qf, sf, half_width - centre, half_width + centre, half_width, s)
+    zone = StickZone(*(np.concatenate(values).reshape(Qf.shape) for values in zip(*parts, strict=True)))
+    return LoadedZones(Qf, sf, zone)
 
 
 def _point(scene: Scene, pressed: Contact) -> tuple[Point | None, str]:
