@@ -6,9 +6,9 @@ from partialslip.arrays import Array
 
 
 def adhered(x: Array, a: float, dQ: float, dsigma: float) -> Array:
-    """Change of shear traction at ``x`` (m, |x| < a) if nothing slips, Pa; singular at both ends.
+    """Change of shear traction without slip, Pa, at ``x`` (m, |x| < a); singular at both ends.
 
-    dq = (dQ/pi + x dsigma/4)/sqrt(a^2 - x^2), with ``dQ`` in N/m and ``dsigma`` in Pa.
+    dq = (dQ/pi + x dsigma/4)/sqrt(a^2 - x^2): paper, eq. (1). ``a`` in m, ``dQ`` in N/m, ``dsigma`` in Pa.
     """
     result: Array = (dQ / np.pi + x * dsigma / 4) / np.sqrt((a - x) * (a + x))
     return result

@@ -1,8 +1,7 @@
-"""Cauchy integrals of functions on an interval of the real axis, at points however close to it.
+"""Cauchy integrals of functions on an interval of the real axis, accurate at any distance from the interval.
 
-Between breaks the functions are polynomials, panel by panel, in the square root v of the distance from the nearer
-break. Gauss's rule integrates the panels that are far from the point; in those that are near, what it leaves out is
-known.
+Between breaks the functions are interpolated by polynomials, panel by panel, in v, the square root of the distance from
+the nearer break. Gauss's rule integrates panels far from the point; in near panels its known error is added.
 """
 
 from collections.abc import Callable
@@ -17,14 +16,14 @@ Complex = npt.NDArray[np.complex128]
 _COUNT = 16  # nodes on a panel
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(_COUNT)
 _BARYCENTRIC = (-1.0) ** np.arange(_COUNT) * np.sqrt((1 - _NODES**2) * _WEIGHTS)
-_VALUES = np.polynomial.legendre.legvander(_NODES, _COUNT - 1)  # of Legendre's polynomials, (nodes, degrees)
+_VALUES = np.polynomial.legendre.legvander(_NODES, _COUNT - 1)  # Legendre polynomials, (nodes, degrees)
 _COEFFICIENTS = (np.arange(_COUNT) + 0.5)[:, None] * (_VALUES * _WEIGHTS[:, None]).T
 _ENDS = np.polynomial.legendre.legvander(np.array([-1.0, 1.0]), _COUNT - 1) @ _COEFFICIENTS
 _SLOPES = _VALUES[:, :-1] @ np.polynomial.legendre.legder(_COEFFICIENTS)
-_RESOLVED = 1e-13  # last coefficients of a panel, in the largest value
-_SMALL = 1e-9
-_LEVELS = 40
-_NEAR = 3 + 1 / 3  # |zeta - 1| + |zeta + 1| of poles that Gauss's rule does not integrate to rounding
+_RESOLVED = 1e-13  # last coefficients of a panel, relative to the largest value
+_SMALL = 1e-9  # coefficients, relative to the largest value, that may be rounding of the functions
+_LEVELS = 40  # halvings of a panel
+_NEAR = 3 + 1 / 3  # |zeta - 1| + |zeta + 1| up to which Gauss's rule has an error above rounding
 _AT_ONCE = 2**20  # pairs of points in memory
 
 
@@ -36,15 +35,15 @@ class Cauchy:
     functions : callable
         (n,) points to (k, n) real values.
     breaks : (b,) array
-        Ascending; the interval goes from the first to the last. In between, the functions are smooth but for square
-        roots at the breaks, and anything weaker.
+        Ascending; the first and the last are the ends of the interval. Between breaks the functions are smooth; at
+        breaks they may have square roots or weaker singularities.
     """
 
     def __init__(self, functions: Callable[[Array], Array], breaks: Array) -> None:
         middles = (breaks[1:] + breaks[:-1]) / 2
         origin = np.concatenate([breaks[:-1], breaks[1:]])
         way = np.repeat([1.0, -1.0], len(middles))
-        # t = origin + way v^2; ends are kept as t, so that neighbours share them to the last digit
+        # t = origin + way v^2; panels store their ends as t, so that neighbours share them to the last digit
         todo = np.stack([origin, way, origin, np.concatenate([middles, middles])])
         panels, values, largest, before = [], [], 0.0, np.full(len(origin), np.inf)
         for level in range(_LEVELS):
@@ -52,11 +51,11 @@ class Cauchy:
             t = todo[0, :, None] + todo[1, :, None] * (middle[:, None] + half[:, None] * _NODES) ** 2
             found = functions(t.ravel()).reshape(-1, *t.shape)
             largest = max(largest, float(np.abs(found).max()))
-            # not to be resolved: what the rounding of t makes of the functions
+            # error of the functions due to the rounding of t
             noise = 4 * np.finfo(float).eps * np.ptp(found, axis=-1) / np.abs(todo[3] - todo[2])
             tail = np.abs(found @ _COEFFICIENTS[-2:].T).max(axis=-1)
             rough = (tail > _RESOLVED * largest + noise).any(axis=0) & (level < _LEVELS - 1)
-            # small, and not smaller than in the panel of which it is half: the functions' own rounding
+            # a small tail that halving the panel did not reduce is rounding of the functions
             size = tail.max(axis=0)
             rough &= (size > _SMALL * largest) | (size < before / 2)
             panels.append(todo[:, ~rough])
@@ -71,12 +70,12 @@ class Cauchy:
         self._slopes = self._values @ _SLOPES.T
 
     def __call__(self, z: Complex) -> Complex:
-        """Integrals and their derivatives at ``z`` (m,), off the interval: (2, k, m)."""
+        """Integrals and their derivatives, (2, k, m), at points ``z`` (m,) off the interval."""
         origin, way, *_ = self._panels
         middle, half = _in_v(self._panels)
         v = middle[:, None] + half[:, None] * _NODES
         beyond, ends = way[:, None] * v**2, self._panels[2:].T.ravel()
-        # from afar; the derivative by parts, with the panels' ends
+        # far panels; the derivative by parts, with terms at the panels' ends
         integral = self._values * _WEIGHTS * 2 * v * half[:, None]
         derivative = self._slopes * _WEIGHTS * way[:, None]
         edges = self._values @ _ENDS.T * way[:, None] * [1, -1]
@@ -95,9 +94,9 @@ class Cauchy:
         return result.T.reshape(2, -1, len(z))
 
     def _near(self, z: Complex, v_z: Complex, panel: npt.NDArray[np.int64]) -> Complex:
-        """Integrals and derivatives over a panel each, (2 k, pairs).
+        """Integrals and derivatives over near panels, one per pair of point and panel, (2 k, pairs).
 
-        dt/(t - z) = dv/(v - v_z) + dv/(v + v_z), and dv/(t - z) is the difference of both, over 2 v_z.
+        dt/(t - z) = dv/(v - v_z) + dv/(v + v_z), and dv/(t - z) = (dv/(v - v_z) - dv/(v + v_z))/(2 v_z).
         """
         _, way, low, high = self._panels[:, panel]
         middle, half = (values[panel] for values in _in_v(self._panels))
@@ -110,23 +109,23 @@ class Cauchy:
 
 
 def _in_v(panels: Array) -> tuple[Array, Array]:
-    """Middles and half-widths of panels, in v."""
+    """Midpoints and half-widths of panels in v."""
     origin, _, *ends = panels
     low, high = (np.sqrt(np.abs(end - origin)) for end in ends)
     return (low + high) / 2, (high - low) / 2
 
 
 def _ellipse(zeta: Complex) -> Array:
-    """The sum of the distances from -1 and 1."""
+    """Sum of the distances from -1 and 1."""
     result: Array = np.abs(zeta - 1) + np.abs(zeta + 1)
     return result
 
 
 def _pole(functions: Array, zeta: Complex, logarithm: Complex) -> Complex:
-    """int g(s)/(s - zeta) ds over [-1, 1] of polynomials by their values at the nodes, (k, pairs, nodes).
+    """int g(s)/(s - zeta) ds over [-1, 1] of polynomials given by ``functions``, values at the nodes, (k, pairs, nodes).
 
-    With the rule's own value R of int ds/(s - zeta), which is the ``logarithm``, it is what the rule makes of it plus
-    g(zeta) (logarithm - R). The value at the nearest node is taken apart, so that nothing cancels beside a node.
+    Gauss's value plus g(zeta) (logarithm - R), where R is Gauss's value of int ds/(s - zeta) = ``logarithm``. The value
+    at the nearest node is subtracted first, so that nothing cancels beside a node.
     """
     kernel = 1 / (_NODES - zeta[:, None])
     nearest = np.abs(kernel).argmax(axis=-1)

@@ -1,4 +1,4 @@
-"""Cells of constant shear traction on two half-planes, and their compliance. Scaled so that A = 1."""
+"""Cells of constant shear traction on two half-planes, and the compliance of the cells. Scaled so that A = 1."""
 
 import itertools
 
@@ -8,19 +8,19 @@ from partialslip.arrays import Array
 from partialslip.halfplane.shape import Shape
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
-_NEAR = 4.0  # cells within so many of the wider one's widths are integrated in closed form
+_NEAR = 4.0  # distance, in widths of the wider cell, within which pairs of cells are integrated in closed form
 
 
 def graded(points: Array, size: float | Array, growth: float) -> Array:
-    """Ends of cells from the first to the last of ``points`` (ascending), each of them an end.
+    """Ends of cells from the first to the last of ``points`` (k,), ascending; every point is an end.
 
-    Cells are about ``size`` wide at the points (one size, or one for each) and gain ``growth`` times their distance
-    from the nearest.
+    Cells are about ``size`` wide at the points (one size, or (k,)) and wider by ``growth`` times the distance from the
+    nearest point.
     """
     sizes = np.broadcast_to(size, points.shape)
     vertices = [points[:1]]
     for (left, right), (first, last) in zip(itertools.pairwise(points), itertools.pairwise(sizes), strict=True):
-        # where the cells that grow from the left are as large as those from the right
+        # the point at which cells that grow from the left and from the right have equal size
         middle = float(np.clip((right - left + (last - first) / growth) / 2, 0.0, right - left))
         steps = _growing(first, growth, middle), _growing(last, growth, right - left - middle)
         vertices += [left + steps[0][1:], right - steps[1][-2::-1]]
@@ -28,7 +28,7 @@ def graded(points: Array, size: float | Array, growth: float) -> Array:
 
 
 def _growing(size: float, growth: float, distance: float) -> Array:
-    """Distances from a point of the ends of cells, up to ``distance``."""
+    """Distances of the ends of cells from a point, from 0 to ``distance``."""
     reach = np.log1p(growth * distance / size)
     count = max(int(np.ceil(reach / growth)), 1) if distance > 0 else 0
     result: Array = size / growth * np.expm1(np.linspace(0, reach, count + 1))
@@ -36,9 +36,11 @@ def _growing(size: float, growth: float, distance: float) -> Array:
 
 
 def forces(shape: Shape, vertices: Array) -> Array:
-    """Normal force on each cell of [-1, 1], as a fraction of the whole: in the angle x = sin(phi) the square roots at
-    the contact's ends are smooth, and cells are cut at kinks. What the rule leaves out is shared by all, so that the
-    bounds of friction add up to f P and shear just short of sliding finds room."""
+    """Normal forces (c,) on the cells of [-1, 1] between ``vertices`` (c + 1,), as fractions of P.
+
+    Gauss's rule in phi, x = sin(phi), which removes the square roots at the contact's ends; cells are cut at kinks. The
+    forces are normalised to sum to 1: the friction bounds then sum to f P, and any |Q| < f P is feasible.
+    """
     kinks = np.asarray(shape.kinks, float)
     ends = np.unique(np.concatenate([vertices, kinks[np.abs(kinks) < 1]]))
     angles = np.arcsin(np.clip(ends, -1, 1))
@@ -50,13 +52,13 @@ def forces(shape: Shape, vertices: Array) -> Array:
 
 
 def compliance(vertices: Array) -> Array:
-    """Mean relative displacement of each cell under a unit force spread over each other one, (c, c).
+    """Compliance (c, c): mean relative displacement of one cell under a unit force spread over another.
 
-    -1/pi times the mean of log|x - s| over both cells (Galerkin): symmetric, and positive definite for a contact
-    narrower than 2, to which lengths are to be scaled; that is a rigid shift.
+    -1/pi times the mean of log|x - s| over both cells (Galerkin): symmetric, and positive definite if the contact is
+    narrower than 2. Scaling the ``vertices`` (c + 1,) to such a width adds a rigid shift only.
     """
     middle, width = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices)
-    # far apart: a product of Gauss rules, in which nothing cancels
+    # far pairs: a product of Gauss rules, without cancellation
     points = (middle[:, None] + width[:, None] / 2 * _NODES).ravel()
     weights = _WEIGHTS / 2
     count = len(middle)
@@ -77,6 +79,6 @@ def compliance(vertices: Array) -> Array:
 
 
 def _primitive(z: Array) -> Array:
-    """Twice the integral of log|z|."""
+    """Second antiderivative of log|z|."""
     result: Array = z**2 / 2 * np.log(np.abs(z) + (z == 0)) - 3 / 4 * z**2
     return result

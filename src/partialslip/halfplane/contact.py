@@ -1,4 +1,4 @@
-"""The pressed contact: its half-width, its pressure, and the stick zones under changes of load, in SI units."""
+"""Contact half-width and pressure of two half-planes, and stick zones under changes of load; SI units."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -19,13 +19,13 @@ from partialslip.result import StickZone
 from partialslip.scene import Hertz as HertzProfile
 from partialslip.scene import Scene
 
-_HARDLY = 1e-13  # of its flat: by less than that rounding says how much wider a contact is
+_HARDLY = 1e-13  # of the flat's half-width: rounding hides how far the contact extends beyond the flat by less
 
 
 @dataclass(frozen=True)
 class Contact:
-    """Two half-planes pressed together: contact half-width ``a`` (m), normal force ``P`` (N/m) and the ``shape`` of p,
-    scaled (:mod:`partialslip.halfplane.shape`)."""
+    """Two half-planes pressed together: contact half-width ``a`` (m), normal force ``P`` (N/m) and ``shape``, the
+    scaled pressure (:mod:`partialslip.halfplane.shape`)."""
 
     a: float
     P: float
@@ -37,24 +37,25 @@ class Contact:
         return 2 * self.P / (math.pi * self.a)
 
     def pressure(self, x: Array) -> Array:
-        """p at ``x`` (m), Pa."""
+        """Pressure at ``x`` (m), Pa."""
         return self.p0 * self.shape.pressure(np.asarray(x, float) / self.a)
 
 
 def contact(scene: Scene) -> Contact:
-    """The contact of ``scene``, of half-planes of one material.
+    """Contact of ``scene`` under P, as two half-planes of one material.
 
-    Hertz: P = pi a^2/(2 A R). Any profile whose curvature steps by w at |x| = b (flat and rounded: by 1/R at b):
+    Hertz: P = pi a^2/(2 A R). Profiles whose curvature steps by w at |x| = b (flat and rounded: by 1/R at b):
     P = a^2/(2 A) sum w (2 psi - sin 2 psi), b = a cos(psi) (Ciavarella, Hills and Monno, 1998).
 
     Raises
     ------
     InputError
-        If the contact reaches beyond a tabulated profile, or hardly beyond its flat, or the bodies' materials differ.
+        If the materials differ, the contact extends beyond the table of the profile, or P is too small for the contact
+        to extend beyond the flat.
     """
     if not scene.material.alike:
         raise InputError(
-            "material.upper, material.lower: the bodies differ; exact and march are for similar ones, take fem"
+            "material.upper, material.lower: the bodies differ; must be of one material for exact and march, use fem"
         )
     A, P, profile = scene.material.A, scene.P, scene.profile
     if isinstance(profile, HertzProfile):
@@ -63,7 +64,7 @@ def contact(scene: Scene) -> Contact:
     inner, reach = float(at[0]), profile.reach
 
     def psi(beyond: float) -> Array:
-        """From its half-angle form, which knows a contact hardly wider than its flat."""
+        """arccos(b/a) by the half-angle form, accurate if the contact is hardly wider than the flat."""
         result: Array = 2 * np.arcsin(np.sqrt(np.maximum(beyond - (at - inner), 0.0) / (2 * (inner + beyond))))
         return result
 
@@ -74,10 +75,11 @@ def contact(scene: Scene) -> Contact:
     scale = math.log(max(inner, scene.length))
     low = math.log(_HARDLY * inner) if inner > 0 else scale - 120.0
     if excess(low) > 0:
-        raise InputError(f"load.P = {P:g}: must press the contact beyond its flat, by more than {_HARDLY:g} of that")
+        least = f"{_HARDLY:g} of the flat's half-width"
+        raise InputError(f"load.P = {P:g}: must press the contact beyond its flat, by more than {least}")
     high = math.log(reach - inner) if reach < math.inf else scale + 120.0
     if excess(high) < 0:
-        raise InputError(f"load.P = {P:g}: the contact reaches beyond profile.x, which ends at {reach:g}")
+        raise InputError(f"load.P = {P:g}: must keep the contact within profile.x, which ends at {reach:g} m")
     beyond = math.exp(brentq(excess, low, high, xtol=1e-15, rtol=8.9e-16))
     a = inner + beyond
     within = at < a
@@ -85,22 +87,22 @@ def contact(scene: Scene) -> Contact:
 
 
 def contact_of(pressure: Callable[[Array], Array], a: float, kinks: Sequence[float] = ()) -> Contact:
-    """The contact with a pressure of one's own.
+    """Contact with a given pressure.
 
     Parameters
     ----------
     pressure : callable
-        Takes points (n,) in m, within [-a, a], to p in Pa: even, positive inside, and going to zero at +-a like a
-        square root (as any does that comes from a smooth profile).
+        ``pressure(x) -> p``: points (n,) in [-a, a], m, to pressures (n,), Pa. Even, positive inside, and zero at +-a
+        like a square root, as under any smooth profile.
     a : float
         Contact half-width, m.
     kinks : sequence of float
-        Where p is not smooth, m; -x goes with x.
+        Points at which p is not smooth, m; -x is added for each x.
 
     Raises
     ------
     InputError
-        If the pressure is not even, finite and positive.
+        If the pressure is not even, finite and positive, or ``a`` is not finite and positive.
     """
     if not (math.isfinite(a) and a > 0):
         raise InputError(f"a = {a}: must be finite and > 0")
@@ -109,7 +111,7 @@ def contact_of(pressure: Callable[[Array], Array], a: float, kinks: Sequence[flo
 
 
 def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: npt.ArrayLike) -> StickZone[Array]:
-    """Permanent stick zones of the steady state (paper, eqs. (17) and (18)), many at once.
+    """Permanent stick zones of the steady state (paper, eqs. (17) and (18)), m; arrays of the broadcast shape.
 
     Parameters
     ----------
@@ -122,7 +124,7 @@ def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: np
     Raises
     ------
     InputError
-        If f is not positive, or |dQ| >= 2 f P: the contact slides.
+        If f is not positive, a number is not finite, or |dQ| >= 2 f P (the contact slides).
     """
     given = {"f": f, "dQ": dQ, "dsigma": dsigma}
     arrays = np.broadcast_arrays(*(np.asarray(values, float) for values in given.values()))

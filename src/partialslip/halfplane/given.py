@@ -1,4 +1,4 @@
-"""A pressure of one's own; scaled as in :mod:`partialslip.halfplane.shape`."""
+"""A pressure given as a function; scaled as in :mod:`partialslip.halfplane.shape`."""
 
 from collections.abc import Callable, Sequence
 
@@ -8,24 +8,24 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.shape import Shape
 
-_CHECKED = 1000
-_EVEN = 1e-9  # differences of p(x) and p(-x), in the largest p, that count as none
+_CHECKED = 1000  # points at which the pressure is checked
+_EVEN = 1e-9  # tolerance of p(x) - p(-x), relative to the largest p
 
 
 class Given(Shape):
-    """An even pressure, given as a function on [-1, 1].
+    """Even pressure, given as a function on [-1, 1].
 
     Parameters
     ----------
     function : callable
-        (n,) points to (n,) pressures, in any unit: ``scale`` is how much of it p0 is.
+        Points (n,) to pressures (n,), in any unit; ``scale`` is p0 in this unit.
     kinks : sequence of float
-        Where it is not smooth; -x goes with x.
+        Points at which the pressure is not smooth; -x is added for each x.
 
     Raises
     ------
     InputError
-        If it is not even, finite and positive inside.
+        If the pressure is not even, finite and positive inside.
     """
 
     def __init__(self, function: Callable[[Array], Array], kinks: Sequence[float] = ()) -> None:
@@ -36,11 +36,11 @@ class Given(Shape):
         for fine, allowed in (
             (lambda: np.isfinite(p) & np.isfinite(mirrored), "finite"),
             (lambda: p > 0, "> 0 inside the contact"),
-            (lambda: np.abs(p - mirrored) <= _EVEN * np.abs(p).max(), "even: the same at -x"),
+            (lambda: np.abs(p - mirrored) <= _EVEN * np.abs(p).max(), "even, equal at x and -x"),
         ):
             if not (right := fine()).all():
                 raise InputError(f"pressure at x = {x[~right][0]:g} a: must be {allowed}, not {p[~right][0]:g}")
-        # P over a contact of half-width 1 is pi/2 p0: the limit of a stick zone that shrinks to nothing
+        # P = pi/2 p0 at half-width 1, by the rule for a slip zone beside a stick zone that shrinks to nothing
         t, _, weights = self.rule(1.0, 1e-30, 1)
         self.scale = 4 / np.pi * float((weights * self.pressure(t) * t).sum())
 

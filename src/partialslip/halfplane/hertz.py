@@ -1,4 +1,4 @@
-"""Hertz's pressure in the paper's closed and elliptic forms; scaled as in :mod:`partialslip.halfplane.shape`."""
+"""Hertz pressure in the paper's closed and elliptic forms; scaled as in :mod:`partialslip.halfplane.shape`."""
 
 import numpy as np
 import numpy.typing as npt
@@ -9,7 +9,7 @@ from partialslip.halfplane.shape import Conditions, Shape
 
 
 class Hertz(Shape):
-    """p/p0 = sqrt(1 - x^2)."""
+    """Hertz pressure, p/p0 = sqrt(1 - x^2)."""
 
     def pressure(self, x: Array) -> Array:
         result: Array = np.sqrt(np.maximum((1 - x) * (1 + x), 0.0))
@@ -20,11 +20,11 @@ class Hertz(Shape):
         return -(t + x) / np.where(total == 0, np.inf, total)
 
     def conditions(self, edge: Array, c: Array, s: Array) -> Conditions:
-        """Paper, eqs. (21), (22) and (24)-(26).
+        """Loads of the stick zone: paper, eqs. (21), (22) and (24)-(26).
 
-        The paper's two Pi are related: the difference of their integrals is a residue at infinity. What is left of
-        them is X = K - Pi((m-1)/(m+1)), small with ``edge``, and terms that are small with c or edge are formed as
-        such: nothing large cancels.
+        The paper's two Pi are related: the difference of the two integrals is a residue at infinity. They are replaced
+        by X = K - Pi((m-1)/(m+1)), which is small with ``edge``. Terms that are small with c or edge are formed without
+        cancellation.
         """
         edge, c, s = np.broadcast_arrays(np.asarray(edge, float), c, s)
         large = s < 0
@@ -38,15 +38,18 @@ class Hertz(Shape):
         return small
 
     def guess(self, Qf: Array, sf: Array) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
-        """Exact for small tension: paper, eqs. (21) and (22), by which the zone's centre is -sf/8. For large tension
-        between the transition and what the stick zone tends to as it gets narrow."""
+        """First iterate of the stick zone: s * edge, c, and a mask of the iterates that are exact for Hertz.
+
+        Exact for small tension (paper, eqs. (21) and (22)): the centre is -sf/8. For large tension an interpolation
+        between the transition and the limit of narrow stick zones.
+        """
         c = np.sqrt(1 - Qf)
-        edge = Qf / (1 + c) - sf / 8  # 1 - c - sf/8, without its cancellation
+        edge = Qf / (1 + c) - sf / 8  # 1 - c - sf/8 without cancellation
         large = edge < 0
         if not large.any():
             return edge, c, ~large
         c_touching, y, beyond = c[large], np.pi / 2 * Qf[large], -8 * edge[large]
-        b = y / 2  # b + sin(b) cos(b) = y is the condition on dQ; -sin(b) is the centre
+        b = y / 2  # narrow limit: centre -sin(b), with b + sin(b) cos(b) = y from the condition on dQ
         for _ in range(3):
             b = np.clip(b - (b + np.sin(2 * b) / 2 - y) / (1 + np.cos(2 * b) + 1e-9), 0.0, np.pi / 2)
         decay = np.exp(np.maximum(-np.pi * beyond / (16 * np.maximum(np.cos(b), 1e-3)), -230.0))
@@ -57,7 +60,7 @@ class Hertz(Shape):
 
 
 def _opposite(edge: Array, c: Array) -> Conditions:
-    """Large tension. K, E and Pi have the modulus chi, 1 - chi^2 = 4 c/((1+m)(1+n))."""
+    """Loads for large tension, eqs. (24)-(26); the modulus chi of K and E has 1 - chi^2 = 4 c/((1+m)(1+n))."""
     centre, from_left = edge + c - 1, edge + 2 * c  # 1 + n
     square = (2 - edge) * from_left  # (1+m)(1+n)
     root, complement = np.sqrt(square), 4 * c / square

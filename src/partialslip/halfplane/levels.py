@@ -1,7 +1,7 @@
-"""q1 and q2 of the steady state themselves, where the first loading decides them (Mindlin and Deresiewicz, 1953).
+"""q1 and q2 of the steady state where the first loading determines them (Mindlin and Deresiewicz, 1953).
 
-A steady cycle fixes the change q2 - q1. Where the first loading of one load point slips all that the cycle slips, and
-more, the shear traction at that load point is the first loading's, and the steady state is there from the first cycle.
+A steady cycle fixes only the change q2 - q1. If the first loading to one load point slips wherever the cycle slips, the
+shear traction at this load point is that of the first loading, and the state is steady from the first cycle on.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.scene import Load
 
-_ROUNDING = 1e-9  # lengths in a, tractions in f p0, slip in A f p0 a
+_ROUNDING = 1e-9  # tolerance: lengths in a, tractions in f p0, slip in A f p0 a
 _PLACES = np.cos(np.linspace(np.pi, 0, 81))[1:-1]
 _SHARES = np.linspace(0, 1, 9)[1:-1]
 _Point = tuple[float, float]
@@ -23,8 +23,11 @@ PATH_DEPENDENT = "path-dependent: slip turns round on the way "
 
 @dataclass(frozen=True)
 class Levels:
-    """Shear tractions at the load points: at the one with the index ``known`` (0 or 1) that of its ``first`` loading,
-    at the other less, or more, by the change over half a ``cycle``. Scaled like :class:`Loading`."""
+    """Shear tractions at the load points, scaled as in :class:`Loading`.
+
+    At the load point with the index ``known`` (0 or 1) the traction is that of the ``first`` loading. At the other it
+    differs by the change over half a ``cycle``.
+    """
 
     first: Loading
     cycle: Loading
@@ -37,19 +40,19 @@ class Levels:
 
 
 def levels(pressed: Contact, f: float, load: Load, cycle: Loading) -> Levels | str:
-    """The steady state's q1 and q2, or the reason why no closed form has them; ``cycle`` is the change from load point
-    1 to 2.
+    """q1 and q2 of the steady state, or the reason why no closed form gives them.
 
-    The path runs from nothing to its last load point and then through all of them. With Z the stick zone of the cycle
-    and Z_k that of a first loading straight to load point k, q_k is that of this first loading if
+    The path goes from zero load to the last load point and then through all load points. Let Z be the stick zone of the
+    ``cycle``, the change from load point 1 to 2, and Z_k the stick zone of a first loading straight to load point k.
+    Then q_k is the traction of this first loading if
 
-    - Z_k lies in Z, both slip the same way beyond, and q_k less the change stays within the bound all the way: then
-      the cycle returns to q_k;
-    - what was visited before slipped only beyond Z_k, and less than the first loading to k does: then the way to k
-      makes up the difference;
-    - slip does not turn round on the way.
+    - Z_k lies in Z, both loadings slip the same way outside Z, and q_k less the change stays within the friction bound
+      throughout: the cycle then returns to q_k;
+    - load points visited before k caused slip only outside Z_k, and less than the first loading to k: the loading to k
+      then makes up the difference;
+    - slip does not reverse between load points.
 
-    Fully reversed loads fulfil all of it, in one step from load point to load point.
+    Fully reversed loads satisfy all conditions if each half cycle is one step.
     """
     points = [load.points[end] for end in load.ends]
     if load.fully_reversed:
@@ -97,7 +100,7 @@ def _levels(pressed: Contact, f: float, load: Load, cycle: Loading, points: list
 
 
 def _before(load: Load, points: list[_Point], known: int) -> list[_Point]:
-    """Loads where the path turns before it comes to load point ``known`` for the first time."""
+    """Loads at which the path reverses before the first visit of load point ``known``."""
     path = [load.points[-1], *load.points]
     visited = path[: path.index(points[known])]
     turns = {path[0], points[1 - known]} & set(visited)
@@ -105,7 +108,7 @@ def _before(load: Load, points: list[_Point], known: int) -> list[_Point]:
 
 
 def _bounded(pressed: Contact, f: float, load: Load, found: Levels) -> bool:
-    """Whether |q| <= f p on the way to the other load point; where both ends slip one way, it is largest at its end."""
+    """Whether |q| <= f p up to the other load point; if both ends slip the same way, |q| is largest there."""
     p, q = found.cycle.shape.pressure(_PLACES), found.first.traction(_PLACES)
     back = 1 - 2 * found.known
     ways = [found.cycle]

@@ -1,5 +1,4 @@
-"""The hysteresis loop of the shear force over the displacement between the bodies, and the path of their shear's
-moment; in SI units."""
+"""Hysteresis loops of a steady cycle: shear force over displacement, and moment of shear over tension; SI units."""
 
 from typing import NamedTuple
 
@@ -13,12 +12,12 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
 class Loop(NamedTuple):
-    """A steady cycle, from load point 1 to 2 and back: (2 k - 1,) arrays each.
+    """A steady cycle, from load point 1 to 2 and back: arrays (2 k - 1,).
 
-    ``Q`` (N/m) and ``sigma`` (Pa) are counted from load point 1. ``displacement`` (m) is that of one body against
-    the other by slip alone: in excess of what the adhered contact, whose compliance depends on where it is measured
-    (it grows like (A/pi) log of the distance), gives way elastically. ``moment`` (N) is int x q dx, the conjugate of
-    A sigma/4: the cycle dissipates the area of both loops, int Q d(displacement) + (A/4) int moment d(sigma).
+    ``Q`` (N/m) and ``sigma`` (Pa) are relative to load point 1. ``displacement`` (m) is the relative displacement of
+    the bodies due to slip: the total less that of the adhered contact, which depends on the point of measurement (like
+    (A/pi) log of its distance). ``moment`` (N) is int x q dx, the conjugate of A sigma/4. The energy dissipated per
+    cycle is the area of both loops, int Q d(displacement) + (A/4) int moment d(sigma).
     """
 
     Q: Array
@@ -28,14 +27,14 @@ class Loop(NamedTuple):
 
 
 def hysteresis(contact: Contact, A: float, f: float, dQ: float, dsigma: float, count: int = 51) -> Loop:
-    """The loop on a straight path between the load points.
+    """Hysteresis loop for proportional loading between the load points.
 
-    Where the loads have come to the share r of (dQ, dsigma), they go on as the adhered tractions of the stick zone of
-    that moment, half-width c and centre e. Its rates are
+    At the share r of (dQ, dsigma), let the stick zone have the half-width c and the centre e. A further increment adds
+    the adhered traction of this stick zone, so that
 
         d(displacement)/dr = (A/pi) dQ ln(a/c) - (A/4) dsigma e,    d(moment)/dr = dQ e + (pi/8) dsigma c^2.
 
-    It is that of the steady state where slip does not turn round on the way (docs/theory.md, section 7).
+    The loop is that of the steady state if slip does not reverse between the load points (docs/theory.md, section 7).
 
     Parameters
     ----------
@@ -45,17 +44,17 @@ def hysteresis(contact: Contact, A: float, f: float, dQ: float, dsigma: float, c
     f, dQ, dsigma : float
         As for :func:`partialslip.halfplane.stick_zone`.
     count : int
-        Points on either branch.
+        Points on each branch.
 
     Raises
     ------
     InputError
-        As :func:`partialslip.halfplane.stick_zone`; and if count < 2.
+        As :func:`partialslip.halfplane.stick_zone`, and if count < 2.
     """
     if count < 2:
         raise InputError(f"count = {count}: must be >= 2")
     share = np.linspace(0, 1, count)
-    # closer to the end, where the stick zone may shrink fast
+    # closer points near the end, where the stick zone may shrink fast
     ends = 1 - (1 - share) ** 2
     half = np.diff(ends)[:, None] / 2
     zone = stick_zone(contact, f, *((ends[:-1, None] + half * (1 + _NODES)) * change for change in (dQ, dsigma)))

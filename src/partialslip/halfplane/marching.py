@@ -1,7 +1,8 @@
 """Marching in time: the exact pressure, and shear step by step through any load history at constant P.
 
-Unlike the steady closed form it knows what the first cycles lock in. Cells of constant shear traction, graded to the
-ends of the contact and of the stick zone that it finds itself; each step is a convex problem with a certificate.
+Unlike the closed form of the steady state, marching includes the tractions that the first cycles lock in. Shear is
+constant on cells, refined towards the ends of the contact and of the computed stick zone. Each step is a convex problem
+with a certificate.
 """
 
 import itertools
@@ -29,16 +30,16 @@ from partialslip.result import Clock, Result, Slip, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene
 
-_MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # cell size at the ends (in a), and growth
-_CELLS, _SOMEWHERE = 4.0, 0.5  # between zones with fewer cells than that an end is somewhere in one of them
-_NEAR = 10.0  # cells at ends nearer to each other than a tenth of a are smaller in proportion
-_SMALLEST = 1e-9  # in a: ends that lie nearer to each other are one, and no cell is smaller by much
-_INNER = 8.0  # times larger than at the ends are the cells at kinks of q, which do not decide about m and n
-_SHARE = 1 / 3  # of the CPU seconds that are left: what a mesh may take
-_WORK = 5e11  # cells cubed, times load steps: a mesh that asks for more is not begun
-# Shares of a change from mesh to mesh, and of the cube of the cells' growth, that m and n are off by
+_MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # (cell size at the ends, in a; growth)
+_CELLS, _SOMEWHERE = 4.0, 0.5  # a zone of fewer cells is unresolved: the error of an end in cells
+_NEAR = 10.0  # cells at ends closer to each other than a/10 are reduced in proportion
+_SMALLEST = 1e-9  # in a: closer ends are merged, and smaller cells are not requested
+_INNER = 8.0  # size of cells at kinks of q over the size at the ends: kinks hardly affect m and n
+_SHARE = 1 / 3  # largest part of the remaining CPU seconds for one mesh
+_WORK = 5e11  # limit of cells^3 times load steps of a mesh
+# Errors of m and n, as parts of the change from mesh to mesh and of growth^3
 _MOVED, _CUBIC = 0.1, 0.15
-_CHANGED = (0.4, 0.35)  # of a change of q, q1 and q2 to the second mesh, and to later ones
+_CHANGED = (0.4, 0.35)  # errors of q, q1 and q2 as parts of the change to the second mesh and to later meshes
 _SHEARS: dict[str, Callable[[History], Array]] = {
     "q": lambda history: history.change,
     "q1": lambda history: history.q1,
@@ -49,8 +50,8 @@ _JUDGED = ("m", "n", "q", "q1", "q2")
 
 @dataclass(frozen=True)
 class _Level:
-    """The solution on one mesh of cells; lengths in contact half-widths, forces in P. ``kinks`` are those of q at the
-    load points, and ``stepped`` is what its steps make it off by, where these were chosen on this mesh.
+    """Solution on one mesh of cells; lengths in contact half-widths, forces in P. ``kinks`` are the kinks of q at the
+    load points; ``stepped`` are errors due to the load steps, if the steps were chosen on this mesh.
     """
 
     vertices: Array
@@ -62,7 +63,7 @@ class _Level:
 
     @property
     def zone(self) -> tuple[float, ...]:
-        """Ends of the stick zone, if there is one."""
+        """Ends of the stick zone; empty without friction."""
         return (self.stick.left, self.stick.right) if self.stick else ()
 
 
@@ -74,19 +75,20 @@ def solve(
     start: State | None = None,
     allowance: Allowance | None = None,
 ) -> Result:
-    """Solve ``scene`` by marching through its load history, as two elastically similar half-planes.
+    """Solve ``scene`` by marching through the load history, as two elastically similar half-planes.
 
     Parameters
     ----------
-    scene, plan
-        The scene, and which effects it calls for.
+    scene : Scene
+    plan : Plan
+        Effects that the scene calls for.
     progress : callable, optional
-        Called with one line after each mesh.
+        Called with one line of text after each mesh.
     start : State, optional
-        What the path of the loads begins with, instead of bodies without shear.
+        State in which the path of the loads begins; default: no shear.
     allowance : Allowance, optional
-        CPU seconds of this and of what else is to be done: from the third on, a mesh that is likely to take more than a
-        third of what is left is not begun, and steps are not halved more than once.
+        CPU seconds. From the third mesh on, a mesh is not begun if it is likely to take more than a third of the
+        remaining seconds. Load steps are halved at most once.
     """
     clock = Clock(allowance)
     pressed = contact(scene)
@@ -105,7 +107,7 @@ def solve(
             if work > _WORK or (meshes > 1 and likely > _SHARE * clock.remaining()):
                 break
         began = clock.cost().cpu_s
-        # steps are chosen on the second mesh, and kept
+        # steps are chosen on the second mesh and used on all later meshes
         before, level = level, _solve_level(scene, pressed, path, start, cells, clock, choose=meshes == 1)
         spent = clock.cost().cpu_s - began
         meshes, iterations = meshes + 1, iterations + (level.history.iterations if level.history else 0)
@@ -120,7 +122,7 @@ def solve(
             ends_known = max(errors["m"], errors["n"])
             progress(f"mesh {meshes}: {len(level.pressed):,} cells, m, n known to {ends_known:.1e} a")
             allowed = {key: BARS[key] * _accuracy(scene) for key in _JUDGED}
-            # what steps that cannot be refined further leave is not for the cells to make up for
+            # finer cells do not reduce the error of load steps that cannot be refined further
             if all(meshed[key] <= max(most - stepped.get(key, 0.0), most / 2) for key, most in allowed.items()):
                 break
     assert level is not None
@@ -133,9 +135,11 @@ def _accuracy(scene: Scene) -> float:
 
 
 def _cells(ends: list[float], inner: list[float], level: _Level | None, size: float, growth: float) -> Array:
-    """Ends of cells of ``size`` at the ``ends`` and those of the stick zone that the ``level`` before has found, and of
-    a larger size at the ``inner`` kinks of q and those found. Where ends are near to each other cells are small beside
-    the distance: q is steep in narrow slip strips and beside tiny stick zones."""
+    """Ends of cells (c + 1,) of ``size`` at the ``ends`` and at the stick zone's ends on the previous ``level``, and of a
+    larger size at ``inner`` kinks of q and at the kinks on that level.
+
+    Cells are small compared with the distance of neighbouring ends: q is steep in narrow slip zones and stick zones.
+    """
     fine: Array = np.sort(apart([*ends, *(level.zone if level else ())], _SMALLEST))
     gaps = np.diff(fine)
     gap = np.minimum(np.append(gaps, np.inf), np.append(np.inf, gaps))
@@ -166,7 +170,7 @@ def _solve_level(
         before = np.diff(resultant(np.clip(vertices * pressed.a, known[0], known[-1]))) / scene.P
         path = replace(path, before=before)
     with clock.phase("compliance"):
-        tangential = compliance(vertices / 2)  # a change of length is a rigid shift, which is free
+        tangential = compliance(vertices / 2)  # scaling lengths adds a rigid shift only
     with clock.phase("contact"):
         moved = x * pressed.a / scene.length
 
@@ -177,18 +181,18 @@ def _solve_level(
             return halved(of, finer, (zone(of), zone(finer)), np.diff(vertices), 1.0)
 
         problem = tangential, moved, bound, path, _accuracy(scene)
-        most = 0 if clock.limited else MOST  # more steps have no price
+        most = 0 if clock.limited else MOST  # the cost of more steps is not predicted
         history, stepped = march_refined(*problem, errors if choose else None, most)
         inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in history.visited]
         return _Level(vertices, normal, history, zone(history), tuple(itertools.chain.from_iterable(inner)), stepped)
 
 
 def _mesh_errors(level: _Level, before: _Level, growth: float, first: bool) -> dict[str, float]:
-    """What the cells make m and n (in contact half-widths), q, q1 and q2 (relative L2 of cell averages) off by.
+    """Discretisation errors of m and n (in contact half-widths) and of q, q1 and q2 (relative L2 of cell averages).
 
-    Ends of the stick zone are off by a share of the last change, or by what cells of that growth leave in between; q by
-    a share of the change from the mesh before, which is the ``first`` one or not. The shares are measured on random
-    scenes with known answers.
+    Errors of m and n are a part of the change from the mesh ``before``, or a multiple of ``growth``^3. Errors of q are a
+    part of the change, for which ``first`` tells whether the mesh before is the first one. The factors are calibrated on
+    random scenes with known solutions.
     """
     assert level.stick
     assert before.stick
@@ -208,8 +212,8 @@ def _mesh_errors(level: _Level, before: _Level, growth: float, first: bool) -> d
 
 
 def _apart(level: _Level, of: Callable[[History], Array], other: History, cells: Array) -> float:
-    """Relative L2 difference of the means over ``cells`` (c + 1,) of forces ``of`` the level and of the ``other``, of
-    which these are the cells."""
+    """Relative L2 difference of the means over ``cells`` (c + 1,), the cells of the ``other`` history, of the forces
+    ``of`` the level and of the other history."""
     assert level.history
 
     def means(forces: Array) -> Array:
@@ -283,7 +287,7 @@ def _result(
 
 
 def _state(scene: Scene, level: _Level, a: float) -> State:
-    """What the path of the loads ends with."""
+    """State at the end of the path of the loads."""
     assert level.history
     shear, bound = level.history.end
     stress = scene.P / (a * np.diff(level.vertices))

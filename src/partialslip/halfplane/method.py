@@ -1,4 +1,4 @@
-"""The exact method: scene and plan in, result out."""
+"""The exact method: solves a scene in closed form."""
 
 import functools
 from collections.abc import Callable
@@ -22,17 +22,24 @@ from partialslip.result import FRICTIONLESS, Clock, Regime, Result, Slip, Surfac
 from partialslip.result.state import State
 from partialslip.scene import Scene
 
-_POINTS_PER_ZONE = 101
-_BEYOND = 4.0  # surface stresses are reported up to so many half-widths
+_POINTS_PER_ZONE = 101  # between neighbouring breaks
+_BEYOND = 4.0  # half-widths up to which surface stresses are reported
 
 
 def solve(
     scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None, start: State | None = None
 ) -> Result:
     """Solve ``scene`` exactly, as two elastically similar half-planes in the steady state; SI units.
-    ``plan`` is what the scene calls for (:func:`partialslip.plan`).
 
-    There is no ``progress`` to tell. The change q2 - q1 does not remember the ``start``; q1 and q2 do.
+    Parameters
+    ----------
+    scene : Scene
+    plan : Plan
+        Effects that the scene calls for (:func:`partialslip.plan`).
+    progress : callable, optional
+        Not called.
+    start : State, optional
+        State from which the path goes on: q1 and q2 then have no closed form. The change q2 - q1 is independent of it.
 
     Raises
     ------
@@ -43,7 +50,7 @@ def solve(
     clock = Clock()
     f, load = scene.friction.f, scene.load
     if not load.in_phase:
-        raise InputError("load.sigma: out of phase with load.Q; the exact method is for loads in phase, take march")
+        raise InputError("load.sigma: out of phase with load.Q; must be in phase for the exact method, use march")
     pressed, regime, cycle = _steady_state(scene, plan)
     a, p0 = pressed.a, pressed.p0
     found = _levels(scene, pressed, regime, cycle, start)
@@ -84,21 +91,21 @@ def solve(
 
 
 def path_dependent(scene: Scene) -> bool:
-    """Whether slip turns round between the load points of ``scene``, two similar half-planes under loads in phase: the
-    closed form is then not what a gradual way ends with (:attr:`partialslip.Result.path_dependent`)."""
+    """Whether slip reverses between the load points of ``scene``, two similar half-planes under loads in phase. The
+    closed form then differs from the result of gradual loading (:attr:`partialslip.Result.path_dependent`)."""
     return may_turn_round(scene) and _change(scene)[1].turns_round
 
 
 @functools.lru_cache(maxsize=1)
 def _change(scene: Scene) -> tuple[Contact, Loading]:
-    """The contact, and the change from load point 1 to 2 if it does not slide: kept, as :func:`path_dependent` is asked
-    before :func:`solve`."""
+    """Contact, and change from load point 1 to 2, of a ``scene`` that does not slide. Cached: :func:`path_dependent` is
+    called before :func:`solve`."""
     pressed = contact(scene)
     return pressed, loading(pressed, scene.friction.f, scene.load.dQ, scene.load.dsigma, bound=2)
 
 
 def _steady_state(scene: Scene, plan: Plan) -> tuple[Contact, Regime, Loading | None]:
-    """The contact, its regime, and the change from load point 1 to 2 (None where nothing sticks)."""
+    """Contact, regime, and change from load point 1 to 2 (None if nothing sticks)."""
     load, limit = scene.load, scene.friction.f * scene.P
     if scene.free:
         return contact(scene), "frictionless", None
@@ -110,8 +117,8 @@ def _steady_state(scene: Scene, plan: Plan) -> tuple[Contact, Regime, Loading | 
     pressed, cycle = _change(scene)
     if cycle.nothing:
         return pressed, "stuck", cycle
-    # for small tension the bound is gross sliding, which has been ruled out; no mean is always held, whatever rounding
-    # makes of a bound of next to nothing
+    # for small tension the bound is gross sliding, ruled out above; a zero mean is within any bound, even one that
+    # rounding makes negative
     mean = abs(load.Q_mean)
     if cycle.zone.s < 0 and mean > 0 and mean > limit * mean_load_bound(cycle.zone, pressed.shape):
         return pressed, "ratchets", cycle
@@ -119,7 +126,7 @@ def _steady_state(scene: Scene, plan: Plan) -> tuple[Contact, Regime, Loading | 
 
 
 def _levels(scene: Scene, pressed: Contact, regime: Regime, cycle: Loading | None, start: State | None) -> Levels | str:
-    """q1 and q2, or why there are none."""
+    """q1 and q2, or the reason why there are none."""
     if regime == "frictionless":
         return "there is no friction"
     if cycle is None:
@@ -127,14 +134,14 @@ def _levels(scene: Scene, pressed: Contact, regime: Regime, cycle: Loading | Non
     if regime == "ratchets":
         return "the contact ratchets"
     if start:
-        return "the path goes on from a state, which a steady state does not know"
+        return "the path goes on from a state, which the closed form cannot follow"
     if not scene.friction.f:
         return Levels(cycle, cycle, 1)
     return levels(pressed, scene.friction.f, scene.load, cycle)
 
 
 def _breaks(scene: Scene, a: float, cycle: Loading | None, found: Levels | str) -> Array:
-    """Ends of the contact and of stick zones, and kinks of p, m."""
+    """Ends of the contact and of stick zones, and kinks of p (b,), ascending, m."""
     ends = [*(cycle.ends if cycle else ()), *(found.first.ends if isinstance(found, Levels) else ())]
     kinks = [kink for kink in scene.profile.kinks if abs(kink) < a]
     return np.unique([-a, *kinks, *(a * np.clip(ends, -1, 1)), a])
@@ -150,9 +157,11 @@ def _limits(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[str, 
 
 
 def _certificate(pressed: Contact, cycle: Loading) -> dict[str, float]:
-    """How far the loads that belong to the zone are off: ``tension`` in f p0, or relative where it is more than that,
-    and ``shear`` in 2 f P. Zones narrower than can be told apart belong to any larger tension. What dQ leaves to
-    sliding, which places a zone near it, is known to the rounding of dQ only: that is no fault of the zone's."""
+    """Residuals of the loads of the stick zone: ``tension`` in f p0, or relative if sf > 1, and ``shear`` in 2 f P.
+
+    The narrowest stick zone stands for all larger tensions. Near sliding, 1 - Qf is known only to the rounding of dQ,
+    which the tension residual therefore leaves out.
+    """
     c, sf, Qf = cycle.zone.half_width, cycle.sf, cycle.Qf
     found = pressed.shape.conditions(*map(np.array, (1 + cycle.zone.centre - c, c, cycle.zone.s)))
     tension = 0.0 if c <= NARROWEST and sf > found.sf else abs(float(found.sf) - sf) / max(sf, 1.0)
@@ -176,7 +185,7 @@ def _surface(stress: Stress, breaks: Array) -> SurfaceStress:
 
 
 def _sample(breaks: Array) -> Array:
-    """Points that crowd towards the breaks, where tractions go like square roots."""
+    """Points between ``breaks``, closer towards the breaks, where tractions have square roots."""
     crowd = (1 - np.cos(np.linspace(0, np.pi, _POINTS_PER_ZONE))) / 2
     return np.unique(breaks[:-1, None] + np.diff(breaks)[:, None] * crowd)
 
@@ -212,4 +221,4 @@ def _coarse(table: dict[str, float], accuracy: float) -> tuple[str, ...]:
     if max(ends.values(), default=0.0) <= accuracy:
         return ()
     known = ", ".join(f"{key} {error:.1e}" for key, error in ends.items())
-    return (f"the table of the profile is coarse: its spacing alone changes the ends by about {known} a",)
+    return (f"the table of the profile is coarse: its spacing changes the ends by about {known} a",)

@@ -1,4 +1,4 @@
-"""Convex even profiles whose curvature is piecewise constant: flat and rounded punches and tables; scaled as in
+"""Pressure under convex even profiles of piecewise constant curvature: flat and rounded punches, tables. Scaled as in
 :mod:`partialslip.halfplane.shape`."""
 
 import math
@@ -10,31 +10,31 @@ import numpy.typing as npt
 from partialslip.arrays import Array
 from partialslip.halfplane.shape import Shape
 
-_FEW = 24  # flats whose pressures are summed as they are
-_NEAR = 6  # flats near a panel
-_NARROWEST = 1e-13  # panels are not halved any more
-_DEGREES = 22  # of a panel's polynomials, and nodes
+_FEW = 24  # flats up to which pressures are summed directly
+_NEAR = 6  # flats near a panel, summed directly
+_NARROWEST = 1e-13  # width below which panels are not halved
+_DEGREES = 22  # coefficients, and nodes, of a panel's polynomial
 _NODES = np.cos(np.pi * (np.arange(_DEGREES) + 0.5) / _DEGREES)
 _TO_COEFFICIENTS = np.polynomial.chebyshev.chebvander(_NODES, _DEGREES - 1).T * 2 / _DEGREES
 _TO_COEFFICIENTS[0] /= 2
-# values at the nodes of either half of a panel by the panel's coefficients
+# values at the nodes of each half of a panel from the panel's coefficients
 _VALUES = [np.polynomial.chebyshev.chebvander((_NODES + side) / 2, _DEGREES - 1) for side in (-1, 1)]
 
 
 class Punch(Shape):
-    """A sum of flat and rounded punches (Ciavarella, Hills and Monno, 1998).
+    """Pressure as a sum of flat and rounded punches (Ciavarella, Hills and Monno, 1998).
 
-    Where the profile's curvature steps up by w at |x| = b, it adds w times the pressure of a flat of half-width b with
-    corners of curvature 1: for a given contact the inversion is linear. b = 0 is Hertz.
+    A step w of the profile's curvature at |x| = b adds w times the pressure of a flat of half-width b with corners of
+    curvature 1, as the pressure is linear in the profile for a given contact. b = 0 is Hertz.
 
     Parameters
     ----------
     flats : float or (k,) array_like
-        Where the curvature steps, as fractions of a; 0 <= b < 1.
+        Points b of the steps of curvature, as fractions of a; 0 <= b < 1.
     steps : (k,) array_like
-        By how much, in any unit.
+        Steps w of curvature, in any unit.
     psi : (k,) array, optional
-        arccos(flats), where more of its digits are known.
+        arccos(flats), if known to more digits.
     """
 
     def __init__(self, flats: Array | float, steps: Array | float = 1.0, psi: Array | None = None) -> None:
@@ -62,7 +62,7 @@ class Punch(Shape):
         for flat, end, weight in zip(self.flats, self._ends, self._weights, strict=True):
             apart = np.abs(np.sin(angle - end))
             logarithm = np.log(np.sin(angle + end) / np.where(apart == 0, 1.0, apart)) if flat > 0 else 0.0
-            # the two logarithms of the usual form, whose singularities at the flat's ends cancel, taken together
+            # both logarithms of the usual form in one: their singularities at the flat's ends cancel
             rest = 2 * flat * np.log(np.sin((angle + end) / 2) / np.cos((angle - end) / 2)) if flat > 0 else 0.0
             total += weight * ((math.pi - 2 * end) * cosine + (x - flat) * logarithm + rest)
         return total
@@ -73,16 +73,16 @@ class Punch(Shape):
 
 
 class _Panels:
-    """The pressure of many flats at any points, at a cost that does not grow with the number of flats.
+    """Pressure of many flats at a cost per point independent of the number of flats.
 
-    In the angle, [0, pi/2] is halved into panels until hardly more than ``_NEAR`` kinks lie within a panel or a panel's
-    width of it. These are taken as they are; what all others make is smooth there, its nearest singularity being a
-    width away: Chebyshev interpolation converges like 5.8^-k. A half takes over what its parent has of far kinks and
-    adds those that have become far.
+    The range [0, pi/2] of arcsin(x) is halved into panels until at most ``_NEAR`` kinks, or few more, lie within a panel
+    or a panel's width of it. The pressures of these near flats are summed directly. The sum of all far flats is
+    interpolated: its nearest singularity is a panel's width away, and Chebyshev interpolation converges like 5.8^-k.
+    Each half inherits the far sum of its parent and adds the flats that have become far.
     """
 
     def __init__(self, flats: Array, ends: Array, weights: Array) -> None:
-        # the last one, without weight, fills up
+        # the last flat has weight 0 and pads rows of indices
         flats, wedges, weights = (np.append(values, 0.0) for values in (flats, math.pi - 2 * ends, weights))
         low, high, far = np.array([0.0]), np.array([np.pi / 2]), np.zeros((_DEGREES, 1))
         near = np.arange(len(ends))[None]
@@ -119,7 +119,7 @@ class _Panels:
         self._flats, self._wedges, self._weights = flats[which], wedges[which], weights[which]
 
     def __call__(self, x: Array) -> Array:
-        """At ``x`` in [0, 1], of any shape."""
+        """Pressure at ``x`` in [0, 1], an array of any shape."""
         flat_x, angle = x.ravel(), np.arcsin(x).ravel()
         panel = np.searchsorted(self._low, angle, "right") - 1
         place = (angle - self._middles[panel]) / self._halves[panel]
@@ -130,7 +130,7 @@ class _Panels:
 
 
 def _clenshaw(place: Array, coefficients: Array, column: npt.NDArray[np.int64]) -> Array:
-    """Sums of Chebyshev polynomials at ``place`` (n,), each with one ``column`` of the coefficients (k, columns)."""
+    """Chebyshev sums at ``place`` (n,), each with the ``column`` (n,) of ``coefficients`` (k, columns)."""
     one, two = np.zeros_like(place), np.zeros_like(place)
     for row in coefficients[:0:-1]:
         one, two = row[column] + 2 * place * one - two, one
@@ -139,9 +139,9 @@ def _clenshaw(place: Array, coefficients: Array, column: npt.NDArray[np.int64]) 
 
 
 def _unit(x: Array, flats: Array, wedges: Array) -> Array:
-    """Pressure at ``x`` in [0, 1] of flats of half-width b = sin(end) with corners of curvature 1; ``wedges`` are
-    pi - 2 end. The usual form in t = tan(angle/2), x = sin(angle): its four logarithms are two, and each vanishes with
-    its factor."""
+    """Pressure at ``x`` in [0, 1] under ``flats`` of half-width b = sin(end) with corners of curvature 1; ``wedges`` are
+    pi - 2 end. With t = tan(angle/2), x = sin(angle), the four logarithms of the usual form become two, and the factor
+    of each logarithm vanishes at the singularity."""
     cosine = np.sqrt((1 - x) * (1 + x))
     t, tau = x / (1 + cosine), flats / (1 + np.sqrt((1 - flats) * (1 + flats)))
     both = t * tau
@@ -152,8 +152,10 @@ def _unit(x: Array, flats: Array, wedges: Array) -> Array:
 
 
 def punch_force(psi: Array) -> Array:
-    """Resultant that goes with a punch of unit curvature beyond b = cos(psi): 2 psi - sin(2 psi), which cancels in a
-    contact hardly wider than its flat. P = a^2/(2 A) times the sum of it over steps of curvature."""
+    """2 psi - sin(2 psi), the resultant for unit curvature beyond b = cos(``psi``), without cancellation at small psi.
+
+    P = a^2/(2 A) times the sum over steps w of curvature of w times this resultant.
+    """
     series = 4 / 3 * psi**3 * (1 - psi**2 / 5 * (1 - 2 * psi**2 / 21))
     result: Array = np.where(psi < 1e-2, series, 2 * psi - np.sin(2 * psi))
     return result

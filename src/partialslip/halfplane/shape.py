@@ -1,10 +1,9 @@
 """Even pressures over [-1, 1] and the consistency conditions on the stick zone (paper, eqs. (17) and (18)).
 
 Scaled: lengths by a, pressures by p0 = 2 P/(pi a) (for Hertz the largest pressure), so that every pressure has the
-resultant pi/2; dQ and dsigma by the friction, as Qf = dQ/(2 f P) and sf = dsigma/(f p0). A stick zone is given by its
-distance from the contact's left end, ``edge`` = 1 - m, and its half-width ``c`` = (n + m)/2, which keep their digits
-when they are small; ``s`` is +1 where both ends slip the same way and -1 where they slip opposite ways. All of them
-may be arrays.
+resultant pi/2; loads Qf = dQ/(2 f P) and sf = dsigma/(f p0). A stick zone is given by ``edge`` = 1 - m, the width of the
+left slip zone, and by the half-width ``c`` = (n + m)/2, which keep their digits when they are small; ``s`` is +1 where
+both ends slip the same way and -1 where they slip opposite ways. All arguments may be arrays.
 """
 
 import functools
@@ -14,13 +13,13 @@ import numpy as np
 
 from partialslip.arrays import Array
 
-_THIN = 1e-12
-NARROW = 1e-5
+_THIN = 1e-12  # width of a slip zone below which the stiffness of the stick zone's end is that at this width
+NARROW = 1e-5  # half-width of a stick zone below which right - left cancels
 
 
 class Rule(NamedTuple):
-    """Quadrature over a slip zone: int g(t)/w(t) dt = sum weights g(t), w(t) = sqrt(|(t-n)(t+m)|) = c sinh(theta);
-    (..., points) each."""
+    """Quadrature over a slip zone: int g(t)/w(t) dt = sum of ``weights`` g(``t``), w(t) = sqrt(|(t-n)(t+m)|) =
+    c sinh(``theta``); (..., points) each."""
 
     t: Array
     theta: Array
@@ -28,11 +27,10 @@ class Rule(NamedTuple):
 
 
 class Conditions(NamedTuple):
-    """The loads that belong to a stick zone, and how stiff its ends are.
+    """Loads ``sf`` and ``Qf`` of a stick zone, and the stiffness of the zone's ends.
 
-    ``right`` and ``left`` are c times the K of f p - |dq|/2 = K sqrt(2 c r) at a small distance r inside either end
-    (in f p0); ``skew`` is (right - left)/c, which cancels in a stick zone narrower than ``NARROW``: the quadrature then
-    leaves it 0.
+    ``right`` and ``left`` are c K, with f p - |dq|/2 = K sqrt(2 c r) at a small distance r inside the end (in f p0).
+    ``skew`` is (right - left)/c; by quadrature 0 in stick zones narrower than ``NARROW``, where the difference cancels.
     """
 
     sf: Array
@@ -43,29 +41,29 @@ class Conditions(NamedTuple):
 
 
 class Shape:
-    """An even pressure, given by its values and the points where it is not smooth."""
+    """Even pressure, given by values and by ``kinks``, the points at which it is not smooth."""
 
     kinks: tuple[float, ...] = ()
 
     @property
     def strong_kinks(self) -> tuple[float, ...]:
-        """The strongest kinks, where there are too many to heed each: what is smoother than p needs no more."""
+        """Kinks that quadrature of functions smoother than p must respect."""
         return self.kinks
 
     def pressure(self, x: Array) -> Array:
-        """p/p0 at ``x``, zero outside [-1, 1]."""
+        """p/p0 at ``x``; zero outside [-1, 1]."""
         raise NotImplementedError
 
     def difference(self, t: Array, x: Array) -> Array:
-        """(p(t) - p(x))/(t - x)."""
+        """(p(t) - p(x))/(t - x), in p0."""
         return self._quotient(t, self.pressure(t), x)
 
     def conditions(self, edge: Array, c: Array, s: Array) -> Conditions:
-        """The consistency conditions by quadrature. The second is taken about the zone's centre, which leaves dQ/2
-        alone on its other side."""
+        """Loads of the stick zone by quadrature of the consistency conditions, eqs. (17) and (18), moments being taken
+        about the zone's centre."""
         edge, c, s = np.asarray(edge, float), np.asarray(c, float), np.asarray(s, float)
         centre = edge + c - 1
-        # the stiffness of an end goes to a limit as its slip zone vanishes
+        # the stiffness of an end tends to a limit as the slip zone beside the end vanishes
         gap, near = np.maximum(1 - centre - c, _THIN), np.maximum(edge, _THIN)
         ends = 1 - gap, near - 1
         first = second = right = left = np.zeros(np.shape(c))
@@ -74,7 +72,7 @@ class Shape:
             p = self.pressure(t)
             first = first + sign * (weights * p).sum(axis=-1)
             second = second + sign * (weights * p * (t - centre[..., None])).sum(axis=-1)
-            # minus the smooth part of the traction in the stick zone, see partialslip.halfplane.traction
+            # minus the smooth part of the traction in the stick zone, see _inside in partialslip.halfplane.traction
             smooth = [(self._quotient(t, p, end[..., None]) * weights).sum(axis=-1) for end in ends]
             right = right - side * np.abs(sign) * np.where(side > 0, 1, s) * c * smooth[0]
             left = left - side * np.where(side > 0, s, 1) * c * smooth[1]
@@ -85,16 +83,16 @@ class Shape:
         return Conditions(8 / np.pi * first, 2 / np.pi * second, right, left, skew)
 
     def rule(self, edge: Array | float, c: Array | float, side: int) -> Rule:
-        """Points in the slip zone on the right (``side`` = 1) or left (-1): see :func:`rule_between`."""
+        """Quadrature over the slip zone on the right (``side`` = 1) or left (-1); see :func:`rule_between`."""
         return rule_between(self.pieces(edge, c, side), edge, c, side)
 
     def pieces(self, edge: Array | float, c: Array | float, side: int) -> Array:
-        """theta at the ends of the pieces, (..., k), in which the pressure of a slip zone is smooth inside."""
+        """theta (..., k) at the ends of the pieces of a slip zone inside which the pressure is smooth."""
         edge, c = np.asarray(edge, float), np.asarray(c, float)
         centre = edge + c - 1
 
         def theta(width: Array) -> Array:
-            """From its half-angle form: cosh(theta) - 1 = width/c, width being the distance from the stick zone."""
+            """theta at the distance ``width`` from the stick zone: cosh(theta) - 1 = width/c, by the half-angle form."""
             result: Array = 2 * np.arcsinh(np.sqrt(np.maximum(width, 0.0) / (2 * c[..., None])))
             return result
 
@@ -102,7 +100,7 @@ class Shape:
         inner = theta(side * (np.array(self.kinks) - centre[..., None]) - c[..., None])
         ends = np.concatenate([0 * end, end - 3.0, end, inner], axis=-1)
         ends = np.sort(np.clip(ends, 0.0, end), axis=-1)
-        # pieces that are empty, as those of kinks elsewhere are, need no points
+        # drop empty pieces, which belong to kinks outside this slip zone
         widest = np.diff(ends).reshape(-1, ends.shape[-1] - 1).max(axis=0, initial=0.0)
         kept: Array = ends[..., np.append(True, (widest > 0) | (widest.max() == 0))]
         return kept
@@ -114,10 +112,10 @@ class Shape:
 
 
 def rule_between(ends: Array, edge: Array | float, c: Array | float, side: int) -> Rule:
-    """Points between ``ends`` (..., k) in theta, ascending, in the slip zone on the right (``side`` = 1) or left (-1).
+    """Quadrature between ``ends`` (..., k) in theta, ascending, in the slip zone on the right (``side`` = 1) or left (-1).
 
-    t = centre +- c cosh(theta) takes w away; what is left are a square root at the contact's end and kinks, to which
-    the points of every piece crowd double exponentially.
+    The substitution t = centre +- c cosh(theta) removes w. The square root of p at the contact's end and the kinks of p
+    remain: the tanh-sinh rule on each piece handles both.
     """
     edge, c = np.asarray(edge, float), np.asarray(c, float)
     nodes, to_end, factors = _rule_for(ends.shape[-1])
@@ -129,8 +127,8 @@ def rule_between(ends: Array, edge: Array | float, c: Array | float, side: int) 
 
 
 def double_exponential(count: int, span: float = 3.2) -> tuple[Array, Array, Array]:
-    """Nodes in (-1, 1), their distances from 1, and weights of the tanh-sinh rule, cut at +-``span``; exact for
-    constants."""
+    """Nodes (``count``,) in (-1, 1), their distances from 1, and weights of the tanh-sinh rule, truncated at +-``span``
+    and normalised to be exact for constants."""
     k = np.linspace(-span, span, count)
     u = np.pi / 2 * np.sinh(k)
     weights = np.pi / 2 * np.cosh(k) / np.cosh(u) ** 2
@@ -139,8 +137,8 @@ def double_exponential(count: int, span: float = 3.2) -> tuple[Array, Array, Arr
 
 @functools.cache
 def _rule_for(ends: int) -> tuple[Array, Array, Array]:
-    """Of many pieces each is a small part of the whole, and its kinks are weak: fewer points will do."""
+    """Rule for each piece between so many ``ends``: many pieces are short and have weak kinks, so fewer points do."""
     return double_exponential(*next(rule for most, rule in _RULES if ends <= most))
 
 
-_RULES = ((40, (81, 3.2)), (160, (33, 3.0)), (np.inf, (11, 2.2)))  # most ends of pieces, nodes and span
+_RULES = ((40, (81, 3.2)), (160, (33, 3.0)), (np.inf, (11, 2.2)))  # largest number of ends, (nodes, span)

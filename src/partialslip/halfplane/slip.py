@@ -1,7 +1,7 @@
-"""Slip over half a steady cycle, and what it dissipates; scaled as in :mod:`partialslip.halfplane.shape`.
+"""Slip over half a steady cycle and the dissipated energy; scaled as in :mod:`partialslip.halfplane.shape`.
 
-Slip is the change from load point 1 to 2 of the displacement, along +x, of the body that pushes with q against the
-other. For loads of positive dQ and dsigma.
+Slip is the displacement along +x, from load point 1 to 2, of the lower body, which exerts q on the upper one, relative
+to the upper body. All functions are for positive dQ and dsigma.
 """
 
 from collections.abc import Callable
@@ -18,12 +18,13 @@ _TINY = 1e-300
 
 
 def density(x: Array, zone: StickZone[float], shape: Shape) -> Array:
-    """Slope of the slip, the density of the paper's glide dislocations, in A f p0 at ``x``; zero outside the slip
-    zones. For y on the side tau = +-1,
+    """Slope of the slip at ``x``, the paper's density of glide dislocations, in A f p0; zero outside the slip zones.
+
+    In the slip zone on the side tau = +-1,
 
         D(y) = 2 tau w(y)/pi [ PV int_n^1 p/(w(t)(y-t)) dt - s PV int_{-1}^{-m} p/(w(t)(y-t)) dt ],
 
-    w(t) = sqrt(|(t-n)(t+m)|). p(t) is split into p(y) and p(t) - p(y), which y - t divides without a pole.
+    w(t) = sqrt(|(t-n)(t+m)|). The integral of p(y) is a logarithm; (p(t) - p(y))/(y - t) has no pole.
     """
     result = np.zeros_like(x)
     edge = 1 + zone.centre - zone.half_width
@@ -34,7 +35,7 @@ def density(x: Array, zone: StickZone[float], shape: Shape) -> Array:
         beyond = np.maximum(side * (y - zone.centre) - zone.half_width, 0.0)
         width = 1 - side * zone.centre - zone.half_width
         w = np.sqrt(beyond * (beyond + 2 * zone.half_width))
-        # 2 artanh of the ratio of tanh(theta/2) here and at the contact's end, both all but 1 where the zone is narrow
+        # 2 artanh of the ratio of tanh(theta/2) at y and at the contact's end, without cancellation in narrow zones
         both = np.sqrt(beyond / (beyond + 2 * zone.half_width)) + np.sqrt(width / (width + 2 * zone.half_width))
         ratio = both**2 * (width + 2 * zone.half_width) * (beyond + 2 * zone.half_width)
         logarithm = np.log(ratio / (2 * zone.half_width)) - np.log(np.maximum(1 - side * y, _TINY))
@@ -47,8 +48,8 @@ def density(x: Array, zone: StickZone[float], shape: Shape) -> Array:
 
 
 def slip(x: Array, zone: StickZone[float], shape: Shape) -> Array:
-    """Slip in A f p0 a at ``x``, zero in the stick zone: the integral of the density, from the stick zone on, with
-    the order of the integrations turned round."""
+    """Slip at ``x``, in A f p0 a; zero in the stick zone. The integral of :func:`density` from the stick zone's end,
+    with the order of integration swapped."""
     result = np.zeros_like(x)
     c, edge = zone.half_width, 1 + zone.centre - zone.half_width
     for side, sign in ((1, 1), (-1, zone.s)):
@@ -60,7 +61,7 @@ def slip(x: Array, zone: StickZone[float], shape: Shape) -> Array:
         same, across = _kernels(eta)
         other = shape.rule(edge, c, -side)
         by_other = across(other) @ (other.weights * shape.pressure(other.t))
-        # on the own side the kernel has a logarithm at eta: the piece around it is split there
+        # the kernel of the same side has a logarithm at eta: split the piece around eta
         ends = shape.pieces(edge, c, side)
         piece = np.clip(np.searchsorted(ends, eta, "left") - 1, 0, len(ends) - 2)
         own = rule_between(ends, edge, c, side)
@@ -73,8 +74,8 @@ def slip(x: Array, zone: StickZone[float], shape: Shape) -> Array:
 
 
 def dissipation(zone: StickZone[float], shape: Shape) -> tuple[Array, Array, float]:
-    """Points over the slip zones (ascending, with the contact's ends), the slip there, and the energy that a whole
-    cycle dissipates, 2 int f p |slip| dx, in A (f p0 a)^2."""
+    """Points in the slip zones (k,), ascending, with the contact's ends; the slip there (k,); and the energy dissipated
+    in a whole cycle, 2 int f p |slip| dx, in A (f p0 a)^2."""
     x, weights = [], []
     for low, high in ((-1.0, zone.left), (zone.right, 1.0)):
         ends = np.array([low, *(kink for kink in shape.strong_kinks if low < kink < high), high])
@@ -93,8 +94,8 @@ def _slips(x: Array, zone: StickZone[float], side: int) -> npt.NDArray[np.bool_]
 
 
 def _kernels(eta: Array) -> tuple[Callable[[Rule], Array], Callable[[Rule], Array]]:
-    """int_0^eta sinh^2(y)/(cosh(y) -+ cosh(theta)) dy: slip at eta by a unit of traction at theta and its answer in
-    the stick zone, on the same side and across."""
+    """int_0^eta sinh^2(y)/(cosh(y) -+ cosh(theta)) dy: slip at eta due to a unit of traction at theta, on the same and
+    on the other side, together with the traction in the stick zone that the unit causes."""
 
     def same(rule: Rule) -> Array:
         theta = rule.theta

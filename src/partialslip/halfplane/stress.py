@@ -10,15 +10,15 @@ from partialslip.halfplane.contact import Contact, stick_zone
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
 
-_SURFACE = 1e-30  # depth at which the surface is taken, as a fraction of a
-_APART = 1e-12  # ends of zones closer to each other than that fraction of a are one
+_SURFACE = 1e-30  # depth of points on the surface, as a fraction of a
+_APART = 1e-12  # distance below which breaks are merged, as a fraction of a
 
 
 class Stress:
     """Stresses of the steady state between -(dQ, dsigma)/2 at load point 1 and (dQ, dsigma)/2 at load point 2.
 
-    The lower body, y <= 0, is the one that pushes with q against the upper one, and the bulk tension is all its own.
-    With mean loads none of this is known: the first cycles lock in a traction that the steady state leaves open.
+    The lower body, y <= 0, exerts q on the upper body and carries all of the bulk tension. The loads must be fully
+    reversed: under mean loads the first cycles lock in a traction that the steady state does not determine.
 
     Parameters
     ----------
@@ -39,30 +39,29 @@ class Stress:
         self._zone = stick_zone(contact, f, dQ, dsigma)
 
     def surface(self, x: Array) -> Array:
-        """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body, lower and upper, and load point.
+        """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body (lower, upper) and load point.
 
-        Continuous, and largest as a rule at the trailing edge of the contact, beyond which it falls with an infinite
-        slope.
+        Continuous; usually largest at the trailing edge of the contact, where the slope is infinite.
         """
         x = np.asarray(x, float)
         return np.stack([self._at(x, 0 * x, side)[:, 0] for side in (np.ones_like(x), -np.ones_like(x))])
 
     def inside(self, x: Array, y: Array) -> Array:
         """sigma_xx, sigma_yy and sigma_xy (Pa) at the points (``x``, ``y``), (k,) each, m: (2, 3, k), by load point and
-        component. y <= 0 is in the lower body."""
+        component. Points with y <= 0 are in the lower body."""
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         return self._at(x, np.abs(y), np.where(y <= 0, 1.0, -1.0))
 
     def _at(self, x: Array, depth: Array, side: Array) -> Array:
-        """(2, 3, k), in the lower (``side`` = 1) and the upper body (-1).
+        """Stresses (2, 3, k), Pa, in the lower (``side`` = 1) and the upper body (-1).
 
-        With P and T, (1/pi) int p dt/(t - z) and the same of q, z = x - i depth, and y = -depth, the lower body's are
+        Let P = (1/pi) int p dt/(t - z), T the same of q, z = x - i depth and y = -depth. In the lower body
 
             sigma_xx = Im P + y Re P' - 2 Re T + y Im T',    sigma_yy = Im P - y Re P' - y Im T',
             sigma_xy = Im T - y Im P' + y Re T'
 
-        (Muskhelishvili, Some basic problems of the mathematical theory of elasticity). The upper body is its mirror
-        image under the opposite q.
+        (Muskhelishvili, Some basic problems of the mathematical theory of elasticity). The upper body is the mirror
+        image of the lower body under the opposite q.
         """
         y = -depth / self.contact.a
         (P, T), (P_z, T_z) = self._cauchy(x / self.contact.a + 1j * np.minimum(y, -_SURFACE))
@@ -71,13 +70,13 @@ class Stress:
         unit = self.f * self.contact.p0
         pressure = self.contact.p0 * np.stack([P.imag + y * P_z.real, P.imag - y * P_z.real, -side * y * P_z.imag])
         shear = unit * np.stack([side * along, -side * y * T_z.imag, T.imag + y * T_z.real])
-        # no relative strain: both bodies share the tension
+        # no relative strain in the stick zone: the bodies share the tension
         shear[0] = np.where(sticks, -side * self.dsigma / 4, shear[0]) + np.where(side > 0, self.dsigma / 2, 0.0)
         return np.stack([pressure - shear, pressure + shear])
 
     @cached_property
     def _cauchy(self) -> Cauchy:
-        """Of p/p0 and q/(f p0) at load point 2, lengths scaled by a."""
+        """Cauchy integrals of p/p0 and q/(f p0) at load point 2, lengths scaled by a."""
         shape = self.contact.shape
         turn = -1 if self.dQ < 0 else 1
         mirror = turn * (-1 if self.dsigma < 0 else 1)

@@ -1,4 +1,4 @@
-"""The error that a coarse table of the profile itself makes."""
+"""Discretisation error due to the spacing of a tabulated profile."""
 
 import numpy as np
 from msgspec.structs import replace
@@ -9,16 +9,16 @@ from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.scene import Scene, Tabulated
 
-_LESS = 3.0  # halving the spacing of a table of second order leaves a quarter: the rest is a third of the change
-_FEWEST = 5
-_NODES = 200
+_LESS = 3.0  # second order: the error at full spacing is a third of the change from twice the spacing
+_FEWEST = 5  # points of a table
+_NODES = 200  # quadrature points of norms
 
 
 def table_error(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[str, float]:
-    """Estimate what the spacing of a tabulated profile does to a, m, n (fractions of a), p and q (relative L2).
+    """Estimate the error of a, m, n (fractions of a), p and q (relative L2) due to the spacing of a tabulated profile.
 
-    Richardson's: the same with every second point of the table. A table is of second order in its spacing, so that a
-    third of the difference is left. Empty for other profiles, and where half of the points make no contact.
+    Richardson extrapolation: a third of the change if every second point of the table is left out, as a table is of
+    second order in the spacing. Empty for other profiles, and if the coarser table cannot be pressed.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def table_error(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[s
     pressed : Contact
         The contact of ``scene``.
     cycle : Loading, optional
-        The change of the loads over half a cycle; None where the contact slides.
+        Change of the loads over half a cycle; None if the contact slides.
     """
     try:
         coarse = _every_second(scene)
@@ -50,7 +50,7 @@ def table_error(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[s
 
 
 def _every_second(scene: Scene) -> Scene | None:
-    """The scene with every second point of its table, and the last one; None if there is no table, or too short."""
+    """Scene with every second point of the table and the last point; None without a table or with a short one."""
     profile = scene.profile
     if not isinstance(profile, Tabulated) or len(profile.x) < _FEWEST:
         return None

@@ -13,7 +13,7 @@ _AT_ONCE = 2**22  # pairs of points in memory
 
 
 def half_range(x: Array, zone: StickZone[float], shape: Shape) -> Array:
-    """dq/(2 f p0) at ``x`` (fractions of a), for loads of positive dQ and dsigma; zero outside [-1, 1].
+    """dq/(2 f p0) at ``x`` (fractions of a), for positive dQ and dsigma; zero outside [-1, 1].
 
     In the slip zones dq/2 = p on the right and s p on the left. In the stick zone, from the bounded inversion of
     the paper's eq. (14),
@@ -31,10 +31,10 @@ def half_range(x: Array, zone: StickZone[float], shape: Shape) -> Array:
 
 
 def mean_load_bound(zone: StickZone[float], shape: Shape) -> float:
-    """The largest \\|Q_mean\\|/(f P) that a steady state can hold: int (f p - \\|dq\\|/2) dx over the stick zone.
+    """Largest \\|Q_mean\\|/(f P) of a steady state: int (f p - \\|dq\\|/2) dx over the stick zone.
 
-    Beyond it no locked-in mean traction fits under the friction bound and the contact ratchets (the frictional
-    Melan argument: Klarbring, Ciavarella and Barber, 2007).
+    Above it no locked-in mean traction fits under the friction bound and the contact ratchets (frictional Melan
+    theorem: Klarbring, Ciavarella and Barber, 2007).
     """
     centre, c = zone.centre, zone.half_width
     edge = 1 + centre - c
@@ -46,7 +46,7 @@ def mean_load_bound(zone: StickZone[float], shape: Shape) -> float:
         return (room - _resultant(np.pi, slips, zone)) * 2 / np.pi
 
     def sign(angle: float) -> float:
-        """dq/2 changes sign on the way from n, where it is p > 0, to -m, where it is -p."""
+        """Sign of dq/2 at e + c cos(``angle``): positive at n, where dq/2 = p, and negative at -m, where dq/2 = -p."""
         if angle in (0.0, math.pi):
             return 1.0 - 2.0 * (angle > 0)
         return float(half_range(np.array([centre + c * math.cos(angle)]), zone, shape)[0])
@@ -56,11 +56,11 @@ def mean_load_bound(zone: StickZone[float], shape: Shape) -> float:
 
 
 def _resultant(angle: float, slips: dict[int, tuple[Array, Array]], zone: StickZone[float]) -> float:
-    """int dq/2 dx in the stick zone, from its right end to x = e + c cos(``angle``), the integrations turned round:
+    """int dq/2 dx from the stick zone's right end to x = e + c cos(``angle``), with the order of integration swapped:
 
         int sin^2(y)/(cosh(theta) -+ cos(y)) dy = y cosh(theta) +- sin(y) - 2 sinh(theta) arctan(tan(y/2) r),
 
-    r = coth(theta/2) for traction on the right and its inverse on the left.
+    r = coth(theta/2) for traction in the right slip zone and tanh(theta/2) for the left one.
     """
     total = 0.0
     for side, (weights, theta) in slips.items():
@@ -73,15 +73,14 @@ def _resultant(angle: float, slips: dict[int, tuple[Array, Array]], zone: StickZ
 
 
 def _inside(x: Array, zone: StickZone[float], shape: Shape) -> Array:
-    """The stick zone's traction: p(t) is split into p(x), whose integrals are arc tangents, and p(t) - p(x), which
-    the factor t - x divides without a pole."""
+    """dq/(2 f p0) in the stick zone. The integrals of p(x) are arc tangents; (p(t) - p(x))/(t - x) has no pole."""
     centre, c = zone.centre, zone.half_width
     edge = 1 + centre - c
     to_left, to_right = np.sqrt(c + (x - centre)), np.sqrt(c - (x - centre))
     arcs, smooth = np.zeros_like(x), np.zeros_like(x)
     for side, sign, near, far in ((1, 1, to_right, to_left), (-1, zone.s, to_left, to_right)):
         gap = 2 - edge - 2 * c if side > 0 else edge
-        tangent = np.sqrt(max(gap, 0.0) / (max(gap, 0.0) + 2 * c))  # tanh of half of theta's end
+        tangent = np.sqrt(max(gap, 0.0) / (max(gap, 0.0) + 2 * c))  # tanh(theta/2) at the contact's end
         t, _, weights = shape.rule(edge, c, side)
         arcs += sign * 2 * np.arctan2(tangent * far, near)
         for part in np.array_split(np.arange(len(x)), len(x) * len(t) // _AT_ONCE + 1):

@@ -1,4 +1,4 @@
-"""Tractions of the half-planes at any points: plain data, from which they are computed. SI units."""
+"""Tractions of the half-planes at any points, as plain data; SI units."""
 
 from dataclasses import dataclass
 
@@ -12,9 +12,11 @@ from partialslip.halfplane.loading import Loading
 
 @dataclass(frozen=True)
 class ExactTractions:
-    """Tractions of the steady state in closed form: the contact ``pressed``, the coefficient of friction ``f``, the
-    change of shear traction over half a ``cycle`` (None where nothing sticks) and the shear tractions at the load
-    points, ``levels`` (None where no closed form has them)."""
+    """Tractions of the steady state in closed form.
+
+    The contact ``pressed``, the coefficient of friction ``f``, the change of shear traction over half a ``cycle`` (None
+    if nothing sticks) and ``levels``, the shear tractions at the load points (None if no closed form gives them).
+    """
 
     pressed: Contact
     f: float
@@ -39,8 +41,8 @@ class ExactTractions:
 
 @dataclass(frozen=True)
 class CellTractions:
-    """The exact pressure of the contact ``pressed``, and shear tractions ``q1`` and ``q2`` (c,), Pa, constant on cells
-    between ``vertices`` (c + 1,), fractions of a."""
+    """Tractions of marching: the exact pressure of the contact ``pressed``, and shear tractions ``q1`` and ``q2`` (c,),
+    Pa, constant on the cells between ``vertices`` (c + 1,), fractions of a."""
 
     pressed: Contact
     vertices: Array
