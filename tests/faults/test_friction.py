@@ -167,11 +167,11 @@ def test_iteration_that_ends_before_it_has_converged(monkeypatch, sound, red):
     """The first guess of what slips is taken for the answer."""
 
     def guessed(self, total):
-        at_zero, slope = self._face(0.0)
+        at_zero, slope = self._linear_solve(0.0)
         return (total - at_zero.sum()) / slope
 
     def hasty(self, shift):
-        x, slope = self._face(shift)
+        x, slope = self._linear_solve(shift)
         return x, self._C @ x - self._g - shift, slope
 
     def in_haste(*args):

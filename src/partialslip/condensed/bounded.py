@@ -1,4 +1,4 @@
-"""The one problem that normal contact and friction share: a convex quadratic programme with bounds and a sum."""
+"""Convex quadratic programme with bounds and a prescribed sum: the problem of both normal contact and friction."""
 
 from dataclasses import dataclass
 
@@ -11,18 +11,18 @@ from partialslip.arrays import Array
 Sides = npt.NDArray[np.int8]
 
 _EPS = float(np.finfo(float).eps)
-_HALVINGS = 60  # of a step, after which less than rounding is left of it
-_CHANCES = 3  # rounds in which the members on a wrong side may not have become fewer
+_HALVINGS = 60  # of a step: the last one is below rounding
+_CHANCES = 3  # iterations in which the number of members on a wrong side need not decrease
 
 
 @dataclass(frozen=True)
 class Solution:
-    """Multipliers ``x`` and what certifies them.
+    """Multipliers ``x`` (n,) and certificate.
 
-    ``rest`` (n,) is C x - g - shift: zero between the bounds, what a bound holds back elsewhere, at the lower one
-    never negative and at the upper one never positive. ``residual`` (n,) is the distance of each multiplier from its
-    augmented projection, ``imbalance`` that of the sum from the total, both in units of x; ``iterations`` counts the
-    faces solved, and ``changes`` how often members changed sides: never where a linear solve was all that it took.
+    ``rest`` (n,) is C x - g - shift: 0 between the bounds, >= 0 at the lower bound and <= 0 at the upper bound.
+    ``residual`` (n,) is the distance of each multiplier from the projection of the augmented multiplier, ``imbalance``
+    the distance of the sum from the total, both in units of x. ``iterations`` counts the linear solves of the
+    active-set iteration, ``changes`` the changes of the active set: 0 if one linear solve sufficed.
     """
 
     x: Array
@@ -34,19 +34,19 @@ class Solution:
 
     @property
     def sides(self) -> Sides:
-        """Which bound holds each member back, (n,): -1 the lower, 0 neither, 1 the upper."""
+        """Active bound of each member, (n,): -1 the lower, 0 none, 1 the upper."""
         return (-np.sign(self.rest)).astype(np.int8)
 
 
 def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, start: Sides | None = None) -> Solution:
     """Minimise x.C x/2 - g.x over lower <= x <= upper with sum(x) = total.
 
-    The multiplier of the sum is a rigid shift. With it the conditions read, for r = C x - g - shift and any
-    rho > 0: x is the projection of the augmented multiplier x - rho r onto the bounds. Block pivoting solves them with
-    the shift that each face needs for its sum, in a few rounds as a rule. Should these not end, it goes on at a given
-    shift, where it ends for every positive definite C. Their sum(x) grows with the shift, piecewise linearly: a Newton
-    step ends at the root or leaves its piece towards the root, so that the bracket shuts that piece out, and there are
-    finitely many.
+    The multiplier of the sum is a rigid shift. With r = C x - g - shift and any rho > 0, x is optimal if x is the
+    projection of the augmented multiplier x - rho r onto the bounds. Block pivoting, with the shift that gives each
+    active set the prescribed sum, usually converges in a few iterations. If it does not, block pivoting at fixed shifts
+    converges for every positive definite C. The sum of x grows with the shift, piecewise linearly: a Newton step on the
+    shift ends at the root or leaves the current piece towards the root. The bracket then excludes this piece, and the
+    number of pieces is finite.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, 
     total : float
         Between sum(lower) and sum(upper).
     start : (n,) int8 array, optional
-        Sides to begin with, those of a problem like this one (:attr:`Solution.sides`); otherwise all are free.
+        Initial active set, from a similar problem (:attr:`Solution.sides`); default: all members are free.
     """
     pivoting = _BlockPivoting(C, g, lower, upper, start)
     low, high, shift = -np.inf, np.inf, pivoting.settle(total)
@@ -74,7 +74,7 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, 
         if following in (low, high, shift) or not np.isfinite(following):
             break  # the sum cannot come closer to the total in this arithmetic
         shift = following
-    found, x = x, np.clip(x, lower, upper)  # but for rounding it is within; whatever the clip does is to be certified
+    found, x = x, np.clip(x, lower, upper)  # removes rounding errors; the residual below includes the clip
     r = r + C @ (x - found)
     residual = np.abs(x - np.clip(x - r / np.diag(C), lower, upper))
     rest = np.clip(r, np.where(x < upper, 0.0, -np.inf), np.where(x > lower, 0.0, np.inf))
@@ -82,12 +82,13 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, 
 
 
 class _BlockPivoting:
-    """Minimise x.C x/2 - (g + shift).x over lower <= x <= upper.
+    """Minimise x.C x/2 - (g + shift).x over lower <= x <= upper by block pivoting.
 
-    All members that violate their condition change sides at once, which takes a few rounds as a rule but may go round
-    in circles. If their number has not fallen for three rounds, projected Newton steps take over (Bertsekas 1982):
-    from a point within the bounds to the minimum of its face, clipped, as far as the objective falls. It falls each
-    time, so that no face comes back, and what is left of the conditions when it cannot fall any more is rounding.
+    All members that violate their condition change sides at once. This usually converges in a few iterations but may
+    cycle. If the number of violations has not decreased for three iterations, projected Newton steps take over
+    (Bertsekas, 1982): from a feasible point towards the minimum of its active set, clipped to the bounds, as far as the
+    objective decreases. No active set recurs, as the objective decreases in each step. When it cannot decrease further,
+    the remaining residual is rounding.
     """
 
     def __init__(self, C: Array, g: Array, lower: Array, upper: Array, start: Sides | None) -> None:
@@ -100,11 +101,11 @@ class _BlockPivoting:
         self.iterations = self.changes = 0
 
     def settle(self, total: float) -> float:
-        """The shift that gives the total with the sides to begin with, and then with those that it calls for in turn,
-        until they call for no others or their number does not fall any more."""
+        """Return the shift that gives the ``total``, updating the active set with the shift in each iteration until no
+        member changes sides or the number of changes stops decreasing."""
         fewest, chances, shift = len(self._g) + 1, _CHANCES, 0.0
         while True:
-            at_zero, slope = self._face(0.0)
+            at_zero, slope = self._linear_solve(0.0)
             if slope <= 0:
                 return shift
             shift = float((total - at_zero.sum()) / slope)
@@ -121,7 +122,8 @@ class _BlockPivoting:
             self._turn(wanted)
 
     def to_next_free(self, r: Array, more: bool) -> float:
-        """With every member at a bound: free the nearest one that can give more (or less); the shift to it."""
+        """With every member at a bound: free the nearest member that can increase (or decrease) the sum; the shift to
+        it."""
         steps = np.where(self._side == (-1 if more else 1), np.abs(r), np.inf)
         nearest = int(np.argmin(steps))
         self._side[nearest] = 0
@@ -129,10 +131,10 @@ class _BlockPivoting:
         return float(steps[nearest] if more else -steps[nearest])
 
     def solve(self, shift: float) -> tuple[Array, Array, float]:
-        """The minimiser, its r = C x - g - shift, and how fast its sum grows with the shift."""
+        """Minimiser x (n,) at the ``shift``, r = C x - g - shift (n,), and the derivative of sum(x) by the shift."""
         fewest, chances = len(self._g) + 1, _CHANCES
         while True:
-            x, slope = self._face(shift)
+            x, slope = self._linear_solve(shift)
             r, wanted = self._conditions(x, shift)
             wrong = np.flatnonzero(wanted != self._side)
             if len(wrong) == 0:
@@ -146,16 +148,16 @@ class _BlockPivoting:
             self._turn(wanted)
 
     def _descend(self, x: Array, shift: float) -> tuple[Array, Array, float]:
-        """The same by projected Newton steps, from near ``x``.
+        """The same as :meth:`solve` by projected Newton steps, beginning near ``x``.
 
-        Members that their gradient alone would take to a bound go straight there, the others by Newton's step at what
-        the gradient is now: both ways are downhill, and none stops right before a bound.
+        Members that their own gradient step would take to a bound move to the bound; the others take the Newton step of
+        the current gradient. Both directions decrease the objective, and no step stops just before a bound.
         """
         at = np.clip(x, self._lower, self._upper)
         while True:
             r, sides = self._conditions(at, shift)
             self._change(sides)
-            x, slope = self._face(shift)
+            x, slope = self._linear_solve(shift)
             new, wanted = self._conditions(x, shift)
             if np.array_equal(wanted, sides):
                 return x, new, slope
@@ -174,7 +176,7 @@ class _BlockPivoting:
             at = at + step
 
     def _conditions(self, x: Array, shift: float) -> tuple[Array, Sides]:
-        """r, and the sides that x and r call for, rounding aside."""
+        """r, and the sides that x and r require, within rounding."""
         r = self._C @ x - self._g - shift
         noise = self._noise(x, shift) / self._diagonal
         augmented = x - r / self._diagonal
@@ -182,20 +184,20 @@ class _BlockPivoting:
         return r, above.astype(np.int8) - below
 
     def _noise(self, x: Array, shift: float) -> Array:
-        """What rounding makes of r."""
+        """Rounding error of r."""
         noise: Array = 4 * _EPS * (self._diagonal * np.abs(x).sum() + np.abs(self._g) + abs(shift))
         return noise
 
     def _turn(self, wanted: Sides) -> None:
-        """Members turn to the sides that are called for: from one bound to the other by way of neither."""
+        """Move members to the ``wanted`` sides; a member at the other bound is freed first."""
         self._change(np.where((self._side == 0) | (wanted == self._side), wanted, 0))
 
     def _change(self, sides: Sides) -> None:
         self.changes += not np.array_equal(sides, self._side)
         self._side = sides
 
-    def _face(self, shift: float) -> tuple[Array, float]:
-        """Minimise with the bound members held: x, and the growth of its sum with the shift."""
+    def _linear_solve(self, shift: float) -> tuple[Array, float]:
+        """Minimise with members at bounds held there: x (n,), and the derivative of sum(x) by the shift."""
         self.iterations += 1
         free = self._side == 0
         x = np.select([self._side < 0, self._side > 0], [self._lower, self._upper], 0.0)

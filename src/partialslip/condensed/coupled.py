@@ -1,7 +1,7 @@
-"""Two bodies that are not mirror images: pressure moves them along x, and shear opens the gap.
+"""Contact of two bodies that are not mirror images: pressure moves the surfaces along x, and shear opens the gap.
 
-Scaled as in :mod:`partialslip.condensed.friction`. Relative displacements of the surfaces, the upper body's less the
-lower's along x and apart along y, under normal forces p and tangential forces q (of the lower body on the upper one):
+Scaled as in :mod:`partialslip.condensed.history`. The surfaces' relative displacements u (upper body less lower body,
+along x) and v (opening, along y) under normal forces p and tangential forces q (of the lower body on the upper one):
 
     u = C_xx q + C_xy p,    v = C_xy^T q + C_yy p.
 """
@@ -20,19 +20,22 @@ from partialslip.condensed.path import Path
 from partialslip.condensed.pressing import Punch
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
-_STICKS = 1e-9  # relative difference that is rounding
-_LAST, _TIMES = 2.5e-3, 2  # of the half-width, the last small step of bodies pressed alike; and how often it is placed
-_FAR = 10.0  # half-widths: a gap that nothing closes
-_ENDS = 15.0  # times as well as q the ends are to be known
-_MOST, _WORK = 64, 16_000  # steps in which bodies are pressed, and these times the nodes
-_PATIENCE = 4  # iterations without progress before another way is taken
+_STICKS = 1e-9  # relative tolerance of the friction bound and of lengths
+_LAST, _TIMES = 2.5e-3, 2  # last step of self-similar pressing, in half-widths; iterations of the half-width
+_FAR = 10.0  # gap, in half-widths, that stays open
+_ENDS = 15.0  # tolerance of q over tolerance of the ends
+_MOST, _WORK = 64, 16_000  # limits of the steps of pressing, and of steps times nodes
+_PATIENCE = 4  # iterations without progress before the method changes
 
 
 @dataclass(frozen=True)
 class Relative:
-    """Relative compliances (n, n) of two bodies' contact nodes; ``xy`` is None where it vanishes or is left out, and
-    so is ``xx`` without friction. ``yx`` is what q does to the gap, by reciprocity the transpose of ``xy``; zero in
-    Goodman's approximation, in which p moves the surfaces along x and q does not open the gap."""
+    """Relative compliances (n, n) of the contact nodes of two bodies.
+
+    ``xx``, ``yy`` and ``xy`` are C_xx, C_yy and C_xy; ``xx`` is None without friction, ``xy`` None if it vanishes or is
+    neglected. ``yx`` gives the opening of the gap by q; default: the transpose of ``xy``, by reciprocity. It is zero in
+    Goodman's approximation.
+    """
 
     xx: Array | None
     yy: Array
@@ -41,15 +44,15 @@ class Relative:
 
     @property
     def opening(self) -> Array:
-        """``yx``, or what reciprocity says that it is."""
+        """``yx``, by default from reciprocity."""
         assert self.xy is not None
         return self.xy.T if self.yx is None else self.yx
 
 
 @dataclass(frozen=True)
 class _Step:
-    """One step's problem: p presses with ``P`` against ``gap`` (n,); q sums to ``Q`` and, where nothing slips, keeps
-    the relative displacement along x at ``kept`` (n,), but for a rigid shift."""
+    """Problem of one load step: p sums to ``P`` over the ``gap`` (n,) before loading, q sums to ``Q``, and nodes that
+    stick have the relative displacement ``kept`` (n,) along x, up to a rigid shift."""
 
     xx: Array
     yy: Array
@@ -62,7 +65,8 @@ class _Step:
     kept: Array
 
     def sweep(self, p: Solution, q: Solution) -> tuple[Solution, Solution]:
-        """One iteration of the fixed point: p for the old q, then q for that p, a convex problem each."""
+        """One fixed-point iteration: solve for p with the old q, then for q with the new p; both problems are
+        convex."""
         n, pushed = len(self.gap), self.gap + self.yx @ q.x
         pressed = solve_bounded(self.yy, -pushed, np.zeros(n), np.full(n, np.inf), self.P, p.sides)
         on = np.flatnonzero(pressed.x > 0)
@@ -71,18 +75,18 @@ class _Step:
         held = solve_bounded(self.xx[np.ix_(on, on)], free, -bound, bound, self.Q, q.sides[on])
         x, rest, residual = (_spread(values, on, n) for values in (held.x, held.rest, held.residual))
         sheared = replace(held, x=x, rest=rest, residual=residual)
-        moved = self.yx @ (sheared.x - q.x)  # what p does not know of yet
+        moved = self.yx @ (sheared.x - q.x)  # opening due to the change of q, which p does not include yet
         return replace(pressed, residual=np.abs(moved - moved[on].mean()) / np.diag(self.yy)), sheared
 
     def newton(self, p: Solution, q: Solution) -> tuple[Solution, Solution] | None:
-        """Solve for p and q together, in the partition of those given, until it is its own; None if that fails."""
+        """Solve for p and q together, iterating on the partition from that of ``p`` and ``q``; None if that fails."""
         touch, slip = p.x > 0, q.sides * (p.x > 0)
         fewest, chances, iteration = 2 * len(touch), _PATIENCE, 0
         while chances > 0:
             iteration += 1
             if not (touch & (slip == 0)).any():
                 return None
-            p_new, q_new, opening, rest, scale = self._face(touch, slip)
+            p_new, q_new, opening, rest, scale = self._linear_solve(touch, slip)
             noise = _ROUNDING * scale
             pushed = p_new - opening / np.diag(self.yy)
             augmented, bound = q_new - rest / np.diag(self.xx), self.f * p_new
@@ -104,9 +108,9 @@ class _Step:
             touch, slip, fewest = touches, slips, min(wrong, fewest)
         return None
 
-    def _face(self, touch: npt.NDArray[np.bool_], slip: Sides) -> tuple[Array, ...]:
-        """p and q of one partition: what touches neither opens nor overlaps, what sticks does not move, and q = slip
-        f p where it slips."""
+    def _linear_solve(self, touch: npt.NDArray[np.bool_], slip: Sides) -> tuple[Array, ...]:
+        """p and q of one partition: nodes that ``touch`` have no gap, nodes that stick keep their displacement, and
+        q = ``slip`` f p at nodes that slip. Also the opening, the slip, and the scale (2, n) of rounding errors."""
         on, sticks = np.flatnonzero(touch), np.flatnonzero(touch & (slip == 0))
         i, end = len(on), len(on) + len(sticks)
         dragged = self.f * slip[on]
@@ -140,9 +144,9 @@ class _Step:
 
 @dataclass(frozen=True)
 class Line:
-    """Where the nodes are: ``x`` (n,), the ``weights`` (n,) that turn tractions into forces, and the ends of the
-    contact under nodal normal forces (n,), ``ends(forces) -> (left, right)``. ``similar`` says whether bodies without a
-    size are pressed together by a parabola, so that all stages of it are alike."""
+    """Nodes of the contact line: ``x`` (n,), ``weights`` (n,) that turn tractions into forces, and
+    ``ends(forces) -> (left, right)``, the ends of the contact under nodal normal forces (n,). ``similar``: whether
+    half-planes are pressed together under a parabolic gap, so that all stages of pressing are similar."""
 
     x: Array
     weights: Array
@@ -152,9 +156,9 @@ class Line:
 
 @dataclass(frozen=True)
 class Pressed:
-    """The bodies pressed together: normal and tangential forces, the steps it took, what q may be off by for their sake
-    (relative L2) and the half-width (relative). ``growth`` are forces (n,) along y and x that grow with the last of P;
-    where q does not reach its bound with those, the surfaces have stuck since they touched."""
+    """Bodies pressed together: ``normal`` and ``tangential`` forces, number of ``steps``, and ``errors`` due to the
+    steps, of q (relative L2) and a (relative). ``growth`` are the increments (n,) of the forces along y and x at the
+    end of pressing: nodes at which these are within the bound with ``f`` have stuck since they touched."""
 
     normal: Solution
     tangential: Solution
@@ -164,17 +168,20 @@ class Pressed:
     f: float
 
     def slipped(self) -> bool:
-        """Whether there has been slip."""
+        """Whether any node has slipped."""
         p, q = self.growth
         return bool((np.abs(q)[p > 0] >= (1 - _STICKS) * self.f * p[p > 0]).any())
 
 
 def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accuracy: float) -> Pressed:
-    """Press the bodies together under P from 0 to 1 with friction and without Q.
+    """Press the bodies together under P from 0 to 1, with friction and without Q.
 
-    What sticks early keeps its displacement. Half-planes under a parabola are pressed in one step from a stage that the
-    flat punch tells (:mod:`partialslip.condensed.pressing`); other bodies in steps, ``least`` of them or more, whose
-    number is doubled until q changes by less than ``accuracy`` (relative L2), or there are as many as are affordable.
+    Nodes that stick keep their displacement. Half-planes under a parabolic gap are pressed in one small step from an
+    earlier stage, known from the flat punch (:mod:`partialslip.condensed.pressing`). Other bodies are pressed in at
+    least ``least`` steps, doubled until q changes by less than ``accuracy`` (relative L2) or the limit is reached.
+
+    ``C`` are the compliances, ``gap`` (n,) the gap before loading, ``f`` the coefficient of friction, ``line`` the
+    nodes.
     """
     assert C.xx is not None
     assert C.xy is not None
@@ -212,7 +219,7 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
 
 
 def _moved(line: Line, forces: Array, others: Array) -> float:
-    """How far the ends of two contacts are apart, in half-widths."""
+    """Largest distance between the ends of two contacts, in half-widths."""
     (left, right), (l_other, r_other) = line.ends(forces), line.ends(others)
     return max(abs(left - l_other), abs(right - r_other)) * 2 / (right - left)
 
@@ -225,7 +232,7 @@ def _similar(
     step: Callable[[float, Array, tuple[Solution, Solution]], tuple[Solution, Solution]],
     off: Callable[[Array, Array], float],
 ) -> Pressed:
-    """The last small steps, the second of half the size, whose difference tells what the size is worth."""
+    """Press self-similarly, with last steps of two sizes; the difference is the error estimate."""
     for _ in range(_TIMES):
         left, right = line.ends(last[0].x)
         reach = (right - left) / 2
@@ -242,7 +249,7 @@ def _similar(
 
 
 def _certified(done: Sequence[tuple[Solution, Solution]]) -> tuple[Solution, Solution]:
-    """The last solution, with the residuals of all."""
+    """Last solution, with the residuals of all steps."""
     return certified([p for p, _ in done]), certified([q for _, q in done])
 
 
@@ -256,10 +263,10 @@ def march(
     line: Line | None = None,
     accuracy: float = 1e-3,
 ) -> tuple[History, Solution, Pressed | None]:
-    """Press the bodies together and go along the path: the history, the normal forces at load point 2 with the
-    residuals of all steps, and how the bodies were pressed.
+    """Press the bodies together with friction and follow the path of the loads.
 
-    Friction acts while the bodies are pressed together, too.
+    Returns the history, the normal forces at load point 2 with the residuals of all steps, and the pressing (None if
+    the path begins with pressed bodies).
 
     Parameters
     ----------
@@ -272,11 +279,11 @@ def march(
         Coefficient of friction.
     path : Path
     pressed : (n,) array, optional
-        Normal forces where the path does not begin with bodies apart.
+        Normal forces at the beginning of the path; default: the bodies are apart.
     line : Line, optional
-        Where the nodes are.
+        Nodes of the contact line.
     accuracy : float
-        What q may be off by for the sake of the steps in which the bodies are pressed, relative L2.
+        Tolerance of q for the steps of pressing, relative L2.
     """
     assert C.xx is not None
     xx, xy = C.xx, C.xy if C.xy is not None else 0 * C.xx
@@ -299,7 +306,7 @@ def march(
             return done[-1][1], f * normal.x
         gap, load = gap - strain * stretch[1], Q
         kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0]
-        starts = [done[-1], *done[-cycle : 1 - cycle]]  # the step before, and this one a cycle ago
+        starts = [done[-1], *done[-cycle : 1 - cycle]]  # the previous step, and this step of the previous cycle
         normal, sheared = _solve(_Step(xx, C.yy, xy, full.opening, f, 1.0, gap, Q, kept), starts)
         done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
         return sheared, f * normal.x
@@ -317,9 +324,11 @@ def march(
 
 
 def _solve(step: _Step, starts: Sequence[tuple[Solution, Solution]]) -> tuple[Solution, Solution]:
-    """Newton's iteration on all of the conditions, from the partitions of what may be near, until one is its own. If
-    none is, a sweep of the fixed point, which contracts for all but the largest friction, brings a better one; if that
-    does not help, either, rounding has stopped the sweeps."""
+    """Solve one step by Newton's method on the partition, from the partitions of ``starts``.
+
+    If no iteration converges, a fixed-point sweep, which contracts unless friction is very large, gives the next start.
+    The iteration ends when sweeps stop reducing the residual, at rounding.
+    """
     iterations, changes, least, chances = 0, 0, np.inf, _PATIENCE
     while chances > 0:
         for p, q in reversed(starts):

@@ -1,9 +1,9 @@
-"""Where zones end, below mesh size.
+"""Ends of the contact and of the stick zone, located to a fraction of a cell.
 
-Towards the end of the contact p falls like a square root, and so does 2 f p - |dq| towards the end of the stick
-zone. The force between a mesh vertex and the end therefore goes like distance^(3/2): its power 2/3 is a smooth
-function of x whose root is the end. Forces are far better than nodal values here: what a traction does within the
-last elements hardly touches them.
+Towards the end of the contact p falls like a square root, and so does 2 f p - |dq| towards the end of the stick zone.
+The force between a mesh vertex and the end therefore varies like distance^(3/2). Force^(2/3) is a smooth function of x,
+and its root is the end. Forces are more accurate than nodal tractions: they hardly depend on the error of the traction
+in the last elements.
 """
 
 import itertools
@@ -16,16 +16,17 @@ import numpy.typing as npt
 
 from partialslip.arrays import Array
 
-_VERTICES = 5
-_BESIDE, _FINER = 3, 0.95  # cells on either side of a fine place, and how small it is beside them
-_STICKS = 1e-9  # what slips has used up its bound to rounding, whatever the units
-_LEAVES = 1e-6  # of the bound: a traction nearer to it than that is at it, as kinks so slight do not matter
-_RUN = 4  # nodes in a row that make a zone; fewer are noise
+_VERTICES = 5  # of the fit
+_BESIDE, _FINER = 3, 0.95  # cells on each side of a refined point; size of its cells relative to these
+_STICKS = 1e-9  # room, relative to the bound, up to which a node slips
+_LEAVES = 1e-6  # distance of q from the bound, relative, that counts as none: such weak kinks do not matter
+_RUN = 4  # fewest neighbouring nodes that make a zone; fewer are noise
 
 
 @dataclass(frozen=True)
 class StickInterval:
-    """The stick zone and the signs of dq in the slip zones on its left and right."""
+    """Interval [``left``, ``right``] that sticks throughout the cycle, and the ``signs`` of dq on its left and
+    right."""
 
     left: float
     right: float
@@ -35,12 +36,12 @@ class StickInterval:
 def stick_zone(
     x: Array, bound: Array, change: Array, vertices: Array, cell_forces: Callable[[Array], Array]
 ) -> StickInterval:
-    """Read the stick zone from the range 2 f p - |dq|, never from what sticks at one instant.
+    """Stick zone of a cycle, from the room 2 f p - |dq| and not from the state at one load point.
 
     Parameters
     ----------
     x, bound, change : (n,) arrays
-        Nodes in contact, f times their normal forces, and changes of their tangential forces over the cycle.
+        Nodes in contact; f times the normal forces; changes of the tangential forces from load point 1 to 2.
     vertices : (c + 1,) array
         Ends of the cells of the contact line.
     cell_forces : callable
@@ -49,7 +50,7 @@ def stick_zone(
     room = np.divide(2 * bound - np.abs(change), bound, out=np.zeros_like(bound), where=bound > 0)
     sticks = _around(int(np.argmax(room)), x, room > _STICKS, vertices)
     signs = (1 if change[0] > 0 else -1), (1 if change[-1] > 0 else -1)
-    if len(sticks) == 0:  # a stick zone smaller than a cell: it is where the slip turns round
+    if len(sticks) == 0:  # a stick zone smaller than a cell lies where slip changes sign
         turn = int(np.argmax(np.sign(change) != np.sign(change[0])))
         point = float(x[max(turn - 1, 0)] + x[turn]) / 2
         return StickInterval(point, point, signs)
@@ -59,15 +60,16 @@ def stick_zone(
 
 
 def _around(most: int, x: Array, sticks: npt.NDArray[np.bool_], vertices: Array) -> npt.NDArray[np.int64]:
-    """Nodes that stick around the one with the ``most`` room, up to the first cell on either side that slips.
+    """Indices of nodes that stick around the node ``most`` with the most room, up to the first slipping cell on each
+    side.
 
-    The stick zone is one interval. Where there is hardly any room (close to sliding), what the elements cannot resolve
-    leaves a node here and there short of its bound, and they are not part of it.
+    The stick zone is one interval. Close to sliding, discretisation errors leave single nodes elsewhere short of the
+    bound; these do not belong to the stick zone.
     """
-    before, after = (np.searchsorted(vertices, x, side) for side in ("left", "right"))  # a vertex is in two cells
+    before, after = (np.searchsorted(vertices, x, side) for side in ("left", "right"))  # a vertex belongs to two cells
     slips = np.ones(len(vertices) + 1, dtype=bool)
     slips[before[sticks]] = slips[after[sticks]] = False
-    slips[[0, -1]] = True  # there is nothing beyond the line
+    slips[[0, -1]] = True  # beyond the contact line
     ends = np.flatnonzero(slips)
     last = np.searchsorted(ends, after[most])
     result: npt.NDArray[np.int64] = np.flatnonzero(sticks & (after > ends[last - 1]) & (before < ends[last]))
@@ -75,15 +77,14 @@ def _around(most: int, x: Array, sticks: npt.NDArray[np.bool_], vertices: Array)
 
 
 def kinks(x: Array, bound: Array, q: Array, vertices: Array, cell_forces: Callable[[Array], Array]) -> list[float]:
-    """Points inside the contact where q leaves its bound f p or -f p: a mesh is to be fine there.
+    """Points inside the contact at which q leaves the bound f p or -f p, where meshes must be refined.
 
-    Towards such a point the difference of q and the bound it meets falls like a square root, just as beside the ends of
-    the stick zone.
+    Towards such a point the difference of q and the bound falls like a square root, as at the ends of the stick zone.
 
     Parameters
     ----------
     x, bound, q : (n,) arrays
-        Nodes in contact, f times their normal forces, and their tangential forces at one moment.
+        Nodes in contact; f times the normal forces; tangential forces at one load point.
     vertices : (c + 1,) array
         Ends of the cells of the contact line.
     cell_forces : callable
@@ -114,7 +115,7 @@ def kinks(x: Array, bound: Array, q: Array, vertices: Array, cell_forces: Callab
 
 
 def finest(vertices: Array) -> list[float]:
-    """Inner vertices that a graded mesh is fine around: the cells beside them are the smallest far and wide."""
+    """Inner vertices around which a graded mesh is refined: cells beside them are the smallest in the neighbourhood."""
     widths = np.diff(vertices)
     if len(widths) < 2 * _BESIDE + 1:
         return []
@@ -127,7 +128,7 @@ def finest(vertices: Array) -> list[float]:
 
 
 def apart(ends: list[float], size: float) -> list[float]:
-    """Without those that lie within ``size`` of an earlier one: where the next mesh is to be fine."""
+    """The ``ends`` without those within ``size`` of an earlier one."""
     kept: list[float] = []
     for end in ends:
         if all(abs(end - other) > size for other in kept):
@@ -136,22 +137,22 @@ def apart(ends: list[float], size: float) -> list[float]:
 
 
 def right_end(vertices: Array, forces: Array, inside: Array) -> float:
-    """Where the zone ends on the right.
+    """Right end of a zone.
 
     Parameters
     ----------
     vertices : (c + 1,) array
         Ends of the cells, ascending.
     forces : (c,) array
-        Integral of the traction that vanishes at the end, over each cell.
+        Integrals over the cells of the traction that vanishes at the end.
     inside : (n,) array
-        Nodes inside the zone, ascending: the end is less than a cell and its neighbour beyond the last one.
+        Nodes inside the zone, ascending. The end lies at most two cells beyond the last node.
     """
     last = np.searchsorted(vertices, inside[-1])  # the first vertex at or beyond the last node
     x = vertices[:last][::-1]
     x = x[x >= inside[0]]
     force = np.cumsum(forces[::-1])[len(forces) - last :][: len(x)]
-    # the nearest vertex has but part of a cell beyond it: leave it out where there are others
+    # leave out the nearest vertex, beyond which the zone covers only part of a cell, if there are enough others
     skip = 1 if len(x) > _VERTICES else 0
     x, force = x[skip : skip + _VERTICES], force[skip : skip + _VERTICES]
     near, far = inside[-1], vertices[min(last + 1, len(vertices) - 1)]
@@ -165,15 +166,13 @@ def right_end(vertices: Array, forces: Array, inside: Array) -> float:
 
 
 def left_end(vertices: Array, forces: Array, inside: Array) -> float:
-    """Where the zone ends on the left: :func:`right_end` of the mirror image."""
+    """Left end of a zone: :func:`right_end` of the mirror image."""
     return -right_end(-vertices[::-1], forces[::-1], -inside[::-1])
 
 
 def _roots(x: Array, y: Array) -> Array:
-    """Real roots of the quadratic through (x, y), in the sense of relative least squares.
-
-    Without cancellation: y is all but linear where the zone ends like a square root.
-    """
+    """Real roots of the quadratic fitted to (x, y) by relative least squares, in a form without cancellation for nearly
+    linear y."""
     scale = x[0] - x[-1]
     t = (x - x[0]) / scale
     c, b, a = np.polynomial.polynomial.polyfit(t, y, 2, w=1 / y).tolist()

@@ -1,4 +1,4 @@
-"""What happens along a path of loads: Coulomb friction, step by step.
+"""Coulomb friction along a path of loads, step by step.
 
 Scaled: lengths by sqrt(A R P), forces by P and displacements by A P, so that nothing depends on units.
 """
@@ -14,40 +14,36 @@ from partialslip.arrays import Array
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
 from partialslip.condensed.path import Path
 
-_REPEATS = 1e-13  # change of a node's q in a cycle, in the sum of |q|, that is rounding
-
-
-STEADY = 1e-6  # change of q from cycle to cycle, in its range or in f p0, that counts as none
-
-
-_SLIPS = 1e-9  # what is missing of the bound, relative, that is rounding
+STEADY = 1e-6  # change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
+_REPEATS = 1e-13  # change of a node's q in a cycle, relative to the sum of |q|, that is rounding
+_SLIPS = 1e-9  # distance of |dq| from the bound, relative, at which a node slips
 
 
 @dataclass(frozen=True)
 class History:
-    """What a path has done.
+    """Tangential forces, slip and dissipation along a path, at n nodes; scaled.
 
     Parameters
     ----------
     path : Path
     points : list of Solution
-        At the load points in turn, certified over the way there.
+        Solutions at the load points in turn, each with the residuals of all steps since the previous load point.
     at_ends : two (n,) arrays
         Tangential forces at load points 1 and 2 of the last cycle.
     q1, q2 : (n,) arrays
-        The same; where Q and sigma are out of phase the least and the largest ones of that cycle.
+        Equal to ``at_ends``; out of phase the smallest and the largest tangential forces of the last cycle.
     bounds : two (n,) arrays
         f times the normal forces at load points 1 and 2.
     slip : (n,) array
-        From load point 1 to 2 of the last cycle.
+        Slip from load point 1 to 2 of the last cycle.
     net_slip : (n,) array
-        What the last cycle has added to the slip: in a steady state nothing.
+        Slip over the whole last cycle; zero in a steady state.
     dissipated : float
         Work against friction over the last cycle.
     end : two (n,) arrays
         Tangential forces, and f times the normal forces, at the end of the path.
     load_steps : int
-        Steps solved.
+        Number of load steps solved.
     """
 
     path: Path
@@ -63,7 +59,7 @@ class History:
     load_steps: int
 
     def of(self, nodes: npt.NDArray[np.int64]) -> "History":
-        """That of some of the nodes."""
+        """History of some ``nodes`` only (indices)."""
         points = [
             replace(step, x=step.x[nodes], rest=step.rest[nodes], residual=step.residual[nodes]) for step in self.points
         ]
@@ -74,8 +70,8 @@ class History:
 
     @property
     def visited(self) -> list[tuple[Array, Array]]:
-        """q at the load points, of the first two cycles and of the last, and the bounds f p there: where q leaves its
-        bound (:func:`partialslip.condensed.ends.kinks`) the mesh is to be fine."""
+        """q and the bound f p at the load points of the first two cycles and of the last cycle, for
+        :func:`partialslip.condensed.ends.kinks`."""
         cycle = len(self.path.cycle)
         bounds = dict(zip(self.path.ends, self.bounds, strict=True))
         numbers = sorted({*range(2 * cycle + 1), *range(len(self.points) - cycle, len(self.points))})
@@ -84,7 +80,7 @@ class History:
 
     @property
     def bound(self) -> Array:
-        """The mean of the bounds: half of the range that q has."""
+        """Mean of the bounds at load points 1 and 2: half of the admissible range of q."""
         result: Array = (self.bounds[0] + self.bounds[1]) / 2
         return result
 
@@ -96,25 +92,25 @@ class History:
 
     @property
     def repeats(self) -> bool:
-        """Whether the last cycle has changed next to nothing of q, in what q changes by over half a cycle."""
+        """Whether q changed over the last cycle by less than ``STEADY`` times the change over half a cycle."""
         changed = np.abs(self.points[-1].x - self.points[-1 - len(self.path.cycle)].x)
         return bool(changed.max() <= STEADY * np.abs(self.change).max())
 
     @property
     def ratchets(self) -> float:
-        """The largest net slip of the last cycle, in the largest slip of half a cycle."""
-        held = (self.bounds[0] > 0) & (self.bounds[1] > 0)  # what opens comes back elsewhere
+        """Largest net slip of the last cycle, relative to the largest slip of half a cycle."""
+        held = (self.bounds[0] > 0) & (self.bounds[1] > 0)  # nodes that open may close elsewhere
         half = float(np.abs(self.slip[held]).max())
         return float(np.abs(self.net_slip[held]).max()) / half if half > 0 else 0.0
 
     @property
     def cycles(self) -> int:
-        """Cycles followed; none where the first loading tells the whole."""
+        """Number of cycles followed; 0 if the first loading determines the cycle."""
         return 0 if self.path.half else len(self.points) // len(self.path.cycle)
 
     @property
     def opposing(self) -> int:
-        """Nodes that slip against the others from load point 1 to 2."""
+        """Number of nodes that slip in the less frequent direction from load point 1 to 2."""
         held = self.bound > 0
         slips = np.abs(self.change[held]) >= (2 - _SLIPS) * self.bound[held]
         ways = np.sign(self.change[held][slips])
@@ -122,29 +118,29 @@ class History:
 
     @property
     def iterations(self) -> int:
-        """Faces solved."""
+        """Linear solves of the active-set iteration."""
         return sum(step.iterations for step in self.points)
 
     @property
     def changes(self) -> int:
-        """How often what sticks and what slips had to be changed: never where linear solves did."""
+        """Changes of the sets of sticking and slipping nodes; 0 if one linear solve per step sufficed."""
         return sum(step.changes for step in self.points)
 
 
 def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> History:
-    """Tangential forces along the path at constant pressure, every step of it certified.
+    """Follow the path at constant pressure; every step has a certificate.
 
-    A step is then a convex problem: where nothing slips, the relative displacement keeps what it was, so that
-    C (T - T_before) follows the increment of the free relative displacement.
+    A step is a convex problem: nodes that stick keep the relative displacement, so that C (T - T_before) equals the
+    increment of the free relative displacement.
 
     Parameters
     ----------
     tangential : (n, n) array
-        Relative compliance C of what is in contact.
+        Relative compliance C of the nodes in contact.
     stretch : (n,) array
-        Displacements of the lower surface along x under the tension that strains it by 1: where it is.
+        Displacements of the lower surface along x under the tension that strains it by 1.
     bound : (n,) array
-        f times its normal forces.
+        f times the normal forces.
     path : Path
     """
     load = path.begin[0]
@@ -159,7 +155,9 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
             return still(before), bound
         load = Q
         free = tangential @ before.x + strain * stretch
-        near = sides[-cycle] if len(sides) >= first + cycle else before.sides  # this step a cycle ago is the nearest
+        near = (
+            sides[-cycle] if len(sides) >= first + cycle else before.sides
+        )  # best start: this step of the previous cycle
         found = solve_bounded(tangential, free, -bound, bound, Q, near)
         sides.append(found.sides)
         return found, bound
@@ -171,7 +169,7 @@ Advance = Callable[[Solution, float, float], tuple[Solution, Array]]
 
 
 def resting(forces: Array) -> Solution:
-    """A solution that is only its tangential ``forces`` (n,)."""
+    """Solution with given ``forces`` (n,), without slip and residuals."""
     zero = 0 * forces
     return Solution(forces, zero, zero, 0.0, 0)
 
@@ -183,11 +181,12 @@ def still(before: Solution) -> Solution:
 
 
 def follow(path: Path, advance: Advance, before: Solution) -> History:
-    """Go along the path, step by step: to its last load point, and then cycle after cycle, until one has changed
-    nothing (what comes then is that cycle again) or all of them are done. Half a cycle is the first of these steps.
+    """Follow the path: to the last load point, then cycle after cycle, until a cycle repeats or all cycles are done. If
+    the first loading determines the cycle (``path.half``), only the first loading is solved.
 
-    ``advance`` takes the solution before a step, Q after it and the increment of the free relative strain to the
-    solution after it, whose ``rest`` is the slip, turned round; and f times the normal forces after it.
+    ``advance(before, Q, strain) -> (solution, bound)`` solves one step: from the solution before the step, Q after the
+    step and the increment of the free relative strain, to the solution after the step, whose ``rest`` is minus the
+    slip, and f times the normal forces.
     """
     first, *ways = path.fractions
     load = np.array(path.begin)
@@ -224,7 +223,7 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
 
 
 def _reversed(path: Path, first: Solution, went: "_Way") -> History:
-    """The cycle that a first loading to load point 2 tells: on the way from 1 to 2 all is doubled (Masing's rule)."""
+    """Cycle from the first loading to load point 2: from load point 1 to 2 all changes are doubled (Masing's rule)."""
     forces, slip, bound = first.x, -2 * np.sum([step.rest for step, _ in went], axis=0), went[-1][1]
     way = replace(first, rest=-slip, iterations=0, changes=0)
     return History(
@@ -246,8 +245,8 @@ _Way = list[tuple[Solution, Array]]
 
 
 def _go(advance: Advance, before: Solution, start: Array, end: Array, fractions: tuple[float, ...]) -> _Way:
-    """The steps from the loads at ``start`` to those at ``end``."""
-    before = resting(before.x)  # the loads turn: what slips now says nothing of what will
+    """Solve the steps from the loads at ``start`` to the loads at ``end``."""
+    before = resting(before.x)  # the loads reverse: the slip before gives no start for the active set
     load, way = start, list[tuple[Solution, Array]]()
     for fraction in fractions:
         next_load = start + fraction * (end - start) if fraction < 1 else end
@@ -258,7 +257,7 @@ def _go(advance: Advance, before: Solution, start: Array, end: Array, fractions:
 
 
 def certified(steps: Sequence[Solution]) -> Solution:
-    """The last of some steps' solutions, with the residuals and the work of all of them."""
+    """Last of the ``steps``, with the largest residuals and the summed work of all steps."""
     return replace(
         steps[-1],
         residual=np.maximum.reduce([step.residual for step in steps]),
@@ -269,8 +268,8 @@ def certified(steps: Sequence[Solution]) -> Solution:
 
 
 def certificate(history: History, weights: Array, f: float, p0: float) -> dict[str, float]:
-    """``kkt``: residuals as tractions, in f p0; ``equilibrium``: of Q, relative to f P. ``weights`` (n,) turn tractions
-    into forces."""
+    """Largest residuals of a history: ``kkt``, of the friction conditions, in f p0, and ``equilibrium``, of Q, relative
+    to f P. ``weights`` (n,) turn tractions into forces."""
     return {
         "kkt": max(float((step.residual / (weights * f * p0)).max()) for step in history.points),
         "equilibrium": max(step.imbalance for step in history.points) / f,
@@ -278,8 +277,8 @@ def certificate(history: History, weights: Array, f: float, p0: float) -> dict[s
 
 
 def last_cycle_change(history: History, weights: Array, f: float, p0: float) -> float | None:
-    """Largest change of q between the last two visits of the last load point, in f p0; None where no whole cycle has
-    been followed. ``weights`` (n,) turn tractions into forces."""
+    """Largest change of q between the last two visits of the last load point, in f p0; None if no whole cycle was
+    followed. ``weights`` (n,) turn tractions into forces."""
     if history.path.half:
         return None
     last, before = history.points[-1].x, history.points[-1 - len(history.path.cycle)].x

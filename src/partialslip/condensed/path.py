@@ -1,4 +1,4 @@
-"""The path of the loads, scaled: lengths by sqrt(A R P), forces by P, displacements by A P."""
+"""Path of the loads, scaled: lengths by sqrt(A R P), forces by P, displacements by A P."""
 
 import itertools
 from dataclasses import dataclass, replace
@@ -13,15 +13,15 @@ from partialslip.scene import Scene
 
 @dataclass(frozen=True)
 class Path:
-    """Where the loads go: (Q, relative strain of the surfaces due to bulk tension) at the points of a cycle, scaled.
+    """Loads (Q, relative strain of the surfaces due to bulk tension) at the points of a ``cycle``, scaled.
 
-    ``ends`` are the indices of load points 1 and 2, the extremes of the cycle. The path begins at ``begin``, with the
-    tangential forces ``before`` (n,); without those there are none. Of one that is fully reversed, from nothing on, and
-    on whose way no slip turns round, ``half`` a cycle will do: the first loading.
+    ``ends`` are the indices of load points 1 and 2, the extremes of the cycle; ``in_phase`` says whether the points lie
+    on one line. The path begins at ``begin`` with the tangential forces ``before`` (n,) (None: zero), goes to the last
+    point and then ``cycles`` times through all points. ``half``: whether the first loading determines the cycle (fully
+    reversed loads, no shear at the beginning, no reversal of slip).
 
-    ``substeps`` is the least number of steps from each point to the next. ``ways`` are the steps that are taken, as
-    ascending fractions of the way up to 1: to the last point at first, and then to each point of the cycle. Without
-    them they are ``substeps`` equal ones.
+    ``substeps`` is the smallest number of steps between points. ``ways`` are the steps as ascending fractions up to 1:
+    to the last point first, then to each point of the cycle; default: ``substeps`` equal steps.
     """
 
     cycle: tuple[tuple[float, float], ...]
@@ -36,13 +36,13 @@ class Path:
 
     @property
     def fractions(self) -> tuple[tuple[float, ...], ...]:
-        """``ways``, or equal steps."""
+        """``ways``, by default ``substeps`` equal steps."""
         equal = tuple(np.linspace(0, 1, self.substeps + 1)[1:].tolist())
         return self.ways or (equal,) * (1 + len(self.cycle))
 
     @property
     def halved(self) -> "Path":
-        """The path with every step in two."""
+        """Path with every step halved."""
         middles = (
             [(before + after) / 2 for before, after in itertools.pairwise([0.0, *way])] for way in self.fractions
         )
@@ -56,12 +56,13 @@ class Path:
 
     @property
     def most_steps(self) -> int:
-        """The largest number of steps from one load point to the next."""
+        """Largest number of steps from one load point to the next."""
         return max(len(way) for way in self.fractions)
 
 
 def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | None:
-    """The path of the loads, from ``start`` if there is one, scaled; None where there is no friction to solve."""
+    """Path of the loads of ``scene``, beginning at ``start`` (default: zero load), scaled; None if ``plan`` has no
+    friction."""
     if not plan.needs("friction"):
         return None
     P, load = scene.P, scene.load
@@ -72,5 +73,5 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | No
 
 
 def lower_strain(scene: Scene, sigma: float) -> float:
-    """Of a long body under the tension ``sigma``, scaled."""
+    """Relative strain of the surfaces under the tension ``sigma`` (Pa) of a long lower body, scaled."""
     return scene.material.bodies[0].A / scene.material.A * sigma * scene.length / (4 * scene.P)

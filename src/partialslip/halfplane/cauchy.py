@@ -122,7 +122,7 @@ def _ellipse(zeta: Complex) -> Array:
 
 
 def _pole(functions: Array, zeta: Complex, logarithm: Complex) -> Complex:
-    """int g(s)/(s - zeta) ds over [-1, 1] of polynomials given by ``functions``, values at the nodes, (k, pairs, nodes).
+    """int g(s)/(s - zeta) ds over [-1, 1] of polynomials, given by their values at the nodes, (k, pairs, nodes).
 
     Gauss's value plus g(zeta) (logarithm - R), where R is Gauss's value of int ds/(s - zeta) = ``logarithm``. The value
     at the nearest node is subtracted first, so that nothing cancels beside a node.

@@ -135,8 +135,8 @@ def _accuracy(scene: Scene) -> float:
 
 
 def _cells(ends: list[float], inner: list[float], level: _Level | None, size: float, growth: float) -> Array:
-    """Ends of cells (c + 1,) of ``size`` at the ``ends`` and at the stick zone's ends on the previous ``level``, and of a
-    larger size at ``inner`` kinks of q and at the kinks on that level.
+    """Ends of cells (c + 1,) of ``size`` at the ``ends`` and at the stick zone's ends on the previous ``level``, and of
+    a larger size at ``inner`` kinks of q and at the kinks on that level.
 
     Cells are small compared with the distance of neighbouring ends: q is steep in narrow slip zones and stick zones.
     """
@@ -190,9 +190,9 @@ def _solve_level(
 def _mesh_errors(level: _Level, before: _Level, growth: float, first: bool) -> dict[str, float]:
     """Discretisation errors of m and n (in contact half-widths) and of q, q1 and q2 (relative L2 of cell averages).
 
-    Errors of m and n are a part of the change from the mesh ``before``, or a multiple of ``growth``^3. Errors of q are a
-    part of the change, for which ``first`` tells whether the mesh before is the first one. The factors are calibrated on
-    random scenes with known solutions.
+    Errors of m and n are a part of the change from the mesh ``before``, or a multiple of ``growth``^3. Errors of q are
+    a part of the change, for which ``first`` tells whether the mesh before is the first one. The factors are calibrated
+    on random scenes with known solutions.
     """
     assert level.stick
     assert before.stick

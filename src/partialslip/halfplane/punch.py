@@ -75,8 +75,8 @@ class Punch(Shape):
 class _Panels:
     """Pressure of many flats at a cost per point independent of the number of flats.
 
-    The range [0, pi/2] of arcsin(x) is halved into panels until at most ``_NEAR`` kinks, or few more, lie within a panel
-    or a panel's width of it. The pressures of these near flats are summed directly. The sum of all far flats is
+    The range [0, pi/2] of arcsin(x) is halved into panels until at most ``_NEAR`` kinks, or few more, lie within a
+    panel or a panel's width of it. The pressures of these near flats are summed directly. The sum of all far flats is
     interpolated: its nearest singularity is a panel's width away, and Chebyshev interpolation converges like 5.8^-k.
     Each half inherits the far sum of its parent and adds the flats that have become far.
     """
@@ -139,9 +139,9 @@ def _clenshaw(place: Array, coefficients: Array, column: npt.NDArray[np.int64]) 
 
 
 def _unit(x: Array, flats: Array, wedges: Array) -> Array:
-    """Pressure at ``x`` in [0, 1] under ``flats`` of half-width b = sin(end) with corners of curvature 1; ``wedges`` are
-    pi - 2 end. With t = tan(angle/2), x = sin(angle), the four logarithms of the usual form become two, and the factor
-    of each logarithm vanishes at the singularity."""
+    """Pressure at ``x`` in [0, 1] under ``flats`` of half-width b = sin(end) with corners of curvature 1; ``wedges``
+    are pi - 2 end. With t = tan(angle/2), x = sin(angle), the four logarithms of the usual form become two, and the
+    factor of each logarithm vanishes at the singularity."""
     cosine = np.sqrt((1 - x) * (1 + x))
     t, tau = x / (1 + cosine), flats / (1 + np.sqrt((1 - flats) * (1 + flats)))
     both = t * tau

@@ -1,9 +1,9 @@
 """Even pressures over [-1, 1] and the consistency conditions on the stick zone (paper, eqs. (17) and (18)).
 
 Scaled: lengths by a, pressures by p0 = 2 P/(pi a) (for Hertz the largest pressure), so that every pressure has the
-resultant pi/2; loads Qf = dQ/(2 f P) and sf = dsigma/(f p0). A stick zone is given by ``edge`` = 1 - m, the width of the
-left slip zone, and by the half-width ``c`` = (n + m)/2, which keep their digits when they are small; ``s`` is +1 where
-both ends slip the same way and -1 where they slip opposite ways. All arguments may be arrays.
+resultant pi/2; loads Qf = dQ/(2 f P) and sf = dsigma/(f p0). A stick zone is given by ``edge`` = 1 - m, the width of
+the left slip zone, and by the half-width ``c`` = (n + m)/2, which keep their digits when they are small; ``s`` is +1
+where both ends slip the same way and -1 where they slip opposite ways. All arguments may be arrays.
 """
 
 import functools
@@ -92,7 +92,7 @@ class Shape:
         centre = edge + c - 1
 
         def theta(width: Array) -> Array:
-            """theta at the distance ``width`` from the stick zone: cosh(theta) - 1 = width/c, by the half-angle form."""
+            """theta at the distance ``width`` from the stick zone: cosh(theta) - 1 = width/c in half-angle form."""
             result: Array = 2 * np.arcsinh(np.sqrt(np.maximum(width, 0.0) / (2 * c[..., None])))
             return result
 
@@ -112,7 +112,7 @@ class Shape:
 
 
 def rule_between(ends: Array, edge: Array | float, c: Array | float, side: int) -> Rule:
-    """Quadrature between ``ends`` (..., k) in theta, ascending, in the slip zone on the right (``side`` = 1) or left (-1).
+    """Quadrature between ``ends`` (..., k) in theta, ascending, over the right (``side`` = 1) or left (-1) slip zone.
 
     The substitution t = centre +- c cosh(theta) removes w. The square root of p at the contact's end and the kinks of p
     remain: the tanh-sinh rule on each piece handles both.
