@@ -27,15 +27,15 @@ BLOCK = "width=0.04, height=0.02"  # a = 1 mm, R = 50 mm
         (f"holder={{width=1}}, {BLOCK}", "holder.height: missing"),
         (f"holder={{width=1, height=1, x=1}}, {BLOCK}", "holder.x: unknown key; known are width, height"),
         (f"holder=1, {BLOCK}", "holder = 1: must be a table, not a whole number"),
-        (f"holder={{width=1, height=1e-5}}, {BLOCK}", "holder.height = 1e-05: must be 0.0001 to 10000 times its width"),
-        ("width=1, height=1e5", "height = 100000.0: must be 0.0001 to 10000 times its width, 1"),
-        (f"unit=1e-3, {BLOCK}", "unit = 0.001: only together with a mesh"),
+        (f"holder={{width=1, height=1e-5}}, {BLOCK}", "holder.height = 1e-05: must be 0.0001 to 10000 times the width"),
+        ("width=1, height=1e5", "height = 100000.0: must be 0.0001 to 10000 times the width, 1"),
+        (f"unit=1e-3, {BLOCK}", "unit = 0.001: must be given only together with mesh"),
         ("mesh=''", "mesh = '': must be a name"),
         ("mesh=3", "mesh = 3: must be a string, not a whole number"),
-        ("mesh='a.msh', width=1", "width: not together with a mesh"),
-        ("mesh='a.msh', holder={width=1, height=1}", "holder: not together with a mesh"),
+        ("mesh='a.msh', width=1", "width: must not be given together with mesh"),
+        ("mesh='a.msh', holder={width=1, height=1}", "holder: must not be given together with mesh"),
         ("kind='pad', width=0.0901, height=0.1", "width = 0.0901: must be <= 0.09"),
-        ("kind='pad', width=0.08, height=0.02", "height = 0.02: must be > 0.0222222, as its face goes back so far"),
+        ("kind='pad', width=0.08, height=0.02", "height = 0.02: must be > 0.0222222 m, as the face recedes by 0.02 m"),
     ],
 )
 def test_broken_body(body, why):
@@ -54,7 +54,7 @@ def test_broken_body(body, why):
         ([f"bodies.upper={{pulled=true, support='sides', {BLOCK}}}"], "bodies.upper.pulled = true: must be false"),
         (
             [f"bodies.{name}={{kind='pad', {BLOCK}}}" for name in ("upper", "lower")],
-            "bodies.lower.kind = 'pad': must be 'block', as the upper one is the pad",
+            "bodies.lower.kind = 'pad': must be 'block'; bodies.upper is a pad",
         ),
     ],
 )

@@ -1,7 +1,7 @@
-"""Whether slip turns round on a gradual way between the load points (docs/theory.md, section 7).
+"""Whether slip reverses during gradual loading between the load points (docs/theory.md, section 7).
 
-Where it does not, a single step from load point to load point ends where the gradual way does. Where it does, only
-small steps find the outcome. Formulas are for similar half-planes and loads in phase; scaled: lengths by a,
+If slip does not reverse, a single step from load point to load point gives the result of gradual loading. If it does,
+only small steps do. Formulas are for similar half-planes and loads in phase; scaled: lengths by a,
 ``Qf`` = \\|dQ\\|/(2 f P), ``sf`` = \\|dsigma\\|/(f p0), p0 = 2 P/(pi a).
 """
 
@@ -9,28 +9,28 @@ import math
 
 from partialslip.scene import Hertz, Scene
 
-# For Hertz, large tension within these limits does not turn round: a box inside the exact domain, which
-# `turns_round` bounds (tests/halfplane/test_gradual.py goes round it).
+# Hertz, large tension: slip does not reverse for Qf <= _QF and _SLOPE Qf <= sf <= _SF, a box inside the exact domain of
+# `turns_round` (checked in tests/halfplane/test_gradual.py).
 _QF, _SLOPE, _SF = 0.44, 6.0, 10.0
 
 
 def left_end_turns(Qf: float, sf: float, s: float, half_width: float) -> bool:
-    """Whether the slip zone at the left end turns round while the stick zone shrinks to ``half_width``.
+    """Whether slip in the left slip zone reverses while the stick zone shrinks to ``half_width``.
 
-    At a half-width c of the stick zone its left end is driven by dQ/pi - c dsigma/4 (the adhered traction of the
-    stick zone of that moment, for positive changes). Its sign must be one: positive from c = 1 on where both ends slip
-    the same way (``s`` = 1), negative down to the last c where they slip opposite ways (-1).
+    At a half-width c of the stick zone, slip at the left end is driven by dQ/pi - c dsigma/4, from the adhered traction
+    of the stick zone (for positive changes). Slip does not reverse if this keeps one sign: positive from c = 1 on if
+    both ends slip the same way (``s`` = 1), negative down to the last c if they slip opposite ways (-1).
     """
     return sf > 4 * Qf if s > 0 else half_width * sf < 4 * Qf
 
 
 def turns_round(Qf: float, sf: float, s: float, centre: float, half_width: float) -> bool:
-    """Whether slip turns round between the load points of a cycle that one step from one to the other leaves with the
-    stick zone of that ``centre`` and ``half_width`` (for positive changes of both loads), at any pressure.
+    """Whether slip reverses between the load points of a cycle whose stick zone, from a single step, has this
+    ``centre`` and ``half_width`` (for positive changes of both loads), at any pressure.
 
-    Beside :func:`left_end_turns`: what is to slip must have been pushed that way from the first, or it slips the other
-    way when the loads turn. The adhered traction of the whole contact changes sign at x = -4 dQ/(pi dsigma), which
-    has to be in the last stick zone where the ends slip opposite ways.
+    Besides :func:`left_end_turns`: points that slip must be pushed in the direction of slip from the beginning of the
+    half cycle. If the ends slip opposite ways, the point x = -4 dQ/(pi dsigma), at which the adhered traction of the
+    whole contact changes sign, must therefore lie in the final stick zone.
     """
     if s > 0 or sf == 0:
         return sf > 4 * Qf
@@ -38,8 +38,8 @@ def turns_round(Qf: float, sf: float, s: float, centre: float, half_width: float
 
 
 def may_turn_round(scene: Scene) -> bool:
-    """Whether slip may turn round between the load points of ``scene``: False where that is ruled out without solving
-    anything, True where it happens or is not known."""
+    """Whether slip may reverse between the load points of ``scene``, decided without solving: False if a reversal is
+    ruled out, True otherwise."""
     load, f = scene.load, scene.friction.f
     if not (load.in_phase and scene.mirrored):
         return True
@@ -53,7 +53,7 @@ def may_turn_round(scene: Scene) -> bool:
 
 
 def small_tension(scene: Scene) -> bool:
-    """Whether both ends of a Hertz contact of half-planes slip the same way, all the way: dsigma a < 4 dQ/pi."""
+    """Whether both ends of a Hertz contact of half-planes slip the same way at all loads: dsigma a < 4 dQ/pi."""
     load, f = scene.load, scene.friction.f
     if not isinstance(scene.profile, Hertz) or scene.finite or not scene.mirrored or scene.slides or f == 0:
         return False

@@ -1,4 +1,4 @@
-"""The plan: which effects a scene calls for and which it leaves out, each with its reason in words.
+"""The plan: effects that a scene calls for and effects that it leaves out, each with a reason in words.
 
 Methods read the plan and build only what it calls for. A scene's ``[effects]`` force some on or off.
 """
@@ -25,13 +25,13 @@ Effect = Literal[
     "far-field",
     "subsurface",
 ]
-_Decisions = dict[Effect, tuple[bool, str, str]]  # whether it is needed; why, if it is; why not, if it is not
+_Decisions = dict[Effect, tuple[bool, str, str]]  # whether needed; reason if needed; reason if not
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Effects by name, with the reason why each is ``called_for`` or ``left_out``. ``missing`` are those that the scene
-    calls for and its ``[effects]`` force off."""
+    """Effects by name: ``called_for`` and ``left_out``, with the reason of each. ``missing`` are effects that the scene
+    calls for but ``[effects]`` force off."""
 
     called_for: dict[Effect, str]
     left_out: dict[Effect, str]
@@ -42,10 +42,10 @@ class Plan:
         return effect in self.called_for
 
     def accept(self, regime: str) -> None:
-        """Raise InputError if the ``regime`` of a result cannot be without an effect that has been forced off."""
+        """Raise InputError if the ``regime`` of a result requires an effect that is forced off."""
         if "opposing-slip" in self.missing and regime == "large tension":
             raise InputError(
-                "effects.opposing-slip = false: tension turns the slip at one end round (large tension); must be true"
+                "effects.opposing-slip = false: must be true; tension reverses slip at one end (large tension)"
             )
 
 
@@ -56,14 +56,14 @@ def plan(scene: Scene, *, subsurface: bool = False, start: bool = False) -> Plan
     ----------
     scene : Scene
     subsurface : bool
-        Whether fields inside the bodies are asked for.
+        Whether fields inside the bodies are requested.
     start : bool
-        Whether the path of the loads goes on from a state.
+        Whether the path of the loads begins in a given state.
 
     Raises
     ------
     InputError
-        If an effect is forced off without which there is no answer, or forced on where there is nothing to build.
+        If an effect without which there is no solution is forced off, or an effect that cannot be built is forced on.
     """
     own = _decide(replace(scene, effects=Effects()), subsurface, start)
     forced = _forced(scene)
@@ -83,10 +83,9 @@ def plan(scene: Scene, *, subsurface: bool = False, start: bool = False) -> Plan
 
 
 def reduced(scene: Scene) -> Scene:
-    """What methods are to solve: ``scene`` without the friction, loads and sizes that its ``[effects]`` force off.
+    """Scene that methods solve: ``scene`` without friction, loads and sizes that ``[effects]`` force off.
 
-    Without history the mean loads are left out, too: what remains is fully reversed. Without the far field a block is
-    clamped as it is.
+    Without history the loads become fully reversed. Without the far field, blocks are clamped directly.
     """
     effects, load, fem = scene.effects, scene.load, scene.fem
     if effects.shear is False:
@@ -113,7 +112,7 @@ def _forced(scene: Scene) -> dict[Effect, bool]:
 
 
 def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
-    """What ``scene`` calls for, loads that are forced on and forced coupling included."""
+    """Decisions for ``scene``, taking forced loads and forced coupling into account."""
     load, f, forced = scene.load, scene.friction.f, _forced(scene)
     Q, sigma = zip(*load.points, strict=True)
     coupled = forced.get("coupling", not scene.mirrored)
@@ -125,7 +124,7 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
     elif f == 0:
         no_friction = "f = 0: no traction holds the surfaces along x"
     else:
-        no_friction = "|Q| >= f P at a load point: the contact slides, and nothing is left to find"
+        no_friction = "|Q| >= f P at a load point: the contact slides as a whole"
     small = "tension is small: both ends of a Hertz contact slip the same way" if small_tension(scene) else ""
     opposing = "tension may turn the slip at one end of the contact"
     history = _why_history(scene, coupled, start)
@@ -155,10 +154,10 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
 
 
 def _why_history(scene: Scene, coupled: bool, start: bool) -> str:
-    """Why what is locked in depends on the path; empty where it does not.
+    """Reason why locked-in tractions depend on the path; empty if they do not.
 
-    Where slip does not turn round on the way from load point 1 to 2, the shear changes by twice that of the first
-    loading (Masing's rule): the conditions of the one are those of the other, doubled.
+    If slip does not reverse from load point 1 to 2, the change of shear is twice that of the first loading (Masing's
+    rule): the conditions of half a cycle are those of the first loading, doubled.
     """
     load = scene.load
     if start:
@@ -177,7 +176,7 @@ def _why_history(scene: Scene, coupled: bool, start: bool) -> str:
 
 
 def _refuse(scene: Scene, forced: dict[Effect, bool], own: _Decisions) -> None:
-    """Raise InputError where a forced effect leaves nothing to solve, or nothing to build."""
+    """Raise InputError if a forced effect leaves nothing to solve or cannot be built."""
     off = {effect for effect, on in forced.items() if not on}
     on = {effect for effect, on in forced.items() if on}
     coupled = "coupling" in on or (not scene.mirrored and "coupling" not in off)
@@ -187,7 +186,7 @@ def _refuse(scene: Scene, forced: dict[Effect, bool], own: _Decisions) -> None:
         ("normal", "normal" in off, "without pressure there is no contact"),
         *((each, each in on and unheld and not own[each][0], own["friction"][2]) for each in tangential),
         ("opposing-slip", "opposing-slip" in off and not scene.load.in_phase,
-         "Q and sigma are out of phase, and slip turns round"),
+         "Q and sigma are out of phase, and slip reverses"),
         ("history", "history" in off and own["history"][0] and (coupled or not scene.load.in_phase),
          own["history"][1]),
         ("history", "history" in off and own["history"][1].startswith("the path goes on"), own["history"][1]),

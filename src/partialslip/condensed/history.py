@@ -155,9 +155,7 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
             return still(before), bound
         load = Q
         free = tangential @ before.x + strain * stretch
-        near = (
-            sides[-cycle] if len(sides) >= first + cycle else before.sides
-        )  # best start: this step of the previous cycle
+        near = sides[-cycle] if len(sides) >= first + cycle else before.sides  # this step in the previous cycle
         found = solve_bounded(tangential, free, -bound, bound, Q, near)
         sides.append(found.sides)
         return found, bound
@@ -223,7 +221,7 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
 
 
 def _reversed(path: Path, first: Solution, went: "_Way") -> History:
-    """Cycle from the first loading to load point 2: from load point 1 to 2 all changes are doubled (Masing's rule)."""
+    """Cycle from the first loading to load point 2: the change from load point 1 to 2 is twice that (Masing's rule)."""
     forces, slip, bound = first.x, -2 * np.sum([step.rest for step, _ in went], axis=0), went[-1][1]
     way = replace(first, rest=-slip, iterations=0, changes=0)
     return History(

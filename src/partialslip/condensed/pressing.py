@@ -1,14 +1,14 @@
-"""How coupled bodies are pressed together: half-planes under a parabolic gap, self-similarly.
+"""Self-similar pressing of coupled half-planes under a parabolic gap.
 
-With friction, what has been pressed together early keeps the displacement that it had when it stuck. Of half-planes and
-a parabola all stages are alike: at a half-width s the contact grows as if a flat punch of that half-width were pressed,
-in which the part |x| < c s sticks, with c the same at all stages (Spence 1968, 1975). Tractions are therefore sums of
-those of flat punches,
+With friction, points that stick keep the relative displacement at which they stuck. For half-planes and a parabola all
+stages of pressing are similar. At a half-width s the contact grows as under a flat punch of half-width s, in which the
+part |x| < c s sticks, with the same c at all stages (Spence 1968, 1975). Tractions are therefore integrals of the
+tractions under flat punches,
 
     q(x) = int_x^a q_flat(x/s) 2 s ds / (s a^2),    p likewise,
 
-and one problem, that of the punch, tells them all. What is solved for in the end is one small step from a moment before
-the last, so that the answer satisfies all of the conditions of contact and friction, with a certificate.
+and the problem of one punch determines all stages. One small last step from an earlier stage is then solved with all
+conditions of contact and friction, which gives the certificate.
 """
 
 from dataclasses import dataclass
@@ -17,13 +17,13 @@ import numpy as np
 
 from partialslip.arrays import Array
 
-_TELLING = 1e-9  # of the half-width
+_TELLING = 1e-9  # tolerance of lengths, relative to the half-width
 
 
 @dataclass(frozen=True)
 class Punch:
-    """A flat punch pressed with 1: half-width, nodal forces along y and x (n,) at the nodes ``x`` (n,), whose
-    ``weights`` (n,) turn tractions into forces."""
+    """Flat punch of ``half_width`` under the force 1: ``normal`` and ``tangential`` nodal forces (n,) at the nodes
+    ``x`` (n,), whose ``weights`` (n,) turn tractions into forces."""
 
     half_width: float
     x: Array
@@ -32,8 +32,7 @@ class Punch:
     tangential: Array
 
     def stage(self, share: float) -> tuple[Array, Array]:
-        """Nodal forces along y and x (n,) of the parabola, pressed until its contact has ``share`` of the punch's
-        half-width."""
+        """Nodal forces along y and x (n,) under the parabola, pressed up to ``share`` of the punch's half-width."""
         reach = self.half_width * share
         inside = np.abs(self.x) < self.half_width * (1 - _TELLING)
         at = np.concatenate([[-1.0], self.x[inside] / self.half_width, [1.0]])
@@ -45,12 +44,12 @@ class Punch:
             return result
 
         p, q = forces(self.normal), forces(self.tangential)
-        # what the nodes make of the sums is little, but not beside what the last step adds
+        # correct the sums: the discretisation error is small, but not compared with the increment of the last step
         return p * share**2 / p.sum(), q - q.sum() / p.sum() * p
 
     def _summed(self, forces: Array) -> Array:
-        """2 x int_x^1 of the punch's traction over t^2 dt, lengths in half-widths: of t = sin(angle), in which the
-        traction times cos(angle) is regular at the ends and goes linearly from node to node."""
+        """2 x times the integral of traction(t)/t^2 from x to 1, lengths in half-widths. With t = sin(angle), the
+        traction times cos(angle) is regular at the ends; it is interpolated linearly between nodes."""
         scaled = self.x / self.half_width
         result = np.zeros(len(scaled))
         for way in (1, -1):
@@ -58,7 +57,7 @@ class Punch:
             side = side[np.argsort(way * scaled[side])]
             angle = np.arcsin(way * scaled[side])
             regular = forces[side] / self.weights[side] * np.cos(angle)
-            regular[-2:] = regular[-3]  # the nodes beside the end carry its singularity
+            regular[-2:] = regular[-3]  # nodes beside the end are inaccurate due to the singularity
             angle, regular = np.append(angle, np.pi / 2), np.append(regular, regular[-1])
             slope = np.diff(regular) / np.diff(angle)
             pieces = slope * np.diff(np.log(np.sin(angle))) - np.diff(regular / np.tan(angle))

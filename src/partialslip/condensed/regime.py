@@ -1,4 +1,4 @@
-"""The regime that a history ends in, and what must be said of it."""
+"""Regime in which a history ends, and notes on the result."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -9,11 +9,11 @@ from partialslip.condensed.history import STEADY, History
 from partialslip.result import FRICTIONLESS, Regime
 from partialslip.scene import Scene
 
-_RATCHETS = 1e-3  # net slip of a cycle, in the slip of half a cycle, that counts where q has settled
+_RATCHETS = 1e-3  # net slip of a cycle, relative to the slip of half a cycle, above which a steady q ratchets
 
 
 class SteadyState(NamedTuple):
-    """Regime, the stick zone's centre and half-width (None where nothing sticks), and what must be said of them."""
+    """``regime``, ``centre`` and ``half_width`` of the stick zone (None if nothing sticks), and ``notes``."""
 
     regime: Regime
     centre: float | None
@@ -24,9 +24,9 @@ class SteadyState(NamedTuple):
 def steady_state(
     scene: Scene, history: History | None, stick: StickInterval | None, half_width: float, pressed: bool = False
 ) -> SteadyState:
-    """What it means that the stick zone of ``scene`` has been found to be ``stick`` (None: there was no friction to
-    solve), in a contact of ``half_width``; lengths in any one unit. ``pressed`` says that coupled bodies slipped while
-    they were pressed, that no other load acts, and that what stuck all through is the stick zone."""
+    """Regime and stick zone of ``scene``, from the computed stick zone ``stick`` (None if no friction was solved) in a
+    contact of ``half_width``; lengths in any one unit. ``pressed``: whether coupled bodies slipped while they were
+    pressed and no other load acts; the stick zone is then where the surfaces have always stuck."""
     load = scene.load
     if scene.free:
         return SteadyState("frictionless", None, None, (FRICTIONLESS,))
@@ -36,11 +36,11 @@ def steady_state(
     if pressed and stick:
         note = "no load but P acts: the stick zone is where the surfaces have stuck since they touched"
         return SteadyState("pressing", (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, (note,))
-    if history is None or stick is None or (load.dQ == 0 and load.dsigma == 0):  # nothing changes: all of it sticks
+    if history is None or stick is None or (load.dQ == 0 and load.dsigma == 0):  # the whole contact sticks
         return SteadyState("stuck", 0.0, half_width, ())
     notes: tuple[str, ...] = ()
     if stick.left == stick.right:
-        notes = ("the stick zone is smaller than an element: m and n are where the slip turns round",)
+        notes = ("the stick zone is smaller than an element: m and n are where slip changes sign",)
     regime: Regime = "small tension" if stick.signs[0] == stick.signs[1] else "large tension"
     if not load.in_phase:
         regime = "out of phase"
@@ -54,11 +54,11 @@ def steady_state(
 
 
 def doubts(change: float | None, errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:
-    """Notes on an accuracy that was not reached, and on q that still changed in the last cycle."""
+    """Notes on estimated ``errors`` above ``accuracy``, and on a ``change`` of q (in f p0) in the last cycle."""
     notes: tuple[str, ...] = ()
     if beyond := {key: error for key, error in errors.items() if error > BARS[key] * accuracy}:
         known = ", ".join(f"{key} {error:.1e}" for key, error in beyond.items())
         notes += (f"accuracy {accuracy:g} not reached: estimated errors are {known} (ends in a, tractions relative)",)
     if change is not None and change > max(accuracy, STEADY):
-        notes += (f"not steady: q changed by {change:.1e} f p0 in the last cycle; take more of them (load.cycles)",)
+        notes += (f"not steady: q changed by {change:.1e} f p0 in the last cycle; increase load.cycles",)
     return notes

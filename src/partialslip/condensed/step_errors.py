@@ -1,4 +1,4 @@
-"""What the steps of the load path make the ends and tractions off by."""
+"""Errors of ends and tractions due to finite steps of the load path."""
 
 import numpy as np
 import numpy.typing as npt
@@ -18,19 +18,19 @@ _SHEARS = ("change", "q1", "q2")
 def halved(
     history: History, finer: History, zones: tuple[StickInterval, StickInterval], weights: Array, half_width: float
 ) -> Errors:
-    """m and n (in contact half-widths), q, q1 and q2 (relative L2): twice what halving all steps changes, as errors are
-    of first order.
+    """Errors of m and n (in contact half-widths), q, q1 and q2 (relative L2): twice the change due to halving all
+    steps, as errors are of first order in the steps.
 
     Parameters
     ----------
     history, finer : History
-        In the steps taken, and in twice as many.
+        With the steps taken, and with all steps halved.
     zones : two StickInterval
-        Their stick zones.
+        Stick zones of ``history`` and ``finer``.
     weights : (n,) array
-        What turns tractions at their nodes into forces.
+        Factors that turn tractions at the nodes into forces.
     half_width : float
-        Of the contact.
+        Half-width of the contact.
     """
     held, (zone, other) = np.sqrt(weights), zones
     found = {"m": 2 * abs(zone.left - other.left) / half_width, "n": 2 * abs(zone.right - other.right) / half_width}
@@ -44,8 +44,9 @@ def halved(
 
 
 def pressed_together(history: History, pressed: Pressed, weights: Array, nodes: Indices) -> Errors:
-    """a (in half-widths), q1 and q2 (relative L2), of coupled bodies that are pressed together in steps: what q is off
-    by then may stay. ``weights`` are those of all nodes of the contact line."""
+    """Errors of a (in half-widths), q1 and q2 (relative L2) of coupled bodies ``pressed`` together in steps: an error
+    of q at the end of pressing may persist. ``weights`` turn tractions at all nodes of the contact line into forces;
+    ``nodes`` are the indices of the nodes of ``history``."""
     off = pressed.errors["q"] * np.linalg.norm(pressed.tangential.x / np.sqrt(weights))
     held = np.sqrt(weights[nodes])
     least = _least(history, held)

@@ -1,4 +1,4 @@
-"""Steps from load point to load point: as many as the answer needs where slip turns round on the way."""
+"""Refinement of load steps where slip reverses between load points."""
 
 import itertools
 from collections.abc import Callable
@@ -14,13 +14,13 @@ from partialslip.condensed.history import History, march
 from partialslip.condensed.path import Path
 from partialslip.condensed.step_errors import Errors
 
-_GROUPS, _HALVINGS, _SOLVES = 64, 6, 400  # of neighbours, on which steps are chosen; a step is halved so often at most
-_TELLING = 1e-7  # change of the forces, relative to f P, that is more than rounding
-_TRIED = (0, 1 / 32, 1 / 8, 1 / 2, 3 / 4, 7 / 8, 1)  # fractions of a way on which slip that turns round is looked for
-_MANY = 4  # steps, of which each is tried in two only
-_FINER = 16.0  # times less a step may change, and less still, if what steps leave is too much
-MOST = 64  # steps from load point to load point, of which twice as many are not followed any more
-_CLOSES = 3  # cycles at least where the first loading does not tell the whole of fully reversed loads, or to look at
+_GROUPS, _HALVINGS, _SOLVES = 64, 6, 400  # groups of nodes on which steps are chosen; limits of halvings and of solves
+_TELLING = 1e-7  # change of the forces, relative to f P, above rounding
+_TRIED = (0, 1 / 32, 1 / 8, 1 / 2, 3 / 4, 7 / 8, 1)  # fractions of a step tried to detect a reversal of slip
+_MANY = 4  # steps per load point from which on each step is tried in halves only
+_FINER = 16.0  # factor by which the tolerance of steps is reduced if their errors are too large
+MOST = 64  # steps from load point to load point above which steps are not halved
+_CLOSES = 3  # fewest cycles if the first loading does not determine the cycle; most cycles on which steps are chosen
 
 
 def march_refined(
@@ -32,13 +32,22 @@ def march_refined(
     errors: Callable[[History, History], Errors] | None = None,
     most: int = MOST,
 ) -> tuple[History, Errors]:
-    """:func:`march` in as many steps as it takes, and what these leave where ``errors`` tells.
+    """:func:`march` with refined load steps; returns the history and the estimated errors due to the steps.
 
-    Steps are those of :func:`refined`; a path whose ``ways`` are known is followed as it is. With ``errors``, which
-    tells them from a history and the one in twice as many steps, there are so many that no error is more than half of
-    what ``accuracy`` allows, or as many as ``most`` allows. It is asked where one step seems to be enough, too: a stick
-    zone that is small beside the groups which steps are chosen on bears next to nothing. Steps leave nothing where no
-    slip turns round on the way.
+    Parameters
+    ----------
+    tangential, stretch, bound, path
+        As for :func:`march`. A path with known ``ways`` is followed in these steps.
+    accuracy : float
+        Accuracy of ends, as a fraction of a.
+    errors : callable, optional
+        ``errors(history, finer)``: errors from a history and the history with all steps halved. Steps are refined until
+        every error is at most half of the allowed one. Also called where one step seems to suffice: a stick zone
+        smaller than the groups of nodes on which steps are chosen carries too little traction to be noticed.
+    most : int
+        Largest number of steps from load point to load point.
+
+    The errors are empty if slip does not reverse between load points.
     """
     known = bool(path.ways)
     history = march(tangential, stretch, bound, path if known else refined(tangential, stretch, bound, path, accuracy))
@@ -58,16 +67,16 @@ def march_refined(
 
 
 def _tension_stays(path: Path) -> bool:
-    """Whether the bulk tension never changes: shear then drives all slip one way, and nothing turns it round."""
+    """Whether the bulk tension is constant: Q then drives all slip one way, and slip does not reverse."""
     return len({strain for _, strain in (path.begin, *path.cycle)}) == 1
 
 
 def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accuracy: float) -> Path:
-    """The path in as many steps as the answer needs: :func:`march` on groups of neighbours decides.
+    """Path with steps chosen by marching on groups of neighbouring nodes.
 
-    One step is the answer where no slip turns round on the way, for then the conditions of one step are those of the
-    gradual way. Otherwise each of some steps, smaller towards the load points, is halved as long as its two halves lead
-    elsewhere: slip turns round at a moment, so that few steps are halved often.
+    One step suffices where slip does not reverse: the conditions of one step are then those of gradual loading.
+    Otherwise each of some steps, smaller towards the load points, is halved until halving does not change the result.
+    Slip reverses at one instant, so that few steps are halved often.
     """
     if _tension_stays(path):
         return path
@@ -85,7 +94,7 @@ def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accurac
         load = end
     if path.half and all(len(fractions) == 1 for fractions in ways) and coarse.same(ends[0], -ends[1]):
         return replace(path, ways=path.fractions)
-    if path.half:  # the first loading does not tell the whole: the cycle is to close
+    if path.half:  # the first loading does not determine the cycle: follow cycles until q is periodic
         path = replace(path, half=False, cycles=max(path.cycles, _CLOSES))
     first, *others = ways
     cycle = len(path.cycle)
@@ -94,7 +103,7 @@ def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accurac
 
 
 class _Coarse:
-    """Tangential forces summed over groups of neighbours, which share them as they share the bounds."""
+    """Problem on groups of neighbouring nodes: forces of a group are distributed like the friction bounds."""
 
     def __init__(self, tangential: Array, stretch: Array, bound: Array, accuracy: float) -> None:
         self._first = _groups(len(bound))
@@ -105,16 +114,17 @@ class _Coarse:
         self._near, self._solves = max(accuracy, _TELLING) * float(self._bound.sum()), 0
 
     def sums(self, forces: Array) -> Array:
-        """Sums over the groups."""
+        """Sums of nodal ``forces`` (n,) over the groups."""
         result: Array = np.add.reduceat(forces, self._first)
         return result
 
     def same(self, q: Array, other: Array) -> bool:
-        """Whether the two differ by less than what is asked for."""
+        """Whether ``q`` and the ``other`` differ by less than the tolerance."""
         return float(np.abs(q - other).sum()) <= self._near
 
     def way(self, q: Array, load: Array, end: Array, substeps: int) -> tuple[tuple[float, ...], Array]:
-        """Fractions of the way from ``load`` to ``end`` that steps are to end at, and where they lead from ``q``."""
+        """Fractions of the way from ``load`` to ``end`` at which steps end, and the forces there, from the forces
+        ``q``."""
         fractions: list[float] = []
         self._solves = 0
         for number in range(substeps):
@@ -135,7 +145,7 @@ class _Coarse:
         return tuple(fractions), q
 
     def _halve(self, q: Array, load: Array, end: Array, whole: Array, depth: int) -> tuple[list[float], Array]:
-        """The same of steps that are halved until they lead where their halves do; ``whole`` is where one leads."""
+        """Fractions and forces for one step, halved until halving changes nothing; ``whole``: forces after one step."""
         middle = (load + end) / 2
         first = self._step(q, load, middle)
         second = self._step(first, middle, end)
@@ -152,7 +162,7 @@ class _Coarse:
 
 
 def _groups(count: int) -> npt.NDArray[np.int64]:
-    """First members of groups of neighbours, about equally many in each; in the mirror image they are the same."""
+    """First members of groups of about equal numbers of neighbours, mirror-symmetric."""
     groups = min(_GROUPS, count)
     groups -= (count - groups) % 2
     left = np.arange(groups // 2 + 1) * count // groups

@@ -1,4 +1,4 @@
-"""Small dense algebra on one BLAS thread: two threads on two busy cores make it up to a hundred times slower."""
+"""Small dense algebra on one BLAS thread: on busy cores, two threads are up to a hundred times slower."""
 
 import functools
 import os
@@ -16,17 +16,17 @@ _T = TypeVar("_T")
 
 
 class _Limit:
-    """BLAS has one setting for all threads: the first function sets it, the last one to end restores it."""
+    """Process-wide limit of BLAS threads: the first function that enters sets it, the last that leaves restores it."""
 
     def __init__(self) -> None:
         self._lock, self._running = threading.Lock(), 0
         self._limited: Any = None
-        if hasattr(os, "register_at_fork"):  # another thread, which the child has not, may be holding the lock
+        if hasattr(os, "register_at_fork"):  # the lock may be held by a thread that the child does not have
             os.register_at_fork(after_in_child=self._begin_anew)
 
     @contextmanager
     def held(self) -> Iterator[None]:
-        """Hold BLAS at one thread."""
+        """Limit BLAS to one thread."""
         with self._lock:
             if not self._running:
                 _take_over()
@@ -47,7 +47,7 @@ class _Limit:
 
 
 def _take_over() -> None:
-    """Be the thread that newer versions of threadpoolctl listen to: as a rule the one that set the first limit."""
+    """Make this thread the controlling thread of newer threadpoolctl, by default the thread of the first limit."""
     if release := getattr(OpenBLASController, "clear_controlling_thread", None):
         release(force=True)
 

@@ -1,4 +1,4 @@
-"""The scene: what is in the world. Immutable, validated, SI units; knows nothing of methods.
+"""The scene: bodies, profile, friction and loads. Immutable, validated, SI units, independent of methods.
 
 Signs: positive ``dQ`` and positive ``dsigma`` add up at x -> +a, so that the stick zone moves towards -a.
 """

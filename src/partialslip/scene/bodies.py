@@ -1,4 +1,4 @@
-"""Finite bodies: their shapes, or the files of their meshes, and what holds them."""
+"""Finite bodies: shapes or mesh files, and supports."""
 
 from collections.abc import Iterator
 from typing import Annotated, Literal
@@ -8,28 +8,28 @@ import msgspec
 from partialslip.errors import InputError
 from partialslip.scene.table import Positive, Table
 
-_SLENDEREST = 1e-4  # height in width, or the other way round
+_SLENDEREST = 1e-4  # smallest ratio of height to width, or of width to height
 
 
 class Holder(Table, frozen=True, kw_only=True):
-    """A block behind a body and one piece with it: ``width`` and ``height``, m."""
+    """Block behind a body, bonded to it: ``width`` and ``height``, m."""
 
     width: Positive
     height: Positive
 
 
 class Body(Table, frozen=True, kw_only=True):
-    """A finite body, pressed on in the middle of its face.
+    """A finite body, in contact in the middle of its face.
 
-    Its ``kind``: a ``block`` is rectangular; the face of a ``pad`` has the profile's true shape, a cylinder's arc for
-    hertz, and only one body can have it. ``width`` and ``height`` (m; of a pad in its middle) are the body's, behind
-    which a ``holder`` may sit. Instead of those ``mesh`` may be the path of a file, whose lengths are in units of
-    ``unit`` (m).
+    ``kind``: a ``block`` is rectangular; the face of a ``pad`` has the true shape of the profile, a circular arc for
+    hertz. At most one body is a pad. ``width`` and ``height`` (m; the height of a pad is that in the middle) are the
+    size of the body, behind which a ``holder`` may be bonded. Alternatively ``mesh`` is the path of a mesh file with
+    lengths in units of ``unit`` (m).
 
-    ``support`` says what holds the body, or its holder, and carries P and Q: ``clamped``, the back by a rigid plate
-    that does not turn; ``roller``, the back by a plate along which it slides (the middle plane of a specimen of twice
-    the height), and the sides against motion along x; ``sides``, those alone, by rigid plates. All else is free. Of the
-    lower body, if it is ``pulled``, the right side is free of its support: there sigma is a traction, and is carried by
+    ``support`` holds the body, or its holder, and carries P and Q. ``clamped``: the back is fixed to a rigid plate that
+    does not rotate. ``roller``: the back slides along a plate (the middle plane of a specimen of twice the height), and
+    the sides cannot move along x. ``sides``: the sides are fixed to rigid plates. All other boundaries are free.
+    ``pulled`` (lower body only): sigma acts as a traction on the right side, which has no support, and is carried by
     the left side.
     """
 
@@ -43,15 +43,16 @@ class Body(Table, frozen=True, kw_only=True):
     pulled: bool = False
 
     def check(self, name: str) -> None:
-        """Raise InputError, with ``name`` before the field's, if the fields do not go together."""
+        """Raise InputError if fields contradict each other; ``name`` is the body's name in the scene file."""
         sizes = {"width": self.width, "height": self.height}
         for key, value in sizes.items():
             if (value is None) == (self.mesh is None):
-                raise InputError(f"{name}.{key}: {'missing' if value is None else 'not together with a mesh'}")
+                wrong = "missing" if value is None else "must not be given together with mesh"
+                raise InputError(f"{name}.{key}: {wrong}")
         if self.mesh is not None and self.holder:
-            raise InputError(f"{name}.holder: not together with a mesh")
+            raise InputError(f"{name}.holder: must not be given together with mesh")
         if self.unit is not None and self.mesh is None:
-            raise InputError(f"{name}.unit = {self.unit}: only together with a mesh")
+            raise InputError(f"{name}.unit = {self.unit}: must be given only together with mesh")
         if self.pulled and self.support == "clamped":
             raise InputError(f"{name}.pulled = true: must have support 'roller' or 'sides', not 'clamped'")
         tables = {name: (self.width, self.height)}
@@ -59,12 +60,12 @@ class Body(Table, frozen=True, kw_only=True):
             tables[f"{name}.holder"] = (self.holder.width, self.holder.height)
         for table, (width, height) in tables.items():
             if width and height and not _SLENDEREST <= height / width <= 1 / _SLENDEREST:
-                times = f"must be {_SLENDEREST:g} to {1 / _SLENDEREST:g} times its width, {width}"
+                times = f"must be {_SLENDEREST:g} to {1 / _SLENDEREST:g} times the width, {width} m"
                 raise InputError(f"{table}.height = {height}: {times}")
 
 
 class Bodies(Table, frozen=True, kw_only=True):
-    """The bodies that are finite, ``upper`` or ``lower`` or both; the others, None, are half-planes."""
+    """Finite bodies ``upper`` and ``lower``; None stands for a half-plane."""
 
     upper: Body | None = None
     lower: Body | None = None
@@ -73,16 +74,16 @@ class Bodies(Table, frozen=True, kw_only=True):
         for name, body in self:
             body.check(name)
         if self.upper and self.upper.pulled:
-            raise InputError("bodies.upper.pulled = true: must be false; sigma is the lower body's")
+            raise InputError("bodies.upper.pulled = true: must be false; sigma acts on the lower body")
         if self.upper and self.lower and self.upper.kind == self.lower.kind == "pad":
-            raise InputError("bodies.lower.kind = 'pad': must be 'block', as the upper one is the pad")
+            raise InputError("bodies.lower.kind = 'pad': must be 'block'; bodies.upper is a pad")
 
     def __iter__(self) -> Iterator[tuple[str, Body]]:
-        """Names, as in a scene file, and bodies."""
+        """Names in the scene file and bodies, of the finite bodies."""
         named = {"bodies.upper": self.upper, "bodies.lower": self.lower}
         return ((name, body) for name, body in named.items() if body)
 
     @property
     def pad(self) -> str | None:
-        """Which of them has the profile for its face."""
+        """Name of the body that is a pad; None if there is none."""
         return next((name for name, body in self if body.kind == "pad"), None)

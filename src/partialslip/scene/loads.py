@@ -1,4 +1,4 @@
-"""Loads: the normal force, and the cycle of the shear force and of the bulk tension."""
+"""Loads: the normal force, and the cycle of shear force and bulk tension."""
 
 from typing import Annotated
 
@@ -13,12 +13,13 @@ Turns = Annotated[tuple[float, ...], msgspec.Meta(min_length=2, max_length=1000)
 
 
 class Load(Table, frozen=True, kw_only=True):
-    """Loads per unit depth, along straight lines from one load point of the cycle to the next.
+    """Loads per unit depth; they vary linearly from one load point of the cycle to the next.
 
-    ``P`` (N/m) is constant; for Hertz ``a`` (m) or ``p0`` (Pa) may be given instead. ``Q`` (N/m) and ``sigma`` (Pa, the
-    difference of the two bodies' bulk tensions) are their values at the load points: as a rule at points 1 and 2,
-    between which they cycle in phase, or at more of them. The path begins without shear, goes to the last point, and
-    then ``cycles`` times through all of them; methods that follow it take ``steps`` from each to the next, or more.
+    ``P`` (N/m) is constant; for Hertz ``a`` (m) or ``p0`` (Pa) may be given instead. ``Q`` (N/m) and ``sigma`` (Pa,
+    bulk tension of the lower body less that of the upper body) are values at the load points: usually points 1 and 2,
+    between which the loads cycle in phase, or more points. The path begins at zero load, goes to the last point, and
+    then ``cycles`` times through all points. Methods that follow the path take at least ``steps`` load steps between
+    points.
     """
 
     P: Positive | None = None
@@ -43,8 +44,8 @@ class Load(Table, frozen=True, kw_only=True):
 
     @property
     def ends(self) -> tuple[int, int]:
-        """Indices of load points 1 and 2, the first and the second to be visited: the extremes of the cycle. Where Q
-        and sigma are out of phase, those of Q."""
+        """Indices of load points 1 and 2, the extremes of the cycle in the order of visits; out of phase the extremes
+        of Q."""
         Q, sigma = np.array(self.points).T
         values = Q if np.ptp(Q) > 0 else sigma
         first, second = sorted((int(np.argmin(values)), int(np.argmax(values))))
@@ -52,7 +53,7 @@ class Load(Table, frozen=True, kw_only=True):
 
     @property
     def in_phase(self) -> bool:
-        """Whether Q and sigma go up and down together, on one straight line."""
+        """Whether Q and sigma are in phase: all load points lie on one straight line."""
         Q, sigma = np.array(self.points).T
         first, second = self.ends
         Q, sigma = Q - Q[first], sigma - sigma[first]
@@ -78,6 +79,6 @@ class Load(Table, frozen=True, kw_only=True):
 
     @property
     def fully_reversed(self) -> bool:
-        """Whether Q1 = -Q2 and sigma1 = -sigma2, in phase, so that no mean load is locked in."""
+        """Whether the loads are in phase with Q1 = -Q2 and sigma1 = -sigma2, without mean loads."""
         (Q1, sigma1), (Q2, sigma2) = (self.points[end] for end in self.ends)
         return self.in_phase and Q1 == -Q2 and sigma1 == -sigma2

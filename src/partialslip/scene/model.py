@@ -19,16 +19,18 @@ from partialslip.scene.table import Table
 
 
 class Friction(Table, frozen=True, kw_only=True):
-    """Coulomb friction with the coefficient ``f``: |q| <= f p. Without friction (f = 0) any tangential load slides."""
+    """Coulomb friction with the coefficient ``f``: |q| <= f p. With f = 0 any shear force makes the contact slide."""
 
     f: Annotated[float, msgspec.Meta(ge=0, le=1000)]
 
 
 class Scene(Table, frozen=True, kw_only=True):
-    """A whole scene file, whose keys docs/reference/scene.md lists; :func:`partialslip.load_scene` reads one, and
-    :func:`partialslip.parse_scene` makes one from nested tables. Both check it, the constructor does not.
+    """Contents of a scene file; docs/reference/scene.md lists the keys.
 
-    Its ``name`` (letters, digits, ".", "_" and "-") and ``title``, and the tables ``material``, ``profile``, ``load``,
+    :func:`partialslip.load_scene` reads a scene from a file, :func:`partialslip.parse_scene` makes one from nested
+    tables. Both validate types and ranges; the constructor does not.
+
+    ``name`` (letters, digits, ".", "_" and "-"), ``title``, and the tables ``material``, ``profile``, ``load``,
     ``friction``, ``bodies``, ``fem`` and ``effects``.
     """
 
@@ -47,22 +49,25 @@ class Scene(Table, frozen=True, kw_only=True):
         if len(given) != 1:
             raise InputError(f"load: exactly one of P, a, p0 must be given, not {' and '.join(given) or 'none'}")
         if given != ["P"] and not isinstance(self.profile, Hertz):
-            raise InputError(f"load.{given[0]}: only for the profile hertz; give load.P")
+            raise InputError(f"load.{given[0]}: must be given only for the profile hertz; give load.P")
         try:
             derived = self.P, self.length
         except (OverflowError, ZeroDivisionError):
             derived = math.nan, math.nan
         if not all(SMALLEST <= value <= LARGEST for value in derived):
-            raise InputError(f"load.{given[0]} = {getattr(self.load, given[0])!r}: out of range with this E and R")
+            value = getattr(self.load, given[0])
+            sizes = f"from {SMALLEST} to {LARGEST} with this E and R"
+            raise InputError(f"load.{given[0]} = {value!r}: must give P and sqrt(A R P) {sizes}")
         for name, body in self.bodies:
             if body.kind == "pad" and body.width is not None and body.height is not None:
                 self._check_pad(name, body.width, body.height)
 
     def _check_pad(self, name: str, width: float, height: float) -> None:
         if not width <= 2 * self.profile.widest:
-            raise InputError(f"{name}.width = {width}: must be <= {2 * self.profile.widest}, as the profile is")
+            raise InputError(f"{name}.width = {width}: must be <= {2 * self.profile.widest} m, the profile's width")
         if not (edge := float(self.profile.face_at(np.array(width / 2)))) <= STEEPEST * height:
-            raise InputError(f"{name}.height = {height}: must be > {edge / STEEPEST:g}, as its face goes back so far")
+            least = f"{edge / STEEPEST:g} m, as the face recedes by {edge:g} m"
+            raise InputError(f"{name}.height = {height}: must be > {least}")
 
     def _repr_html_(self) -> str:
         from partialslip.report.notebook import html
@@ -81,21 +86,21 @@ class Scene(Table, frozen=True, kw_only=True):
 
     @property
     def slides(self) -> bool:
-        """Whether friction cannot carry Q: no forces within the bound could sum to it."""
+        """Whether the contact slides: friction cannot carry Q, |Q| >= f P at a load point."""
         return not self.free and max(abs(Q) for Q, _ in self.load.points) >= self.friction.f * self.P
 
     @property
     def free(self) -> bool:
-        """Whether there is neither friction nor shear force: nothing sticks, and nothing drives the bodies apart."""
+        """Whether there is neither friction nor shear force: nothing sticks, and the bodies do not slide."""
         return self.friction.f == 0 and not any(Q for Q, _ in self.load.points)
 
     @property
     def meshed(self) -> bool:
-        """Whether a body's mesh is given."""
+        """Whether a mesh file is given for a body."""
         return any(body.mesh is not None for _, body in self.bodies)
 
     def gap_at(self, x: Array) -> Array:
-        """Gap before loading at ``x`` (m), m: the profile's, and of a pad the true distance of its face."""
+        """Gap before loading at ``x`` (m), m: the profile's gap, or the true distance of a pad's face."""
         return self.profile.face_at(x) if self.bodies.pad else self.profile.gap_at(x)
 
     @property
@@ -109,5 +114,5 @@ class Scene(Table, frozen=True, kw_only=True):
 
     @property
     def length(self) -> float:
-        """The scene's own length sqrt(A R P), m: the one that dimensional analysis gives."""
+        """Characteristic length sqrt(A R P), m."""
         return math.sqrt(self.material.A * self.profile.R * self.P)

@@ -1,4 +1,4 @@
-"""Reading scene files: TOML in, a :class:`Scene` out, or one line that says what is wrong."""
+"""Reading scene files: from TOML to a :class:`Scene`, or to an error message of one line."""
 
 import difflib
 import math
@@ -16,11 +16,11 @@ from partialslip.errors import InputError
 from partialslip.inputfile import read_text
 from partialslip.scene import LARGEST, SMALLEST, Scene, Table
 
-_LARGEST_FILE = 500_000  # bytes: a profile and a cycle of 1,000 numbers each have 120,000
+_LARGEST_FILE = 500_000  # bytes; a profile and a cycle of 1,000 numbers each take 120,000
 _LONGEST = 1000  # numbers in an array
-_BITS = 8192  # of whole numbers that are shown in digits
-_DEEPEST = 10  # tables and arrays in each other; the keys of a scene have three
-# A key of many parts, for which tomllib takes time like their number squared, and more.
+_BITS = 8192  # largest whole numbers shown in digits
+_DEEPEST = 10  # nested tables and arrays; a scene has three levels
+# A dotted key of more than 20 parts: the time of tomllib grows at least like the square of their number.
 _DEEP_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){20}""", re.ASCII)
 _KINDS = {
     "object": "a table",
@@ -36,14 +36,14 @@ _KINDS = {
 
 
 def shipped_scenes() -> dict[str, str]:
-    """Names and titles of the scenes that come with the package, sorted by name."""
+    """Titles of the shipped scenes by name, sorted by name."""
     files = resources.files("partialslip.scene") / "shipped"
     texts = {f.name.removesuffix(".toml"): f.read_text("utf-8") for f in files.iterdir() if f.name.endswith(".toml")}
     return {name: tomllib.loads(texts[name]).get("title", "") for name in sorted(texts)}
 
 
 def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
-    """Read a scene.
+    """Read a scene from a file, or a shipped scene by name.
 
     Parameters
     ----------
@@ -68,8 +68,8 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
 
 
 def parse_scene(data: Mapping[str, Any]) -> Scene:
-    """Make a scene from nested tables ``data``, as in a scene file or in ``results.json``; NumPy numbers and arrays
-    will do.
+    """Make a scene from nested tables ``data``, as in a scene file or in ``results.json``. NumPy numbers and arrays are
+    accepted.
 
     Raises
     ------
@@ -105,19 +105,19 @@ def _text(scene: str | Path) -> str:
 def _is_file(path: Path) -> bool:
     try:
         return path.is_file()
-    except (OSError, ValueError):  # a name that no file can have
+    except (OSError, ValueError):  # not a valid file name
         return False
 
 
 def _parse(text: str, origin: str) -> dict[str, Any]:
     if _DEEP_KEY.search(text):
-        raise InputError(f"{_shown(origin)}: a key of more than 20 parts: must not be nested so deep")
+        raise InputError(f"{_shown(origin)}: a key of more than 20 parts: at most 20 are allowed")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{_shown(origin)}: not valid TOML: {error}") from None
     except (ValueError, RecursionError):
-        raise InputError(f"{_shown(origin)}: not valid TOML: a number too long or a value nested too deep") from None
+        raise InputError(f"{_shown(origin)}: not valid TOML: a number too long, or nested too deep") from None
 
 
 def _override(data: dict[str, Any], override: str) -> None:
@@ -137,12 +137,12 @@ def _override(data: dict[str, Any], override: str) -> None:
     for key in keys[:-1]:
         data = data.setdefault(key, {})
         if not isinstance(data, dict):
-            raise InputError(f"{origin}: {_shown(key)} is not a table")
+            raise InputError(f"{origin}: {_shown(key)} must be a table")
     data[keys[-1]] = parsed
 
 
 def _find_meshes(data: dict[str, Any], scene: str | Path) -> None:
-    """Paths of meshes are relative to the scene's file."""
+    """Make paths of meshes relative to the folder of the scene file."""
     bodies = data.get("bodies")
     for body in bodies.values() if isinstance(bodies, dict) else ():
         if isinstance(body, dict) and isinstance(mesh := body.get("mesh"), str) and mesh:
@@ -150,11 +150,11 @@ def _find_meshes(data: dict[str, Any], scene: str | Path) -> None:
 
 
 def _plain(value: Any, path: str = "", depth: int = 0) -> Any:
-    """``value`` as tables, lists and Python's own numbers; refused where nested too deep, or too long."""
+    """``value`` as dicts, lists and Python numbers; InputError if nested too deep or too long."""
     if isinstance(value, (np.generic, np.ndarray)):
         value = value.tolist()
     if isinstance(value, (Mapping, list, tuple)) and depth == _DEEPEST:
-        raise InputError(f"{path}: must not be nested so deep")
+        raise InputError(f"{path}: must be nested at most {_DEEPEST} levels deep")
     if isinstance(value, Mapping):
         if wrong := [key for key in value if not isinstance(key, str)]:
             raise InputError(f"{_join(path, wrong[0])}: a key must be a string")
@@ -178,7 +178,7 @@ def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _explain(message: str, data: Any) -> str:
-    """Turn the decoder's message into: field = value: what is allowed."""
+    """Turn the decoder's message into "field = value: must be ..."."""
     what, _, where = message.partition(" - at `$")
     path = where.rstrip("`").lstrip(".")
     value: Any = data
@@ -195,14 +195,14 @@ def _explain(message: str, data: Any) -> str:
 
 
 def _table(kind: Any, value: Any) -> Any:
-    """The table that is meant, where a key ``kind`` chooses between several."""
+    """Type of the table, chosen by the key ``kind`` if there are several."""
     tables = [table for table in get_args(kind) if isinstance(table, type) and issubclass(table, Table)]
     tag = value.get("kind") if isinstance(value, Mapping) else None
     return next((table for table in tables if len(tables) == 1 or table.__struct_config__.tag == tag), kind)
 
 
 def _allowed(what: str, kind: Any) -> str:
-    if what.startswith("Invalid value"):  # of the key that chooses
+    if what.startswith("Invalid value"):  # of the key `kind`
         return "one of " + ", ".join(
             repr(table.__struct_config__.tag) for table in get_args(Scene.__annotations__["profile"])
         )

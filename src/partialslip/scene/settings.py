@@ -1,4 +1,4 @@
-"""What a scene asks of the methods: settings of finite elements, and effects that are forced."""
+"""Settings of the methods in a scene: finite elements, and forced effects."""
 
 from typing import Annotated, Literal
 
@@ -6,19 +6,18 @@ import msgspec
 
 from partialslip.scene.table import Table
 
-WIDTHS = {"half-plane": 16.0, "box": 4096.0}  # half-widths of a block in contact half-widths, as a rule
+WIDTHS = {"half-plane": 16.0, "box": 4096.0}  # default half-width of a block, in contact half-widths
 
 
 class Fem(Table, frozen=True, kw_only=True):
     """Settings of the finite-element method.
 
-    ``accuracy`` is asked of a, m and n, as a fraction of a (of m and n in marching, too); ``order`` is the
-    polynomial order of the triangles; ``far_field`` says what holds the block's outer boundary: the half-plane's
-    displacements under the contact tractions, or a clamped ``box``; ``width`` is the block's half-width in contact
-    half-widths. Both are of bodies without a size of their own. ``lower_size`` is the size of the lower body's elements
-    in that of the upper body's: with any other than 1 the nodes of the two do not match. ``size`` asks for one mesh of
-    that element size, in contact half-widths, all along the contact, instead of refinement to an accuracy. ``factor``
-    names what factors the stiffness: as a rule cholmod, if cvxopt is installed.
+    ``accuracy``: of a, m and n, as a fraction of a (marching uses it for m and n, too). ``order``: polynomial order of
+    the triangles. ``far_field``: condition on the outer boundary of a block that stands for a half-plane, either the
+    displacements of the half-plane under the contact tractions or a clamped ``box``. ``width``: half-width of such a
+    block, in contact half-widths. ``lower_size``: element size of the lower body relative to the upper body; the nodes
+    of the two bodies match only at 1. ``size``: element size along the contact, in contact half-widths, of one mesh,
+    instead of refinement to ``accuracy``. ``factor``: solver of the stiffness; default cholmod if cvxopt is installed.
     """
 
     accuracy: Annotated[float, msgspec.Meta(ge=1e-9, le=0.1)] = 2e-5
@@ -31,7 +30,7 @@ class Fem(Table, frozen=True, kw_only=True):
 
 
 class Effects(Table, frozen=True, kw_only=True, rename="kebab"):
-    """Effects that are forced on (true) or off (false), whatever the scene calls for; see :mod:`partialslip.plan`.
+    """Effects that are forced on (true) or off (false); None leaves the decision to :mod:`partialslip.plan`.
 
     ``normal``, ``friction``, ``shear``, ``tension``, ``opposing_slip``, ``history``, ``coupling``, ``finite_size``,
     ``far_field``, ``subsurface``; in a scene file with hyphens.

@@ -1,4 +1,4 @@
-"""What the tables of a scene file are made of."""
+"""Base type of the tables of a scene file."""
 
 from typing import Annotated
 
@@ -8,4 +8,4 @@ Positive = Annotated[float, msgspec.Meta(gt=0)]
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """A table of a scene file: immutable, and an unknown key is an error."""
+    """Table of a scene file: immutable; unknown keys are errors."""
