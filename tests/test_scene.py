@@ -265,7 +265,7 @@ def test_every_shipped_scene_has_a_whole_plan(name):
 # What a reason says, by how it begins, and when that is so.
 TRUE_IF = {
     "two bodies are pressed together": lambda s: s.P > 0,
-    "slip may turn round on the way": lambda s: s.friction.f > 0 and s.load.dsigma != 0 and not s.slides,
+    "slip may reverse between": lambda s: s.friction.f > 0 and s.load.dsigma != 0 and not s.slides,
     "no tangential load acts": lambda s: not any(s.load.Q + s.load.sigma),
     "f = 0: ": lambda s: s.friction.f == 0 and (any(s.load.Q + s.load.sigma) or not s.mirrored),
     "tangential loads act and f = 0.4": lambda s: s.friction.f == 0.4 and any(s.load.Q + s.load.sigma),

@@ -1,6 +1,6 @@
 """The plan: effects that a scene calls for and effects that it leaves out, each with a reason in words.
 
-Methods read the plan and build only what it calls for. A scene's ``[effects]`` force some on or off.
+Methods read the plan and build only the effects called for. A scene's ``[effects]`` force effects on or off.
 """
 
 from dataclasses import dataclass, field
@@ -165,13 +165,13 @@ def _why_history(scene: Scene, coupled: bool, start: bool) -> str:
     if coupled:
         return "pressure and shear move the surfaces together: what they lock in depends on the path"
     if not load.in_phase:
-        return "Q and sigma are out of phase: what is locked in depends on the path"
+        return "Q and sigma are out of phase: locked-in tractions depend on the path"
     if not load.fully_reversed:
-        return "mean loads act: what the first cycles lock in depends on the path"
+        return "mean loads act: the tractions locked in by the first cycles depend on the path"
     if may_turn_round(scene):
-        return "slip may turn round on the way between load points 1 and 2"
+        return "slip may reverse between load points 1 and 2"
     if load.steps > 1 or len(load.points) > 2:
-        return "steps, or load points, on the way between load points 1 and 2 were asked for"
+        return "load.steps > 1, or there are more than two load points"
     return ""
 
 

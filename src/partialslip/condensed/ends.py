@@ -17,7 +17,7 @@ import numpy.typing as npt
 from partialslip.arrays import Array
 
 _VERTICES = 5  # of the fit
-_BESIDE, _FINER = 3, 0.95  # cells on each side of a refined point; size of its cells relative to these
+_BESIDE, _FINER = 3, 0.95  # cells compared on each side of a refined point; relative size of refined cells
 _STICKS = 1e-9  # room, relative to the bound, up to which a node slips
 _LEAVES = 1e-6  # distance of q from the bound, relative, that counts as none: such weak kinks do not matter
 _RUN = 4  # fewest neighbouring nodes that make a zone; fewer are noise

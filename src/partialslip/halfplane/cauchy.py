@@ -1,7 +1,7 @@
 """Cauchy integrals of functions on an interval of the real axis, accurate at any distance from the interval.
 
 Between breaks the functions are interpolated by polynomials, panel by panel, in v, the square root of the distance from
-the nearer break. Gauss's rule integrates panels far from the point; in near panels its known error is added.
+the nearer break. Gauss's rule integrates panels far from the point; in near panels the rule's known error is added.
 """
 
 from collections.abc import Callable

@@ -18,7 +18,7 @@ _PLACES = np.cos(np.linspace(np.pi, 0, 81))[1:-1]
 _SHARES = np.linspace(0, 1, 9)[1:-1]
 _Point = tuple[float, float]
 
-PATH_DEPENDENT = "path-dependent: slip turns round on the way "
+PATH_DEPENDENT = "path-dependent: slip reverses "
 
 
 @dataclass(frozen=True)
@@ -74,28 +74,26 @@ def _levels(pressed: Contact, f: float, load: Load, cycle: Loading, points: list
     way = tuple((2 * known - 1) * sign for sign in cycle.signs)
     gaps = cycle.ends[0] + 1, 1 - cycle.ends[1]
     if not within or any(
-        mine != its and gap > _ROUNDING for mine, its, gap in zip(first.signs, way, gaps, strict=True)
+        one != other and gap > _ROUNDING for one, other, gap in zip(first.signs, way, gaps, strict=True)
     ):
-        return "mean loads act, and the cycle slips where the first loading sticks: march follows the path"
+        return "mean loads act, and the cycle slips where the first loading sticks; use march"
     before = _before(load, points, known)
     if first.left_end_turns() if not before else cycle.left_end_turns(first.zone.half_width):
-        return f"{PATH_DEPENDENT}of the first loading; march with refined steps is the reference"
+        return f"{PATH_DEPENDENT}during the first loading; the reference is march with refined steps"
     for point in before:
         earlier = loading(pressed, f, *point, bound=1)
         if earlier.left_end_turns():
-            return f"{PATH_DEPENDENT}of the first loading; march with refined steps is the reference"
+            return f"{PATH_DEPENDENT}during the first loading; the reference is march with refined steps"
         if not (earlier.ends[0] <= left + _ROUNDING and right - _ROUNDING <= earlier.ends[1]):
-            return (
-                "mean loads act, and the load point visited first slips where the other sticks: march follows the path"
-            )
+            return "mean loads act, and the load point visited first slips where the other sticks; use march"
         x = _PLACES
         more = first.slip(x) - earlier.slip(x)
         signs = np.where(x < right, first.signs[0], first.signs[1])
         if (signs * more < -_ROUNDING).any():
-            return "mean loads act, and the way to the second load point slips back: march follows the path"
+            return "mean loads act, and slip reverses on the path to the second load point; use march"
     found = Levels(first, cycle, known)
     if not _bounded(pressed, f, load, found):
-        return "mean loads act, and the first loading less the change exceeds f p: march follows the path"
+        return "mean loads act, and the first loading less the change exceeds f p; use march"
     return found
 
 

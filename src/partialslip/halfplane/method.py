@@ -191,7 +191,7 @@ def _sample(breaks: Array) -> Array:
 
 
 def _undetermined(regime: Regime, turns: bool, found: Levels | str) -> dict[str, str]:
-    reason = f"{PATH_DEPENDENT}between the load points; march with refined steps is the reference"
+    reason = f"{PATH_DEPENDENT}between the load points; the reference is march with refined steps"
     if regime in ("sliding", "frictionless"):
         return {}
     if turns:
@@ -207,7 +207,7 @@ def _notes(regime: Regime, turns: bool, undetermined: dict[str, str]) -> tuple[s
     notes: list[str] = []
     if regime == "ratchets":
         notes.append(
-            "the mean of Q is beyond what a steady state can hold: the contact ratchets, m and n are not reached"
+            "the mean of Q is above the bound for a steady state: the contact ratchets, m and n are not reached"
         )
     elif not turns and "q2" in undetermined:
         notes.append(f"q1 and q2: {undetermined['q2']}")

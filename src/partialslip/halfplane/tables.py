@@ -41,11 +41,11 @@ def table_error(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[s
     errors = {"a": abs(other.a - a) / a, "p": _apart(pressed.pressure(x), other.pressure(x), weights)}
     if cycle and not cycle.nothing:
         f, load = scene.friction.f, scene.load
-        its = loading(other, f, load.dQ, load.dsigma, bound=2)
-        ends, moved = np.array(cycle.ends), np.array(its.ends) * other.a / a
+        coarse_cycle = loading(other, f, load.dQ, load.dsigma, bound=2)
+        ends, moved = np.array(cycle.ends), np.array(coarse_cycle.ends) * other.a / a
         errors["m"], errors["n"] = np.abs(moved - ends).tolist()
-        dq, its_dq = pressed.p0 * cycle.traction(x / a), other.p0 * its.traction(x / other.a)
-        errors["q"] = _apart(dq, its_dq, weights)
+        dq, coarse_dq = pressed.p0 * cycle.traction(x / a), other.p0 * coarse_cycle.traction(x / other.a)
+        errors["q"] = _apart(dq, coarse_dq, weights)
     return {key: error / _LESS for key, error in errors.items()}
 
 
