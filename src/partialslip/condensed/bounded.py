@@ -43,10 +43,10 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, 
 
     The multiplier of the sum is a rigid shift. With r = C x - g - shift and any rho > 0, x is optimal if x is the
     projection of the augmented multiplier x - rho r onto the bounds. Block pivoting, with the shift that gives each
-    active set the prescribed sum, usually converges in a few iterations. If it does not, block pivoting at fixed shifts
-    converges for every positive definite C. The sum of x grows with the shift, piecewise linearly: a Newton step on the
-    shift ends at the root or leaves the current piece towards the root. The bracket then excludes this piece, and the
-    number of pieces is finite.
+    active set the prescribed sum, usually converges in a few iterations. If it does not, a bracketed Newton search on
+    the shift follows; at a given shift the iteration converges for every positive definite C. The sum of x grows with
+    the shift, piecewise linearly: a Newton step ends at the root or leaves the current piece towards the root. The
+    bracket then excludes this piece, and the number of pieces is finite.
 
     Parameters
     ----------
@@ -122,8 +122,8 @@ class _BlockPivoting:
             self._turn(wanted)
 
     def to_next_free(self, r: Array, more: bool) -> float:
-        """With every member at a bound: free the nearest member that can increase (or decrease) the sum; the shift to
-        it."""
+        """With every member at a bound: free the first member that changes as the shift grows (``more``) or falls;
+        return the change of the shift up to this point."""
         steps = np.where(self._side == (-1 if more else 1), np.abs(r), np.inf)
         nearest = int(np.argmin(steps))
         self._side[nearest] = 0

@@ -300,7 +300,7 @@ def march(
 
     def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
         nonlocal gap, load
-        if strain == 0 and load == Q:  # nothing moves
+        if strain == 0 and load == Q:  # no load changes
             normal = done[-1][0]
             done.append((replace(still(normal), rest=normal.rest), still(before)))
             return done[-1][1], f * normal.x

@@ -150,7 +150,7 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
 
     def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
         nonlocal load
-        if strain == 0 and load == Q:  # nothing moves
+        if strain == 0 and load == Q:  # no load changes
             sides.append(before.sides)
             return still(before), bound
         load = Q
@@ -173,7 +173,7 @@ def resting(forces: Array) -> Solution:
 
 
 def still(before: Solution) -> Solution:
-    """The solution ``before`` a step in which no load changes, as the solution of this step: without slip or work."""
+    """Solution of a step in which no load changes: the forces ``before`` the step, without slip and residuals."""
     zero = 0 * before.x
     return replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0)
 

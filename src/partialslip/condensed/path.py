@@ -61,8 +61,7 @@ class Path:
 
 
 def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | None:
-    """Path of the loads of ``scene``, beginning at ``start`` (default: zero load), scaled; None if ``plan`` has no
-    friction."""
+    """Scaled path of the loads of ``scene`` from ``start`` (default: zero load); None if ``plan`` has no friction."""
     if not plan.needs("friction"):
         return None
     P, load = scene.P, scene.load

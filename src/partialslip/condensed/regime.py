@@ -25,8 +25,11 @@ def steady_state(
     scene: Scene, history: History | None, stick: StickInterval | None, half_width: float, pressed: bool = False
 ) -> SteadyState:
     """Regime and stick zone of ``scene``, from the computed stick zone ``stick`` (None if no friction was solved) in a
-    contact of ``half_width``; lengths in any one unit. ``pressed``: whether coupled bodies slipped while they were
-    pressed and no other load acts; the stick zone is then where the surfaces have always stuck."""
+    contact of ``half_width``; lengths in any one unit.
+
+    ``pressed``: whether coupled bodies slipped while they were pressed and no other load acts. The stick zone is then
+    where the surfaces have stuck since they touched.
+    """
     load = scene.load
     if scene.free:
         return SteadyState("frictionless", None, None, (FRICTIONLESS,))

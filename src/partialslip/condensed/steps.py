@@ -123,8 +123,7 @@ class _Coarse:
         return float(np.abs(q - other).sum()) <= self._near
 
     def way(self, q: Array, load: Array, end: Array, substeps: int) -> tuple[tuple[float, ...], Array]:
-        """Fractions of the way from ``load`` to ``end`` at which steps end, and the forces there, from the forces
-        ``q``."""
+        """Choose steps from ``load`` to ``end``: fractions at which steps end, and the forces at the end."""
         fractions: list[float] = []
         self._solves = 0
         for number in range(substeps):
