@@ -36,4 +36,4 @@ class StickZone(NamedTuple, Generic[Number]):
     @property
     def n(self) -> Number:
         """Distance of the right end from x = 0; negative if the right end is at x < 0."""
-        return self.half_width + self.centre
+        return self.right
