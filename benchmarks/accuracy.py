@@ -17,8 +17,11 @@ import partialslip
 from partialslip.condensed.threads import one_thread
 from partialslip.judge import Comparison
 from partialslip.result import Clock, Result
-from partialslip_fem import adapt, model
-from partialslip_fem.level import solve_level
+from partialslip_fem.bodies import Grading
+from partialslip_fem.mesh_solution import Adapted
+from partialslip_fem.problem import scaled
+from partialslip_fem.result import to_result
+from partialslip_fem.solving import mesh_and_solve
 
 KEYS = ("a", "m", "n", "p", "q")
 HERTZ = ("hertz-small-tension", "hertz-large-tension")
@@ -34,11 +37,11 @@ def on_mesh(name: str, order: int, sizes: Mapping[float, float], growth: float, 
     scene = partialslip.load_scene(name, [f"fem.order={order}", f"material.nu={nu}", f"material.E={E}"])
     plan = partialslip.plan(scene)
     exact = partialslip.run(scene, ["exact"]).results["exact"]
-    a, problem = exact.a / scene.length, model._scaled(scene, plan)
-    scaled = {float(x * a): size * a for x, size in sizes.items()}
-    level = solve_level(problem, 16 * a, (-1.2 * a, 1.2 * a), scaled, growth, Clock())
-    adapted = adapt.Adapted(level, {}, 1, 1, level.iterations, 16.0)
-    result = model._result(scene, plan, problem, adapted, Clock())
+    a, problem = exact.a / scene.length, scaled(scene, plan)
+    graded = Grading((-1.2 * a, 1.2 * a), {float(x * a): size * a for x, size in sizes.items()}, growth)
+    solution = mesh_and_solve(problem, 16 * a, graded, Clock())
+    adapted = Adapted(solution, {}, 1, 1, solution.iterations, 16.0)
+    result = to_result(scene, plan, problem, adapted, Clock())
     return result.counts["dofs"], partialslip.compare(result, exact, scene, 1.0)
 
 

@@ -17,8 +17,8 @@ from partialslip import load_scene, plan
 from partialslip.condensed.threads import one_thread
 from partialslip.result import Clock
 from partialslip_fem.elasticity import body
-from partialslip_fem.level import solve_on
-from partialslip_fem.model import _scaled
+from partialslip_fem.problem import scaled
+from partialslip_fem.solving import solve_on_meshes
 from partialslip_meshes import block
 
 WIDTH, SIZE = 16.0, 1e-5
@@ -33,7 +33,7 @@ def main() -> None:
     chosen = options.parse_args()
 
     scene = load_scene("hertz-large-tension", ["fem.factor='cholmod'"])
-    problem = _scaled(scene, plan(scene))
+    problem = scaled(scene, plan(scene))
     a, (part,) = np.sqrt(2 / np.pi), problem.parts
     ends = {a * end: a * SIZE for end in (-1, -0.803853, 0.294929, 1)}
     print("unknowns", "nodes", *PHASES, "sum", "floor", sep=" | ")
@@ -43,13 +43,13 @@ def main() -> None:
             clock = Clock()
             with clock.phase("mesh"):
                 mesh = block(WIDTH * a, (-1.1 * a, 1.1 * a), ends, growth)
-            level = solve_on([mesh], problem, WIDTH * a, clock)
+            solution = solve_on_meshes([mesh], problem, WIDTH * a, clock)
             spent.append(clock.phases)
             half = body(mesh, part.kappa, problem.order)
             floors.append(numbers_alone(half.stiffness, half.held.ravel()))
         times = [median(phases[name] for phases in spent) for name in PHASES]
         shown = [f"{value:.2f}" for value in (*times, sum(times), median(floors))]
-        print(f"{half.stiffness.shape[0]:,}", len(level.halves[0].body.x), *shown, sep=" | ", flush=True)
+        print(f"{half.stiffness.shape[0]:,}", len(solution.bodies[0].body.x), *shown, sep=" | ", flush=True)
 
 
 def numbers_alone(stiffness: sparse.csr_matrix, held: np.ndarray) -> float:

@@ -17,7 +17,7 @@ from partialslip.condensed.history import march as follow_path
 from partialslip.condensed.path import Path
 from partialslip.halfplane import marching
 from partialslip.plan import reduced
-from partialslip_fem import Kept, condensation, level, model
+from partialslip_fem import Kept, bodies, condensation, model, solving
 
 SIZE = "fem.size=0.1"
 BLOCKS = ("bodies.lower.width=30e-3", "bodies.lower.height=10e-3", "bodies.upper.width=20e-3",
@@ -84,11 +84,11 @@ def spied(monkeypatch):
         monkeypatch.setattr(owner, name, counted)
 
     spy(condensation, "factor", "factor")
-    spy(level, "half_plane", "half_plane")
-    spy(level, "press", "press")
-    spy(level, "march_refined", "march")
-    spy(level.coupled, "march", "coupled")
-    spy(condensation.Condensed, "displace", "displace")
+    spy(bodies, "half_plane", "half_plane")
+    spy(solving, "press", "press")
+    spy(solving, "march_refined", "march")
+    spy(solving.coupled, "march", "coupled")
+    spy(condensation.Condensation, "displace", "displace")
     return calls
 
 
@@ -128,8 +128,8 @@ def test_work_of_the_cheapest_and_the_fullest():
 
 def test_shear_columns_that_nobody_needs_are_noticed(monkeypatch):
     """Deliberate fault."""
-    true = level.Condensed
-    monkeypatch.setattr(level, "Condensed", lambda *args: true(*args[:3]))
+    true = bodies.Condensation
+    monkeypatch.setattr(bodies, "Condensation", lambda *args: true(*args[:3]))
     counts = fem(*SIX["frictionless"][0]).counts
     assert counts["columns"] == 2 * counts["normal_unknowns"]
 
@@ -348,13 +348,14 @@ def test_imports_are_those_of_what_is_built(tmp_path):
     assert imported(run + "p.run(s, ['exact', 'march'])") == set()
     assert imported(run + "p.run(s, ['fem'])") == {"skfem"}  # gmsh is in a process of its own
     mesh = tmp_path / "mesh.npz"
-    made = level.block(16.0, (-1.5, 1.5), {0.0: 0.2}, 0.5)
+    made = bodies.block(16.0, (-1.5, 1.5), {0.0: 0.2}, 0.5)
     np.savez(mesh, points=made.points, triangles=made.triangles, **made.lines)
     given = (
         f"file = __import__('numpy').load({str(mesh)!r}); names = set(file) - {{'points', 'triangles'}}\n"
-        "from partialslip_meshes import Mesh; from partialslip_fem import level, model; from partialslip.result import "
-        "Clock\nmesh = Mesh(file['points'], file['triangles'], {n: file[n] for n in names})\n"
-        "level.solve_on([mesh], model._scaled(s, p.plan(s)), 16.0, Clock())"
+        "from partialslip_meshes import Mesh; from partialslip_fem import problem, solving\n"
+        "from partialslip.result import Clock\n"
+        "mesh = Mesh(file['points'], file['triangles'], {n: file[n] for n in names})\n"
+        "solving.solve_on_meshes([mesh], problem.scaled(s, p.plan(s)), 16.0, Clock())"
     )
     assert imported(run + given) == {"skfem"}
 
@@ -363,7 +364,7 @@ def test_a_kept_mesh_is_not_made_again(monkeypatch):
     keep = Kept()
     first, other = load_scene("hertz-shear", [SIZE]), load_scene("hertz-shear", [SIZE, "load.Q=[-1e5, 1e5]"])
     model.solve(first, plan(first), keep=keep)
-    monkeypatch.setattr(level, "block", None)
+    monkeypatch.setattr(bodies, "block", None)
     assert model.solve(other, plan(other), keep=keep).counts["factorizations"] == 0
 
 

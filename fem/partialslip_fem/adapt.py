@@ -1,8 +1,7 @@
-"""Mesh after mesh, each fine where the one before it found the ends of the contact and of the stick zone."""
+"""Adaptive refinement: each mesh is fine where the mesh before found the ends of the contact and of the stick zone."""
 
-import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,332 +9,257 @@ from partialslip.arrays import Array
 from partialslip.bars import BARS
 from partialslip.condensed.ends import apart
 from partialslip.condensed.steps import MOST
-from partialslip.errors import InputError
 from partialslip.result import Clock
-from partialslip_fem.estimate import ENDS, NEIGHBOUR, end_errors, enough, kink_sizes, neighbour, smooth_errors, together
+from partialslip_fem import estimate, goals, solving
+from partialslip_fem.bodies import Grading
 from partialslip_fem.expense import Expense, again
-from partialslip_fem.level import Kept, Level, Part, Problem, solve_level
+from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_first_mesh, too_narrow
+from partialslip_fem.goals import Goal, course, gaps, reached, sizes_at, worst
+from partialslip_fem.mesh_solution import Adapted
+from partialslip_fem.problem import Problem
 
-_FIRST, _ROUGH = 0.1, 1.0  # element size of the first mesh, in its contact line's half-width; and growth
-_FINER = 16.0  # from mesh to mesh at most: element size at the ends
-_SMOOTH, _GROWTH = 2.8, 0.7  # away from the ends errors are about (growth/2.8)^(2 order); the largest growth
-_CALMER = (0.4, 0.85)  # of growth, where that was not so
-_AIM, _BAR = 0.5, 0.9  # of the accuracy: estimates are right within a factor of two as a rule
-_ENDS = 0.33  # share of what is aimed at that the elements at the ends may take
-_FINEST = 1e-7  # element size at the ends, in contact half-widths; below, rounding takes over
-_BESIDE = 0.005  # element size at an end, in contact half-widths, beyond which the mesh is only good for finding it
-_WAITS = 2  # meshes that may be too coarse at the ends and kinks found on them, once the errors of one are known
-_ANYWAY = 1.5  # of the size that a kink needs: a mesh that is not coarser there is left as it is
-_MOST = 200_000  # unknowns
-_FILLS = 0.95  # of a finite body's width: as much as the contact line may take
-_ROUNDING = 0.25  # of the accuracy: how far a round face may be from its elements, and the ends off for that
-_CORNERS = 10.0  # of the accuracy: what elements at corners of finite bodies may be off by, at most
-_LOOSEST = 1e-2  # the same, relative
-_TILTS = {"left": 1e-3, "right": 1e-3, "p": 5e-3, "q": 5e-3, "q1": 5e-3, "q2": 5e-3}  # of that, felt at the contact
-_CHOICES = 13  # accuracies between the one asked for and the loosest, to settle for
-_WORTH = 1.2  # of the unknowns of a mesh that is there: one with fewer is not worth another
-_FEWEST = 4  # elements of a mesh as it is that must lie in the contact
-
-
-@dataclass(frozen=True)
-class Adapted:
-    """The last level, what it may still be off by (ends in contact half-widths, tractions relative), and the work of
-    all levels; ``settled`` is the accuracy that the allowance sufficed for, None if there was none."""
-
-    level: Level
-    errors: dict[str, float]
-    meshes: int
-    factorizations: int
-    iterations: int
-    width: float
-    settled: float | None = None
-
-
-@dataclass(frozen=True)
-class _Aim:
-    """What an ``accuracy`` asks of meshes: estimates within ``bar``, elements at ends, faces and corners that take no
-    more than their shares of it."""
-
-    accuracy: float
-    bar: float
-    share: float
-    least: float
-    rounding: float
-    corners: float
-    tilts: dict[str, float]
-
-    @classmethod
-    def at(cls, accuracy: float, problem: Problem) -> "_Aim":
-        """The aim for ``accuracy``."""
-        corners = min(_CORNERS * accuracy, _LOOSEST)
-        tilting = any(part.extent for part in problem.parts)
-        return cls(
-            accuracy=accuracy,
-            bar=_BAR * accuracy,
-            share=_ENDS * _AIM * accuracy,
-            least=_growth(_AIM * accuracy / 2, problem.order),
-            rounding=_ROUNDING * accuracy if any(part.face for part in problem.parts) else 0.0,
-            corners=corners,
-            tilts={key: share * corners * tilting for key, share in _TILTS.items()},
-        )
-
-    def goal(self, level: Level, problem: Problem) -> float:
-        """Element size at the ends that suffices, in contact half-widths."""
-        goal = self.share / _worst(end_errors(level, *_anywhere(level)))
-        goal = min(goal, enough(level, _gaps(level, problem), self.share))
-        return min(max(goal, _FINEST), _BESIDE / 2)
+# These constants change the cost of a run, not its error estimates.
+_CALMER = (0.4, 0.85)  # smallest and largest factor of the growth after a mesh whose error is too large
+_WAITS = 2  # meshes in a row without an estimate of the error away from the ends, after a first one
+_KINK_SLACK = 1.5  # of the element size that a kink needs: the mesh is refined at kinks where it is coarser than this
+_MOST_UNKNOWNS = 200_000  # on a mesh from which no finer one is made
+_CHOICES = 13  # accuracies tried, from the one asked for to the loosest, when an allowance does not suffice
+_WORTH = 1.2  # of the unknowns of the present mesh: a mesh with fewer is not worth solving on
 
 
 def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progress: Callable[[str], None]) -> Adapted:
     """Refine until the ends are known to ``accuracy``, by the estimates of :mod:`partialslip_fem.estimate`.
 
-    Errors of elements of order k fall with the 2 k-th power of their growth away from the ends, which gives the growth
-    that the next mesh needs. What costs a second solution is estimated only where the elements at the ends are small
-    enough. ``width`` is the block's half-width in contact half-widths. The first contact line is a guess, doubled
-    until the contact does not reach its ends. Steps of the load path are chosen on the first mesh that is fine enough
-    to tell, and kept; elements are not to make up for what these leave.
+    Errors of elements of order k decrease with the 2 k-th power of their growth away from the ends; from them follows
+    the growth of the next mesh. The error away from the ends costs a second solution and is estimated only where the
+    elements at the ends are small enough. Load steps are chosen on the first mesh that is fine enough and kept; the
+    mesh is not refined to make up for their error.
+
+    Parameters
+    ----------
+    problem : Problem
+    accuracy : float
+        In contact half-widths for ends; tractions have bars in proportion (:data:`partialslip.bars.BARS`).
+    width : float
+        Half-width of blocks that stand for half-planes, in contact half-widths.
+    clock : Clock
+        Counts the CPU seconds; may have an allowance.
+    progress : callable
+        Called with one line after each mesh.
+
+    Raises
+    ------
+    InputError
+        If the contact does not fit on a finite body.
     """
-    order, parts = problem.order, problem.parts
-    expense = Expense(clock, len(parts))
-    level, meshes, factored = _first(problem, width, clock)
-    expense.measure(level.dofs)
-    a, iterations, known, before, size, finer = level.half_width, level.iterations, np.inf, np.inf, _FIRST, _FINER
-    aim, errors, at_ends = _Aim.at(accuracy, problem), dict[str, float](), dict[str, float]()
-    stepped: Mapping[str, float] | None = None  # what steps leave, once they are chosen
-    waited = 0
-    least, limit = aim.least, _limit(problem)
-    coarsest = max(part.fineness for part in parts)  # what is not finer than that is to be fine enough
+    refinement = _Refinement(problem, accuracy, width, clock)
     while True:
-        if expense.limited:
-            done = bool(at_ends) and level.enclosed
-            settled = _settle(expense, aim, level, problem, (size, finer, least), width, done)
-            if at_ends and not settled:
-                if known == np.inf:
-                    other = neighbour(level, problem, width * a, clock)
-                    factored, iterations = factored + other.factored, iterations + other.iterations
-                    errors = together(level, smooth_errors(level, other), at_ends)
-                settled_for = max(aim.accuracy, _worst(errors) / _BAR)
-                return Adapted(level, errors, meshes, factored, iterations, width, settled_for)
-            if settled and settled is not aim:
-                least, aim = least * settled.least / aim.least, settled
-                finer = finer if size > 1.01 * aim.goal(level, problem) else 1.0
-        goal = aim.goal(level, problem)
-        size, growth, finer = _course(size, finer, goal, least, order)[0]
-        locked = kink_sizes(level, aim.share * BARS["q1"])
-        a = level.half_width
-        margin = (0.1 + 2 * finer * size) * a  # of safety, and what the mesh before may have been off by
-        contact = (max(level.left - margin, -limit), min(level.right + margin, limit))
-        kinks = [kink for kink in problem.kinks if contact[0] < kink < contact[1]]  # others touch nothing
-        sizes = dict.fromkeys(apart([*level.ends.tolist(), *kinks], size * a), size * a / coarsest)
-        for kink, needed in zip(level.kinks, np.clip(locked, size, None).tolist(), strict=True):
-            if _sizes(np.array([kink]), sizes, growth / coarsest)[0] > _ANYWAY * needed * a / coarsest:
-                sizes[kink] = needed * a / coarsest
-        grading = (contact, sizes, growth / coarsest)
-        expected = expense.unknowns(*grading[1:], order, width * a) if expense.limited else None
-        choose = stepped is None and size <= _BESIDE
-        steps = (0 if expense.limited else MOST) if choose else None  # more steps have no price
-        level = solve_level(
-            problem, width * a, *grading, clock, rounding=aim.rounding, corners=aim.corners, steps=steps
+        if settled := refinement.settle():
+            return settled
+        refinement.solve_on_next_mesh()
+        refinement.estimate_errors()
+        progress(refinement.message())
+        if refinement.finished:
+            return refinement.adapted(max(refinement.goal.accuracy, refinement.error / goals.BAR))
+        refinement.plan_next_mesh()
+
+
+class _Refinement:
+    """The present solution, its errors, and what the next mesh is to be like.
+
+    ``size``, ``finer`` and ``least`` are the arguments of :func:`partialslip_fem.goals.course`. ``error`` is the worst
+    error of the present solution, infinite where the error away from the ends is not estimated; ``error_before`` is
+    the last such error.
+    """
+
+    def __init__(self, problem: Problem, accuracy: float, width: float, clock: Clock) -> None:
+        self.problem, self.width, self.clock = problem, width, clock
+        self.expense = Expense(clock, len(problem.parts))
+        self.solution, self.meshes, self.factored = solve_on_first_mesh(problem, width, clock)
+        self.expense.measure(self.solution.dofs)
+        self.iterations = self.solution.iterations
+        self.limit = contact_line_limit(problem)
+        self.goal = Goal.at(accuracy, problem)
+        self.size, self.finer, self.least = FIRST_SIZE, goals.FINER, self.goal.growth
+        self.size_goal = 0.0
+        self.block_width = 0.0  # width of the blocks of the present mesh
+        self.errors, self.end_errors = dict[str, float](), dict[str, float]()
+        self.largest_end_element = np.inf
+        self.error, self.error_before, self.calmer = np.inf, np.inf, 1.0
+        self.step_errors: Mapping[str, float] | None = None  # None until the steps are chosen
+        self.waited = 0
+
+    @property
+    def located(self) -> bool:
+        """Whether the contact is enclosed and the elements at its ends are small enough for error estimates."""
+        return self.solution.enclosed and bool(self.largest_end_element <= goals.COARSEST)
+
+    @property
+    def bar(self) -> float:
+        """Largest error of the mesh that is accepted; the load steps have their share."""
+        return max(self.goal.bar - worst(self.step_errors or {}), self.goal.bar / 2)
+
+    @property
+    def finished(self) -> bool:
+        """Whether the present solution is accurate enough, or a finer mesh would not improve it."""
+        accurate = self.located and self.error <= self.bar
+        stagnates = self.error_before / 2 < self.error < np.inf
+        return accurate or stagnates or self.solution.dofs > _MOST_UNKNOWNS * self.calmer**2
+
+    def message(self) -> str:
+        """One line on the present mesh."""
+        known = f", {', '.join(self.errors)} known to {self.error:.1e} a" if self.error < np.inf else ""
+        return f"mesh {self.meshes}: {self.solution.dofs:,} unknowns{known}"
+
+    def adapted(self, settled: float) -> Adapted:
+        """The present solution as the last one; ``settled`` is its accuracy, if there is an allowance."""
+        reached_accuracy = settled if self.expense.limited else None
+        return Adapted(
+            self.solution, self.errors, self.meshes, self.factored, self.iterations, self.width, reached_accuracy
         )
-        if choose and level.enclosed and level.history and not level.coupled:
-            stepped, problem = level.stepped, replace(problem, path=replace(level.history.path, before=None))
-            aim = _Aim.at(max(aim.accuracy, _worst(stepped)), problem)
-        elif stepped is not None:
-            level = replace(level, stepped=stepped)
-        expense.measure(level.dofs, expected)
-        meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
-        if not level.enclosed and max(-level.left, level.right) >= limit:
-            raise _too_narrow(problem)
-        local, beside = (
-            _sizes(points, sizes, growth / coarsest) * coarsest / a for points in (level.ends, np.array(level.kinks))
-        )
-        errors = at_ends = {
-            key: error + aim.rounding * (key in ENDS) + aim.tilts.get(key, 0.0)
-            for key, error in end_errors(level, local, _gaps(level, problem), beside).items()
-        }
-        known, calmer = np.inf, 1.0
-        found = f"mesh {meshes}: {level.dofs:,} unknowns"
-        bar = max(aim.bar - _worst(stepped or {}), aim.bar / 2)  # steps have their share of it
-        good = level.enclosed and local.max() <= _BESIDE
-        waited = waited + 1 if before < np.inf else 0
-        if (good and _worst(at_ends) <= bar) or size <= _FINEST or level.dofs > _MOST or waited > _WAITS:
-            other = neighbour(level, problem, width * a, clock)
-            expense.pass_over()
-            factored, iterations = factored + other.factored, iterations + other.iterations
-            smooth = smooth_errors(level, other)
-            errors = together(level, smooth, at_ends)
-            known = _worst(errors)
-            calmer = float(np.clip((3 * _worst(smooth) / bar) ** (-0.5 / order), *_CALMER))
-            waited = 0
-            found += f", {', '.join(errors)} known to {known:.1e} a"
-        progress(found)
-        if (good and known <= bar) or before / 2 < known < np.inf or level.dofs > _MOST * calmer**2:
-            reached = max(aim.accuracy, known / _BAR) if expense.limited else None
-            return Adapted(level, errors, meshes, factored, iterations, width, reached)
-        if size <= 1.01 * goal:
-            finer = min(max(3 * _worst(at_ends) / bar, 1.0), _FINER)
-        if known < np.inf:
-            before, least = known, least * calmer
 
+    def settle(self) -> Adapted | None:
+        """Choose the best accuracy that the rest of the allowance suffices for.
 
-def _course(size: float, finer: float, goal: float, least: float, order: int) -> list[tuple[float, float, float]]:
-    """Element size at the ends and growth of the meshes to come, from ``size`` to ``goal``, and by how much each is
-    finer than the one before it: ``finer``, unless there is still some way to go."""
-    if size > 1.01 * goal:
-        finer = (size / goal) ** (1 / math.ceil(math.log(size / goal, _FINER)))
-    course = []
-    while True:
-        size = max(size / finer, _FINEST)
-        growth = max(least, _growth(size, order)) if size > 1.01 * goal else least
-        course.append((size, growth, finer))
-        if size <= max(1.01 * goal, _FINEST):
-            return course
-
-
-def _settle(
-    expense: Expense,
-    aim: _Aim,
-    level: Level,
-    problem: Problem,
-    state: tuple[float, float, float],
-    width: float,
-    done: bool,
-) -> _Aim | None:
-    """The best aim, none beyond ``aim``, that the rest of the allowance suffices for; None if ``level``, which is
-    ``done`` if it is good for an estimate, is about as good. ``state`` is element size, refinement and growth."""
-    size, finer, least = state
-    order, a = problem.order, level.half_width
-    once_more = again(order, NEIGHBOUR[order]) + problem.inside
-    best: _Aim = aim
-    for accuracy in np.geomspace(aim.accuracy, max(_LOOSEST, aim.accuracy), _CHOICES).tolist():
-        best = aim if accuracy == aim.accuracy else _Aim.at(accuracy, problem)
-        goal = best.goal(level, problem)
-        steps = _course(
-            size, finer if best is aim or size > 1.01 * goal else 1.0, goal, least * best.least / aim.least, order
-        )
-        unknowns = [
-            expense.unknowns(dict.fromkeys(level.ends.tolist(), each * a), growth, order, width * a)
-            for each, growth, _ in steps
-        ]
-        if done and best is not aim and unknowns[-1] < _WORTH * level.dofs:
+        Returns the present solution if no affordable mesh is better; None to go on.
+        """
+        if not self.expense.limited:
             return None
-        if expense.affords(unknowns, once_more):
-            return best
-    return None if done else best
+        affordable = self._affordable_goal()
+        if self.end_errors and not affordable:
+            if self.error == np.inf:
+                self._estimate_together()
+            return self.adapted(max(self.goal.accuracy, worst(self.errors) / goals.BAR))
+        if affordable and affordable is not self.goal:
+            self.least = self.least * affordable.growth / self.goal.growth
+            self.goal = affordable
+            if reached(self.size, self.goal.element_size(self.solution, self.problem)):
+                self.finer = 1.0
+        return None
 
+    def solve_on_next_mesh(self) -> None:
+        """Make the next mesh, solve on it, and choose the load steps on the first mesh that is fine enough."""
+        problem, a = self.problem, self.solution.half_width
+        self.size_goal = self.goal.element_size(self.solution, problem)
+        self.size, growth, self.finer = course(self.size, self.finer, self.size_goal, self.least, problem.order)[0]
+        coarsest = max(part.fineness for part in problem.parts)  # sizes are those of the coarsest body
+        grading = self._grading(growth, coarsest)
+        self.block_width = self.width * a
+        expected = None
+        if self.expense.limited:
+            expected = self.expense.unknowns(grading.sizes, grading.growth, problem.order, self.block_width)
+        choose = self.step_errors is None and self.size <= goals.COARSEST
+        steps = (0 if self.expense.limited else MOST) if choose else None  # the cost of more steps is not predicted
+        self.solution = solving.mesh_and_solve(problem, self.block_width, grading, self.clock, steps=steps)
+        if choose:
+            self._keep_steps()
+        elif self.step_errors is not None:
+            self.solution = replace(self.solution, step_errors=self.step_errors)
+        solution = self.solution
+        self.expense.measure(solution.dofs, expected)
+        self.meshes, self.factored = self.meshes + 1, self.factored + solution.factored
+        self.iterations += solution.iterations
+        if not solution.enclosed and max(-solution.left, solution.right) >= self.limit:
+            raise too_narrow(self.problem)
+        at_ends, at_kinks = (
+            sizes_at(points, grading.sizes, grading.growth) * coarsest / a
+            for points in (solution.zone_ends, np.array(solution.kinks))
+        )
+        self.largest_end_element = at_ends.max()
+        self.errors = self.end_errors = self._errors_of_ends(at_ends, at_kinks)
 
-def uniform(problem: Problem, size: float | None, width: float, clock: Clock, keep: Kept | None = None) -> Adapted:
-    """Solve on one mesh of elements of ``size``, in contact half-widths, all along the contact line; without a size, on
-    meshes that are given, and on one whose elements are as large as theirs in the contact.
+    def estimate_errors(self) -> None:
+        """Estimate the error away from the ends, if the error of the ends is small enough or no smaller one is to
+        come."""
+        self.error, self.calmer = np.inf, 1.0
+        self.waited = self.waited + 1 if self.error_before < np.inf else 0
+        if (
+            (self.located and worst(self.end_errors) <= self.bar)
+            or self.size <= goals.FINEST
+            or self.solution.dofs > _MOST_UNKNOWNS
+            or self.waited > _WAITS
+        ):
+            smooth = self._estimate_together()
+            self.expense.pass_over()  # a second solution is no part of the cost of a mesh
+            self.error = worst(self.errors)
+            order = self.problem.order
+            self.calmer = float(np.clip((3 * worst(smooth) / self.bar) ** (-0.5 / order), *_CALMER))
+            self.waited = 0
 
-    It does not depend on friction and shear: with ``keep``, they can change without another factorisation. Nothing is
-    refined, and no error estimated.
-    """
-    level, meshes, factored = _first(problem, width, clock, keep)
-    iterations, sizes = level.iterations, _sizes_given(problem, level)
-    if problem.meshed:
-        return Adapted(level, {}, meshes, factored, iterations, width)
-    size = size or min(sizes) / level.half_width
-    growth = _growth(size / 10, problem.order)  # what is deeper is not to be worse
-    a = float(f"{level.half_width:.2g}")  # loads and profiles that differ by little share a mesh
-    reach, limit = 1.25 * max(-level.left, level.right), _limit(problem)
-    while True:
-        reach = min(float(f"{reach:.2g}"), limit)
-        level = solve_level(problem, width * a, (-reach, reach), {}, growth, clock, size * a, keep, steps=MOST)
-        meshes, factored, iterations = meshes + 1, factored + level.factored, iterations + level.iterations
-        if level.enclosed:
-            return Adapted(level, {}, meshes, factored, iterations, width)
-        if reach == limit:
-            raise _too_narrow(problem)
-        reach *= 1.5
+    def plan_next_mesh(self) -> None:
+        """Choose refinement and growth of the next mesh from the errors of the present solution."""
+        if reached(self.size, self.size_goal):
+            self.finer = min(max(3 * worst(self.end_errors) / self.bar, 1.0), goals.FINER)
+        if self.error < np.inf:
+            self.error_before, self.least = self.error, self.least * self.calmer
 
+    def _grading(self, growth: float, coarsest: float) -> Grading:
+        """Grading to the zone ends of the present solution, to the profile's kinks, and to kinks of q1 and q2."""
+        solution, a = self.solution, self.solution.half_width
+        margin = (0.1 + 2 * self.finer * self.size) * a  # for safety, and for the error of the present ends
+        contact = (max(solution.left - margin, -self.limit), min(solution.right + margin, self.limit))
+        kinks = [kink for kink in self.problem.kinks if contact[0] < kink < contact[1]]  # others are not in contact
+        points = apart([*solution.zone_ends.tolist(), *kinks], self.size * a)
+        sizes = dict.fromkeys(points, self.size * a / coarsest)
+        at_kinks = np.clip(estimate.kink_sizes(solution, self.goal.end_error * BARS["q1"]), self.size, None)
+        for kink, needed in zip(solution.kinks, at_kinks.tolist(), strict=True):
+            if sizes_at(np.array([kink]), sizes, growth / coarsest)[0] > _KINK_SLACK * needed * a / coarsest:
+                sizes[kink] = needed * a / coarsest
+        goal = self.goal
+        return Grading(contact, sizes, growth / coarsest, facet_error=goal.facet_error, corner_error=goal.corner_error)
 
-def _sizes_given(problem: Problem, level: Level) -> list[float]:
-    """Mean sizes of the elements in the contact of meshes that are given."""
-    sizes = []
-    for part, half in zip(problem.parts, level.halves, strict=True):
-        vertices = half.body.x[:: half.body.order]
-        inside = vertices[(vertices > level.left) & (vertices < level.right)]
-        if part.mesh and len(inside) <= _FEWEST:
-            raise InputError(
-                f"bodies.{part.name}.mesh: must have more than {_FEWEST} elements in the contact, not {len(inside) + 1}"
-                f"; is bodies.{part.name}.unit right?"
-            )
-        if part.mesh:
-            sizes.append(float(np.diff(inside).mean()))
-    return sizes
+    def _keep_steps(self) -> None:
+        """Keep the load steps of the present solution for all meshes to come, and their errors."""
+        solution, problem = self.solution, self.problem
+        if solution.enclosed and solution.history and not solution.coupled:
+            self.step_errors = solution.step_errors
+            self.problem = replace(problem, path=replace(solution.history.path, before=None))
+            self.goal = Goal.at(max(self.goal.accuracy, worst(self.step_errors)), self.problem)
 
+    def _errors_of_ends(self, at_ends: Array, at_kinks: Array) -> dict[str, float]:
+        """Errors due to elements of given sizes at ends and kinks, to round faces and to corners."""
+        solution, goal = self.solution, self.goal
+        found = estimate.end_errors(solution, at_ends, gaps(solution, self.problem), at_kinks)
+        return {
+            key: error + goal.facet_error * (key in estimate.END_KEYS) + goal.tilts.get(key, 0.0)
+            for key, error in found.items()
+        }
 
-def _first(problem: Problem, width: float, clock: Clock, keep: Kept | None = None) -> tuple[Level, int, int]:
-    """A level on a mesh that is fine all over a contact line which the contact does not fill, and how many meshes and
-    factorisations that took."""
-    reach, limit, meshes, factored = 1.5 + max(problem.kinks, default=0.0), _limit(problem), 0, 0
-    steps = MOST if problem.meshed else None  # of given meshes it is the last level, too
-    while True:
-        reach = min(reach, limit)
-        guess = dict.fromkeys(np.linspace(-reach, reach, 16).tolist(), 2 * _FIRST * reach)
-        level = solve_level(problem, width * reach, (-reach, reach), guess, _ROUGH, clock, keep=keep, steps=steps)
-        meshes, factored = meshes + 1, factored + level.factored
-        if level.enclosed:
-            return level, meshes, factored
-        if reach == limit:
-            raise _too_narrow(problem)
-        reach *= 2
+    def _estimate_together(self) -> dict[str, float]:
+        """Solve once more with elements of the neighbouring order and add the errors away from the ends to ``errors``.
 
+        Returns the errors away from the ends.
+        """
+        other = estimate.neighbour(self.solution, self.problem, self.block_width, self.clock)
+        self.factored, self.iterations = self.factored + other.factored, self.iterations + other.iterations
+        smooth = estimate.smooth_errors(self.solution, other)
+        self.errors = estimate.together(self.solution, smooth, self.end_errors)
+        return smooth
 
-def _gaps(level: Level, problem: Problem) -> Array:
-    """From each end of the stick zone the distance to the other one, and from each end that to the nearest of all other
-    ends and kinks of the profile, (2, k), in contact half-widths."""
-    kinks = np.array(problem.kinks)
-    apart = np.abs(level.ends[:, None] - np.concatenate([level.ends, kinks, -kinks]))
-    np.fill_diagonal(apart, np.inf)
-    across = np.full(len(level.ends), np.inf)
-    if level.stick:
-        across[2:4] = apart[2, 3]
-        apart[2, 3] = apart[3, 2] = np.inf
-    gaps: Array = np.maximum([across, apart.min(axis=1)], np.finfo(float).tiny) / level.half_width
-    return gaps
+    def _affordable_goal(self) -> Goal | None:
+        """The best goal, none beyond the present one, that the rest of the allowance suffices for.
 
-
-def _anywhere(level: Level) -> tuple[Array, Array, Array]:
-    """Elements as large as the contact's half-width at all ends, far apart, and kinks that do not matter."""
-    count = len(level.ends)
-    return np.ones(count), np.full((2, count), np.inf), np.zeros(len(level.kinks))
-
-
-def _sizes(points: Array, sizes: Mapping[float, float], growth: float) -> Array:
-    """Element sizes at points of the contact line, of a mesh that is graded to other points with those ``sizes``."""
-    at, size = np.array([*sizes]), np.array([*sizes.values()])
-    smallest: Array = (size + growth * np.abs(points[:, None] - at)).min(axis=1)
-    return smallest
-
-
-def _growth(error: float, order: int) -> float:
-    """That of a mesh on which errors away from the ends are about as large as that."""
-    return float(min(_SMOOTH * error ** (0.5 / order), _GROWTH))
-
-
-def _limit(problem: Problem) -> float:
-    """How far the contact line may reach: not to the corners of a finite body."""
-    limit = min(_reach(part) for part in problem.parts)
-    if max(problem.kinks, default=0.0) >= limit:
-        raise _too_narrow(problem)
-    return limit
-
-
-def _reach(part: Part) -> float:
-    if part.mesh:
-        return float(np.abs(part.mesh.points[part.mesh.lines["contact"], 0]).max())
-    return _FILLS * part.extent[0] if part.extent else np.inf
-
-
-def _too_narrow(problem: Problem) -> InputError:
-    names = (f"bodies.{part.name}.{'mesh' if part.mesh else 'width'}" for part in problem.parts if part.finite)
-    return InputError(
-        f"{' and '.join(names)}: must be wider than the contact, which fills more than {_FILLS:.0%} of it"
-    )
-
-
-def _worst(errors: Mapping[str, float]) -> float:
-    """As an error of an end."""
-    return max((error / BARS[key] for key, error in errors.items()), default=0.0)
+        None if the present solution, with its errors estimated, is about as good.
+        """
+        solution, problem = self.solution, self.problem
+        order, a = problem.order, solution.half_width
+        done = bool(self.end_errors) and solution.enclosed
+        once_more = again(order, estimate.NEIGHBOUR[order]) + problem.inside
+        best: Goal = self.goal
+        asked = self.goal.accuracy
+        for accuracy in np.geomspace(asked, max(goals.LOOSEST, asked), _CHOICES).tolist():
+            best = self.goal if accuracy == asked else Goal.at(accuracy, problem)
+            size_goal = best.element_size(solution, problem)
+            finer = self.finer if best is self.goal or not reached(self.size, size_goal) else 1.0
+            meshes = course(self.size, finer, size_goal, self.least * best.growth / self.goal.growth, order)
+            unknowns = [
+                self.expense.unknowns(
+                    dict.fromkeys(solution.zone_ends.tolist(), mesh.size * a), mesh.growth, order, self.width * a
+                )
+                for mesh in meshes
+            ]
+            if done and best is not self.goal and unknowns[-1] < _WORTH * solution.dofs:
+                return None
+            if self.expense.affords(unknowns, once_more):
+                return best
+        return None if done else best

@@ -1,4 +1,4 @@
-"""Static condensation to the contact line: one factorisation, and the rest is dense and small."""
+"""Static condensation to the contact line: one factorisation of the stiffness, then a small dense compliance."""
 
 import numpy as np
 
@@ -8,15 +8,30 @@ from partialslip_fem.factor import Backend, Factor, factor
 from partialslip_fem.farfield import FarField
 
 
-class Condensed:
-    """A body reduced to the degrees of freedom of its contact line.
+class Condensation:
+    """Compliance of a body's contact line.
 
-    The stiffness is factored once with the contact last, so that its Schur complement is read off the factor's
-    last rows. ``compliance`` (2n, 2n) is its inverse: displacements of the contact line, first all along x,
-    then all along y, under unit nodal forces there. Without ``shear`` there are none along x: it is (n, n), all along
-    y. ``far_field`` moves what is held of the outer boundary; without it that is clamped. ``pulled`` (2 N,), of a body
-    that bears a tension, are all displacements under a unit of that. Unless what is ``inside`` is to be solved back
-    for, the factor is not kept.
+    The stiffness is factored once with the contact line last, so that the Schur complement is read off the last rows
+    of the factor.
+
+    Parameters
+    ----------
+    body : Body
+    far_field : FarField, optional
+        Displacements of the held nodes under the contact forces; without it the held nodes are fixed.
+    backend : "superlu" or "cholmod"
+        Library that factors.
+    shear : bool
+        Whether the contact line has degrees of freedom along x.
+    inside : bool
+        Whether to keep the factor, which :meth:`displace` needs.
+
+    Attributes
+    ----------
+    compliance : (2 n, 2 n) array, or (n, n) without ``shear``
+        Displacements of the contact line, first along x, then along y, under unit nodal forces.
+    pulled : (2 N,) array or None
+        Displacements of all nodes under a unit tension on the right side, of a body that is pulled there.
     """
 
     def __init__(
@@ -34,44 +49,46 @@ class Condensed:
         self._to_held = body.stiffness[self._free][:, held]
         self._far = far_field.along_y if far_field and not shear else far_field
         self._factor: Factor | None = factor(body.stiffness, np.flatnonzero(inner), contact, backend)
-        # first, as reading the Schur complement may use the factor up
+        # before take_inverse_of_schur, which may use the factor up
         self.pulled: Array | None = None
         if body.pull is not None:
             self.pulled = np.zeros(len(body.pull))
-            self.pulled[self._free] = self._factor.solve(body.pull[self._free, None])[:, 0]
+            self.pulled[self._free] = self._factor.back_substitute(body.pull[self._free, None])[:, 0]
         moved: Array | float = 0.0
         if self._far:
-            fields = self._solve(np.zeros((self._n, self.far_columns)), self._far.fields)[-self._n :]
+            fields = self._displace_free(np.zeros((self._n, self.far_columns)), self._far.fields)[-self._n :]
             moved = fields @ self._far.moments
-        self.compliance = self._factor.inverse_of_schur() + moved
+        self.compliance = self._factor.take_inverse_of_schur() + moved
         if not inside:
             self._factor = None
 
     @property
     def columns(self) -> int:
-        """Degrees of freedom of the contact line that are kept."""
+        """Number of degrees of freedom of the contact line."""
         return self._n
 
     @property
     def far_columns(self) -> int:
-        """Fields that move the outer boundary."""
+        """Number of displacement fields of the far field."""
         return self._far.fields.shape[1] if self._far else 0
 
     @property
     def factorizations(self) -> int:
-        """How often the stiffness has been factored: once more where a factor that was taken apart is asked again."""
+        """Number of factorisations: 2 if :meth:`displace` had to restore a factor that was used up."""
         return self._factor.made if self._factor else 1
 
     def displace(self, forces: Array) -> Array:
-        """Displacements of all degrees of freedom, (N, k), under contact forces (2n, k); without shear (n, k)."""
+        """Displacements of all degrees of freedom, (2 N, k), under contact forces (2 n, k), or (n, k) without shear."""
         far = self._far
         held = far.fields @ (far.moments @ forces) if far else np.zeros((len(self._held), forces.shape[1]))
         result = np.empty((len(self._free) + len(self._held), forces.shape[1]))
-        result[self._free], result[self._held] = self._solve(forces, held), held
+        result[self._free], result[self._held] = self._displace_free(forces, held), held
         return result
 
-    def _solve(self, forces: Array, held: Array) -> Array:
+    def _displace_free(self, forces: Array, held: Array) -> Array:
+        """Displacements of the free degrees of freedom, contact line last, for given contact forces and ``held``
+        displacements."""
         load = -(self._to_held @ held)
         load[-self._n :] += forces
         assert self._factor
-        return self._factor.solve(load)
+        return self._factor.back_substitute(load)

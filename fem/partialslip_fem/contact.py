@@ -1,7 +1,7 @@
-"""Two bodies pressed together, on their condensed compliances.
+"""Two condensed bodies pressed together.
 
-Scaled: lengths by sqrt(A R P), forces by P and displacements by A P, so that nothing depends on units.
-Nodal contact forces are the Lagrange multipliers of the relative displacements of the two surfaces.
+Scaled as in :mod:`partialslip_fem.problem`. Nodal contact forces are the Lagrange multipliers of the relative
+displacements of the two surfaces.
 """
 
 from collections.abc import Sequence
@@ -12,56 +12,71 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.condensed.bounded import Solution, solve_bounded
 from partialslip.condensed.coupled import Relative
-from partialslip_fem.condensation import Condensed
+from partialslip_fem.condensation import Condensation
 from partialslip_fem.elasticity import Body
 from partialslip_fem.mortar import transfer
 from partialslip_meshes import Mesh
 
 
 @dataclass(frozen=True)
-class Half:
-    """One body, meshed below its contact line, and condensed to it. The upper body is the mirror image of that."""
+class CondensedBody:
+    """A body that is condensed to its contact line.
+
+    The ``mesh`` lies below the contact line; the upper body's is the mirror image of its place in the scene.
+    ``body`` has the stiffness, ``condensation`` the compliance of the contact line.
+    """
 
     mesh: Mesh
     body: Body
-    condensed: Condensed
+    condensation: Condensation
 
     @property
     def stretched(self) -> Array:
-        """Displacements of all nodes, (2, N), under the tension whose uniform strain of a long body would be 1: that
-        strain, but for a body that is pulled at its end."""
+        """Displacements of all nodes, (2, N), under the tension that strains a long body by 1.
+
+        The strain is uniform, except in a body that is pulled at its end.
+        """
         result: Array = self.body.points * np.array([[1.0], [-(3 - self.body.kappa) / (1 + self.body.kappa)]])
-        if self.condensed.pulled is not None:
-            result = 4 / self.body.compliance * self.condensed.pulled.reshape(2, -1)
+        if self.condensation.pulled is not None:
+            result = 4 / self.body.compliance * self.condensation.pulled.reshape(2, -1)
         return result
 
     @property
     def stretch(self) -> Array:
-        """Those of the contact line, (2, n)."""
-        if self.condensed.pulled is None:
+        """Displacements of the contact line's nodes under the same tension, (2, n); zero along y if uniform."""
+        if self.condensation.pulled is None:
             return np.array([self.body.x, 0 * self.body.x])
         result: Array = self.stretched[:, self.body.contact[0]]
         return result
 
 
-def relative_compliances(halves: Sequence[Half], coupled: bool = True) -> Relative:
-    """Relative displacements of the two surfaces, at the nodes of the lower one, under nodal forces there; what shear
-    does along y, and pressure along x, only of ``coupled`` bodies. Bodies condensed without shear have none of it.
+def relative_compliances(bodies: Sequence[CondensedBody], coupled: bool = True) -> Relative:
+    """Relative displacements of the two surfaces under unit nodal forces, at the nodes of the lower contact line.
 
-    Of the lower and the upper body; of one that is mirrored, that one alone. Mirrored bodies move by the same amount
-    in opposite directions: twice what one does, while what shear does along y, and pressure along x, cancels.
+    Parameters
+    ----------
+    bodies : one or two of CondensedBody
+        The lower and the upper body; one entry if the bodies are mirror images. The surfaces of mirror images move by
+        equal amounts in opposite directions, so that the coupling of p and q cancels.
+    coupled : bool
+        Whether to compute the coupling ``xy``.
+
+    Returns
+    -------
+    Relative
+        ``xx`` is None if the bodies were condensed without shear.
     """
-    lower = halves[0]
+    lower = bodies[0]
     n = len(lower.body.x)
-    C = lower.condensed.compliance
-    # With every moment of the forces in the far field the compliance is symmetric but for the discretisation of the
-    # far boundary (1e-7 or less). A truncated expansion would not be, and must not be symmetrised.
+    C = lower.condensation.compliance
+    # With every moment of the forces in the far field the compliance is symmetric, except for the discretisation of
+    # the far boundary (1e-7 or less). A truncated expansion would not be, and must not be symmetrised.
     sheared = len(C) > n
-    if len(halves) == 1:
+    if len(bodies) == 1:
         xx, yy = C[:-n, :-n], C[-n:, -n:]
         return Relative(xx + xx.T if sheared else None, yy + yy.T, None)
-    upper = halves[1]
-    U, k = upper.condensed.compliance, len(upper.body.x)
+    upper = bodies[1]
+    U, k = upper.condensation.compliance, len(upper.body.x)
     T = transfer(lower.body, upper.body)
 
     along_x, along_y = 0, len(C) // n - 1
@@ -80,5 +95,8 @@ def relative_compliances(halves: Sequence[Half], coupled: bool = True) -> Relati
 
 
 def press(normal: Array, gap: Array, P: float) -> Solution:
-    """Nodal normal forces, none of them tensile, that close ``gap`` and sum to ``P``."""
+    """Nodal normal forces (n,), none tensile, that close ``gap`` (n,) and sum to ``P``.
+
+    ``normal`` is the compliance along y, (n, n).
+    """
     return solve_bounded(normal, -gap, np.zeros(len(gap)), np.full(len(gap), np.inf), P)

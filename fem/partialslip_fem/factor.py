@@ -27,10 +27,10 @@ class Factor(Protocol):
 
     made: int
 
-    def inverse_of_schur(self) -> Array:
+    def take_inverse_of_schur(self) -> Array:
         """(n, n): the inverse of the Schur complement onto the last unknowns."""
 
-    def solve(self, load: Array) -> Array:
+    def back_substitute(self, load: Array) -> Array:
         """Solution under ``load``, (N, k), the last unknowns being the last rows of both."""
 
 
@@ -60,7 +60,7 @@ class _SuperLU:
         self._factor = spla.splu(K[unknowns][:, unknowns].tocsc(), permc_spec="NATURAL", **_SYMMETRIC)
         self.made = 1
 
-    def inverse_of_schur(self) -> Array:
+    def take_inverse_of_schur(self) -> Array:
         n, first = self._n, len(self._order)
         place = self._factor.perm_c[-n:]  # where the factor put the last: last, but perhaps in another order
         if place.min() < first or not np.array_equal(self._factor.perm_r, self._factor.perm_c):
@@ -70,7 +70,7 @@ class _SuperLU:
         inverse = _inverse((upper / pivots[:, None]).T)  # S = L D L^T, and U = D L^T
         return inverse[np.ix_(place - first, place - first)]
 
-    def solve(self, load: Array) -> Array:
+    def back_substitute(self, load: Array) -> Array:
         return _back(self._order, self._factor.solve(_forth(self._order, load)))
 
 
@@ -85,7 +85,7 @@ class _Cholmod:
         self._matrix = self._lower(K[unknowns][:, unknowns], (len(inner), len(inner) - 1))
         self._factored = self._numeric()
 
-    def inverse_of_schur(self) -> Array:
+    def take_inverse_of_schur(self) -> Array:
         n, first = self._n, len(self._order)
         place = self._cvxopt.matrix(np.arange(first + n, dtype=float))
         self._cvxopt.cholmod.solve(self._factored, place, sys=7)  # puts it into the factor's order
@@ -98,7 +98,7 @@ class _Cholmod:
         lower[rows[kept] - first, np.repeat(np.arange(n), np.diff(starts[first:]))] = values[kept]
         return _inverse(lower)
 
-    def solve(self, load: Array) -> Array:
+    def back_substitute(self, load: Array) -> Array:
         self._factored = self._factored or self._numeric()
         solution = self._cvxopt.matrix(_forth(self._order, load))
         self._cvxopt.cholmod.solve(self._factored, solution)

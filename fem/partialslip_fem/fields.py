@@ -8,7 +8,7 @@ from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
 from partialslip.result import DeformedBody, SurfaceStress
-from partialslip_fem.displacements import Moved
+from partialslip_fem.displacements import DisplacedBody
 from partialslip_fem.elasticity import gradients
 from partialslip_fem.recovery import inside, polynomials
 
@@ -49,7 +49,7 @@ class _Surfaces:
 
 
 def along_surfaces(
-    bodies: Sequence[Moved], ends: Sequence[tuple[float, float]], length: float, stress: float
+    bodies: Sequence[DisplacedBody], ends: Sequence[tuple[float, float]], length: float, stress: float
 ) -> SurfaceStress:
     """sigma_xx along both surfaces, the lower body's and the upper one's.
 
@@ -61,7 +61,7 @@ def along_surfaces(
 
     Parameters
     ----------
-    bodies : two of Moved
+    bodies : two of DisplacedBody
     ends : two of (float, float)
         Where the contact ends, at load points 1 and 2; scaled.
     length, stress : float
@@ -71,14 +71,14 @@ def along_surfaces(
         _Surface(
             body.part.compliance,
             body.part.kappa,
-            tuple(polynomials(half.face_x, u, half.order) for u in body.u[:, 0, half.face]),
+            tuple(polynomials(mesh.face_x, u, mesh.order) for u in body.u[:, 0, mesh.face]),
             tuple(body.pressures),
         )
         for body in bodies
-        for half in (body.half.body,)
+        for mesh in (body.condensed.body,)
     )
     stresses = _Surfaces(surfaces, length, stress)
-    nodes = bodies[0].half.body.face_x
+    nodes = bodies[0].condensed.body.face_x
     x = np.union1d(nodes, ends)
     sigma = stresses.at(length * x)
     for number, surface in enumerate(surfaces):
@@ -105,7 +105,7 @@ def _strain_beyond(u: PPoly, end: float, side: int) -> float:
     return float(fit[0])
 
 
-def deformed(body: Moved, length: float, unit: float, stress: float) -> DeformedBody:
+def deformed(body: DisplacedBody, length: float, unit: float, stress: float) -> DeformedBody:
     """Displacements of the mesh's points and stresses in the middle of its triangles.
 
     Parameters
@@ -113,8 +113,8 @@ def deformed(body: Moved, length: float, unit: float, stress: float) -> Deformed
     length, unit, stress : float
         What lengths and displacements are scaled by, m, and stresses, Pa.
     """
-    mesh, mirror = body.half.mesh, np.array([[1.0], [body.way]])
-    moved = body.u[..., body.half.body.vertices[0]]
+    mesh, mirror = body.condensed.mesh, np.array([[1.0], [body.way]])
+    moved = body.u[..., body.condensed.body.vertices[0]]
     stresses = _in_the_middle(body)
     return DeformedBody(
         "lower" if body.way > 0 else "upper",
@@ -126,14 +126,14 @@ def deformed(body: Moved, length: float, unit: float, stress: float) -> Deformed
     )
 
 
-def _in_the_middle(body: Moved) -> Array:
+def _in_the_middle(body: DisplacedBody) -> Array:
     """sigma_xx, sigma_yy and sigma_xy in the middle of the triangles, (2, 3, t), by load point; scaled."""
     kappa = body.part.kappa
     mu = (kappa + 1) / (2 * body.part.compliance)
     lam = mu * (3 - kappa) / (kappa - 1)
     result = []
     for u in body.u:
-        (xx, xy), (yx, yy) = gradients(body.half.mesh, body.half.body.order, u)
+        (xx, xy), (yx, yy) = gradients(body.condensed.mesh, body.condensed.body.order, u)
         volume = lam * (xx + yy)
         result.append([volume + 2 * mu * xx, volume + 2 * mu * yy, body.way * mu * (xy + yx)])
     return np.array(result)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from partialslip.frame import DataFrame
-    from partialslip_fem.level import Kept
+    from partialslip_fem import Kept
 
 Progress = Callable[[str], None]
 

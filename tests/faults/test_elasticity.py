@@ -8,7 +8,7 @@ from pairs import SIZE, units
 
 import partialslip
 from partialslip.condensed import coupled
-from partialslip_fem import adapt, contact, elasticity, level, model
+from partialslip_fem import bodies, contact, elasticity, goals, model, solving
 from partialslip_fem.farfield import FarField
 
 LARGE = "hertz-large-tension"
@@ -16,23 +16,23 @@ LARGE = "hertz-large-tension"
 
 @pytest.mark.fault
 def test_normal_compliance_used_for_shear(monkeypatch, sound, red):
-    scene, true = sound(LARGE), level.relative_compliances
-    monkeypatch.setattr(level, "relative_compliances", lambda *args: replace(C := true(*args), xx=1.05 * C.yy))
+    scene, true = sound(LARGE), solving.relative_compliances
+    monkeypatch.setattr(solving, "relative_compliances", lambda *args: replace(C := true(*args), xx=1.05 * C.yy))
     red.comparison("q", scene)
 
 
 @pytest.mark.fault
 def test_one_body_rigid(monkeypatch, sound, red):
     """Half the compliance: the contact of one elastic body with a rigid one."""
-    scene, true = sound(LARGE), level.relative_compliances
+    scene, true = sound(LARGE), solving.relative_compliances
     half = lambda *args: replace(C := true(*args), xx=C.xx / 2, yy=C.yy / 2)  # noqa: E731
-    monkeypatch.setattr(level, "relative_compliances", half)
+    monkeypatch.setattr(solving, "relative_compliances", half)
     red.comparison("a", scene)
 
 
 def without_dipole(monkeypatch, kept):
     """A far field of the resultant alone, of shear or of both forces."""
-    true = level.half_plane
+    true = bodies.half_plane
 
     def truncated(*args):
         far = true(*args)
@@ -42,7 +42,7 @@ def without_dipole(monkeypatch, kept):
         moments[count + 1 :] *= kept == "pressure"
         return FarField(far.fields, moments)
 
-    monkeypatch.setattr(level, "half_plane", truncated)
+    monkeypatch.setattr(bodies, "half_plane", truncated)
 
 
 @pytest.mark.fault
@@ -67,9 +67,9 @@ def test_truncated_correction_made_symmetric(monkeypatch, red):
     def asymmetry():
         with pytest.MonkeyPatch.context() as inner:
             found = []
-            true = level.relative_compliances
+            true = solving.relative_compliances
             inner.setattr(
-                level, "relative_compliances", lambda halves, *also: found.append(halves[0]) or true(halves, *also)
+                solving, "relative_compliances", lambda bodies, *also: found.append(bodies[0]) or true(bodies, *also)
             )
             partialslip.run(partialslip.load_scene(LARGE, [SIZE, "fem.width=4"]), ["fem"])
         C = found[-1].condensed.compliance
@@ -97,7 +97,7 @@ def test_stiffness_of_plane_strain_in_plane_stress(monkeypatch, sound, red):
 @pytest.mark.fault
 def test_contact_points_beyond_a_hidden_gap_dropped(monkeypatch, sound, red):
     """A cut-off on the initial gap: points that would have touched, beyond 0.95 a, are never asked."""
-    scene, true = sound("hertz-shear"), level.press
+    scene, true = sound("hertz-shear"), solving.press
     a = partialslip.run(scene, ["exact"]).results["exact"].a
     limit = scene.gap_at(0.95 * a) / (scene.material.A * scene.P)
 
@@ -109,8 +109,8 @@ def test_contact_points_beyond_a_hidden_gap_dropped(monkeypatch, sound, red):
         missing = (0, len(gap) - len(candidates))
         return replace(solution, x=x, residual=np.pad(solution.residual, missing))
 
-    monkeypatch.setattr(level, "press", cut_off)
-    monkeypatch.setattr(adapt, "_FINEST", 1e-2)
+    monkeypatch.setattr(solving, "press", cut_off)
+    monkeypatch.setattr(goals, "FINEST", 1e-2)
     red.comparison("a", scene)
 
 
@@ -119,14 +119,14 @@ def test_tolerance_in_metres(monkeypatch, red):
     """What is less than an angstrom apart is taken to touch, in whatever unit that is."""
     in_mm = lambda: units(1e3, 1e-6, "fem", "large tension", SIZE).ends  # noqa: E731
     assert in_mm() <= 1e-9
-    true = model._scaled
+    true = model.scaled
 
     def tolerant(scene, *rest):
         problem = true(scene, *rest)
         least = 1e-10 / (scene.material.A * scene.P)
         return replace(problem, gap=lambda x: np.maximum(problem.gap(x) - least, 0.0))
 
-    monkeypatch.setattr(model, "_scaled", tolerant)
+    monkeypatch.setattr(model, "scaled", tolerant)
     red("invariance: units", in_mm(), 1e-9)
 
 
@@ -138,9 +138,9 @@ def test_coupling_of_the_wrong_sign(monkeypatch, red):
         scene = partialslip.load_scene(LARGE, [SIZE, "material.upper.E=728e9", "material.upper.nu=0.3"])
         return partialslip.run(scene, ["fem"]).results["fem"].a
 
-    right, true = half_width(), level.relative_compliances
+    right, true = half_width(), solving.relative_compliances
     wrong = lambda *args: coupled.Relative((C := true(*args)).xx, C.yy, -C.xy)  # noqa: E731
-    monkeypatch.setattr(level, "relative_compliances", wrong)
+    monkeypatch.setattr(solving, "relative_compliances", wrong)
     red("a of unlike bodies", abs(half_width() / right - 1), 1e-3)
 
 

@@ -15,7 +15,7 @@ from partialslip.condensed.bounded import _BlockPivoting, solve_bounded
 from partialslip.condensed.ends import StickInterval
 from partialslip.condensed.history import march as true_march
 from partialslip.result.state import State
-from partialslip_fem import level, model
+from partialslip_fem import problem, solving
 
 LARGE = "hertz-large-tension"
 MEAN = ("load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]", "load.cycles=12")
@@ -56,7 +56,7 @@ def test_friction_silently_smaller(monkeypatch, sound, red):
 @pytest.mark.fault
 def test_friction_silently_none(monkeypatch, sound, red):
     scene = sound(LARGE)
-    monkeypatch.setattr(model, "load_path", lambda *_: None)
+    monkeypatch.setattr(problem, "load_path", lambda *_: None)
     red.comparison("q", scene)
 
 
@@ -145,12 +145,12 @@ def test_slip_of_the_other_body(monkeypatch, sound, red):
 def test_stick_zone_from_flags_of_one_instant(monkeypatch, sound, red):
     """With a mean load nodes rest on the bound without slipping any more: who is on it at load point 2 says little."""
 
-    def flagged(line, nodes, history, _):
+    def flagged(line, nodes, history, *_):
         sticks = line.x[nodes][np.abs(history.q2) < (1 - 1e-9) * history.bound]
         return StickInterval(float(sticks[0]), float(sticks[-1]), (-1, 1))
 
     scene = sound(LARGE, *MEAN)
-    monkeypatch.setattr(level, "_stick_zone", flagged)
+    monkeypatch.setattr(solving, "stick_zone_of", flagged)
     red.comparison("n", scene)
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from partialslip import Allowance, InputError, load_scene, plan, run
-from partialslip_fem import adapt, expense, solve
+from partialslip_fem import estimate, expense, solve, solving
 
 ASKED = 1e-6
 SCENE = load_scene("hertz-small-tension", [f"fem.accuracy={ASKED!r}"])
@@ -15,14 +15,14 @@ class Counter:
 
     def __init__(self, monkeypatch):
         self.seconds = 0.0
-        for name in ("solve_level", "neighbour"):
-            monkeypatch.setattr(adapt, name, self._counted(getattr(adapt, name)))
+        for module, name in ((solving, "mesh_and_solve"), (estimate, "neighbour")):
+            monkeypatch.setattr(module, name, self._counted(getattr(module, name)))
 
     def _counted(self, solution):
         def counted(*given, **settings):
-            level = solution(*given, **settings)
-            self.seconds += SECONDS * level.dofs / 1000
-            return level
+            found = solution(*given, **settings)
+            self.seconds += SECONDS * found.dofs / 1000
+            return found
 
         return counted
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from partialslip import parse_scene, plan
-from partialslip_fem import adapt, solve
+from partialslip_fem import goals, solve
 from partialslip_fem.corners import free_exponent, held_exponent, size
-from partialslip_fem.level import Part
+from partialslip_fem.problem import Part
 from partialslip_meshes import block
 
 RIGHT = np.pi / 2
@@ -71,6 +71,6 @@ def test_corners_left_coarse_move_the_contact(monkeypatch):
     found, result = middle()
     assert found == pytest.approx(-0.069926, abs=max(result.estimate["left"], result.estimate["right"]))
     assert any("the middle of the contact is off x = 0" in note for note in result.notes)
-    monkeypatch.setattr(adapt, "_CORNERS", 0.0)
+    monkeypatch.setattr(goals, "_CORNER_ERROR", 0.0)
     coarse, told = middle()
     assert abs(coarse - found) > 3 * max(told.estimate["left"], told.estimate["right"])

@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse.linalg as spla
 
 from partialslip_fem import factor
-from partialslip_fem.condensation import Condensed
+from partialslip_fem.condensation import Condensation
 from partialslip_fem.elasticity import body
 from partialslip_fem.farfield import FarField
 from partialslip_meshes import block
@@ -56,14 +56,14 @@ def test_constant_strain_is_exact(kappa):
     # uniaxial tension along x leaves the line y = 0 free: eps_y = -lam/(lam + 2 mu) eps_x
     strain = np.array([1.0, -lam / (lam + 2 * mu)])
     stretched = FarField((half.held_points * strain[:, None]).reshape(-1, 1), np.ones((1, half.contact.size)))
-    displacement = (Condensed(half, stretched).compliance - Condensed(half).compliance)[:, 0]
+    displacement = (Condensation(half, stretched).compliance - Condensation(half).compliance)[:, 0]
     expected = np.concatenate([half.x * strain[0], 0 * half.x])
     assert displacement == pytest.approx(expected, abs=1e-9 * max(1.0, lam))
 
 
 @pytest.mark.parametrize("backend", ["superlu", "cholmod"])
 def test_schur_complement_from_the_factor_is_the_inverse(half, backend):
-    condensed = Condensed(half, backend=backend)
+    condensed = Condensation(half, backend=backend)
     free = np.setdiff1d(np.arange(half.stiffness.shape[0]), half.held)
     forces = np.zeros((len(free), 2))
     places = np.searchsorted(free, half.contact.ravel()[[3, -5]])
@@ -79,13 +79,13 @@ def test_one_factorisation(half, monkeypatch):
     original = factor.spla.splu
     monkeypatch.setattr(factor.spla, "splu", lambda *args, **kw: calls.append(1) or original(*args, **kw))
     far = FarField(np.ones((half.held.size, 3)), np.ones((3, half.contact.size)))
-    Condensed(half, far).displace(np.zeros((half.contact.size, 3)))
+    Condensation(half, far).displace(np.zeros((half.contact.size, 3)))
     assert len(calls) == 1
 
 
 @pytest.mark.parametrize("backend", ["superlu", "cholmod"])
 def test_displacements_of_all_nodes_carry_the_contact_forces(half, backend):
-    condensed = Condensed(half, backend=backend)
+    condensed = Condensation(half, backend=backend)
     forces = np.linspace(0, 1, half.contact.size)[:, None]
     u = condensed.displace(forces)
     residual = half.stiffness @ u

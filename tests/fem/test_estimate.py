@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip_fem import adapt, estimate
+from partialslip_fem import estimate, goals
 
 SCENES = [
     ("hertz-small-tension", "load.sigma=[-150e6, 150e6]"),
@@ -45,7 +45,7 @@ def test_estimate_is_right_at_every_accuracy(scene, accuracy):
 def test_difference_of_the_orders_is_not_the_error(monkeypatch):
     """Deliberate fault: what P3 is off by, taken for what P4 is off by."""
     true = estimate._changes
-    monkeypatch.setattr(estimate, "_changes", lambda level, other: {k: d**0.75 for k, d in true(level, other).items()})
+    monkeypatch.setattr(estimate, "_changes", lambda *pair: {k: d**0.75 for k, d in true(*pair).items()})
     known, _ = ratio(*SCENES[2], "fem.accuracy=1e-3")
     assert known > 3
 
@@ -53,10 +53,10 @@ def test_difference_of_the_orders_is_not_the_error(monkeypatch):
 @pytest.mark.fault
 def test_elements_at_the_ends_are_counted(monkeypatch):
     """Deliberate fault: without them, a mesh coarse at the ends is taken for a good one."""
-    monkeypatch.setattr(adapt, "_BESIDE", 0.06)
-    monkeypatch.setattr(adapt, "_ENDS", 1e6)
+    monkeypatch.setattr(goals, "COARSEST", 0.06)
+    monkeypatch.setattr(goals, "_END_SHARE", 1e6)
     honest, _ = ratio(*SCENES[2], "fem.accuracy=1e-2")
-    monkeypatch.setattr(adapt, "end_errors", lambda *_: dict.fromkeys(estimate.KEYS, 1e-12))
+    monkeypatch.setattr(estimate, "end_errors", lambda *_: dict.fromkeys(estimate.KEYS, 1e-12))
     known, _ = ratio(*SCENES[2], "fem.accuracy=1e-2")
     assert known < 1 / 3 < honest
 
@@ -89,12 +89,12 @@ def test_estimate_knows_of_the_coarser_body():
 @pytest.mark.parametrize(("name", "steep"), [("hertz-shear", 1.0), ("flat-rounded", None)])
 def test_how_steeply_pressure_begins_is_found(monkeypatch, name, steep):
     """As a multiple of Hertz's; corners near the ends of the contact make it steep."""
-    levels, true = [], adapt.end_errors
-    monkeypatch.setattr(adapt, "end_errors", lambda level, *rest: levels.append(level) or true(level, *rest))
+    solutions, true = [], estimate.end_errors
+    monkeypatch.setattr(estimate, "end_errors", lambda found, *rest: solutions.append(found) or true(found, *rest))
     exact = partialslip.run(partialslip.load_scene(name, ["fem.accuracy=1e-3"])).results["exact"]
     a, x = exact.a, exact.a * np.sin(np.linspace(0, np.pi / 2, 2001))
     p, _ = exact.traction.at(x)
     root, _ = exact.traction.at(np.array([a * (1 - 1e-7)]))
     known = root[0] / np.sqrt(1e-7) / np.sqrt(np.trapezoid(p**2, x) / a) / np.sqrt(3)
     assert known == pytest.approx(steep or 8.1, rel=0.02)
-    assert estimate._steepness(levels[-1]) == pytest.approx(known, rel=0.02)
+    assert estimate._steepness(solutions[-1]) == pytest.approx(known, rel=0.02)

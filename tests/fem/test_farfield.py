@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from partialslip_fem.condensation import Condensed
-from partialslip_fem.contact import Half, relative_compliances
+from partialslip_fem.condensation import Condensation
+from partialslip_fem.contact import CondensedBody, relative_compliances
 from partialslip_fem.elasticity import body
 from partialslip_fem.farfield import FarField, half_plane
 from partialslip_meshes import block
@@ -81,7 +81,7 @@ def responses():
         forces = half.mass @ ((1 + half.x) * (1 - half.x**2) ** 2)
         nodes = np.searchsorted(half.x, points - 1e-9)
         for name, field in (("half-plane", far), ("monopole", monopole), ("box", None)):
-            C = relative_compliances([Half(mesh, half, Condensed(half, field))])
+            C = relative_compliances([CondensedBody(mesh, half, Condensation(half, field))])
             moved = [(c @ forces)[nodes] for c in (C.xx, C.yy)]
             result[name, width] = [u - u.mean() for u in moved]
     return result

@@ -7,11 +7,13 @@ import partialslip
 from partialslip import load_scene, plan
 from partialslip.result import Clock
 from partialslip.scene import Scene
-from partialslip_fem import adapt, model, solve
-from partialslip_fem.condensation import Condensed
-from partialslip_fem.contact import Half
-from partialslip_fem.displacements import solve_back
+from partialslip_fem import goals, solve
+from partialslip_fem.adapt import adapt
+from partialslip_fem.condensation import Condensation
+from partialslip_fem.contact import CondensedBody
+from partialslip_fem.displacements import displace_bodies
 from partialslip_fem.elasticity import body
+from partialslip_fem.problem import scaled
 from partialslip_meshes import block
 
 SCENE, COARSE = "hertz-small-tension", "fem.accuracy=1e-3"  # a = 1 mm, R = 50 mm
@@ -45,7 +47,7 @@ def bar(request):
     """A long bar, gripped at its left end and pulled at its right one, that slides along its middle plane."""
     mesh = block(8.0, (-1.0, 1.0), {0.0: 0.5}, 0.4, 1.5)
     half = body(mesh, 2.1, request.param, 1.3, (("left",), ("back",)), pulled=True)
-    return Half(mesh, half, Condensed(half))
+    return CondensedBody(mesh, half, Condensation(half))
 
 
 def test_a_pulled_bar_is_stretched_uniformly(bar):
@@ -70,7 +72,7 @@ def test_far_from_a_clamped_grip_the_bar_is_stretched_uniformly():
     faster."""
     mesh = block(8.0, (-1.0, 1.0), {0.0: 0.3}, 0.2, 1.0)
     half = body(mesh, 1.8, 4, 1.0, (("left",), ("left",)), pulled=True)
-    bar = Half(mesh, half, Condensed(half))
+    bar = CondensedBody(mesh, half, Condensation(half))
     inner = half.x[np.abs(half.x) < 0.9]
     strain = np.diff(bar.stretch[0])[np.abs(half.x[1:]) < 0.9] / np.diff(half.x)[np.abs(half.x[1:]) < 0.9]
     assert len(inner) > 8
@@ -135,8 +137,8 @@ def right():
 @pytest.fixture(scope="module")
 def rig():
     scene = load_scene(SCENE, [COARSE, *RIG])
-    problem = model._scaled(scene, plan(scene, subsurface=True))
-    return scene, problem, adapt.adapt(problem, 5e-2, 16.0, Clock(), lambda _: None).level
+    problem = scaled(scene, plan(scene, subsurface=True))
+    return scene, problem, adapt(problem, 5e-2, 16.0, Clock(), lambda _: None).solution
 
 
 @pytest.mark.slow
@@ -145,8 +147,8 @@ def test_supports_hold_what_acts(rig):
     scene, problem, found = rig
     sigma = scene.load.sigma[1] * scene.length / scene.P
     Q, height = scene.load.Q[1] / scene.P, problem.parts[0].extent[1]
-    for moved in solve_back(found, problem):
-        half, pulled = moved.half.body, sigma * (moved.way > 0)
+    for moved in displace_bodies(found, problem):
+        half, pulled = moved.condensed.body, sigma * (moved.way > 0)
         forces = half.stiffness @ moved.u[1].ravel()
         x, y = half.points
         along_x, along_y = forces.reshape(2, -1)
@@ -163,12 +165,12 @@ def test_supports_hold_what_acts(rig):
 
 def test_a_roller_lets_slide_and_the_sides_hold(rig):
     _, _, found = rig
-    lower, upper = (half.body for half in found.halves)
+    lower, upper = (each.body for each in found.bodies)
     N = lower.points.shape[1]
     along_x, along_y = lower.held[lower.held < N], lower.held[lower.held >= N] - N
     assert set(lower.points[0, along_x]) == {lower.points[0].min()}  # gripped at the left, pulled at the right
     assert set(lower.points[1, along_y]) == {lower.points[1].min()}
-    half_width = found.halves[1].mesh.points[:, 0].max()
+    half_width = found.bodies[1].mesh.points[:, 0].max()
     assert set(np.abs(upper.held_points[0])) == {half_width}
 
 
@@ -199,7 +201,7 @@ def test_stresses_are_those_of_the_bodies_as_they_are():
 
 def test_pads_have_the_true_face(rig):
     scene, problem, found = rig
-    mesh, R = found.halves[1].mesh, scene.profile.R / scene.length
+    mesh, R = found.bodies[1].mesh, scene.profile.R / scene.length
     for name in ("contact", "face"):
         x, y = mesh.points[np.unique(mesh.lines[name])].T
         assert x**2 + (y + R) ** 2 == pytest.approx(R**2, rel=1e-12)
@@ -241,7 +243,7 @@ def test_steep_pads_are_meshed():
 def test_straight_sides_of_a_round_face_do_not_matter(monkeypatch, right):
     """Within what the estimate says."""
     result = right
-    monkeypatch.setattr(adapt, "_ROUNDING", 0.02)
+    monkeypatch.setattr(goals, "_FACET_SHARE", 0.02)
     finer = fem(*RIG)
     assert finer.counts["dofs"] > 1.1 * result.counts["dofs"]
     off = np.abs(ends(finer) - ends(result)) / result.a
@@ -286,8 +288,8 @@ ECCENTRIC = (
 def bent():
     """How far the ends of the contact move, in half-widths, when a specimen thicker in its middle is pulled."""
     scene = load_scene(SCENE, [COARSE, *ECCENTRIC])
-    problem = model._scaled(scene, plan(scene))
-    found = adapt.adapt(problem, 1e-2, 16.0, Clock(), lambda _: None).level
+    problem = scaled(scene, plan(scene))
+    found = adapt(problem, 1e-2, 16.0, Clock(), lambda _: None).solution
     (left, right), (left_2, right_2) = found.contact_ends
     return np.array([left_2 - left, right_2 - right]) / found.half_width
 
@@ -296,7 +298,9 @@ def bent():
 def test_a_pulled_specimen_that_can_bend_moves_the_contact(monkeypatch):
     """What pulls acts below its middle, bends it, and so changes the gap; fault: a tension felt along x only."""
     moved = bent()
-    monkeypatch.setattr(Half, "stretch", property(lambda half, of=Half.stretch.fget: of(half) * [[1.0], [0.0]]))
+    monkeypatch.setattr(
+        CondensedBody, "stretch", property(lambda half, of=CondensedBody.stretch.fget: of(half) * [[1.0], [0.0]])
+    )
     assert np.abs(moved).max() > 10 * np.abs(bent()).max()
 
 
@@ -320,8 +324,8 @@ def test_a_plate_that_lies_down_is_refused():
 
 @pytest.mark.slow
 def test_tension_of_the_wrong_sign_is_seen(monkeypatch, right):
-    true = Half.stretch.fget
-    monkeypatch.setattr(Half, "stretch", property(lambda half: -true(half)))
+    true = CondensedBody.stretch.fget
+    monkeypatch.setattr(CondensedBody, "stretch", property(lambda half: -true(half)))
     assert np.abs(ends(fem(*RIG)) - ends(right)).max() > 1e-2 * right.a
 
 

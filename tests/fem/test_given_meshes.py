@@ -11,8 +11,10 @@ from partialslip import load_scene, plan
 from partialslip.cli import main
 from partialslip.condensed.threads import one_thread
 from partialslip.result import Clock
-from partialslip_fem import adapt, model, solve
-from partialslip_fem.level import Part, solve_on
+from partialslip_fem import solve
+from partialslip_fem.problem import Part, scaled
+from partialslip_fem.solving import solve_on_meshes
+from partialslip_fem.uniform import uniform
 from partialslip_meshes import Mesh, block
 
 SPECIMEN = Path(__file__).parents[1] / "meshes" / "specimen.inp"  # 40 mm x 5 mm
@@ -78,16 +80,16 @@ def test_all_formats_give_the_same_result(results):
 def test_the_result_is_that_of_the_arrays(found, results):
     """The same without any file: the mesh's arrays, laid where they belong by hand."""
     chosen = scene(SPECIMEN)
-    problem = model._scaled(chosen, plan(chosen))
+    problem = scaled(chosen, plan(chosen))
     triangles, lines = (block.data for block in found.cells)
     names = {name: lines[members[1]] for name, members in found.cell_sets.items()}
     mesh = Mesh(found.points[:, :2] * 1e-3 / chosen.length, triangles, names)
     mesh = Mesh(mesh.points, counter_clockwise(mesh), names)
     # on one thread, as methods are: which nodes bear next to nothing is up to rounding, and moves the fitted ends
-    level = one_thread(adapt.uniform)(problem, None, 16.0, Clock()).level
-    direct = one_thread(solve_on)([mesh, level.halves[1].mesh], problem, 16.0, Clock())
+    found = one_thread(uniform)(problem, None, 16.0, Clock()).solution
+    direct = one_thread(solve_on_meshes)([mesh, found.bodies[1].mesh], problem, 16.0, Clock())
     assert direct.half_width * chosen.length == pytest.approx(results[".inp"].a, rel=1e-10)
-    assert direct.ends == pytest.approx(level.ends, abs=1e-10)
+    assert direct.zone_ends == pytest.approx(found.zone_ends, abs=1e-10)
 
 
 def counter_clockwise(mesh):

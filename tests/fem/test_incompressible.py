@@ -9,8 +9,9 @@ import pytest
 import partialslip
 from partialslip.judge import cell_errors
 from partialslip.result import Clock, Traction
-from partialslip_fem import model
-from partialslip_fem.level import solve_level
+from partialslip_fem.bodies import Grading
+from partialslip_fem.problem import scaled
+from partialslip_fem.solving import mesh_and_solve
 
 SCENES = ["hertz-small-tension", "hertz-large-tension"]
 NU = (0.0, 0.45, 0.49, 0.499, 0.4999)
@@ -27,19 +28,18 @@ def errors(name, order, nu, growth):
     scene = scene_of(name, nu)
     exact = partialslip.run(scene, ["exact"]).results["exact"]
     L, stress = scene.length, scene.P / scene.length
-    problem = replace(model._scaled(scene, partialslip.plan(scene)), order=order)
+    problem = replace(scaled(scene, partialslip.plan(scene)), order=order)
     a, ends = exact.a / L, np.array([-exact.a, -exact.m, exact.n, exact.a]) / L
-    level = solve_level(
-        problem, 16 * a, (-1.2 * a, 1.2 * a), dict.fromkeys((ends + 3e-5).tolist(), 1e-4), growth, Clock()
-    )
-    x, p = level.body.x, level.pressure()
-    q1, q2 = level.shear(level.history.q1), level.shear(level.history.q2)
+    grading = Grading((-1.2 * a, 1.2 * a), dict.fromkeys((ends + 3e-5).tolist(), 1e-4), growth)
+    solution = mesh_and_solve(problem, 16 * a, grading, Clock())
+    x, p = solution.lower.x, solution.pressure()
+    q1, q2 = solution.shear(solution.history.q1), solution.shear(solution.history.q2)
 
     def at(points):
         return stress * p(points / L), stress * (q2(points / L) - q1(points / L))
 
-    found = Traction(x * L, *at(x * L), q1=None, q2=None, at=at, breaks=level.ends * L, cells=x[::order] * L)
-    return np.array([np.abs(level.ends - ends[[0, 3, 1, 2]]).max() / a, cell_errors(found, exact.traction)[1]])
+    found = Traction(x * L, *at(x * L), q1=None, q2=None, at=at, breaks=solution.zone_ends * L, cells=x[::order] * L)
+    return np.array([np.abs(solution.zone_ends - ends[[0, 3, 1, 2]]).max() / a, cell_errors(found, exact.traction)[1]])
 
 
 @pytest.mark.parametrize("name", SCENES)

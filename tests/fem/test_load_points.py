@@ -7,7 +7,7 @@ import partialslip
 from partialslip import parse_scene, plan
 from partialslip.judge import cell_means
 from partialslip.result import Traction
-from partialslip_fem import level, solve
+from partialslip_fem import solve, solving
 
 ACCURACY = 1e-3
 LOW, HIGH = np.sqrt(0.2), np.sqrt(0.75)  # stick zones: of the first loading, to 0.8 f P, and of the cycle, by 0.5 f P
@@ -99,7 +99,7 @@ def test_fully_reversed_scenes_have_no_other_kinks():
 @pytest.mark.fault
 def test_kinks_left_out_are_seen(monkeypatch):
     """Deliberate fault: meshes that follow the ends of the change of q only."""
-    monkeypatch.setattr(level, "_kinks", lambda *_: ())
+    monkeypatch.setattr(solving, "shear_kinks", lambda *_: ())
     assert off(solve(scene(), plan(scene()))).max() > 2e-3
 
 

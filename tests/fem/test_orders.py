@@ -14,9 +14,10 @@ import pytest
 import partialslip
 from partialslip.judge import cell_errors
 from partialslip.result import Clock, Traction
-from partialslip_fem import level as levels
-from partialslip_fem import model
-from partialslip_fem.level import solve_level
+from partialslip_fem import mesh_solution
+from partialslip_fem.bodies import Grading
+from partialslip_fem.problem import scaled
+from partialslip_fem.solving import mesh_and_solve
 
 SCENE = partialslip.load_scene("hertz-small-tension")
 EXACT = partialslip.run(SCENE, ["exact"]).results["exact"]
@@ -26,23 +27,23 @@ ENDS = np.array([-EXACT.a, -EXACT.m, EXACT.n, EXACT.a]) / EXACT.a
 def solved(order, sizes, growth):
     """On one mesh with elements of ``sizes`` at points of the contact line; lengths in the exact a."""
     a = EXACT.a / SCENE.length
-    problem = replace(model._scaled(SCENE, partialslip.plan(SCENE)), order=order)
+    problem = replace(scaled(SCENE, partialslip.plan(SCENE)), order=order)
     sizes = {float(x * a): size * a for x, size in sizes.items()}
-    return solve_level(problem, 16 * a, (-1.2 * a, 1.2 * a), sizes, growth, Clock())
+    return mesh_and_solve(problem, 16 * a, Grading((-1.2 * a, 1.2 * a), sizes, growth), Clock())
 
 
-def errors(level):
+def errors(solution):
     """Of a, m, n (in a), p and q (relative L2 of cell averages)."""
-    L, stress, x = SCENE.length, SCENE.P / SCENE.length, level.body.x
-    p, q1, q2 = level.pressure(), level.shear(level.history.q1), level.shear(level.history.q2)
+    L, stress, x = SCENE.length, SCENE.P / SCENE.length, solution.lower.x
+    p, q1, q2 = solution.pressure(), solution.shear(solution.history.q1), solution.shear(solution.history.q2)
 
     def at(points):
         return stress * p(points / L), stress * (q2(points / L) - q1(points / L))
 
     found = Traction(
-        x * L, *at(x * L), q1=None, q2=None, at=at, breaks=level.ends * L, cells=x[:: level.body.order] * L
+        x * L, *at(x * L), q1=None, q2=None, at=at, breaks=solution.zone_ends * L, cells=x[:: solution.lower.order] * L
     )
-    ends = np.array([level.half_width, -level.stick.left, level.stick.right]) * L
+    ends = np.array([solution.half_width, -solution.stick.left, solution.stick.right]) * L
     return np.array([*np.abs(ends - [EXACT.a, EXACT.m, EXACT.n]) / EXACT.a, *cell_errors(found, EXACT.traction)])
 
 
@@ -55,8 +56,8 @@ def uniform(order, h):
 
 def graded(order, growth, ends=ENDS):
     """Errors and unknowns on a mesh graded to the ends."""
-    level = solved(order, dict.fromkeys(ends + 3e-6, 1e-5), growth)  # vertices a little beside them
-    return errors(level), level.body.stiffness.shape[0]
+    solution = solved(order, dict.fromkeys(ends + 3e-6, 1e-5), growth)  # vertices a little beside them
+    return errors(solution), solution.lower.stiffness.shape[0]
 
 
 @pytest.mark.parametrize(
@@ -92,14 +93,14 @@ def test_dividing_nodal_forces_by_weights_spoils_odd_orders(monkeypatch):
     """Deliberate fault. Closed Newton-Cotes weights of even order are exact to one degree more than the elements,
     those of odd order are not: the force of a node between unequal cells is then shared wrongly by O(h p'), and on
     graded meshes, whose cells remain unequal, that does not go away."""
-    true = levels.traction
+    true = mesh_solution.traction
 
     def divided(body, forces):
         return true(body, body.mass @ (forces / body.weights))
 
     meshes = {order: solved(order, dict.fromkeys(ENDS + 3e-6, 1e-5), 0.5) for order in (2, 3)}
-    right = {order: errors(level)[3] for order, level in meshes.items()}
-    monkeypatch.setattr(levels, "traction", divided)
-    wrong = {order: errors(level)[3] for order, level in meshes.items()}
+    right = {order: errors(solution)[3] for order, solution in meshes.items()}
+    monkeypatch.setattr(mesh_solution, "traction", divided)
+    wrong = {order: errors(solution)[3] for order, solution in meshes.items()}
     assert wrong[3] > 3 * right[3]
     assert wrong[2] < 1.2 * right[2]

@@ -14,7 +14,7 @@ import partialslip
 from partialslip.condensed import history
 from partialslip.condensed.bounded import Solution
 from partialslip.verify.random_scenes import draw
-from partialslip_fem import adapt
+from partialslip_fem import goals
 
 SEED = 13
 CERTIFIED = 1e-10  # in f p0, and in f P
@@ -32,17 +32,17 @@ class Step(NamedTuple):
 @contextmanager
 def recorded():
     """The load steps that are solved meanwhile."""
-    steps, original, finest = [], history.solve_bounded, adapt._FINEST
+    steps, original, finest = [], history.solve_bounded, goals.FINEST
 
     def recording(*problem):
         steps.append(Step(problem[:5], original(*problem)))
         return steps[-1].solution
 
-    history.solve_bounded, adapt._FINEST = recording, FINEST
+    history.solve_bounded, goals.FINEST = recording, FINEST
     try:
         yield steps
     finally:
-        history.solve_bounded, adapt._FINEST = original, finest
+        history.solve_bounded, goals.FINEST = original, finest
 
 
 def duality_gap(C, g, lower, upper, total, x):

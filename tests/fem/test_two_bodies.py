@@ -7,9 +7,11 @@ from scipy.interpolate import CubicSpline
 import partialslip
 from partialslip import load_scene, plan
 from partialslip.result import Clock
-from partialslip_fem import adapt, model, solve
+from partialslip_fem import solve
+from partialslip_fem.adapt import adapt
 from partialslip_fem.elasticity import body
 from partialslip_fem.mortar import transfer
+from partialslip_fem.problem import scaled
 from partialslip_meshes import block
 
 COARSE = "fem.accuracy=1e-3"
@@ -105,15 +107,15 @@ def test_matching_and_not_matching_agree(different):
 def test_third_law_and_moment_balance():
     """What each body's own stiffness says that it feels at its contact nodes, and what its back holds against it."""
     scene = load_scene("hertz-large-tension", [COARSE, *BLOCKS, *STIFF, FINER, "load.cycles=3"])
-    problem = model._scaled(scene, plan(scene, subsurface=True))
-    found = adapt.adapt(problem, 1e-3, 16.0, Clock(), lambda _: None).level
-    shear, T = found.on_line(found.history.at_ends[1]), transfer(*(half.body for half in found.halves))
+    problem = scaled(scene, plan(scene, subsurface=True))
+    found = adapt(problem, 1e-3, 16.0, Clock(), lambda _: None).solution
+    shear, T = found.on_line(found.history.at_ends[1]), transfer(*(each.body for each in found.bodies))
     felt = []
-    for half, way in zip(found.halves, (1, -1), strict=True):
+    for half, way in zip(found.bodies, (1, -1), strict=True):
         forces = np.concatenate([-way * shear, -found.pressing.x])
         if way < 0:
             forces = np.concatenate([T.T @ part for part in np.split(forces, 2)])
-        u = half.condensed.displace(forces[:, None])
+        u = half.condensation.displace(forces[:, None])
         reactions = half.body.stiffness @ u[:, 0]
         contact, back = (
             reactions[dofs] * [[1.0], [way]] for dofs in (half.body.contact, half.body.held.reshape(2, -1))

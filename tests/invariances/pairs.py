@@ -23,11 +23,11 @@ from partialslip.halfplane import marching
 from partialslip.judge import Q_BAR, cell_means
 from partialslip.result import Clock, Result
 from partialslip.scene import Scene
-from partialslip_fem import level, model
-from partialslip_fem.adapt import Adapted
-from partialslip_fem.contact import Half
-from partialslip_fem.level import Problem
+from partialslip_fem import bodies, model, solving
+from partialslip_fem.contact import CondensedBody
+from partialslip_fem.mesh_solution import Adapted
 from partialslip_fem.mortar import transfer
+from partialslip_fem.problem import Problem
 from partialslip_meshes import Mesh, block
 
 METHODS = {"exact": halfplane.solve, "march": marching.solve, "fem": model.solve}
@@ -134,7 +134,7 @@ def guise(mesh: Callable[..., Mesh] = block, *patches: Any, own: bool = False) -
         if not own:
             stack.enter_context(patch.object(marching, "_MESHES", ((1e-3, 0.1),)))
             stack.enter_context(patch.object(steps, "refined", lambda *given: given[3]))
-        stack.enter_context(patch.object(level, "block", mesh))
+        stack.enter_context(patch.object(bodies, "block", mesh))
         for each in patches:
             stack.enter_context(each)
         yield
@@ -233,7 +233,9 @@ def the_first_mesh() -> Any:
     def uniform(problem: Problem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
         if not first:
             first.append(true_uniform(problem, size, width, clock, *rest))
-        return replace(first[0], level=level._level(problem, first[0].level.halves, 0, clock, steps.MOST))
+        return replace(
+            first[0], solution=solving.solve_contact(problem, first[0].solution.bodies, 0, clock, steps.MOST)
+        )
 
     return patch.object(model, "uniform", uniform)
 
@@ -281,13 +283,13 @@ def common_tension(tension: float, kind: str, *settings: str) -> Apart:
     """Both bodies stretched alike, by so many times what the scene's tension does to the lower one: what their finite
     elements, whose nodes do not match, say of the way their surfaces move is added to what the surfaces do."""
     scene = scene_of(kind, "fem.lower_size=0.7", *settings)
-    true_compliances, true_march = level.relative_compliances, coupled.march
+    true_compliances, true_march = solving.relative_compliances, coupled.march
     moved: list[Array] = []
 
-    def compliances(halves: tuple[Half, ...], *rest: Any) -> coupled.Relative:
+    def compliances(halves: tuple[CondensedBody, ...], *rest: Any) -> coupled.Relative:
         lower, upper = (
             stretched(half, part.kappa)
-            for half, part in zip(halves, model._scaled(scene, plan(scene)).parts, strict=True)
+            for half, part in zip(halves, model.scaled(scene, plan(scene)).parts, strict=True)
         )
         moved[:] = [lower - transfer(halves[0].body, halves[1].body) @ upper]
         return true_compliances(halves, *rest)
@@ -295,23 +297,23 @@ def common_tension(tension: float, kind: str, *settings: str) -> Apart:
     def march(C: Any, gap: Array, x: Array, *rest: Any) -> Any:
         return true_march(C, gap, x + tension * moved[0], *rest)
 
-    true_scaled = model._scaled
+    true_scaled = model.scaled
 
     def solved_back(*given: Any) -> Problem:  # factors are kept for stretched()
         return replace(true_scaled(*given), inside=True)
 
     patches = (
-        patch.object(level, "relative_compliances", compliances),
+        patch.object(solving, "relative_compliances", compliances),
         patch.object(coupled, "march", march),
-        patch.object(model, "_scaled", solved_back),
+        patch.object(model, "scaled", solved_back),
     )
     return compared("fem", scene, scene, same, block, *patches)
 
 
-def stretched(half: Half, kappa: float) -> Array:
+def stretched(half: CondensedBody, kappa: float) -> Array:
     """How the contact line's nodes move along x when the body, held at its sides and back, is stretched by one."""
     held = (half.body.held_points * [[1.0], [-(3 - kappa) / (1 + kappa)]]).reshape(-1, 1)
-    moved = half.condensed._solve(np.zeros((half.body.contact.size, 1)), held)
+    moved = half.condensation._displace_free(np.zeros((half.body.contact.size, 1)), held)
     result: Array = moved[-half.body.contact.size :, 0][: len(half.body.x)]
     return result
 
@@ -326,10 +328,13 @@ def shifted(shift: float, approach: float, method: str, kind: str, *settings: st
 
     def uniform(problem: Problem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
         here = true_uniform(problem, size, width, clock, *rest)
-        meshes = [replace(half.mesh, points=half.mesh.points + np.array([shift, 0])) for half in here.level.halves]
+        meshes = [replace(half.mesh, points=half.mesh.points + np.array([shift, 0])) for half in here.solution.bodies]
         there = replace(problem, gap=lambda x: problem.gap(x - shift) + approach)
         return replace(
-            here, level=level.solve_on(meshes, there, here.level.halves[0].mesh.points.max(), clock, steps=steps.MOST)
+            here,
+            solution=solving.solve_on_meshes(
+                meshes, there, here.solution.bodies[0].mesh.points.max(), clock, steps=steps.MOST
+            ),
         )
 
     patches = patch.object(marching, "march_refined", march), patch.object(model, "uniform", uniform)

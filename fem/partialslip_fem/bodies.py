@@ -1,0 +1,130 @@
+"""Meshing the bodies of a problem and condensing them to their contact lines."""
+
+import math
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from partialslip.errors import InputError
+from partialslip.result import Clock
+from partialslip_fem.condensation import Condensation
+from partialslip_fem.contact import CondensedBody
+from partialslip_fem.elasticity import body
+from partialslip_fem.farfield import half_plane
+from partialslip_fem.problem import Part, Problem
+from partialslip_meshes import Mesh, block
+
+_OVERHANG = 1e-9  # of the other contact line's length: overhang beyond its ends that is rounding of coordinates
+_KEPT = 2  # sets of bodies in Kept: those of the first mesh, and of the uniform mesh that follows
+
+
+class Grading(NamedTuple):
+    """Element sizes of a mesh.
+
+    Parameters
+    ----------
+    contact, sizes, growth, along
+        As for :func:`partialslip_meshes.block`.
+    facet_error : float, optional
+        Largest distance of a round face from the straight sides of the elements, in half-widths of the contact line.
+    corner_error : float, optional
+        Largest change of the contact by the elements at corners of finite bodies, relative.
+    """
+
+    contact: tuple[float, float]
+    sizes: Mapping[float, float]
+    growth: float
+    along: float | None = None
+    facet_error: float | None = None
+    corner_error: float | None = None
+
+
+class Kept(threading.local):
+    """Condensed bodies of the last meshes, for runs with other loads, friction or profiles on the same meshes.
+
+    Pass one instance to several runs. Each thread has its own bodies in it.
+    """
+
+    def __init__(self) -> None:
+        self._bodies: dict[tuple[object, ...], tuple[CondensedBody, ...]] = {}
+
+    def find(self, key: tuple[object, ...]) -> tuple[CondensedBody, ...] | None:
+        """Return the bodies stored under ``key``, or None."""
+        return self._bodies.get(key)
+
+    def add(self, key: tuple[object, ...], bodies: tuple[CondensedBody, ...]) -> None:
+        """Store ``bodies`` under ``key``; drop the oldest set if there are too many."""
+        self._bodies[key] = bodies
+        for oldest in list(self._bodies)[:-_KEPT]:
+            del self._bodies[oldest]
+
+
+def key_of(problem: Problem, width: float, grading: Grading) -> tuple[object, ...]:
+    """Key in :class:`Kept` of the bodies of ``problem`` on a mesh: everything that their compliances depend on."""
+    kind = (problem.parts, problem.order, problem.far_field, problem.backend, problem.path is None, problem.inside)
+    return (*kind, width, *grading._replace(sizes=tuple(grading.sizes.items())))  # type: ignore[arg-type]
+
+
+def mesh_bodies(problem: Problem, width: float, grading: Grading, clock: Clock) -> list[Mesh]:
+    """Mesh every part of ``problem``. ``width`` is the half-width of blocks that stand for half-planes."""
+    meshes = []
+    for part in problem.parts:
+        with clock.phase("mesh"):
+            mesh = part.mesh or _block(part, width, grading)
+        clock.add_meshing(mesh.cpu_s)
+        meshes.append(mesh)
+    return meshes
+
+
+def condense(meshes: Sequence[Mesh], problem: Problem, width: float, clock: Clock) -> tuple[CondensedBody, ...]:
+    """Assemble and condense the bodies on ``meshes``, in the order of the problem's parts.
+
+    Raises
+    ------
+    InputError
+        If the contact lines of meshes from files do not lie opposite each other.
+    """
+    if len(meshes) > 1 and any(part.mesh for part in problem.parts):
+        meshes = [_opposite(*meshes), *meshes[1:]]
+    return tuple(_condensed(*pair, problem, width, clock) for pair in zip(meshes, problem.parts, strict=True))
+
+
+def _condensed(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) -> CondensedBody:
+    with clock.phase("assembly"):
+        assembled = body(mesh, part.kappa, problem.order, part.compliance, part.held, part.pulled)
+    far = None
+    if problem.far_field == "half-plane" and not part.finite:
+        with clock.phase("far field"):
+            far = half_plane(assembled.held_points, assembled.x, width, part.kappa, part.compliance)
+    with clock.phase("factorisation"):
+        shear = problem.path is not None
+        return CondensedBody(mesh, assembled, Condensation(assembled, far, problem.backend, shear, problem.inside))
+
+
+def _block(part: Part, width: float, grading: Grading) -> Mesh:
+    half_width, height = part.extent or (width, width)
+    contact, sizes, growth, along, facet_error, corner_error = grading
+    finer = {x: size * part.fineness for x, size in sizes.items()}
+    everywhere = None if along is None else along * part.fineness
+    facets = None
+    if part.face and facet_error:
+        # a chord of length c is c^2/(8 R) off its arc; the effect on the contact decreases with the distance
+        facets = math.sqrt(8 * facet_error * part.face.radius / (contact[1] - contact[0]) * 2)
+    corners = part.corners(corner_error) if part.extent and corner_error else {}
+    shape = (part.holder, part.face, facets, corners)
+    return block(half_width, contact, finer, growth * part.fineness, height, everywhere, *shape)
+
+
+def _opposite(mesh: Mesh, other: Mesh) -> Mesh:
+    """Restrict the contact line of ``mesh`` to the edges opposite the contact line of ``other``."""
+    line, ends = mesh.lines["contact"], other.points[other.lines["contact"], 0]
+    x, room = mesh.points[line, 0], _OVERHANG * np.ptp(ends)
+    line = line[((x >= ends.min() - room) & (x <= ends.max() + room)).all(axis=1)]
+    if not len(line):
+        raise InputError(
+            "bodies.lower, bodies.upper: the contact lines must lie opposite each other; is their unit right?"
+        )
+    return replace(mesh, lines=mesh.lines | {"contact": line})

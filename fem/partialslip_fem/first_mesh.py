@@ -1,0 +1,82 @@
+"""The first mesh: a contact line that encloses the contact, with no knowledge of where the contact ends."""
+
+import numpy as np
+
+from partialslip.condensed.steps import MOST
+from partialslip.errors import InputError
+from partialslip.result import Clock
+from partialslip_fem import solving
+from partialslip_fem.bodies import Grading, Kept
+from partialslip_fem.mesh_solution import MeshSolution
+from partialslip_fem.problem import Part, Problem
+
+FIRST_SIZE = 0.1  # element size, in half-widths of the contact line
+_GROWTH = 1.0  # of the first mesh
+_POINTS = 16  # points of that element size, evenly spaced along the contact line
+_FILLS = 0.95  # largest contact line, in the width of a finite block: it keeps off the block's corners
+
+
+def solve_on_first_mesh(
+    problem: Problem, width: float, clock: Clock, keep: Kept | None = None
+) -> tuple[MeshSolution, int, int]:
+    """Double the contact line until it encloses the contact.
+
+    Parameters
+    ----------
+    problem : Problem
+    width : float
+        Half-width of blocks that stand for half-planes, in half-widths of the contact line.
+    clock, keep
+        As for :func:`partialslip_fem.solving.mesh_and_solve`.
+
+    Returns
+    -------
+    MeshSolution, int, int
+        The solution, and the number of meshes and of factorisations.
+
+    Raises
+    ------
+    InputError
+        If the contact does not fit on a finite body.
+    """
+    reach, limit, meshes, factored = 1.5 + max(problem.kinks, default=0.0), contact_line_limit(problem), 0, 0
+    steps = MOST if problem.meshed else None  # on meshes from files this solution is also the last
+    while True:
+        reach = min(reach, limit)
+        sizes = dict.fromkeys(np.linspace(-reach, reach, _POINTS).tolist(), 2 * FIRST_SIZE * reach)
+        grading = Grading((-reach, reach), sizes, _GROWTH)
+        solution = solving.mesh_and_solve(problem, width * reach, grading, clock, keep, steps)
+        meshes, factored = meshes + 1, factored + solution.factored
+        if solution.enclosed:
+            return solution, meshes, factored
+        if reach == limit:
+            raise too_narrow(problem)
+        reach *= 2
+
+
+def contact_line_limit(problem: Problem) -> float:
+    """Largest |x| of the contact line; infinite on half-planes.
+
+    Raises
+    ------
+    InputError
+        If a kink of the profile lies beyond it.
+    """
+    limit = min(_limit(part) for part in problem.parts)
+    if max(problem.kinks, default=0.0) >= limit:
+        raise too_narrow(problem)
+    return limit
+
+
+def too_narrow(problem: Problem) -> InputError:
+    """The error for finite bodies that are too narrow for the contact."""
+    names = (f"bodies.{part.name}.{'mesh' if part.mesh else 'width'}" for part in problem.parts if part.finite)
+    return InputError(
+        f"{' and '.join(names)}: must be wider than the contact, which fills more than {_FILLS:.0%} of it"
+    )
+
+
+def _limit(part: Part) -> float:
+    if part.mesh:
+        return float(np.abs(part.mesh.points[part.mesh.lines["contact"], 0]).max())
+    return _FILLS * part.extent[0] if part.extent else np.inf

@@ -1,0 +1,169 @@
+"""What an accuracy requires of the mesh: element sizes at the ends of zones, growth, round faces and corners.
+
+The constants of this module and of :mod:`partialslip_fem.adapt` change the cost of a run. They do not enter its
+error estimates, except ``_FACET_SHARE``, ``_CORNER_ERROR`` and ``_TILTS``, which are added to these. Scripts that
+measure the constants are named where there are any.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.bars import BARS
+from partialslip_fem import estimate
+from partialslip_fem.mesh_solution import MeshSolution
+from partialslip_fem.problem import Problem
+
+# Bounds on element sizes at the ends of zones, in contact half-widths.
+FINEST = 1e-7  # smallest: with smaller elements rounding errors dominate (benchmarks/accuracy.py floor)
+COARSEST = 0.005  # largest on a mesh whose errors are estimated; coarser meshes only locate the ends
+FINER = 16.0  # largest ratio of these sizes from mesh to mesh
+
+# Growth of the elements away from the ends: errors there are about (growth/2.8)^(2 order)
+# (benchmarks/accuracy.py orders).
+_SMOOTH = 2.8
+_LARGEST_GROWTH = 0.7
+
+# Shares of the accuracy asked for.
+AIM = 0.5  # error that meshes are designed for: estimates are right within a factor of two (benchmarks/estimates.py)
+BAR = 0.9  # largest estimate that is accepted
+_END_SHARE = 0.33  # of AIM: largest error due to the elements at the ends
+_FACET_SHARE = 0.25  # largest distance of a round face from the elements, and error of the ends due to it
+_CORNER_ERROR = 10.0  # largest change of the contact due to elements at corners, as a multiple of the accuracy ...
+LOOSEST = 1e-2  # ... and absolute; also the loosest accuracy that an allowance of CPU seconds may lead to
+# Errors at the contact per change due to the corners of blocks.
+_TILTS = {"left": 1e-3, "right": 1e-3, "p": 5e-3, "q": 5e-3, "q1": 5e-3, "q2": 5e-3}
+
+_REACHED = 1.01  # element sizes within this factor of the goal count as having reached it
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What one ``accuracy`` requires of the mesh and of the estimated errors.
+
+    Parameters
+    ----------
+    accuracy : float
+    bar : float
+        Largest estimated error.
+    end_error : float
+        Largest error due to the elements at the ends.
+    growth : float
+        Growth of the elements for which the error away from the ends is small enough.
+    facet_error, corner_error : float
+        As for :class:`partialslip_fem.bodies.Grading`.
+    tilts : dict of float
+        Errors due to the corners, by key.
+    """
+
+    accuracy: float
+    bar: float
+    end_error: float
+    growth: float
+    facet_error: float
+    corner_error: float
+    tilts: dict[str, float]
+
+    @classmethod
+    def at(cls, accuracy: float, problem: Problem) -> "Goal":
+        """The goal for ``accuracy`` in ``problem``."""
+        corner_error = min(_CORNER_ERROR * accuracy, LOOSEST)
+        tilting = any(part.extent for part in problem.parts)
+        return cls(
+            accuracy=accuracy,
+            bar=BAR * accuracy,
+            end_error=_END_SHARE * AIM * accuracy,
+            growth=growth_for(AIM * accuracy / 2, problem.order),
+            facet_error=_FACET_SHARE * accuracy if any(part.face for part in problem.parts) else 0.0,
+            corner_error=corner_error,
+            tilts={key: share * corner_error * tilting for key, share in _TILTS.items()},
+        )
+
+    def element_size(self, solution: MeshSolution, problem: Problem) -> float:
+        """Element size at the ends that suffices, in contact half-widths."""
+        size = self.end_error / worst(estimate.end_errors(solution, *_far_apart(solution)))
+        size = min(size, estimate.stick_element_size(solution, gaps(solution, problem), self.end_error))
+        return min(max(size, FINEST), COARSEST / 2)
+
+
+class NextMesh(NamedTuple):
+    """Element size at the ends in contact half-widths, ``growth`` away from them, and by which factor the elements at
+    the ends are ``finer`` than on the mesh before."""
+
+    size: float
+    growth: float
+    finer: float
+
+
+def reached(size: float, goal: float) -> bool:
+    """Whether the element ``size`` is as small as the ``goal``."""
+    return size <= _REACHED * goal
+
+
+def course(size: float, finer: float, goal: float, least: float, order: int) -> list[NextMesh]:
+    """The meshes from element ``size`` at the ends to ``goal``.
+
+    Parameters
+    ----------
+    size, goal : float
+        In contact half-widths.
+    finer : float
+        Refinement of the next mesh, if ``size`` has reached ``goal``; otherwise equal steps of at most ``FINER``.
+    least : float
+        Growth of the last mesh; the growth of the meshes before follows from their element size.
+    order : int
+        Polynomial order of the elements.
+    """
+    if not reached(size, goal):
+        finer = (size / goal) ** (1 / math.ceil(math.log(size / goal, FINER)))
+    meshes = []
+    while True:
+        size = max(size / finer, FINEST)
+        growth = max(least, growth_for(size, order)) if not reached(size, goal) else least
+        meshes.append(NextMesh(size, growth, finer))
+        if size <= max(_REACHED * goal, FINEST):
+            return meshes
+
+
+def growth_for(error: float, order: int) -> float:
+    """Growth for which elements of ``order`` leave about ``error`` away from the ends."""
+    return float(min(_SMOOTH * error ** (0.5 / order), _LARGEST_GROWTH))
+
+
+def sizes_at(points: Array, sizes: Mapping[float, float], growth: float) -> Array:
+    """Element sizes at ``points`` (k,) of the contact line, on a mesh graded to other points with given ``sizes``."""
+    at, size = np.array([*sizes]), np.array([*sizes.values()])
+    smallest: Array = (size + growth * np.abs(points[:, None] - at)).min(axis=1)
+    return smallest
+
+
+def gaps(solution: MeshSolution, problem: Problem) -> Array:
+    """Distances of each zone end to the zone ends and profile kinks around it, (2, k), in contact half-widths.
+
+    Row 0: from each end of the stick zone to the other end of the stick zone; infinite for other ends. Row 1: to the
+    nearest of all other ends and kinks.
+    """
+    kinks = np.array(problem.kinks)
+    apart = np.abs(solution.zone_ends[:, None] - np.concatenate([solution.zone_ends, kinks, -kinks]))
+    np.fill_diagonal(apart, np.inf)
+    across = np.full(len(solution.zone_ends), np.inf)
+    if solution.stick:
+        across[2:4] = apart[2, 3]
+        apart[2, 3] = apart[3, 2] = np.inf
+    found: Array = np.maximum([across, apart.min(axis=1)], np.finfo(float).tiny) / solution.half_width
+    return found
+
+
+def worst(errors: Mapping[str, float]) -> float:
+    """The largest of ``errors``, each divided by its bar relative to the bar of an end; 0 if there are none."""
+    return max((error / BARS[key] for key, error in errors.items()), default=0.0)
+
+
+def _far_apart(solution: MeshSolution) -> tuple[Array, Array, Array]:
+    """Arguments of ``end_errors`` for elements as large as the contact half-width at ends that are far apart."""
+    count = len(solution.zone_ends)
+    return np.ones(count), np.full((2, count), np.inf), np.zeros(len(solution.kinks))

@@ -1,0 +1,170 @@
+"""The solution on one mesh of each body. Scaled as in :mod:`partialslip_fem.problem`."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.interpolate import PPoly
+
+from partialslip.arrays import Array, Indices
+from partialslip.condensed.bounded import Solution
+from partialslip.condensed.coupled import Pressed
+from partialslip.condensed.ends import StickInterval
+from partialslip.condensed.history import History
+from partialslip_fem.contact import CondensedBody
+from partialslip_fem.elasticity import Body
+from partialslip_fem.recovery import traction
+
+
+@dataclass(frozen=True)
+class MeshSolution:
+    """Contact forces, contact ends and stick zone on one mesh of each body.
+
+    Parameters
+    ----------
+    bodies : tuple of CondensedBody
+        The lower and the upper body; one entry if the bodies are mirror images.
+    factored : int
+        Factorisations made for this solution.
+    nodes : (k,) int array
+        Nodes of the lower contact line that are in contact at load point 1 or 2.
+    pressing : Solution
+        Normal forces on all nodes of the contact line, at load point 2.
+    history : History or None
+        Tangential forces on ``nodes`` along the load path; None without friction.
+    left, right : float
+        Ends of the contact at load point 2.
+    stick : StickInterval or None
+        Stick zone, if there is one.
+    ends_at_1 : (float, float) or ()
+        Ends of the contact at load point 1, if they can differ from those at load point 2.
+    kinks : tuple of float
+        Points where q1 or q2, but not q2 - q1, has a kink, besides the ends of the stick zone.
+    coupled : bool
+        Whether p and q were solved together.
+    pressed : Pressed or None
+        How coupled bodies were pressed together before the load path.
+    step_errors : mapping of str to float
+        Errors of the load steps (:mod:`partialslip.condensed.step_errors`), where they were asked for.
+    """
+
+    bodies: tuple[CondensedBody, ...]
+    factored: int
+    nodes: Indices
+    pressing: Solution
+    history: History | None
+    left: float
+    right: float
+    stick: StickInterval | None
+    ends_at_1: tuple[float, float] | tuple[()] = ()
+    kinks: tuple[float, ...] = ()
+    coupled: bool = False
+    pressed: Pressed | None = None
+    step_errors: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def slips_when_pressed(self) -> bool:
+        """Whether coupled bodies slipped while P alone acted on them and no load cycle follows.
+
+        The stick zone is then where the bodies stuck throughout.
+        """
+        still = self.history is not None and not self.history.path.moves
+        return bool(still and self.pressed and self.pressed.slipped())
+
+    @property
+    def lower(self) -> Body:
+        """The lower body. Nodal contact forces belong to the nodes of its contact line."""
+        return self.bodies[0].body
+
+    @property
+    def dofs(self) -> int:
+        """Degrees of freedom of all bodies."""
+        return sum(each.body.stiffness.shape[0] for each in self.bodies)
+
+    @property
+    def zone_ends(self) -> Array:
+        """Points to refine at: ends of the contact at load point 2, of the stick zone, of the contact at load point
+        1."""
+        stick = (self.stick.left, self.stick.right) if self.stick else ()
+        return np.array([self.left, self.right, *stick, *self.ends_at_1])
+
+    @property
+    def contact_end_places(self) -> tuple[list[int], list[int]]:
+        """Indices in ``zone_ends`` of the left and of the right ends of the contact."""
+        count = len(self.zone_ends)
+        return ([0, count - 2], [1, count - 1]) if self.ends_at_1 else ([0], [1])
+
+    @property
+    def contact_ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Ends of the contact at load points 1 and 2."""
+        second = self.left, self.right
+        return (self.ends_at_1 or second), second
+
+    @property
+    def enclosed(self) -> bool:
+        """Whether the contact ends within the contact line."""
+        return bool(self.pressing.x[0] == 0 == self.pressing.x[-1])
+
+    @property
+    def pieces(self) -> int:
+        """Number of pieces of the contact that are an element or more apart."""
+        touching = np.lib.stride_tricks.sliding_window_view(self.pressing.x > 0, self.lower.order + 1)
+        cells = touching[:: self.lower.order].any(axis=1)
+        return int((np.diff(cells.astype(np.int8), prepend=0) == 1).sum())
+
+    @property
+    def half_width(self) -> float:
+        """Contact half-width at load point 2."""
+        return (self.right - self.left) / 2
+
+    @property
+    def iterations(self) -> int:
+        """Linear solves of the active-set iterations for normal contact and friction."""
+        return self.pressing.iterations + (self.history.iterations if self.history else 0)
+
+    def pressure(self) -> PPoly:
+        """p along the contact line at load point 2."""
+        return traction(self.lower, self.pressing.x)
+
+    def pressures(self, f: float) -> tuple[PPoly, PPoly] | None:
+        """p at load points 1 and 2 for the coefficient of friction ``f``; None if p is the same at both."""
+        if not self.history or not self.coupled:
+            return None
+        first, second = (self.shear(bound / f) for bound in self.history.bounds)
+        return first, second
+
+    def shear(self, forces: Array) -> PPoly:
+        """Traction along the contact line that is equivalent to ``forces`` (k,) on the nodes in contact."""
+        return traction(self.lower, self.on_line(forces))
+
+    def on_line(self, values: Array) -> Array:
+        """Extend ``values`` (k,) on the nodes in contact by zeros to the whole contact line, (n,)."""
+        result = np.zeros(len(self.lower.x))
+        result[self.nodes] = values
+        return result
+
+
+@dataclass(frozen=True)
+class Adapted:
+    """The solution on the last mesh, with error estimates and the work on all meshes.
+
+    Parameters
+    ----------
+    solution : MeshSolution
+    errors : dict of float
+        Estimated errors: ends in contact half-widths, tractions relative. Empty if nothing was refined.
+    meshes, factorizations, iterations : int
+        Numbers of meshes, factorisations and linear solves of the active-set iterations.
+    width : float
+        Half-width of blocks that stand for half-planes, in contact half-widths.
+    settled : float or None
+        Accuracy that the allowance of CPU seconds sufficed for; None without an allowance.
+    """
+
+    solution: MeshSolution
+    errors: dict[str, float]
+    meshes: int
+    factorizations: int
+    iterations: int
+    width: float
+    settled: float | None = None

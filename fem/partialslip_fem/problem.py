@@ -1,0 +1,238 @@
+"""The scaled problem of a scene: lengths in sqrt(A R P), forces in P, displacements in A P.
+
+A is the compliance of the pair of bodies, R the profile's radius and P the normal force per unit depth.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from scipy.interpolate import PPoly
+
+from partialslip.arrays import Array
+from partialslip.condensed.path import Path, load_path, lower_strain
+from partialslip.plan import Plan
+from partialslip.result.state import State
+from partialslip.scene import Hertz, Profile, Scene
+from partialslip.scene.bodies import Body
+from partialslip_fem.corners import free_exponent, held_exponent, size
+from partialslip_fem.elasticity import ALL_AROUND, Held
+from partialslip_fem.factor import Backend, default_backend
+from partialslip_meshes import Corner, Mesh, read
+
+Support = Literal["clamped", "roller", "sides"]
+_HELD: dict[Support, Held] = {
+    "clamped": (("back",), ("back",)),
+    "roller": (("left", "right"), ("back",)),
+    "sides": (("left", "right"), ("left", "right")),
+}
+
+
+@dataclass(frozen=True)
+class PadFace:
+    """Depth of a pad's curved face below its highest point, as a function of x.
+
+    Parameters
+    ----------
+    profile : Profile
+    length : float
+        Unit of length of x and depth, m.
+    """
+
+    profile: Profile
+    length: float
+
+    def __call__(self, x: Array) -> Array:
+        result: Array = self.profile.face_at(x * self.length) / self.length
+        return result
+
+    @property
+    def radius(self) -> float:
+        """Radius of curvature."""
+        return self.profile.R / self.length
+
+
+@dataclass(frozen=True)
+class Part:
+    """One of the two bodies. A part without ``extent`` and ``mesh`` is a block that stands for a half-plane.
+
+    Parameters
+    ----------
+    name : str
+        "lower" or "upper".
+    kappa : float
+        Kolosov's constant.
+    compliance : float
+        (kappa+1)/(2 mu), relative to the pair's A.
+    fineness : float
+        Element size, relative to the size that is asked for.
+    extent, holder : (float, float), optional
+        Half-width and height of a finite block, and of the holder below it.
+    face : PadFace, optional
+        Curved face; without it the face is flat.
+    mesh : Mesh, optional
+        Mesh from a file.
+    support : str
+        Which sides of a finite body are held.
+    pulled : bool
+        Whether the bulk tension acts on the right side.
+    """
+
+    name: str
+    kappa: float
+    compliance: float
+    fineness: float = 1.0
+    extent: tuple[float, float] | None = None
+    holder: tuple[float, float] | None = None
+    face: PadFace | None = None
+    mesh: Mesh | None = None
+    support: Support = "clamped"
+    pulled: bool = False
+
+    @property
+    def finite(self) -> bool:
+        """Whether the part is a finite body, not a block that stands for a half-plane."""
+        return self.extent is not None or self.mesh is not None
+
+    @property
+    def held(self) -> Held:
+        """Lines of the mesh that are held along x, and along y."""
+        if not self.finite:
+            return ALL_AROUND, ALL_AROUND
+        along_x, along_y = (
+            [line for line in lines if line != "right" or not self.pulled] for lines in _HELD[self.support]
+        )
+        return along_x, along_y
+
+    def corners(self, tolerance: float) -> dict[Corner, float]:
+        """Element sizes at the singular corners of a block.
+
+        With these sizes the corners change the contact by about ``tolerance``, relative.
+        """
+        assert self.extent
+        width, height = self.extent
+        across, (low, deep) = math.pi / 2, self.holder or self.extent
+        held = set(self.held[0]) & set(self.held[1])
+        found: dict[Corner, float] = {}
+        if held:  # a held side meets a free side
+            found["foot"] = held_exponent(across, self.kappa)
+        if held - {"back"}:
+            angle = across if not self.holder or low > width else 3 * across if low < width else 2 * across
+            found["shoulder"] = held_exponent(angle, self.kappa)
+        if self.holder and low != width and ("shoulder" not in found or low > width):
+            found["notch"] = free_exponent(3 * across)
+        least = min(width, height, low, deep)
+        return {corner: least * size(tolerance, exponent) for corner, exponent in found.items()}
+
+
+@dataclass(frozen=True)
+class Problem:
+    """The scaled contact problem; P = 1.
+
+    Parameters
+    ----------
+    gap : callable
+        Gap at points x (k,), smooth except at its ``kinks``.
+    kinks : tuple of float
+        Points x where the gap's slope or curvature jumps.
+    f : float
+        Coefficient of friction.
+    path : Path or None
+        Load path; None without friction.
+    parts : tuple of Part
+        The lower and the upper body; the lower body alone if the bodies are mirror images.
+    order : int
+        Polynomial order of the elements.
+    far_field : "half-plane" or "box"
+        Displacements of the outer boundary: those of a half-plane, or zero.
+    backend : str
+        Library that factors the stiffness.
+    start : two PPoly, optional
+        Tractions p and q at the beginning of the path.
+    coupled : bool
+        Whether p moves the surfaces along x and q moves them along y.
+    inside : bool
+        Whether displacements inside the bodies are needed.
+    strain : float
+        Bulk strain of the lower surface at load point 2. Used only without a ``path``.
+    similar : bool
+        Whether the contact keeps its shape while it grows, as in Hertz contact of half-planes.
+    accuracy : float
+        Accuracy asked for: error of the contact's ends, in its half-width.
+    """
+
+    gap: Callable[[Array], Array]
+    kinks: tuple[float, ...]
+    f: float
+    path: Path | None
+    parts: tuple[Part, ...]
+    order: int
+    far_field: Literal["half-plane", "box"]
+    backend: Backend
+    start: tuple[PPoly, PPoly] | None = None
+    coupled: bool = True
+    inside: bool = True
+    strain: float = 0.0
+    similar: bool = False
+    accuracy: float = 1e-3
+
+    @property
+    def meshed(self) -> bool:
+        """Whether every body has a mesh from a file."""
+        return all(part.mesh for part in self.parts)
+
+
+def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
+    """Scale ``scene``, with the effects in ``plan``, from the state ``start`` if given.
+
+    Raises
+    ------
+    InputError
+        If a mesh file cannot be read.
+    """
+    P, A, L = scene.P, scene.material.A, scene.length
+    sides = (("lower", scene.bodies.lower, scene.fem.lower_size), ("upper", scene.bodies.upper, 1.0))
+    kinds = zip(sides, scene.material.bodies, strict=True)
+    parts = tuple(_finite(Part(name, own.kappa, own.A / A, size), body, scene) for (name, body, size), own in kinds)
+    return Problem(
+        gap=lambda x: scene.gap_at(x * L) / (A * P),
+        kinks=tuple(kink / L for kink in scene.profile.kinks),
+        f=scene.friction.f,
+        path=load_path(scene, plan, start),
+        parts=parts[:1] if scene.fem.lower_size == 1 and not plan.needs("coupling") and scene.mirrored else parts,
+        order=scene.fem.order,
+        far_field=scene.fem.far_field,
+        backend=scene.fem.factor or default_backend(),
+        start=tuple(rescaled(q, L / P, 1 / L) for q in (start.p, start.q)) if start else None,
+        coupled=plan.needs("coupling"),
+        inside=plan.needs("subsurface"),
+        strain=lower_strain(scene, scene.load.points[scene.load.ends[1]][1]),
+        similar=isinstance(scene.profile, Hertz) and not scene.finite,
+        accuracy=scene.fem.accuracy,
+    )
+
+
+def rescaled(polynomials: PPoly, value: float, length: float) -> PPoly:
+    """Convert ``polynomials`` to other units: values times ``value``, abscissae times ``length``."""
+    powers = np.arange(len(polynomials.c) - 1, -1, -1)[:, None]
+    return PPoly(polynomials.c * value / length**powers, polynomials.x * length)
+
+
+def _finite(plain: Part, body: Body | None, scene: Scene) -> Part:
+    """Replace the half-plane ``plain`` by the finite ``body``, if there is one."""
+    if not body:
+        return plain
+    L, holder = scene.length, body.holder
+    face = PadFace(scene.profile, L) if body.kind == "pad" else None
+    part = replace(plain, face=face, support=body.support, pulled=body.pulled)
+    if body.mesh is not None:
+        needed = {line for lines in part.held for line in lines} | ({"right"} if body.pulled else set())
+        field = f"bodies.{part.name}.mesh"
+        return replace(part, mesh=read(field, body.mesh, (body.unit or 1.0) / L, face, sorted(needed)))
+    return replace(
+        part,
+        extent=((body.width or 0.0) / 2 / L, (body.height or 0.0) / L),
+        holder=(holder.width / 2 / L, holder.height / L) if holder else None,
+    )

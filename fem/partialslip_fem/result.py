@@ -1,0 +1,216 @@
+"""The result of the last mesh, in SI units: tractions, zones, certificate, estimates, counts, notes."""
+
+import numpy as np
+from scipy.interpolate import PPoly
+
+from partialslip.condensed.coupled import Pressed
+from partialslip.condensed.history import certificate, last_cycle_change
+from partialslip.condensed.regime import doubts, steady_state
+from partialslip.plan import Plan
+from partialslip.result import Clock, Result, Slip, Traction
+from partialslip.result.state import State
+from partialslip.scene import Scene
+from partialslip_fem.displacements import displace_bodies
+from partialslip_fem.estimate import rounding_error
+from partialslip_fem.fields import along_surfaces, deformed
+from partialslip_fem.mesh_solution import Adapted, MeshSolution
+from partialslip_fem.problem import Problem, rescaled
+from partialslip_fem.recovery import Pair
+
+
+def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock: Clock) -> Result:
+    """Convert the ``adapted`` solution of ``problem``, the scaled ``scene``, to SI units.
+
+    ``plan`` says whether to solve for displacements inside the bodies; ``clock`` has counted the CPU seconds.
+    """
+    solution, L, stress = adapted.solution, scene.length, scene.P / scene.length
+    accuracy = adapted.settled or scene.fem.accuracy
+    pressure = solution.pressure()
+    x = solution.lower.x[solution.nodes]
+    p0 = 2 / (np.pi * solution.half_width)
+    unit = scene.material.A * scene.P  # of displacement
+    certified = _certificate(problem, solution, p0)
+    weights = solution.lower.weights[solution.nodes]
+    history, pressures = solution.history, solution.pressures(problem.f)
+    change = last_cycle_change(history, weights, problem.f, p0) if history else None
+    found = steady_state(scene, history, solution.stick, solution.half_width, solution.slips_when_pressed)
+
+    q1, q2, at1, at2, dq = np.zeros_like(x), np.zeros_like(x), None, None, None
+    if history:
+        at1, at2 = solution.shear(history.q1), solution.shear(history.q2)
+        q1, q2, dq = stress * at1(x), stress * at2(x), PPoly(at2.c - at1.c, at2.x)
+
+    made = _factorizations(solution)
+    displaced = displace_bodies(solution, problem) if plan.needs("subsurface") else ()
+    restored = _factorizations(solution) - made
+    extra = {"back_solves": len(displaced), "factorizations": adapted.factorizations + restored}
+
+    shares = {"discretisation": adapted.errors, "rounding": dict.fromkeys(adapted.errors, rounding_error(solution))}
+    if step_errors := solution.step_errors:
+        shares["steps"] = dict(step_errors)
+    keys = [*adapted.errors, *(key for key in step_errors if key not in adapted.errors)]
+    estimate = {key: float(sum(share.get(key, 0.0) for share in shares.values())) for key in keys}
+    known = found.centre is not None
+    (left1, right1), (left2, right2) = solution.contact_ends
+    return Result(
+        method="fem",
+        a=solution.half_width * L,
+        p0=p0 * stress,
+        regime=found.regime,
+        stick_centre=None if found.centre is None else found.centre * L,
+        stick_half_width=None if found.half_width is None else found.half_width * L,
+        traction=Traction(
+            x=x * L,
+            p=stress * pressure(x),
+            dq=q2 - q1,
+            q1=q1 if known else None,
+            q2=q2 if known else None,
+            at=Pair(pressure, dq, L, stress).at,
+            breaks=np.unique([*solution.zone_ends, *solution.kinks, *problem.kinks]) * L,
+            cells=solution.lower.x[:: solution.lower.order] * L,
+            levels_at=Pair(at1, at2, L, stress).at if known else None,
+            p1=stress * pressures[0](x) if pressures else None,
+            pressures_at=Pair(*pressures, L, stress).at if pressures else None,
+        ),
+        cost=clock.cost(),
+        slip=Slip(x * L, history.slip * unit, history.dissipated * unit * scene.P) if history else None,
+        settings={
+            "bodies": _bodies(solution, problem),
+            "elements": f"P{problem.order}",
+            "factorisation": problem.backend,
+            **_extents(problem, adapted.width),
+            **_fineness(scene, problem, accuracy),
+        },
+        counts=_counts(solution, adapted, extra),
+        certificate=certified,
+        last_cycle_change=change,
+        estimate=estimate,
+        shares=shares if estimate else {},
+        notes=found.notes
+        + _note_on_pieces(solution)
+        + _note_on_steps(solution)
+        + _note_on_the_middle(scene, solution, adapted)
+        + _note_on_the_allowance(adapted, scene)
+        + doubts(change, estimate, accuracy),
+        bodies=tuple(deformed(body, L, unit, stress) for body in displaced),
+        contact_ends=((left1 * L, right1 * L), (left2 * L, right2 * L)),
+        state=_state(scene, solution),
+        surface=along_surfaces(displaced, solution.contact_ends, L, stress) if displaced else None,
+    )
+
+
+def _state(scene: Scene, solution: MeshSolution) -> State | None:
+    """Loads and tractions at the end of the load path; None without friction."""
+    if not solution.history:
+        return None
+    shear, bound = solution.history.end
+    p, q = (solution.shear(forces) for forces in (bound / scene.friction.f, shear))
+    L = scene.length
+    return State(
+        scene.P, scene.material.A, *scene.load.points[-1], *(rescaled(each, scene.P / L, L) for each in (p, q))
+    )
+
+
+def _certificate(problem: Problem, solution: MeshSolution, p0: float) -> dict[str, float]:
+    """Largest residual of normal contact and friction, in p0, and of equilibrium, relative to P."""
+    weights = solution.lower.weights
+    pressing = solution.pressing
+    normal = {"kkt": float((pressing.residual / weights).max() / p0), "equilibrium": pressing.imbalance}
+    if not solution.history:
+        return normal
+    friction = certificate(solution.history, weights[solution.nodes], problem.f, p0)
+    return {key: max(normal[key], friction[key]) for key in normal}
+
+
+def _bodies(solution: MeshSolution, problem: Problem) -> str:
+    if len(solution.bodies) == 1:
+        return "mirror images, one factored"
+    return "two, coupled" if problem.coupled else "two, not coupled"
+
+
+def _extents(problem: Problem, width: float) -> dict[str, str | float]:
+    """Settings: far field and half-width of the blocks that stand for half-planes."""
+    if all(part.finite for part in problem.parts):
+        return {"far_field": "none, finite bodies"}
+    return {"far_field": problem.far_field, "block_half_width_over_a": width}
+
+
+def _fineness(scene: Scene, problem: Problem, accuracy: float) -> dict[str, str | float]:
+    """Settings: where the element size comes from."""
+    if problem.meshed:
+        return {"meshes": "as given"}
+    if scene.fem.size is not None:
+        return {"element_size_over_a": scene.fem.size}
+    return {"meshes": "of the size of the given one"} if scene.meshed else {"accuracy": accuracy}
+
+
+def _counts(solution: MeshSolution, adapted: Adapted, extra: dict[str, int]) -> dict[str, int]:
+    """Counts of work. ``meshes``, ``factorizations`` and ``iterations`` (linear solves of the active-set iteration)
+    are of all meshes, the rest of the last mesh.
+
+    ``normal_unknowns`` and ``tangential_unknowns`` are multipliers, ``columns`` the columns of the compliances.
+    ``normal_iterations`` and ``friction_iterations`` are changes of the active set after the first linear solve.
+    """
+    history, pressing = solution.history, solution.pressing
+    both = history and solution.coupled
+    return {
+        "dofs": solution.dofs,
+        "contact_nodes": len(solution.nodes),
+        "bodies": len(solution.bodies),
+        "normal_unknowns": len(solution.lower.x),
+        "tangential_unknowns": (len(solution.lower.x) if both else len(solution.nodes)) if history else 0,
+        "columns": sum(each.condensation.columns for each in solution.bodies),
+        "far_field_columns": sum(each.condensation.far_columns for each in solution.bodies),
+        "meshes": adapted.meshes,
+        "cycles": history.cycles if history else 0,
+        "load_steps": history.load_steps if history else 0,
+        "steps": history.path.most_steps if history else 0,
+        "pressing_steps": _pressing_steps(solution.pressed),
+        "normal_solves": history.load_steps + _pressing_steps(solution.pressed) if history and both else 1,
+        "normal_iterations": 0 if both else pressing.changes,
+        "friction_iterations": (pressing.changes if both else history.changes) if history else 0,
+        "opposing_nodes": history.opposing if history else 0,
+        "iterations": adapted.iterations,
+        **extra,
+    }
+
+
+def _pressing_steps(pressed: Pressed | None) -> int:
+    """Steps that press coupled bodies together, before the loads of the path."""
+    return pressed.steps if pressed else 0
+
+
+def _factorizations(solution: MeshSolution) -> int:
+    return sum(each.condensation.factorizations for each in solution.bodies)
+
+
+def _note_on_pieces(solution: MeshSolution) -> tuple[str, ...]:
+    if solution.pieces == 1:
+        return ()
+    return (f"the contact is in {solution.pieces} pieces: a, m and n are of the outermost ends",)
+
+
+def _note_on_steps(solution: MeshSolution) -> tuple[str, ...]:
+    """A note on load steps of coupled bodies: they are as asked for, without error estimate."""
+    if not solution.history or not solution.coupled or not solution.history.path.moves:
+        return ()
+    steps = solution.history.path.substeps
+    return (
+        f"coupled bodies go from load point to load point in {steps} steps (load.steps), whose error is not estimated",
+    )
+
+
+def _note_on_the_middle(scene: Scene, solution: MeshSolution, adapted: Adapted) -> tuple[str, ...]:
+    """A note on a contact whose middle is farther from x = 0 than the accuracy."""
+    a = solution.half_width
+    middles = [(left + right) / 2 / a for left, right in solution.contact_ends]
+    if not adapted.errors or max(map(abs, middles)) <= scene.fem.accuracy:
+        return ()
+    at = " and ".join(f"{middle:+.2g} a" for middle in middles)
+    return (f"the middle of the contact is off x = 0: by {at} at load points 1 and 2",)
+
+
+def _note_on_the_allowance(adapted: Adapted, scene: Scene) -> tuple[str, ...]:
+    if not adapted.settled or adapted.settled <= scene.fem.accuracy:
+        return ()
+    return (f"the CPU seconds allowed suffice for an accuracy of {adapted.settled:.1e}, not {scene.fem.accuracy:.1e}",)

@@ -1,0 +1,145 @@
+"""Solving a problem on one mesh of each body: mesh, condense, contact and friction, zones."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from partialslip.arrays import Indices
+from partialslip.bars import BARS
+from partialslip.condensed import coupled, step_errors
+from partialslip.condensed.bounded import Solution
+from partialslip.condensed.coupled import Pressed
+from partialslip.condensed.history import History
+from partialslip.condensed.steps import march_refined
+from partialslip.result import Clock
+from partialslip_fem.bodies import Grading, Kept, condense, key_of, mesh_bodies
+from partialslip_fem.contact import CondensedBody, press, relative_compliances
+from partialslip_fem.mesh_solution import MeshSolution
+from partialslip_fem.mortar import nodal_forces
+from partialslip_fem.problem import Problem
+from partialslip_fem.zones import contact_ends, growth_when_pressed, shear_kinks, stick_zone_of
+from partialslip_meshes import Mesh
+
+
+def mesh_and_solve(
+    problem: Problem,
+    width: float,
+    grading: Grading,
+    clock: Clock,
+    keep: Kept | None = None,
+    steps: int | None = None,
+) -> MeshSolution:
+    """Mesh the bodies and solve ``problem`` on them.
+
+    Parameters
+    ----------
+    problem : Problem
+    width : float
+        Half-width of the blocks that stand for half-planes.
+    grading : Grading
+        Element sizes.
+    clock : Clock
+        Counts the CPU seconds of the phases.
+    keep : Kept, optional
+        Condensed bodies to reuse, and to add the new ones to.
+    steps : int, optional
+        Refine the load steps up to about this many from load point to load point, as the accuracy requires, and
+        estimate their errors (:attr:`MeshSolution.step_errors`). By default the steps are those of the path.
+    """
+    key = key_of(problem, width, grading)
+    if keep and (known := keep.find(key)):
+        return solve_contact(problem, known, 0, clock, steps)
+    solution = solve_on_meshes(mesh_bodies(problem, width, grading, clock), problem, width, clock, steps)
+    if keep:
+        keep.add(key, solution.bodies)
+    return solution
+
+
+def solve_on_meshes(
+    meshes: Sequence[Mesh], problem: Problem, width: float, clock: Clock, steps: int | None = None
+) -> MeshSolution:
+    """Solve ``problem`` on ``meshes``, in the order of the problem's parts.
+
+    ``width``, ``clock`` and ``steps`` as for :func:`mesh_and_solve`.
+    """
+    bodies = condense(meshes, problem, width, clock)
+    return solve_contact(problem, bodies, len(bodies), clock, steps)
+
+
+def solve_contact(
+    problem: Problem, bodies: tuple[CondensedBody, ...], factored: int, clock: Clock, steps: int | None = None
+) -> MeshSolution:
+    """Solve contact and friction of condensed ``bodies`` and find the zones.
+
+    ``factored`` is the number of factorisations made for them; ``clock`` and ``steps`` as for :func:`mesh_and_solve`.
+    """
+    with clock.phase("condensation"):
+        relative = relative_compliances(bodies, problem.coupled)
+    with clock.phase("contact"):
+        line, both = bodies[0].body, relative.xy is not None
+        forces = _contact_forces(problem, relative, bodies[0], steps)
+        history, nodes, errors = forces.history, forces.nodes, forces.step_errors
+        left, right = contact_ends(line, forces.pressing.x)
+        ends_at_1: tuple[float, float] | tuple[()] = ()
+        if history and both:
+            at_first = np.zeros(len(line.x))
+            at_first[nodes] = history.bounds[0]
+            ends_at_1 = contact_ends(line, at_first)
+        growth = growth_when_pressed(forces.pressed, nodes, problem)
+        stick = stick_zone_of(line, nodes, history, growth) if history else None
+        if stick:  # on a coarse mesh the ends of the stick zone may lie outside the contact
+            left_at_1, right_at_1 = ends_at_1 or (left, right)
+            stick = replace(stick, left=max(stick.left, left, left_at_1), right=min(stick.right, right, right_at_1))
+        leftmost, rightmost = min([left, *ends_at_1[:1]]), max([right, *ends_at_1[1:]])
+        kinks = shear_kinks(problem, line, nodes, history) if history else ()
+        kinks = tuple(kink for kink in kinks if leftmost < kink < rightmost)
+        if history and forces.pressed:
+            errors = step_errors.pressed_together(history, forces.pressed, line.weights, nodes)
+        return MeshSolution(
+            bodies, factored, nodes, forces.pressing, history, left, right, stick, ends_at_1, kinks, both,
+            forces.pressed, errors,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _ContactForces:
+    """Contact forces on the lower contact line; fields as in :class:`MeshSolution`."""
+
+    pressing: Solution
+    history: History | None
+    nodes: Indices
+    pressed: Pressed | None = None
+    step_errors: Mapping[str, float] = field(default_factory=dict)
+
+
+def _contact_forces(problem: Problem, C: coupled.Relative, lower: CondensedBody, steps: int | None) -> _ContactForces:
+    """Solve p and q together if ``C`` couples them; otherwise p first, then q along the load path."""
+    line, stretch = lower.body, lower.stretch
+    gap, path, pressed = problem.gap(line.x), problem.path, None
+    if path and problem.start:
+        pressed, before = (nodal_forces(line, traction) for traction in problem.start)
+        path = replace(path, before=before)
+    if path and C.xy is not None:
+        along = coupled.Line(line.x, line.weights, lambda forces: contact_ends(line, forces), problem.similar)
+        near = BARS["q"] * problem.accuracy
+        history, pressing, first = coupled.march(C, gap, stretch, problem.f, path, pressed, along, near)
+        nodes = np.flatnonzero(history.bound > 0)
+        return _ContactForces(pressing, history.of(nodes), nodes, first)
+    pressing = press(C.yy, gap if path else gap - problem.strain * stretch[1], 1.0)
+    nodes = np.flatnonzero(pressing.x > 0)
+    if not path:
+        return _ContactForces(pressing, None, nodes)
+    if path.before is not None:
+        path = replace(path, before=path.before[nodes])
+    assert C.xx is not None
+    inner, bound = C.xx[np.ix_(nodes, nodes)], problem.f * pressing.x[nodes]
+    half_width = float(np.subtract(*contact_ends(line, pressing.x)[::-1])) / 2
+
+    def errors(history: History, finer: History) -> step_errors.Errors:
+        zones = stick_zone_of(line, nodes, history), stick_zone_of(line, nodes, finer)
+        return step_errors.halved(history, finer, zones, line.weights[nodes], half_width)
+
+    tangential = inner, stretch[0][nodes], bound, path, problem.accuracy
+    history, left = march_refined(*tangential, None if steps is None else errors, steps or 0)
+    return _ContactForces(pressing, history, nodes, None, left)
