@@ -10,6 +10,7 @@ import pytest
 
 from partialslip.errors import InputError
 from partialslip.score import calculix
+from partialslip.score.calculix_faces import FACE_CORNERS
 
 FRD = (Path(__file__).parent / "calculix.frd").read_text()
 
@@ -17,17 +18,17 @@ FRD = (Path(__file__).parent / "calculix.frd").read_text()
 @pytest.mark.parametrize(("solid", "edges"), [(1, 12), (2, 9), (3, 6)])
 def test_each_edge_of_a_solid_belongs_to_two_of_its_faces(solid, edges):
     """Faces are numbered as in its manual: the first one's corners are the element's first ones, in their order."""
-    faces = calculix._FACES[solid]
+    faces = FACE_CORNERS[solid]
     of_faces = Counter(frozenset(edge) for face in faces for edge in pairwise((*face, face[0])))
     assert list(of_faces.values()) == [2] * edges
     assert faces[0] == tuple(range(len(faces[0])))
-    assert calculix._FACES[solid + 3] == faces  # those of elements with nodes in the middle of their edges
+    assert FACE_CORNERS[solid + 3] == faces  # those of elements with nodes in the middle of their edges
 
 
 @pytest.mark.parametrize(("plane", "corners"), [(7, 3), (9, 4)])
 def test_edges_of_plane_elements_follow_the_two_faces_of_the_solid(plane, corners):
     around = [(corner, (corner + 1) % corners) for corner in range(corners)]
-    assert calculix._FACES[plane] == calculix._FACES[plane + 1] == ((), (), *around)
+    assert FACE_CORNERS[plane] == FACE_CORNERS[plane + 1] == ((), (), *around)
 
 
 @pytest.mark.parametrize("point", [0, 1])
@@ -51,6 +52,6 @@ def test_a_node_that_touches_at_one_load_point_is_in_contact(monkeypatch, point)
 
 
 def test_a_word_that_is_no_number_is_named_with_its_line():
-    assert calculix._whole(" 12 ", 4, "a.dat") == 12
+    assert calculix._integer(" 12 ", 4, "a.dat") == 12
     with pytest.raises(InputError, match="line 5: 'abc'"):
-        calculix._whole(" abc ", 4, "a.dat")
+        calculix._integer(" abc ", 4, "a.dat")

@@ -1,4 +1,4 @@
-"""Scoring somebody else's results against a scene's exact solution."""
+"""Score results of other codes against the solution of a scene."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -28,40 +28,41 @@ def score(
     centre: Literal["given", "auto"] = "given",
     progress: Callable[[str], None] = lambda _: None,
 ) -> Run:
-    """Compare the tractions in ``file`` with those of ``scene``. The result in the run has the file's name.
+    """Compare the tractions in ``file`` with the solution of ``scene``. The result in the run has the file's name.
 
     Parameters
     ----------
     scene : Scene
     file : str or Path
-        A table (.csv, .txt, .tsv, .rpt) with a header line: x (m); p (Pa), or Fn (N per m of depth) of nodes; and one
-        of dq = q2 - q1, q = dq/2, q1 and q2, or of dFt, Ft, Ft1 and Ft2; or the names that other codes give them. Or
-        CalculiX's .frd, or .dat with the .frd beside it; or a format of meshio's with p and dq, q, or q1 and q2 as
-        point data.
+        One of:
+
+        - a table (.csv, .txt, .tsv, .rpt) with a header line: x (m); p (Pa) or nodal forces Fn (N/m); and dq = q2 - q1,
+          q = dq/2, or q1 and q2 (Pa), or dFt, Ft, or Ft1 and Ft2 (N/m). Names of other codes are known, too.
+        - CalculiX's .frd, or .dat with the .frd of the same name;
+        - a format of meshio with point data p and dq, q, or q1 and q2.
     bar : float, optional
-        What errors of a, m and n may be, as fractions of a; p and q have 10 and 15 times that. Otherwise no bars.
+        Largest errors of a, m and n, as fractions of a; p and q have 10 and 15 times this bar. By default no bars.
     reference : str, optional
-        The method to compare with. As a rule exact; march where Q and sigma are out of phase; fem for bodies of
-        different materials or of a size.
+        Method to compare with. By default exact; march if Q and sigma are out of phase; fem for bodies of different
+        materials or of finite size.
     factors : (float, float, float)
-        By which x, p (Fn), and q (Ft) are multiplied: for other units, and other signs.
+        Factors of x, p (Fn) and q (Ft), for other units and signs.
     order : int
-        Of the elements that nodal forces are from, 1 or 2.
+        Order of the elements of nodal forces, 1 or 2.
     at : (int, int), optional
-        Of CalculiX's contact results, counted from 1, those of load points 1 and 2; as a rule those at the ends of the
-        last steps.
+        Numbers of CalculiX's contact results, from 1, of load points 1 and 2; by default the ends of the last steps.
     columns : mapping of str to str, optional
-        Of tables: what x, p (or Fn) and the shear are made of, by name or number (from 1), or sums and differences:
+        For tables: x, p (or Fn) and the shear by name or number (from 1) of a column, or sums and differences:
         ``{"x": "X", "p": "CPRESS", "dq": "S2-S1"}``.
     centre : "given" or "auto"
-        Whether x = 0 is in the middle of the contact as the file has it, or is put there.
+        "auto" moves x = 0 to the middle of the contact.
     progress : callable
-        Called with a line of text now and then.
+        Called with one line of text at a time.
 
     Raises
     ------
     InputError
-        With one line that says what is wrong.
+        If the file cannot be read, or an argument is not allowed.
     """
     file = Path(file)
     name = "".join(c if c.isprintable() else "?" for c in file.name)
@@ -83,12 +84,11 @@ def score(
 
 
 def _read_as(scene: Scene, result: Result, reference: Result) -> Result:
-    """``result``, as it was read from a file, with notes on likely mistakes in it; what they make meaningless is taken
-    out."""
+    """Add notes on likely mistakes to ``result``, and remove quantities that they make meaningless."""
     result = replace(result, notes=(*mistakes(scene, result, reference), *result.notes))
     if in_another_unit(result, reference):
         why = dict.fromkeys(("m", "n"), "x is in another unit than the scene")
         result = replace(result, stick_centre=None, stick_half_width=None, undetermined=why)
-    if reference.regime == "ratchets":  # of slip that adds up, tractions say nothing
+    if reference.regime == "ratchets":  # not visible in tractions
         result = replace(result, regime="ratchets")
     return result

@@ -1,7 +1,7 @@
-"""CalculiX results: contact stresses of ``*CONTACT FILE`` in .frd and of ``*CONTACT PRINT`` (CSTR) in .dat.
+"""Read CalculiX results: contact stresses of ``*CONTACT FILE`` in .frd and of ``*CONTACT PRINT`` (CSTR) in .dat.
 
-CSHEAR1 acts along x, from the slave's surface on the master's (seen in runs of version 2.20): it is q where the slave
-is the lower body. Formats: the manuals of CalculiX GraphiX (chapter *Result Format*) and of CalculiX CrunchiX.
+CSHEAR1 acts along x, from the slave surface on the master surface (observed in runs of version 2.20): it equals q if
+the slave is the lower body. Formats: manuals of CalculiX GraphiX (chapter *Result Format*) and CalculiX CrunchiX.
 """
 
 from collections.abc import Iterator, Sequence
@@ -12,64 +12,72 @@ import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-
-_Corners = tuple[tuple[int, ...], ...]
+from partialslip.score.calculix_faces import FACE_CORNERS
 
 _CONTACT = ("CPRESS", "CSHEAR1")
 _STRESS = " contact stress (slave "
-_WIDTH = 12  # of a number
-_QUADS: _Corners = ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0))
-_WEDGE: _Corners = ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5))
-_TETS: _Corners = ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0))
-# Corners of the faces by type of element; those of plane elements are numbered as in the solid ones they grow into.
-_FACES: dict[int, _Corners] = {1: _QUADS, 4: _QUADS, 2: _WEDGE, 5: _WEDGE, 3: _TETS, 6: _TETS}
-_FACES |= dict.fromkeys((7, 8), ((), (), (0, 1), (1, 2), (2, 0)))
-_FACES |= dict.fromkeys((9, 10), ((), (), (0, 1), (1, 2), (2, 3), (3, 0)))
+_WIDTH = 12  # characters of a number
 
 Indices = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
-class Block:
-    """Contact stresses at one moment: their ``step`` (0 if the file does not say), the ``keys`` (n, k) of what they
-    are at, node numbers or element and face, and ``stress`` (n, 2), normal and along x."""
+class ContactStress:
+    """Contact stresses at one time.
+
+    Parameters
+    ----------
+    step : int
+        Number of the load step; 0 if the file does not give it.
+    keys : (n, 1) or (n, 2) int array
+        Node numbers, or numbers of element and face.
+    stress : (n, 2) array
+        Normal stress and stress along x, in the file's unit.
+    """
 
     step: int
     keys: Indices
     stress: Array
 
 
-def read_frd(text: str, origin: str, chosen: tuple[int, int] | None, ends: tuple[int, int, int]) -> dict[str, Array]:
-    """Columns x, p, q1 and q2 of an ASCII .frd file: of the nodes where there is contact at either load point.
+def read_frd(
+    text: str, origin: str, chosen: tuple[int, int] | None, load_points: tuple[int, int, int]
+) -> dict[str, Array]:
+    """Columns x, p, q1 and q2 of an ASCII .frd file, at the nodes in contact at load point 1 or 2.
 
     Parameters
     ----------
+    text, origin : str
+        Content of the file, and its name for messages.
     chosen : (int, int), optional
-        Contact results, counted from 1, of load points 1 and 2. Otherwise those at the ends of the last steps.
-    ends : (int, int, int)
-        Load points 1 and 2 of the cycle, counted from 0, and how many it has.
+        Numbers of the contact results of load points 1 and 2, from 1. By default the last result of each of the last
+        steps.
+    load_points : (int, int, int)
+        Indices of load points 1 and 2 in the cycle, from 0, and the number of load points in a cycle.
 
     Raises
     ------
     InputError
-        If it is no such file, or has no contact results.
+        If the file is not an .frd file or has no contact results.
     """
     lines = text.splitlines()
     numbers, points = _nodes(lines, origin)
-    first, second = _pair(_contacts(lines, origin), origin, chosen, ends, "*CONTACT FILE with CSTR")
+    first, second = _pair(_contacts(lines, origin), origin, chosen, load_points, "*CONTACT FILE with CSTR")
     if not np.array_equal(first.keys, second.keys):
         raise InputError(f"{origin}: contact results at load points 1 and 2 are not of the same nodes")
     touched = (first.stress != 0).any(axis=1) | (second.stress != 0).any(axis=1)
-    x = _found(numbers, points[:, 0], second.keys[touched, 0], origin)
+    x = _x_of_nodes(numbers, points[:, 0], second.keys[touched, 0], origin)
     return {"x": x, "p": second.stress[touched, 0], "q1": first.stress[touched, 1], "q2": second.stress[touched, 1]}
 
 
 def read_dat(
-    text: str, mesh: str, origin: str, chosen: tuple[int, int] | None, ends: tuple[int, int, int]
+    text: str, mesh: str, origin: str, chosen: tuple[int, int] | None, load_points: tuple[int, int, int]
 ) -> dict[str, Array]:
-    """Columns x, p, q1 and q2 of a .dat file: of slave nodes, or means over slave faces. ``mesh`` is the text of the
-    .frd file, which knows where they are. Otherwise like :func:`read_frd`."""
-    first, second = _pair(_printed(text.splitlines(), origin), origin, chosen, ends, "*CONTACT PRINT with CSTR")
+    """Columns x, p, q1 and q2 of a .dat file, at slave nodes, or as means over slave faces.
+
+    ``mesh`` is the content of the .frd file, which has the coordinates. The rest as for :func:`read_frd`.
+    """
+    first, second = _pair(_printed(text.splitlines(), origin), origin, chosen, load_points, "*CONTACT PRINT with CSTR")
     keys = np.unique(np.concatenate([first.keys, second.keys]), axis=0)
     one, two = (_means(keys, block) for block in (first, second))
     lines = mesh.splitlines()
@@ -77,50 +85,56 @@ def read_dat(
     if keys.shape[1] == 2:
         x = _middles(lines, keys, numbers, points[:, 0], origin)
     else:
-        x = _found(numbers, points[:, 0], keys[:, 0], origin)
+        x = _x_of_nodes(numbers, points[:, 0], keys[:, 0], origin)
     return {"x": x, "p": two[:, 0], "q1": one[:, 1], "q2": two[:, 1]}
 
 
 def _pair(
-    blocks: Sequence[Block], origin: str, chosen: tuple[int, int] | None, ends: tuple[int, int, int], wanted: str
-) -> tuple[Block, Block]:
-    """Those of load points 1 and 2."""
+    blocks: Sequence[ContactStress],
+    origin: str,
+    chosen: tuple[int, int] | None,
+    load_points: tuple[int, int, int],
+    wanted: str,
+) -> tuple[ContactStress, ContactStress]:
+    """Contact stresses at load points 1 and 2."""
     if not blocks:
-        raise InputError(f"{origin}: no contact stresses in it; ask CalculiX for {wanted}")
+        raise InputError(f"{origin}: no contact stresses; add {wanted} to the CalculiX deck")
     if chosen is not None:
         if not all(1 <= number <= len(blocks) for number in chosen):
             raise InputError(f"--at {chosen[0]},{chosen[1]}: {origin} has contact results 1 to {len(blocks)}")
         return blocks[chosen[0] - 1], blocks[chosen[1] - 1]
     last = [block for block, after in zip(blocks, [*blocks[1:], None], strict=True)
             if after is None or not block.step or block.step != after.step]  # fmt: skip
-    first, second, count = ends
+    first, second, count = load_points
     if len(last) < count:
-        raise InputError(f"{origin}: contact results of {len(last)} steps: must be of the {count} of a cycle")
+        raise InputError(
+            f"{origin}: contact results of {len(last)} steps: must be of at least {count}, one per load point of a cycle"
+        )
     return last[first - count], last[second - count]
 
 
 def _nodes(lines: Sequence[str], origin: str) -> tuple[Indices, Array]:
     start = next((i for i, line in enumerate(lines) if line.startswith("    2C")), None)
     if start is None:
-        raise InputError(f"{origin}: no nodes (2C) in it: must be an .frd file of CalculiX")
+        raise InputError(f"{origin}: no nodes (block 2C): must be an .frd file of CalculiX")
     return _table(lines, start, 3, origin)
 
 
-def _contacts(lines: Sequence[str], origin: str) -> list[Block]:
-    """All contact results, in order."""
+def _contacts(lines: Sequence[str], origin: str) -> list[ContactStress]:
+    """All contact results of an .frd file, in order."""
     blocks, step = [], 0
     for i, line in enumerate(lines):
         if line.startswith("    1PSTEP"):
-            step = _whole(line.split()[-1], i, origin)
+            step = _integer(line.split()[-1], i, origin)
         elif line.startswith(" -4  CONTACT"):
             names = []
             while i + 1 < len(lines) and lines[i + 1].startswith(" -5"):
                 i += 1
                 names.append(lines[i][5:13].strip())
             if not set(_CONTACT) <= set(names[:6]):
-                raise InputError(f"{origin}: line {i + 1}: contact results must have {' and '.join(_CONTACT)}")
+                raise InputError(f"{origin}: line {i + 1}: contact results: must include {' and '.join(_CONTACT)}")
             nodes, values = _table(lines, i, min(len(names), 6), origin)
-            blocks.append(Block(step, nodes[:, None], values[:, [names.index(name) for name in _CONTACT]]))
+            blocks.append(ContactStress(step, nodes[:, None], values[:, [names.index(name) for name in _CONTACT]]))
     return blocks
 
 
@@ -134,7 +148,7 @@ def _table(lines: Sequence[str], start: int, columns: int, origin: str) -> tuple
         places = range(head, head + _WIDTH * columns, _WIDTH)
         values = np.array([[float(row[place : place + _WIDTH]) for place in places] for row in rows])
     except (ValueError, OverflowError):
-        raise InputError(f"{origin}: line {start + 2} and after: not rows of {columns} numbers, in ASCII") from None
+        raise InputError(f"{origin}: line {start + 2} and after: must be ASCII rows of {columns} numbers") from None
     return numbers, values.reshape(len(rows), columns)
 
 
@@ -144,10 +158,10 @@ def _rows(lines: Sequence[str], start: int, origin: str) -> Iterator[str]:
             return
         if lines[i].startswith(" -1"):
             yield lines[i]
-    raise InputError(f"{origin}: breaks off in the block that begins at line {start + 1}")
+    raise InputError(f"{origin}: line {start + 1}: the block that begins here has no end; is the file complete?")
 
 
-def _printed(lines: Sequence[str], origin: str) -> list[Block]:
+def _printed(lines: Sequence[str], origin: str) -> list[ContactStress]:
     blocks = []
     for start, line in enumerate(lines):
         if not line.startswith(_STRESS):
@@ -160,16 +174,16 @@ def _printed(lines: Sequence[str], origin: str) -> list[Block]:
             table = np.array([[float(value) for value in row.split()] for row in lines[start + 2 : end]])
             table = table.reshape(-1, keys + 3)
         except ValueError:
-            raise InputError(f"{origin}: line {start + 3} and after: not rows of {keys + 3} numbers") from None
+            raise InputError(f"{origin}: line {start + 3} and after: must be rows of {keys + 3} numbers") from None
         with np.errstate(invalid="ignore"):
-            blocks.append(Block(0, table[:, :keys].astype(np.int64), table[:, keys : keys + 2]))
+            blocks.append(ContactStress(0, table[:, :keys].astype(np.int64), table[:, keys : keys + 2]))
     if len({block.keys.shape[1] for block in blocks}) > 1:
-        raise InputError(f"{origin}: contact stresses of nodes and of faces: must be of one kind")
+        raise InputError(f"{origin}: contact stresses at nodes and on faces: must be of one kind")
     return blocks
 
 
-def _means(keys: Indices, block: Block) -> Array:
-    """Of the block's rows by key; zero where there is no contact."""
+def _means(keys: Indices, block: ContactStress) -> Array:
+    """Mean stress of the rows with each key, (n, 2); zero where the block has no row."""
     _, place = np.unique(np.concatenate([keys, block.keys]), axis=0, return_inverse=True)
     at, count = place.ravel()[len(keys) :], np.zeros(len(keys))
     total = np.zeros((len(keys), 2))
@@ -180,10 +194,10 @@ def _means(keys: Indices, block: Block) -> Array:
 
 
 def _middles(lines: Sequence[str], keys: Indices, numbers: Indices, x: Array, origin: str) -> Array:
-    """x in the middle of faces, by element and number."""
+    """x of the middles of faces, given by element and face number, (n,)."""
     start = next((i for i, line in enumerate(lines) if line.startswith("    3C")), None)
     if start is None:
-        raise InputError(f"{origin}: the .frd file beside it has no elements (3C)")
+        raise InputError(f"{origin}: the .frd file of the same name has no elements (block 3C)")
     wanted = set(keys[:, 0].tolist())
     corners: dict[int, tuple[int, list[int]]] = {}
     kind, element = 0, 0
@@ -192,37 +206,37 @@ def _middles(lines: Sequence[str], keys: Indices, numbers: Indices, x: Array, or
         if line.startswith(" -3"):
             break
         if line.startswith(" -1"):
-            element, kind = (_whole(word, i, origin) for word in (line[3:13], line[13:18]))
+            element, kind = (_integer(word, i, origin) for word in (line[3:13], line[13:18]))
             if element in wanted:
                 corners[element] = (kind, [])
         elif line.startswith(" -2") and element in wanted:
-            corners[element][1].extend(_whole(word, i, origin) for word in line[3:].split())
+            corners[element][1].extend(_integer(word, i, origin) for word in line[3:].split())
     means = []
     for element, face in keys.tolist():
         kind, nodes = corners.get(element, (0, []))
-        faces = _FACES.get(kind, ())
+        faces = FACE_CORNERS.get(kind, ())
         local = faces[face - 1] if 1 <= face <= len(faces) else ()
         if not local or max(local) >= len(nodes):
-            raise InputError(f"{origin}: face {face} of element {element} is not in the .frd file beside it")
+            raise InputError(f"{origin}: face {face} of element {element} is not in the .frd file of the same name")
         means.append([nodes[corner] for corner in local])
     count = np.array([len(nodes) for nodes in means])
-    at = _found(numbers, x, np.concatenate(means), origin)
+    at = _x_of_nodes(numbers, x, np.concatenate(means), origin)
     result: Array = np.add.reduceat(at, np.cumsum(count) - count) / count
     return result
 
 
-def _found(numbers: Indices, x: Array, wanted: Indices, origin: str) -> Array:
+def _x_of_nodes(numbers: Indices, x: Array, wanted: Indices, origin: str) -> Array:
     order = np.argsort(numbers)
     place = np.searchsorted(numbers[order], wanted)
     known = (place < len(numbers)) & (numbers[order][np.minimum(place, len(numbers) - 1)] == wanted)
     if not known.all():
-        hint = "of plane elements CalculiX prints the nodes of the solid ones they grow into: take the .frd file"
+        hint = "for plane elements CalculiX prints nodes of the expanded solids: score the .frd file instead"
         raise InputError(f"{origin}: node {wanted[~known][0]} is not in the .frd file ({hint})")
     result: Array = x[order][place]
     return result
 
 
-def _whole(word: str, line: int, origin: str) -> int:
+def _integer(word: str, line: int, origin: str) -> int:
     try:
         return int(word)
     except ValueError:

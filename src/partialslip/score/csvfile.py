@@ -1,4 +1,4 @@
-"""Tractions as a table: values separated by commas, semicolons, tabs or blanks, with a header line."""
+"""Read tractions from a table: values separated by commas, semicolons, tabs or blanks, with a header line."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -10,15 +10,25 @@ from partialslip.errors import InputError
 from partialslip.scene import Scene
 from partialslip.score.headers import headings, known, selected
 
-_NOTHING = ("", "-", "--", "novalue", "no value", "n/a", "na")
-_ROWS = 1_000_000
+_NO_VALUE = ("", "-", "--", "novalue", "no value", "n/a", "na")
+_MOST_ROWS = 1_000_000
 _TEMPLATE_ROWS = 81
-_REACH = 1.1  # half-widths
+_TEMPLATE_REACH = 1.1  # largest |x| of the template, in contact half-widths
 
 
 class Columns(NamedTuple):
-    """Columns by name, SI units; what they were made of, in words, if that is not their names; notes; and whether the
-    shear is that of one load point only."""
+    """Columns of a file.
+
+    Parameters
+    ----------
+    values : dict of (n,) arrays
+        By name, SI units.
+    made_of : str
+        Expressions for the columns, if they differ from the columns' names.
+    notes : tuple of str
+    moment : bool
+        Whether the shear is known at one load point only.
+    """
 
     values: dict[str, Array]
     made_of: str = ""
@@ -27,27 +37,29 @@ class Columns(NamedTuple):
 
 
 def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None) -> Columns:
-    """Read columns x, p (or Fn) and shear from a table with a header line, SI units.
+    """Read columns x, p (or Fn) and shear from a table with a header line, in SI units.
 
-    ``#`` begins a comment; separators are commas, semicolons, tabs or blanks; numbers may have a decimal comma where
-    commas do not separate. Names are those above or other codes' (:data:`partialslip.score.headers.NAMES`), with a unit
-    in brackets if it is not SI. Rows without values are left out and counted.
+    ``#`` begins a comment. Separators are commas, semicolons, tabs or blanks. Decimal commas are allowed where commas
+    do not separate. Column names are x, p, Fn, dq, q, q1, q2, dFt, Ft, Ft1, Ft2 or those of other codes
+    (:data:`partialslip.score.headers.NAMES`), with a unit in brackets if not SI. Rows without values are skipped.
 
     Parameters
     ----------
+    text, origin : str
+        Content of the file, and its name for messages.
     chosen : mapping of str to str, optional
-        By column wanted, what it is made of: a name or a number (from 1) of the table's, or a sum or a difference.
+        Expression for each column: a name or number (from 1) of a column of the table, or sums and differences.
 
     Raises
     ------
     InputError
-        With one line that names line and column.
+        If the table cannot be read; the message names line and column.
     """
     lines = [(number, line) for number, line in enumerate(text.splitlines(), start=1) if line.partition("#")[0].strip()]
     if not lines:
-        raise InputError(f"{origin}: empty: must have a header line with x, p and dq")
-    if len(lines) > _ROWS:
-        raise InputError(f"{origin}: {len(lines)} lines: must be at most {_ROWS}")
+        raise InputError(f"{origin}: no lines: must have a header line with x, p and dq")
+    if len(lines) > _MOST_ROWS:
+        raise InputError(f"{origin}: {len(lines)} lines: must be at most {_MOST_ROWS}")
     numbers = [number for number, _ in lines]
     bare = [line.partition("#")[0].strip(" \r") for _, line in lines]
     separator = max(",;\t", key=bare[0].count)
@@ -56,7 +68,7 @@ def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None) ->
     names = headings(bare[0]) if not separator else [name.strip() for name in rows[0]]
     headless = chosen is not None and all(map(_is_number, rows[0]))
     if not headless and all(map(_is_number, rows[0])):
-        raise InputError(f"{origin}: line {numbers[0]}: must be a header line with x, p and dq (or name --columns)")
+        raise InputError(f"{origin}: line {numbers[0]}: must be a header line with x, p and dq; or give --columns")
     if headless:
         names = [str(k + 1) for k in range(len(names))]
     else:
@@ -65,7 +77,7 @@ def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None) ->
         raise InputError(f"{origin}: line {short}: must have {len(names)} fields, like the header line")
     wanted = selected(names, chosen, origin) if chosen else known(names, origin)
     used = sorted({column for each in wanted.values() for column in each.parts})
-    full = [all(row[column].lower() not in _NOTHING for column in used) for row in rows]
+    full = [all(row[column].lower() not in _NO_VALUE for column in used) for row in rows]
     kept = [row for row, whole in zip(rows, full, strict=True) if whole]
     numbers = [number for number, whole in zip(numbers, full, strict=True) if whole]
     table = {column: _numbers([row[column] for row in kept], numbers, names[column], origin) for column in used}
@@ -79,7 +91,7 @@ def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None) ->
 
 
 def _fields(line: str, separator: str) -> list[str]:
-    """Fields of a line; without a separator those between blanks. Commas that do not separate are decimal ones."""
+    """Fields of a line, split at blanks if ``separator`` is empty. Commas that do not separate are decimal commas."""
     fields = line.split(separator) if separator else line.split()
     if separator == ",":
         return [_unquoted(field) for field in fields]
@@ -87,14 +99,14 @@ def _fields(line: str, separator: str) -> list[str]:
 
 
 def _unquoted(field: str) -> str:
-    """The field without blanks and a pair of quotes around it."""
+    """Strip blanks and one pair of quotes from ``field``."""
     bare = field.strip()
     return bare[1:-1] if len(bare) > 1 and bare[0] == bare[-1] == '"' else bare
 
 
 def template(scene: Scene, a: float) -> str:
-    """A table to fill in: points over a contact of half-width ``a`` (m) and beyond, without tractions."""
-    x = _REACH * a * np.linspace(-1, 1, _TEMPLATE_ROWS)
+    """A table to fill in for ``scene``: points on a contact of half-width ``a`` (m) and beyond, zero tractions."""
+    x = _TEMPLATE_REACH * a * np.linspace(-1, 1, _TEMPLATE_ROWS)
     head = (
         f"# {scene.name}: put your tractions here and run: partialslip score {scene.name} THIS-FILE\n"
         "# x: along the contact, m, its middle at 0 (any points will do); p: pressure, Pa;\n"

@@ -1,10 +1,11 @@
-"""Where zones end, below the spacing of the points, from tractions that may be coarse, noisy or smoothed.
+"""Locate the ends of zones between the points of a table whose tractions may be coarse, noisy or smoothed.
 
-What vanishes at an end, p at the ends of the contact and 2 f p - |dq| at those of the stick zone, does so like a square
-root: its square is smooth, and its root is the end. Polynomials of two degrees through more and fewer points, near the
-end and farther from it, each give one; they differ by what the curve bends, and scatter with the noise. The one that is
-known best is taken. Where others that are known as well lie elsewhere, the end is known no better than they differ: a
-table that was smoothed, or friction with a penalty, spreads the end over some length, and shows it there.
+At an end a traction vanishes like a square root: p at the ends of the contact, 2 f p - |dq| at the ends of the stick
+zone. The square of the traction is smooth, and the root of the square is the end. Polynomials of several degrees are
+fitted to the square on windows of different length and distance from the end. Each fit gives an estimate of the end
+with an uncertainty: the difference between degrees, and the noise. The estimate with the least uncertainty is taken.
+Estimates of similar uncertainty elsewhere increase the uncertainty of the end: smoothing, or friction with a penalty,
+spreads an end over some length.
 """
 
 from itertools import pairwise
@@ -15,29 +16,29 @@ import numpy as np
 from partialslip.arrays import Array
 
 _POINTS = (4, 5, 6, 8, 11, 16, 24, 36, 54, 80, 120, 180, 270, 400, 600, 900)
-_MANY = 60  # points that tell as much as more of them
-_FEW = 8  # points, whose scatter about their polynomial is noise
-_SKIPPED = (0, 1, 2, 4, 7, 12, 20, 34, 56, 90, 150, 240, 400)  # points next to the end that are left out
-_PART = 0.6  # of the zone: farther points know of its other end
-_NEAREST = 2.0  # of the points skipped: windows are at least half as long as they are far from the end
-_NEAR = 3  # of the levels, which are near the end
-_AGREE = 3.0  # times their uncertainties, by which ends seen from near and from afar may differ
-_FADES = 0.35  # of the value three points further in: less of it at the last points fades out
-_RISEN = 0.1  # of their mean, to which values that vanish like a square root rise within a fortieth of the zone
-_RISE = 0.1  # of the zone: values that take longer for that fade out
-_STEEP = 3.0  # times the median slope: what is steeper is due to noise
-_ABOVE = 2.0  # times the noise, to which points tell how steep the square is
-_FALL = 0.05  # at best, from one degree to the next, of what polynomials leave out
-_SAFE = 2.6  # times the uncertainty of the best one: it is the best by some luck, too
-_LEVEL = 5.0  # times the uncertainty of the best one, up to which others that lie elsewhere count
-_SPREAD = 0.5  # of the length over which an end is spread, that it may be off
-_CELL = 0.06  # of a cell, that means over cells displace the end of a square root
-NOISE = 4.0  # times the standard deviation, below which a value is no more than noise
-ROUNDING = 1e-9
+_MANY = 60  # most points of a fit; longer windows are thinned out
+_FEW = 8  # most points of a window whose scatter about the polynomial is noise alone
+_SKIPPED = (0, 1, 2, 4, 7, 12, 20, 34, 56, 90, 150, 240, 400)  # points between the window and the end
+_PART = 0.6  # of the zone: largest distance of a window, beyond which the other end matters
+_NEAREST = 2.0  # of a window's points: most points skipped
+_NEAR = 3  # number of distances that count as near the end
+_AGREE = 3.0  # largest difference of estimates from near and far, in their uncertainties
+_FADES = 0.35  # of the value three points further in: if the last values are less, the traction fades out
+_RISEN = 0.1  # of the mean: a square root rises to this within a fortieth of the zone
+_RISE = 0.1  # of the zone: a traction that takes longer to rise to _RISEN fades out
+_STEEP = 3.0  # times the median slope: steeper polynomials are due to noise
+_ABOVE = 2.0  # times the noise: least value of a window that gives a slope
+_FALL = 0.05  # least ratio of the neglected terms from one degree to the next
+_SAFE = 2.6  # factor on the least uncertainty, as selecting the least one is biased
+_COMPARABLE = 5.0  # times the least uncertainty: largest uncertainty of an estimate that counts for the drift
+_SPREAD = 0.5  # of the length over which an end is spread: error of the end
+_CELL = 0.06  # of a cell: shift of the end of a square root by taking means over cells
+NOISE_FACTOR = 4.0  # standard deviations of the noise: smaller values count as noise
+ZERO_LEVEL = 1e-9  # of the largest value: smaller values count as zero
 
 
-class End(NamedTuple):
-    """A place, m, and how far it may be off; how much of that is due to an end that is ``spread`` over some length."""
+class ZoneEnd(NamedTuple):
+    """End of a zone at ``x``, m, its ``uncertainty``, m, and the part of it due to the ``spread`` of the end, m."""
 
     x: float
     uncertainty: float
@@ -45,8 +46,8 @@ class End(NamedTuple):
 
 
 class _Estimate(NamedTuple):
-    """An end by one window, m: how far it may be off if polynomials of rising degree converge, and if they do not
-    (``doubt``); ``slope`` of the polynomial there."""
+    """End of a zone from one window, m: its ``uncertainty`` if polynomials of rising degree converge, its ``doubt`` if
+    they do not, and the ``slope`` of the polynomial there."""
 
     x: float
     uncertainty: float
@@ -55,9 +56,25 @@ class _Estimate(NamedTuple):
 
 
 class _Root(NamedTuple):
-    """Root ``x`` of a polynomial through so many ``points``, the ``highest`` of the values there, m, and its ``slope``
-    there; the mean square ``scatter`` of the points about it, by which factor (``gain``) its root gives standard
-    errors, and how far the slack moves it."""
+    """Root of a polynomial.
+
+    Parameters
+    ----------
+    x : float
+        The root, m.
+    points : int
+        Number of points fitted.
+    highest : float
+        Largest value in the window.
+    slope : float
+        Of the polynomial at the root.
+    scatter : float
+        Mean square deviation of the points from the polynomial.
+    gain : float
+        Standard error of the root divided by the root of ``scatter``.
+    moved : float
+        Shift of the root by the slack, m.
+    """
 
     x: float
     points: int
@@ -69,18 +86,20 @@ class _Root(NamedTuple):
 
 
 def noise(values: Array, x: Array) -> float:
-    """Standard deviation of what is not smooth in ``values`` at ``x``, (n,) each: of the deviations from the line
-    through both neighbours. What the curve bends from point to point is in it."""
+    """Standard deviation of the noise in ``values`` at ``x``, (n,) each.
+
+    It is estimated from the deviations from the straight line through both neighbours, so that curvature between
+    neighbouring points is included.
+    """
     share = (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
     off = values[1:-1] - (1 - share) * values[:-2] - share * values[2:]
     return float(1.4826 * np.median(np.abs(off)) / np.sqrt(1.5))
 
 
-def zone(values: Array, least: Array | float) -> tuple[int, int] | None:
-    """First and last index of the points around the largest value that are more than ``least``; None if there are
-    none."""
+def zone_around_peak(values: Array, least: Array | float) -> tuple[int, int] | None:
+    """First and last index of the points around the largest of ``values`` that exceed ``least``; None if none do."""
     peak = int(values.argmax())
-    inside = values > np.maximum(least, ROUNDING * values[peak])
+    inside = values > np.maximum(least, ZERO_LEVEL * values[peak])
     if not inside[peak]:
         return None
     outside = np.flatnonzero(~inside)
@@ -92,32 +111,33 @@ def zone(values: Array, least: Array | float) -> tuple[int, int] | None:
 
 def right_end(
     x: Array, values: Array, last: int, first: int, *, cells: bool = False, slack: Array | None = None, least: float = 0
-) -> End:
-    """Where ``values`` vanish like a square root. Where they fade out instead, the end is known no better than the
-    length over which they do.
+) -> ZoneEnd:
+    """Right end of a zone, where ``values`` vanish like a square root.
+
+    If the values fade out instead, the uncertainty is the length over which they do.
 
     Parameters
     ----------
     x, values : (n,) arrays
-        Points, ascending, and what vanishes.
+        Points, ascending, m, and the values that vanish.
     last, first : int
         Last and first point inside the zone.
     cells : bool
-        Whether values are means over cells: the one that the end is in says something else.
+        Whether values are means over cells. The mean over the cell with the end is left out.
     slack : (n,) array, optional
-        By how much all values may be off together.
+        Common error of all values.
     least : float
-        Values that are no more than noise.
+        Largest value that counts as noise.
     """
     end = _end(x, values, last, first, cells, np.zeros_like(values) if slack is None else slack, least)
     mean = float(np.trapezoid(values[first : last + 1], x[first : last + 1])) / max(x[last] - x[first], 1e-300)
     risen = x[first + np.flatnonzero(values[first : last + 1] >= _RISEN * mean)[-1]]
     faded = end.x - risen
-    return End(end.x, faded, faded) if faded > _RISE * (x[last] - x[first]) else end
+    return ZoneEnd(end.x, faded, faded) if faded > _RISE * (x[last] - x[first]) else end
 
 
-def _end(x: Array, values: Array, last: int, first: int, cells: bool, slack: Array, least: float) -> End:
-    """The end and its uncertainty, by polynomials through the squares of the values."""
+def _end(x: Array, values: Array, last: int, first: int, cells: bool, slack: Array, least: float) -> ZoneEnd:
+    """The end and its uncertainty, from polynomials through the squares of the values."""
     spacing = x[last] - x[max(last - 1, 0)]
     beyond = x[last + 1] if last + 1 < len(x) else x[last] + 2 * spacing
     outermost = max(x[-1], beyond) + (beyond - x[last]) / 2
@@ -129,48 +149,53 @@ def _end(x: Array, values: Array, last: int, first: int, cells: bool, slack: Arr
         windows = [at - np.arange(0, count, -(-count // _MANY))[::-1] for count in counts]
         levels.append([_roots(x[w], values[w], slack[w], x[at] - spacing, outermost) for w in windows])
     every = [root for level in levels for roots in level for root in roots if root]
-    # of the highest degree: what lower ones leave out is the curve's bend, too
+    # only the highest degree: the scatter about lower degrees includes curvature
     close = [roots[-1] for level in levels[-_NEAR:] for roots in level if roots]
     few = [root.scatter for root in close if root and root.points <= _FEW]
     floor = float(np.median(few)) if few else 0.0
     told = [root for root in every if root.points > _FEW and root.highest > _ABOVE * least]
     slope = float(np.median([abs(root.slope) for root in told])) if told else np.inf
+    # Two expressions for the length that noise hides: here by the median slope, below (outside) by each estimate's own.
+    # They are kept as they are, as the published figures depend on both.
     hidden, steepest = least**2 / slope, _STEEP * slope
     every_level = [[end for roots in level for end in _estimates(roots, floor, steepest)] for level in levels]
     found = _agreeing(every_level)
-    # over three points before the last a square root falls to half; what falls by more fades out
+    # over the three points before the last a square root falls to half; a steeper fall is fading out
     fades = last - first >= _FEW and values[last - 1] < _FADES * values[last - 4]
     apart = 0.0
     if len(found) < len([level for level in every_level if level]) and not fades:
-        # from afar a kink may mislead: the end is where the points have it
+        # a kink may mislead the estimates from far windows: prefer those between the last point and the next
         within = [end for level in every_level[-_NEAR:] for end in level if x[last] <= end.x <= beyond]
         if within:
             nearest = min(within, key=lambda end: end.uncertainty)
             apart = abs(nearest.x - min(found, key=lambda end: end.uncertainty).x) if found else 0.0
             found = [nearest]
     if not found:
-        return End(float(x[last] + beyond) / 2, float(x[last] - x[first] if fades else (beyond - x[last]) / 2))
-    outside = [max(end.x - beyond - least**2 / abs(end.slope), 0.0) for end in found]  # noise hides as much of the zone
+        return ZoneEnd(float(x[last] + beyond) / 2, float(x[last] - x[first] if fades else (beyond - x[last]) / 2))
+    outside = [max(end.x - beyond - least**2 / abs(end.slope), 0.0) for end in found]
     off, best = min(zip(outside, found, strict=True), key=lambda pair: np.hypot(pair[0], pair[1].uncertainty))
     spread = _SPREAD * max(x[last] - cells * spacing - best.x, off, 0.0)
-    drift = max(abs(end.x - best.x) for end in found if end.uncertainty <= _LEVEL * best.uncertainty)
+    drift = max(abs(end.x - best.x) for end in found if end.uncertainty <= _COMPARABLE * best.uncertainty)
     own = float(np.linalg.norm((_SAFE * best.uncertainty, _SPREAD * apart, drift)))
-    if x[last] <= best.x <= beyond and not fades:  # the points are on either side of it, but for what noise hides
+    if x[last] <= best.x <= beyond and not fades:  # the end lies between two points, except for the hidden length
         own = min(own, beyond - x[last] + hidden)
-    return End(best.x, float(np.linalg.norm((own, spread, _CELL * cells * spacing))), spread)
+    return ZoneEnd(best.x, float(np.linalg.norm((own, spread, _CELL * cells * spacing))), spread)
 
 
 def left_end(
     x: Array, values: Array, first: int, last: int, *, cells: bool = False, slack: Array | None = None, least: float = 0
-) -> End:
-    """Likewise on the left: :func:`right_end` of the mirror image."""
+) -> ZoneEnd:
+    """Left end of a zone: :func:`right_end` of the mirror image.
+
+    ``x``, ``values``, ``first``, ``last``, ``cells``, ``slack`` and ``least`` as there.
+    """
     count, slack = len(x) - 1, None if slack is None else slack[::-1]
     end = right_end(-x[::-1], values[::-1], count - first, count - last, cells=cells, slack=slack, least=least)
     return end._replace(x=-end.x)
 
 
 def _agreeing(levels: list[list[_Estimate]]) -> list[_Estimate]:
-    """The best of each level, from afar to the end, as long as each agrees with those before."""
+    """The best estimate from each distance (``levels``), from far to near, until one disagrees with those before."""
     found: list[_Estimate] = []
     left, right = -np.inf, np.inf
     for level in levels:
@@ -184,8 +209,10 @@ def _agreeing(levels: list[list[_Estimate]]) -> list[_Estimate]:
 
 
 def _estimates(roots: list[_Root | None], floor: float, steepest: float) -> list[_Estimate]:
-    """Ends from polynomials of neighbouring degrees. The mean square of the noise is no less than ``floor``; so much of
-    y^2 is noise. Slopes beyond the ``steepest`` are due to it."""
+    """Estimates of the end from ``roots`` of polynomials of neighbouring degrees.
+
+    ``floor`` is the least mean square of the noise, and the bias of y^2. Slopes above ``steepest`` are due to noise.
+    """
     found, before = [], np.inf
     for lower, higher in pairwise(roots):
         if lower and higher:
@@ -200,8 +227,10 @@ def _estimates(roots: list[_Root | None], floor: float, steepest: float) -> list
 
 
 def _roots(x: Array, y: Array, slack: Array, near: float, far: float) -> list[_Root | None]:
-    """Roots between ``near`` and ``far`` of the polynomials through y^2, by degree. y is equally uncertain everywhere,
-    so y^2 is in proportion to y."""
+    """Roots between ``near`` and ``far`` of polynomials through y^2, by degree.
+
+    The error of ``y`` is the same at all points, so that the error of y^2 is proportional to y.
+    """
     scale = x[-1] - x[0]
     t, size = (x - x[-1]) / scale, np.abs(y)
     weights = 1 / np.maximum(size, 0.03 * size.max())
@@ -225,9 +254,9 @@ def _roots(x: Array, y: Array, slack: Array, near: float, far: float) -> list[_R
             found.append(None)
             continue
         residual, freedom = A @ solution - right[:, 0], len(x) - degree - 1
-        scatter = float(residual @ residual) / freedom + (1e-12 * float(size.max())) ** 2  # rounding leaves some
+        scatter = float(residual @ residual) / freedom + (1e-12 * float(size.max())) ** 2  # at least rounding
         powers, per = root ** np.arange(degree, -1, -1), scale / abs(slope)
-        few = 1 + 2 / freedom  # degrees of freedom, which may show too little scatter
+        few = 1 + 2 / freedom  # few degrees of freedom underestimate the scatter
         gain, moved = few * per * np.linalg.norm(powers @ inverse), per * abs(powers @ shift)
         found.append(
             _Root(x[-1] + root * scale, len(x), float(size.max()), slope / scale, scatter, float(gain), float(moved))

@@ -1,4 +1,4 @@
-"""Header lines of tables: which column is what, in which unit, by this package's names and by other codes'."""
+"""Header lines of tables: quantity and unit of each column, by the names of this package and of other codes."""
 
 import re
 from collections.abc import Mapping
@@ -39,8 +39,19 @@ _TERM = re.compile(r"(?<=\S)\s*([+-])\s*(?=\S)")
 
 
 class Wanted(NamedTuple):
-    """What a column is made of: the table's columns by index with their signs, the ``factor`` of their unit, and the
-    same in words; ``moment`` says that it is the shear at one load point, by another code's name."""
+    """Expression for one column.
+
+    Parameters
+    ----------
+    parts : dict of int to float
+        Signs of the table's columns in the sum, by index.
+    factor : float
+        Unit of the columns, in SI units.
+    text : str
+        The expression in words.
+    moment : bool
+        Whether the column is the shear at one load point, under another code's name.
+    """
 
     parts: dict[int, float]
     factor: float
@@ -49,8 +60,10 @@ class Wanted(NamedTuple):
 
 
 def headings(line: str) -> list[str]:
-    """Names in a header line that blanks separate: two or more of them if the names have blanks, too. A unit in
-    brackets goes with the name before it."""
+    """Split a header ``line`` at blanks, or at two or more blanks if names contain blanks.
+
+    A unit in brackets stays with the name before it.
+    """
     wide = re.split(r"\s{2,}", line.strip())
     parts = wide if len(wide) > 2 else line.split()
     names: list[str] = []
@@ -63,7 +76,13 @@ def headings(line: str) -> list[str]:
 
 
 def known(names: list[str], origin: str) -> dict[str, Wanted]:
-    """Find x, p or Fn, and the shear by their names in a header line, in that order."""
+    """Find x, p or Fn, and the shear among the ``names`` of a header line, in this order.
+
+    Raises
+    ------
+    InputError
+        If one is missing or ambiguous; ``origin`` is the file's name.
+    """
     plain = [_split(name) for name in names]
     found = {
         name: [Wanted({k: 1.0}, unit, names[k]) for k, (own, unit) in enumerate(plain) if own == name] for name in _OWN
@@ -78,13 +97,19 @@ def known(names: list[str], origin: str) -> dict[str, Wanted]:
         if len(places) > 1:
             told = " and ".join(repr(place.text) for place in places)
             raise InputError(
-                f"{origin}: column {name!r}: must be there once, not {len(places)} times ({told}); --columns chooses"
+                f"{origin}: column {name!r}: must be there once, not {len(places)} times ({told}); use --columns"
             )
     return _complete({name: each[0] for name, each in found.items() if each}, names, origin)
 
 
 def selected(names: list[str], chosen: Mapping[str, str], origin: str) -> dict[str, Wanted]:
-    """What ``chosen`` asks for, by column wanted: names or numbers of the table's columns, or sums and differences."""
+    """Parse the expressions ``chosen`` for x, p or Fn, and the shear: names or numbers of columns, sums, differences.
+
+    Raises
+    ------
+    InputError
+        If an expression has unknown columns or mixed units, or one is missing; ``origin`` is the file's name.
+    """
     if unknown := [name for name in chosen if name not in _OWN]:
         raise InputError(f"--columns {unknown[0]}: must be one of {', '.join(_OWN)}")
     wanted = {name: _made_of(chosen[name], names, origin) for name in _OWN if name in chosen}
@@ -92,14 +117,14 @@ def selected(names: list[str], chosen: Mapping[str, str], origin: str) -> dict[s
 
 
 def _complete(wanted: dict[str, Wanted], names: list[str], origin: str) -> dict[str, Wanted]:
-    """Check that there are x, one of p and Fn, and the shear that goes with it."""
+    """Check for x, one of p and Fn, and the matching shear, and put them in this order."""
     normal = [name for name in NORMAL if name in wanted]
     shears = [shear for shear in SHEARS if set(shear) <= set(wanted)]
     if "x" not in wanted or len(normal) != 1 or len(shears) != 1:
         shown = ", ".join(repr(name) for name in names)[:100]
         raise InputError(
             f"{origin}: columns {shown}: must be x; p or Fn; and one of dq, q, q1 and q2, dFt, Ft, Ft1 and Ft2; "
-            "--columns x=...,p=...,dq=... says which they are"
+            "name them with --columns x=...,p=...,dq=..."
         )
     if (normal[0] == "Fn") != shears[0][0].endswith(("Ft", "Ft1")):
         raise InputError(f"{origin}: columns {normal[0]} and {shears[0][0]}: must be both tractions or both forces")
@@ -107,7 +132,7 @@ def _complete(wanted: dict[str, Wanted], names: list[str], origin: str) -> dict[
 
 
 def _made_of(text: str, names: list[str], origin: str) -> Wanted:
-    """A column of the table by its name, with or without its unit, or by its number; or a sum of such."""
+    """Parse ``text``: a column's name, with or without unit, or number; or sums and differences of columns."""
     plain = [_split(name) for name in names]
     places = [k for k, name in enumerate(names) if text in (name, plain[k][0])]
     if not places and text.isdigit() and 1 <= int(text) <= len(names):
@@ -134,7 +159,7 @@ def _made_of(text: str, names: list[str], origin: str) -> Wanted:
 
 
 def _split(name: str) -> tuple[str, float]:
-    """A column's name without its unit, and that unit in SI units."""
+    """Split a column's name into the name and the unit, as a factor to SI units."""
     parts = _UNIT.match(name)
     if parts is None:
         return name, 1.0

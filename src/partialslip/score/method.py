@@ -1,4 +1,4 @@
-"""Tractions from outside as a result, like that of any method."""
+"""Turn tractions from a file into a result like that of a method."""
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -9,38 +9,39 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.result import Clock, Regime, Result, Traction
 from partialslip.scene import Scene
-from partialslip.score.ends import NOISE, ROUNDING, End, left_end, noise, right_end, zone
+from partialslip.score.ends import NOISE_FACTOR, ZERO_LEVEL, ZoneEnd, left_end, noise, right_end, zone_around_peak
+from partialslip.score.friction import Friction, frictions
 from partialslip.score.samples import FEWEST, Samples
-from partialslip.score.slip import Friction, frictions
 
-_SLIDES = 0.02  # of 2 f p0: with less room than that, or than noise, nothing is seen to stick
-_APART = 3.0  # times the uncertainty of f, by which 2 f p may be off
-_SIGMAS = 2.0  # standard deviations of x, by which an end may be off
-_CERTAIN = 0.05  # of a: ends of the stick zone that may be off by more are not given
-_SPACINGS = 2.0  # likewise, of the points' spacing
+_SLIDES = 0.02  # of 2 f p0: where 2 f p - |dq| is less everywhere, the contact slides
+_F_SIGMAS = 3.0  # uncertainties of f: largest error of 2 f p
+_X_SIGMAS = 2.0  # standard deviations of x: largest error of an end due to rounded x
+_CERTAIN = 0.05  # of a: largest uncertainty of ends of the stick zone that are given ...
+_SPACINGS = 2.0  # ... or this many spacings of the points
 
 
-class Stick(NamedTuple):
-    """The stick zone, and friction in the slip zones on its left and right."""
+class StickZone(NamedTuple):
+    """Ends of the stick zone, ``left`` and ``right``, and friction in the slip zones on either side (``sides``)."""
 
-    left: End
-    right: End
+    left: ZoneEnd
+    right: ZoneEnd
     sides: tuple[Friction, Friction]
 
 
 def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
-    """What ``samples`` say of ``scene``: contact, stick zone and regime are read from the tractions alone, with the
-    coefficient of friction that the slip zones show. Ends of the stick zone that are uncertain are not given.
+    """Find contact, stick zone and regime of ``scene`` from the tractions in ``samples`` alone.
+
+    The coefficient of friction is the one in the slip zones. Uncertain ends of the stick zone are left out.
 
     Parameters
     ----------
     name, origin : str
-        Of the method, and where the samples are from.
+        Name of the result, and of the file for messages.
 
     Raises
     ------
     InputError
-        If there is no contact in them that is more than noise.
+        If the pressure does not exceed its noise.
     """
     clock = Clock()
     x, p, dq, f = samples.x, samples.p, samples.dq, scene.friction.f
@@ -48,17 +49,17 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     cells, a, middle = samples.cells is not None, (right.x - left.x) / 2, (left.x + right.x) / 2
     p0 = 2 * float(p @ _widths(samples)) / (np.pi * a)
     inside = slice(first, last + 1)
-    slips = f > 0 and bool(np.abs(dq).max() > max(ROUNDING * p0, NOISE * noise(dq, x)))
-    stick = _stick(x[inside], p[inside], dq[inside], f, p0, cells) if slips else None
+    slips = f > 0 and bool(np.abs(dq).max() > max(ZERO_LEVEL * p0, NOISE_FACTOR * noise(dq, x)))
+    stick = _stick_zone(x[inside], p[inside], dq[inside], f, p0, cells) if slips else None
     regime, ends = _regime(scene, stick, left, right, slips)
-    # smoothing spreads all ends alike: those of the stick zone by as much as those of the contact
-    either = float(np.linalg.norm((left.uncertainty, right.uncertainty, _SIGMAS * samples.resolution)))
+    # smoothing spreads the ends of the stick zone by as much as the ends of the contact
+    either = float(np.linalg.norm((left.uncertainty, right.uncertainty, _X_SIGMAS * samples.resolution)))
     uncertainty = {"a": either / 2 / a, "left": left.uncertainty / a, "right": right.uncertainty / a}
     if ends:
         shared = (
             left.spread,
             right.spread,
-            _SIGMAS * samples.resolution,
+            _X_SIGMAS * samples.resolution,
             middle,
         )
         uncertainty |= {
@@ -72,7 +73,7 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     if why:
         notes += (f"m and n are not given: {why}",)
     if regime == "sliding" and not scene.slides:
-        notes += ("nothing is seen to stick: |dq|/(2 p) is the same everywhere, to within what the points tell",)
+        notes += ("no stick zone found: |dq|/(2 p) is the same everywhere, within the uncertainty of the points",)
     return Result(
         method=name,
         a=a,
@@ -98,38 +99,38 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
 
 
 def centred(samples: Samples, origin: str) -> Samples:
-    """``samples`` with x = 0 in the middle of the contact that they show. Raises InputError like :func:`scored`."""
+    """Move ``samples`` so that x = 0 is in the middle of the contact. Raises InputError like :func:`scored`."""
     _, _, left, right = _contact(samples, origin)
     middle = (left.x + right.x) / 2
     note = f"x = 0 was put in the middle of the contact, at x = {middle:.6g} m"
     return replace(samples.moved(-middle), notes=(*samples.notes, note))
 
 
-def _contact(samples: Samples, origin: str) -> tuple[int, int, End, End]:
-    """First and last point in contact, and where the contact ends."""
+def _contact(samples: Samples, origin: str) -> tuple[int, int, ZoneEnd, ZoneEnd]:
+    """First and last point in contact, and the ends of the contact."""
     x, p, cells = samples.x, samples.p, samples.cells is not None
-    least = NOISE * noise(p, x)
-    touching = zone(p, least)
+    least = NOISE_FACTOR * noise(p, x)
+    touching = zone_around_peak(p, least)
     if touching is None or touching[1] - touching[0] + 1 < FEWEST:
         hint = "; or are the elements of another order (--order)?" if cells else ""
-        raise InputError(f"{origin}: p: must stand out from its noise at {FEWEST} or more neighbouring points{hint}")
+        raise InputError(f"{origin}: p: must exceed its noise at {FEWEST} or more neighbouring points{hint}")
     first, last = touching
     left = left_end(x, p, first, last, cells=cells, least=least)
     right = right_end(x, p, last, first, cells=cells, least=least)
     if not right.x > left.x:
-        raise InputError(f"{origin}: p: no contact of any width is found in it")
+        raise InputError(f"{origin}: p: must have a contact of positive width; the ends found are in the wrong order")
     return first, last, left, right
 
 
-def _why(stick: Stick | None, uncertainty: dict[str, float]) -> str:
-    """Why ends of the stick zone are too uncertain to be given."""
+def _why(stick: StickZone | None, uncertainty: dict[str, float]) -> str:
+    """Reason why ends of the stick zone are left out."""
     known = f"they are known to {uncertainty['m']:.1g} and {uncertainty['n']:.1g} a only"
     unseen = stick is not None and not any(side.seen for side in stick.sides)
-    return f"|dq|/(2 p) is flat nowhere, so that nothing is seen to slip; {known}" if unseen else f"{known}"
+    return f"|dq|/(2 p) is constant nowhere, so that no slip zone is found; {known}" if unseen else known
 
 
 def _friction(sides: tuple[Friction, Friction], asked: float) -> dict[str, str | float]:
-    """The coefficient of friction that the tractions show in the slip zones, as settings."""
+    """Settings: coefficient of friction in the slip zones, its uncertainty, and the scene's."""
     seen = [side for side in sides if side.seen]
     if not seen:
         return {"f_seen": "nowhere", "f_asked": asked}
@@ -138,7 +139,7 @@ def _friction(sides: tuple[Friction, Friction], asked: float) -> dict[str, str |
 
 
 def _widths(samples: Samples) -> Array:
-    """Length of line that belongs to each point, (n,), m."""
+    """Length of the contact line that each point stands for, (n,), m."""
     ends = samples.cells
     if ends is None:
         x = samples.x
@@ -147,13 +148,13 @@ def _widths(samples: Samples) -> Array:
     return widths
 
 
-def _stick(x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool) -> Stick | None:
-    """From the room 2 f p - |dq| that points in contact leave; None where nothing sticks."""
+def _stick_zone(x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool) -> StickZone | None:
+    """Stick zone from 2 f p - |dq| at the points in contact; None if nothing sticks."""
     sides = frictions(p, dq, asked)
     slacks = [2 * side.uncertainty * p for side in sides]
     room = 2 * min(side.f for side in sides) * p - np.abs(dq)
-    hidden = [NOISE * (side.scatter if side.seen else noise(room, x)) for side in sides]
-    found = [zone(room, least + _APART * slack) for least, slack in zip(hidden, slacks, strict=True)]
+    hidden = [NOISE_FACTOR * (side.scatter if side.seen else noise(room, x)) for side in sides]
+    found = [zone_around_peak(room, least + _F_SIGMAS * slack) for least, slack in zip(hidden, slacks, strict=True)]
     if None in found or room.max() < 2 * max(side.f for side in sides) * p0 * min(_SLIDES, 4 / len(x)):
         return None
     first, last = found[0][0], found[1][1]  # type: ignore[index]
@@ -166,13 +167,13 @@ def _stick(x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool) 
     told = [least if side.seen else 0.0 for least, side in zip(hidden, sides, strict=True)]
     left = left_end(x, rooms[0], first, last, cells=cells, slack=slacks[0], least=told[0])
     right = right_end(x, rooms[1], last, first, cells=cells, slack=slacks[1], least=told[1])
-    return Stick(left, right if right.x > left.x else End(left.x, right.uncertainty), sides)
+    return StickZone(left, right if right.x > left.x else ZoneEnd(left.x, right.uncertainty), sides)
 
 
 def _regime(
-    scene: Scene, stick: Stick | None, left: End, right: End, slips: bool
-) -> tuple[Regime, tuple[End, End] | None]:
-    """What the tractions show, and the ends of the stick zone, within the contact's."""
+    scene: Scene, stick: StickZone | None, left: ZoneEnd, right: ZoneEnd, slips: bool
+) -> tuple[Regime, tuple[ZoneEnd, ZoneEnd] | None]:
+    """Regime, and the ends of the stick zone limited to the contact."""
     if scene.free:
         return "frictionless", None
     if not slips:
@@ -186,8 +187,8 @@ def _regime(
 
 
 @dataclass(frozen=True)
-class _Lines:
-    """Functions that go linearly from point to point; zero outside. ``x`` (n,), m, and ``values`` (2, n), Pa."""
+class _PiecewiseLinear:
+    """p and dq, linear between the points ``x`` (n,), m, and zero outside; ``values`` (2, n), Pa."""
 
     x: Array
     values: Array
@@ -198,8 +199,8 @@ class _Lines:
 
 
 @dataclass(frozen=True)
-class _Steps:
-    """Functions that are constant on cells; zero outside. ``cells`` (n + 1,), m, and ``values`` (2, n), Pa."""
+class _PiecewiseConstant:
+    """p and dq, constant on each of the ``cells`` (n + 1,), m, and zero outside; ``values`` (2, n), Pa."""
 
     cells: Array
     values: Array
@@ -212,14 +213,14 @@ class _Steps:
 
 
 def _traction(samples: Samples, left: float, right: float) -> Traction:
-    """Means over cells are as they are; between points tractions go linearly, and to zero at the contact's ends."""
+    """Tractions as functions of x: constant on cells, or linear between points and zero at the contact's ends."""
     x, p, dq, cells = samples.x, samples.p, samples.dq, samples.cells
     if cells is None:
         ends = np.array([end for end in (left, right) if not x[0] <= end <= x[-1]])
         breaks, order = np.unique(np.concatenate([x, ends]), return_index=True)
         values = np.array([np.concatenate([column, np.zeros(len(ends))])[order] for column in (p, dq)])
-        return Traction(x, p, dq, samples.q1, samples.q2, _Lines(breaks, values).at, breaks, breaks)
-    return Traction(x, p, dq, samples.q1, samples.q2, _Steps(cells, np.array([p, dq])).at, cells, cells)
+        return Traction(x, p, dq, samples.q1, samples.q2, _PiecewiseLinear(breaks, values).at, breaks, breaks)
+    return Traction(x, p, dq, samples.q1, samples.q2, _PiecewiseConstant(cells, np.array([p, dq])).at, cells, cells)
 
 
 def _rounded(number: float) -> float:

@@ -1,4 +1,4 @@
-"""Likely mistakes in a file of tractions, in words: units, signs, half a cycle, loads, friction, where x = 0 is."""
+"""Likely mistakes in a file of tractions: units, signs, half a cycle, loads, friction, origin of x."""
 
 from typing import NamedTuple
 
@@ -11,28 +11,30 @@ _LENGTHS = {"mm": 1e-3, "um": 1e-6, "cm": 1e-2, "inches": 0.0254}
 _STRESSES = {"MPa": 1e6, "GPa": 1e9, "kPa": 1e3, "N/um^2": 1e12, "psi": 6894.757}
 _TURNS = {"": 1.0, "turned round": -1.0, "of half a cycle": 2.0, "of half a cycle and turned round": -2.0,
           "twice too large": 0.5}  # fmt: skip
-_LIKE = 0.15  # relative difference up to which a sum is that of another unit
-_OFF = 0.01  # likewise, above which a sum is not that of the load
-_FRICTION = 3e-3  # likewise, above which a coefficient of friction is another one
-_LITTLE = 1e-3  # of a
-_SIGMAS = 3.0
+_LIKE = 0.15  # relative difference up to which another unit explains a sum
+_OFF = 0.01  # least relative difference of a resultant from the load that is reported
+_FRICTION = 3e-3  # least relative difference of the coefficient of friction that is reported
+_LITTLE = 1e-3  # of a: least offset of the stick zone that counts
+_SIGMAS = 3.0  # uncertainties: smaller differences are not reported
 
 
 class _Guess(NamedTuple):
-    """What a column looks like, and the factor that would make it fit."""
+    """``name`` of a likely mistake in a column, and the ``factor`` that corrects it."""
 
     name: str
     factor: float
 
 
 def in_another_unit(result: Result, reference: Result) -> bool:
-    """Whether x is in another unit than the reference's."""
+    """Whether x in ``result`` is in another unit than in ``reference``."""
     return _guess(result.a / reference.a, _LENGTHS) is not None
 
 
 def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]:
-    """Likely mistakes of whoever wrote the file behind ``result``: a note for each, with the ``--factors`` that would
-    fit where there are some."""
+    """A note on each likely mistake in the file of ``result``, with the ``--factors`` that correct it if there are any.
+
+    ``reference`` is the result of ``scene`` to compare with.
+    """
     f_seen, f_known = (result.settings.get(key) for key in ("f_seen", "f_seen_to"))
     seen = float(f_seen) if isinstance(f_seen, float) and scene.friction.f > 0 else None
     (P, P_off), (dQ, dQ_off) = _sums(result)
@@ -40,7 +42,7 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
     P, dQ = P * x.factor, dQ * x.factor
     p = _guess(P / scene.P, _STRESSES) or _Guess("", 1.0)
     P *= p.factor
-    share = 1.0 if seen is None else seen / scene.friction.f / p.factor  # of dq in what it should be, by friction
+    share = 1.0 if seen is None else seen / scene.friction.f / p.factor  # of dq, in the dq that friction requires
     q = _shear(dQ, share, seen is not None, scene)
     dQ, share = dQ * q.factor, abs(share * q.factor)
     columns = zip(("x", "p", "dq"), (x, p, q), strict=True)
@@ -63,7 +65,7 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
 
 
 def _shear(dQ: float, share: float, seen: bool, scene: Scene) -> _Guess:
-    """What dq looks like, by what it adds up to and by the friction that it shows."""
+    """Likely mistake in dq, from its resultant ``dQ`` and from ``share``, dq in the dq that friction requires."""
     turned = {f"{unit} {turn}".strip(): size * sign for unit, size in ({"": 1.0} | _STRESSES).items()
               for turn, sign in _TURNS.items() if unit or turn}  # fmt: skip
     of = dQ / scene.load.dQ if abs(scene.load.dQ) > 0.1 * scene.friction.f * scene.P else np.copysign(share, 1.0)
@@ -78,12 +80,12 @@ def _shear(dQ: float, share: float, seen: bool, scene: Scene) -> _Guess:
 
 
 def _places(scene: Scene, result: Result, reference: Result, factor: float) -> list[str]:
-    """Notes on where the contact and the stick zone are; ``factor`` makes x fit."""
+    """Notes on the position of the contact and of the stick zone; ``factor`` corrects x."""
     notes, a = [], result.a
     left, right = result.ends[1]
     middle, known = (left + right) / 2 / a, max(result.estimate.get(key, 0.0) for key in ("a", "left", "right"))
     if abs(middle) > max(2 * known, 1e-9):
-        notes.append(f"the contact's middle is at x = {middle:.2g} a (--centre auto takes it for x = 0)")
+        notes.append(f"the contact's middle is at x = {middle:.2g} a (--centre auto puts x = 0 there)")
     centre, true = result.stick_centre, reference.stick_centre
     if centre is None or true is None or not scene.load.dsigma or not scene.load.dQ:
         return notes
@@ -97,13 +99,15 @@ def _places(scene: Scene, result: Result, reference: Result, factor: float) -> l
 
 
 def _guess(ratio: float, units: dict[str, float]) -> _Guess | None:
-    """The unit in which a number is ``ratio`` of what it is in SI units."""
+    """The unit that explains ``ratio``: a number in the file over the number in SI units; None if no unit does."""
     return next((_Guess(name, size) for name, size in units.items() if abs(ratio * size - 1) < _LIKE), None)
 
 
 def _sums(result: Result) -> tuple[tuple[float, float], tuple[float, float]]:
-    """What p and dq add up to, and by how much, relative to that of p, the points leave it open: by the change when
-    every second interval is taken together."""
+    """Resultants of p and dq, N/m, each with its error relative to the resultant of p.
+
+    The error is the change on every second point.
+    """
     traction = result.traction
     breaks = traction.breaks
     centres, widths = (breaks[1:] + breaks[:-1]) / 2, np.diff(breaks)

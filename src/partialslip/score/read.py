@@ -1,4 +1,4 @@
-"""Reading somebody else's results, by the ending of the file's name."""
+"""Read tractions from a file; the suffix tells the format."""
 
 import codecs
 from collections.abc import Mapping
@@ -17,12 +17,12 @@ from partialslip.score.headers import NORMAL, SHEARS
 from partialslip.score.samples import Samples, samples
 
 TABLES = (".csv", ".txt", ".tsv", ".rpt")
-LARGEST = 1_000_000_000  # bytes
-_FLAT = 0.05  # of the points' extent along x: what they may lie apart across it
+LARGEST = 1_000_000_000  # bytes of a file
+_FLAT = 0.05  # of the points' extent along x: largest extent across
 
 
 def check(file: Path) -> None:
-    """Raise InputError if ``file`` is of no known format, or cannot be read."""
+    """Raise InputError if ``file`` has no known format or cannot be read."""
     from partialslip_meshes.pointdata import FORMATS
 
     if file.suffix.lower() not in (*TABLES, ".frd", ".dat", *FORMATS):
@@ -38,17 +38,19 @@ def read(
     at: tuple[int, int] | None = None,
     chosen: Mapping[str, str] | None = None,
 ) -> Samples:
-    """Tractions from ``file``: .csv, .txt, .tsv, .rpt (tables), .frd or .dat (CalculiX), or a format of meshio's with
-    point data p and dq, q, or q1 and q2. Parameters as of :func:`partialslip.score`, ``chosen`` being its columns.
+    """Read tractions from ``file``.
+
+    Formats: .csv, .txt, .tsv and .rpt tables; .frd and .dat of CalculiX; formats of meshio with point data p and dq, q,
+    or q1 and q2. Parameters as for :func:`partialslip.score`; ``chosen`` are its ``columns``.
 
     Raises
     ------
     InputError
-        With one line that says what is wrong.
+        If the file cannot be read or its content is not valid.
     """
     origin, suffix = str(file), file.suffix.lower()
     load = scene.load
-    ends = (*load.ends, len(load.points))
+    load_points = (*load.ends, len(load.points))
     if at is not None and suffix not in (".frd", ".dat"):
         raise InputError(f"--at {at[0]},{at[1]}: only for .frd and .dat files")
     if chosen and suffix not in TABLES:
@@ -56,25 +58,25 @@ def read(
     if suffix in TABLES:
         columns = read_csv(text(file), origin, chosen)
     elif suffix == ".frd":
-        columns = Columns(read_frd(text(file), origin, at, ends))
+        columns = Columns(read_frd(text(file), origin, at, load_points))
     elif suffix == ".dat":
-        columns = Columns(read_dat(text(file), text(file.with_suffix(".frd")), origin, at, ends))
+        columns = Columns(read_dat(text(file), text(file.with_suffix(".frd")), origin, at, load_points))
     else:
         columns = Columns(_point_data(file))
     notes = columns.notes
     if columns.moment:
         if not load.fully_reversed:
             raise InputError(
-                f"{origin}: {columns.made_of}: shear at one load point, and the loads are not fully reversed: "
-                "--columns q1=...,q2=... says where both are"
+                f"{origin}: {columns.made_of}: shear at one load point, but the loads are not fully reversed: "
+                "give both with --columns q1=...,q2=..."
             )
-        notes += (f"{columns.made_of}: shear at load point 2, taken for half of its change",)
+        notes += (f"{columns.made_of}: shear at load point 2, taken as half of its change",)
     found = samples(columns.values, origin, factors, order)
     return replace(found, made_of=columns.made_of, notes=notes)
 
 
 def text(file: Path) -> str:
-    """The text of ``file``. Raises InputError if there is none."""
+    """Decode ``file``, UTF-8 or UTF-16. Raises InputError if it is neither."""
     data = read_bytes(file, LARGEST)
     try:
         return data.decode("utf-16" if data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) else "utf-8-sig")

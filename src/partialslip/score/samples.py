@@ -1,4 +1,4 @@
-"""Somebody else's tractions: what a file of results comes down to."""
+"""Tractions read from a file of results."""
 
 from dataclasses import dataclass, replace
 
@@ -8,13 +8,14 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.scene import LARGEST, SMALLEST
 
-_DIGITS, _WHOLE = 8, 1e-5
-FEWEST = 6  # points in contact: fewer tell nothing of where it ends
+_DIGITS = 8  # digits of x: numbers with fewer count as rounded
+_WHOLE = 1e-5  # of a unit in the last place: deviation from a whole number of units
+FEWEST = 6  # points in contact that locate its ends
 
 
 @dataclass(frozen=True)
 class Samples:
-    """Tractions along the contact line, from outside.
+    """Tractions along the contact line, as read from a file.
 
     Parameters
     ----------
@@ -23,15 +24,15 @@ class Samples:
     p, dq : (n,) arrays
         Pressure, and the change q2 - q1 of shear traction between load points 1 and 2, Pa.
     q1, q2 : (n,) arrays or None
-        Shear traction at the load points, Pa, where it is known.
+        Shear traction at the load points, Pa, if known.
     cells : (n + 1,) array or None
-        Where p and dq are means over cells (nodal forces over their widths): their ends, m. None: values at points.
+        Ends of the cells, m, if p and dq are means over cells (nodal forces over widths). None: values at points.
     resolution : float
-        By how much x may be off, m: where it is written with few digits, so that points lie unevenly.
+        Standard deviation of x, m, if x is written with few digits; otherwise 0.
     made_of : str
-        What the columns were made of, in words, if that is not their names.
+        Expressions for the columns, if they differ from the columns' names.
     notes : tuple of str
-        What whoever wrote the file must know.
+        Notes for the author of the file.
     """
 
     x: Array
@@ -45,7 +46,7 @@ class Samples:
     notes: tuple[str, ...] = ()
 
     def moved(self, shift: float) -> "Samples":
-        """The same at x + ``shift`` (m)."""
+        """Return the samples moved along x by ``shift``, m."""
         return replace(self, x=self.x + shift, cells=None if self.cells is None else self.cells + shift)
 
 
@@ -55,20 +56,19 @@ def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float,
     Parameters
     ----------
     columns : dict of (n,) arrays
-        x and p, or Fn for nodal normal forces per unit depth; and one of: dq; q, half of that; q1 and q2; dFt; Ft;
-        Ft1 and Ft2. Points in any order; of several at one x, as of a mesh with a depth, the mean is taken.
+        x (m); p (Pa), or nodal normal forces Fn (N/m); and one of: dq; q = dq/2; q1 and q2; dFt; Ft; Ft1 and Ft2.
+        Points in any order. Points with the same x, as in a mesh with a depth, are averaged.
     origin : str
-        Where they are from, for messages.
+        Name of the file, for messages.
     factors : (float, float, float)
-        By which x, tractions (or forces) along the normal, and those along the tangent, are multiplied: for units and
-        signs.
+        Factors of x, of p (Fn) and of the shear, for other units and signs.
     order : int
-        Of the elements that nodal forces are from: 1, or 2 with every second node in the middle of an edge.
+        Order of the elements of nodal forces: 1, or 2 with every second node in the middle of an edge.
 
     Raises
     ------
     InputError
-        If there are too few of them, or they are no numbers.
+        If too few points are in contact, or a value is not a number of a plausible size.
     """
     x, *rest = (columns[name] for name in columns)
     normal, tangential = next(iter([name for name in columns if name != "x"])), [*columns][2:]
@@ -79,7 +79,7 @@ def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float,
     cells, resolution = None, abs(factors[0]) * _resolution(columns["x"])
     if normal == "Fn":
         if order == 2 and len(x) % 2 == 0:
-            raise InputError(f"{origin}: {len(x)} nodes: of elements of order 2 it must be an odd number")
+            raise InputError(f"{origin}: {len(x)} nodes: must be an odd number for elements of order 2")
         cells = _cells(x, order)
         p, shears = p / np.diff(cells), shears / np.diff(cells)
     touching = np.count_nonzero(p > 0)
@@ -103,7 +103,7 @@ def _check(values: Array, names: list[str], origin: str) -> None:
 
 
 def _resolution(x: Array) -> float:
-    """Standard deviation of ``x`` from where it was before it was rounded to few digits; 0 if there are many."""
+    """Standard deviation of ``x`` due to rounding to few digits, m; 0 if x has many digits."""
     x = np.unique(x)
     large = x[np.abs(x) > 0.1 * np.abs(x).max(initial=0.0)]
     if len(large) < FEWEST:
@@ -118,7 +118,7 @@ def _resolution(x: Array) -> float:
 
 
 def _merged(values: Array) -> Array:
-    """Rows of ``values`` by ascending first row; where that repeats, to rounding, the mean of the columns."""
+    """Sort the columns of ``values`` by the first row and average columns with equal first entries, to rounding."""
     values = values[:, np.argsort(values[0], kind="stable")]
     x = values[0]
     new = np.concatenate([[True], np.diff(x) > 1e-7 * np.ptp(x)]) if len(x) else np.zeros(0, bool)
@@ -130,7 +130,7 @@ def _merged(values: Array) -> Array:
 
 
 def _cells(x: Array, order: int) -> Array:
-    """Ends of the parts of the line that belong to nodes: as wide as the integrals of their shape functions."""
+    """Ends of the nodes' cells, (n + 1,), m: each as wide as the integral of the node's shape function."""
     if order == 1:
         inner = (x[1:] + x[:-1]) / 2
     else:

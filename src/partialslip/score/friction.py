@@ -1,6 +1,7 @@
-"""What slips, and with which coefficient of friction, from tractions alone.
+"""Coefficient of friction in the slip zones, from tractions alone.
 
-Where it slips, |dq| = 2 f p, whatever f the tractions were made with: next to the contact's ends |dq|/(2 p) is flat.
+In slip |dq| = 2 f p, whatever f the tractions were computed with. Next to the contact's ends |dq|/(2 p) is therefore
+constant.
 """
 
 from typing import NamedTuple
@@ -9,18 +10,18 @@ import numpy as np
 
 from partialslip.arrays import Array
 
-_POINTS = (3, 4, 5, 6, 8, 11, 16, 24, 36, 54, 80, 120, 180, 270, 400, 600, 900)
-_FLAT = 0.02  # relative uncertainty of f, above which |dq|/(2 p) is not flat
-_OWN = 2e-3  # likewise, up to which each side may have its own
-_APART = 3.0  # times the uncertainty: then two values differ
-_ROUNDING = 1e-12
-_PRESSED = 0.2  # of the largest p: less of it, at the ends, tells nothing of f
-_TOP = 3  # points with the largest |dq|/(2 p)
+_COUNTS = (3, 4, 5, 6, 8, 11, 16, 24, 36, 54, 80, 120, 180, 270, 400, 600, 900)
+_FLAT = 0.02  # relative uncertainty of f above which |dq|/(2 p) does not count as constant
+_OWN = 2e-3  # relative uncertainty of f up to which a side keeps a value different from the other side's
+_APART = 3.0  # difference of two values of f, in their uncertainty, above which they differ
+_F_ROUNDING = 1e-12  # least relative uncertainty of f
+_PRESSED = 0.2  # of the largest p: where p is less, |dq|/(2 p) is too noisy to bound f
+_TOP = 3  # number of points with the largest |dq|/(2 p) that bound f
 
 
 class Friction(NamedTuple):
-    """Coefficient of friction in a slip zone: ``f``, how far it may be off, the ``sign`` of dq there, and the standard
-    deviation of 2 f p - |dq| in it, Pa. ``seen`` says whether |dq|/(2 p) is flat there."""
+    """Friction in a slip zone: coefficient ``f`` and its ``uncertainty``, ``sign`` of dq, and the ``scatter``
+    (standard deviation) of 2 f p - |dq|, Pa. ``seen`` tells whether |dq|/(2 p) is constant in the zone."""
 
     f: float
     uncertainty: float
@@ -30,10 +31,17 @@ class Friction(NamedTuple):
 
 
 def frictions(p: Array, dq: Array, asked: float) -> tuple[Friction, Friction]:
-    """Friction at the left and right ends of the contact, from the points (n,) in it.
+    """Friction next to the left and to the right end of the contact.
 
-    Where no side shows one, it is the one ``asked`` for, to within what the largest |dq|/(2 p) leaves open; where one
-    side does, it is the other's, too.
+    A side without a slip zone gets the coefficient of the other side. If neither side has one, both get the
+    coefficient ``asked`` for; its uncertainty is the difference from the largest |dq|/(2 p).
+
+    Parameters
+    ----------
+    p, dq : (n,) arrays
+        Tractions at the points in contact, Pa.
+    asked : float
+        The scene's coefficient of friction.
     """
     sides = _outer(p, dq), _outer(p[::-1], dq[::-1])
     seen = [side for side in sides if side.seen]
@@ -49,7 +57,7 @@ def frictions(p: Array, dq: Array, asked: float) -> tuple[Friction, Friction]:
 
 
 def _shared(side: Friction, known: Friction) -> Friction:
-    """The friction of a side: its own where that is certain, or the one that is known best."""
+    """Friction of one ``side``: its own coefficient if certain and different, otherwise the best ``known`` one."""
     apart = abs(side.f - known.f)
     if side.seen and side.uncertainty <= _OWN * side.f and apart > _APART * side.uncertainty:
         return side._replace(uncertainty=float(np.hypot(side.uncertainty, apart / _APART)))
@@ -57,17 +65,19 @@ def _shared(side: Friction, known: Friction) -> Friction:
 
 
 def _outer(p: Array, dq: Array) -> Friction:
-    """Friction from the first points, as many of them as make it certain: of fewer the noise tells more, of too many
-    some stick."""
+    """Friction from the first points; their number minimises the uncertainty.
+
+    With fewer points noise matters more; with more some of them may stick.
+    """
     best = None
-    for count in (count for count in _POINTS if count <= len(p)):
+    for count in (count for count in _COUNTS if count <= len(p)):
         P, Q = 2 * p[:count], dq[:count]
         f = float(Q.sum() / P.sum())
         scatter = float(np.linalg.norm(Q - f * P)) / np.sqrt(count - 1)
         half = (count + 1) // 2
         drift = abs(float(Q[:half].sum() / P[:half].sum() - Q[count - half :].sum() / P[count - half :].sum()))
         error = (1 + 2 / (count - 2)) * scatter * np.sqrt(count) / P.sum()
-        uncertainty = float(np.hypot(error, drift)) + _ROUNDING * abs(f)
+        uncertainty = float(np.hypot(error, drift)) + _F_ROUNDING * abs(f)
         if best is None or uncertainty < best.uncertainty:
             seen = uncertainty <= _FLAT * abs(f)
             best = Friction(abs(f), uncertainty, 1 if f >= 0 else -1, scatter, seen)
