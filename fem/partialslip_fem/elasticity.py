@@ -17,31 +17,31 @@ Indices = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Body:
-    """A discretised body: stiffness, and where its contact line and outer boundary are.
+    """A discretised body: stiffness, contact line and outer boundary.
 
     Parameters
     ----------
     order : int
-        Of the elements' polynomials.
+        Polynomial order of the elements.
     kappa, compliance : float
-        Kolosov's constant, which says plane strain or stress, and (kappa+1)/(2 mu).
+        Kolosov's constant, which differs in plane strain and plane stress, and (kappa+1)/(2 mu).
     stiffness : (2 N, 2 N) sparse matrix
         Degrees of freedom are the displacements of all nodes along x, then those along y.
     x : (n,) array
-        Nodes on the contact line, ascending; between two corners lie ``order`` - 1 evenly spaced ones.
+        Nodes on the contact line, ascending; between two vertices lie ``order`` - 1 evenly spaced nodes.
     mass : (n, n) sparse matrix
-        Integrals over x of products of their shape functions. Its row sums are the closed Newton-Cotes
-        weights, all positive up to order 4, so that nodal forces have the signs of tractions.
+        Integrals over x of products of the contact line's shape functions. The row sums are the closed Newton-Cotes
+        weights, positive up to order 4, so that nodal forces have the signs of tractions.
     contact, vertices : (2, n), (2, v) int arrays
         Degrees of freedom, along x and along y, of the contact line and the mesh's points.
     held : (k,) int array
-        Degrees of freedom that are held, first those along x.
+        Held degrees of freedom, first along x, then along y.
     points : (2, N) array
         All nodes.
     face : (s,) int array
-        Nodes of the whole side that the contact line is on, from left to right.
+        Nodes of the whole side with the contact line, from left to right.
     pull : (2 N,) array or None
-        Nodal forces of a unit tension on the right side, where that is pulled.
+        Nodal forces of a unit tension on the right side, if the body is pulled there.
     """
 
     order: int
@@ -59,19 +59,19 @@ class Body:
 
     @property
     def weights(self) -> Array:
-        """What turns tractions at the nodes of the contact line into forces, (n,): row sums of ``mass``."""
+        """Length of the contact line per node, (n,): row sums of ``mass``. Traction times weight is the nodal force."""
         result: Array = np.asarray(self.mass.sum(axis=1)).ravel()
         return result
 
     @property
     def held_points(self) -> Array:
-        """Nodes of what is held along x, (2, h)."""
+        """Coordinates of the nodes held along x, (2, h)."""
         result: Array = self.points[:, self.held[self.held < self.points.shape[1]]]
         return result
 
     @property
     def face_x(self) -> Array:
-        """Where the nodes of the face are, (s,)."""
+        """x of the nodes of the face, (s,)."""
         result: Array = self.points[0, self.face]
         return result
 
@@ -113,9 +113,18 @@ def body(
     held: Held = (ALL_AROUND, ALL_AROUND),
     pulled: bool = False,
 ) -> Body:
-    """Assemble a body whose Kolosov constant is ``kappa`` (it says plane strain or stress), and (kappa+1)/(2 mu)
-    ``compliance``; the lines of the mesh that are ``held`` along x, and along y, are to be given displacements. With
-    ``pulled`` the right side bears a load."""
+    """Assemble a body on ``mesh``.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    kappa, order, compliance
+        As for :class:`Body`.
+    held : two of sequence of str
+        Lines of the mesh that are held along x, and along y.
+    pulled : bool
+        Whether to assemble the nodal forces of a tension on the right side.
+    """
     triangles, element = _triangles(mesh), _ELEMENTS[order]()
     # gradients are of order - 1, and straight triangles have constant Jacobians: this quadrature is exact
     basis = skfem.Basis(triangles, element, intorder=2 * (order - 1))
@@ -151,7 +160,7 @@ def body(
 
 
 def gradients(mesh: Mesh, order: int, u: Array) -> Array:
-    """Gradients in the middle of the triangles, (c, 2, t), of ``u`` (c, N), given at the nodes."""
+    """Gradients of ``u`` (c, N) in the middle of the triangles of ``mesh``, (c, 2, t); elements of ``order``."""
     middle = np.full((2, 1), 1 / 3), np.full(1, 1 / 2)
     basis = skfem.Basis(_triangles(mesh), _ELEMENTS[order](), quadrature=middle)
     return np.stack([basis.interpolate(component).grad[..., 0] for component in u])
@@ -162,7 +171,7 @@ def _triangles(mesh: Mesh) -> skfem.MeshTri:
 
 
 def _stiffness(basis: skfem.Basis, kappa: float, compliance: float) -> sp.csr_matrix:
-    """Plane isotropic elasticity from the three products of scalar gradients: far cheaper than vector elements."""
+    """Stiffness of plane isotropic elasticity, from scalar forms: far cheaper than vector elements."""
     mu = (kappa + 1) / (2 * compliance)
     lam = mu * (3 - kappa) / (kappa - 1)
     xx, xy, yy = (form.assemble(basis) for form in (_xx, _xy, _yy))
@@ -173,7 +182,7 @@ def _stiffness(basis: skfem.Basis, kappa: float, compliance: float) -> sp.csr_ma
 
 
 def _facets(triangles: skfem.MeshTri, lines: Indices) -> Indices:
-    """Numbers of the facets with the given end points."""
+    """Indices of the facets with the end points ``lines`` (k, 2)."""
     count = triangles.p.shape[1]
     ends = np.sort(lines, axis=1)
     known = triangles.facets[0].astype(np.int64) * count + triangles.facets[1]

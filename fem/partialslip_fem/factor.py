@@ -1,7 +1,7 @@
 """Factors of sparse symmetric positive definite matrices that keep chosen unknowns last.
 
-Two back ends behind one interface: SuperLU, which SciPy brings, and CHOLMOD (supernodal Cholesky, through cvxopt),
-several times faster, where it is installed: ``pip install partialslip[fast]``.
+Two libraries with one interface: SuperLU, part of SciPy, and CHOLMOD (supernodal Cholesky, through cvxopt), several
+times faster: ``pip install partialslip[fast]``.
 """
 
 import importlib.util
@@ -18,41 +18,44 @@ from partialslip.arrays import Array, Indices
 from partialslip.errors import MissingLibraryError
 
 Backend = Literal["superlu", "cholmod"]
-_options = threading.Lock()  # those of CHOLMOD are one dictionary for all threads
+_options = threading.Lock()  # CHOLMOD's options are one dictionary for all threads
 _SYMMETRIC = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
 
 class Factor(Protocol):
-    """A factor of a symmetric positive definite matrix that kept n chosen unknowns last; ``made`` so many times."""
+    """Factor of a symmetric positive definite matrix with n chosen unknowns last; ``made`` counts factorisations."""
 
     made: int
 
     def take_inverse_of_schur(self) -> Array:
-        """(n, n): the inverse of the Schur complement onto the last unknowns."""
+        """Return the inverse of the Schur complement onto the last unknowns, (n, n).
+
+        This may use the factor up: a later :meth:`back_substitute` then factors the matrix again.
+        """
 
     def back_substitute(self, load: Array) -> Array:
-        """Solution under ``load``, (N, k), the last unknowns being the last rows of both."""
+        """Solution for the right-hand sides ``load``, (N, k); the last unknowns are the last rows of both."""
 
 
 def default_backend() -> Backend:
-    """The fastest that is installed."""
+    """The fastest installed library."""
     return "cholmod" if importlib.util.find_spec("cvxopt") else "superlu"
 
 
 def factor(K: sp.csr_matrix, inner: Indices, last: Indices, backend: Backend) -> Factor:
-    """Factor the rows and columns ``inner`` and ``last`` of ``K`` once, the former in an order that reduces fill.
+    """Factor the rows and columns ``inner`` and ``last`` of ``K``, ``inner`` in an order that reduces fill.
 
     Raises
     ------
     MissingLibraryError
-        If CHOLMOD is asked for and is not installed.
+        If ``backend`` is "cholmod" and cvxopt is not installed.
     """
     return _Cholmod(K, inner, last) if backend == "cholmod" else _SuperLU(K, inner, last)
 
 
 class _SuperLU:
     def __init__(self, K: sp.csr_matrix, inner: Indices, last: Indices) -> None:
-        # SuperLU hands its minimum-degree order out with a factor only, so let it drop every entry
+        # SuperLU returns its minimum-degree order with a factor only: an incomplete one without entries is cheapest
         block = K[inner][:, inner].tocsc()
         ordered = spla.spilu(block, drop_tol=np.inf, fill_factor=1, permc_spec="MMD_AT_PLUS_A", **_SYMMETRIC)
         self._n, self._order = len(last), np.argsort(ordered.perm_c)
@@ -62,9 +65,9 @@ class _SuperLU:
 
     def take_inverse_of_schur(self) -> Array:
         n, first = self._n, len(self._order)
-        place = self._factor.perm_c[-n:]  # where the factor put the last: last, but perhaps in another order
+        place = self._factor.perm_c[-n:]  # the last unknowns are last in the factor, but perhaps in another order
         if place.min() < first or not np.array_equal(self._factor.perm_r, self._factor.perm_c):
-            raise AssertionError("the factor has not kept the last unknowns last and its pivots on the diagonal")
+            raise AssertionError("the factor must keep the last unknowns last and its pivots on the diagonal")
         upper = self._factor.U[-n:, -n:].toarray()
         pivots = np.sqrt(np.diag(upper))
         inverse = _inverse((upper / pivots[:, None]).T)  # S = L D L^T, and U = D L^T
@@ -80,19 +83,19 @@ class _Cholmod:
         self._n, self.made = len(last), 0
         self._order = np.asarray(self._cvxopt.amd.order(self._lower(K[inner][:, inner]))).ravel()
         unknowns = np.concatenate([inner[self._order], last])
-        # CHOLMOD goes through the elimination tree from its leaves to its root. An entry, zero, between the last of the
-        # inner unknowns and the first of the last ones makes all the rest of the tree hang below these.
+        # CHOLMOD orders the elimination tree from its leaves to its root. An explicit zero between the last inner
+        # unknown and the first of the last unknowns puts the rest of the tree below these.
         self._matrix = self._lower(K[unknowns][:, unknowns], (len(inner), len(inner) - 1))
         self._factored = self._numeric()
 
     def take_inverse_of_schur(self) -> Array:
         n, first = self._n, len(self._order)
         place = self._cvxopt.matrix(np.arange(first + n, dtype=float))
-        self._cvxopt.cholmod.solve(self._factored, place, sys=7)  # puts it into the factor's order
+        self._cvxopt.cholmod.solve(self._factored, place, sys=7)  # permutes into the factor's order
         if not np.array_equal(np.asarray(place).ravel()[first:], np.arange(first, first + n)):
-            raise AssertionError("the factor has not kept the last unknowns last")
+            raise AssertionError("the factor must keep the last unknowns last")
         starts, rows, values = (np.asarray(part).ravel() for part in self._cvxopt.cholmod.getfactor(self._factored).CCS)
-        self._factored = None  # it has been taken apart
+        self._factored = None  # getfactor has converted it; back_substitute factors again
         lower = np.zeros((n, n), order="F")
         kept = slice(starts[first], None)
         lower[rows[kept] - first, np.repeat(np.arange(n), np.diff(starts[first:]))] = values[kept]
@@ -117,7 +120,7 @@ class _Cholmod:
         return factored
 
     def _lower(self, K: sp.csr_matrix, *zeros: tuple[int, int]) -> object:
-        """The lower triangle, with ``zeros`` as entries."""
+        """Lower triangle of ``K`` with explicit ``zeros`` at the given rows and columns."""
         lower = sp.tril(K, format="coo")
         rows, columns = (
             self._cvxopt.matrix(np.append(index.astype(np.int64), [zero[axis] for zero in zeros]).astype(np.int64))
@@ -138,7 +141,7 @@ def _back(order: Indices, solution: Array) -> Array:
 
 
 def _inverse(lower: Array) -> Array:
-    """Inverse of L L^T, with ``lower`` = L, which it is put in the place of."""
+    """Inverse of L L^T for ``lower`` = L, which is overwritten."""
     half, _ = la.lapack.dpotri(lower, lower=True, overwrite_c=True)  # zero above the diagonal, as L is
     inverse: Array = half + half.T
     inverse[np.diag_indices_from(inverse)] /= 2

@@ -1,4 +1,4 @@
-"""What the half-plane does at the block's outer boundary: the displacements under the contact's nodal forces."""
+"""Displacements of a half-plane at the outer boundary of a block, under the contact's nodal forces."""
 
 import math
 from dataclasses import dataclass
@@ -10,23 +10,23 @@ from partialslip.arrays import Array
 
 @dataclass(frozen=True)
 class FarField:
-    """The outer boundary's displacements: ``fields`` (2 k, 2 t) times ``moments`` (2 t, 2 n) times nodal forces."""
+    """Displacements of the outer boundary: ``fields`` (2 k, 2 t) times ``moments`` (2 t, 2 n) times nodal forces."""
 
     fields: Array
     moments: Array
 
     @property
     def along_y(self) -> "FarField":
-        """That of forces along y alone: ``fields`` (2 k, t) and ``moments`` (t, n)."""
+        """The far field of forces along y alone: ``fields`` (2 k, t) and ``moments`` (t, n)."""
         count, nodes = (size // 2 for size in self.moments.shape)
         return FarField(self.fields[:, count:], self.moments[count:, nodes:])
 
 
 def half_plane(points: Array, x: Array, width: float, kappa: float, compliance: float = 1.0) -> FarField:
-    """The half-plane's displacements at ``points`` (2, k), under forces at ``x`` (n,), in powers of x/width.
+    """Displacements of a half-plane at ``points`` (2, k) under forces at ``x`` (n,), in powers of x/width.
 
-    ``kappa`` and ``compliance`` are the body's, as for :func:`partialslip_fem.elasticity.body`.
-    ``width`` is the distance of the nearest point; as many powers are taken as leave out less than 1e-15.
+    ``width`` is the distance of the nearest point. The neglected powers are less than 1e-15, relative. ``kappa`` and
+    ``compliance`` as for :class:`partialslip_fem.elasticity.Body`.
     """
     count = math.ceil(math.log(1e15) / math.log(width / np.abs(x).max()))
     powers = (x / width) ** np.arange(count)[:, None]
@@ -37,8 +37,8 @@ def half_plane(points: Array, x: Array, width: float, kappa: float, compliance: 
 def _multipoles(points: Array, kappa: float, width: float, count: int) -> Array:
     """Displacements at ``points`` (2, k) of the half-plane y <= 0 under moments of forces on its surface.
 
-    Returns a (2 k, 2 count) array, all along x and then all along y; column j belongs to the moment
-    sum X (s/width)^j of forces X along x at s, column count + j to the same of forces along y. mu = (kappa+1)/2.
+    Returns a (2 k, 2 count) array: rows are displacements along x, then along y. Column j belongs to the moment
+    sum X (s/width)^j of forces X along x at s, column count + j to the same moment of forces along y. mu = (kappa+1)/2.
 
     A force F = X + iY at s has Kolosov's potentials phi = -F log(z-s)/(2 pi), psi = conj(F) log(z-s)/(2 pi)
     (Flamant's solution in Muskhelishvili's form), so that with 2 mu w = kappa phi - (z-s) conj(phi') - conj(psi)

@@ -1,4 +1,4 @@
-"""Fields for the result: stresses along the surfaces and inside, the displaced bodies."""
+"""Stresses along the surfaces and inside the bodies, and displaced meshes, in SI units."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,13 +12,12 @@ from partialslip_fem.displacements import DisplacedBody
 from partialslip_fem.elasticity import gradients
 from partialslip_fem.recovery import inside, polynomials
 
-_CELLS, _TERMS = 6, 4  # in the fit at the ends of the contact
+_CELLS, _TERMS = 6, 4  # cells and terms of the fit at the ends of the contact
 
 
 @dataclass(frozen=True)
 class _Surface:
-    """What the stress along a body's surface is computed from; ``displacements`` along x and ``pressures`` by load
-    point, scaled."""
+    """One body's surface: ``displacements`` along x and ``pressures``, by load point, scaled."""
 
     compliance: float
     kappa: float
@@ -26,7 +25,7 @@ class _Surface:
     pressures: tuple[PPoly, ...]
 
     def at(self, x: Array) -> list[Array]:
-        """sigma_xx at the points ``x`` (k,), by load point, scaled."""
+        """sigma_xx at ``x`` (k,), by load point, scaled."""
         return [
             4 / self.compliance * inside(u.derivative(), x) - (3 - self.kappa) / (self.kappa + 1) * inside(p, x)
             for u, p in zip(self.displacements, self.pressures, strict=True)
@@ -35,37 +34,36 @@ class _Surface:
 
 @dataclass(frozen=True)
 class _Surfaces:
-    """The surfaces of the lower and the upper body; lengths are scaled by ``length`` (m), stresses by ``stress``
-    (Pa)."""
+    """Surfaces of the lower and the upper body; units of ``length`` (m) and ``stress`` (Pa)."""
 
     bodies: tuple[_Surface, ...]
     length: float
     stress: float
 
     def at(self, x: Array) -> Array:
-        """sigma_xx at ``x`` (k,), m: (2, 2, k) by body and load point, Pa."""
+        """sigma_xx at ``x`` (k,), m, by body and load point: (2, 2, k), Pa."""
         scaled = np.asarray(x, float) / self.length
         return self.stress * np.array([body.at(scaled) for body in self.bodies])
 
 
 def along_surfaces(
-    bodies: Sequence[DisplacedBody], ends: Sequence[tuple[float, float]], length: float, stress: float
+    bodies: Sequence[DisplacedBody], contact_ends: Sequence[tuple[float, float]], length: float, stress: float
 ) -> SurfaceStress:
-    """sigma_xx along both surfaces, the lower body's and the upper one's.
+    """sigma_xx along the surfaces of the lower and the upper body.
 
-    With the strain e of the surface and the pressure p on it, of a body of compliance A = (kappa+1)/(2 mu),
+    With the strain e of the surface, the pressure p on it and the compliance A = (kappa+1)/(2 mu) of the body,
 
-        sigma_xx = (4/A) e - (3-kappa)/(kappa+1) p,
+        sigma_xx = (4/A) e - (3-kappa)/(kappa+1) p.
 
-    and beyond the body nothing.
+    Beyond the body sigma_xx is zero.
 
     Parameters
     ----------
     bodies : two of DisplacedBody
-    ends : two of (float, float)
-        Where the contact ends, at load points 1 and 2; scaled.
+    contact_ends : two of (float, float)
+        Ends of the contact at load points 1 and 2, scaled.
     length, stress : float
-        What lengths and stresses are scaled by, m and Pa.
+        Units of length and stress, m and Pa.
     """
     surfaces = tuple(
         _Surface(
@@ -79,10 +77,10 @@ def along_surfaces(
     )
     stresses = _Surfaces(surfaces, length, stress)
     nodes = bodies[0].condensed.body.face_x
-    x = np.union1d(nodes, ends)
+    x = np.union1d(nodes, contact_ends)
     sigma = stresses.at(length * x)
     for number, surface in enumerate(surfaces):
-        for load, (u, (left, right)) in enumerate(zip(surface.displacements, ends, strict=True)):
+        for load, (u, (left, right)) in enumerate(zip(surface.displacements, contact_ends, strict=True)):
             for end, side in ((left, -1), (right, 1)):
                 at_end = stress * 4 / surface.compliance * _strain_beyond(u, end, side)
                 sigma[number, load, np.searchsorted(x, end)] = at_end
@@ -90,10 +88,10 @@ def along_surfaces(
 
 
 def _strain_beyond(u: PPoly, end: float, side: int) -> float:
-    """Strain of the surface at the contact's ``end``, coming from outside (``side``).
+    """Strain of the surface at the contact's ``end``, as a limit from outside (``side``).
 
-    It goes like c_0 + c_1 r^(1/2) + c_2 r + ... with the distance r, which polynomials do not follow. Means over cells
-    are far better than their values: fit those, of the cells next to the one at the end.
+    The strain is c_0 + c_1 r^(1/2) + c_2 r + ... at the distance r, which polynomials do not follow. Means over cells
+    are far more accurate than point values: the series is fitted to the means of the cells next to the cell at the end.
     """
     distance = np.sort(side * (u.x - end))
     distance = distance[distance > 0][1 : _CELLS + 2]
@@ -106,12 +104,12 @@ def _strain_beyond(u: PPoly, end: float, side: int) -> float:
 
 
 def deformed(body: DisplacedBody, length: float, unit: float, stress: float) -> DeformedBody:
-    """Displacements of the mesh's points and stresses in the middle of its triangles.
+    """Displacements of the mesh points and stresses in the middle of the triangles of ``body``.
 
     Parameters
     ----------
     length, unit, stress : float
-        What lengths and displacements are scaled by, m, and stresses, Pa.
+        Units of length and displacement, m, and of stress, Pa.
     """
     mesh, mirror = body.condensed.mesh, np.array([[1.0], [body.way]])
     moved = body.u[..., body.condensed.body.vertices[0]]
@@ -127,7 +125,7 @@ def deformed(body: DisplacedBody, length: float, unit: float, stress: float) -> 
 
 
 def _in_the_middle(body: DisplacedBody) -> Array:
-    """sigma_xx, sigma_yy and sigma_xy in the middle of the triangles, (2, 3, t), by load point; scaled."""
+    """sigma_xx, sigma_yy and sigma_xy in the middle of the triangles, by load point, (2, 3, t), scaled."""
     kappa = body.part.kappa
     mu = (kappa + 1) / (2 * body.part.compliance)
     lam = mu * (3 - kappa) / (kappa - 1)

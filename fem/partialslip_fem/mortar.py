@@ -1,4 +1,4 @@
-"""Mortar: what one body's contact line has to do with another's whose nodes do not match."""
+"""Mortar projection between contact lines whose nodes do not match."""
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,18 +11,18 @@ from partialslip_fem.recovery import inside
 
 
 def transfer(onto: Body, other: Body) -> Array:
-    """The L2 projection T of the other body's displacements of the contact line onto a body's, (n, n_other).
+    """L2 projection T from the contact line of ``other`` to the contact line of ``onto``, (n, n_other).
 
-    T^T takes nodal forces back: the other body gets those of the same traction. Constants and straight lines are
-    kept by T, so that forces and moments are kept by T^T. On nodes that match T is the identity. The
-    other line may be longer.
+    T projects displacements. T^T takes nodal forces back: the other body gets nodal forces of the same traction. T
+    preserves constant and linear functions, so that T^T preserves forces and moments. If the nodes match, T is the
+    identity. The other line may be longer.
     """
     projected: Array = spla.spsolve(onto.mass.tocsc(), _products(onto, other).toarray())
     return projected
 
 
 def nodal_forces(body: Body, traction: PPoly) -> Array:
-    """Nodal forces, (n,), of a traction given in pieces along the contact line, zero beyond them."""
+    """Nodal forces, (n,), of a piecewise polynomial ``traction`` on the contact line of ``body``; zero off its cells."""
     order = (body.order + len(traction.c)) // 2 + 1
     x, weights = _rule(np.clip(np.union1d(body.x[:: body.order], traction.x), body.x[0], body.x[-1]), order)
     nodes, values = _shape_functions(body, x)
@@ -31,10 +31,10 @@ def nodal_forces(body: Body, traction: PPoly) -> Array:
 
 
 def _products(onto: Body, other: Body) -> sp.csr_matrix:
-    """Integrals of products of shape functions of both bodies, on the pieces between the vertices of either."""
-    ends = np.union1d(onto.x[:: onto.order], other.x[:: other.order])
-    ends = ends[(ends >= max(onto.x[0], other.x[0])) & (ends <= min(onto.x[-1], other.x[-1]))]
-    x, weights = _rule(ends, (onto.order + other.order) // 2 + 1)
+    """Integrals of products of shape functions of both bodies, (n, n_other); the quadrature is exact."""
+    vertices = np.union1d(onto.x[:: onto.order], other.x[:: other.order])
+    vertices = vertices[(vertices >= max(onto.x[0], other.x[0])) & (vertices <= min(onto.x[-1], other.x[-1]))]
+    x, weights = _rule(vertices, (onto.order + other.order) // 2 + 1)
     rows, left = _shape_functions(onto, x)
     columns, right = _shape_functions(other, x)
     values = weights[:, None, None] * left[:, :, None] * right[:, None, :]
@@ -42,15 +42,15 @@ def _products(onto: Body, other: Body) -> sp.csr_matrix:
     return sp.coo_array((values.ravel(), tuple(where)), (len(onto.x), len(other.x))).tocsr()
 
 
-def _rule(ends: Array, count: int) -> tuple[Array, Array]:
-    """Points and weights of Gauss's rule on every piece."""
+def _rule(vertices: Array, count: int) -> tuple[Array, Array]:
+    """Points and weights of Gauss's rule with ``count`` points between neighbouring ``vertices``."""
     points, weights = np.polynomial.legendre.leggauss(count)
-    half = np.diff(ends)[:, None] / 2
-    return (ends[:-1, None] + half * (1 + points)).ravel(), (half * weights).ravel()
+    half = np.diff(vertices)[:, None] / 2
+    return (vertices[:-1, None] + half * (1 + points)).ravel(), (half * weights).ravel()
 
 
 def _shape_functions(body: Body, x: Array) -> tuple[Indices, Array]:
-    """Nodes whose shape functions do not vanish at ``x`` (k,), and their values there, (k, order + 1) each."""
+    """Nodes whose shape functions do not vanish at ``x`` (k,), and the values there, (k, order + 1) each."""
     k, vertices = body.order, body.x[:: body.order]
     cell = np.clip(np.searchsorted(vertices, x, "right") - 1, 0, len(vertices) - 2)
     local = (x - vertices[cell]) / np.diff(vertices)[cell]

@@ -1,4 +1,4 @@
-"""Functions along the contact line from what is known at its nodes."""
+"""Piecewise polynomials along the contact line from nodal forces and nodal values."""
 
 from dataclasses import dataclass
 
@@ -11,16 +11,16 @@ from partialslip_fem.elasticity import Body
 
 
 def traction(body: Body, forces: Array) -> PPoly:
-    """The traction, of the elements' own order along the contact line, that is equivalent to nodal ``forces`` (n,).
+    """Traction on the contact line of ``body`` that is equivalent to nodal ``forces`` (n,), of the elements' order.
 
-    Nodal forces are integrals of the traction times shape functions. Dividing them by the integrals of the shape
-    functions gives values that waver by h^2 p''; the mass matrix takes them back exactly, and keeps their resultant.
+    Nodal forces are integrals of the traction times shape functions. Dividing by the integrals of the shape functions
+    would give an oscillating error of h^2 p''; the mass matrix inverts the integrals and preserves the resultant.
     """
     return polynomials(body.x, spla.spsolve(body.mass.tocsc(), forces), body.order)
 
 
 def polynomials(x: Array, values: Array, order: int) -> PPoly:
-    """Piecewise polynomials through ``values`` at nodes ``x``, every ``order``-th of which ends a cell."""
+    """Piecewise polynomials of ``order`` through ``values`` (n,) at ``x`` (n,); every ``order``-th point is a vertex."""
     k, vertices = order, x[::order]
     cells = np.lib.stride_tricks.sliding_window_view(values, k + 1)[::k]
     coefficients = np.linalg.solve(np.vander(np.linspace(0, 1, k + 1)), cells.T)
@@ -28,7 +28,7 @@ def polynomials(x: Array, values: Array, order: int) -> PPoly:
 
 
 def inside(polynomial: PPoly | None, points: Array) -> Array:
-    """Its values, zero off its cells."""
+    """Values of ``polynomial`` at ``points`` (k,); zero off its cells, and everywhere if it is None."""
     if polynomial is None:
         return np.zeros_like(points)
     values: Array = np.nan_to_num(polynomial(points, extrapolate=False), nan=0.0)
@@ -37,8 +37,10 @@ def inside(polynomial: PPoly | None, points: Array) -> Array:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two functions along the contact line, piecewise polynomials in lengths of ``length`` (m) and stresses of
-    ``stress`` (Pa); None is zero."""
+    """Two scaled tractions along the contact line, ``first`` and ``second``; None is zero.
+
+    Lengths are scaled by ``length`` (m), stresses by ``stress`` (Pa).
+    """
 
     first: PPoly | None
     second: PPoly | None
@@ -46,6 +48,6 @@ class Pair:
     stress: float
 
     def at(self, x: Array) -> tuple[Array, Array]:
-        """Both at ``x`` (m), Pa; zero off their cells."""
+        """Both tractions at ``x`` (k,), m, in Pa; zero off their cells."""
         points = x / self.length
         return self.stress * inside(self.first, points), self.stress * inside(self.second, points)

@@ -1,4 +1,4 @@
-"""Meshes: gmsh recipes, and reading and writing through meshio. The only package that imports either."""
+"""Make meshes with gmsh, read and write them with meshio. No other package imports gmsh or meshio."""
 
 from partialslip_meshes.blocks import Corner as Corner
 from partialslip_meshes.blocks import block as block

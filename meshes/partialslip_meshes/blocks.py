@@ -1,4 +1,4 @@
-"""Recipes: a block below its face, flat or round, graded towards points on its contact line; and its holder."""
+"""Mesh a block with a flat or round face, graded to points on its contact line, and the holder below it."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, Literal
@@ -9,7 +9,7 @@ import numpy.typing as npt
 from partialslip_meshes.gmsh import ask
 from partialslip_meshes.mesh import Mesh, QuadMesh
 
-_CORNER = 0.02  # element size in the notch between block and holder, in the block's half-width
+_NOTCH_SIZE = 0.02  # element size in the notch between block and holder, in the block's half-width
 
 Corner = Literal["foot", "shoulder", "notch"]
 
@@ -33,36 +33,37 @@ def block(
     width : float
         Half-width of the block, and its height if none is given.
     contact : (float, float)
-        Ends of the line "contact" on y = 0; the rest of that side is the line "face", the bottom, of the holder if
-        there is one, is the "back", the sides beside it are "left" and "right", and all else "flanks".
+        Ends of the line "contact" on y = 0. The rest of this side is the line "face". The bottom, of the holder if
+        there is one, is "back"; the sides next to it are "left" and "right"; all other sides are "flanks".
     sizes : mapping of float to float
-        Points on the contact line, each to become a vertex, and the element size there.
+        Element size by point x on the contact line. Every point becomes a vertex.
     growth : float
-        Element size gained per unit of distance from each point, so that a wide block costs no more than the
-        logarithm of its width.
+        Element size gained per unit of distance from each point: the number of elements grows with the logarithm of
+        the width.
     height : float, optional
+        Height of the block; by default its half-width.
     along : float, optional
-        Element size all along the contact line, from where it grows likewise.
+        Element size all along the contact line, from which it grows in the same way.
     holder : (float, float), optional
-        Half-width and height of a block below the first one, and one piece with it.
+        Half-width and height of a second block below the first, joined to it.
     face : callable, optional
-        How far the side y = 0 is to lie back at x instead, from 0 to less than the height.
+        Depth of the curved face below y = 0 at x, from 0 to less than the height.
     facets : float, optional
-        The largest element size on that side, in the distance from the middle of the contact line or half of that
+        Largest element size on the face, divided by the distance from the middle of the contact line or by half of the
         line's length, whichever is larger.
     corners : mapping of str to float, optional
-        Element sizes on both sides at the "foot" (an end of the back), at the "shoulder" (the upper end of the sides
-        "left" and "right"), and in the "notch" between block and holder.
+        Element sizes at corners on both sides: "foot" (ends of the back), "shoulder" (upper ends of "left" and
+        "right"), "notch" (between block and holder).
 
     Raises
     ------
     MissingLibraryError
-        If gmsh, or a system library that it needs, is not there.
+        If gmsh, or a system library that gmsh needs, is missing.
     PartialslipError
-        If gmsh cannot make the mesh, or its process dies twice.
+        If gmsh cannot make the mesh, or the gmsh process dies twice.
     """
     height = width if height is None else height
-    at_corners: dict[Corner, float] = {"notch": _CORNER * width} if holder else {}
+    at_corners: dict[Corner, float] = {"notch": _NOTCH_SIZE * width} if holder else {}
     at_corners.update(corners or {})
     outline = {"width": width, "height": height, "holder": holder, "facets": facets, "at_corners": at_corners}
     points, triangles, lines, cpu_s = _made(3, contact, sizes, growth, along, **outline)
@@ -74,8 +75,10 @@ def block(
 
 def quad_block(width: float, contact: tuple[float, float], sizes: Mapping[float, float], growth: float,
                along: float | None = None) -> QuadMesh:  # fmt: skip
-    """Mesh the block [-width, width] x [-width, 0] with quadrilaterals only; parameters and what is raised as for
-    :func:`block`."""
+    """Mesh the block [-width, width] x [-width, 0] with quadrilaterals.
+
+    ``width``, ``contact``, ``sizes``, ``growth``, ``along`` and errors as for :func:`block`.
+    """
     outline: dict[str, Any] = {"width": width, "height": width, "holder": None, "facets": None, "at_corners": {}}
     return QuadMesh(*_made(4, contact, sizes, growth, along, **outline)[:3])
 
@@ -88,8 +91,7 @@ def _made(
     along: float | None,
     **outline: Any,
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], dict[str, npt.NDArray[np.int64]], float]:
-    """Points, elements of so many corners, and named lines of a mesh, with the nodes numbered from zero; and the CPU
-    seconds that gmsh took."""
+    """Points, elements with so many ``corners``, named lines, and CPU seconds of a mesh; nodes are numbered from 0."""
     request = {"contact": contact, "sizes": [*sizes.items()], "growth": growth, "along": along, **outline}
     head, (tags, coordinates, elements, *lines) = ask({"corners": corners, **request})
     named = np.frombuffer(tags, dtype=np.uint64).astype(np.int64)

@@ -1,6 +1,6 @@
-"""gmsh in a process of its own, shared by all threads: gmsh has one global state, which may be the caller's.
+"""Run gmsh in a separate process, shared by all threads: gmsh has one global state, which the caller may use.
 
-The process starts with the first mesh and ends with this one, however that ends.
+The gmsh process starts with the first mesh and ends with the calling process, even if that is killed.
 """
 
 import atexit
@@ -20,7 +20,7 @@ from typing import Any, NoReturn
 from partialslip.errors import MissingLibraryError, PartialslipError
 from partialslip_meshes.mesher import receive, send
 
-# The libraries that the gmsh wheel needs from the system, and the Debian packages that have them.
+# System libraries that the gmsh wheel needs, and their Debian packages.
 DEBIAN_PACKAGES = {
     "libGLU.so.1": "libglu1-mesa",
     "libGL.so.1": "libgl1",
@@ -35,7 +35,7 @@ DEBIAN_PACKAGES = {
     "libgomp.so.1": "libgomp1",
 }
 
-OPTIONS: dict[str, float] = {}  # of gmsh's for every mesh, without "Mesh."
+OPTIONS: dict[str, float] = {}  # gmsh options for every mesh, by name without "Mesh."
 
 
 class _Mesher:
@@ -50,14 +50,14 @@ class _Mesher:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
-                cwd=os.path.abspath(os.sep),  # that of this process may be gone
-                start_new_session=True,  # Ctrl-C is for this process to deal with
+                cwd=os.path.abspath(os.sep),  # the current folder may be deleted
+                start_new_session=True,  # Ctrl-C goes to the calling process only
             )
         except OSError as error:
-            raise PartialslipError(f"the process that makes meshes cannot be started: {error.strerror}") from None
+            raise PartialslipError(f"the gmsh process cannot be started: {error.strerror}") from None
 
     def ask(self, request: Mapping[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
-        """The answer to ``request``. Raises EOFError or OSError if the process dies."""
+        """Return the answer to ``request``. Raises EOFError or OSError if the process dies."""
         assert self._process.stdin
         assert self._process.stdout
         with _no_broken_pipe_signal():
@@ -65,14 +65,14 @@ class _Mesher:
         return receive(self._process.stdout.fileno())
 
     def end(self) -> int:
-        """Kill the process, if it is not dead; returns its exit code."""
+        """Kill the process if it is running, and return its exit code."""
         self._process.kill()
         code = self._process.wait()
         self.leave()
         return code
 
     def leave(self) -> None:
-        """Leave the process to whoever else has its pipes."""
+        """Close this side of the pipes without ending the process."""
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe:
                 pipe.close()
@@ -81,8 +81,7 @@ class _Mesher:
 
 @contextmanager
 def _no_broken_pipe_signal() -> Iterator[None]:
-    """Leave a pipe that nobody reads to BrokenPipeError: where the caller's SIGPIPE is the system's, it would end this
-    process."""
+    """Make a write to a closed pipe raise BrokenPipeError, even where SIGPIPE would end the calling process."""
     if not hasattr(signal, "sigtimedwait"):  # Windows has no such signal, macOS no such call
         yield
         return
@@ -100,13 +99,15 @@ _mesher: _Mesher | None = None
 
 
 def ask(request: Mapping[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
-    """Have a mesh made: the arguments of :func:`partialslip_meshes.mesher.mesh` in, what that returns out, and
-    "cpu_s" with it, the CPU seconds that it took. One thread at a time; a process that dies is replaced once.
+    """Make a mesh in the gmsh process, one thread at a time. A process that dies is replaced once.
+
+    ``request`` has the arguments of :func:`partialslip_meshes.mesher.mesh`. Returns the same, and in the dict "cpu_s",
+    the CPU seconds of the mesh.
 
     Raises
     ------
     MissingLibraryError
-        If gmsh, or a system library that it needs, is not there.
+        If gmsh, or a system library that gmsh needs, is missing.
     PartialslipError
         If gmsh cannot make the mesh, or the process dies twice.
     """
@@ -123,10 +124,8 @@ def ask(request: Mapping[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
                 died += 1
                 if died == 2:
                     how = f"signal {-code}" if code < 0 else f"exit code {code}"
-                    raise PartialslipError(
-                        f"the process that makes meshes died twice ({how}), perhaps for want of memory"
-                    ) from None
-            except BaseException:  # Ctrl-C: nobody is left to read the answer
+                    raise PartialslipError(f"the gmsh process died twice ({how}); is there enough memory?") from None
+            except BaseException:  # Ctrl-C: the answer would be read as that of the next request
                 _end()
                 raise
     if "error" in head:
@@ -135,7 +134,7 @@ def ask(request: Mapping[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
 
 
 def _folder() -> str:
-    """The folder that gmsh would be imported from."""
+    """Folder that gmsh is imported from."""
     loaded = getattr(sys.modules.get("gmsh"), "__file__", None)
     spec = None if loaded else importlib.util.find_spec("gmsh")
     origin = loaded or (spec and spec.origin)
@@ -166,7 +165,7 @@ def _end() -> None:
 
 
 def _begin_anew() -> None:
-    """In the child of a fork: leave the process to the parent, whose threads may be waiting for it."""
+    """After a fork, in the child: leave the gmsh process to the parent, whose threads may be waiting for it."""
     global _lock, _mesher
     _lock = threading.Lock()
     if _mesher:

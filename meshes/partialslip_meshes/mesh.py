@@ -1,4 +1,4 @@
-"""The mesh, as plain arrays."""
+"""Meshes as plain arrays."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Straight-sided triangles.
+    """A mesh of straight-sided triangles.
 
     Parameters
     ----------
@@ -16,10 +16,10 @@ class Mesh:
     triangles : (t, 3) int array
         Corners, counter-clockwise.
     lines : dict of (k, 2) int arrays
-        Named groups of boundary edges; "contact" is the contact line, "back" the side opposite to it, "left" and
-        "right" are those beside it.
+        Boundary edges by name: "contact" is the contact line, "back" the opposite side, "left" and "right" the sides
+        between.
     cpu_s : float
-        CPU seconds that it took in a process of its own.
+        CPU seconds of the gmsh process for this mesh.
     """
 
     points: npt.NDArray[np.float64]
@@ -30,7 +30,7 @@ class Mesh:
 
 @dataclass(frozen=True)
 class QuadMesh:
-    """Straight-sided quadrilaterals: ``quads`` (k, 4), counter-clockwise; otherwise as :class:`Mesh`."""
+    """A mesh of straight-sided quadrilaterals ``quads`` (k, 4), counter-clockwise; the rest as in :class:`Mesh`."""
 
     points: npt.NDArray[np.float64]
     quads: npt.NDArray[np.int64]

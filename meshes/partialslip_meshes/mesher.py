@@ -1,8 +1,8 @@
-"""The process that makes meshes with gmsh, in which no other gmsh session can be.
+"""Program of the gmsh process, which makes one mesh per request.
 
-It answers requests on its standard input until that is closed. A message is a length (8 bytes), so many bytes of JSON,
-and the arrays whose lengths in bytes the JSON gives. This file is run as it stands, and needs the standard library and
-gmsh only: NumPy would take longer to import than most meshes take to make.
+It answers requests on standard input until the input is closed. A message is a length (8 bytes), JSON of this length,
+and arrays whose lengths in bytes are in the JSON. The file is run on its own and needs the standard library and gmsh
+only: importing NumPy would take longer than most meshes.
 """
 
 import json
@@ -14,14 +14,14 @@ from collections.abc import Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
-# triangles with right angles, paired, and what is left over split so that no triangle is
+# right-angled triangles, paired; a final refinement removes the triangles without a partner
 _ALL_QUADS = {"Algorithm": 8, "RecombineAll": 1, "RecombinationAlgorithm": 3}
 
-_PIECE = 1 << 20  # bytes to ask a pipe for
+_PIECE = 1 << 20  # bytes of one read from a pipe
 
 
 def send(pipe: int, head: Mapping[str, Any], arrays: Sequence[bytes] = ()) -> None:
-    """Write a message to the file descriptor ``pipe``."""
+    """Write a message, ``head`` as JSON and ``arrays``, to the file descriptor ``pipe``."""
     text = json.dumps({**head, "bytes": [len(each) for each in arrays]}).encode()
     left = memoryview(b"".join([len(text).to_bytes(8, "little"), text, *arrays]))
     while left:
@@ -29,7 +29,7 @@ def send(pipe: int, head: Mapping[str, Any], arrays: Sequence[bytes] = ()) -> No
 
 
 def receive(pipe: int) -> tuple[dict[str, Any], list[bytes]]:
-    """Read a message from the file descriptor ``pipe``: its JSON and its arrays. Raises EOFError where it ends."""
+    """Read a message from the file descriptor ``pipe``: JSON and arrays. Raises EOFError if the pipe is closed."""
     head = json.loads(_read(pipe, int.from_bytes(_read(pipe, 8), "little")))
     return head, [_read(pipe, length) for length in head["bytes"]]
 
@@ -45,13 +45,13 @@ def _read(pipe: int, length: int) -> bytes:
 
 
 def main() -> None:
-    """Answer requests; the only argument is the folder that gmsh is in."""
+    """Answer requests; the command line has one argument, the folder of gmsh."""
     answers = os.dup(1)
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # libraries may print what they like
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # libraries print to standard output, too
     _end_with_parent()
     sys.path.append(sys.argv[1])
     sys.modules["numpy"] = None  # type: ignore[assignment]
-    counted = 0.0  # CPU seconds; the first answer counts the start, too
+    counted = 0.0  # CPU seconds reported; the first answer includes the start
     while True:
         try:
             request, _ = receive(0)
@@ -64,7 +64,7 @@ def main() -> None:
 
 
 def _end_with_parent() -> None:
-    """End when standard input is closed, even in the middle of a mesh."""
+    """End the process when standard input is closed, even in the middle of a mesh."""
     import select
     import threading
 
@@ -85,35 +85,34 @@ def _answer(request: Mapping[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
         import gmsh
     except ModuleNotFoundError as error:
         return {"error": "module", "text": str(error.name)}, []
-    except OSError as error:  # the wheel installs everywhere, but its library links to the system's
+    except OSError as error:  # the wheel installs everywhere, but needs system libraries
         return {"error": "library", "text": str(error)}, []
     try:
         return mesh(gmsh, **{key: value for key, value in request.items() if key != "bytes"})
     except MemoryError:
         return {"error": "memory", "text": ""}, []
-    except Exception as error:  # gmsh raises nothing else
+    except Exception as error:  # gmsh raises plain Exception
         return {"error": "gmsh", "text": str(error)}, []
 
 
 def mesh(gmsh: ModuleType, corners: int, options: Mapping[str, float] | None = None,
          **outline: Any) -> tuple[dict[str, Any], list[bytes]]:  # fmt: skip
-    """Mesh a block in a gmsh session of its own.
+    """Mesh a block in a new gmsh session.
 
     Parameters
     ----------
     gmsh : module
     corners : int
-        Of an element: 3 or 4.
+        Corners of an element: 3 or 4.
     options : mapping, optional
-        Other options of gmsh.
+        Further gmsh options.
     **outline
-        As for :func:`partialslip_meshes.block`, sizes as pairs, with "holder" None or a pair, and "at_corners" the
-        sizes of elements at corners.
+        As for :func:`partialslip_meshes.block`, with sizes as pairs, and "at_corners" for corners.
 
     Returns
     -------
     dict, list of bytes
-        The names of the lines; then tags and coordinates of the nodes, node tags of the elements and of each line.
+        Names of the lines; then node tags, node coordinates, node tags of the elements, and node tags of each line.
     """
     gmsh.initialize([], readConfigFiles=False, interruptible=False)
     try:
@@ -130,7 +129,7 @@ def mesh(gmsh: ModuleType, corners: int, options: Mapping[str, float] | None = N
 
 
 def _cells(gmsh: ModuleType, dimension: int, entities: Sequence[int]) -> bytes:
-    """Node tags of the elements of all ``entities``, one after the other."""
+    """Node tags of the elements of all ``entities``, in order."""
     return b"".join(
         array("Q", nodes[0]).tobytes()
         for _, _, nodes in (gmsh.model.mesh.getElements(dimension, entity) for entity in entities)
@@ -149,7 +148,7 @@ def _outline(
     facets: float | None,
     at_corners: Mapping[str, float],
 ) -> dict[str, list[int]]:
-    """Geometry and size field; returns the curves of each named line."""
+    """Make the geometry and the size field; return the curves of each named line."""
     geo, field = gmsh.model.geo, gmsh.model.mesh.field
     starts_at = dict(sizes)
     on_contact = sorted({*contact, *starts_at})

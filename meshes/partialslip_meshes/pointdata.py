@@ -1,5 +1,4 @@
-"""Reading what is known at the points of a mesh through meshio, which reads many formats but says little when it
-cannot."""
+"""Read point data of a mesh file with meshio."""
 
 from pathlib import Path
 
@@ -10,18 +9,19 @@ import numpy.typing as npt
 from partialslip.errors import InputError
 from partialslip_meshes.quiet import quiet
 
-# Of the endings that meshio knows, those of formats with point data; its readers of others may not come to an end.
+# Suffixes of meshio's formats with point data. Readers of other formats may not terminate.
 FORMATS = {".vtu", ".vtk", ".xdmf", ".xmf", ".msh", ".med", ".e", ".exo", ".ex2"}
 
 
 def read_point_data(path: Path) -> tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]:
-    """Points (n, 3), and values (n,) by name, of a file in a format of meshio's, chosen by its ending; where there are
-    cells that are lines, of their points alone.
+    """Points (n, 3), and values (n,) by name, of the file ``path``, whose suffix tells the format.
+
+    If the mesh has line cells, only their points are returned.
 
     Raises
     ------
     InputError
-        If it cannot be read.
+        If the file cannot be read.
     """
     mesh = _read(path)
     try:
@@ -33,16 +33,16 @@ def read_point_data(path: Path) -> tuple[npt.NDArray[np.float64], dict[str, npt.
         scalars = {name: values.reshape(len(points), -1) for name, values in data.items()}
         return points[on_line], {name: v[on_line, 0] for name, v in scalars.items() if v.shape[1] == 1}
     except (ValueError, IndexError, TypeError):
-        raise InputError(f"{path}: its points, lines and point data do not fit each other") from None
+        raise InputError(f"{path}: points, lines and point data must have matching sizes") from None
 
 
 def _read(path: Path) -> meshio.Mesh:
-    """meshio prints and exits where it cannot read, and its readers raise what they run into."""
+    """Read ``path``; turn meshio's exits and exceptions into InputError."""
     try:
         with quiet():
             return meshio.read(path)
     except ImportError as error:
-        raise InputError(f"{path}: cannot be read without the package {error.name}") from None
+        raise InputError(f"{path}: cannot be read: the package {error.name} is missing") from None
     except (Exception, SystemExit) as error:
         reason = " ".join(str(error).split())[:100] if not isinstance(error, SystemExit) else ""
         raise InputError(f"{path}: cannot be read{f': {reason}' if reason else ''}") from None

@@ -1,4 +1,4 @@
-"""Reading a body's mesh, made by another tool, through meshio; what cannot be meant is refused in one line."""
+"""Read and check a body's mesh from a file of another tool, with meshio."""
 
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -21,13 +21,13 @@ Indices = npt.NDArray[np.int64]
 
 FORMATS = (".msh", ".inp", ".med", ".vtu")
 NAMES = ("contact", "face", "back", "left", "right")
-_BESIDE = {"vertex": 1, "line": 2, "line3": 3}  # nodes of cells that may be there, too
-_NODES = {"triangle": 3, "triangle6": 6, "triangle7": 7, "quad": 4, "quad8": 8, "quad9": 9} | _BESIDE
-_LARGEST = 1e30
-_FLAT = 1e-12  # area of an element, in its longest side's square, that is none
-_OFF = 1e-4  # of the contact line's length, that it may be off its shape
-_MIDDLE = 0.25  # of a side, that its middle node may be off the middle
-_FEWEST = 4  # elements of a contact line
+_IGNORED = {"vertex": 1, "line": 2, "line3": 3}  # nodes of cells that are allowed besides elements
+_NODES = {"triangle": 3, "triangle6": 6, "triangle7": 7, "quad": 4, "quad8": 8, "quad9": 9} | _IGNORED
+_LARGEST = 1e30  # coordinate
+_FLAT = 1e-12  # of the square of the longest side: an element with less area counts as empty
+_OFF = 1e-4  # of the length: largest deviation of the contact line from its shape, and of points from a plane
+_MIDDLE = 0.25  # of a side: largest deviation of its middle node from the middle
+_FEWEST = 4  # edges of a contact line
 
 
 def read(
@@ -37,33 +37,34 @@ def read(
     face: Callable[[Array], Array] | None = None,
     needed: Sequence[str] = ("back",),
 ) -> Mesh:
-    """Read the mesh of a body, and lay it below the line y = 0 that its contact line then touches.
+    """Read the mesh of a body and move it below the line y = 0, which its contact line touches.
 
-    Triangles and quadrilaterals, which are split; of quadratic ones the corners. Elements may be numbered either way
-    round, the body may lie on either side of its contact line, and nodes without elements are left out. Lines of the
-    boundary are the groups ``contact``, ``back``, ``left``, ``right`` and ``face`` (optional: what of the surface is
-    beside the contact line), in upper or lower case, of edges or of nodes: physical groups (.msh), sets (.inp), groups
-    (.med), or cell or point data that are not zero there (any format).
+    Quadrilaterals are split into triangles; of quadratic elements the corners are used. Elements may be numbered in
+    either direction, and the body may lie on either side of its contact line. Nodes without elements are dropped.
+
+    Lines of the boundary are the groups ``contact``, ``back``, ``left``, ``right`` and ``face`` (optional: the rest of
+    the contact line's side), in upper or lower case, of edges or of nodes: physical groups (.msh), sets (.inp), groups
+    (.med), or nonzero cell or point data (any format).
 
     Parameters
     ----------
     name : str
-        The field that names the file.
+        Field of the scene that names the file, for messages.
     path : str
-        Its suffix says the format: .msh, .inp, .med or .vtu.
+        File; the suffix tells the format: .msh, .inp, .med or .vtu.
     unit : float
-        What the lengths in the file are to be multiplied by.
+        Factor of the lengths in the file.
     face : callable, optional
-        How far the contact line lies back at x, in the lengths that come out; without it the line is flat.
+        Depth of the contact line below y = 0 at x, in the returned lengths; by default 0.
     needed : sequence of str
-        Lines that must be there besides the contact line, of which what touches them is left out.
+        Lines that must exist besides the contact line. Edges of the contact line that touch them are dropped.
 
     Raises
     ------
     InputError
-        If the file cannot be read, or the mesh cannot be that of a body.
+        If the file cannot be read, or the mesh is not that of a body.
     MissingLibraryError
-        If h5py is missing, which .med files need.
+        If h5py, which .med files need, is missing.
     """
     refuse = _refusal(name, path)
     found = _load(name, path, refuse)
@@ -104,24 +105,24 @@ def _refusal(name: str, path: str) -> Refuse:
 def _load(name: str, path: str, refuse: Refuse) -> "meshio.Mesh":
     if Path(path).suffix.lower() not in FORMATS:
         refuse(f"must be a file {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
-    said, damaged = "", "it is damaged, or of another format"
+    printed, damaged = "", "it is damaged, or of another format"
     try:
         with open(path, "rb"):
             pass
-        # meshio says what is wrong on the terminal, and exits
-        with quiet() as printed, np.errstate(all="ignore"):
-            import meshio  # only now: it brings much along
+        # meshio prints what is wrong and exits
+        with quiet() as output, np.errstate(all="ignore"):
+            import meshio  # slow to import, so only here
 
             try:
                 return meshio.read(path)
             finally:
-                said = printed.getvalue()
+                printed = output.getvalue()
     except ModuleNotFoundError as error:
         raise MissingLibraryError(f"{name}: {error.name} is missing; pip install partialslip[med]") from None
     except OSError as error:
         refuse(f"cannot be read: {error.strerror or damaged}")
     except (Exception, SystemExit):
-        why = said.partition("Error:")[0].strip() or damaged
+        why = printed.partition("Error:")[0].strip() or damaged
         refuse(f"cannot be read: {' '.join(why.split())}")
 
 
@@ -137,7 +138,7 @@ def _in_plane(points: Array, refuse: Refuse) -> Array:
 
 
 def _triangles(found: "meshio.Mesh", points: Array, refuse: Refuse) -> Indices:
-    """Corners of all elements, quadrilaterals split along their shorter diagonal."""
+    """Corners of all elements, (t, 3); quadrilaterals are split along the shorter diagonal."""
     if unknown := sorted({block.type for block in found.cells} - {*_NODES}):
         refuse(f"must have triangles and quadrilaterals, linear or quadratic, not {', '.join(unknown)}")
     parts = [np.empty((0, 3), dtype=np.int64)]
@@ -146,10 +147,10 @@ def _triangles(found: "meshio.Mesh", points: Array, refuse: Refuse) -> Indices:
         if not cells.size:
             continue
         if not (cells.min() >= 0 and cells.max() < len(points)):
-            refuse("its elements name nodes that are not there")
+            refuse("must have elements whose nodes exist")
         if cells.shape[1:] != (_NODES[block.type],):
-            refuse("its elements do not have as many nodes as their type")
-        if block.type in _BESIDE:
+            refuse("must have elements with as many nodes as their type")
+        if block.type in _IGNORED:
             continue
         count = 3 if block.type.startswith("triangle") else 4
         ring = points[cells[:, :count]]
@@ -171,7 +172,7 @@ def _triangles(found: "meshio.Mesh", points: Array, refuse: Refuse) -> Indices:
 
 
 def _ccw(points: Array, corners: Indices, refuse: Refuse) -> Indices:
-    """The triangles, all counter-clockwise."""
+    """Turn all triangles counter-clockwise."""
     if not len(corners):
         refuse("must have triangles or quadrilaterals")
     sides = np.roll(points[corners], -1, axis=1) - points[corners]
@@ -182,7 +183,7 @@ def _ccw(points: Array, corners: Indices, refuse: Refuse) -> Indices:
 
 
 def _boundary(corners: Indices, count: int, refuse: Refuse) -> Indices:
-    """Edges of one triangle only, with the body on their left, (b, 2)."""
+    """Edges that belong to one triangle only, with the body on their left, (b, 2)."""
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     there, back = edges @ [count, 1], edges @ [1, count]
     order = np.argsort(there)
@@ -199,7 +200,7 @@ def _boundary(corners: Indices, count: int, refuse: Refuse) -> Indices:
 
 
 def _lines(found: "meshio.Mesh", boundary: Indices, refuse: Refuse) -> Iterator[tuple[str, Indices]]:
-    """Edges of the boundary that are in each group."""
+    """Name and boundary edges of each group."""
     known = np.sort(boundary, axis=1)
     for name in NAMES:
         edges = np.concatenate([np.empty((0, 2), dtype=np.int64), *_edges_of(found, name)])
@@ -212,7 +213,7 @@ def _lines(found: "meshio.Mesh", boundary: Indices, refuse: Refuse) -> Iterator[
 
 
 def _edges_of(found: "meshio.Mesh", name: str) -> Iterator[Indices]:
-    """Of a group of line cells, however the format names it."""
+    """Edges of the group ``name`` of line cells, in any of the formats' ways."""
     ids = {int(number[0]) for key, number in found.field_data.items() if key.lower() == name and len(number) == 2}
     families = {number for number, keys in getattr(found, "cell_tags", {}).items() if name in map(str.lower, keys)}
     data = {key.lower(): values for key, values in found.cell_data.items()}
@@ -231,7 +232,7 @@ def _edges_of(found: "meshio.Mesh", name: str) -> Iterator[Indices]:
 
 
 def _nodes_of(found: "meshio.Mesh", name: str) -> Iterator[Indices]:
-    """Of a group of nodes, however the format names it."""
+    """Nodes of the node group ``name``, in any of the formats' ways."""
     families = [number for number, keys in getattr(found, "point_tags", {}).items() if name in map(str.lower, keys)]
     for key, values in found.point_data.items():
         if key == "point_tags" and families:
@@ -257,7 +258,7 @@ def _below(points: Array, contact: Indices, refuse: Refuse) -> bool:
 
 
 def _lay(points: Array, contact: Indices, face: Callable[[Array], Array] | None, refuse: Refuse) -> None:
-    """Shift the points, so that the foremost of the contact line is at y = 0."""
+    """Shift ``points`` along y so that the contact line touches y = 0."""
     x, y = points[np.unique(contact)].T
     height = y + (face(x) if face else 0.0)
     off = np.ptp(height) / np.ptp(x)
@@ -268,7 +269,7 @@ def _lay(points: Array, contact: Indices, face: Callable[[Array], Array] | None,
 
 
 def _among(edges: Indices, others: Indices) -> npt.NDArray[np.bool_]:
-    """Which edges are among the others; ends sorted."""
+    """Which of the ``edges`` are among the ``others``; nodes of each edge must be sorted."""
     count = max(edges.max(initial=0), others.max(initial=0)) + 1
     found: npt.NDArray[np.bool_] = np.isin(edges @ [count, 1], others @ [count, 1])
     return found

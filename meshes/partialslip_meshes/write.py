@@ -1,4 +1,4 @@
-"""Writing bodies through meshio."""
+"""Write meshes and displaced bodies with meshio."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -12,7 +12,7 @@ from partialslip_meshes.mesh import QuadMesh
 
 
 def write_msh(path: Path, body: DeformedBody) -> None:
-    """Write a body's mesh for gmsh, its triangles and lines as physical groups named after body and lines."""
+    """Write the mesh of ``body`` to ``path`` for gmsh, with physical groups named after the body and its lines."""
     cells = [("triangle", body.triangles), *(("line", line) for line in body.lines.values())]
     numbers = [np.full(len(block), number) for number, (_, block) in enumerate(cells, start=1)]
     groups = {body.name: np.array([1, 2])}
@@ -27,8 +27,10 @@ def write_msh(path: Path, body: DeformedBody) -> None:
 
 
 def write_quads(path: Path, bodies: Mapping[str, QuadMesh]) -> None:
-    """Write meshes of bodies into one file for gmsh, readable as text: by the body's name its quadrilaterals are a
-    physical group, and each of its lines is one as "body-line"."""
+    """Write the meshes of ``bodies``, by name, to the text file ``path`` for gmsh.
+
+    Physical groups are NAME for the quadrilaterals of a body and NAME-LINE for each of its lines.
+    """
     first = np.cumsum([0, *(len(mesh.points) for mesh in bodies.values())])
     blocks: list[tuple[str, npt.NDArray[np.int64]]] = []
     groups: dict[str, npt.NDArray[np.int64]] = {}
@@ -49,8 +51,7 @@ def write_quads(path: Path, bodies: Mapping[str, QuadMesh]) -> None:
 
 
 def write_vtu(path: Path, bodies: Sequence[DeformedBody]) -> None:
-    """Write bodies side by side in one file, with their displacements as point data, ``body`` and their stresses as
-    cell data."""
+    """Write ``bodies`` to the file ``path``: displacements at points; stresses and the index ``body`` on cells."""
     first = np.cumsum([0, *(len(body.points) for body in bodies)])
     triangles = [body.triangles + start for body, start in zip(bodies, first, strict=False)]
     names = bodies[0].displacements

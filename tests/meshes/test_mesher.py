@@ -281,7 +281,7 @@ def test_killed_twice_is_one_line(capsys, tmp_path, monkeypatch):
     printed = capsys.readouterr()
     assert printed.out == ""
     assert [line for line in printed.err.splitlines() if line] == [
-        "partialslip: the process that makes meshes died twice (signal 9), perhaps for want of memory"
+        "partialslip: the gmsh process died twice (signal 9); is there enough memory?"
     ]
 
 

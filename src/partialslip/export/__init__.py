@@ -1,4 +1,4 @@
-"""Exporting a scene as a model for other codes."""
+"""Export a scene as a model for other codes."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -10,7 +10,7 @@ from partialslip.export.calculix import calculix_deck
 from partialslip.export.model import GROWTH, SIZE, modelled
 from partialslip.scene import Scene
 
-# Formats, and the endings of their files.
+# Suffix of the file by format.
 FORMATS = {"calculix": ".inp", "abaqus": ".inp", "gmsh": ".msh"}
 
 
@@ -26,8 +26,9 @@ def export(
     fine: float | None = None,
     penalty: bool = False,
 ) -> Callable[[Path], None]:
-    """A function that writes ``scene`` for another code to the path that it is given: both bodies meshed, and, for
-    calculix and abaqus, contact and load steps, ready to run.
+    """Return a function that writes ``scene`` to a path, for another code.
+
+    The file has the meshes of both bodies; for calculix and abaqus also contact and load steps, ready to run.
 
     Parameters
     ----------
@@ -38,19 +39,19 @@ def export(
     size, width, growth, stiffer, ends, fine
         As for :func:`partialslip.export.model.modelled`.
     penalty : bool
-        Whether contact in CalculiX is to be by penalties from surface to surface, instead of mortar elements.
+        Whether contact in CalculiX uses surface-to-surface penalties instead of mortar elements.
 
     Raises
     ------
     InputError
-        If ``to`` is no format, or the scene cannot be exported.
+        If ``to`` is not a format, or the scene cannot be exported.
     MissingLibraryError
-        If gmsh, or a system library that it needs, is not there.
+        If gmsh, or a system library that gmsh needs, is missing.
     """
     if to not in FORMATS:
         raise InputError(f"export to {to!r}: must be one of {', '.join(FORMATS)}")
     if penalty and to != "calculix":
-        raise InputError(f"penalty: only for calculix, not for {to}")
+        raise InputError(f"penalty: must be false for {to}; only calculix has it")
     made = modelled(scene, size, width, growth, stiffer, ends, fine)
     if to == "gmsh":
         from partialslip_meshes.write import write_quads

@@ -1,4 +1,4 @@
-"""Abaqus/Standard: plane strain, one unit of depth, so that forces are those per unit depth."""
+"""Input deck for Abaqus/Standard: plane strain, depth 1, so that forces are per unit depth."""
 
 from partialslip.export.deck import bodies, heading, load_step, tied
 from partialslip.export.model import Model
@@ -17,9 +17,11 @@ CSTRESS, CDISP, CFORCE
 
 
 def abaqus_deck(scene: Scene, model: Model) -> list[str]:
-    """Lines of the deck: CPE4, small sliding from surface to surface, hard contact enforced directly, and friction by
-    Lagrange multipliers. Contact stresses and nodal contact forces are printed to the .dat file and written to the
-    .odb at the end of each step."""
+    """Lines of the deck of ``model``, made from ``scene``.
+
+    Elements CPE4; small sliding, surface to surface; hard contact enforced directly; friction by Lagrange multipliers.
+    At the end of each step contact stresses and nodal contact forces go to the .dat and the .odb file.
+    """
     lines = ["*HEADING", scene.name, *heading(scene, model, "Abaqus deck, SI units")]
     blocks, (lower, upper) = bodies(model, "CPE4", "\n1.,")
     lines += [*blocks, "*SURFACE INTERACTION, NAME=INTERFACE", "1."]

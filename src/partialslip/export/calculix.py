@@ -1,4 +1,4 @@
-"""CalculiX: one layer of bricks, held in plane strain."""
+"""Input deck for CalculiX: one layer of bricks, held in plane strain."""
 
 from typing import Literal
 
@@ -8,14 +8,13 @@ from partialslip.scene import Scene
 
 Contact = Literal["mortar", "penalty"]
 
-# In E/a: pressure over overlap of penalties, and shear over slip where it sticks. Version 2.20 does not converge with
-# penalties much stiffer than these or, worse, does with q off by 16 %; mortar elements take any, and 1e3 moves ends by
-# 1e-4 a.
+# Penalties, in E/a: pressure over overlap, and shear over slip in stick. With much stiffer penalties version 2.20 does
+# not converge, or converges to q that is off by 16 %. Mortar elements take any; 1e3 would move ends by 1e-4 a.
 _NORMAL = 1e3
 _STICK = {"mortar": 1e5, "penalty": 1e2}
 
-# Version 2.20 finds a wrong contact between mortar elements of less than about one unit of length, and says nothing:
-# a is off by 30 % at a = 1e-3 units, by 0.2 % at 1. The unit is the largest of these in which a is 100 or more.
+# Mortar contact of version 2.20 is wrong, without a message, if elements are smaller than about one unit of length: a
+# is off by 30 % at a = 1e-3 units, by 0.2 % at 1. The unit is the largest of these in which a is 100 or more.
 _UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 
 _RESULTS = """\
@@ -31,16 +30,16 @@ RF
 
 
 def length_unit(model: Model) -> tuple[str, float]:
-    """The deck's unit of length, and that in m."""
+    """Name of the deck's unit of length for ``model``, and its size in m."""
     return next(((name, unit) for name, unit in _UNITS.items() if model.a >= 100 * unit), ("nm", _UNITS["nm"]))
 
 
 def calculix_deck(scene: Scene, model: Model, contact: Contact = "mortar") -> list[str]:
-    """Lines of the deck, of a slice as thick as an element is wide along the contact.
+    """Lines of the deck of ``model``, made from ``scene``: a slice as thick as the elements along the contact line.
 
-    Contact is that of mortar elements, or of penalties from surface to surface. Results are in the .frd file (contact
-    stresses CONTACT of the lower body's nodes, displacements) and the .dat file (forces RF of the nodes of both contact
-    lines), of each step's last increment.
+    ``contact`` is "mortar", or "penalty" for surface-to-surface penalties. The last increment of each step is written:
+    contact stresses CONTACT at the lower body's nodes and displacements to the .frd file, forces RF on the nodes of
+    both contact lines to the .dat file.
     """
     name, unit = length_unit(model)
     lines = heading(scene, model, "CalculiX deck")

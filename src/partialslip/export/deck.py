@@ -1,4 +1,4 @@
-"""What the input decks of Abaqus and CalculiX have in common: keywords, and lines of numbers under them."""
+"""Keywords and data lines common to the input decks of Abaqus and CalculiX."""
 
 import numpy as np
 
@@ -8,7 +8,10 @@ from partialslip.scene import Scene
 
 
 def heading(scene: Scene, model: Model, what: str) -> list[str]:
-    """Comments that say what the deck is, and how its tractions are to be read."""
+    """Comment lines of the deck: scene, mesh, sign of q, load steps.
+
+    ``scene`` and ``model`` are exported; ``what`` names the format and the units.
+    """
     a = model.a
     lines = [
         f"** {scene.name}: {what}, written by partialslip export",
@@ -20,7 +23,7 @@ def heading(scene: Scene, model: Model, what: str) -> list[str]:
             f"** bodies {model.stiffer:g} times stiffer and the gap {model.stiffer:g} times flatter than the scene's:",
             "** the same tractions, without the geometric effects of sloping surfaces",
         ]
-    lines += ["** q is what the lower body puts on the upper one along x: positive Q and sigma add up at x = a"]
+    lines += ["** q acts along x from the lower on the upper body: positive Q and sigma add up at x = a"]
     return lines + [
         f"** step {number}: {step.name}: Q = {step.Q:.10g} N/m, sigma = {step.sigma:.10g} Pa"
         for number, step in enumerate(model.steps, start=1)
@@ -30,9 +33,21 @@ def heading(scene: Scene, model: Model, what: str) -> list[str]:
 def bodies(model: Model, element: str, section: str, thickness: float | None = None) -> tuple[list[str], list[int]]:
     """Nodes, elements, material, contact surface NAME_FACE and node sets NAME_OUTER and NAME_CONTACT of each body.
 
-    Of a plane mesh, or, with a ``thickness``, of one layer of bricks between two such: then nodes of the second follow
-    those of the first. ``section`` follows the keyword *SOLID SECTION. Returns the lines, and the number of each body's
-    first node.
+    Parameters
+    ----------
+    model : Model
+    element : str
+        Element type.
+    section : str
+        Text after the keyword *SOLID SECTION.
+    thickness : float, optional
+        Thickness of one layer of bricks between two plane meshes; the nodes of the second mesh follow those of the
+        first. By default plane elements.
+
+    Returns
+    -------
+    list of str, list of int
+        The lines, and the number of each body's first node.
     """
     lines, starts, first_element = [], [1], 1
     sides_from = 1 if thickness is None else 3  # the first two sides of a brick are the plane meshes
@@ -64,25 +79,25 @@ def bodies(model: Model, element: str, section: str, thickness: float | None = N
 
 
 def sheeted(nodes: Indices, count: int, sheets: int) -> Indices:
-    """``nodes`` of each of the sheets, of ``count`` nodes each."""
+    """Repeat ``nodes`` for each of the ``sheets``, which have ``count`` nodes each."""
     result: Indices = (nodes + count * np.arange(sheets)[:, None]).ravel()
     return result
 
 
 def rows(form: str, table: Array | Indices, first: int) -> list[str]:
-    """Numbered lines: from ``first`` on, each with its row of the table."""
+    """Rows of ``table`` as lines with numbers from ``first``; ``form`` is the format of an entry."""
     line = ", ".join(["%d", *[form] * table.shape[1]])
     return [line % (number, *row) for number, row in enumerate(table.tolist(), start=first)]
 
 
 def members(name: str, numbers: Indices) -> list[str]:
-    """A named set of nodes."""
+    """Lines of the node set ``name`` with node ``numbers``."""
     listed = numbers.tolist()
     return [f"*NSET, NSET={name}", *(", ".join(map(str, listed[i : i + 12])) for i in range(0, len(listed), 12))]
 
 
 def tied(nodes: Indices) -> list[str]:
-    """Equations: all ``nodes`` move as the first one does."""
+    """Equations that make all ``nodes`` move like the first."""
     first, *others = nodes.tolist()
     return [
         f"*EQUATION\n2\n{other}, {component}, 1., {first}, {component}, -1." for component in (1, 2) for other in others
@@ -90,9 +105,22 @@ def tied(nodes: Indices) -> list[str]:
 
 
 def load_step(model: Model, number: int, frame: int, held: Indices, depth: float, also: str = "") -> list[str]:
-    """The step of that number up to its loads: ``held`` are the nodes of the lower body's outer boundary, sheet by
-    sheet, ``frame`` the node that moves the upper's, ``depth`` what forces per unit depth are multiplied by; ``also``
-    are further boundary conditions."""
+    """Lines of a load step up to its loads.
+
+    Parameters
+    ----------
+    model : Model
+    number : int
+        Index of the step.
+    frame : int
+        Node that moves the upper body's outer boundary.
+    held : (k,) int array
+        Nodes of the lower body's outer boundary, sheet by sheet.
+    depth : float
+        Factor of forces per unit depth.
+    also : str
+        Further boundary conditions.
+    """
     step = model.steps[number]
     increment = 1.0 if number == 0 else 1.0 / model.substeps
     bulk = model.bulk(step)
@@ -100,7 +128,7 @@ def load_step(model: Model, number: int, frame: int, held: Indices, depth: float
     lines += ["*BOUNDARY, OP=NEW"] + [also] * bool(also)
     for node, (along, across) in zip(held.tolist(), np.tile(bulk, (len(held) // len(bulk), 1)).tolist(), strict=True):
         lines += [f"{node}, 1, 1, {along:.12e}", f"{node}, 2, 2, {across:.12e}"]
-    if number == 0:  # without shear nothing pushes it aside, and nothing would hold it before there is contact
+    if number == 0:  # before contact nothing else holds the upper body along x
         lines += [f"{frame}, 1, 1"]
     lines += ["*CLOAD, OP=NEW", f"{frame}, 2, {-step.P * depth:.12e}"]
     return lines + [f"{frame}, 1, {-step.Q * depth:.12e}"] * (number > 0)

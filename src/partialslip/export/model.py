@@ -1,7 +1,7 @@
-"""A scene as a finite-element model that any code can be given: two meshed blocks, materials, and load steps.
+"""A scene as a finite-element model for any code: two meshed blocks, materials, and load steps.
 
-The blocks stand for half-planes, as with ``fem.far_field = "box"``: the outer boundary of the upper one moves as a
-rigid frame, on which P and Q act; that of the lower one is held, and moves as the bulk tension alone would move it.
+The blocks stand for half-planes, as with ``fem.far_field = "box"``. The outer boundary of the upper block moves as a
+rigid frame, on which P and Q act. The outer boundary of the lower block has the displacements of the bulk tension.
 """
 
 from collections.abc import Sequence
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 SIZE, GROWTH = 0.05, 0.1
 Indices = npt.NDArray[np.int64]
 
-_REACH = 1.2  # half-widths: of the line that may come into contact
-_OVERLAP = 0.25  # of the gap at the contact's end: how deep the bodies begin within each other
-_WIDE = 50.0
+_REACH = 1.2  # half-width of the contact line, in a
+_OVERLAP = 0.25  # initial overlap of the bodies, in the gap at the contact's end
+_WIDE = 50.0  # half-width of the blocks in a, times the square root of the smallest element in a
 
 
 class Step(NamedTuple):
-    """What acts at the end of a load step: P, Q (N/m) and sigma (Pa)."""
+    """Loads at the end of the load step ``name``: ``P``, ``Q`` (N/m) and ``sigma`` (Pa)."""
 
     name: str
     P: float
@@ -38,7 +38,7 @@ class Step(NamedTuple):
 
 @dataclass(frozen=True)
 class Part:
-    """A body in plane strain: its name, mesh (m), Young's modulus (Pa) and Poisson's ratio."""
+    """A body in plane strain: ``name``, ``mesh`` (m), Young's modulus ``E`` (Pa) and Poisson's ratio ``nu``."""
 
     name: str
     mesh: "QuadMesh"
@@ -57,8 +57,7 @@ class Part:
 
     @property
     def face(self) -> tuple[Indices, Indices]:
-        """The elements on the contact line and the number of the side (0 to 3, from its corner of that number to the
-        next) that they have on it."""
+        """Elements on the contact line, and the side of each on the line: side k goes from corner k to the next."""
         sides = np.sort(np.stack([self.mesh.quads, np.roll(self.mesh.quads, -1, axis=1)], axis=-1), axis=-1)
         count = len(self.mesh.points)
         line = np.sort(self.mesh.lines["contact"], axis=1) @ [count, 1]
@@ -68,10 +67,29 @@ class Part:
 
 @dataclass(frozen=True)
 class Model:
-    """Of the scene ``name``: ``parts`` are the lower and the upper body; ``steps`` what happens to them, in
-    ``substeps`` increments each but the first; ``a`` (m) the half-width that is expected, ``size`` (m) the elements'
-    along the contact, ``width`` that of the blocks on either side in ``a``, ``f`` the coefficient of friction; bodies
-    are so many times ``stiffer`` than the scene's."""
+    """A finite-element model of a scene.
+
+    Parameters
+    ----------
+    name : str
+        Of the scene.
+    parts : two of Part
+        The lower and the upper body.
+    f : float
+        Coefficient of friction.
+    steps : tuple of Step
+        Load steps.
+    substeps : int
+        Increments of each step except the first.
+    a : float
+        Expected contact half-width, m.
+    size : float
+        Element size along the contact line, m.
+    width : float
+        Half-width of the blocks, in ``a``.
+    stiffer : float
+        Stiffness of the bodies, in the scene's.
+    """
 
     name: str
     parts: tuple[Part, Part]
@@ -84,14 +102,14 @@ class Model:
     stiffer: float
 
     def bulk(self, step: Step) -> Array:
-        """Displacements (k, 2) of the lower body's outer nodes under the bulk tension of ``step``, m."""
+        """Displacements of the lower body's outer nodes under the bulk tension of ``step``, (k, 2), m."""
         lower = self.parts[0]
         strain = (1 + lower.nu) / lower.E * step.sigma * np.array([1 - lower.nu, -lower.nu])
         moved: Array = lower.mesh.points[lower.outer] * strain
         return moved
 
     def in_unit(self, length: float) -> "Model":
-        """The same in another unit of ``length`` (m), forces in N."""
+        """Convert the model to the unit of ``length`` (m); forces stay in N."""
 
         def scaled(part: Part) -> Part:
             return replace(part, mesh=replace(part.mesh, points=part.mesh.points / length), E=part.E * length**2)
@@ -116,28 +134,29 @@ def modelled(
     Parameters
     ----------
     scene : Scene
-        Of half-planes of one material.
+        Of half-planes.
     size : float
-        Of the elements along the contact, in contact half-widths a.
+        Element size along the contact line, in the contact half-width a.
     width : float, optional
-        Half-width and height of the blocks, in a. They are wrong by about 10 (a/width)^2 of q; without a width that
-        is a small part of what the elements are wrong by.
+        Half-width and height of the blocks, in a. The error of q due to the blocks is about 10 (a/width)^2, relative.
+        The default makes this error small beside the error of the elements.
     growth : float
         Element size gained per unit of distance from the contact.
     stiffer : float
-        Both bodies so many times stiffer, and the gap so many times flatter: in linear elasticity no traction changes,
-        while what the slope of the surfaces does beyond it goes.
+        Factor on the stiffness of both bodies; the gap is divided by it. In linear elasticity no traction changes,
+        while geometric effects of sloping surfaces vanish.
     ends : sequence of float
-        Points on the contact line, in a, towards which the elements get finer, as they do towards kinks of the gap:
-        down to ``fine`` (a), by default a tenth of ``size``.
+        Points on the contact line, in a, to refine at, besides the kinks of the gap.
+    fine : float, optional
+        Element size at these points, in a; by default a tenth of ``size``.
 
     Raises
     ------
     InputError
-        If the bodies have a size or materials of their own, or the loads are more than friction holds.
+        If the bodies are of finite size, or the loads make the contact slide.
     """
     if scene.finite:
-        raise InputError("bodies: must be left out; only half-planes can be exported")
+        raise InputError("bodies: must be left out to export; only half-planes can be exported")
     f, P = scene.friction.f, scene.P
     if any(abs(Q) >= f * P for Q, _ in scene.load.points if Q) or (f == 0 and scene.load.dsigma):
         raise InputError(f"load.Q: must be within f P = {f * P:g}; beyond it the contact slides and has no equilibrium")
@@ -165,14 +184,16 @@ def modelled(
 
 
 def _in_plane_strain(body: Constants) -> tuple[float, float]:
-    """E and nu that a body has in plane strain: its own, or, in plane stress, those that give the same plane fields."""
+    """E (Pa) and nu in plane strain that give the same plane fields as ``body``."""
     nu = (3 - body.kappa) / 4
     return 2 * body.mu * (1 + nu), nu
 
 
 def _upper(mesh: "QuadMesh", scene: Scene, a: float, stiffer: float) -> "QuadMesh":
-    """The mirror image of ``mesh``, its face shaped by the profile; that fades out upwards. Beyond the contact line the
-    gap stays as it is at its end. The bodies begin a little within each other, so that none of them is loose."""
+    """Mirror ``mesh`` and shape its face by the profile, less and less upwards.
+
+    Beyond the contact line the gap is constant. The bodies overlap a little at the start, so that neither is loose.
+    """
     x, y = mesh.points[:, 0], -mesh.points[:, 1]
     gap = scene.profile.gap_at(np.clip(x, -_REACH * a, _REACH * a)) - _OVERLAP * scene.profile.gap_at(np.array(a))
     shaped = np.column_stack([x, y + gap / stiffer * (1 - y / y.max())])
@@ -181,7 +202,7 @@ def _upper(mesh: "QuadMesh", scene: Scene, a: float, stiffer: float) -> "QuadMes
 
 
 def _steps(scene: Scene) -> tuple[Step, ...]:
-    """Pressing, and then from load point to load point: the last, and all of them in every cycle."""
+    """Load steps: press, go to the last load point, then through all load points in every cycle."""
     load, P = scene.load, scene.P
     if not (load.dQ or load.dsigma or any(map(any, load.points))):
         return (Step("press", P, 0.0, 0.0),)

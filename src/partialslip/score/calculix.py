@@ -108,7 +108,7 @@ def _pair(
     first, second, count = load_points
     if len(last) < count:
         raise InputError(
-            f"{origin}: contact results of {len(last)} steps: must be of at least {count}, one per load point of a cycle"
+            f"{origin}: contact results of {len(last)} steps: must be {count} or more, one per load point of a cycle"
         )
     return last[first - count], last[second - count]
 
