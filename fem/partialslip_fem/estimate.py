@@ -1,14 +1,13 @@
-"""What a solution is off by, from its own mesh: by solving there once more with elements of a neighbouring order.
+"""Error estimates of a solution, from a second solution on the same mesh with elements of a neighbouring order.
 
-Away from the ends of zones the solution is smooth, and on meshes graded to the ends errors fall with the order k like
-r^(2 k), r depending on the mesh: ends of zones and means of tractions converge like the energy, whose prefactor is
-about one in the units used here. Errors of orders k and k - 1 are therefore r^(2 k) and r^(2 (k-1)), and the
-difference d between the two is the latter: d^(k/(k-1)) is left of order k. Against the order above, d itself is.
-Where shear is confined to narrow strips the prefactor is its norm rather than one.
+Away from the ends of zones the solution is smooth. On meshes graded to the ends errors decrease with the order k like
+r^(2 k), where r depends on the mesh: ends of zones and means of tractions converge like the energy, whose prefactor is
+about one in scaled units. Errors of orders k and k - 1 are therefore r^(2 k) and r^(2 (k-1)), and the difference d
+between the two solutions is about the latter. The error of order k is then d^(k/(k-1)). Against the order above, the
+error is d itself. If shear is confined to narrow strips, the prefactor is the norm of the shear.
 
-At an end itself, where tractions are square roots, the order does not matter; the size of the element does. So does
-the distance to the next end, or kink of the profile, over which tractions are square roots: ends of the stick zone are
-fitted to some elements beside them.
+At an end tractions are square roots. There the error depends on the element size, not on the order. It also depends on
+the distance to the next end or kink of the profile, as ends of the stick zone are fitted to some elements next to them.
 """
 
 import math
@@ -25,65 +24,71 @@ from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.problem import Problem
 from partialslip_fem.solving import solve_on_meshes
 
-# The order below costs least, but where it locks (P2 and P1 towards nu = 0.5) its errors say nothing.
+# The order below costs least, but P2 and P1 lock towards nu = 0.5, so that their differences are no errors.
 NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3}
 
 END_KEYS = ("a", "left", "right", "m", "n")
 _SHEARS = ("q", "q1", "q2")
 KEYS = (*END_KEYS, "p", *_SHEARS)
 
-# The difference of the orders bounds an error up to a factor, that of meshes (see benchmarks/estimates.py).
+# Safety factors on errors away from the ends (measured: benchmarks/estimates.py).
 _SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.9, "n": 1.9, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
-_SAME = 1 / 3  # of the error of a: no end is known better than that
-_SMALL = 0.1  # of the norm of f p: shear whose norm is less is confined to narrow strips, and errors start from less
+_LEAST_OF_A = 1 / 3  # of the error of a: least error of any end
+_NARROW = 0.1  # of the norm of f p: shear with a smaller norm is confined to narrow strips
 
-# What an end, p and q are off by, measured as multiples of the size of the element that the end lies in.
+# Errors due to the elements at the ends (measured: benchmarks/estimates.py).
+# Error of an end of the contact, in the size of the element that the end lies in, by order.
 AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002}
-# of what an end of the stick zone is off by where elements are not small beside the distance to the other end of it,
-# and to what else is near
+# Factors of (element size / gap)^2 in the error of an end of the stick zone: gap to the other end of the stick zone,
+# and to the nearest other end or kink.
 _FIT = np.array([8.0, 2.0])
-_STICK = 1.5  # of what an end of the contact is off by: an end of the stick zone
-_SIDE = 0.5  # of the size of its element: an end is not off by more
-_KINK = 0.03  # of a kink's strength times the size of its element: what q is off by, in L2
-_STEEP = 0.3  # the same, times the size in the distance to the next end: where that is small, of the stick zone's ends
-_SHIFT = 1.5  # of a kink's strength times how far it is off: what q is off by, in L2
-_ACROSS = 3.0  # elements on either side of a kink that tell its strength
-_TRACTIONS = {"p": 12.0, "q": 40.0}  # of that in Hertz contacts, in proportion to :func:`_steepness` in others
+_STICK = 1.5  # error of an end of the stick zone, in the error of an end of the contact
+_SIDE = 0.5  # largest error of an end due to the fit, in the element size
+_KINK = 0.03  # L2 error of q at a kink, in its strength times the element size
+_STEEP = 0.3  # the same at ends of a narrow slip zone, also times element size / gap
+_SHIFT = 1.5  # L2 error of q due to a shifted kink, in its strength times the shift
+_ACROSS = 3.0  # elements on either side of a kink from which its strength is found
+# Errors of p and q, in the error of an end, for Hertz contacts; in other contacts also times the steepness.
+_TRACTIONS = {"p": 12.0, "q": 40.0}
 
 
 def neighbour(solution: MeshSolution, problem: Problem, width: float, clock: Clock) -> MeshSolution:
-    """The solution on the same mesh that the errors of ``solution`` are estimated by."""
+    """Solve ``problem`` on the meshes of ``solution`` with elements of the neighbouring order.
+
+    ``width`` and ``clock`` as for :func:`partialslip_fem.solving.solve_on_meshes`.
+    """
     return solve_on_meshes(
         [body.mesh for body in solution.bodies], replace(problem, order=NEIGHBOUR[problem.order]), width, clock
     )
 
 
 def smooth_errors(solution: MeshSolution, other: MeshSolution) -> dict[str, float]:
-    """Errors of the contact's half-width and ends, m and n (in contact half-widths), p, q, q1 and q2 (relative L2 of
-    cell averages), but for those of the elements at the ends; ``other`` is the neighbour."""
+    """Errors of ``solution`` away from the ends, from the ``other`` solution of the neighbouring order.
+
+    Errors of a, left, right, m and n are in contact half-widths; of p, q, q1 and q2 relative L2 errors of cell means.
+    """
     order = solution.lower.order
     power = order / min(order, other.lower.order) - 1
     changes, prefactors = _changes(solution, other), _prefactors(solution)
     errors = {
         key: _SAFE[key] * change * (change / prefactors.get(key, 1.0)) ** power for key, change in changes.items()
     }
-    least = _SAME * errors["a"]  # two solutions may meet in one of the ends by chance
+    least = _LEAST_OF_A * errors["a"]  # two solutions may agree at one end by chance
     return {key: max(error, least) if key in END_KEYS else error for key, error in errors.items()}
 
 
-def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, beside: Array) -> dict[str, float]:
-    """What the elements at the ends add.
+def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Array) -> dict[str, float]:
+    """Errors due to the elements at the ends, by key as for :func:`smooth_errors`.
 
     Parameters
     ----------
     solution : MeshSolution
     sizes : (k,) array
-        Those of the elements that the ``solution.zone_ends`` lie in, in contact half-widths.
+        Sizes of the elements at ``solution.zone_ends``, in contact half-widths.
     gaps : (2, k) array
-        From each of the ends of the stick zone to the other one (infinite at other ends), and from each end to the
-        nearest of the other ends and kinks.
-    beside : (j,) array
-        Sizes of the elements that the ``solution.kinks`` lie in.
+        As from :func:`partialslip_fem.goals.gaps`.
+    at_kinks : (j,) array
+        Sizes of the elements at ``solution.kinks``, in contact half-widths.
     """
     off = AT_END[solution.lower.order] * sizes
     most = float(off.max()) * max(_steepness(solution), 1.0)
@@ -99,8 +104,8 @@ def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, beside: Array)
         a = solution.half_width
         if solution.stick and half > 0:  # where slip strips are narrow, q is steep beside them
             near = (sizes * np.minimum(sizes / gaps.min(axis=0), 1.0))[2:4]
-            errors["q"] = math.hypot(errors["q"], *(_STEEP * _beside(solution) * near))
-        locked = np.hypot.reduce(_KINK * _locked(solution) * beside * a, axis=1)
+            errors["q"] = math.hypot(errors["q"], *(_STEEP * _stick_end_strengths(solution) * near))
+        locked = np.hypot.reduce(_KINK * _kink_strengths(solution) * at_kinks * a, axis=1)
         for key, norm, kinks in zip(("q1", "q2"), both, locked.tolist(), strict=True):
             if norm > 0:
                 errors[key] = math.hypot(errors["q"] * half, kinks) / float(norm)
@@ -108,18 +113,21 @@ def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, beside: Array)
 
 
 def rounding_error(solution: MeshSolution) -> float:
-    """What rounding leaves of the ends, in contact half-widths, and of tractions, relative.
+    """Error of ``solution`` due to rounding: of ends in contact half-widths, of tractions relative.
 
-    The stiffness of a body that hardly changes its volume is the larger one, (lambda + 2 mu)/mu, and so is what its
-    factor loses of the rest; that adds up with the unknowns.
+    It is proportional to the number of unknowns and to (lambda + 2 mu)/mu, which is large for nearly incompressible
+    materials.
     """
     loses = max((each.body.kappa + 1) / (each.body.kappa - 1) for each in solution.bodies)
     return float(np.finfo(float).eps) * loses * solution.dofs
 
 
 def together(solution: MeshSolution, smooth: Mapping[str, float], at_ends: Mapping[str, float]) -> dict[str, float]:
-    """Both errors: of ends their sum; of tractions, which are in L2 and lie in different elements, the root of the sum
-    of squares, and what q is off by where the stick zone's ends are."""
+    """Combine errors away from the ends (``smooth``) and ``at_ends`` of ``solution``.
+
+    Errors of ends are added. L2 errors of tractions lie in different elements and are combined as root of the sum of
+    squares; q gets a third part due to the shift of the stick zone's ends.
+    """
     errors = {
         key: error + at_ends[key] if key in END_KEYS else math.hypot(error, at_ends[key])
         for key, error in smooth.items()
@@ -127,16 +135,20 @@ def together(solution: MeshSolution, smooth: Mapping[str, float], at_ends: Mappi
     }
     if "q" in errors:
         norms = _norms(solution)
-        moved = float(np.hypot.reduce(_SHIFT * _beside(solution) * [errors["m"], errors["n"]])) * float(norms[0])
+        moved = float(np.hypot.reduce(_SHIFT * _stick_end_strengths(solution) * [errors["m"], errors["n"]])) * float(
+            norms[0]
+        )
         for key, norm in zip(_SHEARS, norms.tolist(), strict=True):
             if key in errors and norm > 0:
                 errors[key] = math.hypot(errors[key], moved / norm)
     return errors
 
 
-def _beside(solution: MeshSolution) -> Array:
-    """Strengths of the kinks of q = (q2 - q1)/2 at both ends of the stick zone, of lengths in contact half-widths and
-    relative to the L2 norm of q, (2,)."""
+def _stick_end_strengths(solution: MeshSolution) -> Array:
+    """Strengths of the kinks of q = (q2 - q1)/2 at the ends of the stick zone, (2,), relative to the L2 norm of q.
+
+    Lengths are in contact half-widths.
+    """
     assert solution.history
     change = solution.history.change / 2
     strengths: Array = _strengths(solution, [change], solution.zone_ends[2:4])[0] * solution.half_width
@@ -145,8 +157,11 @@ def _beside(solution: MeshSolution) -> Array:
 
 
 def stick_element_size(solution: MeshSolution, gaps: Array, error: float) -> float:
-    """The size of elements, in contact half-widths, that tell where the stick zone ends to ``error``: small enough
-    beside the ``gaps``, or themselves so small that an end somewhere in one is known to that."""
+    """Element size for which the ends of the stick zone are known to ``error``; both in contact half-widths.
+
+    Either the size is small enough beside the ``gaps`` (:func:`partialslip_fem.goals.gaps`), or the element itself is
+    as small as the error. Infinite without a stick zone in ``solution``.
+    """
     if not solution.stick:
         return np.inf
     beside = float(np.cbrt(error * (gaps[:, 2:4] ** 2).min(axis=1) / _FIT).min())
@@ -154,17 +169,17 @@ def stick_element_size(solution: MeshSolution, gaps: Array, error: float) -> flo
 
 
 def kink_sizes(solution: MeshSolution, error: float) -> Array:
-    """Sizes of elements, in contact half-widths, at each of the kinks that leave q1 and q2 within ``error``."""
+    """Element size at each of ``solution.kinks``, (j,), in contact half-widths, for an ``error`` of q1 and q2."""
     if not solution.kinks or not solution.history:
         return np.empty(0)
     norms = np.maximum(_norms(solution)[1:], np.finfo(float).tiny)
-    relative = _KINK * _locked(solution) * solution.half_width * math.sqrt(len(solution.kinks)) / norms[:, None]
+    relative = _KINK * _kink_strengths(solution) * solution.half_width * math.sqrt(len(solution.kinks)) / norms[:, None]
     sizes: Array = error / np.maximum(relative.max(axis=0), np.finfo(float).tiny)
     return sizes
 
 
 def _norms(solution: MeshSolution) -> Array:
-    """L2 norms of the cell averages of (q2 - q1)/2, q1 and q2, or what their errors are relative to at least."""
+    """L2 norms of the cell means of (q2 - q1)/2, q1 and q2, (3,), at least ``LEAST_SHEAR`` of the norm of f p."""
     history = solution.history
     assert history
     norms = [_norm(solution.shear(forces)) for forces in (history.change / 2, history.q1, history.q2)]
@@ -173,11 +188,11 @@ def _norms(solution: MeshSolution) -> Array:
 
 
 def _prefactors(solution: MeshSolution) -> dict[str, float]:
-    """Of the errors of shear, which are less than one where it is small beside f p."""
+    """Prefactors of the errors of shear, by key: less than one where shear is small beside f p."""
     if not solution.history:
         return {}
     relative = _norms(solution) / _norm(solution.shear(solution.history.bound))
-    return dict(zip(_SHEARS, np.minimum(relative / _SMALL, 1.0).tolist(), strict=True))
+    return dict(zip(_SHEARS, np.minimum(relative / _NARROW, 1.0).tolist(), strict=True))
 
 
 def _norm(traction: PPoly) -> float:
@@ -185,19 +200,19 @@ def _norm(traction: PPoly) -> float:
     return float(np.sqrt(np.sum(force**2 / np.diff(traction.x))))
 
 
-def _locked(solution: MeshSolution) -> Array:
-    """Strengths of the kinks of q1 and q2, (2, k)."""
+def _kink_strengths(solution: MeshSolution) -> Array:
+    """Strengths of q1 and q2 at the kinks of ``solution``, (2, j)."""
     history = solution.history
     assert history
     return _strengths(solution, [history.q1, history.q2], np.array(solution.kinks))
 
 
 def _strengths(solution: MeshSolution, shears: Sequence[Array], points: Array) -> Array:
-    """Factors of the square root of the distance that tractions under the forces ``shears`` gain on one side of each of
-    the points, (s, k).
+    """Strengths of kinks at ``points`` (k,) in the tractions of the nodal forces ``shears``, (s, k).
 
-    What two intervals of length d on either side of a point bear differs by s d^2, s the slope, and by 2/3 of the
-    factor times d^(3/2); that of half the length tells the two apart.
+    The strength is the factor c of c sqrt(distance), which the traction gains on one side of the point. The forces on
+    two intervals of length d on either side of the point differ by slope d^2 + 2/3 c d^(3/2). Intervals of half the
+    length separate the two terms.
     """
     vertices = solution.lower.x[:: solution.lower.order]
     width = _ACROSS * np.diff(vertices)[np.clip(np.searchsorted(vertices, points) - 1, 0, len(vertices) - 2)]
@@ -212,16 +227,18 @@ def _strengths(solution: MeshSolution, shears: Sequence[Array], points: Array) -
 
 
 def _steepness(solution: MeshSolution) -> float:
-    """The factor of the square root of the distance from an end that p begins with, over the RMS of p, as a multiple of
-    that of a Hertz contact; the larger one of the two ends. It is taken from the force on the cell the end lies in and
-    the one beside it."""
-    p, ends = solution.pressure(), np.array([solution.left, solution.right])
+    """Steepness of p at the ends of the contact, relative to Hertz contact; the larger of both ends.
+
+    Steepness is the factor of the square root of the distance from the end over the RMS of p. The factor follows from
+    the force on the cell at the end and the next cell.
+    """
+    p, contact_ends = solution.pressure(), np.array([solution.left, solution.right])
     force = p.antiderivative()
     rms = np.sqrt(np.sum(np.diff(force(p.x)) ** 2 / np.diff(p.x)) / (2 * solution.half_width))
-    cells = np.clip(np.searchsorted(p.x, ends) - 1, 1, len(p.x) - 3)
+    cells = np.clip(np.searchsorted(p.x, contact_ends) - 1, 1, len(p.x) - 3)
     inside = p.x[cells + np.array([2, -1])]
     forces = np.abs(force(p.x[[0, -1]]) - force(inside))
-    return float(np.max(1.5 * forces / np.abs(inside - ends) ** 1.5) * np.sqrt(solution.half_width / 3) / rms)
+    return float(np.max(1.5 * forces / np.abs(inside - contact_ends) ** 1.5) * np.sqrt(solution.half_width / 3) / rms)
 
 
 def _changes(solution: MeshSolution, other: MeshSolution) -> dict[str, float]:
@@ -229,23 +246,23 @@ def _changes(solution: MeshSolution, other: MeshSolution) -> dict[str, float]:
     ends = np.abs(np.subtract(solution.contact_ends, other.contact_ends)).max(axis=0) / a
     changes = {"a": abs(other.half_width - a) / a, "left": float(ends[0]), "right": float(ends[1])}
     pressure = solution.pressure()
-    changes["p"] = _apart(pressure, other.pressure(), _norm(pressure))
+    changes["p"] = _difference(pressure, other.pressure(), _norm(pressure))
     if solution.stick and other.stick and solution.history and other.history:
         changes["m"] = abs(other.stick.left - solution.stick.left) / a
         changes["n"] = abs(other.stick.right - solution.stick.right) / a
         for key, (of, at), norm in zip(_SHEARS, _shears(solution, other), _norms(solution).tolist(), strict=True):
-            changes[key] = _apart(of, at, norm)
+            changes[key] = _difference(of, at, norm)
     return {key: changes[key] for key in KEYS if key in changes}
 
 
 def _shears(*solutions: MeshSolution) -> Iterator[tuple[PPoly, ...]]:
-    """Half the change of the shear, and shear at load points 1 and 2, of each solution."""
+    """(q2 - q1)/2, q1 and q2, in turn, of each of the ``solutions``."""
     for share, key in ((0.5, "change"), (1.0, "q1"), (1.0, "q2")):
         yield tuple(solution.shear(share * getattr(solution.history, key)) for solution in solutions)
 
 
-def _apart(traction: PPoly, other: PPoly, norm: float) -> float:
-    """L2 difference of their means over the cells, relative to ``norm``."""
+def _difference(traction: PPoly, other: PPoly, norm: float) -> float:
+    """L2 difference of the cell means of two tractions, relative to ``norm``."""
     widths = np.diff(traction.x)
     force, otherwise = (np.diff(each.antiderivative()(traction.x)) for each in (traction, other))
     return float(np.sqrt(np.sum((otherwise - force) ** 2 / widths))) / norm if norm > 0 else 0.0

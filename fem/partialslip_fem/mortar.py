@@ -22,7 +22,7 @@ def transfer(onto: Body, other: Body) -> Array:
 
 
 def nodal_forces(body: Body, traction: PPoly) -> Array:
-    """Nodal forces, (n,), of a piecewise polynomial ``traction`` on the contact line of ``body``; zero off its cells."""
+    """Nodal forces on the contact line of ``body``, (n,), of a piecewise ``traction`` that is zero off its cells."""
     order = (body.order + len(traction.c)) // 2 + 1
     x, weights = _rule(np.clip(np.union1d(body.x[:: body.order], traction.x), body.x[0], body.x[-1]), order)
     nodes, values = _shape_functions(body, x)

@@ -20,7 +20,7 @@ def traction(body: Body, forces: Array) -> PPoly:
 
 
 def polynomials(x: Array, values: Array, order: int) -> PPoly:
-    """Piecewise polynomials of ``order`` through ``values`` (n,) at ``x`` (n,); every ``order``-th point is a vertex."""
+    """Piecewise polynomials of ``order`` through ``values`` at ``x``, (n,) each; every ``order``-th x is a vertex."""
     k, vertices = order, x[::order]
     cells = np.lib.stride_tricks.sliding_window_view(values, k + 1)[::k]
     coefficients = np.linalg.solve(np.vander(np.linspace(0, 1, k + 1)), cells.T)
