@@ -135,9 +135,8 @@ def together(solution: MeshSolution, smooth: Mapping[str, float], at_ends: Mappi
     }
     if "q" in errors:
         norms = _norms(solution)
-        moved = float(np.hypot.reduce(_SHIFT * _stick_end_strengths(solution) * [errors["m"], errors["n"]])) * float(
-            norms[0]
-        )
+        shifts = _SHIFT * _stick_end_strengths(solution) * [errors["m"], errors["n"]]
+        moved = float(np.hypot.reduce(shifts)) * float(norms[0])
         for key, norm in zip(_SHEARS, norms.tolist(), strict=True):
             if key in errors and norm > 0:
                 errors[key] = math.hypot(errors[key], moved / norm)

@@ -22,7 +22,9 @@ def contact_ends(line: Body, normal: Array) -> tuple[float, float]:
     return left_end(vertices, forces, touching), right_end(vertices, forces, touching)
 
 
-def stick_zone_of(line: Body, nodes: Indices, history: History, growth: tuple[Array, Array] | None = None) -> StickInterval:
+def stick_zone_of(
+    line: Body, nodes: Indices, history: History, growth: tuple[Array, Array] | None = None
+) -> StickInterval:
     """Stick zone of ``history`` on the contact ``nodes`` of the ``line``.
 
     ``growth`` are the bound and the change of q to use instead of the history's, (k,) each (see

@@ -77,7 +77,7 @@ def read(
             refuse(f"must have a group {key!r} of edges or nodes of its boundary")
     every = np.concatenate(list(lines.values()))
     if len(np.unique(every, axis=0)) < len(every):
-        refuse(f"an edge is in two of the groups {', '.join(lines)}")
+        refuse(f"edges must be in one group each; an edge is in two of the groups {', '.join(lines)}")
     bound = np.concatenate([lines[key] for key in needed])
     lines["contact"] = lines["contact"][~np.isin(lines["contact"], bound).any(axis=1)]
     below = _below(points, lines["contact"], refuse)
@@ -105,7 +105,7 @@ def _refusal(name: str, path: str) -> Refuse:
 def _load(name: str, path: str, refuse: Refuse) -> "meshio.Mesh":
     if Path(path).suffix.lower() not in FORMATS:
         refuse(f"must be a file {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
-    printed, damaged = "", "it is damaged, or of another format"
+    printed, damaged = "", "the file is damaged or of another format"
     try:
         with open(path, "rb"):
             pass
@@ -188,7 +188,7 @@ def _boundary(corners: Indices, count: int, refuse: Refuse) -> Indices:
     there, back = edges @ [count, 1], edges @ [1, count]
     order = np.argsort(there)
     if folded := int((np.diff(there[order]) == 0).sum()):
-        refuse(f"must have elements beside each other; at {folded} edges two are on the same side")
+        refuse(f"must not have overlapping elements; at {folded} edges two are on the same side")
     place = np.minimum(np.searchsorted(there, back, sorter=order), len(edges) - 1)
     shared = there[order[place]] == back
     beside, other = (number[shared] % len(corners) for number in (np.arange(len(edges)), order[place]))
@@ -208,7 +208,7 @@ def _lines(found: "meshio.Mesh", boundary: Indices, refuse: Refuse) -> Iterator[
         for some in _nodes_of(found, name):
             nodes[some] = True
         if not _among(np.sort(edges, axis=1), known).all():
-            refuse(f"its group {name!r} must have edges of the boundary only")
+            refuse(f"group {name!r} must have edges of the boundary only")
         yield name, boundary[_among(known, np.sort(edges, axis=1)) | nodes[boundary].all(axis=1)]
 
 
@@ -247,13 +247,13 @@ def _nodes_of(found: "meshio.Mesh", name: str) -> Iterator[Indices]:
 def _below(points: Array, contact: Indices, refuse: Refuse) -> bool:
     """Whether the body lies below its contact line."""
     if len(contact) < _FEWEST:
-        refuse(f"its group 'contact' must have at least {_FEWEST} edges, not {len(contact)}")
+        refuse(f"group 'contact' must have at least {_FEWEST} edges, not {len(contact)}")
     ways = np.sign(np.diff(points[contact, 0], axis=1))
     nodes = np.unique(contact)
     chain = nodes[np.argsort(points[nodes, 0])]
     pairs = np.sort(np.column_stack([chain[:-1], chain[1:]]), axis=1)
     if (ways != ways[0]).any() or not _among(pairs, np.sort(contact, axis=1)).all() or len(pairs) != len(contact):
-        refuse("its group 'contact' must be one line from left to right, with the body on one side of it")
+        refuse("group 'contact' must be one line from left to right, with the body on one side of it")
     return bool(ways[0] < 0)
 
 
@@ -264,7 +264,7 @@ def _lay(points: Array, contact: Indices, face: Callable[[Array], Array] | None,
     off = np.ptp(height) / np.ptp(x)
     if not off <= _OFF:
         shape = "of the profile's shape (or kind 'block')" if face else "flat (or kind 'pad')"
-        refuse(f"its contact line must be {shape}; it is off by {off:.2g} of its length, about x = 0")
+        refuse(f"contact line must be {shape}; it is off by {off:.2g} of its length, about x = 0")
     points[:, 1] -= np.median(height)
 
 

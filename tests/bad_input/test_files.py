@@ -77,7 +77,7 @@ def test_tables(rejected, tmp_path, text, expected):
 @pytest.mark.parametrize("name", ["t.csv", "t.frd", "t.dat"])
 def test_no_text(rejected, tmp_path, content, name):
     (tmp_path / name).write_bytes(content)
-    assert "not UTF-8 text" in rejected(None, ["score", "hertz-shear", name])
+    assert "must be UTF-8 text" in rejected(None, ["score", "hertz-shear", name])
 
 
 @pytest.mark.parametrize("name", ["t.csv", "t.frd", "t.dat", "t.vtu", "t.xdmf", "t.msh", "t.med", "t.vtk", "nul\0.csv",
@@ -108,11 +108,11 @@ def test_no_file(rejected, tmp_path, name):
         (["score", "hertz-shear", "t.csv", "--factors", "1,1e-300,1"], "must be zero or of a size"),
         (["score", "hertz-shear", "t.csv", "--factors", "1,-1,1"], "pressure must be positive"),
         (["score", "hertz-shear", "t.csv", "--order", "3"], "--order 3: must be 1 or 2"),
-        (["score", "hertz-shear", "t.csv", "--at", "1,2"], "--at 1,2: only for .frd and .dat files"),
+        (["score", "hertz-shear", "t.csv", "--at", "1,2"], "--at 1,2: must be left out except for .frd and .dat files"),
         (["score", "hertz-shear", "t.frd", "--at", "1"], "--at 1: must be two whole numbers"),
         (["score", "hertz-shear", "t.frd", "--at", "1,x"], "--at 1,x: must be two whole numbers"),
-        (["score", "hertz-shear", "t.frd", "--at", "0,1"], "--at 0,1: t.frd has contact results 1 to 2"),
-        (["score", "hertz-shear", "t.frd", "--at", "1,3"], "--at 1,3: t.frd has contact results 1 to 2"),
+        (["score", "hertz-shear", "t.frd", "--at", "0,1"], "--at 0,1: must be from 1 to 2, contact results of t.frd"),
+        (["score", "hertz-shear", "t.frd", "--at", "1,3"], "--at 1,3: must be from 1 to 2, contact results of t.frd"),
         (["score", "hertz-shear", "t.csv", "--bar", "0"], "--bar 0: must be a number > 0"),
         (["score", "hertz-shear", "t.csv", "--bar", "-1"], "--bar -1: must be a number > 0"),
         (["score", "hertz-shear", "t.csv", "--bar", "nan"], "--bar nan: must be a number > 0"),
@@ -124,7 +124,7 @@ def test_no_file(rejected, tmp_path, name):
         (["score", "hertz-shear", "--template", "--set", "load.p0=0"], "load.p0 = 0: must be > 0"),
         (["score", "hertz-shear", "--template", "--set", "material.upper.E=1e9", "--set", "material.upper.nu=0.3"],
          "the bodies differ"),
-        (["score", "hertz-shear", "q.frd", "--set", "load.Q=[1e5,0,-1e5]"], "must be of the 3 of a cycle"),
+        (["score", "hertz-shear", "q.frd", "--set", "load.Q=[1e5,0,-1e5]"], "must be 3 or more, one per load point"),
     ],
 )  # fmt: skip
 def test_arguments(rejected, tmp_path, arguments, expected):
@@ -139,18 +139,18 @@ def swapped(old, new, count=-1):
 
 
 FRDS = {
-    "empty": (lambda _: "", "no nodes (2C) in it"),
-    "another file": (lambda _: TABLE, "no nodes (2C) in it"),
-    "without nodes": (swapped("    2C", "    7C"), "no nodes (2C) in it"),
-    "without contact": (swapped("CONTACT", "STRESS "), "no contact stresses in it"),
-    "without shear": (swapped("CSHEAR1", "CSHARE1"), "must have CPRESS and CSHEAR1"),
+    "empty": (lambda _: "", "no nodes (block 2C)"),
+    "another file": (lambda _: TABLE, "no nodes (block 2C)"),
+    "without nodes": (swapped("    2C", "    7C"), "no nodes (block 2C)"),
+    "without contact": (swapped("CONTACT", "STRESS "), "no contact stresses; add"),
+    "without shear": (swapped("CSHEAR1", "CSHARE1"), "must include CPRESS and CSHEAR1"),
     "one load point": (lambda text: text[: text.rindex("    1PSTEP")] + " 9999\n", "contact results of 1 steps"),
-    "breaks off": (lambda text: text[: text.rindex(" -3")], "breaks off in the block"),
-    "stars": (lambda text: text[: text.rindex(" -1") + 13] + "*" * 72 + "\n -3\n", "not rows of 6 numbers"),
+    "breaks off": (lambda text: text[: text.rindex(" -3")], "the block that begins here has no end"),
+    "stars": (lambda text: text[: text.rindex(" -1") + 13] + "*" * 72 + "\n -3\n", "must be ASCII rows of 6 numbers"),
     "nan": (lambda text: text[: text.rindex(" -1") + 37] + "         NaN" * 4 + "\n -3\n", ""),
     "step of no number": (swapped("    1PSTEP", "    1PSTEP  x"), ""),
     "no step number": (lambda text: text.replace("    1PSTEP", "    1PSTEP x\n"), "'x': must be a whole number"),
-    "other nodes": (lambda text: text[: text.rindex(" -1")] + " -3\n", "not of the same nodes"),
+    "other nodes": (lambda text: text[: text.rindex(" -1")] + " -3\n", "must be at the same nodes"),
     "no pressure": (lambda text: "".join(x for x in text.splitlines(True) if len(x) < 80), "p > 0 at 0 points"),
 }
 
@@ -165,13 +165,13 @@ def test_frd(rejected, tmp_path, fault):
 
 
 DATS = {
-    "empty": (lambda _: "", "no contact stresses in it"),
-    "another file": (lambda _: TABLE, "no contact stresses in it"),
-    "words": (swapped("E+08", "E+ 8", 1), "not rows of 5 numbers"),
-    "stars": (swapped("E+07", "****", 1), "not rows of 5 numbers"),
+    "empty": (lambda _: "", "no contact stresses; add"),
+    "another file": (lambda _: TABLE, "no contact stresses; add"),
+    "words": (swapped("E+08", "E+ 8", 1), "must be rows of 5 numbers"),
+    "stars": (swapped("E+07", "****", 1), "must be rows of 5 numbers"),
     "another element": (swapped("      540 ", "      999 "), ""),
     "one load point": (lambda text: text[: text.rindex(" contact stress")], "contact results of 1 steps"),
-    "nodes": (swapped("(slave element+face", "(slave node"), "not rows of 4 numbers"),
+    "nodes": (swapped("(slave element+face", "(slave node"), "must be rows of 4 numbers"),
     "no such face": (lambda text: text.replace("          3 ", "          9 "), "face 9 of element"),
 }
 
@@ -189,9 +189,9 @@ def test_dat_without_its_mesh(rejected, tmp_path):
     (tmp_path / "t.dat").write_bytes(DAT.read_bytes())
     assert "t.frd: cannot be read: No such file" in rejected(None, ["score", "hertz-shear", "t.dat"])
     (tmp_path / "t.frd").write_text(FRD.read_text("utf-8").replace("    3C", "    7C"), "utf-8")
-    assert "has no elements" in rejected(None, ["score", "hertz-shear", "t.dat"])
+    assert "elements (block 3C): must be in the .frd file" in rejected(None, ["score", "hertz-shear", "t.dat"])
     (tmp_path / "t.frd").write_text("    2C\n -3\n    3C\n -3\n", "utf-8")
-    assert "is not in the .frd file beside it" in rejected(None, ["score", "hertz-shear", "t.dat"])
+    assert ": must be in the .frd file of the same name" in rejected(None, ["score", "hertz-shear", "t.dat"])
 
 
 MESHES = {

@@ -155,7 +155,7 @@ def test_a_mesh_beside_a_half_plane():
         ("support='roller', pulled=true", r"the contact lines must lie opposite each other; is their unit right\?"),
         ("unit=8e-3", r"bodies.lower.mesh: must have more than 4 elements in the contact, not \d; is .*unit right\?"),
         ("unit=1e-6", r"bodies.lower.mesh.*: must be wider than the contact"),
-        ("unit=1e-3, kind='pad'", "its contact line must be of the profile's shape"),
+        ("unit=1e-3, kind='pad'", ": contact line must be of the profile's shape"),
     ],
 )
 def test_meshes_that_do_not_fit_are_refused(lower, why):

@@ -169,23 +169,35 @@ def test_calculix(ending, off):
     turned, opposite = errors(scene, FIXTURES / f"calculix.{ending}", at=(2, 1))
     assert turned.traction.dq == pytest.approx(-found.traction.dq)
     assert opposite.q > 1.9
-    assert any("dq looks like turned round" in note for note in turned.notes)
+    assert any("dq may be of the opposite sign" in note for note in turned.notes)
 
 
 MISTAKES = {
     "shifted by half a cell": (lambda t, h: t + np.array([h / 2, 0, 0]), "m n p q", "middle is at x = 0.0069 a"),
-    "q of the other sign": (lambda t, _: t * [1, 1, -1], "q dQ", "dq looks like turned round: --factors 1,1,-1"),
-    "half a cycle": (lambda t, _: t * [1, 1, 0.5], "q dQ", "dq looks like of half a cycle: --factors 1,1,2"),
+    "q of the other sign": (
+        lambda t, _: t * [1, 1, -1],
+        "q dQ",
+        "dq may be of the opposite sign: correct with --factors 1,1,-1",
+    ),
+    "half a cycle": (lambda t, _: t * [1, 1, 0.5], "q dQ", "dq may be of half a cycle: correct with --factors 1,1,2"),
     "without the right half": (lambda t, _: t[: len(t) // 2], "a p q P", "of the scene's P"),
     "a hole": (lambda t, _: np.delete(t, slice(12, 26), axis=0), "p q", ""),
     "p and q exchanged": (lambda t, _: np.column_stack([t[:, 0], t[:, 2], t[:, 1]]), "p q P dQ", "of the scene's P"),
-    "mirrored": (lambda t, _: t * [-1, 1, 1], "m n q", "on the other side: is x, or the tension, turned round?"),
+    "mirrored": (
+        lambda t, _: t * [-1, 1, 1],
+        "m n q",
+        "on the other side: is the sign of x, or of the tension, reversed?",
+    ),
     "pressure scaled": (lambda t, _: t * [1, 1.1, 1], "p P", "p adds up to 1.1 of the scene's P"),
     "shear scaled": (lambda t, _: t * [1, 1, 1.05], "q dQ", "dq adds up to 1.05 of the scene's dQ"),
-    "less friction": (lambda t, _: t * [1, 1, 0.987], "q", "|dq|/(2 p) is 0.2961 where it slips, the scene's f is 0.3"),
-    "in MPa": (lambda t, _: t * [1, 1e-6, 1e-6], "p q P dQ", "MPa: --factors 1,1e+06,1e+06 would fit"),
-    "in mm and MPa": (lambda t, _: t * [1e3, 1e-6, 1e-6], "a p q P dQ", "--factors 0.001,1e+06,1e+06 would fit"),
-    "in mm": (lambda t, _: t * [1e3, 1, 1], "a p q P dQ", "x looks like mm: --factors 0.001,1,1 would fit"),
+    "less friction": (
+        lambda t, _: t * [1, 1, 0.987],
+        "q",
+        "|dq|/(2 p) is 0.2961 in the slip zones, but the scene's f",
+    ),
+    "in MPa": (lambda t, _: t * [1, 1e-6, 1e-6], "p q P dQ", "MPa: correct with --factors 1,1e+06,1e+06"),
+    "in mm and MPa": (lambda t, _: t * [1e3, 1e-6, 1e-6], "a p q P dQ", "correct with --factors 0.001,1e+06,1e+06"),
+    "in mm": (lambda t, _: t * [1e3, 1, 1], "a p q P dQ", "x may be in mm: correct with --factors 0.001,1,1"),
 }
 
 
@@ -203,7 +215,7 @@ def test_mistakes_in_a_table_are_named(exact, tmp_path, mistake):
     missed = {what.split(":")[0] for what in comparison.missed}
     assert set(seen.split()) <= missed
     assert note in " ".join(found.notes)
-    if "x looks like" in note:
+    if "x may be in" in note:
         assert found.m is None
         assert "another unit" in found.undetermined["m"]
 

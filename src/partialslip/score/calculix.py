@@ -64,7 +64,7 @@ def read_frd(
     numbers, points = _nodes(lines, origin)
     first, second = _pair(_contacts(lines, origin), origin, chosen, load_points, "*CONTACT FILE with CSTR")
     if not np.array_equal(first.keys, second.keys):
-        raise InputError(f"{origin}: contact results at load points 1 and 2 are not of the same nodes")
+        raise InputError(f"{origin}: contact results at load points 1 and 2: must be at the same nodes")
     touched = (first.stress != 0).any(axis=1) | (second.stress != 0).any(axis=1)
     x = _x_of_nodes(numbers, points[:, 0], second.keys[touched, 0], origin)
     return {"x": x, "p": second.stress[touched, 0], "q1": first.stress[touched, 1], "q2": second.stress[touched, 1]}
@@ -101,7 +101,9 @@ def _pair(
         raise InputError(f"{origin}: no contact stresses; add {wanted} to the CalculiX deck")
     if chosen is not None:
         if not all(1 <= number <= len(blocks) for number in chosen):
-            raise InputError(f"--at {chosen[0]},{chosen[1]}: {origin} has contact results 1 to {len(blocks)}")
+            raise InputError(
+                f"--at {chosen[0]},{chosen[1]}: must be from 1 to {len(blocks)}, contact results of {origin}"
+            )
         return blocks[chosen[0] - 1], blocks[chosen[1] - 1]
     last = [block for block, after in zip(blocks, [*blocks[1:], None], strict=True)
             if after is None or not block.step or block.step != after.step]  # fmt: skip
@@ -197,7 +199,7 @@ def _middles(lines: Sequence[str], keys: Indices, numbers: Indices, x: Array, or
     """x of the middles of faces, given by element and face number, (n,)."""
     start = next((i for i, line in enumerate(lines) if line.startswith("    3C")), None)
     if start is None:
-        raise InputError(f"{origin}: the .frd file of the same name has no elements (block 3C)")
+        raise InputError(f"{origin}: elements (block 3C): must be in the .frd file of the same name")
     wanted = set(keys[:, 0].tolist())
     corners: dict[int, tuple[int, list[int]]] = {}
     kind, element = 0, 0
@@ -217,7 +219,7 @@ def _middles(lines: Sequence[str], keys: Indices, numbers: Indices, x: Array, or
         faces = FACE_CORNERS.get(kind, ())
         local = faces[face - 1] if 1 <= face <= len(faces) else ()
         if not local or max(local) >= len(nodes):
-            raise InputError(f"{origin}: face {face} of element {element} is not in the .frd file of the same name")
+            raise InputError(f"{origin}: face {face} of element {element}: must be in the .frd file of the same name")
         means.append([nodes[corner] for corner in local])
     count = np.array([len(nodes) for nodes in means])
     at = _x_of_nodes(numbers, x, np.concatenate(means), origin)
@@ -231,7 +233,7 @@ def _x_of_nodes(numbers: Indices, x: Array, wanted: Indices, origin: str) -> Arr
     known = (place < len(numbers)) & (numbers[order][np.minimum(place, len(numbers) - 1)] == wanted)
     if not known.all():
         hint = "for plane elements CalculiX prints nodes of the expanded solids: score the .frd file instead"
-        raise InputError(f"{origin}: node {wanted[~known][0]} is not in the .frd file ({hint})")
+        raise InputError(f"{origin}: node {wanted[~known][0]}: must be in the .frd file; {hint}")
     result: Array = x[order][place]
     return result
 

@@ -86,8 +86,8 @@ def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None) ->
         for name, each in wanted.items()
     }
     notes = [f"{len(rows) - len(kept)} rows without values were left out"] if len(kept) < len(rows) else []
-    said = [f"{name} = {each.text}" for name, each in wanted.items() if each.text != name]
-    return Columns(values, ", ".join(said), tuple(notes), any(each.moment for each in wanted.values()))
+    expressions = [f"{name} = {each.text}" for name, each in wanted.items() if each.text != name]
+    return Columns(values, ", ".join(expressions), tuple(notes), any(each.moment for each in wanted.values()))
 
 
 def _fields(line: str, separator: str) -> list[str]:

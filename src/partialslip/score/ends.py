@@ -153,8 +153,8 @@ def _end(x: Array, values: Array, last: int, first: int, cells: bool, slack: Arr
     close = [roots[-1] for level in levels[-_NEAR:] for roots in level if roots]
     few = [root.scatter for root in close if root and root.points <= _FEW]
     floor = float(np.median(few)) if few else 0.0
-    told = [root for root in every if root.points > _FEW and root.highest > _ABOVE * least]
-    slope = float(np.median([abs(root.slope) for root in told])) if told else np.inf
+    clear = [root for root in every if root.points > _FEW and root.highest > _ABOVE * least]
+    slope = float(np.median([abs(root.slope) for root in clear])) if clear else np.inf
     # Two expressions for the length that noise hides: here by the median slope, below (outside) by each estimate's own.
     # They are kept as they are, as the published figures depend on both.
     hidden, steepest = least**2 / slope, _STEEP * slope

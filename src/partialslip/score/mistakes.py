@@ -7,10 +7,10 @@ import numpy as np
 from partialslip.result import Result
 from partialslip.scene import Scene
 
-_LENGTHS = {"mm": 1e-3, "um": 1e-6, "cm": 1e-2, "inches": 0.0254}
-_STRESSES = {"MPa": 1e6, "GPa": 1e9, "kPa": 1e3, "N/um^2": 1e12, "psi": 6894.757}
-_TURNS = {"": 1.0, "turned round": -1.0, "of half a cycle": 2.0, "of half a cycle and turned round": -2.0,
-          "twice too large": 0.5}  # fmt: skip
+_LENGTHS = {"in mm": 1e-3, "in um": 1e-6, "in cm": 1e-2, "in inches": 0.0254}
+_STRESSES = {"in MPa": 1e6, "in GPa": 1e9, "in kPa": 1e3, "in N/um^2": 1e12, "in psi": 6894.757}
+_TURNS = {"": 1.0, "of the opposite sign": -1.0, "of half a cycle": 2.0,
+          "of half a cycle and of the opposite sign": -2.0, "twice too large": 0.5}  # fmt: skip
 _LIKE = 0.15  # relative difference up to which another unit explains a sum
 _OFF = 0.01  # least relative difference of a resultant from the load that is reported
 _FRICTION = 3e-3  # least relative difference of the coefficient of friction that is reported
@@ -47,9 +47,9 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
     dQ, share = dQ * q.factor, abs(share * q.factor)
     columns = zip(("x", "p", "dq"), (x, p, q), strict=True)
     notes = []
-    if found := [f"{column} looks like {guess.name}" for column, guess in columns if guess.name]:
+    if found := [f"{column} may be {guess.name}" for column, guess in columns if guess.name]:
         factors = ",".join(f"{guess.factor:g}" for guess in (x, p, q))
-        notes.append(f"{', '.join(found)}: --factors {factors} would fit")
+        notes.append(f"{', '.join(found)}: correct with --factors {factors}")
     if abs(P / scene.P - 1) > max(_OFF, _SIGMAS * P_off):
         notes.append(f"p adds up to {P / scene.P:.3g} of the scene's P")
     slides, load = 2 * scene.friction.f * scene.P, scene.load.dQ
@@ -60,7 +60,7 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
     unsure = float(f_known) / seen if seen and isinstance(f_known, float) else 0.0
     if seen is not None and abs(share - 1) > max(_FRICTION, _SIGMAS * unsure):
         f = scene.friction.f
-        notes.append(f"|dq|/(2 p) is {share * f:.4g} where it slips, the scene's f is {f:g}: another coefficient?")
+        notes.append(f"|dq|/(2 p) is {share * f:.4g} in the slip zones, but the scene's f is {f:g}: is f another?")
     return (*notes, *_places(scene, result, reference, x.factor))
 
 
@@ -94,7 +94,7 @@ def _places(scene: Scene, result: Result, reference: Result, factor: float) -> l
     if abs(true) > 10 * little and abs(centre) <= little:
         notes.append("the stick zone is in the middle of the contact: was the tension left out?")
     elif abs(true) > 10 * little and abs(centre + true) <= 0.2 * abs(true):
-        notes.append("the stick zone is on the other side: is x, or the tension, turned round?")
+        notes.append("the stick zone is on the other side: is the sign of x, or of the tension, reversed?")
     return notes
 
 

@@ -52,9 +52,9 @@ def read(
     load = scene.load
     load_points = (*load.ends, len(load.points))
     if at is not None and suffix not in (".frd", ".dat"):
-        raise InputError(f"--at {at[0]},{at[1]}: only for .frd and .dat files")
+        raise InputError(f"--at {at[0]},{at[1]}: must be left out except for .frd and .dat files")
     if chosen and suffix not in TABLES:
-        raise InputError(f"--columns: only for tables ({', '.join(TABLES)})")
+        raise InputError(f"--columns: must be left out except for tables ({', '.join(TABLES)})")
     if suffix in TABLES:
         columns = read_csv(text(file), origin, chosen)
     elif suffix == ".frd":
@@ -81,7 +81,7 @@ def text(file: Path) -> str:
     try:
         return data.decode("utf-16" if data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) else "utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InputError(f"{file}: not UTF-8 text (byte {error.start})") from None
+        raise InputError(f"{file}: must be UTF-8 text; byte {error.start} is not") from None
 
 
 def _point_data(file: Path) -> dict[str, Array]:
