@@ -8,6 +8,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.bars import BARS
 from partialslip.condensed.ends import apart
+from partialslip.condensed.step_errors import steps_matter
 from partialslip.condensed.steps import MOST
 from partialslip.result import Clock
 from partialslip_fem import estimate, goals, solving
@@ -60,6 +61,7 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         refinement.estimate_errors()
         progress(refinement.message())
         if refinement.finished:
+            refinement.check_steps()
             return refinement.adapted(max(refinement.goal.accuracy, refinement.error / goals.BAR))
         refinement.plan_next_mesh()
 
@@ -110,6 +112,16 @@ class _Refinement:
         """One line on the present mesh."""
         known = f", {', '.join(self.errors)} known to {self.error:.1e} a" if self.error < np.inf else ""
         return f"mesh {self.meshes}: {self.solution.dofs:,} unknowns{known}"
+
+    def check_steps(self) -> None:
+        """Halve the load steps on the present mesh and estimate their errors anew, where steps matter: the mesh on
+        which they were chosen saw less of a stick zone that moves while the loads change."""
+        if self.expense.limited or not steps_matter(self.step_errors or {}, self.problem.accuracy):
+            return
+        coarse = self.solution
+        fine = solving.solve_contact(self.problem, coarse.bodies, coarse.factored, self.clock, MOST)
+        self.solution, self.step_errors = fine, fine.step_errors
+        self.iterations += fine.iterations
 
     def adapted(self, settled: float) -> Adapted:
         """The present solution as the last one; ``settled`` is its accuracy, if there is an allowance."""

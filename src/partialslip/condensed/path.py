@@ -49,10 +49,20 @@ class Path:
         ways = (tuple(sorted([*way, *middle])) for way, middle in zip(self.fractions, middles, strict=True))
         return replace(self, ways=tuple(ways), half=False)
 
+    def with_steps(self, count: int) -> "Path":
+        """Path whose steps also end at ``count`` equal fractions of each way."""
+        equal = {number / count for number in range(1, count + 1)}
+        return replace(self, ways=tuple(tuple(sorted(equal.union(way))) for way in self.fractions), half=False)
+
     @property
     def moves(self) -> bool:
         """Whether any load changes."""
         return len({self.begin, *self.cycle}) > 1
+
+    @property
+    def mean_steps(self) -> float:
+        """Mean number of steps from one load point to the next."""
+        return sum(map(len, self.fractions)) / len(self.fractions)
 
     @property
     def most_steps(self) -> int:

@@ -1,10 +1,12 @@
 """Errors of ends and tractions due to finite steps of the load path."""
 
+from collections.abc import Mapping
+
 import numpy as np
 import numpy.typing as npt
 
 from partialslip.arrays import Array
-from partialslip.bars import LEAST_SHEAR
+from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.ends import StickInterval
 from partialslip.condensed.history import History
@@ -12,7 +14,13 @@ from partialslip.condensed.history import History
 Errors = dict[str, float]
 Indices = npt.NDArray[np.int64]
 
+_NOTHING = 0.01
 _SHEARS = ("change", "q1", "q2")
+
+
+def steps_matter(errors: Mapping[str, float], accuracy: float) -> bool:
+    """Whether any error of the load steps is more than a hundredth of what ``accuracy`` (of a) allows."""
+    return any(error > _NOTHING * BARS[key] * accuracy for key, error in errors.items())
 
 
 def halved(

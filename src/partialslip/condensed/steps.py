@@ -18,6 +18,7 @@ _GROUPS, _HALVINGS, _SOLVES = 64, 6, 400  # groups of nodes on which steps are c
 _TELLING = 1e-7  # change of the forces, relative to f P, above rounding
 _TRIED = (0, 1 / 32, 1 / 8, 1 / 2, 3 / 4, 7 / 8, 1)  # fractions of a step tried to detect a reversal of slip
 _MANY = 4  # steps per load point from which on each step is tried in halves only
+_PROBED = 16  # steps from load point to load point with which fewer steps are compared
 _FINER = 16.0  # factor by which the tolerance of steps is reduced if their errors are too large
 MOST = 64  # steps from load point to load point above which steps are not halved
 _CLOSES = 3  # fewest cycles if the first loading does not determine the cycle; most cycles on which steps are chosen
@@ -37,33 +38,46 @@ def march_refined(
     Parameters
     ----------
     tangential, stretch, bound, path
-        As for :func:`march`. A path with known ``ways`` is followed in these steps.
+        As for :func:`march`. A path with known ``ways`` is followed in these steps and once more in their halves.
     accuracy : float
         Accuracy of ends, as a fraction of a.
     errors : callable, optional
         ``errors(history, finer)``: errors from a history and the history with all steps halved. Steps are refined until
-        every error is at most half of the allowed one. Also called where one step seems to suffice: a stick zone
-        smaller than the groups of nodes on which steps are chosen carries too little traction to be noticed.
+        every error is at most half of the allowed one. By default steps are not refined further and have no errors.
     most : int
-        Largest number of steps from load point to load point.
+        Mean number of steps from load point to load point above which steps are not refined further.
 
     The errors are empty if slip does not reverse between load points.
+
+    Each way is compared with at least ``_PROBED`` steps, even where one step seems to suffice: where a small stick zone
+    moves while the loads change, a few steps all end with the same tractions, and only many steps follow the zone. The
+    first cycles decide.
     """
     known = bool(path.ways)
     history = march(tangential, stretch, bound, path if known else refined(tangential, stretch, bound, path, accuracy))
-    if errors is None or known or history.path.half or _tension_stays(path):
+    if errors is None or history.path.half or _tension_stays(path):
         return history, {}
-    finer = accuracy
+    if known:
+        halved = march(tangential, stretch, bound, path.halved)
+        return halved, errors(history, halved)
+    tolerance, cycles = accuracy, min(path.cycles, _CLOSES)
     while True:
-        halved = march(tangential, stretch, bound, history.path.halved)
-        left = errors(history, halved)
-        enough = all(error <= BARS[key] * accuracy / 2 for key, error in left.items())
-        if enough or halved.path.most_steps > most:
+        own = history.path
+        first = history if own.cycles <= cycles else march(tangential, stretch, bound, replace(own, cycles=cycles))
+        finer = march(tangential, stretch, bound, replace(own.halved.with_steps(_PROBED), cycles=first.path.cycles))
+        left = errors(first, finer)
+        if all(error <= BARS[key] * accuracy / 2 for key, error in left.items()):
             return history, left
-        finer /= _FINER
-        chosen = refined(tangential, stretch, bound, path, finer)
-        more = chosen.most_steps > history.path.most_steps
-        history = march(tangential, stretch, bound, chosen) if more else halved
+        if finer.path.mean_steps > most:
+            return (finer if first is history else history), left
+        tolerance /= _FINER
+        chosen = refined(tangential, stretch, bound, path, tolerance)
+        if chosen.most_steps > own.most_steps:
+            history = march(tangential, stretch, bound, chosen.with_steps(_PROBED))
+        else:
+            history = (
+                finer if first is history else march(tangential, stretch, bound, replace(finer.path, cycles=own.cycles))
+            )
 
 
 def _tension_stays(path: Path) -> bool:

@@ -19,7 +19,7 @@ from partialslip.condensed.ends import StickInterval, apart, finest, kinks, stic
 from partialslip.condensed.history import History, certificate, last_cycle_change
 from partialslip.condensed.path import Path, load_path
 from partialslip.condensed.regime import doubts, steady_state
-from partialslip.condensed.step_errors import halved
+from partialslip.condensed.step_errors import halved, steps_matter
 from partialslip.condensed.steps import MOST, march_refined
 from partialslip.condensed.threads import one_thread
 from partialslip.halfplane.cells import compliance, forces, graded
@@ -107,15 +107,18 @@ def solve(
             if work > _WORK or (meshes > 1 and likely > _SHARE * clock.remaining()):
                 break
         began = clock.cost().cpu_s
-        # steps are chosen on the second mesh and used on all later meshes
-        before, level = level, _solve_level(scene, pressed, path, start, cells, clock, choose=meshes == 1)
+        # steps are chosen on the second mesh and used on all later meshes. Finer cells see more of a moving stick zone:
+        # where steps matter, each later mesh halves them once and estimates their errors anew
+        choose = meshes == 1 or (steps_matter(stepped, _accuracy(scene)) and not clock.limited)
+        before, level = level, _solve_level(scene, pressed, path, start, cells, clock, choose)
         spent = clock.cost().cpu_s - began
         meshes, iterations = meshes + 1, iterations + (level.history.iterations if level.history else 0)
         if level.stick is None:
             break
         if before:
             if meshes == 2:
-                path, stepped = level.history.path if level.history else None, level.stepped
+                path = level.history.path if level.history else None
+            stepped = level.stepped or stepped
             meshed = _mesh_errors(level, before, growth, meshes == 2)
             shares = {"discretisation": meshed, "steps": stepped}
             errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}

@@ -37,6 +37,7 @@ def print_table(
 
 
 def print_lines(console: Console, lines: Iterable[Sequence[str]]) -> None:
+    """Print ``lines`` of cells in columns, without headings."""
     grid = Table.grid(padding=(0, 2))
     for line in lines:
         grid.add_row(*map(Text, line))
