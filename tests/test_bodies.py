@@ -1,4 +1,4 @@
-"""Finite bodies in a scene file: what does not go together is refused in one line."""
+"""Finite bodies in a scene file: contradictory fields are refused in one line."""
 
 import numpy as np
 import pytest
@@ -74,8 +74,8 @@ def test_names_and_bodies():
 
 @pytest.mark.parametrize("name", ["hertz-shear", "flat-rounded"])
 def test_the_face_of_a_pad_is_round(name):
-    """(x - b)^2 + (R - y)^2 = R^2 beyond the flat, to the widest that a pad may be; the gap is that of the parabola
-    but for the square of the slope."""
+    """(x - b)^2 + (R - y)^2 = R^2 beyond the flat, up to the widest pad; the gap equals the parabola up to terms of
+    the square of the slope."""
     profile = load_scene(name).profile
     b = getattr(profile, "b", 0.0)
     x = b + profile.R * np.array([1e-9, 1e-3, 0.1, 0.5, 0.9])

@@ -1,5 +1,5 @@
-"""Only what a scene calls for is built, which counted work shows; what is left out would not have changed the answer;
-and what it cannot do without is not left out unseen."""
+"""Only effects that a scene calls for are built, as counted work shows; effects left out would not change the result;
+and missing effects are reported."""
 
 import itertools
 import json
@@ -39,7 +39,7 @@ SIX = {
     "everything": ((*STIFF, *BLOCKS, *MEAN, LARGE), True),
 }
 
-# What is counted of an effect, as a number that is zero if it is left out.
+# Counted work of an effect: zero if the effect is left out.
 WORK = {
     "friction": lambda counts: counts["tangential_unknowns"] + counts["load_steps"] + counts["friction_iterations"],
     "opposing-slip": lambda counts: counts["opposing_nodes"],
@@ -51,7 +51,7 @@ WORK = {
 
 
 def fem(*overrides, name="hertz-shear", subsurface=False):
-    """By finite elements, with what the scene's effects force."""
+    """Result of finite elements, with the forced effects of the scene."""
     scene = load_scene(name, [SIZE, *overrides])
     return model.solve(reduced(scene), plan(scene, subsurface=subsurface))
 
@@ -71,7 +71,7 @@ def assert_same(result, other, off=1e-10):
 
 @pytest.fixture
 def spied(monkeypatch):
-    """How often what is costly is really done."""
+    """Count the calls of costly functions."""
     calls = dict.fromkeys(("factor", "half_plane", "press", "march", "coupled", "displace"), 0)
 
     def spy(owner, name, key):
@@ -119,7 +119,7 @@ def test_left_out_effects_count_zero(name, spied):
 def test_work_of_the_cheapest_and_the_fullest():
     cheap, full = (fem(*overrides, subsurface=inside).counts for overrides, inside in (SIX["shear"], SIX["everything"]))
     assert (cheap["cycles"], cheap["load_steps"], cheap["normal_solves"]) == (0, 1, 1)
-    assert full["load_steps"] >= 1 + 2 * full["cycles"] >= 3  # more where slip turns round on the way
+    assert full["load_steps"] >= 1 + 2 * full["cycles"] >= 3  # more if slip reverses
     assert full["normal_solves"] == full["load_steps"] + full["pressing_steps"]
     assert fem(LARGE).counts["opposing_nodes"] > 0
     assert full["factorizations"] - 2 * full["meshes"] in (0, 2)  # CHOLMOD's are taken apart, and made again
@@ -134,7 +134,7 @@ def test_shear_columns_that_nobody_needs_are_noticed(monkeypatch):
     assert counts["columns"] == 2 * counts["normal_unknowns"]
 
 
-LESS = "load.sigma=[-6e8, 6e8]"  # dsigma = 6 f p0, at which slip does not turn round
+LESS = "load.sigma=[-6e8, 6e8]"  # dsigma = 6 f p0, at which slip does not reverse
 HALF = {"shear": (), "large tension": ("load.Q=[-5e4, 5e4]", LESS), "cycles": ("load.cycles=7",), "equal blocks": EQUAL,
         "tension alone": ("load.Q=[0, 0]", LESS)}  # fmt: skip
 
@@ -175,13 +175,13 @@ def test_half_a_cycle_of_mean_loads_is_another_answer():
 
 
 def test_a_gradual_way_is_followed():
-    """Slip turns round on it: Masing's rule would be wrong."""
+    """Slip reverses on the path: Masing's rule would be wrong."""
     assert fem("load.steps=3", "load.Q=[-3e4, 3e4]", LARGE).counts["load_steps"] >= 9
 
 
 @pytest.mark.parametrize("load", [(), ("load.Q=[-5e4, 5e4]", LESS)])
 def test_mirror_images_as_two_coupled_bodies(load):
-    """Where slip does not turn round on the way: the steps of coupled bodies are not refined, and a note says so."""
+    """Without reversal of slip: the steps of coupled bodies are not refined, and a note says so."""
     one, two = fem(*load), fem(*load, "effects.coupling=true")
     assert (one.counts["bodies"], two.counts["bodies"]) == (1, 2)
     assert two.counts["normal_solves"] == two.counts["pressing_steps"] + two.counts["load_steps"]
@@ -189,8 +189,8 @@ def test_mirror_images_as_two_coupled_bodies(load):
 
 
 def test_mirror_images_meshed_differently_are_alike_to_their_errors():
-    """Nodes of two meshes do not match: the answer is that of one body but for the discretisation, 2e-3 a at that size
-    (orders of convergence are in tests/fem)."""
+    """Nodes of two meshes do not match: the result differs from that of one body by the discretisation error, 2e-3 a at
+    this size (orders of convergence are in tests/fem)."""
     one, two = fem(), fem("fem.lower_size=0.8", "effects.coupling=true")
     assert (two.a, two.m, two.n) == pytest.approx((one.a, one.m, one.n), abs=4e-3 * one.a)
 
@@ -232,7 +232,7 @@ def test_stresses_inside_change_nothing_on_the_surface():
 
 
 def test_frictionless_bodies_have_stresses_inside():
-    """Solved back without shear columns: the same as with friction that has nothing to do."""
+    """Without shear columns: the same result as with friction but without tangential loads."""
     without, with_it = fem("load.Q=[0, 0]", subsurface=True), fem("load.Q=[0, 0]", "effects.friction=true",
                                                                  subsurface=True)  # fmt: skip
     for body, other in zip(without.bodies, with_it.bodies, strict=True):
@@ -240,8 +240,8 @@ def test_frictionless_bodies_have_stresses_inside():
 
 
 def test_finite_bodies_have_no_far_field_and_large_ones_need_none():
-    """Of a block of 200 contact half-widths the size is worth (1/200)^2, and so is the far field, on one mesh. Blocks
-    and half-planes are of different meshes: there it is what the elements leave, 1e-3 a at that size."""
+    """For a block of 200 contact half-widths the size changes the result by (1/200)^2, and so does the far field, on
+    one mesh. Blocks and half-planes have different meshes and differ by the discretisation error, 1e-3 a."""
     size = ("bodies.lower.width=0.4", "bodies.lower.height=0.2", "bodies.upper.width=0.4", "bodies.upper.height=0.2")
     block, plane = fem(*size), fem(*size, "effects.finite-size=false")
     assert (block.counts["far_field_columns"], plane.counts["far_field_columns"] > 0) == (0, True)
@@ -254,7 +254,7 @@ def test_finite_bodies_have_no_far_field_and_large_ones_need_none():
 
 @pytest.mark.parametrize("Qf", [0.1, 0.5, 0.9])
 def test_opposing_slip_is_left_out_where_tension_is_small(Qf):
-    """On a gradual way up to where slip begins to turn round, whatever the steps."""
+    """Gradual loading up to the beginning of the reversal of slip, with any steps."""
     scene = load_scene("hertz-shear")
     f, P, Q = scene.friction.f, scene.P, Qf * scene.friction.f * scene.P
     p0 = partialslip.run(scene, ["exact"]).results["exact"].p0
@@ -327,7 +327,7 @@ def test_finite_size_is_measured_by_finite_bodies():
 
 
 def test_coupling_left_out_is_the_uncoupled_solution():
-    """Goodman's approximation: what it is worth, and that without it the normal contact is solved once."""
+    """Goodman's approximation: its error, and the normal contact is solved once."""
     unlike, without = fem(*STIFF, SMALLER), fem(*STIFF, SMALLER, "effects.coupling=false")
     assert without.counts["normal_solves"] == 1
     assert without.counts["bodies"] == 2
@@ -346,7 +346,7 @@ def imported(code):
 def test_imports_are_those_of_what_is_built(tmp_path):
     run = "import partialslip as p; s = p.load_scene('hertz-shear', ['fem.size=0.2', 'fem.factor=superlu']); "
     assert imported(run + "p.run(s, ['exact', 'march'])") == set()
-    assert imported(run + "p.run(s, ['fem'])") == {"skfem"}  # gmsh is in a process of its own
+    assert imported(run + "p.run(s, ['fem'])") == {"skfem"}  # gmsh runs in a separate process
     mesh = tmp_path / "mesh.npz"
     made = bodies.block(16.0, (-1.5, 1.5), {0.0: 0.2}, 0.5)
     np.savez(mesh, points=made.points, triangles=made.triangles, **made.lines)

@@ -262,7 +262,7 @@ def test_every_shipped_scene_has_a_whole_plan(name):
     assert effects.called_for.keys() | effects.left_out.keys() == EFFECTS
 
 
-# What a reason says, by how it begins, and when that is so.
+# Conditions under which a reason, given by its beginning, is true.
 TRUE_IF = {
     "two bodies are pressed together": lambda s: s.P > 0,
     "slip may reverse between": lambda s: s.friction.f > 0 and s.load.dsigma != 0 and not s.slides,

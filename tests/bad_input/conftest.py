@@ -11,7 +11,7 @@ FOREIGN = ("Traceback", "Object ", "Number ", "datetime", "str ", "`", "NoneType
 
 
 def check(code, printed):
-    """That what was done and printed is a refusal; returns the message."""
+    """Assert that a command was refused; return the message."""
     assert code == 2
     assert printed.out == ""
     assert printed.err.startswith("partialslip: ")

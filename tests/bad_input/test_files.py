@@ -237,7 +237,7 @@ def test_no_mesh(rejected, tmp_path, content, ending):
 
 @pytest.fixture(scope="module")
 def state(tmp_path_factory):
-    """A good state, as its arrays."""
+    """Arrays of a valid state."""
     path = tmp_path_factory.mktemp("state") / "state.npz"
     run(load_scene("hertz-shear"), ["march"]).results["march"].state.save(path)
     with np.load(path) as file:

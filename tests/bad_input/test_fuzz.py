@@ -17,7 +17,7 @@ WORDS = (b"nan", b"inf", b"-1", b"1e999", b"", b"1e-320", b"0", b"x", b"-", b"99
 
 @pytest.fixture(scope="module")
 def good(tmp_path_factory):
-    """By kind: names of files, the first of which is spoiled, and what is done with it."""
+    """By kind: names of files, the first of which is spoiled, and the command that reads it."""
     folder = tmp_path_factory.mktemp("good")
     scene = load_scene("hertz-shear", ["fem.accuracy=0.1"])
     results = run(scene, ["exact", "march"]).results

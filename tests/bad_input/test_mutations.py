@@ -170,7 +170,7 @@ def table(random):
 
 
 def arguments(kind, random, folder):
-    """What is called for one of a ``kind``, its file being written."""
+    """Write the file of a ``kind``; return the command line that reads it."""
     if kind == "score":
         (folder / "t.csv").write_bytes(table(random))
         return ["score", "hertz-shear", "t.csv", "--json"]
@@ -182,7 +182,7 @@ def arguments(kind, random, folder):
 
 
 def wrong(code, out, err):
-    """What is wrong with how a command has ended, if anything."""
+    """Fault in the end of a command, if any."""
     if code == 2:
         lines = err.splitlines()
         if out or len(lines) != 1 or not lines[0].startswith("partialslip: ") or not lines[0].isprintable():
@@ -202,7 +202,7 @@ def _no_number(name):
 
 
 def batch(kind, numbers, folder, end):
-    """Call ``main`` for each of ``numbers`` within limits, and send what is wrong, and at last how it was."""
+    """Call ``main`` for each of ``numbers`` within limits; send the number before, and exit code and fault after."""
     resource.setrlimit(resource.RLIMIT_AS, (BYTES + _mapped(), BYTES + _mapped()))
     os.chdir(folder)
     for number in numbers:
@@ -229,7 +229,7 @@ def _mapped():
 
 
 def ends(kind, numbers, folder):
-    """Exit codes by number, and what is wrong by number, of processes of BATCH calls each."""
+    """Exit codes and faults by number, from processes of BATCH calls each."""
     codes, faults, left = {}, {}, list(numbers)
     context = multiprocessing.get_context("fork")
     while left:
@@ -250,7 +250,7 @@ def ends(kind, numbers, folder):
                 if fault:
                     faults[at] = fault
         process.join()
-        if at in left:  # it began, and did not come to its end
+        if at in left:  # it began and did not end
             faults[at] = f"the process ended with {process.exitcode}: beyond {SECONDS} CPU s or {BYTES} bytes"
             left.remove(at)
         elif process.exitcode != 0:

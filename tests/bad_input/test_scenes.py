@@ -1,4 +1,4 @@
-"""Bad scenes, settings and arguments, one by one, and what is said of each."""
+"""Bad scenes, settings and arguments, one by one, and the message of each."""
 
 import re
 from pathlib import Path

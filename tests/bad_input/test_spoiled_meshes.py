@@ -1,5 +1,5 @@
-"""Meshes of bodies, in every format, spoiled at random (seeded): either they are still those of a body, or they are
-refused in one line, in little time and memory."""
+"""Meshes of bodies, in every format, spoiled at random (seeded): they are either still meshes of a body, or refused in
+one line, in little time and memory."""
 
 import os
 import time

@@ -46,7 +46,7 @@ def test_all_at_the_bound(total):
 
 
 def test_on_the_bound_to_the_last_digit():
-    """A solution that rests on its bounds without pressing on them: neither side is right, and it must still end."""
+    """Degenerate solution at bounds with zero multipliers: no active set is unique, and the iteration must end."""
     random = np.random.default_rng(3)
     for n in (5, 30, 60):
         C = compliance(n, random)
@@ -56,7 +56,7 @@ def test_on_the_bound_to_the_last_digit():
 
 
 def test_nothing_free_between_two_blocks_of_bounds():
-    """A huge load puts every member at a bound but for the one that balances the sum."""
+    """A huge load puts every member at a bound, except one member that balances the sum."""
     C = compliance(31, np.random.default_rng(5))
     solution = check(C, 1e6 * np.linspace(-1, 1, 31), -np.ones(31), np.ones(31), 0.4)
     assert np.sum(np.abs(solution.x) < 1) == 1
@@ -73,7 +73,7 @@ def test_unbounded_is_a_linear_solve():
 
 @pytest.mark.parametrize("seed", range(20))
 def test_sides_and_a_start_from_them(seed):
-    """Each side is held by its bound, a start from the answer is the answer at once, and any start ends there."""
+    """Sides match the active bounds, a start from the solution converges at once, and any start converges to it."""
     random = np.random.default_rng([1, seed])
     n = int(random.integers(1, 80))
     C, g, bound = compliance(n, random), random.standard_normal(n), random.random(n)

@@ -1,4 +1,4 @@
-"""The stick zone from tangential forces on functions known in closed form, and what must not be taken for it."""
+"""The stick zone from tangential forces on functions known in closed form, and patterns that are no stick zone."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ BOUND = np.full(len(X), 0.025)
 
 
 def room(left, right, depth=1.0):
-    """Integrals over the cells of ``depth`` sqrt((right - x)(x - left)): what 2 f p - |dq| leaves in a zone."""
+    """Integrals over the cells of ``depth`` sqrt((right - x)(x - left)), the room 2 f p - |dq| in a stick zone."""
     centre, c = (left + right) / 2, (right - left) / 2
     t = np.clip((VERTICES - centre) / c, -1, 1)
     return np.diff(depth * c**2 / 2 * (t * np.sqrt(1 - t**2) + np.arcsin(t)))
@@ -46,7 +46,7 @@ def test_a_node_short_of_its_bound_elsewhere_is_no_stick_zone(stray, monkeypatch
 
 
 def test_the_end_is_not_where_all_nodes_of_a_cell_slip():
-    """Room that does not fade like a square root: the root of its fit lies two cells beyond the last that sticks."""
+    """Room that does not vanish like a square root: the root of the fit lies two cells beyond the last node."""
     vertices, nodes = np.array([0.0, 0.3, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1]), np.linspace(0, 0.79, 40)
     beyond = np.where(vertices < 0.75, np.maximum(1.05 - vertices, 0) ** 1.5, 0)
     assert 0.79 <= right_end(vertices, -np.diff(beyond), nodes) < 0.9
@@ -62,7 +62,7 @@ def test_a_zone_smaller_than_a_cell_is_where_the_slip_turns_round():
 
 @pytest.mark.parametrize("side", [-1, 1])
 def test_a_zone_at_the_end_of_the_line(side):
-    """The first mesh may be too short for the contact: what sticks at its end is not lost."""
+    """The first mesh may be too short for the contact: a stick zone at the end of the mesh is found."""
     zone = read(room(*sorted((side * 1.2, side * 0.4))))
     assert side * (zone.right if side > 0 else zone.left) == pytest.approx(1, abs=0.05)
     assert side * (zone.left if side > 0 else zone.right) == pytest.approx(0.4, abs=0.025 / 25)

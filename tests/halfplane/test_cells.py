@@ -72,7 +72,7 @@ def test_compliance_is_positive_definite_on_strongly_graded_cells():
 
 
 def test_adhered_traction():
-    """What sticks everywhere under tension carries q = x sigma/(4 sqrt(a^2 - x^2)) (paper, eq. (1))."""
+    """A contact that sticks everywhere under tension carries q = x sigma/(4 sqrt(a^2 - x^2)) (paper, eq. (1))."""
     vertices = graded(np.array([-0.5, 0.5]), 1e-4, 0.05)
     x, widths = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices)
     q = np.linalg.solve(compliance(vertices), x / 4) / widths

@@ -1,4 +1,4 @@
-"""Slip that turns round on a gradual way: what the condition says, before and after solving, against the march."""
+"""Reversal of slip during gradual loading: the conditions, before and after solving, against the march."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def scene(Qf, sf, *overrides, name="hertz-large-tension"):
 
 
 def test_the_box_known_beforehand_lies_inside_the_exact_domain():
-    """Along its whole edge and inside, Hertz's slip does not turn round."""
+    """For Hertz, slip does not reverse inside the box of `may_turn_round` and on its edge."""
     Qf = np.linspace(1e-3, _QF, 60)
     Qf, share = np.meshgrid(Qf, np.linspace(0, 1, 60), indexing="ij")
     sf = _SLOPE * Qf + share * (_SF - _SLOPE * Qf)
@@ -33,8 +33,8 @@ def test_the_box_known_beforehand_lies_inside_the_exact_domain():
 
 @pytest.mark.parametrize("shape", [Hertz(), Punch(0.3), Punch(0.8), Punch([0.0, 0.5], [1.0, 2.0])])
 def test_the_condition_is_the_rate_along_the_way(shape):
-    """At every moment of the way the adhered traction of the stick zone drives both ends the way they slip, and what
-    is to slip is driven that way from the first: checked by following the way, at random loads."""
+    """The adhered traction of the stick zone always drives both ends in the direction of slip, and points that slip are
+    pushed that way from the beginning: checked along gradual loading, at random loads."""
     random = np.random.default_rng(5)
     for Qf, sf in zip(random.uniform(0.02, 0.95, 40), 10 ** random.uniform(-1, 1.3, 40), strict=True):
         zone = stick_zone(Qf, sf, shape)
@@ -88,8 +88,7 @@ def test_other_profiles_are_decided_by_the_exact_method():
 
 
 def test_slip_that_turns_round_makes_the_difference():
-    """In boundary elements of a contact with a = p0 = f = 1 small steps and one step end alike where slip does not
-    turn round, and not where it does."""
+    """Boundary elements, a = p0 = f = 1: small steps and one step agree if and only if slip does not reverse."""
     for Qf, sf, turns in ((0.3, 4.0, False), (0.75, 4.5, True)):
         path = [(Qf, sf / 2), (-Qf, -sf / 2)]
         (_, widths, p, (_, once)), (*_, (_, gradual)) = (march(Hertz(), path, steps=steps) for steps in (1, 24))

@@ -1,4 +1,4 @@
-"""q1 and q2 under mean loads: Mindlin and Deresiewicz's rule, against a small boundary-element march of its own."""
+"""q1 and q2 under mean loads: Mindlin and Deresiewicz's rule, against a small boundary-element march."""
 
 import numpy as np
 import pytest
@@ -43,7 +43,7 @@ def of(Q, sigma, shape=None):
 
 
 def test_mindlin_deresiewicz():
-    """The reference case: q2 is the first loading's, and q1 what the reversal leaves of it."""
+    """The reference case: q2 is the traction of the first loading, q1 the traction after the reversal."""
     result = exact(scene())
     x = np.linspace(-1.2, 1.2, 501)
     q1, q2 = (q / (0.4 * result.p0) for q in result.traction.levels_at(x * result.a))
@@ -121,7 +121,7 @@ def test_levels_stay_within_the_bound_and_hold_their_loads():
 
 
 def test_symmetries():
-    """Turning q round turns both loads round; mirroring x turns Q round and keeps sigma."""
+    """Reversing q reverses both loads; mirroring x reverses Q and keeps sigma."""
     x = np.linspace(-1, 1, 41)
     base = of((0.2, 0.7), (0.1, 0.4)).at(x)
     turned = of((-0.2, -0.7), (-0.1, -0.4)).at(x)

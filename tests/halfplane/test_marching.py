@@ -1,4 +1,4 @@
-"""Marching against the closed forms, and what only marching knows: the first cycles."""
+"""Marching against the closed forms, and the first cycles, which only marching resolves."""
 
 import itertools
 
@@ -42,8 +42,8 @@ def test_order_of_convergence(monkeypatch):
 
 @pytest.mark.slow
 def test_transients_die_out_and_leave_the_steady_range():
-    """What a cycle still changes falls about with the cube of the cycles: only where a mesh is too coarse to follow the
-    last strips that slip does it fall geometrically."""
+    """The change per cycle decreases about like cycles^-3; geometrically only if the mesh is too coarse for the last
+    slipping strips."""
     results = {k: marched("hertz-large-tension", ROUGH, *MEAN, f"load.cycles={k}") for k in (1, 3, 6, 12)}
     changes = [result.last_cycle_change for result in results.values()]
     assert changes[0] > 0.2  # on the gradual way
@@ -96,7 +96,7 @@ TURNS = [(0.3, 1.0, False), (0.4, 4.03, False), (0.5, 2.8, True), (0.75, 4.5, Tr
 
 @pytest.mark.parametrize(("Qf", "sf", "turns"), TURNS)
 def test_slip_that_turns_round_on_a_gradual_way(Qf, sf, turns):
-    """Where it does the closed form says so, and the range of a gradual way is another; elsewhere it is the same."""
+    """If slip reverses, the closed form says so and the range of gradual loading differs; otherwise they agree."""
     fP, half = 314159.26535897935, sf * 1e8
     loads = ["fem.accuracy=1e-4", f"load.Q=[{-Qf * fP}, {Qf * fP}]", f"load.sigma=[{-half}, {half}]"]
     one, gradual = (
@@ -104,7 +104,7 @@ def test_slip_that_turns_round_on_a_gradual_way(Qf, sf, turns):
         for k in (1, 12)
     )
     assert any("turns round" in note for note in one.results["exact"].notes) == turns
-    (compared,) = gradual.comparisons.values()  # the march is the reference where slip turns round
+    (compared,) = gradual.comparisons.values()  # the march is the reference if slip reverses
     assert (gradual.reference == "march") == turns
     assert turns or compared.q < 5e-3
     if not turns:
@@ -113,7 +113,7 @@ def test_slip_that_turns_round_on_a_gradual_way(Qf, sf, turns):
 
 
 def test_slip_that_turns_round_as_the_loads_do():
-    """What slips to the right in the end is pushed to the left at first: a flat remembers, and the notes say so."""
+    """Points that finally slip to the right are first pushed to the left: a flat remembers, and the notes say so."""
     scene = partialslip.load_scene("flat-rounded")
     fP, fp0 = scene.friction.f * scene.P, scene.friction.f * contact(scene).p0
     loads = ["fem.accuracy=1e-4", f"load.Q={[-0.375 * fP, 0.375 * fP]}", f"load.sigma={[-4.125 * fp0, 4.125 * fp0]}"]
@@ -159,7 +159,7 @@ def test_cells_follow_every_kink_of_q1_and_q2():
 
 @pytest.mark.parametrize(("Qf", "sf"), [(0.5, 2.8), (0.75, 4.5)])
 def test_steps_are_refined_where_slip_turns_round(Qf, sf):
-    """Without naming steps the answer is that of many equal ones; where nothing turns one step remains."""
+    """Chosen steps give the result of many equal steps; one step remains if slip does not reverse."""
     fP, half = 314159.26535897935, sf * 1e8
     loads = ["fem.accuracy=1e-3", f"load.Q=[{-Qf * fP}, {Qf * fP}]", f"load.sigma=[{-half}, {half}]"]
     found = marched("hertz-large-tension", *loads)

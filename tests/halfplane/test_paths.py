@@ -38,8 +38,8 @@ def test_load_points_of_a_cycle():
 
 
 def test_points_on_the_way_of_loads_in_phase_do_not_matter():
-    """Proportional loading: as long as slip does not turn round, a path may be cut into pieces. Cells are finer where
-    those end."""
+    """Proportional loading: if slip does not reverse, a path may be cut into pieces. Cells are finer at the ends of the
+    pieces' stick zones."""
     two = marched([-0.3, 0.3], [-2, 2])
     many = marched([-0.3, 0, 0.3, 0.1, 0], [-2, 0, 2, 2 / 3, 0], "load.cycles=2")
     known = sum(max(each.estimate["m"], each.estimate["n"]) for each in (two, many))
@@ -64,7 +64,7 @@ def test_loads_out_of_phase():
 
 
 def test_out_of_phase_tends_to_in_phase():
-    """A narrow ellipse in the plane of Q and sigma is nearly a line, and dissipates nearly what that does."""
+    """A narrow ellipse in the plane of Q and sigma is nearly a line, and dissipates nearly the energy of the line."""
     way = np.cos(CIRCLE)
     line = marched(0.3 * way, 2 * way, "load.cycles=2")
     ellipse = marched(0.3 * way, 2 * np.cos(CIRCLE + 1e-3), "load.cycles=2")
@@ -83,7 +83,7 @@ def test_two_hundred_cycles_all_certified():
     """Q 0.1 .. 0.7 f P and sigma 1 .. 5 f p0; when a cycle has changed nothing the rest are that cycle again."""
     result = marched([0.1, 0.7], [1, 5], "load.cycles=200")
     assert 10 < result.counts["cycles"] < 200
-    assert result.counts["load_steps"] > 1 + 2 * result.counts["cycles"]  # slip turns round on the way
+    assert result.counts["load_steps"] > 1 + 2 * result.counts["cycles"]  # slip reverses
     assert result.certificate["kkt"] < 1e-11
     assert result.certificate["equilibrium"] < 1e-12  # rounding of a sum over hundreds of cells
     assert result.last_cycle_change < 1e-10
@@ -92,7 +92,7 @@ def test_two_hundred_cycles_all_certified():
 
 @pytest.mark.slow
 def test_ratchets_beyond_the_mean_load_bound():
-    """The bound is 0.4725 f P; all methods say so, and what is not reached is not judged."""
+    """The bound is 0.4725 f P; all methods report ratcheting, and ends that are not reached are not judged."""
     outcome = partialslip.run(scene([0.22, 0.82], [1, 5], "load.cycles=20"), ["exact", "march", "fem"])
     assert {result.regime for result in outcome.results.values()} == {"ratchets"}
     assert outcome.passed

@@ -30,8 +30,8 @@ TINY, TIGHT, ROUGH = 1e-14, 1e-9, 5e-3  # the last for sums over the points of a
 
 
 class Answer(NamedTuple):
-    """What there is to look at, in SI units: ``shear`` and ``tension`` are the changes dQ and dsigma, ``mean`` is
-    that of Q, ``levels`` are q1 and q2, and ``slips`` points and the slip there."""
+    """Result in SI units: ``shear`` and ``tension`` are the changes dQ and dsigma, ``mean`` is the mean of Q,
+    ``levels`` are q1 and q2, and ``slips`` are points and the slip there."""
 
     pressed: Contact
     f: float
@@ -53,7 +53,7 @@ class Answer(NamedTuple):
 
 
 def pressed_by(random, pressure):
-    """A contact with a pressure of one's own, as comes from a convex profile."""
+    """Contact with a given pressure, as under a convex profile."""
     a, p0, kink = 10 ** random.uniform(-9, 6), 10 ** random.uniform(-3, 15), random.uniform(0.05, 0.95)
     if pressure == "quartic":
         return contact_of(lambda x: p0 * (1 + 2 * (x / a) ** 2) * np.sqrt(1 - (x / a) ** 2), a)
@@ -69,7 +69,7 @@ def of_random_scene(number):
 
 
 def of_random_pressure(number):
-    """Kind, and the answer to random loads on a pressure of one's own."""
+    """Kind, and the result for random loads on a given pressure."""
     random = np.random.default_rng([SEED, number])
     kind, pressed = kind_of(number), pressed_by(random, PRESSURES[number // len(KINDS) % len(PRESSURES)])
     Qf, sf = changes(random, kind, pressed.shape)
@@ -149,7 +149,7 @@ def room_of(answer):
 
 
 def complaints(answer):
-    """What is wrong with an answer."""
+    """List the errors of a result."""
     pressed, x, p, dq, m, n = answer.pressed, answer.x, answer.p, answer.dq, answer.m, answer.n
     a, f, unit = pressed.a, answer.f, 2 * answer.f * pressed.p0
     limits, slips = answer.limits, answer.slips or ()
@@ -174,7 +174,7 @@ def complaints(answer):
     if answer.regime != "stuck" and answer.half_width > NARROWEST * a:
         sf, Qf = loads_at(answer)
         off = sf - abs(answer.tension) / (f * pressed.p0), Qf - abs(answer.shear) / (2 * f * pressed.P)
-        # what Qf leaves to sliding, which places the zone, is itself known to that
+        # 1 - Qf, which determines the zone near sliding, has this rounding error
         digits = np.finfo(float).eps / max(1 - abs(answer.shear) / (2 * f * pressed.P), 1e-15)
         if not (abs(off[0]) <= (TIGHT + digits) * max(sf, 1) and abs(off[1]) <= TIGHT):
             yield f"sf off by {off[0]}, Qf by {off[1]} at the zone found"

@@ -19,13 +19,13 @@ from partialslip.halfplane.traction import half_range
 
 HERTZ = Hertz()
 SHAPES = [HERTZ, Punch(0.1), Punch(0.5), Punch(0.9)]
-# (Qf, sf): small tension with sf <= 4 Qf, large tension with c >= 4 Qf/sf, so that slip does not turn round
+# (Qf, sf): small tension with sf <= 4 Qf, large tension with c >= 4 Qf/sf, so that slip does not reverse
 SMALL = [(0.19, 0.4), (0.5, 0.0), (0.75, 2.4), (0.3, 1.1)]
 LARGE = [(0.3, 4.0), (0.4, 4.03), (0.0, 3.0), (0.1, 10.0)]
 
 every_shape = pytest.mark.parametrize("shape", SHAPES, ids=["hertz", "0.1", "0.5", "0.9"])
 every_load = pytest.mark.parametrize(("Qf", "sf"), SMALL + LARGE)
-LOOPS = [  # those of wide flats take seconds each
+LOOPS = [  # wide flats take seconds each
     pytest.param(*load, shape, marks=[pytest.mark.slow] * (shape is SHAPES[-1] and load not in (SMALL[1], LARGE[0])))
     for load in SMALL + LARGE
     for shape in SHAPES
@@ -49,7 +49,7 @@ def between(low, high, *inner):
 
 
 def slip_zones(zone):
-    """(side, stick zone's end, contact's end) of those that there are."""
+    """(side, stick zone's end, contact's end) of the slip zones."""
     for side in (-1, 1):
         end = zone.centre + side * zone.half_width
         if abs(end) < 1:
@@ -138,9 +138,9 @@ def test_slope_at_the_ends_of_the_contact(shape):
 
 
 def area_of_the_loops(Qf, sf, shape):
-    """Of Q over the displacement and of the moment over sigma, in A (f p0 a)^2, from their rates on a straight path
-    (docstring of hysteresis). A loop whose returning branch is the loading one turned by half a turn has the area
-    int (2 r - 1) dQ d(displacement) over loading, and likewise with sigma."""
+    """Area of the loops of Q over displacement and of moment over sigma, in A (f p0 a)^2, from the rates on a straight
+    path (docstring of hysteresis). If unloading is loading rotated by half a turn, the area is
+    int (2 r - 1) dQ d(displacement) over loading, and correspondingly with sigma."""
 
     def ends_of_zone(r):
         centre, c, _ = stick_zones(r * Qf, r * sf, shape)

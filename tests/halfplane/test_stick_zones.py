@@ -1,5 +1,5 @@
-"""Stick zones of many loads at once, in SI units: broadcasting, signs, profiles and pressures of one's own, and how
-the solver gets there."""
+"""Stick zones of many loads at once, in SI units: broadcasting, signs, given profiles and pressures, and the
+solver's path."""
 
 import math
 
@@ -39,7 +39,7 @@ def flat_rounded(x):
 
 
 def loads(pressed, Qf, sf):
-    """dQ and dsigma, in SI units, for those scaled by friction."""
+    """dQ and dsigma, in SI units, for the scaled loads."""
     return 2 * F * pressed.P * np.asarray(Qf), F * pressed.p0 * np.asarray(sf)
 
 
@@ -61,7 +61,7 @@ def test_many_loads_are_as_one_by_one(profile):
     pressed = contact(scene(profile))
     f, Qf, sf = np.array([[[0.2]], [[0.9]]]), np.array([[0.1], [0.4], [0.8]]), np.array([0.0, 0.3, 2.0, 5.0])
     zones = stick_zone(pressed, f, 2 * f * pressed.P * Qf, f * pressed.p0 * sf)
-    rounding = float(np.finfo(float).eps) * pressed.a  # the centre is what is left of edges of the size of a
+    rounding = float(np.finfo(float).eps) * pressed.a  # the centre is a difference of lengths of size a
     for i, j, k in np.ndindex(2, 3, 4):
         one = steady.stick_zone(Qf[j, 0], sf[k], pressed.shape)
         assert zones.centre[i, j, k] == pytest.approx(one.centre * pressed.a, rel=1e-13, abs=rounding)
@@ -85,7 +85,7 @@ def test_broadcasting():
 
 
 def test_more_loads_than_go_at_a_time():
-    """Beyond one portion of work the order of the zones stays that of the loads."""
+    """The order of the zones is that of the loads, also beyond one chunk."""
     Qf, sf = np.full((3, 7000), 0.3), np.linspace(0, 10, 21000).reshape(3, 7000)
     m, n = scaled(PRESSED, Qf, sf)
     assert (np.diff(n.ravel()) < 0).all()  # tension moves the right end to the left
@@ -106,7 +106,7 @@ def test_turning_one_load_round_mirrors_the_zone(profile):
         same = sign_Q == sign_sigma
         assert (turned.s == base.s).all()
         assert (turned.half_width == base.half_width).all()
-        unmoved = (dQ == 0) | (dsigma == 0)  # those are symmetric, whichever the sign
+        unmoved = (dQ == 0) | (dsigma == 0)  # symmetric for either sign
         assert np.abs(base.centre[unmoved]).max() < 1e-15 * pressed.a
         m, n = (turned.m, turned.n) if same else (turned.n, turned.m)
         assert m == pytest.approx(base.m, abs=1e-14 * pressed.a)
@@ -188,7 +188,7 @@ def test_units_do_not_matter():
             assert getattr(zones, key) == pytest.approx(expected, rel=1e-11, abs=1e-14 * pressed.a)
 
 
-# --- profiles and pressures of one's own
+# --- given profiles and pressures
 
 
 def own_hertz():

@@ -55,7 +55,7 @@ def mcewen(x, depth):
 
 
 def flamant(stress, x, y, Qf, sf):
-    """The stresses at one point as the sum of those of point forces on the surface; load point 2."""
+    """Stresses at one point, as the sum over point forces on the surface; load point 2."""
     shape = stress.contact.shape
     zone = stick_zone(Qf, sf, shape)
     breaks = [-1, 1, *shape.kinks, zone.centre - zone.half_width, zone.centre + zone.half_width]
@@ -89,8 +89,8 @@ def test_hertz_without_friction(depth):
 
 @pytest.mark.parametrize("depth", DEPTHS)
 def test_hertz_sliding(depth):
-    """All but sliding, a stick zone of 1e-6 a. Shear q = f p makes sigma_xy and sigma_yy out of what p makes of
-    sigma_xx and sigma_xy (Johnson, section 7.1)."""
+    """Nearly sliding, a stick zone of 1e-6 a. sigma_xy and sigma_yy due to the shear q = f p follow from sigma_xx and
+    sigma_xy due to p (Johnson, section 7.1)."""
     stress = scaled(Hertz(), 1 - 1e-12, 0.0)
     x = np.concatenate([np.linspace(-2, -0.2, 50), np.linspace(0.2, 2, 50)])
     pressed = mcewen(x, depth)
@@ -112,7 +112,7 @@ def test_sum_of_point_forces(Qf, sf, shape):
     x = places(stress, count=2)[::3]
     for depth, side in itertools.product((1e-8, 1e-4, 0.3), (1, -1)):
         expected = np.stack([flamant(stress, place, -side * depth, Qf, sf) for place in x], axis=1)
-        # the sum knows the distances from the forces as well as rounding does
+        # distances from the forces have rounding errors
         rounding = np.finfo(float).eps / depth
         assert stress.inside(x, -side * depth + 0 * x)[1] == pytest.approx(expected, rel=0, abs=1e-10 + rounding)
 

@@ -66,7 +66,7 @@ def test_results_state_it():
 
 
 def test_a_parabola_has_no_error():
-    """Tables of parabolas are exact; those of every second point are, too."""
+    """Tables of parabolas are exact, and so are tables of every second point."""
     scene = table(np.linspace(0, 1.5, 12), lambda x: x**2)
     pressed = contact(scene)
     found = table_error(scene, pressed, loading(pressed, F, scene.load.dQ, scene.load.dsigma, bound=2))

@@ -1,4 +1,4 @@
-"""Tractions: resultants, bounds, the adhered limit, and that what sticks does not move."""
+"""Tractions: resultants, bounds, the adhered limit, and no relative strain in the stick zone."""
 
 import numpy as np
 import pytest
@@ -56,7 +56,7 @@ def test_friction_bound_holds_everywhere(Qf, sf, shape):
 @every_shape
 @pytest.mark.parametrize(("Qf", "sf"), LOADS[:6])
 def test_what_sticks_does_not_move(Qf, sf, shape):
-    """In the stick zone the strain under dq cancels that of the tension: (1/pi) PV int dq/(x-s) ds + dsigma/4 = 0."""
+    """Strains due to dq and tension cancel in the stick zone: (1/pi) PV int dq/(x-s) ds + dsigma/4 = 0."""
     zone = stick_zone(Qf, sf, shape)
     for x in zone.centre + zone.half_width * np.array([-0.9, -0.5, 0.1, 0.7, 0.95]):
         here = half_range(np.array([x]), zone, shape)[0]
