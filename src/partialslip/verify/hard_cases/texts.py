@@ -35,7 +35,9 @@ FAMILIES: dict[str, tuple[str, str]] = {
         "cancels. Elliptic integrals whose modulus tends to one lose all digits if they take the modulus instead of "
         "the complementary modulus. On a mesh the zone is smaller than the distance of two nodes. Solvers that need "
         "one sticking node to fix the rigid motion get a singular matrix, others cycle, and some report m = n = 0 at "
-        "the middle.",
+        "the middle. Under gradual loads the tiny zone moves along the contact, and slip reverses behind it. One step, "
+        "and even four, end with the tractions of the closed form. Only some twenty and more steps follow the zone, "
+        "and then m differs by 0.02 to 0.06 a. March with refined steps is the reference, and the accuracy is 1e-2.",
     ),
     "no-shear": (
         "No shear: dQ = 0",
@@ -82,12 +84,13 @@ FAMILIES: dict[str, tuple[str, str]] = {
         "steady range, more slowly the nearer the mean load is to the bound. Beyond the bound every cycle adds slip. "
         "Codes that stop after the usual two or three cycles report a transient as steady. Codes that read the stick "
         "zone from the flags of one instant find it far too small. If the history is not committed at the end of an "
-        "increment, the contact ratchets below the bound, too.",
+        "increment, the contact ratchets below the bound, too. The accuracy is 1e-3: the first cycles take many steps.",
     ),
     "cycles": (
         "Two hundred cycles at 0.995 of the largest mean load",
         "Errors of the steps add up. A loose friction tolerance gives a little slip in every cycle, which looks like "
-        "ratcheting. A cycle that repeats to rounding is the steady state, and partialslip skips the remaining cycles.",
+        "ratcheting. A cycle that repeats to rounding is the steady state, and partialslip skips the remaining cycles. "
+        "The accuracy is 1e-3.",
     ),
     "few-nodes": (
         "One node that sticks, none, and one node in contact",
