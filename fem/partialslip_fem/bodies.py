@@ -17,7 +17,7 @@ from partialslip_fem.farfield import half_plane
 from partialslip_fem.problem import Part, Problem
 from partialslip_meshes import Mesh, block
 
-_OVERHANG = 1e-9  # of the other contact line's length: overhang beyond its ends that is rounding of coordinates
+_OVERHANG = 1e-9  # of the opposite contact line: overhang that counts as rounding of coordinates
 _KEPT = 2  # sets of bodies in Kept: those of the first mesh, and of the uniform mesh that follows
 
 
@@ -120,9 +120,9 @@ def _block(part: Part, width: float, grading: Grading) -> Mesh:
 
 def _opposite(mesh: Mesh, other: Mesh) -> Mesh:
     """Restrict the contact line of ``mesh`` to the edges opposite the contact line of ``other``."""
-    line, ends = mesh.lines["contact"], other.points[other.lines["contact"], 0]
-    x, room = mesh.points[line, 0], _OVERHANG * np.ptp(ends)
-    line = line[((x >= ends.min() - room) & (x <= ends.max() + room)).all(axis=1)]
+    line, across = mesh.lines["contact"], other.points[other.lines["contact"], 0]
+    x, room = mesh.points[line, 0], _OVERHANG * np.ptp(across)
+    line = line[((x >= across.min() - room) & (x <= across.max() + room)).all(axis=1)]
     if not len(line):
         raise InputError(
             "bodies.lower, bodies.upper: the contact lines must lie opposite each other; is their unit right?"

@@ -22,8 +22,8 @@ from partialslip_meshes import Mesh
 class CondensedBody:
     """A body that is condensed to its contact line.
 
-    The ``mesh`` lies below the contact line; the upper body's is the mirror image of its place in the scene.
-    ``body`` has the stiffness, ``condensation`` the compliance of the contact line.
+    The ``mesh`` lies below the contact line; the mesh of the upper body is mirrored. ``body`` has the stiffness,
+    ``condensation`` the compliance of the contact line.
     """
 
     mesh: Mesh

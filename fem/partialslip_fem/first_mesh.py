@@ -72,7 +72,7 @@ def too_narrow(problem: Problem) -> InputError:
     """The error for finite bodies that are too narrow for the contact."""
     names = (f"bodies.{part.name}.{'mesh' if part.mesh else 'width'}" for part in problem.parts if part.finite)
     return InputError(
-        f"{' and '.join(names)}: must be wider than the contact, which fills more than {_FILLS:.0%} of it"
+        f"{' and '.join(names)}: must be wider than the contact, which fills more than {_FILLS:.0%} of the body"
     )
 
 

@@ -73,7 +73,7 @@ class MeshSolution:
 
     @property
     def lower(self) -> Body:
-        """The lower body. Nodal contact forces belong to the nodes of its contact line."""
+        """The lower body. Nodal contact forces act on the nodes of the lower contact line."""
         return self.bodies[0].body
 
     @property

@@ -45,7 +45,7 @@ def mesh_and_solve(
         Condensed bodies to reuse, and to add the new ones to.
     steps : int, optional
         Refine the load steps up to about this many from load point to load point, as the accuracy requires, and
-        estimate their errors (:attr:`MeshSolution.step_errors`). By default the steps are those of the path.
+        estimate their errors (:attr:`MeshSolution.step_errors`). By default the path's steps are used.
     """
     key = key_of(problem, width, grading)
     if keep and (known := keep.find(key)):

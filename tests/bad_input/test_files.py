@@ -58,7 +58,7 @@ TABLES = [
         "pressure must be positive",
     ),
     ("x,p,dq\n" + "".join(f"{x!r},0,0\n" for x in X.tolist()), "p > 0 at 0 points"),
-    ("x,p,dq\n" + "".join(f"{i},{i % 2 * 1e8},0\n" for i in range(60)), "stand out from its noise"),
+    ("x,p,dq\n" + "".join(f"{i},{i % 2 * 1e8},0\n" for i in range(60)), "must exceed its noise"),
     ("x,Fn,dFt\n" + "".join(f"{i},{1 + i % 2 * 1e8},0\n" for i in range(60)), "another order (--order)"),
     ("x,p,dq\n1e-3,1e8,0\n2e-3,1e8,0\n", "p > 0 at 2 points: must be at least 6"),
     ("x,p,dq\n" + "\x00" * 99, "line 2: must have 3 fields"),

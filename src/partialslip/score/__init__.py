@@ -72,7 +72,7 @@ def score(
     if reference not in METHODS:
         raise InputError(f"reference {reference!r}: must be one of {', '.join(METHODS)}")
     if centre not in ("given", "auto"):
-        raise InputError(f"centre {centre!r}: must be given or auto")
+        raise InputError(f"centre {centre!r}: must be 'given' or 'auto'")
     found = read(file, scene, factors, order, at, columns)
     if centre == "auto":
         found = centred(found, str(file))

@@ -57,7 +57,7 @@ def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None) ->
     """
     lines = [(number, line) for number, line in enumerate(text.splitlines(), start=1) if line.partition("#")[0].strip()]
     if not lines:
-        raise InputError(f"{origin}: no lines: must have a header line with x, p and dq")
+        raise InputError(f"{origin}: empty: must have a header line with x, p and dq")
     if len(lines) > _MOST_ROWS:
         raise InputError(f"{origin}: {len(lines)} lines: must be at most {_MOST_ROWS}")
     numbers = [number for number, _ in lines]
