@@ -36,7 +36,7 @@ _SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.9, "n": 1.9, "p": 2.6, "q":
 _LEAST_OF_A = 1 / 3  # of the error of a: least error of any end
 _NARROW = 0.1  # of the norm of f p: shear with a smaller norm is confined to narrow strips
 
-# Errors due to the elements at the ends (measured: benchmarks/estimates.py).
+# Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.
 # Error of an end of the contact, in the size of the element that the end lies in, by order.
 AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002}
 # Factors of (element size / gap)^2 in the error of an end of the stick zone: gap to the other end of the stick zone,

@@ -24,7 +24,7 @@ COARSEST = 0.005  # largest on a mesh whose errors are estimated; coarser meshes
 FINER = 16.0  # largest ratio of these sizes from mesh to mesh
 
 # Growth of the elements away from the ends: errors there are about (growth/2.8)^(2 order)
-# (benchmarks/accuracy.py orders).
+# (compare benchmarks/accuracy.py orders).
 _SMOOTH = 2.8
 _LARGEST_GROWTH = 0.7
 
