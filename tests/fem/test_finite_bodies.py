@@ -59,7 +59,7 @@ def test_a_pulled_bar_is_stretched_uniformly(bar):
 
 
 def test_the_grip_holds_what_pulls(bar):
-    u = bar.condensed.pulled
+    u = bar.condensation.pulled
     reactions = (bar.body.stiffness @ u)[bar.body.held]
     along_x = bar.body.held < bar.body.points.shape[1]
     assert bar.body.pull.sum() == pytest.approx(1.5)
