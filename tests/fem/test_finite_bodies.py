@@ -205,7 +205,7 @@ def test_pads_have_the_true_face(rig):
     for name in ("contact", "face"):
         x, y = mesh.points[np.unique(mesh.lines[name])].T
         assert x**2 + (y + R) ** 2 == pytest.approx(R**2, rel=1e-12)
-    x = found.body.x
+    x = found.lower.x
     assert problem.gap(x) * scene.material.A * scene.P / scene.length == pytest.approx(
         R - np.sqrt(R**2 - x**2), abs=1e-12
     )
