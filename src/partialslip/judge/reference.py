@@ -19,7 +19,7 @@ def reference_for(scene: Scene) -> str:
 
 def reference_of(results: Mapping[str, Result]) -> str | None:
     """The method among ``results`` that the others are compared with: the first of exact, march and fem, or the result
-    with all effects. Where slip turns round between the load points, march comes before exact. None if there are no
+    with all effects. Where slip reverses between the load points, march comes before exact. None if there are no
     results."""
     known = [name for name in (ALL_EFFECTS, *METHODS) if name in results]
     if known[:1] == ["exact"] and results["exact"].path_dependent and "march" in known:
