@@ -1,4 +1,4 @@
-"""partialslip: how right is a frictional contact calculation?
+"""partialslip: benchmarks for frictional contact calculations.
 
 >>> import partialslip
 >>> scene = partialslip.load_scene("fretting-aluminium")

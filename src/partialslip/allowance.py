@@ -1,4 +1,4 @@
-"""What a run may cost: CPU seconds, handed to the methods, which settle for the accuracy that these suffice for."""
+"""An allowance of CPU seconds for a run. Methods stop at the accuracy reached within the allowance."""
 
 import math
 import time
@@ -13,14 +13,14 @@ class Allowance:
     Parameters
     ----------
     seconds : float
-        Of this process, and of those that make meshes for it.
+        CPU seconds of this process and of its meshing processes.
     spent : callable, optional
-        ``spent() -> float``: the CPU seconds of this process up to now.
+        ``spent() -> float``: CPU seconds of this process up to now.
 
     Raises
     ------
     InputError
-        If ``seconds`` is not a number.
+        If ``seconds`` is NaN.
     """
 
     def __init__(self, seconds: float, spent: Callable[[], float] = time.process_time) -> None:
@@ -32,9 +32,9 @@ class Allowance:
         self._elsewhere = 0.0
 
     def remaining(self) -> float:
-        """CPU seconds that are left; negative if more have been spent."""
+        """Return the CPU seconds left; negative if the allowance is exceeded."""
         return self.seconds - (self._spent() - self._began) - self._elsewhere
 
     def spend(self, seconds: float) -> None:
-        """Count CPU ``seconds`` of another process."""
+        """Add CPU ``seconds`` of another process to the seconds spent."""
         self._elsewhere += seconds

@@ -1,27 +1,32 @@
-"""What can be wrong from outside: one line that names the field, the value and what is allowed."""
+"""Errors of input and environment. Each message is one line: field, value, what is allowed."""
 
 _LONGEST = 1000  # characters of a message
-_END = 300  # of them from its end, which says what is allowed
+_END = 300  # characters kept from the end of a long message, which says what is allowed
 
 
 class PartialslipError(Exception):
-    """A problem the user can mend. Its text is one line of at most 1,000 characters, whatever names and values are in
-    it; the command line prints it and exits with 2."""
+    """A problem that the user can solve; the command line prints the message and exits with 2.
+
+    Parameters
+    ----------
+    text : str
+        Message, shortened to one line of at most 1,000 characters.
+    """
 
     def __init__(self, text: str) -> None:
         super().__init__(one_line(text))
 
 
 class InputError(PartialslipError, ValueError):
-    """A scene, an option or a file that cannot be used."""
+    """An invalid scene, option or file."""
 
 
 class MissingLibraryError(PartialslipError, ImportError):
-    """A library that is asked for, or that a dependency needs, is not on this machine."""
+    """A required library is not installed."""
 
 
 def one_line(text: str) -> str:
-    """``text`` with what is not printable escaped, and its middle left out where it is long."""
+    """Return ``text`` with unprintable characters escaped and the middle of a long text left out."""
     shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in _shortened(text))
     return _shortened(shown)
 

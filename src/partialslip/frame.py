@@ -1,4 +1,4 @@
-"""Tables for pandas, where it is installed."""
+"""Tables as pandas data frames, if pandas is installed."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
@@ -10,7 +10,8 @@ if TYPE_CHECKING:
 
 
 def frame(columns: Mapping[str, object]) -> "DataFrame":
-    """A pandas data frame; a column that is None is NaN. Raises MissingLibraryError without pandas."""
+    """Return ``columns`` as a pandas data frame; a column of None becomes NaN. Raises MissingLibraryError without
+    pandas."""
     try:
         from pandas import DataFrame
     except ImportError:

@@ -1,4 +1,4 @@
-"""A run as plain data: what ``results.json`` holds. Its types are the file's schema."""
+"""A run as plain data: the content of ``results.json``. The types here define the schema of the file."""
 
 import platform
 from importlib.metadata import version
@@ -17,12 +17,22 @@ from partialslip.run import Run
 from partialslip.scene import Scene
 
 SCHEMA = "partialslip/result/3"
-_LARGEST = 500_000_000  # bytes of a file that is read back
+_LARGEST = 500_000_000  # bytes of a results.json to read
 _PACKAGES = ("partialslip", "numpy", "scipy", "scikit-fem", "gmsh", "meshio")
 
 
 class PlanRecord(msgspec.Struct, frozen=True):
-    """Effects: ``called_for``, ``left_out``, ``missing`` (called for, but forced off), and ``reasons`` by effect."""
+    """Record of a plan.
+
+    Parameters
+    ----------
+    called_for, left_out : tuple of str
+        Effects that the scene calls for, and effects left out.
+    missing : tuple of str
+        Effects called for but forced off.
+    reasons : dict of str to str
+        Reason by effect.
+    """
 
     called_for: tuple[Effect, ...]
     left_out: tuple[Effect, ...]
@@ -31,7 +41,7 @@ class PlanRecord(msgspec.Struct, frozen=True):
 
     @classmethod
     def of(cls, plan: Plan) -> "PlanRecord":
-        """The record of ``plan``."""
+        """Make the record of ``plan``."""
         return cls(
             called_for=tuple(plan.called_for),
             left_out=tuple(plan.left_out),
@@ -41,12 +51,7 @@ class PlanRecord(msgspec.Struct, frozen=True):
 
 
 class ComparisonRecord(msgspec.Struct, frozen=True):
-    """A :class:`partialslip.Comparison` as plain data.
-
-    ``outcome`` is the verdict on the whole, ``missed`` lists in words what is missed. ``errors`` and ``bars`` are by
-    quantity and belong to ``verdicts``; ``conditions`` are verdicts that need no reference: finite numbers and small
-    residuals. ``p_nodal``, ``q_nodal``, ``p_nodal_max`` and ``q_nodal_max`` are as in :class:`partialslip.Comparison`.
-    """
+    """Record of a :class:`partialslip.Comparison`, with ``errors`` and ``bars`` by quantity."""
 
     outcome: Outcome
     errors: dict[str, Number]
@@ -61,7 +66,7 @@ class ComparisonRecord(msgspec.Struct, frozen=True):
 
     @classmethod
     def of(cls, comparison: Comparison) -> "ComparisonRecord":
-        """The record of ``comparison``."""
+        """Make the record of ``comparison``."""
         return cls(
             outcome=comparison.outcome,
             errors={key: number(error) for key, error in comparison.errors.items()},
@@ -77,12 +82,26 @@ class ComparisonRecord(msgspec.Struct, frozen=True):
 
 
 class Record(msgspec.Struct, frozen=True):
-    """Everything that a run found: the content of ``results.json``. SI units.
+    """Content of ``results.json``, in SI units.
 
-    ``schema`` names the version of the format. ``outcome`` is the verdict on the whole run, ``missed`` lists in words
-    what is missed, ``reference`` names the method that others are compared with. The run solved ``scene`` by ``plan``.
-    ``methods`` (results) and ``comparison`` (with the reference) are by method. ``versions`` are those of the packages
-    that the figures depend on.
+    Parameters
+    ----------
+    schema : str
+        Name and version of the schema.
+    outcome : Outcome
+        Verdict on the whole run.
+    reference : str or None
+        Name of the reference method.
+    missed : tuple of str
+        Missed verdicts as text.
+    scene : Scene
+    plan : PlanRecord
+    methods : dict of str to ResultRecord
+        Results by method.
+    comparison : dict of str to ComparisonRecord
+        Comparisons with the reference by method.
+    versions : dict of str to str
+        Versions of Python and of the packages that compute the results.
     """
 
     schema: str
@@ -102,7 +121,7 @@ class Record(msgspec.Struct, frozen=True):
 
 
 def record(run: Run, *, curves: bool = True) -> Record:
-    """The record of ``run``; with ``curves`` (tractions, slip, stresses along the surfaces), or without."""
+    """Make the record of ``run``, with or without ``curves`` (tractions, slip, stresses along the surfaces)."""
     return Record(
         schema=SCHEMA,
         outcome=run.outcome,
@@ -117,12 +136,12 @@ def record(run: Run, *, curves: bool = True) -> Record:
 
 
 def load_result(path: str | Path) -> Record:
-    """Read what a run has written to ``path``, a ``results.json``.
+    """Read a ``results.json`` from ``path``.
 
     Raises
     ------
     InputError
-        If the file cannot be read, or is none of this version's.
+        If the file cannot be read, or has another schema than this version writes.
     """
     text = read_bytes(path, _LARGEST)
     try:
@@ -139,10 +158,10 @@ class _Schema(msgspec.Struct):
 
 
 def schema() -> dict[str, Any]:
-    """The JSON Schema (draft 2020-12) of ``results.json``."""
+    """Return the JSON Schema (draft 2020-12) of ``results.json``."""
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(Record)}
 
 
 def versions() -> dict[str, str]:
-    """Versions of what the figures depend on."""
+    """Return the versions of Python and of the packages that compute the results."""
     return {"python": platform.python_version(), **{package: version(package) for package in _PACKAGES}}

@@ -1,4 +1,4 @@
-"""A run: one scene is solved by one or more methods, and every result is compared with the reference."""
+"""A run: solve one scene by one or more methods, and compare each result with the reference."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -31,16 +31,16 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Run:
-    """A solved ``scene``.
+    """A solved scene with its comparisons.
 
     Parameters
     ----------
     scene : Scene
     plan : Plan
     results : dict of str to Result
-        By method; also "all effects" where effects of the scene were forced off.
+        Results by method; also "all effects" if effects of the scene were forced off.
     comparisons : dict of str to Comparison
-        By method: each result but the reference's, compared with the reference.
+        Comparisons with the reference, by method; none for the reference.
     accuracy : float or None
         The bar for a, m and n, as a fraction of a; None if there are no bars.
     """
@@ -53,7 +53,7 @@ class Run:
 
     @property
     def reference(self) -> str | None:
-        """The method that the others are compared with (:func:`reference_of`)."""
+        """Name of the reference method (:func:`partialslip.judge.reference.reference_of`); None without results."""
         return reference_of(self.results)
 
     @property
@@ -63,19 +63,21 @@ class Run:
 
     @property
     def conditions(self) -> dict[str, tuple[Verdict, ...]]:
-        """Verdicts on each result by itself: its numbers are finite, and its residuals are small."""
+        """Verdicts on each result alone, by method: finite numbers and small residuals."""
         return {name: conditions(result) for name, result in self.results.items()}
 
     @property
     def outcome(self) -> Outcome:
-        """Passed, missed or not judged, as a whole: a run without bars, or without a comparison, is not judged unless a
-        result does not meet its own conditions."""
+        """Overall outcome (:func:`partialslip.judge.overall`).
+
+        A run without bars or without a comparison is not judged, unless a result misses a condition.
+        """
         verdicts = [verdict for comparison in self.comparisons.values() for verdict in comparison.verdicts]
         return overall(verdicts, [verdict for each in self.conditions.values() for verdict in each])
 
     @property
     def missed(self) -> tuple[str, ...]:
-        """Bars and certificates that are missed, in words."""
+        """Missed bars and certificates as text."""
         compared = {name: comparison.verdicts for name, comparison in self.comparisons.items()}
         return tuple(
             f"{name}: {verdict.text}"
@@ -91,7 +93,7 @@ class Run:
 
     @property
     def columns(self) -> dict[str, npt.NDArray[Any]]:
-        """Tractions of every method as columns of one table, SI units; NaN what a method does not determine."""
+        """Tractions of all methods as columns of one table, SI units; NaN for values that a method does not give."""
         tables = [result.columns for result in self.results.values()]
         keys = dict.fromkeys(key for table in tables for key in table)
         sizes = [len(result.traction.x) for result in self.results.values()]
@@ -107,7 +109,7 @@ class Run:
         }
 
     def to_dataframe(self) -> "DataFrame":
-        """:meth:`Result.to_dataframe` of every method, after a column with its name: the table of ``tractions.csv``.
+        """Return the table of ``tractions.csv``: :meth:`Result.to_dataframe` of all methods, and a column ``method``.
 
         Raises
         ------
@@ -117,8 +119,10 @@ class Run:
         return frame(self.columns)
 
     def plot(self, axes: "Axes | None" = None) -> "Axes":
-        """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of every method over x/a on matplotlib ``axes``, as a rule new ones;
-        returns them."""
+        """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of all methods over x/a on matplotlib ``axes`` (default: new axes).
+
+        Returns the axes.
+        """
         from partialslip.report.notebook import plot
 
         return plot(self, axes)
@@ -130,8 +134,10 @@ class Run:
 
 
 def default_methods(scene: Scene) -> tuple[str, ...]:
-    """The methods that solve ``scene`` unless others are asked for: finite elements, and the reference of half-planes.
-    Both exact and march where slip turns round between the load points of half-planes."""
+    """Return the default methods for ``scene``: fem, and for half-planes the reference method.
+
+    Half-planes in which slip reverses between the load points are solved by exact, march and fem.
+    """
     if not scene.material.alike:
         return ("fem",)
     if not scene.load.in_phase:
@@ -154,35 +160,33 @@ def run(
     keep: "Kept | None" = None,
     allowance: Allowance | None = None,
 ) -> Run:
-    """Solve ``scene`` by each of ``methods`` ("exact", "march", "fem") and compare.
+    """Solve ``scene`` by each of ``methods`` and compare the results.
 
     Parameters
     ----------
     scene : Scene
     methods : iterable of str, optional
-        As a rule :func:`default_methods`.
+        Of "exact", "march" and "fem"; default: :func:`default_methods`.
     subsurface : bool
-        Whether to solve for what is inside the bodies, too: displacements (finite elements), stresses (exact).
+        Whether to compute fields inside the bodies: displacements (fem) and stresses (exact).
     progress : callable
-        Called with a line of text now and then.
+        ``progress(line)``: called from time to time with a line of text.
     start : State, optional
-        What the path of the loads begins with (:attr:`Result.state`, :func:`partialslip.load_state`); otherwise bodies
-        without shear.
+        State at the start of the load path (:attr:`Result.state`, :func:`partialslip.load_state`); default: no shear.
     keep : partialslip_fem.Kept, optional
-        Factored meshes that runs share: where ``fem.size`` is given, runs that differ only in loads and friction then
-        factor once. As a rule nothing is kept from one run to the next.
-
+        Factored meshes shared between runs. With ``fem.size`` given, runs that differ only in loads and friction
+        factor once. Default: nothing is shared.
     allowance : Allowance, optional
-        CPU seconds that the run may take. Finite elements then settle for the accuracy that these suffice for:
-        ``settings["accuracy"]`` of their result, which is the bar, too.
+        CPU seconds that the run may take. Finite elements then stop at the accuracy reached within the allowance,
+        ``settings["accuracy"]`` of the result; the bars follow from the accuracy reached.
 
     Raises
     ------
     InputError
-        If a method is unknown, ``start`` is of another P or other materials, the exact method is asked for loads
-        out of phase or bodies that are not similar, or an effect is forced off that the scene cannot do without.
+        If a method is unknown; P or the materials of ``start`` differ; the exact method is asked for loads out of
+        phase or dissimilar bodies; or an effect is forced off that the scene cannot be solved without.
     MissingLibraryError
-        If finite elements are asked for and gmsh, or a system library that it needs, is not there.
+        If finite elements are asked for and gmsh, or a system library of gmsh, is missing.
     """
     if start:
         start.check(scene)
@@ -198,16 +202,24 @@ def run(
     }
     for result in results.values():
         effects.accept(result.regime)
-    # no bars for finite bodies or for a fixed element size: there is no reference; nor for effects that are forced off:
-    # their errors are the effects' worth
+    # no bars for finite bodies or for a fixed element size: there is no reference; nor for effects forced off: the error
+    # measures the effect
     judged = not scene.finite and scene.fem.size is None and not effects.missing
     reached = results["fem"].settings.get("accuracy") if allowance and "fem" in results else None
     return compared(scene, effects, results, float(reached or scene.fem.accuracy) if judged else None)
 
 
 def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: float | None) -> Run:
-    """Compare all ``results`` with the reference among them; ``accuracy`` is the bar for a, m and n (fractions of a),
-    None for no bars."""
+    """Compare ``results`` of ``scene``, by method, with the reference among them.
+
+    Parameters
+    ----------
+    scene : Scene
+    plan : Plan
+    results : dict of str to Result
+    accuracy : float or None
+        Bar for a, m and n, as a fraction of a; None for no bars.
+    """
     reference = reference_of(results)
     comparisons = {
         name: compare(result, results[reference], scene, accuracy)
@@ -224,7 +236,7 @@ def _told_by(name: str, progress: Progress) -> Progress:
 def _method(
     name: str, keep: "Kept | None", allowance: Allowance | None
 ) -> Callable[[Scene, Plan, Progress, State | None], Result]:
-    """A method by its name, imported now: finite elements bring much along."""
+    """Return the ``solve`` function of a method. Imported here because finite elements import slowly."""
     if name == "exact":
         from partialslip.halfplane.method import solve as solve_exactly
 

@@ -1,4 +1,4 @@
-"""Judge a result: error measures, bars and verdicts. No other module says that a result has passed or missed a bar."""
+"""Error measures, bars and verdicts. No other package decides whether a result has passed or missed a bar."""
 
 from partialslip.bars import BARS as BARS
 from partialslip.judge.comparison import Comparison as Comparison

@@ -1,4 +1,4 @@
-"""A result beside a reference: a verdict on every quantity."""
+"""Comparison of a result with a reference: one verdict per quantity."""
 
 import math
 from collections.abc import Mapping
@@ -20,19 +20,35 @@ _TENSIONS = {"small tension", "large tension"}
 class Comparison:
     """Verdicts on a result against a reference.
 
-    ``verdicts`` are those on its quantities: the ends of the contact (``a``, ``left``, ``right``, or ``left_1`` to
-    ``right_2`` where they differ between the load points) and of the stick zone (``m``, ``n``), |difference| / a;
-    the resultants ``P``, int p dx / P - 1, and ``dQ``, (int dq dx - dQ)/(2 f P); ``p``, ``q``, ``q1`` and ``q2``:
-    relative L2 over the contact of cell averages (each cell's mean against the reference's mean over the same cell),
-    q being (q2 - q1)/2, relative to the larger of q's norm and 1e-3 of f p's; ``p_max`` and ``q_max``: the largest
-    values, in p0 and f p0; ``P_1`` and ``p_1`` at load point 1 where the pressure differs between the load points; and
-    ``regime``. Where stresses were asked for and both know them, ``surface`` is the relative L2 error of sigma_xx along
-    both surfaces as averages over those cells, ``largest`` the relative error of its largest value on the lower body,
-    and ``inside`` the relative L2 error of the stresses in the middle of the triangles within 3 a, by area.
+    Parameters
+    ----------
+    verdicts : tuple of Verdict
+        One per quantity, listed below.
+    conditions : tuple of Verdict
+        Checks of the result alone: finite numbers, small residuals.
+    p_nodal, q_nodal : float or None
+        Relative L2 errors of nodal p and of nodal q; None for p if no node lies within the reference's contact, for q
+        without shear.
+    p_nodal_max, q_nodal_max : float or None
+        Largest errors of a node, in p0 and f p0; None for q without shear.
 
-    ``conditions`` are verdicts on what the result must meet by itself: finite numbers and small residuals.
-    ``p_nodal``, ``q_nodal``: relative L2 of nodal values; ``p_nodal_max``, ``q_nodal_max``: the largest error of a
-    node, in p0 and f p0; None if there is no shear, and of p if no node lies within the true contact.
+    Notes
+    -----
+    Quantities of ``verdicts`` and their errors:
+
+    - ``a``, ``left``, ``right``, ``m``, ``n``: absolute difference as a fraction of a; ``left_1`` to ``right_2`` where
+      the ends of the contact differ between the load points.
+    - ``P``, ``P_1``: int p dx / P - 1, at load points 2 and 1; ``dQ``: (int dq dx - dQ)/(2 f P).
+    - ``p``, ``p_1``: relative L2 over the contact of cell averages, at load points 2 and 1. Each cell's mean is
+      compared with the reference's mean over the same cell.
+    - ``q``, ``q1``, ``q2``: the same with q = (q2 - q1)/2, relative to the larger of q's norm and 1e-3 of f p's norm.
+    - ``p_max``, ``q_max``: difference of the largest values, in p0 and f p0.
+    - ``surface``: relative L2 of sigma_xx along both surfaces, by cell averages. ``largest``: relative error of the
+      largest sigma_xx on the lower body. ``inside``: relative L2, by area, of the stresses at the centroids of the
+      triangles within 3 a. All three only if stresses were asked for and both results have them.
+    - ``regime``: the name.
+
+    ``P_1`` and ``p_1`` are present only where the pressure differs between the load points.
     """
 
     verdicts: tuple[Verdict, ...]
@@ -54,18 +70,18 @@ class Comparison:
 
     @property
     def missed(self) -> tuple[str, ...]:
-        """What is missed, in words."""
+        """Missed verdicts as text."""
         every = (*self.verdicts, *self.conditions)
         return tuple(verdict.text for verdict in every if verdict.outcome is Outcome.MISSED)
 
     @property
     def errors(self) -> dict[str, float | None]:
-        """Errors by quantity; None where the result or the reference has no value."""
+        """Errors by quantity; None if the result or the reference has no value."""
         return {verdict.quantity: verdict.error for verdict in self.verdicts if verdict.quantity != "regime"}
 
     @property
     def bars(self) -> dict[str, float]:
-        """Bars by quantity, of those that have one."""
+        """Bars by quantity; quantities without a bar are absent."""
         return {verdict.quantity: verdict.bar for verdict in self.verdicts if verdict.bar is not None}
 
     @property
@@ -111,16 +127,19 @@ def compare(
     Parameters
     ----------
     result, reference : Result
-        Of the same ``scene``.
+        Results for the same ``scene``.
     scene : Scene
-        Its loads and coefficient of friction scale the resultants and errors of q.
+        The loads and the coefficient of friction scale the resultants and the errors of q.
     accuracy : float or None
-        Bar for a, m, n and the ends of the contact (fractions of a); p has 10 and q, q1 and q2 have 15 times that, and
-        so have the resultants P and dQ. With None no quantity has a bar but those in ``bars``.
+        Bar for a, m, n and the ends of the contact, as a fraction of a. The bar for p and P is 10 times ``accuracy``,
+        for q, q1, q2 and dQ 15 times. With None only the quantities in ``bars`` have a bar.
     bars : mapping of str to Bar, optional
-        By quantity, bars in place of the usual ones.
+        Bars by quantity that replace the usual ones.
 
-    To a bar is added what the reference itself may be off by; if that is more than the bar, nothing is judged.
+    Notes
+    -----
+    The reference's own error estimate is added to each bar. If the estimate exceeds the bar, the quantity is not
+    judged.
     """
     own = bars or {}
     usual = {} if accuracy is None else {key: Bar(share * accuracy) for key, share in BARS.items()}
@@ -131,8 +150,10 @@ def compare(
 
 
 def _beside(bar: Bar, quantity: str, reference: Result) -> Bar:
-    """The bar for differences from a ``reference`` that has errors of its own. What the spacing of a tabulated profile
-    makes is no difference: every method is given the same table."""
+    """Return the bar plus the error estimate of the ``reference``.
+
+    The estimate's share of a tabulated profile does not count: every method is given the same table.
+    """
     key = quantity.removesuffix("_1").removesuffix("_2")
     own = reference.estimate.get(key, 0.0) - reference.shares.get("table", {}).get(key, 0.0)
     if bar.value is None or not own > 0:
@@ -143,10 +164,10 @@ def _beside(bar: Bar, quantity: str, reference: Result) -> Bar:
 
 
 def decide(measure: Measure, bar: Bar | None, result: Result) -> Verdict:
-    """Judge one measure against its bar.
+    """Judge one ``measure`` of the ``result`` against the ``bar``.
 
-    A value that is NaN is missed whatever the bar; a value that the result does not have, although the reference does,
-    is missed if there is a bar. What the reference says does not exist is not judged.
+    NaN is missed with or without a bar. A value that only the reference has is missed if there is a bar. A quantity
+    that does not exist for the reference is not judged.
     """
     outcome, reason = _decided(measure, bar)
     return Verdict(
@@ -163,7 +184,7 @@ def decide(measure: Measure, bar: Bar | None, result: Result) -> Verdict:
 
 
 def _decided(measure: Measure, bar: Bar | None) -> tuple[Outcome, str]:
-    """The outcome and its reason."""
+    """Return the outcome and the reason for it."""
     if measure.undetermined:
         return Outcome.NOT_JUDGED, measure.undetermined
     if measure.error is not None and not math.isfinite(measure.error):
@@ -178,8 +199,11 @@ def _decided(measure: Measure, bar: Bar | None) -> tuple[Outcome, str]:
 
 
 def judge_regime(result: Result, reference: Result, bars: Mapping[str, Bar]) -> Verdict:
-    """Judge the name of the regime. It is not judged if a slip zone or the stick zone that tells two names apart is
-    narrower than the bars of m and n, if no quantity has a bar, or if another way leads to another stick zone."""
+    """Judge the name of the regime of ``result`` against ``reference``, with ``bars`` by quantity.
+
+    The regime is not judged in three cases: no quantity has a bar; the slip or stick zone that distinguishes the two
+    names is narrower than the bars of m and n; the stick zone depends on the load path.
+    """
     found, true = result.regime, reference.regime
     own = bars.get("regime", Bar(1.0))
     known = [bar.value for bar in bars.values() if bar.value is not None]
@@ -198,12 +222,12 @@ def judge_regime(result: Result, reference: Result, bars: Mapping[str, Bar]) -> 
 
 
 def _undetermined_regime(result: Result, reference: Result) -> str:
-    """Say which of both is of one way among several; empty if none is."""
+    """Return why a path-dependent result leaves the regime undetermined; empty if neither is path-dependent."""
     return next((f"{each.method}: {each.undetermined['m']}" for each in (reference, result) if each.path_dependent), "")
 
 
 def _too_near(result: Result, reference: Result, width: float) -> str:
-    """Say which zone, narrower than ``width`` (m), is all that tells the regimes apart; empty if there is none."""
+    """Return which zone, narrower than ``width`` (m), alone distinguishes the regimes; empty if there is none."""
     names, zone = {result.regime, reference.regime}, reference if reference.m is not None else result
     if zone.m is None or zone.n is None or zone.stick_half_width is None:
         return ""
@@ -221,7 +245,7 @@ def _too_near(result: Result, reference: Result, width: float) -> str:
 def _nodal_errors(
     result: Result, reference: Result, f: float
 ) -> tuple[float | None, float | None, float, float | None]:
-    """Relative L2 errors of nodal p and q, and the largest of them, in p0 and f p0."""
+    """Return relative L2 errors of nodal p and q, and the largest nodal errors, in p0 and f p0."""
     x = result.traction.x
     p, dq = reference.traction.at(x)
     p_off, q_off = result.traction.p - p, (result.traction.dq - dq) / 2

@@ -1,4 +1,4 @@
-"""Means of tractions over cells, relative L2 errors of these means, and resultants."""
+"""Cell averages of tractions, relative L2 errors of cell averages, and resultants."""
 
 import math
 from collections.abc import Callable
@@ -14,22 +14,32 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
 def cell_errors(traction: Traction, reference: Traction, f: float = 0.0) -> tuple[float, float]:
-    """Relative L2 errors of p and of q = dq/2 as averages over cells that cover the reference's contact.
+    """Return relative L2 errors of the cell averages of p and of q = dq/2 over the reference's contact.
 
     Parameters
     ----------
     traction, reference : Traction
-        Of the result and of the reference.
+        Tractions of the result and of the reference.
     f : float, optional
-        The coefficient of friction: the error of q is relative to the larger of q's norm and 1e-3 of f p's.
+        Coefficient of friction. The error of q is relative to the larger of q's norm and 1e-3 of f p's norm.
     """
     errors = norm_errors(traction, reference, f, ("p", "q"))
     return errors["p"], errors["q"]
 
 
 def norm_errors(traction: Traction, reference: Traction, f: float, keys: tuple[str, ...]) -> dict[str, float]:
-    """Relative L2 errors of cell averages by key: of ``p`` and ``p_1`` (at load points 2 and 1) relative to their norm,
-    of ``q``, ``q1`` and ``q2`` relative to the larger of their norm and 1e-3 of f p's. Zero if both are zero."""
+    """Return relative L2 errors of cell averages by key.
+
+    Parameters
+    ----------
+    traction, reference : Traction
+        Tractions of the result and of the reference.
+    f : float
+        Coefficient of friction.
+    keys : tuple of str
+        ``p`` and ``p_1`` (load points 2 and 1): relative to the norm of the quantity; ``q``, ``q1``, ``q2``: relative
+        to the larger of the norm of the quantity and 1e-3 of f p's norm. Zero if both are zero.
+    """
     cells, every = _cells(traction, reference), ("p", *keys)
     widths = np.diff(cells)
     found, true = (means(partial(fields, each, keys=every), cells, each.breaks) for each in (traction, reference))
@@ -42,15 +52,17 @@ def norm_errors(traction: Traction, reference: Traction, f: float, keys: tuple[s
 
 
 def resultants(traction: Traction, keys: tuple[str, ...]) -> dict[str, float]:
-    """Integrals of p, p_1 or q over everything that the method has a traction for, N/m, by key."""
+    """Return integrals of p, p_1 or q over all cells of the ``traction``, N/m, by key; ``keys`` names them."""
     cells = np.unique(np.concatenate([traction.breaks, [] if traction.cells is None else traction.cells]))
     sums = means(partial(fields, traction, keys=keys), cells, cells) @ np.diff(cells)
     return dict(zip(keys, sums.tolist(), strict=True))
 
 
 def fields(traction: Traction, x: Array, keys: tuple[str, ...]) -> Array:
-    """Tractions at ``x`` (n,) by key, (keys, n), Pa: p and p_1, the pressures at load points 2 and 1; q = dq/2; q1 and
-    q2, which the method must know."""
+    """Return tractions at ``x`` (n,), (keys, n), Pa.
+
+    ``keys`` are p and p_1 (pressure at load points 2 and 1), q = dq/2, and q1 and q2, if the ``traction`` has them.
+    """
     p, dq = traction.at(x)
     known = {"p": p, "p_1": p, "q": dq / 2}
     if traction.pressures_at:
@@ -61,16 +73,16 @@ def fields(traction: Traction, x: Array, keys: tuple[str, ...]) -> Array:
 
 
 def cell_means(traction: Traction, cells: Array) -> tuple[Array, Array]:
-    """Means of p and dq of a ``traction`` over each of the cells with ends ``cells`` (ascending), (c,) each."""
+    """Return means (c,) of p and dq of a ``traction``, Pa, over the cells with ascending ends ``cells`` (c + 1,), m."""
     p, dq = means(lambda x: np.stack(traction.at(x)), cells, traction.breaks)
     return p, dq
 
 
 def means(function: Callable[[Array], Array], cells: Array, breaks: Array) -> Array:
-    """Means of ``function`` (k,) -> (..., k) over the cells, (..., c).
+    """Return means of ``function``, (k,) -> (..., k), over the cells, (..., c).
 
-    Gauss quadrature in an angle over every piece between cell ends and breaks of the traction, which takes square
-    roots at the breaks exactly.
+    Gauss quadrature in an angle over each piece between ``cells`` ends and ``breaks`` of the traction. Square roots at
+    the breaks are integrated exactly.
     """
     ends = np.unique(np.concatenate([cells, breaks]))
     ends = ends[(ends >= cells[0]) & (ends <= cells[-1])]
@@ -85,9 +97,12 @@ def means(function: Callable[[Array], Array], cells: Array, breaks: Array) -> Ar
 
 
 def _cells(traction: Traction, reference: Traction) -> Array:
-    """Ends of the cells to average over: those that overlap the reference's contact, and what they leave of it. They
-    are the method's own; else the reference's; else the spaces between the method's points. A reference that is itself
-    known by its cells says nothing of what is finer: then the method's cells end at the nearest of its cell ends."""
+    """Return the ends of the cells to average over, m; the cells cover the reference's contact.
+
+    The cells are the method's, else the reference's, else the intervals between the method's points. If both have
+    cells, each cell end of the method moves to the nearest one of the reference, because the reference resolves
+    nothing within a cell.
+    """
     known = (each.cells for each in (traction, reference) if each.cells is not None)
     cells = next(known, np.unique(traction.x))
     left, right = reference.breaks.min(), reference.breaks.max()

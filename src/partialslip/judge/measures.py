@@ -1,7 +1,7 @@
-"""Error measures between two results of one scene. They are fixed, so that figures compare across versions and codes.
+"""Error measures between two results of one scene. They are fixed, so that errors compare across versions and codes.
 
-Both values of a measure are on one scale, taken from the reference and the scene, so that their difference is the
-error. Norms have no values, only the error.
+Both values of a measure have one scale, taken from the reference and the scene. The error is their difference. Norms
+have an error but no values.
 """
 
 import math
@@ -16,23 +16,24 @@ from partialslip.result import Result, Traction
 from partialslip.scene import Scene
 
 NORM = "norm"
-_SHEAR = ("m", "n", "dQ", "q", "q_max", "q1", "q2")  # what friction, and a steady partial slip, must be there for
+_SHEAR = ("m", "n", "dQ", "q", "q_max", "q1", "q2")  # quantities of friction in steady partial slip
 
 
 @dataclass(frozen=True)
 class Measure:
-    """How far a result is from the reference in one quantity.
+    """Difference between a result and the reference in one quantity.
 
     Parameters
     ----------
     quantity, scale : str
-        Its key, and the unit of values and error; :data:`NORM` if the error is relative to the reference's norm.
+        Key of the quantity, and unit of values and error; :data:`NORM` if the error is relative to the reference's
+        norm.
     reference, found : float or None
-        Both values; None for norms, and where there is no value.
+        Value of the reference and of the result; None for norms, and where there is no value.
     error : float or None
-        NaN if one of the values is; None if the result has no value where the reference has one.
+        NaN if one of the values is NaN; None if one of the values is None.
     undetermined : str
-        Why there is nothing to judge; empty as a rule.
+        Why the quantity is not judged; usually empty.
     """
 
     quantity: str
@@ -44,8 +45,11 @@ class Measure:
 
 
 def measures(result: Result, reference: Result, scene: Scene) -> Iterator[Measure]:
-    """Measure what the ``result`` and the ``reference`` know of the ``scene``. What does not exist has no values and no
-    error; what one of them calls undetermined has both, but is not to be judged."""
+    """Yield the measures between ``result`` and ``reference`` for the ``scene``.
+
+    A quantity that does not exist has no values and no error. An undetermined quantity has values and an error, but
+    is not judged.
+    """
     for quantity, scale, true, found, error in _measured(result, reference, scene):
         if absent := _absent(quantity, reference, scene):
             yield Measure(quantity, scale, None, None, None, absent)
@@ -54,7 +58,7 @@ def measures(result: Result, reference: Result, scene: Scene) -> Iterator[Measur
 
 
 def _absent(quantity: str, reference: Result, scene: Scene) -> str:
-    """Say why the quantity does not exist; empty if it does."""
+    """Return why the quantity does not exist; empty if it exists."""
     if quantity not in _SHEAR:
         return ""
     if scene.friction.f == 0:
@@ -69,7 +73,7 @@ def _absent(quantity: str, reference: Result, scene: Scene) -> str:
 
 
 def _undetermined(quantity: str, result: Result, reference: Result) -> str:
-    """Say which of both calls the quantity undetermined, and why; empty if none does."""
+    """Return which method leaves the quantity undetermined, and why; empty if neither does."""
     key = "q" if quantity == "q_max" else quantity
     calls = (f"{each.method}: {each.undetermined[key]}" for each in (reference, result) if key in each.undetermined)
     return next(calls, "")
@@ -79,7 +83,7 @@ _Values = tuple[str, str, float | None, float | None, float | None]
 
 
 def _measured(result: Result, reference: Result, scene: Scene) -> Iterator[_Values]:
-    """Quantity, scale, both values and error, one by one."""
+    """Yield (quantity, scale, reference value, value, error)."""
     a, p0, f = reference.a, reference.p0, scene.friction.f
     yield _apart("a", "a", 1.0, result.a / a)
     yield from _contact_ends(result, reference)
@@ -112,7 +116,7 @@ def _apart(quantity: str, scale: str, reference: float, found: float) -> _Values
 
 
 def _contact_ends(result: Result, reference: Result) -> Iterator[_Values]:
-    """Both ends of the contact, in a; at load points 1 and 2 if they differ in one of the results."""
+    """Yield both ends of the contact, in a; at load points 1 and 2 if the ends differ there in one of the results."""
     same = all(first == second for first, second in (result.ends, reference.ends))
     for point, (found, true) in enumerate(zip(result.ends, reference.ends, strict=True), start=1):
         for side, end, exact in zip(("left", "right"), found, true, strict=True):
@@ -121,8 +125,7 @@ def _contact_ends(result: Result, reference: Result) -> Iterator[_Values]:
 
 
 def _stick_ends(result: Result, reference: Result) -> Iterator[_Values]:
-    """m and n in a. Their errors are those of the stick zone's centre and half-width, which do not cancel if the zone
-    is tiny."""
+    """Yield m and n, in a. The errors are computed from centre and half-width, without cancellation in tiny zones."""
     a = reference.a
     error: dict[str, float | None] = {"m": None, "n": None}
     found, true = ((each.stick_centre, each.stick_half_width) for each in (result, reference))
@@ -135,6 +138,6 @@ def _stick_ends(result: Result, reference: Result) -> Iterator[_Values]:
 
 
 def _q_max(traction: Traction) -> float:
-    """The largest |q| = |dq|/2, Pa, at the method's points and at the breaks of its tractions."""
+    """Return the largest |q| = |dq|/2, Pa, at the points and breaks of the traction."""
     _, dq = traction.at(np.union1d(traction.x, traction.breaks))
     return float(np.abs(dq).max()) / 2

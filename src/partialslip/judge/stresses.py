@@ -1,16 +1,18 @@
-"""Errors of stresses along the surfaces and inside the bodies."""
+"""Errors of the stresses along the surfaces and inside the bodies."""
 
 import numpy as np
 
 from partialslip.judge.means import means
 from partialslip.result import Result
 
-_NEAR = 3.0  # half-widths: how far stresses inside are compared
+_NEAR = 3.0  # contact half-widths within which stresses inside are compared
 
 
 def surface_error(result: Result, reference: Result) -> float | None:
-    """Relative L2 error of sigma_xx along both surfaces, as averages over the method's cells; None if one of the
-    results does not have it."""
+    """Return the relative L2 error of sigma_xx along both surfaces, by averages over the cells of ``result``.
+
+    None if ``result`` or ``reference`` has no surface stresses, or ``result`` no cells.
+    """
     cells = result.traction.cells
     if not result.surface or not reference.surface or cells is None:
         return None
@@ -21,8 +23,10 @@ def surface_error(result: Result, reference: Result) -> float | None:
 
 
 def inside_error(result: Result, reference: Result) -> float | None:
-    """Relative L2 error, by area, of the stresses in the middle of the triangles within 3 a; None if one of the results
-    does not have them."""
+    """Return the relative L2 error, by area, of the stresses at the centroids of the triangles within 3 a.
+
+    None if ``result`` has no bodies or ``reference`` no stresses.
+    """
     if not result.bodies or not reference.stress_at:
         return None
     off, norm = 0.0, 0.0

@@ -1,4 +1,4 @@
-"""Bars and verdicts: a verdict says passed, missed or not judged of one quantity, and why."""
+"""Bars and verdicts: a verdict is passed, missed or not judged, for one quantity, with a reason."""
 
 import math
 from collections.abc import Iterable
@@ -28,7 +28,7 @@ _Value = TypeVar("_Value", float | str | None, float | None)
 
 
 class Outcome(StrEnum):
-    """The three values of a verdict."""
+    """Outcome of a verdict: passed, missed or not judged."""
 
     PASSED = "passed"
     MISSED = "missed"
@@ -36,8 +36,7 @@ class Outcome(StrEnum):
 
 
 class Bar(NamedTuple):
-    """A bar: ``value``, the largest error that is allowed, None if nothing is judged; and the ``reason``, where the
-    bar is not the usual one."""
+    """A bar: ``value`` is the largest allowed error, None if not judged; ``reason`` is given for an unusual bar."""
 
     value: float | None
     reason: str = ""
@@ -50,20 +49,20 @@ class Verdict:
     Parameters
     ----------
     quantity : str
-        Its key, for example ``m`` or ``q_max``.
+        Key of the quantity, for example ``m`` or ``q_max``.
     outcome : Outcome
     reference, found : float, str or None
-        The reference's value and the value found, in units of ``scale``, or in words; None for norms, which have none.
+        Value of the reference and of the result, in units of ``scale``, or as text; None for norms.
     error : float or None
-        The error, or the residual; None if there is none.
+        Error or residual, in units of ``scale``; None if there is no error.
     bar : float or None
-        The largest error that passes; None if there is no bar.
+        Largest error that passes, in units of ``scale``; None if there is no bar.
     reason : str
-        Why the quantity is missed or not judged, or why its bar is not the usual one.
+        Why the quantity is missed or not judged, or why the bar is not the usual one.
     scale : str
-        Unit of both values and of the error, for example ``a``, ``f p0`` or ``norm`` (relative).
+        Unit of values, error and bar, for example ``a``, ``f p0`` or ``norm`` (relative).
     estimate : float or None
-        The error as the method itself estimates it.
+        The method's own estimate of the error, in units of ``scale``.
     """
 
     quantity: str
@@ -78,7 +77,7 @@ class Verdict:
 
     @property
     def share(self) -> float | None:
-        """The error as a fraction of its bar; None where one of them is missing, or the bar is 0."""
+        """Error as a fraction of the bar; None without error or bar, or if the bar is 0."""
         return None if self.error is None or not self.bar else self.error / self.bar
 
     @property
@@ -88,7 +87,7 @@ class Verdict:
 
     @property
     def finite(self) -> Self:
-        """The verdict as JSON has it: Python's floats, and None for those that are NaN or infinite."""
+        """The verdict for JSON: Python floats, with None in place of NaN and infinity."""
         return replace(
             self,
             reference=_known(self.reference),
@@ -100,7 +99,7 @@ class Verdict:
 
     @property
     def text(self) -> str:
-        """The verdict in words: quantity, error and bar, or the reason."""
+        """The verdict as text: quantity, then error and bar, or the reason."""
         if self.error is None or self.bar is None or not math.isfinite(self.error):
             return f"{self.quantity}: {self.reason or self.outcome}"
         return f"{self.quantity}: error {self.error:.3g} {'<=' if self.error <= self.bar else '>'} {self.bar:.3g}"
@@ -113,13 +112,16 @@ def _known(value: _Value) -> _Value | None:
 
 
 def judged(error: float, bar: float) -> Outcome:
-    """Judge an ``error``: it is passed if it is a number of at most ``bar``; NaN is missed."""
+    """Return PASSED if ``error`` <= ``bar``, MISSED otherwise and for NaN."""
     return Outcome.PASSED if error <= bar else Outcome.MISSED
 
 
 def overall(verdicts: Iterable[Verdict], conditions: Iterable[Verdict] = ()) -> Outcome:
-    """Judge as a whole: missed if any of the verdicts is missed, passed if one of ``verdicts`` is passed and none is
-    missed, not judged otherwise. ``conditions`` can be missed, but a result that meets them is not right for that."""
+    """Return the overall outcome.
+
+    MISSED if any of ``verdicts`` or ``conditions`` is missed; PASSED if one of ``verdicts`` is passed and none is
+    missed; NOT_JUDGED otherwise. Passed ``conditions`` alone do not pass a result.
+    """
     verdicts = tuple(verdicts)
     if any(verdict.outcome is Outcome.MISSED for verdict in (*verdicts, *conditions)):
         return Outcome.MISSED
@@ -129,9 +131,11 @@ def overall(verdicts: Iterable[Verdict], conditions: Iterable[Verdict] = ()) -> 
 
 
 def conditions(result: Result) -> tuple[Verdict, ...]:
-    """Judge what a ``result`` must meet by itself: every number is finite (``finite``, whose error is the count of
-    those that are not), and every residual of its certificate is at most
-    :data:`partialslip.result.CERTIFICATE_BAR`."""
+    """Judge a ``result`` alone, without a reference.
+
+    ``finite`` counts the numbers that are NaN or infinite, and must be 0. Each residual of the certificate must be at
+    most :data:`partialslip.bars.CERTIFICATE_BAR`.
+    """
     lost = _not_finite(result)
     reason = f"NaN or infinite: {lost:,} of the result's numbers" if lost else ""
     finite = Verdict("finite", judged(lost, 0.0), error=float(lost), bar=0.0, reason=reason, scale="numbers")
@@ -150,7 +154,7 @@ def conditions(result: Result) -> tuple[Verdict, ...]:
 
 
 def _not_finite(result: Result) -> int:
-    """Count the numbers of a result that are NaN or infinite."""
+    """Return how many numbers of a result are NaN or infinite."""
     traction, slip = result.traction, result.slip
     arrays = [traction.x, traction.p, traction.dq, traction.q1, traction.q2, traction.p1]
     arrays += [slip.x, slip.slip, np.array(slip.dissipated)] if slip else []

@@ -1,4 +1,4 @@
-"""What a method hands over: plain data, the same types from every method."""
+"""Results: the data types that every method returns."""
 
 from partialslip.result.cost import Clock as Clock
 from partialslip.result.cost import Cost as Cost

@@ -1,4 +1,4 @@
-"""What a method costs: CPU and wall seconds, and memory."""
+"""The cost of a method: CPU seconds, wall seconds and memory."""
 
 import math
 import sys
@@ -17,9 +17,19 @@ except ImportError:  # Windows
 
 @dataclass(frozen=True)
 class Cost:
-    """CPU and wall seconds, ``cpu_s`` and ``wall_s``; peak resident memory of this process, ``peak_rss_mb`` (None where
-    the system does not tell); CPU seconds by phase, ``phases``; ``meshing_cpu_s``, the CPU seconds of ``cpu_s`` that
-    the process which makes meshes took."""
+    """CPU seconds, wall seconds and memory.
+
+    Parameters
+    ----------
+    cpu_s, wall_s : float
+        CPU seconds, meshing process included, and wall seconds.
+    peak_rss_mb : float or None
+        Peak resident memory of this process, MB; None where the system does not report it.
+    phases : mapping of str to float
+        CPU seconds by phase.
+    meshing_cpu_s : float
+        CPU seconds of the meshing process; ``cpu_s`` includes them.
+    """
 
     cpu_s: float
     wall_s: float
@@ -29,7 +39,13 @@ class Cost:
 
 
 class Clock:
-    """Counts what a method costs, phase by phase, and what is left of its ``allowance``, if it has one."""
+    """Measure the cost of a method by phase.
+
+    Parameters
+    ----------
+    allowance : Allowance, optional
+        CPU seconds that the method may take.
+    """
 
     def __init__(self, allowance: Allowance | None = None) -> None:
         self._allowance = allowance
@@ -47,7 +63,7 @@ class Clock:
             self.phases[name] = self.phases.get(name, 0.0) + time.process_time() - start
 
     def add_meshing(self, seconds: float) -> None:
-        """Add CPU seconds of the process that makes meshes to phase "mesh"."""
+        """Add CPU ``seconds`` of the meshing process to phase "mesh"."""
         self.phases["mesh"] = self.phases.get("mesh", 0.0) + seconds
         self._meshing += seconds
         if self._allowance:
@@ -59,11 +75,11 @@ class Clock:
         return self._allowance is not None
 
     def remaining(self) -> float:
-        """CPU seconds that may still be spent; infinite without an allowance."""
+        """Return the CPU seconds left; infinite without an allowance."""
         return self._allowance.remaining() if self._allowance else math.inf
 
     def cost(self) -> Cost:
-        """What it has cost up to now."""
+        """Return the cost up to now."""
         own, wall = time.process_time() - self._cpu, time.perf_counter() - self._wall
         return Cost(own + self._meshing, wall, _peak_rss_mb(), self.phases, self._meshing)
 

@@ -1,4 +1,4 @@
-"""Slip, stresses along the surfaces, and deformed bodies."""
+"""Slip, surface stresses and deformed bodies."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -15,9 +15,10 @@ class Slip:
     x : (k,) array
         Points, ascending, m.
     slip : (k,) array
-        Change, from load point 1 to 2, of the displacement of the body that pushes with q against the other, m.
+        Change, from load point 1 to 2, of the displacement of the lower body, which exerts q, relative to the upper
+        body, m.
     dissipated : float
-        Work against friction over a whole cycle, per unit depth, J/m.
+        Work against friction over one cycle, per unit depth, J/m.
     """
 
     x: Array
@@ -27,17 +28,17 @@ class Slip:
 
 @dataclass(frozen=True)
 class SurfaceStress:
-    """Direct stress along the surfaces of the bodies, their bulk tensions included.
+    """Direct stress sigma_xx along the surfaces of the bodies, bulk tension included.
 
     Parameters
     ----------
     x : (k,) array
         Points, ascending, within the contact, at its ends and beyond, m.
     sigma : (2, 2, k) array
-        sigma_xx by body, lower (which pushes with q against the other, and has the tension) and upper, and by load
-        point, Pa.
+        sigma_xx by body (lower, upper) and load point, Pa. The lower body carries the bulk tension and exerts q on the
+        upper body.
     at : callable
-        ``at(x) -> (2, 2, k)``: the same at any points.
+        ``at(x) -> (2, 2, k)``: sigma_xx at any points ``x``, Pa.
     """
 
     x: Array
@@ -46,14 +47,14 @@ class SurfaceStress:
 
     @property
     def largest(self) -> tuple[float, float]:
-        """Where along the lower body sigma_xx is largest, m, and that, Pa: as a rule at the trailing edge, x = +-a."""
+        """Position, m, and value, Pa, of the largest sigma_xx of the lower body; usually a contact edge, x = +-a."""
         highest = self.sigma[0].max(axis=0)
         return float(self.x[highest.argmax()]), float(highest.max())
 
 
 @dataclass(frozen=True)
 class DeformedBody:
-    """A body's mesh and its displacements.
+    """Mesh of a body with displacements and stresses.
 
     Parameters
     ----------
@@ -64,9 +65,9 @@ class DeformedBody:
     lines : dict of (k, 2) int arrays
         Named groups of boundary edges.
     displacements : dict of (n, 2) arrays
-        By name, m.
+        Displacements of the nodes by name, m.
     stresses : dict of (t, 3) arrays
-        sigma_xx, sigma_yy and sigma_xy in the middle of the triangles, by name, Pa.
+        sigma_xx, sigma_yy and sigma_xy at the triangles' centroids by name, Pa.
     """
 
     name: str

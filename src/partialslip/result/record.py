@@ -1,4 +1,4 @@
-"""A result as plain data: numbers, words and lists, as JSON has them."""
+"""A result as plain data for JSON: numbers, strings and lists."""
 
 from collections.abc import Mapping
 
@@ -9,12 +9,12 @@ from partialslip.arrays import Array
 from partialslip.result.cost import Cost
 from partialslip.result.result import Regime, Result
 
-Number = float | None  # None: not a number, or infinite, which JSON does not have
+Number = float | None  # None: NaN or infinite, which JSON cannot hold
 Numbers = tuple[Number, ...]
 
 
 class SlipRecord(msgspec.Struct, frozen=True):
-    """:class:`partialslip.Slip`: points ``x`` (m), ``slip`` (m), and the work ``dissipated`` in a cycle (J/m)."""
+    """Record of a :class:`partialslip.Slip`: points ``x`` (m), ``slip`` (m), work ``dissipated`` in a cycle (J/m)."""
 
     x: Numbers
     slip: Numbers
@@ -22,15 +22,19 @@ class SlipRecord(msgspec.Struct, frozen=True):
 
 
 class SurfaceRecord(msgspec.Struct, frozen=True):
-    """:class:`partialslip.result.SurfaceStress`: ``sigma_xx`` (Pa) by body, load point and point ``x`` (m)."""
+    """Record of a :class:`partialslip.result.SurfaceStress`: ``sigma_xx`` (Pa) by body, load point and point ``x``
+    (m)."""
 
     x: Numbers
     sigma_xx: tuple[tuple[Numbers, Numbers], tuple[Numbers, Numbers]]
 
 
 class TractionRecord(msgspec.Struct, frozen=True, omit_defaults=True):
-    """Columns of :class:`partialslip.Traction`: ``x`` (m), all others Pa. ``q1`` and ``q2`` are None where the method
-    does not know them; ``p1`` where the pressure is the same at both load points."""
+    """Columns of a :class:`partialslip.Traction`: ``x`` (m) and ``p``, ``dq``, ``q1``, ``q2``, ``p1`` (Pa).
+
+    ``q1`` and ``q2`` are None where the method does not determine them, ``p1`` where the pressure is the same at both
+    load points.
+    """
 
     x: Numbers
     p: Numbers
@@ -41,13 +45,10 @@ class TractionRecord(msgspec.Struct, frozen=True, omit_defaults=True):
 
 
 class ResultRecord(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """A :class:`partialslip.Result` as plain data, without bodies, state and fields at other points.
+    """Record of a :class:`partialslip.Result`, without callables, bodies and state.
 
-    Fields have the names, units and meaning of the result: ``a``, ``p0``, ``regime``, ``m``, ``n``,
-    ``stick_half_width``, ``stick_centre``, ``p_max``, ``settings``, ``counts``, ``limits``, ``certificate``,
-    ``last_cycle_change``, ``estimate``, ``shares``, ``undetermined``, ``path_dependent``, ``notes``, ``cost``.
-    ``contact_ends`` are the left and right end (m) at load point 1 and at load point 2. ``slip``, ``surface`` and
-    ``traction`` are None if the result has none, and in ledgers, which keep no curves.
+    Fields have the names, units and meaning of the result's fields. ``slip``, ``surface`` and ``traction`` are None
+    where the result has none, and in ledgers, which keep no curves.
     """
 
     a: Number
@@ -76,7 +77,7 @@ class ResultRecord(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True
 
     @classmethod
     def of(cls, result: Result, curves: bool = True) -> "ResultRecord":
-        """The record of ``result``, with its ``curves`` or without."""
+        """Make the record of ``result``, with or without ``curves``."""
         (left1, right1), (left2, right2) = result.ends
         slip, surface = result.slip, result.surface
         return cls(
@@ -116,12 +117,12 @@ class ResultRecord(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True
 
 
 def number(value: float | None) -> Number:
-    """``value`` as a float, None if it is not finite."""
+    """Return ``value`` as a float; None if ``value`` is not finite."""
     return float(value) if value is not None and np.isfinite(value) else None
 
 
 def numbers(values: Array) -> Numbers:
-    """``values`` (n,), None in place of those that are not finite."""
+    """Return ``values`` (n,) with None in place of NaN and infinity."""
     return tuple(each if known else None for each, known in zip(values.tolist(), np.isfinite(values), strict=True))
 
 

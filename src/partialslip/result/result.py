@@ -1,4 +1,4 @@
-"""What a method hands over: the same type from every one."""
+"""The result of a method; every method returns this type."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -25,32 +25,57 @@ Regime = Literal[
 
 @dataclass(frozen=True)
 class Result:
-    """A method's answer to a scene.
+    """Solution of a scene by one method.
 
-    ``a`` is the contact half-width (m) and ``p0`` = 2 P/(pi a) (Pa), for Hertz the largest pressure.
-
-    The stick zone [-m, n] is kept as its centre, ``stick_centre`` = (n - m)/2, and ``stick_half_width`` = (n + m)/2
-    (m), because n + m cancels when it is tiny; both are None where nothing sticks (``regime`` says "sliding", or
-    "frictionless" where no shear force acts either).
-    ``traction`` holds p, q1, q2 and dq along the contact, ``cost`` what it took.
-    ``certificate`` holds residuals in units of f p0 (of p0 for the normal problem) and equilibrium relative to
-    the load; ``last_cycle_change`` is the largest change of q over the last cycle, in f p0 (None where no whole cycle
-    was followed); ``estimate`` the method's own estimate of its errors in a, m and n, as fractions of a, and by finite
-    elements in p and q, too (relative L2 of cell averages);
-    ``settings`` and ``counts`` say what was built and how much work it was; ``notes`` what a reader must know;
-    ``limits`` are loads at which something else begins, where the method knows them: ``dsigma_transition`` (Pa, where
-    small tension turns large at this dQ), ``Q_sliding`` (N/m, f P) and ``Q_mean`` (N/m, the largest mean that a steady
-    state can hold). ``slip`` is None where the contact slides as a whole or there is no friction; ``bodies`` is there
-    only where fields inside the bodies were asked for, and so are ``surface`` and ``stress_at``, from methods that know
-    stresses everywhere (the exact one, at fully reversed loads that do not slide): ``stress_at(x, y) -> (2, 3, k)``, by
-    load point and component xx, yy, xy, Pa, at points (k,) of which y <= 0 are in the lower body.
-
-    ``contact_ends`` are the contact's left and right end (m) at load points 1 and 2; None stands for -a and a at both.
-    ``estimate`` may hold ``left`` and ``right`` (fractions of a), ``q1`` and ``q2`` (relative L2 of cell averages)
-    besides, and ``shares`` says what each estimate is made of: by source (``discretisation``, ``steps``, ``table``,
-    ``rounding``) and then by the estimate's key. ``undetermined`` gives, by quantity (``m``, ``n``, ``q``, ``q1``,
-    ``q2``), the reason why the method's value is none to judge others by; ``path_dependent`` says that slip turns round
-    on the way between the load points, so that a method that takes one step is no reference.
+    Parameters
+    ----------
+    method : str
+        Name of the method.
+    a, p0 : float
+        Contact half-width, m, and 2 P/(pi a), Pa; p0 is the largest pressure of Hertz's contact.
+    regime : str
+        One of :data:`Regime`.
+    stick_centre, stick_half_width : float or None
+        (n - m)/2 and (n + m)/2 of the stick zone [-m, n], m; None where nothing sticks. Stored instead of m and n
+        because n + m cancels where the zone is tiny.
+    traction : Traction
+        p, q1, q2 and dq along the contact.
+    cost : Cost
+        CPU seconds, wall seconds and memory.
+    slip : Slip or None
+        Slip along the contact; None in full sliding and without friction.
+    settings, counts : mapping
+        Settings of the discretisation, and counts of work (unknowns, iterations, load steps).
+    limits : mapping of str to float
+        Loads at which the regime changes, where the method knows them: ``dsigma_transition`` (Pa, from small to large
+        tension at this dQ), ``Q_sliding`` (N/m, f P), ``Q_mean`` (N/m, the largest mean Q of a steady state).
+    certificate : mapping of str to float
+        Residuals in f p0 (p0 for the normal problem); equilibrium relative to the load.
+    last_cycle_change : float or None
+        Largest change of q over the last cycle, in f p0; None if no whole cycle was followed.
+    estimate : mapping of str to float
+        The method's error estimates: ``a``, ``m``, ``n``, ``left``, ``right`` as fractions of a; ``p``, ``q``, ``q1``,
+        ``q2`` as relative L2 errors of cell averages.
+    notes : tuple of str
+        Remarks for the reader.
+    bodies : tuple of DeformedBody
+        Fields inside the bodies; empty unless asked for.
+    state : State or None
+        Loads and tractions at the end of the load path, to continue from.
+    surface : SurfaceStress or None
+        sigma_xx along the surfaces, if asked for and known (exact method: fully reversed loads without sliding).
+    stress_at : callable or None
+        ``stress_at(x, y) -> (2, 3, k)``: stresses by load point and component xx, yy, xy, Pa, at points (k,); the
+        lower body is y <= 0. Known where ``surface`` is.
+    contact_ends : ((float, float), (float, float)) or None
+        Left and right end of the contact at load points 1 and 2, m; None stands for -a and a at both.
+    shares : mapping of str to mapping
+        Parts of the estimates by source (``discretisation``, ``steps``, ``table``, ``rounding``) and key of
+        ``estimate``.
+    undetermined : mapping of str to str
+        By quantity (``m``, ``n``, ``q``, ``q1``, ``q2``), why the value cannot serve as a reference.
+    path_dependent : bool
+        Whether slip reverses between the load points; a method with one load step is then no reference.
     """
 
     method: str
@@ -80,33 +105,37 @@ class Result:
 
     @property
     def ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """The contact's left and right end at load points 1 and 2, m."""
+        """Left and right end of the contact at load points 1 and 2, m."""
         return self.contact_ends or ((-self.a, self.a), (-self.a, self.a))
 
     @property
     def m(self) -> float | None:
-        """The stick zone's left end is at x = -m, m."""
+        """Minus the position of the left end of the stick zone [-m, n], m; None where nothing sticks."""
         if self.stick_centre is None or self.stick_half_width is None:
             return None
         return self.stick_half_width - self.stick_centre
 
     @property
     def n(self) -> float | None:
-        """The stick zone's right end is at x = n, m."""
+        """Position of the right end of the stick zone [-m, n], m; None where nothing sticks."""
         if self.stick_centre is None or self.stick_half_width is None:
             return None
         return self.stick_half_width + self.stick_centre
 
     @property
     def columns(self) -> dict[str, Array | None]:
-        """Tractions as columns of a table (n,), SI units; None what the method does not determine. ``p1`` only where
-        the pressure differs between the load points."""
+        """Tractions as columns (n,), SI units; None for values that the method does not determine.
+
+        ``p1`` is present only where the pressure differs between the load points.
+        """
         of = self.traction
         columns = {"x": of.x, "x_over_a": of.x / self.a, "p": of.p, "q1": of.q1, "q2": of.q2, "dq": of.dq}
         return columns if of.p1 is None else columns | {"p1": of.p1}
 
     def to_dataframe(self) -> "DataFrame":
-        """Tractions, a row a point: x (m), x_over_a, p, q1, q2 and dq (Pa), NaN what the method does not determine.
+        """Return the tractions as a table, one row per point: x (m), x_over_a, p, q1, q2 and dq (Pa).
+
+        Values that the method does not determine are NaN.
 
         Raises
         ------
@@ -116,7 +145,7 @@ class Result:
         return frame(self.columns)
 
     def plot(self, axes: "Axes | None" = None) -> "Axes":
-        """Draw p/p0 and q/p0, q = (q2 - q1)/2, over x/a on matplotlib ``axes``, as a rule new ones; returns them."""
+        """Draw p/p0 and q/p0, q = (q2 - q1)/2, over x/a on matplotlib ``axes`` (default: new axes); return the axes."""
         from partialslip.report.notebook import plot
 
         return plot(self, axes)

@@ -1,4 +1,4 @@
-"""The state that a history leaves behind: what the contact remembers, to go on from. SI units."""
+"""The state of the contact at the end of a load path, from which a later run continues. SI units."""
 
 import zipfile
 from dataclasses import dataclass
@@ -14,19 +14,20 @@ from partialslip.scene import Scene
 
 _ARRAYS = ("loads", "cells", "p", "q")
 _LARGEST = 100_000_000  # bytes of a file, and of the arrays in it
-_HELD = 1e-6  # relative to P, how far a solver may be from equilibrium
-_SAME = 1e-9  # relative difference of P and A that is rounding
+_HELD = 1e-6  # tolerance of equilibrium, relative to P
+_SAME = 1e-9  # relative difference of P and A allowed as rounding
 
 
 @dataclass(frozen=True)
 class State:
-    """Loads and tractions at one moment. Under a constant normal force the shear traction is all that remains of the
-    loads before.
+    """Loads and tractions at one moment.
+
+    Under a constant normal force, the shear traction holds the whole effect of earlier loads.
 
     Parameters
     ----------
     P, A : float
-        Normal force, N/m, and compliance of the pair, 1/Pa: those of the scene it is from.
+        Normal force, N/m, and compliance of the pair, 1/Pa, of the scene that was solved.
     Q, sigma : float
         Tangential force, N/m, and differential bulk tension, Pa.
     p, q : PPoly
@@ -41,25 +42,25 @@ class State:
     q: PPoly
 
     def check(self, scene: Scene) -> None:
-        """Raise InputError if ``scene`` cannot go on from here: at another P, or of other bodies."""
+        """Raise InputError if ``scene`` cannot continue from this state: P or the materials differ."""
         for name, mine, its in (("P", self.P, scene.P), ("A", self.A, scene.material.A)):
             if abs(mine - its) > _SAME * abs(its):
-                raise InputError(f"state: is of {name} = {mine:.10g}; this scene has {its:.10g}")
+                raise InputError(f"state: is of {name} = {mine:.10g}; the scene has {its:.10g}; the two must be equal")
 
     def save(self, path: Path) -> None:
-        """Write an .npz file to ``path``."""
+        """Write the state to ``path`` as an .npz file."""
         loads = np.array([self.P, self.A, self.Q, self.sigma])
         with path.open("wb") as file:
             np.savez(file, loads=loads, cells=self.q.x, p=self.p.c, q=self.q.c)
 
 
 def load_state(path: str | Path) -> State:
-    """Read what :meth:`State.save` has written to ``path``.
+    """Read a state from ``path``, a file written by :meth:`State.save`.
 
     Raises
     ------
     InputError
-        If the file cannot be read, or holds no state, or tractions that are not in equilibrium with the loads.
+        If the file cannot be read, holds no state, or holds tractions that are not in equilibrium with the loads.
     """
     check_regular(path, _LARGEST)
     try:
@@ -78,7 +79,9 @@ def load_state(path: str | Path) -> State:
     state = State(P, A, Q, sigma, PPoly(p, cells), PPoly(q, cells))
     held = [float(traction.integrate(cells[0], cells[-1])) for traction in (state.p, state.q)]
     if not np.allclose(held, (P, Q), rtol=0.0, atol=_HELD * abs(P)):
-        raise InputError(f"{path}: its tractions hold P = {held[0]:g} and Q = {held[1]:g}, not {P:g} and {Q:g}")
+        raise InputError(
+            f"{path}: tractions sum to P = {held[0]:g} and Q = {held[1]:g}; must equal the loads, {P:g} and {Q:g}"
+        )
     return state
 
 

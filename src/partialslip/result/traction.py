@@ -17,23 +17,23 @@ class Traction:
     x : (n,) array
         Points, ascending, m.
     p, dq : (n,) arrays
-        Pressure and the change of shear traction q2 - q1, Pa.
+        Pressure at load point 2 and change of shear traction, q2 - q1, Pa.
     q1, q2 : (n,) arrays or None
-        Shear traction at load points 1 and 2, Pa. None where the method determines the change only (with
-        mean loads a closed form cannot know what the first cycles lock in). Where Q and sigma are out of phase,
-        the least and the largest of the last cycle.
+        Shear traction at load points 1 and 2, Pa. None where the method determines dq only: with mean loads a closed
+        form does not give the shear locked in by the first cycles. Where Q and sigma are out of phase, the least and
+        the largest shear of the last cycle.
     at : callable
-        ``at(x) -> (p, dq)``: tractions at any points, as this method represents them; zero outside the contact.
+        ``at(x) -> (p, dq)``: tractions at any points, Pa, interpolated by the method; zero outside the contact.
     breaks : (k,) array
-        Points where the tractions are not smooth (ends of the contact and of the stick zone), m.
+        Points where the tractions are not smooth, m: the ends of the contact and of the stick zone.
     cells : (c + 1,) array or None
-        The ends of the cells (contact edges) that the method's accuracy is judged on, m; None if it has none.
+        Ends of the cells (contact edges of the mesh) for cell averages, m; None if the method has no cells.
     levels_at : callable or None
-        ``levels_at(x) -> (q1, q2)`` at any points, zero outside the contact; None where ``q1`` and ``q2`` are.
+        ``levels_at(x) -> (q1, q2)`` at any points, Pa, zero outside the contact; None where ``q1`` and ``q2`` are None.
     p1 : (n,) array or None
-        Pressure at load point 1, Pa, where it differs from ``p``, which is that at load point 2.
+        Pressure at load point 1, Pa; None where the pressure is the same at both load points.
     pressures_at : callable or None
-        ``pressures_at(x) -> (p1, p2)`` at any points; None where the pressure is the same at both load points.
+        ``pressures_at(x) -> (p1, p2)`` at any points, Pa; None where ``p1`` is None.
     """
 
     x: Array
@@ -50,8 +50,7 @@ class Traction:
 
     @property
     def p_max(self) -> float:
-        """The largest pressure, Pa: of the parabola through the largest value and those beside it, as points need not
-        fall on the top."""
+        """The largest pressure, Pa, interpolated by a parabola through the largest value and the two beside it."""
         if len(self.x) < 3:
             return float(self.p.max())
         near = np.clip(int(self.p.argmax()), 1, len(self.x) - 2) + np.array([-1, 0, 1])
