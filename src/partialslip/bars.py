@@ -1,7 +1,7 @@
 """Bars: the largest allowed error by quantity, used by the judge and by the methods' error estimates."""
 
-#: Bars by quantity, in multiples of the accuracy asked for: ends in a, tractions in relative L2. Other quantities have no
-#: bar.
+#: Bars by quantity, in multiples of the accuracy asked for: ends in a, tractions in relative L2. All other quantities
+#: have no bar.
 BARS = {
     **dict.fromkeys(("a", "left", "right", "left_1", "right_1", "left_2", "right_2", "m", "n"), 1.0),
     **dict.fromkeys(("P", "P_1", "p", "p_1"), 10.0),

@@ -202,8 +202,8 @@ def run(
     }
     for result in results.values():
         effects.accept(result.regime)
-    # no bars for finite bodies or for a fixed element size: there is no reference; nor for effects forced off: the error
-    # measures the effect
+    # no bars for finite bodies or for a fixed element size: there is no reference; none for effects forced off: the
+    # error measures the effect
     judged = not scene.finite and scene.fem.size is None and not effects.missing
     reached = results["fem"].settings.get("accuracy") if allowance and "fem" in results else None
     return compared(scene, effects, results, float(reached or scene.fem.accuracy) if judged else None)

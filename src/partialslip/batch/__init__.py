@@ -1,1 +1,1 @@
-"""Many cases: solved here or on a cluster, each kept as soon as it is finished, so that a stop loses nothing."""
+"""Solve many cases, here or on a cluster. Each finished case is saved at once, so that a stopped study can continue."""

@@ -1,4 +1,4 @@
-"""The workers of a Dask cluster, and in one line what becomes of it."""
+"""Workers of a Dask cluster, with one-line error messages."""
 
 import logging
 import re
@@ -13,12 +13,12 @@ from typing import Any
 from partialslip.errors import InputError, MissingLibraryError, PartialslipError
 
 _ADDRESS = re.compile(r"(?:(?P<protocol>tcp|tls)://)?(?P<host>[^/:\[\]\s]+|\[[0-9a-fA-F:.%]+\]):(?P<port>[0-9]{1,5})")
-_ANSWERS = 10  # s in which a scheduler must
-_PATIENCE = 30  # s without any worker
+_ANSWERS = 10  # s: timeout of the scheduler
+_PATIENCE = 30  # s: longest time without a worker
 _GO_ON = "run it again to go on"
 _LOGGERS = ("distributed", "tornado", "asyncio")
 
-# What every worker is asked, by functions that it has without the package, too.
+# Evaluated on every worker; must work where partialslip is not installed.
 _ASK = """__import__("importlib.metadata").metadata.version("partialslip") if all(
     __import__("importlib").import_module(each) for each in ("partialslip.batch.job", "partialslip_fem.model")
 ) else ""
@@ -26,7 +26,14 @@ _ASK = """__import__("importlib.metadata").metadata.version("partialslip") if al
 
 
 class Cluster(Executor):
-    """The workers of a Dask cluster as an executor; ``client`` is distributed's, ``address`` the scheduler's."""
+    """Workers of a Dask cluster as an executor.
+
+    Parameters
+    ----------
+    client : distributed.Client
+    address : str
+        Address of the scheduler.
+    """
 
     def __init__(self, client: Any, address: str) -> None:
         self.client, self.address = client, address
@@ -34,46 +41,50 @@ class Cluster(Executor):
         self._seen = time.monotonic()
 
     def submit(self, do: Callable[..., Any], /, *arguments: Any, **named: Any) -> Future[Any]:
-        """Hand work over to the scheduler."""
+        """Submit the call ``do(*arguments, **named)`` to the scheduler."""
         future: Future[Any] = self._pool.submit(do, *arguments, **named)
         return future
 
     def check(self) -> None:
-        """Raise PartialslipError if the scheduler has gone, or all workers for half a minute."""
+        """Raise PartialslipError if the scheduler is lost, or if there has been no worker for 30 s."""
         if self.client.status != "running":
-            raise PartialslipError(f"--cluster {self.address!r}: the scheduler has gone; {_GO_ON}")
+            raise PartialslipError(f"--cluster {self.address!r}: connection to the scheduler lost; {_GO_ON}")
         if self.client.scheduler_info(n_workers=-1)["workers"]:
             self._seen = time.monotonic()
         elif time.monotonic() - self._seen > _PATIENCE:
-            raise PartialslipError(f"--cluster {self.address!r}: has had no worker for {_PATIENCE} s; {_GO_ON}")
+            raise PartialslipError(f"--cluster {self.address!r}: no worker for {_PATIENCE} s; {_GO_ON}")
 
     def greet(self) -> None:
-        """Raise InputError if there is no worker, or one that cannot import this version of partialslip."""
+        """Raise InputError if there is no worker, or if a worker cannot import this version of partialslip."""
         from distributed import TimeoutError as NoWorker
 
         try:
             self.client.wait_for_workers(1, timeout=_PATIENCE)
         except NoWorker:
-            raise InputError(f"--cluster {self.address!r}: has no workers, for {_PATIENCE} s") from None
-        mine = version("partialslip")
-        for worker, its in self.client.run(eval, _ASK, on_error="return").items():
-            if isinstance(its, BaseException):
-                said = f"{type(its).__name__}: {its}"
-                raise InputError(f"--cluster {self.address!r}: {worker} cannot import partialslip: {said}")
-            if its != mine:
-                raise InputError(f"--cluster {self.address!r}: {worker} has partialslip {its}: must be {mine}, as here")
+            raise InputError(
+                f"--cluster {self.address!r}: no workers within {_PATIENCE} s: start workers for the scheduler"
+            ) from None
+        here = version("partialslip")
+        for worker, there in self.client.run(eval, _ASK, on_error="return").items():
+            if isinstance(there, BaseException):
+                reason = f"{type(there).__name__}: {there}"
+                raise InputError(f"--cluster {self.address!r}: {worker} cannot import partialslip: {reason}")
+            if there != here:
+                raise InputError(
+                    f"--cluster {self.address!r}: {worker} has partialslip {there}: must be {here}, as on this machine"
+                )
 
 
 @contextmanager
 def dask(address: str) -> Iterator[Cluster]:
-    """The workers of the Dask cluster whose scheduler is at ``address``, ``tcp://host:port``.
+    """Connect to the Dask cluster with the scheduler at ``address``, ``tcp://host:port``.
 
     Raises
     ------
     InputError
-        If no scheduler answers there, or its workers do not have this version of partialslip.
+        If no scheduler answers, or a worker does not have this version of partialslip.
     PartialslipError
-        If scheduler or workers are lost; what was finished is kept.
+        If the scheduler or all workers are lost; finished cases are kept.
     MissingLibraryError
         If dask.distributed is not installed.
     """
@@ -85,14 +96,14 @@ def dask(address: str) -> Iterator[Cluster]:
     with _silence():
         try:
             client = Client(address, timeout=_ANSWERS, set_as_default=False)
-        except Exception as error:  # of whatever kind: what answers may be anything
+        except Exception as error:  # any kind: the server may not be Dask
             raise InputError(f"--cluster {address!r}: no Dask scheduler answers there: {_said(error)}") from None
         try:
             cluster = Cluster(client, address)
             cluster.greet()
             yield cluster
         except CancelledError:
-            raise PartialslipError(f"--cluster {address!r}: the scheduler has gone; {_GO_ON}") from None
+            raise PartialslipError(f"--cluster {address!r}: connection to the scheduler lost; {_GO_ON}") from None
         except PartialslipError:
             raise
         except Exception as error:
@@ -102,12 +113,12 @@ def dask(address: str) -> Iterator[Cluster]:
                 raise
             raise PartialslipError(f"--cluster {address!r}: {_said(error)}; {_GO_ON}") from None
         finally:
-            with suppress(Exception):  # of a scheduler that has gone
+            with suppress(Exception):  # the scheduler may be lost
                 client.close(timeout=2 if client.status == "running" else 0.1)
 
 
 def _reach(address: str) -> None:
-    """Raise InputError if nobody listens at ``address``: the client would try for a long time, and say much."""
+    """Raise InputError if nothing listens at ``address``. Dask's client would retry for long and print a lot."""
     found = _ADDRESS.fullmatch(address)
     if not found or not 0 < int(found["port"]) < 65536:
         raise InputError(f"--cluster {address!r}: must be a scheduler's address, for example tcp://localhost:8786")
@@ -118,14 +129,14 @@ def _reach(address: str) -> None:
 
 
 def _said(error: BaseException) -> str:
-    """The first line of what ``error`` says."""
+    """Return the first line of the message of ``error``."""
     said = (error.strerror if isinstance(error, OSError) else None) or str(error)
     return (said.strip().splitlines() or [type(error).__name__])[0]
 
 
 @contextmanager
 def _silence() -> Iterator[None]:
-    """What Dask and its libraries log is said here in one line, at the end."""
+    """Silence the logs of Dask and the libraries below; errors are reported in one line instead."""
     loggers = [logging.getLogger(name) for name in _LOGGERS]
     levels = [logger.level for logger in loggers]
     for logger in loggers:

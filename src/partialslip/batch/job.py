@@ -1,4 +1,4 @@
-"""One job of a study: a scene solved by some methods, as figures without curves, here or in a process of its own."""
+"""One job of a study: solve a scene by some methods, in this process or in a new one; keep values without curves."""
 
 import subprocess
 import sys
@@ -28,7 +28,15 @@ Labels = Mapping[str, str | float]
 
 @dataclass(frozen=True)
 class Job:
-    """A scene, the methods to solve it by, and ``labels`` that say which point of the study it is."""
+    """One job of a study.
+
+    Parameters
+    ----------
+    scene : Scene
+    methods : tuple of str
+    labels : mapping of str to str or float
+        Point of the study.
+    """
 
     scene: Scene
     methods: tuple[str, ...]
@@ -36,18 +44,27 @@ class Job:
 
     @property
     def key(self) -> str:
-        """A key that is the same only for the same job by the same source files."""
+        """Key that identifies the job and the source files."""
         return key_of({**msgspec.to_builtins(self), "scene": scene_content(self.scene)})
 
     @property
     def task(self) -> Task:
-        """The job as work for a sweep."""
+        """The job as a task of a sweep."""
         return Task(self.key, solve, self)
 
 
 class ProcessCost(msgspec.Struct, frozen=True):
-    """What a process took, start and imports included: CPU seconds in all, and of writing the report; peak memory (MB);
-    wall seconds."""
+    """Cost of a process, start and imports included.
+
+    Parameters
+    ----------
+    cpu_s, report_cpu_s : float
+        CPU seconds without the report, and of writing the report.
+    peak_rss_mb : float
+        Peak memory, MB.
+    wall_s : float
+        Wall seconds.
+    """
 
     cpu_s: float
     report_cpu_s: float
@@ -56,8 +73,20 @@ class ProcessCost(msgspec.Struct, frozen=True):
 
 
 class Solved(msgspec.Struct, frozen=True, kw_only=True):
-    """What came of a job, as a ledger keeps it: the ``run``, or the ``error`` in one line; and what the ``process``
-    took, if the job had one of its own."""
+    """Outcome of a job, as a ledger stores it.
+
+    Parameters
+    ----------
+    scene : Scene
+    labels : mapping of str to str or float
+        Point of the study.
+    run : Record or None
+        The run without curves; None if the job failed.
+    error : str
+        Message in one line; empty if the job succeeded.
+    process : ProcessCost or None
+        Cost of the process, if the job had a process to itself.
+    """
 
     scene: Scene
     labels: Labels
@@ -67,25 +96,25 @@ class Solved(msgspec.Struct, frozen=True, kw_only=True):
 
     @classmethod
     def of(cls, entry: Mapping[str, Any]) -> "Solved":
-        """The entry of a ledger as this type."""
+        """Convert an ``entry`` of a ledger to this type."""
         return msgspec.convert(entry, cls)
 
 
 def solve(job: Job, keep: "Kept | None" = None) -> Solved:
-    """Solve ``job``. ``keep`` is as for :func:`partialslip.run`."""
+    """Solve ``job``; ``keep`` as in :func:`partialslip.run`."""
     return _solved(job, keep)[0]
 
 
 def _solved(job: Job, keep: "Kept | None" = None) -> tuple[Solved, Run | None]:
     try:
         outcome = run(job.scene, job.methods, keep=keep)
-    except InputError as error:  # what this machine lacks is no finding, and is not to be kept as one
+    except InputError as error:  # a library missing on this machine must not enter the ledger, and is raised
         return Solved(scene=job.scene, labels=job.labels, error=str(error)), None
     return Solved(scene=job.scene, labels=job.labels, run=record(outcome, curves=False)), outcome
 
 
 class Sharing:
-    """:func:`solve` for a sweep: jobs that one process solves share their factored meshes. It can be pickled."""
+    """:func:`solve` for a sweep, picklable: jobs in one process share factored meshes."""
 
     def __init__(self) -> None:
         self._sweep = uuid.uuid4().hex
@@ -96,15 +125,15 @@ class Sharing:
 
 @lru_cache(maxsize=1)
 def _kept_in(_sweep: str) -> "Kept":
-    """What this process keeps in a sweep, until it works for another one."""
+    """Return the factored meshes that this process keeps for one sweep."""
     from partialslip_fem import Kept
 
     return Kept()
 
 
 def solve_apart(job: Job) -> Solved:
-    """Solve ``job`` in a new process, whose cost is the ``process`` of what is returned. Raises PartialslipError if the
-    process dies."""
+    """Solve ``job`` in a new process and measure the cost of the process. Raises PartialslipError if the process
+    dies."""
     command = [sys.executable, "-m", "partialslip.batch.job"]
     began = time.perf_counter()
     done = subprocess.run(command, input=msgspec.json.encode(job), capture_output=True, check=False)
@@ -119,7 +148,7 @@ def solve_apart(job: Job) -> Solved:
 
 
 def _costs(outcome: Run) -> ProcessCost:
-    """Of this process up to now, and of writing the report."""
+    """Return the cost of this process up to now, and of writing the report."""
     cpu = time.process_time() + sum(each.cost.meshing_cpu_s for each in outcome.results.values())
     began = time.process_time()
     with tempfile.TemporaryDirectory() as folder:
@@ -129,7 +158,7 @@ def _costs(outcome: Run) -> ProcessCost:
 
 
 def _apart() -> None:
-    """Solve the job that stdin has, as JSON, and write what came of it to stdout."""
+    """Read a job as JSON from stdin, solve it, and write the outcome as JSON to stdout."""
     found, outcome = _solved(msgspec.json.decode(sys.stdin.buffer.read(), type=Job))
     if outcome:
         found = msgspec.structs.replace(found, process=_costs(outcome))

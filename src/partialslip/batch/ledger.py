@@ -1,7 +1,7 @@
-"""A ledger: finished cases as JSON lines, written one at a time and never changed, so that a study can be continued.
+"""A ledger: finished cases as JSON lines, appended one at a time, so that a stopped study can continue.
 
-A case is known by the content of its scene and settings, and by a checksum of the packages' source files. What does not
-fit is solved again. Commit and versions are written down, but decide nothing.
+The key of a case is a checksum of scene, settings and the packages' source files. If one of them changes, the case is
+solved again. Commit and versions are recorded only.
 """
 
 import hashlib
@@ -26,7 +26,7 @@ _PACKAGES = ("partialslip", "partialslip_fem", "partialslip_meshes")
 
 
 class Machine(msgspec.Struct, frozen=True):
-    """The machine that a case was solved on."""
+    """Machine that solved a case: operating ``system``, ``processor``, number of ``cores``."""
 
     system: str
     processor: str
@@ -34,8 +34,20 @@ class Machine(msgspec.Struct, frozen=True):
 
 
 class Made(msgspec.Struct, frozen=True, kw_only=True):
-    """When (``at``, UTC) and with what an entry was made: versions, machine, the commit in a clone, and the checksum of
-    the source files (``code``)."""
+    """Origin of an entry.
+
+    Parameters
+    ----------
+    at : str
+        Date and time, UTC.
+    versions : dict of str to str
+        Versions of Python and packages.
+    machine : Machine
+    commit : str or None
+        Commit of a clone; None outside a clone.
+    code : str
+        Checksum of the source files.
+    """
 
     at: str = ""
     versions: dict[str, str]
@@ -45,12 +57,12 @@ class Made(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Ledger:
-    """Entries by key, kept in a file of JSON lines.
+    """Entries by key, stored in a file of JSON lines.
 
     Parameters
     ----------
     path : Path
-        Made with the first entry. A last line that a killed study left unfinished is dropped.
+        File, created with the first entry. An unfinished last line, left by a killed study, is removed.
 
     Raises
     ------
@@ -74,8 +86,8 @@ class Ledger:
                 self._entries[entry["key"]] = entry
             except ValueError:
                 raise InputError(
-                    f"{path}: line {number}: must be an entry of a ledger, as it was written: remove the line, and its "
-                    "case is solved again"
+                    f"{path}: line {number}: must be an entry of a ledger, unchanged since it was written; remove the "
+                    "line to solve the case again"
                 ) from None
 
     def __contains__(self, key: str) -> bool:
@@ -92,12 +104,23 @@ class Ledger:
 
     @property
     def outdated(self) -> int:
-        """How many entries are from other source files than today's: their cases are solved again."""
+        """Number of entries made by other source files than the present ones; the cases are solved again."""
         return sum(entry.get("made", {}).get("code") != source_checksum() for entry in self)
 
     def add(self, key: str, found: object) -> None:
-        """Append what was ``found``, a table or a type whose fields are one; it is on the disk when this returns.
-        Raises InputError if the file cannot be written."""
+        """Append an entry under ``key`` and sync the file to disk.
+
+        Parameters
+        ----------
+        key : str
+        found : mapping or Struct
+            Content of the entry.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written.
+        """
         made = msgspec.structs.replace(_origin(), at=datetime.now(UTC).isoformat(timespec="seconds"))
         entry = {"key": key, **msgspec.to_builtins(found), "made": msgspec.to_builtins(made)}
         line = _sealed(json.dumps(entry, allow_nan=False)) + b"\n"
@@ -115,13 +138,13 @@ _SEAL = b', "sum": "'
 
 
 def _sealed(entry: str) -> bytes:
-    """An entry, a JSON object, with a checksum of its text as its last key: what reads it can rely on its shape."""
+    """Append a checksum of the text to ``entry``, a JSON object, as the last key."""
     text = entry.encode()
     return text[:-1] + _SEAL + _sum(text) + b'"}'
 
 
 def _unsealed(line: bytes) -> dict[str, Any]:
-    """The entry of a line. Raises ValueError if it is not as :func:`_sealed` has made it."""
+    """Return the entry of a line. Raises ValueError if the checksum of :func:`_sealed` does not match."""
     text, seal, end = line.rpartition(_SEAL)
     text += b"}"
     if not seal or end != _sum(text) + b'"}':
@@ -135,27 +158,26 @@ def _sum(text: bytes) -> bytes:
 
 
 def key_of(data: Mapping[str, Any]) -> str:
-    """A key that is the same for the same plain data by the same source files only."""
+    """Return the key of plain ``data``: a checksum of the data and of the source files."""
     text = json.dumps({"data": data, "code": source_checksum()}, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def scene_content(scene: Scene) -> dict[str, Any]:
-    """The plain data of a scene, and the checksums of the mesh files that it names (None for a file that cannot be
-    read)."""
+    """Return ``scene`` as plain data, with checksums of its mesh files (None for a file that cannot be read)."""
     files = [body.mesh for _, body in scene.bodies if body.mesh is not None]
     return {**msgspec.to_builtins(scene), "mesh files": {file: _checksum([Path(file)]) for file in files}}
 
 
 @cache
 def source_checksum() -> str:
-    """Checksum of all files of the packages, as they are installed: code and data."""
+    """Return the checksum of all installed files of the packages, code and data."""
     roots = [Path(place) for name in _PACKAGES for place in find_spec(name).submodule_search_locations]  # type: ignore[union-attr]
     return checksum_of(roots)
 
 
 def checksum_of(folders: Iterable[Path]) -> str:
-    """Checksum of the names and contents of the files in ``folders``, without what Python compiles from them."""
+    """Return the checksum of names and contents of the files in ``folders``, without ``__pycache__``."""
     files = [path for folder in folders for path in sorted(folder.rglob("*")) if path.is_file()]
     return _checksum([path for path in files if "__pycache__" not in path.parts]) or ""
 
@@ -173,7 +195,7 @@ def _checksum(files: Iterable[Path]) -> str | None:
 
 @cache
 def _origin() -> Made:
-    """Versions, machine, checksum of the source files and, in a clone, the commit."""
+    """Return versions, machine, checksum of the source files and, in a clone, the commit."""
     here = Path(__file__).parent
     git = ["git", "-C", str(here), "describe", "--always", "--dirty", "--abbrev=12"]
     try:

@@ -1,5 +1,4 @@
-"""Many cases at once, on this machine or a Dask cluster; every finished one is in the ledger before the next is heard
-of."""
+"""Solve many cases in parallel, on this machine or a Dask cluster, and add each finished case to a ledger."""
 
 import itertools
 import multiprocessing
@@ -19,13 +18,13 @@ from partialslip.batch.ledger import Ledger
 from partialslip.errors import PartialslipError
 
 Progress = Callable[[int, int, float], None]
-_PULSE = 2.0  # s
-_AHEAD = 256  # tasks that wait for a worker, or work: more than any cluster has workers, and few in memory
+_PULSE = 2.0  # s between checks of a cluster
+_AHEAD = 256  # largest number of submitted tasks: more than a cluster has workers, few enough for the memory
 
 
 class Task(NamedTuple):
-    """Work for a sweep: what ``do`` makes of ``argument`` is an entry of a ledger under ``key``
-    (:meth:`partialslip.batch.ledger.Ledger.add`). All of them can be pickled."""
+    """A picklable task of a sweep: ``do(argument)`` returns the entry of the ledger under ``key``
+    (:meth:`partialslip.batch.ledger.Ledger.add`)."""
 
     key: str
     do: Callable[[Any], object]
@@ -33,14 +32,20 @@ class Task(NamedTuple):
 
 
 def sweep(tasks: Collection[Task], ledger: Ledger, executor: Executor, progress: Progress = lambda *_: None) -> None:
-    """Do those of ``tasks`` that are not in ``ledger`` and add what they find, in the order they finish.
+    """Do the ``tasks`` that are not in the ``ledger``, and add the outcomes in the order of completion.
 
-    ``progress`` is called with how many are done, how many there are, and the seconds left by the pace so far.
+    Parameters
+    ----------
+    tasks : collection of Task
+    ledger : Ledger
+    executor : Executor
+    progress : callable
+        ``progress(done, total, seconds_left)``; the seconds left are extrapolated.
 
     Raises
     ------
     PartialslipError
-        If a worker process dies; what was finished is kept.
+        If a worker process dies; finished tasks are kept.
     """
     to_do = {task.key: task for task in tasks if task.key not in ledger}
     added = itertools.count(1)
@@ -67,14 +72,14 @@ def sweep(tasks: Collection[Task], ledger: Ledger, executor: Executor, progress:
         while at_work:
             keep()
     except BrokenProcessPool:
-        raise PartialslipError("a worker process died, perhaps for want of memory; run it again to go on") from None
+        raise PartialslipError("a worker process died, perhaps for lack of memory; run it again to go on") from None
     finally:
         for future in at_work:
             future.cancel()
 
 
 def _next(finished: "SimpleQueue[Future[Any]]", executor: Executor) -> "Future[Any]":
-    """The next future that is finished. An executor that can lose all its workers is asked meanwhile if it has."""
+    """Return the next finished future. Meanwhile check that a cluster still has workers."""
     while True:
         try:
             return finished.get(timeout=_PULSE if isinstance(executor, Cluster) else None)
@@ -83,7 +88,7 @@ def _next(finished: "SimpleQueue[Future[Any]]", executor: Executor) -> "Future[A
 
 
 class _Here(Executor):
-    """This process: work is done when it is submitted, and what it raises ends the sweep."""
+    """Executor in this process: ``submit`` does the work at once and raises its exceptions."""
 
     def submit(self, do: Callable[..., Any], /, *arguments: Any, **named: Any) -> Future[Any]:
         future: Future[Any] = Future()
@@ -93,15 +98,21 @@ class _Here(Executor):
 
 @contextmanager
 def workers(cluster: str | None = None, processes: int | None = None) -> Iterator[Executor]:
-    """Local ``processes`` (as a rule as many as there are cores; one is this one), or the workers of the Dask cluster
-    whose scheduler is at the address ``cluster``.
+    """Provide an executor: local processes, or the workers of a Dask cluster.
+
+    Parameters
+    ----------
+    cluster : str, optional
+        Address of the Dask scheduler.
+    processes : int, optional
+        Number of local processes (default: number of cores); 1 means this process.
 
     Raises
     ------
     InputError
-        If no scheduler answers there, or a worker does not have this version of partialslip.
+        If no scheduler answers, or a worker does not have this version of partialslip.
     PartialslipError
-        If the scheduler, or all workers, are lost.
+        If the scheduler or all workers are lost.
     MissingLibraryError
         If dask.distributed is not installed.
     """
@@ -126,7 +137,7 @@ def workers(cluster: str | None = None, processes: int | None = None) -> Iterato
 
 
 def _begin() -> None:
-    """A worker ends with the process that it works for, which Ctrl-C reaches, too, and however that ends."""
+    """Ignore Ctrl-C in a worker, which the parent process handles, and end the worker when the parent ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 

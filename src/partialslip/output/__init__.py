@@ -1,1 +1,1 @@
-"""Files, tables, figures and pages: a toolkit that knows no scene, no result and no run."""
+"""Tools for files, tables, figures and pages, independent of scenes, results and runs."""

@@ -1,4 +1,4 @@
-"""Files: whole ones or none, whenever the writing is stopped."""
+"""Write files atomically: a stopped write leaves no partial file."""
 
 import glob
 import os
@@ -12,8 +12,23 @@ from partialslip.output.lock import lock
 
 
 def write_files(folder: Path, files: Mapping[str, Callable[[Path], object]]) -> list[Path]:
-    """Write each of ``files``, by name the function that takes the path to write to, into ``folder``. Returns their
-    paths. Raises InputError if the folder cannot be written.
+    """Write ``files`` into ``folder``.
+
+    Parameters
+    ----------
+    folder : Path
+    files : mapping of str to callable
+        By file name, a function that writes to the path given to it.
+
+    Returns
+    -------
+    list of Path
+        Paths of the files.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
     """
     for name in files:
         if os.path.isdir(folder / name):
@@ -23,14 +38,14 @@ def write_files(folder: Path, files: Mapping[str, Callable[[Path], object]]) -> 
         for name, write in files.items():
             with _replacing(folder / name) as path:
                 write(path)
-    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
+    except (OSError, ValueError) as error:  # ValueError: invalid file name
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"--out {folder}: cannot be written: {reason}") from None
     return [folder / name for name in files]
 
 
 def write_texts(folder: Path, texts: Mapping[str, str]) -> list[Path]:
-    """Write files of UTF-8 text, by name, as :func:`write_files` does."""
+    """Write UTF-8 ``texts``, by file name, into ``folder`` with :func:`write_files`. Returns the paths."""
 
     def writer(text: str) -> Callable[[Path], object]:
         return lambda path: path.write_text(text, "utf-8")
@@ -40,8 +55,10 @@ def write_texts(folder: Path, texts: Mapping[str, str]) -> list[Path]:
 
 @contextmanager
 def _replacing(path: Path) -> Iterator[Path]:
-    """A path beside ``path`` to write to, which takes its place when the block ends well. What a write that was killed
-    has left there goes."""
+    """Provide a temporary path beside ``path``, which replaces ``path`` if the block succeeds.
+
+    Temporary files of killed writes are removed.
+    """
     beginning, ending = f".{path.stem}-", f".partial{path.suffix}"
     for left in path.parent.glob(glob.escape(beginning) + "*" + glob.escape(ending)):
         _unlink_if_free(left)
@@ -51,7 +68,7 @@ def _replacing(path: Path) -> Iterator[Path]:
         lock(handle)
         yield beside
         beside.chmod(0o666 & ~_umask())
-        os.fsync(handle)  # its content must be there before its name is
+        os.fsync(handle)  # the content must be on the disk before the name
         beside.replace(path)
     finally:
         os.close(handle)
@@ -59,7 +76,7 @@ def _replacing(path: Path) -> Iterator[Path]:
 
 
 def _unlink_if_free(path: Path) -> None:
-    """Remove a file that no process writes any more."""
+    """Remove a temporary file unless a process still writes it."""
     try:
         handle = os.open(path, os.O_RDWR)
     except OSError:

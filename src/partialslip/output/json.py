@@ -4,6 +4,5 @@ import msgspec
 
 
 def json_text(data: object) -> str:
-    """``data``, of types that msgspec knows, as the indented text of a JSON file; null for numbers that are NaN or
-    infinite."""
+    """Return ``data``, of types known to msgspec, as indented JSON text; null in place of NaN and infinity."""
     return msgspec.json.format(msgspec.json.encode(data), indent=1).decode() + "\n"

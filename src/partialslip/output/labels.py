@@ -1,4 +1,4 @@
-"""Labels on lines, where there is most room for them."""
+"""Place labels on lines where there is most room."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -10,17 +10,27 @@ from partialslip.arrays import Array
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# in heights of the axes
-_MARGIN = 0.055  # along the border, without labels
-_PACE = 0.01  # between places for a label
-_ROOM = 0.05  # that a label needs
-_CLEAR = 0.07  # from where no label may be
-_CROSSING = 2.0  # how much closer another line may come than another label
+# distances in heights of the axes
+_MARGIN = 0.055  # to the border
+_PACE = 0.01  # between candidate places
+_ROOM = 0.05  # to other lines and labels
+_CLEAR = 0.07  # to avoided points
+_CROSSING = 2.0  # ratio of the distance to a label to the distance to a line
 
 
 def label_lines(axes: "Axes", lines: Sequence[Array], texts: Sequence[str], avoided: Array) -> None:
-    """Write its text on each of ``lines`` (n, 2), where it is farthest from other lines and labels, and clear of the
-    ``avoided`` points (k, 2); none where there is no room. The axes must have their final size."""
+    """Label ``lines`` on ``axes`` with ``texts``, each label at the place farthest from other lines and labels.
+
+    Parameters
+    ----------
+    axes : matplotlib Axes
+        Must have the final size.
+    lines : sequence of (n, 2) arrays
+    texts : sequence of str
+        One per line. A line without room gets no label.
+    avoided : (k, 2) array
+        Points to keep clear.
+    """
     to_paper = axes.transData - axes.transAxes
     width = axes.bbox.width / axes.bbox.height
     scale = np.array([width, 1.0])
@@ -45,7 +55,10 @@ def label_lines(axes: "Axes", lines: Sequence[Array], texts: Sequence[str], avoi
 
 
 def label_places(lines: Sequence[Array], avoided: Array, width: float) -> list[tuple[Array, Array] | None]:
-    """Place and direction (2,) of the label of each line, or None; everything in heights of axes of that ``width``."""
+    """Return place (2,) and direction (2,) of the label of each line; None where there is no room.
+
+    Coordinates of ``lines`` (n, 2) and ``avoided`` points (k, 2), and ``width`` of the axes, are in heights of the axes.
+    """
     shape = np.array([width, 1.0])
     paced = [_paced(line) for line in lines]
     paced = [line[((line > 0) & (line < shape)).all(axis=1)] for line in paced]
@@ -65,14 +78,14 @@ def label_places(lines: Sequence[Array], avoided: Array, width: float) -> list[t
 
 
 def _paced(line: Array) -> Array:
-    """Points along ``line`` (n, 2), _PACE apart."""
+    """Return points along ``line`` (n, 2), _PACE apart."""
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
     at = np.arange(0.0, way[-1], _PACE)
     return np.column_stack([np.interp(at, way, along) for along in line.T])
 
 
 def _distance(points: Array, others: Array) -> Array:
-    """Of each of ``points`` (n, 2) to the nearest of ``others`` (k, 2)."""
+    """Return the distances (n,) of ``points`` (n, 2) to the nearest of ``others`` (k, 2), 1 at most."""
     apart = points[:, None] - others
     result: Array = np.sqrt((apart**2).sum(axis=-1)).min(axis=1, initial=1.0)
     return result

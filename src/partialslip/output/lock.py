@@ -1,4 +1,4 @@
-"""Locks: a folder that one process writes to is no other's meanwhile."""
+"""Lock a folder, so that one process at a time writes to it."""
 
 import contextlib
 import errno
@@ -18,21 +18,20 @@ except ImportError:  # Windows
 
 NAME = ".partialslip.lock"
 _TRIES = 20
-_BEYOND = 1 << 30  # byte of the file that is locked on Windows, where what is locked cannot be read
+_BEYOND = 1 << 30  # byte locked on Windows: beyond the text, because locked bytes cannot be read
 
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Hold ``folder``, which is made if need be, for this process until the block ends; if nothing is in it by then, it
-    goes again.
+    """Lock ``folder`` for this process until the block ends. Create the folder if needed; remove it if left empty.
 
-    The lock is the operating system's, on a hidden file in there. It ends with the process, however that ends, and is
-    known to other machines on NFS. A file system without locks is written to without one.
+    The operating system locks a hidden file in the folder. The lock ends with the process and holds across machines on
+    NFS. On a file system without locks, nothing is locked.
 
     Raises
     ------
     InputError
-        If another process holds the folder, or it cannot be written.
+        If another process holds the folder, or the folder cannot be written.
     """
     path, made = folder / NAME, []
     try:
@@ -46,7 +45,7 @@ def locked(folder: Path) -> Iterator[None]:
     try:
         yield
     finally:
-        with contextlib.suppress(OSError):  # of Windows, which removes no open file
+        with contextlib.suppress(OSError):  # Windows does not remove an open file
             path.unlink(missing_ok=True)
         os.close(handle)
         if fcntl is None:
@@ -56,8 +55,10 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 def lock(handle: int) -> bool | None:
-    """Lock an open file to this process, until it is closed or the process ends. Returns whether that is done, False if
-    another one holds it, None where there are no locks."""
+    """Lock the open file ``handle`` for this process, until the file is closed or the process ends.
+
+    Returns True if locked, False if another process holds the lock, None if the file system has no locks.
+    """
     try:
         if fcntl is not None:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -73,28 +74,28 @@ def lock(handle: int) -> bool | None:
 
 
 def _taken(path: Path) -> tuple[int, str]:
-    """The file at ``path``, open and locked, or who has it."""
+    """Open and lock the file at ``path``. Returns the handle, and the holder if another process has the lock."""
     for _ in range(_TRIES):
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
-        except FileNotFoundError:  # the one before has just removed an empty folder
+        except FileNotFoundError:  # the previous holder has just removed the empty folder
             continue
         if lock(handle) is False:
             holder = os.read(handle, 200).decode(errors="replace")
             os.close(handle)
             return -1, holder or "another process"
-        with contextlib.suppress(FileNotFoundError):  # the one before has just removed it
+        with contextlib.suppress(FileNotFoundError):  # the previous holder has just removed the file
             if os.path.samestat(os.fstat(handle), os.stat(path)):
                 os.truncate(handle, 0)
                 os.write(handle, f"process {os.getpid()} on {platform.node()}".encode(errors="replace"))
                 return handle, ""
         os.close(handle)
-    raise OSError(errno.EBUSY, "others come and go in it")
+    raise OSError(errno.EBUSY, "other processes keep locking it")
 
 
 def _remove(folders: list[Path]) -> None:
-    """Remove those of ``folders``, innermost first, that are empty."""
+    """Remove the empty ones of ``folders``, innermost first."""
     with contextlib.suppress(OSError, ValueError):
         for each in folders:
             each.rmdir()

@@ -1,4 +1,4 @@
-"""The same page on paper: HTML as PDF, by WeasyPrint."""
+"""Convert an HTML page to PDF with WeasyPrint."""
 
 from pathlib import Path
 from typing import NoReturn
@@ -10,12 +10,12 @@ LIBRARIES = "libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
 
 
 def write_pdf(html: str, folder: Path, name: str) -> list[Path]:
-    """Write a self-contained page as the file ``name`` in ``folder``; returns its path.
+    """Write a self-contained page ``html`` as the PDF file ``name`` in ``folder``. Returns the path in a list.
 
     Raises
     ------
     MissingLibraryError
-        If WeasyPrint, or a system library that it needs, is not there.
+        If WeasyPrint, or a system library of WeasyPrint, is missing.
     InputError
         If the folder cannot be written.
     """
@@ -30,5 +30,5 @@ def write_pdf(html: str, folder: Path, name: str) -> list[Path]:
 
 
 def _refuse(url: str, *_: object, **__: object) -> NoReturn:
-    """Everything is in the page: nothing is fetched."""
+    """Refuse to fetch: a self-contained page needs nothing."""
     raise ValueError(f"{url}: not fetched")

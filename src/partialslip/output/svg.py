@@ -1,4 +1,4 @@
-"""Figures as SVG, all in one style."""
+"""Figures as SVG in one common style."""
 
 import io
 from collections.abc import Callable
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 _STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",  # text stays text
-    "svg.hashsalt": "partialslip",  # the same run gives the same file
+    "svg.hashsalt": "partialslip",  # equal runs give equal files
     "font.size": 10,
     "font.family": "sans-serif",
     "axes.spines.top": False,
@@ -18,7 +18,7 @@ _STYLE: dict[Any, Any] = {
 
 
 def svg(draw: Callable[["Figure"], None], size: tuple[float, float] = (7.4, 4.4)) -> str:
-    """What ``draw`` puts on a figure of ``size`` (inches) as SVG, in the style of all figures."""
+    """Return a figure as SVG text, drawn by ``draw(figure)``, of ``size`` (width, height) in inches."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 

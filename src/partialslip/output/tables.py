@@ -1,4 +1,4 @@
-"""Tables on a terminal."""
+"""Print tables on a terminal."""
 
 from collections.abc import Container, Iterable, Sequence
 
@@ -16,9 +16,21 @@ _NARROW = 60
 def print_table(
     console: Console, headings: Sequence[str], rows: Iterable[Sequence[str]], words: Container[int] = (0,)
 ) -> None:
-    """Print ``rows`` under ``headings``; columns ``words`` are of words, the others of numbers. A table is as wide as
-    its numbers are long: beyond a narrow terminal rather than with digits left out. On one of fewer than 60 columns
-    each row is printed as lines of its own, a heading and a value each."""
+    """Print a table on ``console``.
+
+    Parameters
+    ----------
+    console : Console
+    headings : sequence of str
+    rows : iterable of sequences of str
+    words : container of int
+        Columns of words, left-aligned; all other columns hold numbers, right-aligned.
+
+    Notes
+    -----
+    No digits are cut: the table may be wider than the terminal. On a terminal narrower than 60 columns, such a table is
+    printed as lines of heading and value.
+    """
     rows = list(rows)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for number, heading in enumerate(headings):
@@ -37,7 +49,7 @@ def print_table(
 
 
 def print_lines(console: Console, lines: Iterable[Sequence[str]]) -> None:
-    """Print ``lines`` of cells in columns, without headings."""
+    """Print ``lines`` of cells on ``console`` in aligned columns, without headings."""
     grid = Table.grid(padding=(0, 2))
     for line in lines:
         grid.add_row(*map(Text, line))

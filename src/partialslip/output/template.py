@@ -1,4 +1,4 @@
-"""Pages are made of templates."""
+"""Templates of HTML pages."""
 
 import re
 
@@ -7,7 +7,7 @@ from markupsafe import Markup
 
 
 def template(package: str, name: str) -> Template:
-    """The template ``name`` of ``package``, which may include those beside this file."""
+    """Return the template ``name`` of ``package``; the template may include the templates of this package."""
     environment = Environment(
         loader=ChoiceLoader([PackageLoader(package, "."), PackageLoader("partialslip.output", ".")]),
         autoescape=True,
@@ -20,6 +20,6 @@ def template(package: str, name: str) -> Template:
 
 
 def _inline(svg: str, name: str = "") -> Markup:
-    """A figure as a part of a page; its own names begin with ``name`` there, as a page has each name once."""
+    """Return a figure for embedding in a page. The prefix ``name`` makes the figure's ids unique in the page."""
     own = re.sub(r'(\bid="|href="#|url\(#)', lambda found: found[0] + name, svg[svg.index("<svg") :])
     return Markup(own)

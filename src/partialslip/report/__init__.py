@@ -1,4 +1,4 @@
-"""What people see of a run: the terminal's tables, the files, the page and the cells of a notebook."""
+"""Reports of a run: terminal tables, files, HTML page and notebook cells."""
 
 from partialslip.record import Record as Record
 from partialslip.record import load_result as load_result

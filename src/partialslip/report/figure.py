@@ -20,19 +20,27 @@ _Q_MARKS = {"march": "s", "fem": "o", ALL_EFFECTS: "D"}
 
 
 def traction_svg(run: Run) -> str:
-    """The traction plot of a run as SVG."""
+    """Return the traction plot of ``run`` as SVG."""
     return svg(lambda figure: draw_run(figure.subplots(), run))
 
 
 def draw_run(axes: "Axes", run: Run) -> None:
-    """Draw the tractions of every method of ``run``, the reference's scales first."""
+    """Draw the tractions of all methods of ``run`` on ``axes``, scaled by the reference."""
     first = run.reference or next(iter(run.results))
     draw_tractions(axes, {first: run.results[first]} | run.results, run.scene.friction.f)
 
 
 def draw_tractions(axes: "Axes", results: Mapping[str, Result], f: float | None = None) -> None:
-    """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of every method: lines for a closed form, markers for a mesh. Scales and
-    stick zone are those of the first one; without ``f`` it is q/p0, and the bound is not drawn."""
+    """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of all methods: lines for a closed form, markers for a mesh.
+
+    Parameters
+    ----------
+    axes : matplotlib Axes
+    results : mapping of str to Result
+        By method. The first result gives the scales and the stick zone.
+    f : float, optional
+        Coefficient of friction; without it q/p0 is drawn, without the friction bound.
+    """
     reference = next(iter(results.values()))
     a, p0 = reference.a, reference.p0
     unit, shear = (p0, "q/p0") if f is None else (f * p0, "q/(f p0)")
@@ -68,7 +76,7 @@ def draw_tractions(axes: "Axes", results: Mapping[str, Result], f: float | None 
 
 
 def _spread(result: Result) -> Array:
-    """Some of the nodes, about evenly spread over the contact."""
+    """Return some of the nodes, m, about evenly spread over the contact."""
     x = result.traction.x
     nearest = np.abs(x[:, None] - np.linspace(x[0], x[-1], _MARKERS)).argmin(axis=0)
     spread: Array = x[np.unique(nearest)]

@@ -1,4 +1,4 @@
-"""Files: whole ones or none, whenever it is stopped; and those of a run."""
+"""Write the files of a run."""
 
 from collections.abc import Callable
 from functools import partial
@@ -15,9 +15,15 @@ from partialslip.run import Run
 
 
 def write_run(run: Run, folder: Path) -> list[Path]:
-    """Write results.json, tractions.csv and report.html of ``run`` into ``folder``; where fields inside the bodies were
-    asked for, surface.csv, bodies.vtu and mesh.msh, too (lower.msh and upper.msh of bodies that are not mirror images).
-    Returns the files' paths. Raises InputError if the folder cannot be written.
+    """Write results.json, tractions.csv and report.html of ``run`` into ``folder``. Returns the paths.
+
+    If fields inside the bodies were asked for, also write surface.csv, bodies.vtu and mesh.msh; lower.msh and upper.msh
+    instead of mesh.msh if the bodies are not mirror images.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
     """
     data = record(run)
     files: dict[str, Callable[[Path], object]] = {
@@ -37,14 +43,14 @@ def write_run(run: Run, folder: Path) -> list[Path]:
 
 
 def tractions_csv(run: Run) -> str:
-    """Tractions of every method, one row a point; SI units, empty where a method does not determine a value."""
+    """Return the tractions of all methods as CSV, one row per point, SI units; empty where a method has no value."""
     columns = run.columns
     values = ([("" if number != number else number) for number in column.tolist()] for column in columns.values())
     return csv_text(list(columns), zip(*values, strict=True))
 
 
 def surface_csv(run: Run) -> str:
-    """sigma_xx along the surfaces by every method that knows it, one row a point; SI units."""
+    """Return sigma_xx along the surfaces as CSV, for the methods that compute it, one row per point, SI units."""
     rows: list[list[object]] = []
     for name, result in run.results.items():
         if surface := result.surface:

@@ -1,4 +1,4 @@
-"""What a notebook's cell shows: the tables of the page, and the plot of the tractions."""
+"""Hooks for notebook display: the tables of the page and the plot of the tractions."""
 
 from typing import TYPE_CHECKING
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 def html(what: Scene | Result | Comparison | Run) -> str:
-    """The tables of ``what``."""
+    """Return the tables of ``what`` as HTML."""
     return template("partialslip.report", "notebook.html").render(kind=type(what).__name__, what=what, rows=rows)
 
 
 def plot(what: Result | Run, axes: "Axes | None" = None) -> "Axes":
-    """The tractions of ``what`` on ``axes``, or on those of a new figure of pyplot."""
+    """Draw the tractions of ``what`` on ``axes`` (default: axes of a new pyplot figure). Returns the axes."""
     if axes is None:
         from matplotlib import pyplot
 

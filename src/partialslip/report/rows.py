@@ -1,4 +1,4 @@
-"""A run in words and table cells: the terminal and the page show the same ones."""
+"""A run as texts and table cells, shared by terminal and page."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -34,23 +34,25 @@ _MEANING = {
     for point in (1, 2)
 }  # fmt: skip
 _WORDS = {Outcome.PASSED: "ok", Outcome.MISSED: "MISSED", Outcome.NOT_JUDGED: "not judged"}
-_DIGITS, _MOST = 7, 10  # decimals of values; more where the error needs them, unless it is rounding
+_DIGITS, _MOST = 7, 10  # decimals of values: the usual number, and the largest if the error is smaller
 
 
 def headings(run: Run, name: str) -> list[str]:
-    """Headings of the table of :func:`error_rows` of method ``name``."""
+    """Return the headings of the table of :func:`error_rows` for method ``name`` of ``run``."""
     return [{"reference": run.reference or "", "value": name}.get(heading, heading) for heading in HEADINGS]
 
 
 def error_rows(comparison: Comparison) -> list[tuple[str, ...]]:
-    """Quantity, unit, the reference's value, the method's value, error, the method's own estimate of it, bar and
-    verdict. Error = \\|value - reference\\|; norms have no values. What neither of both knows is left out."""
+    """Return rows of quantity, unit, reference's value, method's value, error, error estimate, bar and verdict.
+
+    The error is \\|value - reference\\|; norms have no values. Quantities without values and error are left out.
+    """
     shown = [each for each in comparison.verdicts if each.quantity != "regime" and each.known]
     return [(_MEANING.get(each.quantity, each.quantity), *numbers(each), word(each)) for each in shown]
 
 
 def numbers(verdict: Verdict) -> tuple[str, ...]:
-    """Unit, the reference's value and the value found, error, estimate and bar of a verdict."""
+    """Return unit, reference's value, method's value, error, estimate and bar of ``verdict`` as texts."""
     error = verdict.error or 0.0
     digits = max(_DIGITS, math.ceil(-math.log10(error)) + 1) if 10.0**-_MOST < error < math.inf else _DIGITS
     values = (
@@ -62,12 +64,12 @@ def numbers(verdict: Verdict) -> tuple[str, ...]:
 
 
 def word(verdict: Verdict) -> str:
-    """The verdict in a word: ok, MISSED, no bar or not judged."""
+    """Return the verdict in a word: ok, MISSED, no bar or not judged."""
     return "no bar" if verdict.outcome is Outcome.NOT_JUDGED and verdict.reason == NO_BAR else _WORDS[verdict.outcome]
 
 
 def units(run: Run) -> str:
-    """What the units of the table of errors are, in one line: values of the reference."""
+    """Return the units of the error table in one line: a, p0, f p0 and P of the reference."""
     reference, scene = run.results[run.reference or ""], run.scene
     limit = f", f p0 = {engineering(scene.friction.f * reference.p0, 'Pa', 6)}" if scene.friction.f else ""
     p0, P = engineering(reference.p0, "Pa", 6), engineering(scene.P, "N/m", 6)
@@ -75,7 +77,7 @@ def units(run: Run) -> str:
 
 
 def unjudged(comparison: Comparison) -> list[str]:
-    """What is not judged although it has a bar as a rule, and why: a line for each reason."""
+    """Return quantities that usually have a bar but are not judged, one line per reason."""
     reasons: dict[str, list[str]] = {}
     for verdict in comparison.verdicts:
         if verdict.outcome is Outcome.NOT_JUDGED and verdict.reason != NO_BAR:
@@ -84,7 +86,7 @@ def unjudged(comparison: Comparison) -> list[str]:
 
 
 def verdict(run: Run) -> str:
-    """The verdict on the whole run in one line."""
+    """Return the verdict on the whole ``run`` in one line."""
     if run.outcome is Outcome.MISSED:
         return "missed: " + "; ".join(run.missed)
     if run.outcome is Outcome.PASSED:
@@ -100,7 +102,7 @@ def verdict(run: Run) -> str:
 
 
 def effects(plan: Plan) -> list[tuple[str, str, str]]:
-    """Whether it is called for or left out (in the first row of either), effect, and why."""
+    """Return rows of "called for" or "left out" (in the first row of each group), effect, and reason."""
     groups = {"called for": plan.called_for, "left out": plan.left_out}
     return [
         (title if number == 0 else "", effect, why)
@@ -110,7 +112,7 @@ def effects(plan: Plan) -> list[tuple[str, str, str]]:
 
 
 def settings(scene: Scene) -> list[tuple[str, str, str]]:
-    """Table (in its first row), key and setting."""
+    """Return rows of table (in the first row of each table), key and setting of ``scene``."""
     return [
         (table if number == 0 else "", *line)
         for table, lines in _set(scene).items()
@@ -119,12 +121,12 @@ def settings(scene: Scene) -> list[tuple[str, str, str]]:
 
 
 def settings_of_tables(scene: Scene) -> list[tuple[str, str]]:
-    """Table, and all its settings in one line."""
+    """Return pairs of table and its settings in one line."""
     return [(table, "; ".join(" ".join(line) for line in lines)) for table, lines in _set(scene).items() if lines]
 
 
 def _set(scene: Scene) -> dict[str, list[tuple[str, str]]]:
-    """By table, keys and settings."""
+    """Return pairs of key and setting by table."""
     tables = {table: keys for table, keys in msgspec.to_builtins(scene).items() if isinstance(keys, dict)}
     return {
         table: [(key, setting(choice)) for key, choice in _flat(keys) if choice is not None]
@@ -141,7 +143,10 @@ def _flat(table: Mapping[str, object], before: str = "") -> Iterator[tuple[str, 
 
 
 def methods(results: Mapping[str, Result], *, compared: bool = False) -> list[tuple[str, str, str]]:
-    """Method (in its first row), and its facts; what it found is told elsewhere where it is ``compared``."""
+    """Return rows of method (in the first row of each method), and a key and text of :func:`facts`.
+
+    With ``compared`` the values found are left out: the table of errors shows them.
+    """
     return [
         (name if number == 0 else "", *line)
         for name, result in results.items()
@@ -150,7 +155,7 @@ def methods(results: Mapping[str, Result], *, compared: bool = False) -> list[tu
 
 
 def value(result: Result, key: str) -> str:
-    """One of a, m and n of a result, with its unit."""
+    """Return a, m or n (``key``) of ``result`` with the unit."""
     if key == "a":
         return length(result.a)
     end = getattr(result, key)
@@ -158,7 +163,7 @@ def value(result: Result, key: str) -> str:
 
 
 def length(a: float) -> str:
-    """A length with its unit, in mm unless that is far off."""
+    """Return a length ``a``, m, with the unit: mm from 1e-6 m to 1 m, else with another SI prefix."""
     return f"{a * 1e3:.7g} mm" if 1e-6 <= a < 1 else engineering(a, "m", 7)
 
 
@@ -170,7 +175,7 @@ _LIMITS = {
 
 
 def limits(result: Result) -> str:
-    """Loads at which something else begins."""
+    """Return the loads at which the regime changes, as text."""
     return ", ".join(
         text.format(engineering(result.limits[key], unit, 4))
         for key, (text, unit) in _LIMITS.items()
@@ -179,7 +184,7 @@ def limits(result: Result) -> str:
 
 
 def slip(result: Result) -> str:
-    """The largest slip over half a cycle, and what a cycle dissipates."""
+    """Return the largest slip over half a cycle and the energy dissipated in a cycle, as text."""
     if result.slip is None:
         return ""
     largest = engineering(float(np.abs(result.slip.slip).max()), "m", 5)
@@ -187,8 +192,8 @@ def slip(result: Result) -> str:
 
 
 def engineering(number: float, unit: str, digits: int) -> str:
-    """A number with the SI prefix that suits it, where there is one."""
-    number = float(f"{number:.12g}")  # 1 - 1e-16 is 1, not 1000 thousandths
+    """Return ``number`` in ``unit`` with a suitable SI prefix and ``digits`` significant digits."""
+    number = float(f"{number:.12g}")  # 1 - 1e-16 must become 1, not 1000 m
     for exponent, prefix in ((9, "G"), (6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ"), (-9, "n")):
         if 1 <= abs(number) / 10.0**exponent < 1000:
             return f"{number / 10.0**exponent:.{digits}g} {prefix}{unit}"
@@ -196,7 +201,7 @@ def engineering(number: float, unit: str, digits: int) -> str:
 
 
 def setting(choice: object) -> str:
-    """A scene's setting as text."""
+    """Return a setting of a scene as text."""
     if isinstance(choice, (list, tuple)):
         return ", ".join(map(setting, choice))
     if not isinstance(choice, float):
@@ -205,7 +210,10 @@ def setting(choice: object) -> str:
 
 
 def facts(result: Result, compared: bool = False) -> dict[str, str]:
-    """What a method found (unless that is told where it is ``compared``), built and certifies, and what it cost."""
+    """Return what a method found, built and certified, and the cost, as texts by key.
+
+    With ``compared`` the values found are left out: the table of errors shows them.
+    """
     lines = {
         "regime": result.regime,
         "found": "" if compared else ", ".join(f"{key} = {value(result, key)}" for key in ("a", "m", "n")),
@@ -220,7 +228,7 @@ def facts(result: Result, compared: bool = False) -> dict[str, str]:
 
 
 def work(result: Result) -> str:
-    """What was built and counted, but for what was not."""
+    """Return settings and non-zero counts of ``result`` as text."""
     counts = ", ".join(_counted(count, name.replace("_", " ")) for name, count in result.counts.items() if count)
     settings = ", ".join(f"{name.replace('_', ' ')} {setting(choice)}" for name, choice in result.settings.items())
     return "; ".join(part for part in (settings, counts) if part)
@@ -237,7 +245,7 @@ def _counted(count: int, things: str) -> str:
 
 
 def certificate(result: Result) -> str:
-    """Residuals and the method's own error estimate."""
+    """Return residuals, change of q in the last cycle and error estimates of ``result`` as text."""
     residuals = ", ".join(
         f"{name.replace('_', ' ')} {_power(residual)}" for name, residual in result.certificate.items()
     )
@@ -249,7 +257,7 @@ def certificate(result: Result) -> str:
 
 
 def cost(result: Result) -> str:
-    """CPU seconds, in all and by phase, wall seconds and memory."""
+    """Return CPU seconds (total and by phase), wall seconds and memory of ``result`` as text."""
     spent = result.cost
     phases = ", ".join(f"{name} {seconds:.2f}" for name, seconds in spent.phases.items())
     memory = "" if spent.peak_rss_mb is None else f", peak memory {spent.peak_rss_mb:.0f} MB"

@@ -1,4 +1,4 @@
-"""Summary of a run in words and table cells, as the ledger of a verification keeps it."""
+"""Summary of a run as table cells, as the ledger of a verification stores it."""
 
 import msgspec
 
@@ -7,7 +7,7 @@ from partialslip.run import Run
 
 
 class Sheet(msgspec.Struct, frozen=True):
-    """Title, settings and effects of a scene, and facts of every method, as the texts of tables."""
+    """Texts of tables: ``title``, ``settings`` and ``effects`` of a scene, and facts about the ``methods``."""
 
     title: str
     settings: tuple[tuple[str, str], ...]
@@ -16,7 +16,7 @@ class Sheet(msgspec.Struct, frozen=True):
 
 
 def sheet(run: Run) -> Sheet:
-    """The sheet of ``run``."""
+    """Return the sheet of ``run``."""
     return Sheet(
         run.scene.title,
         tuple(rows.settings_of_tables(run.scene)),

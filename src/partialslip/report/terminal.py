@@ -1,4 +1,4 @@
-"""The terminal's view of a run."""
+"""Print a run on the terminal."""
 
 from rich.console import Console
 
