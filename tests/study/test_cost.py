@@ -138,7 +138,7 @@ def test_the_cheapest_and_the_best():
     least = known.cheapest(scene, 1e-2).cpu_s
     with pytest.raises(partialslip.InputError, match=r"--budget 0.1s: must be at least") as refused:
         known.best(scene, 0.1)
-    named = float(str(refused.value).split("least ")[1].split("s ")[0])
+    named = float(str(refused.value).split("least ")[1].split(" s ")[0])
     assert least <= named <= least + 0.1
     with pytest.raises(partialslip.InputError, match="at least 10"):
         prices.fit([], OVERHEADS, "a machine")

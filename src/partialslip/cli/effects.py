@@ -1,7 +1,6 @@
-"""partialslip study effects: what each effect of a scene is worth, and what it costs."""
+"""partialslip study effects: changes and costs by each effect of a scene."""
 
 import argparse
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,11 +12,11 @@ if TYPE_CHECKING:
 
 
 def add(topics: "Commands") -> None:
-    """Add the topic to the parser."""
+    """Add the topic to the parser of ``topics``."""
     effects = topics.add_parser(
         "effects",
-        help="each effect on and off: what it changes and what it costs",
-        description="Turn each effect of a scene over; print what that changes in a, m, n and q, and what it costs.",
+        help="switch each effect on and off: changes and costs",
+        description="Switch each effect of a scene on or off. Print the changes of a, m, n and q, and the costs.",
         examples=[
             "partialslip study effects fretting-aluminium",
             "partialslip study effects my-scene.toml --set fem.size=0.05",
@@ -34,6 +33,7 @@ def _effects(options: argparse.Namespace) -> int:
 
     from partialslip.cli.consoles import output, working
     from partialslip.output.files import write_texts
+    from partialslip.output.json import json_text
     from partialslip.output.tables import print_table
     from partialslip.study.effects import worth
     from partialslip.study.effects.figure import effects_svg
@@ -43,7 +43,7 @@ def _effects(options: argparse.Namespace) -> int:
     with held(folder), working(name) as tell:
         study = worth.study_effects(scene, tell)
         texts = {
-            "worth.json": json.dumps(worth.effects_record(study), indent=1, allow_nan=False) + "\n",
+            "worth.json": json_text(worth.effects_record(study)),
             "worth.csv": worth.effects_csv(study),
             "worth.svg": effects_svg(study),
         }

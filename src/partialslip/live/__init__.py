@@ -1,3 +1,3 @@
-"""The live page: the steady state of Hertz's contact, calculated in the browser."""
+"""The live page: the steady state of a Hertz contact, calculated in the browser."""
 
 from partialslip.live.page import live_page as live_page

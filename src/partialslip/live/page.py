@@ -1,4 +1,4 @@
-"""The live page: one self-contained HTML file. Its mechanics are in ``hertz.js``, beside this file."""
+"""The live page: one self-contained HTML file. The mechanics are in ``hertz.js``, in the folder of this module."""
 
 from importlib.metadata import version
 from typing import Any
@@ -13,13 +13,15 @@ from partialslip.output.template import template
 from partialslip.report import rows
 from partialslip.scene import Hertz, Scene
 
-_SHAPE = 1.5  # of the map on the page, width over height, for which lines are labelled
-_NAMES = np.array([(0.05, 0.94), (0.12, 0.94), (0.19, 0.94), (0.8, 0.03), (0.88, 0.03), (0.96, 0.03)])  # of the regimes
-_ROUNDED = 5  # digits after the point of the map's lines
+_SHAPE = 1.5  # width over height of the map on the page
+_NAMES = np.array([(0.05, 0.94), (0.12, 0.94), (0.19, 0.94), (0.8, 0.03), (0.88, 0.03), (0.96, 0.03)])  # regime names
+_ROUNDED = 5  # decimals of the map's lines
 
 
 def live_page(scene: Scene) -> str:
-    """The page of ``scene`` as HTML: tractions and stick zone under loads that are moved, beginning with the scene's.
+    """Return the live page of ``scene`` as HTML: sliders for the loads, tractions and stick zone.
+
+    The sliders start at the loads of the scene.
 
     Raises
     ------
@@ -29,9 +31,11 @@ def live_page(scene: Scene) -> str:
     """
     if not isinstance(scene.profile, Hertz):
         kind = type(scene.profile).__struct_config__.tag
-        raise InputError(f'profile.kind = "{kind}": must be "hertz" for a live page, which has its closed form only')
+        raise InputError(
+            f'profile.kind = "{kind}": must be "hertz" for a live page, which uses the closed form for Hertz'
+        )
     if not scene.load.in_phase:
-        raise InputError("load.sigma: out of phase with load.Q; a live page is for loads in phase")
+        raise InputError("load.sigma: out of phase with load.Q; must be in phase for a live page")
     return (
         template("partialslip.live", "live.html").render(data=_data(scene), rows=rows, version=version("partialslip"))
         + "\n"
@@ -39,7 +43,7 @@ def live_page(scene: Scene) -> str:
 
 
 def _data(scene: Scene) -> dict[str, Any]:
-    """What the page knows of the scene; SI units, but for the map's lines."""
+    """Return the page's data of the scene, in SI units; the map's lines are scaled."""
     found = stick_map(scene)
     assert found.pressed
     pressed, load, f = found.pressed, scene.load, scene.friction.f
@@ -59,7 +63,7 @@ def _data(scene: Scene) -> dict[str, Any]:
 
 
 def _lines(found: StickMap) -> dict[str, Any]:
-    """Lines of equal m and n and the border between the regimes, by (Qf, sf), each with the place of its label."""
+    """Return lines of equal m and n, with places of the labels, and the border between the regimes; in (Qf, sf)."""
     top = float(found.grid.sf.max())
     border, lines = _points(found.border, top), [_points(line, top) for line in (*found.m_lines, *found.n_lines)]
     paper = np.array([_SHAPE, 1 / top])
@@ -78,7 +82,7 @@ def _lines(found: StickMap) -> dict[str, Any]:
 
 
 def _points(line: Line, top: float) -> Array:
-    """(k, 2), as far as they are on the map and a little beyond."""
+    """Return the points (k, 2) of a line on the map and slightly beyond."""
     on = (line.Qf <= 1) & (line.sf <= 1.5 * top)
     return np.column_stack([line.Qf[on], line.sf[on]])
 

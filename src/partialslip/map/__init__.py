@@ -1,4 +1,4 @@
-"""The stick-zone map: which loads give which stick zone."""
+"""The stick-zone map: stick zones as functions of the loads."""
 
 from partialslip.map.files import place as place
 from partialslip.map.files import write_map as write_map

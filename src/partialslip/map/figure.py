@@ -1,4 +1,4 @@
-"""The figures of the stick-zone map, legible in black and white: m/a solid, n/a dashed."""
+"""Figures of the stick-zone map, legible in black and white: m/a solid, n/a dashed."""
 
 from typing import TYPE_CHECKING
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_STRIP = 0.025  # of sliding, beyond dQ = 2 f P
+_STRIP = 0.025  # width of the strip of sliding beyond dQ = 2 f P
 
 
 def map_svg(data: StickMap) -> str:
-    """m/a and n/a over dQ/(2 f P) and dsigma/(f p0)."""
+    """Return the map ``data`` as SVG: lines of equal m/a and n/a over dQ/(2 f P) and dsigma/(f p0)."""
 
     def draw(figure: "Figure") -> None:
         axes = figure.subplots()
@@ -31,17 +31,17 @@ def map_svg(data: StickMap) -> str:
             place = data.point.Qf, data.point.sf
             axes.plot(*place, "*", ms=15, mfc="white", mec="black", clip_on=False, zorder=5, label="the scene's loads")
             avoided = np.vstack([avoided, place])
-        axes.tick_params(pad=9)  # a scene without dQ or dsigma is marked on an axis
+        axes.tick_params(pad=9)  # room for the mark of a scene without dQ or dsigma, on an axis
         axes.set_title(data.scene.name if data.scene else "hertz", loc="left", fontsize=10)
         axes.legend(loc="upper left", bbox_to_anchor=(1.03, 1.0), frameon=False)
-        figure.draw_without_rendering()  # labels must know how large the axes are
+        figure.draw_without_rendering()  # label_lines needs the final size of the axes
         _draw_lines(axes, data, avoided)
 
     return svg(draw, (7.4, 4.6))
 
 
 def _draw_lines(axes: "Axes", data: StickMap, avoided: Array) -> None:
-    """Lines of equal m and n, labelled."""
+    """Draw labelled lines of equal m and n."""
     lines, texts = [], []
     for of, style, found in (("m", "-", data.m_lines), ("n", "--", data.n_lines)):
         for at, Qf, sf in found:
@@ -52,7 +52,8 @@ def _draw_lines(axes: "Axes", data: StickMap, avoided: Array) -> None:
 
 
 def ends_svg(data: StickMap) -> str:
-    """The ends of the stick zone against dsigma a/dQ, one panel for each constant dQ (the paper's last figure)."""
+    """Return the ends of the stick zone over dsigma a/dQ as SVG, one panel per constant dQ (the paper's last
+    figure). ``data`` is the map."""
 
     def draw(figure: "Figure") -> None:
         panels = figure.subplots(2, 2, sharex=True, sharey=True)
@@ -68,9 +69,8 @@ def ends_svg(data: StickMap) -> str:
 
 
 def _draw_ends(axes: "Axes", data: StickMap, number: int) -> None:
-    """The stick zone of one of the curves, and where small tension turns large."""
-    zone = data.curves.zone
-    Qf, sf, m, n = (values[number] for values in (data.curves.Qf, data.curves.sf, zone.m, zone.n))
+    """Draw the stick zone of one curve, and the transition from small to large tension."""
+    Qf, sf, m, n = (values[number] for values in data.curves[:4])
     ratio, turn = sf / (np.pi * Qf), data.turns.sf[number] / (np.pi * data.turns.Qf[number])
     axes.fill_between(ratio, -m, n, color="0.88", lw=0, label="stick zone [-m, n]")
     axes.plot(ratio, n, color="black", lw=1.4, ls="--", label="n/a")

@@ -1,4 +1,4 @@
-"""The files of a stick-zone map, and a scene's place on it in words."""
+"""Files of a stick-zone map, and the scene's place on the map as text."""
 
 from pathlib import Path
 
@@ -12,29 +12,33 @@ from partialslip.report import rows
 
 
 def write_map(data: StickMap, folder: Path) -> list[Path]:
-    """Write map.svg, ends.svg and map.csv of the map ``data`` into ``folder``. Returns the files' paths. Raises
-    InputError if the folder cannot be written.
+    """Write map.svg, ends.svg and map.csv of the map ``data`` into ``folder``. Returns the paths.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
     """
     texts = {"map.svg": map_svg(data), "ends.svg": ends_svg(data), "map.csv": map_csv(data)}
     return write_texts(folder, texts)
 
 
 def map_csv(data: StickMap) -> str:
-    """The grid's stick zones, one row a point; dQ (N/m) and dsigma (Pa) where there is a scene."""
-    grid, zone = data.grid, data.grid.zone
-    regime = np.where(zone.s > 0, "small tension", "large tension")
+    """Return the grid's stick zones of ``data`` as CSV, one row per point; with dQ (N/m) and dsigma (Pa) of a scene."""
+    grid = data.grid
+    regime = np.where(grid.s > 0, "small tension", "large tension")
     regime[(grid.Qf == 0) & (grid.sf == 0)] = "stuck"
     columns = {"Qf": grid.Qf, "sf": grid.sf}
     if data.scene and data.pressed:
         f = data.scene.friction.f
         columns |= {"dQ": 2 * f * data.pressed.P * grid.Qf, "dsigma": f * data.pressed.p0 * grid.sf}
-    columns |= {"m_over_a": zone.m, "n_over_a": zone.n, "half_width_over_a": zone.half_width}
+    columns |= {"m_over_a": grid.m, "n_over_a": grid.n, "half_width_over_a": grid.half_width}
     values = (column.ravel().tolist() for column in (*columns.values(), regime))
     return csv_text([*columns, "regime"], zip(*values, strict=True))
 
 
 def place(data: StickMap) -> list[str]:
-    """Where the scene of the map ``data`` is on it, and its limits, in lines of text; none without a scene."""
+    """Return regime, stick zone and limits of the scene of the map ``data`` as lines of text; empty without a scene."""
     if data.scene is None:
         return []
     name, point = data.scene.name, data.point

@@ -1,7 +1,7 @@
-"""The data of the stick-zone map: stick zones over all loads at once, lengths as fractions of a.
+"""Data of the stick-zone map: stick zones over a grid of loads, lengths as fractions of a.
 
-Loads are scaled by the friction: Qf = dQ/(2 f P) and sf = dsigma/(f p0) with p0 = 2 P/(pi a). The map is that of
-positive dQ and dsigma; other signs follow by symmetry.
+Loads are scaled by the friction: Qf = dQ/(2 f P) and sf = dsigma/(f p0) with p0 = 2 P/(pi a). The map shows positive
+dQ and dsigma; other signs follow by symmetry.
 """
 
 import math
@@ -17,32 +17,45 @@ from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zones, transition
-from partialslip.result import Result, StickZone
+from partialslip.result import Result
 from partialslip.run import run
 from partialslip.scene import Scene
 
-_TOP = 10.0  # of sf; more where the scene's point needs it, up to
-_HIGHEST = 40.0
-_COUNT = 50  # of steps along either axis
-_COUNT_KINKED = 25  # where the pressure has corners, which take their time
+_TOP = 10.0  # largest sf, unless the scene's point is higher
+_HIGHEST = 40.0  # largest sf of a scene's point on the map
+_COUNT = 50  # steps along either axis
+_COUNT_KINKED = 25  # the same for a pressure with corners, which is slower
 M_LEVELS = (0.2, 0.4, 0.6, 0.8, 0.9)
 N_LEVELS = (-0.8, -0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6, 0.8)
-_AT_ONCE = 128  # zones between two tellings of progress
+_AT_ONCE = 128  # zones between two calls of progress
 _CONSTANT = np.array([0.2, 0.4, 0.6, 0.8])  # Qf of the curves over dsigma a/dQ, which is sf/(pi Qf)
 _RATIOS = np.linspace(0, 8, 51)
-_ALONG = 101  # points of a line
+_ALONG = 101  # points per line
 
 
-class LoadedZones(NamedTuple):
-    """Loads ``Qf`` and ``sf`` and their stick zones ``zone``, as fractions of a: arrays of one shape."""
+class Zones(NamedTuple):
+    """Stick zones [-m, n] with their loads.
+
+    Parameters
+    ----------
+    Qf, sf : arrays of one shape
+        Scaled loads.
+    m, n, half_width : arrays of the same shape
+        Ends and half-width of the stick zone, as fractions of a.
+    s : array of the same shape
+        +1 where both ends slip in the same direction, -1 where they slip in opposite directions.
+    """
 
     Qf: Array
     sf: Array
-    zone: StickZone[Array]
+    m: Array
+    n: Array
+    half_width: Array
+    s: Array
 
 
 class Line(NamedTuple):
-    """The loads (points,) that give one end of the stick zone its place ``at`` (m or n)."""
+    """Line of scaled loads ``Qf`` and ``sf`` (points,) of constant m or n, ``at``, as a fraction of a."""
 
     at: float
     Qf: Array
@@ -51,8 +64,17 @@ class Line(NamedTuple):
 
 @dataclass(frozen=True)
 class Point:
-    """Where a scene lies on the map: the sizes of its scaled loads, and what the ``exact`` method says of it.
-    ``mirrored``: its loads differ in sign, so that m and n change places on the map."""
+    """Point of a scene on the map.
+
+    Parameters
+    ----------
+    Qf, sf : float
+        Absolute values of the scaled loads.
+    mirrored : bool
+        Whether dQ and dsigma differ in sign; m and n are then swapped on the map.
+    exact : Result
+        Result of the exact method.
+    """
 
     Qf: float
     sf: float
@@ -62,20 +84,34 @@ class Point:
 
 @dataclass(frozen=True)
 class StickMap:
-    """``grid``: (rows of equal sf, columns of equal Qf). ``m_lines`` and ``n_lines``: loads of equal m and equal n.
-    ``border``: between small and large tension, where m = a. ``curves``: (curves of equal Qf, points), with that
-    border among the points; ``turns``: there, (curves,).
+    """The stick-zone map.
 
-    ``scene`` and ``pressed`` are None for Hertz in general; ``point`` is None where there is no scene, or where it is
-    not on the map: ``missing`` says why.
+    Parameters
+    ----------
+    grid : Zones
+        Stick zones over the loads, (rows of equal sf, columns of equal Qf).
+    m_lines, n_lines : list of Line
+        Lines of equal m and of equal n.
+    border : Line
+        Border between small and large tension, where m = a.
+    curves : Zones
+        (curves of equal Qf, points), the point on the border included.
+    turns : Zones
+        Points of the curves on the border, (curves,).
+    scene, pressed : Scene and Contact, or None
+        The scene and its normal contact; None for Hertz in general.
+    point : Point or None
+        Point of the scene; None without a scene, or if the scene is not on the map.
+    missing : str
+        Why the scene is not on the map.
     """
 
-    grid: LoadedZones
+    grid: Zones
     m_lines: list[Line]
     n_lines: list[Line]
     border: Line
-    curves: LoadedZones
-    turns: LoadedZones
+    curves: Zones
+    turns: Zones
     scene: Scene | None = None
     pressed: Contact | None = None
     point: Point | None = None
@@ -83,8 +119,14 @@ class StickMap:
 
 
 def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lambda _: None) -> StickMap:
-    """The map for the pressure of ``scene``, without one for Hertz. ``progress`` is called with a line of text now and
-    then.
+    """Compute the stick-zone map.
+
+    Parameters
+    ----------
+    scene : Scene, optional
+        Scene with the profile of the map; default: Hertz.
+    progress : callable
+        ``progress(line)``: called from time to time with a line of text.
 
     Raises
     ------
@@ -94,7 +136,7 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
     if scene is None:
         return _mapped(Hertz(), _TOP, progress)
     if scene.friction.f == 0:
-        raise InputError("friction.f = 0: must be > 0 for a map; without friction nothing sticks")
+        raise InputError("friction.f = 0: must be > 0 for a map: without friction there is no stick zone")
     pressed = contact(scene)
     point, missing = _point(scene, pressed)
     top = max(_TOP, math.ceil(1.2 * point.sf)) if point else _TOP
@@ -119,15 +161,18 @@ def _mapped(shape: Shape, top: float, progress: Callable[[str], None]) -> StickM
 
 
 def _m_lines(m: float, shape: Shape) -> tuple[Line, Line]:
-    """Small and large tension. n goes from m, where dsigma or dQ is zero, to -m, where the stick zone has gone: the
-    loads of a stick zone are explicit (docs/theory.md, section 4)."""
+    """Return the lines of equal m for small and large tension.
+
+    n runs from m (dsigma or dQ is zero) to -m (no stick zone is left). The loads are explicit functions of the stick
+    zone (docs/theory.md, section 4).
+    """
     c = m * _half_widths(0.0, 1.0)
     small, large = (shape.conditions(1 - m + 0 * c, c, s + 0 * c) for s in (1, -1))
     return Line(m, small.Qf, small.sf), Line(m, large.Qf, large.sf)
 
 
 def _n_line(n: float, shape: Shape) -> Line:
-    """m goes from n or -n to 1 (small tension), and back (large tension)."""
+    """Return the line of equal n: m runs from |n| to 1 (small tension), and back (large tension)."""
     c = _half_widths(max(n, 0.0), (1 + n) / 2)
     c, s = np.concatenate([c, c[-2::-1]]), np.repeat([1, -1], [len(c), len(c) - 1])
     loads = shape.conditions(np.maximum(1 + n - 2 * c, 0.0), c, s)
@@ -135,23 +180,23 @@ def _n_line(n: float, shape: Shape) -> Line:
 
 
 def _half_widths(low: float, high: float) -> Array:
-    """Half-widths that crowd towards the lower one, and end before zero."""
+    """Return half-widths from just above ``low`` to ``high``, denser towards ``low``."""
     return low + (high - low) * np.linspace(1e-4, 1, _ALONG) ** 3
 
 
-def _zones(Qf: Array, sf: Array, shape: Shape, progress: Callable[[float], None] = lambda _: None) -> LoadedZones:
-    """Some at a time, as corners in the pressure take their time; ``progress`` is told the share that is done."""
+def _zones(Qf: Array, sf: Array, shape: Shape, progress: Callable[[float], None] = lambda _: None) -> Zones:
+    """Compute stick zones in batches and call ``progress`` with the share done: a pressure with corners is slow."""
     parts = []
     for start in range(0, Qf.size, _AT_ONCE):
         progress(start / Qf.size)
         part = slice(start, start + _AT_ONCE)
         parts.append(stick_zones(Qf.ravel()[part], sf.ravel()[part], shape))
-    zone = StickZone(*(np.concatenate(values).reshape(Qf.shape) for values in zip(*parts, strict=True)))
-    return LoadedZones(Qf, sf, zone)
+    centre, half_width, s = (np.concatenate(values).reshape(Qf.shape) for values in zip(*parts, strict=True))
+    return Zones(Qf, sf, half_width - centre, half_width + centre, half_width, s)
 
 
 def _point(scene: Scene, pressed: Contact) -> tuple[Point | None, str]:
-    """The scene's point, or why it has none."""
+    """Return the scene's point, or None and the reason."""
     load, f = scene.load, scene.friction.f
     if not load.in_phase:
         return None, "Q and sigma are out of phase"

@@ -57,7 +57,7 @@ def label_lines(axes: "Axes", lines: Sequence[Array], texts: Sequence[str], avoi
 def label_places(lines: Sequence[Array], avoided: Array, width: float) -> list[tuple[Array, Array] | None]:
     """Return place (2,) and direction (2,) of the label of each line; None where there is no room.
 
-    Coordinates of ``lines`` (n, 2) and ``avoided`` points (k, 2), and ``width`` of the axes, are in heights of the axes.
+    All lengths are in heights of the axes: ``lines`` (n, 2), ``avoided`` points (k, 2), and ``width`` of the axes.
     """
     shape = np.array([width, 1.0])
     paced = [_paced(line) for line in lines]

@@ -1,1 +1,1 @@
-"""Studies: many cases of a scene, each finished one kept, and what they say together."""
+"""Studies: solve many cases of a scene, save each finished case, and evaluate the cases together."""

@@ -1,1 +1,1 @@
-"""What accuracy costs: the study of cost, and the price list made from it."""
+"""The study of cost: CPU seconds against accuracy, and the price list fitted to them."""

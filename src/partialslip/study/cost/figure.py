@@ -1,4 +1,4 @@
-"""Figures of a cost study, legible in black and white: error against CPU, and where the time goes."""
+"""Figures of a cost study, legible in black and white: error against CPU seconds, and CPU seconds by phase."""
 
 from collections.abc import Sequence
 from itertools import cycle
@@ -19,7 +19,10 @@ _HATCHES = ("", "////", "....", "xxxx", "----", "\\\\\\\\", "oooo", "++++")
 
 
 def errors_svg(points: Sequence[Point], peers: Sequence[Point], title: str) -> str:
-    """Errors of the ends of the stick zone, and of q, against CPU seconds of the whole process."""
+    """Return errors of n and q against CPU seconds of the whole process as SVG.
+
+    ``points`` are results of partialslip, ``peers`` of other codes.
+    """
 
     def draw(figure: "Figure") -> None:
         panels = figure.subplots(1, 2, sharex=True)
@@ -53,7 +56,7 @@ def errors_svg(points: Sequence[Point], peers: Sequence[Point], title: str) -> s
 
 
 def phases_svg(points: Sequence[Point], title: str) -> str:
-    """Where the CPU seconds of the finite elements go, and how they grow with the unknowns."""
+    """Return CPU seconds of the finite elements by phase, and over the unknowns, as SVG; ``points`` as measured."""
     found = sorted((point for point in points if point.series == "P4, adapted"), key=lambda point: point.counts["dofs"])
     names = list(dict.fromkeys(name for point in found for name in point.phases))
 

@@ -1,4 +1,4 @@
-"""What accuracy costs: errors against CPU seconds, over a ladder of settings of every method."""
+"""Errors against CPU seconds, over a ladder of settings of every method."""
 
 import json
 from collections.abc import Callable, Iterable, Sequence
@@ -38,11 +38,24 @@ _SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)
 
 @dataclass(frozen=True)
 class Point:
-    """Medians over the repeats of one ``setting``, of a ``series`` of them.
+    """Medians over the repeats of one setting.
 
-    ``errors`` by quantity, against the exact solution (a, m and n in a, p and q in the relative L2 norm of cell means);
-    ``cpu_s`` of the method, by ``phases``, ``process_s`` of the whole process, ``report_s`` of writing the report (not
-    in the former), all CPU seconds; ``wall_s``; ``peak_rss_mb``, memory; ``counts`` of work.
+    Parameters
+    ----------
+    series, setting : str
+        Name of the series of settings, and of the setting.
+    errors : dict of str to float
+        Errors against the exact solution: a, m and n as fractions of a, p and q in relative L2 of cell averages.
+    cpu_s, process_s, report_s : float
+        CPU seconds of the method, of the whole process without the report, and of writing the report.
+    wall_s : float
+        Wall seconds.
+    peak_rss_mb : float
+        Peak memory, MB.
+    phases : dict of str to float
+        CPU seconds of the method by phase.
+    counts : dict of str to int
+        Counts of work.
     """
 
     series: str
@@ -58,23 +71,23 @@ class Point:
 
     @property
     def ends(self) -> float:
-        """The larger error of m and n; of a where nothing sticks."""
+        """The larger error of m and n; the error of a where nothing sticks. Fractions of a."""
         of_stick = [self.errors[key] for key in ("m", "n") if key in self.errors]
         return max(of_stick) if of_stick else self.errors["a"]
 
 
 def ladder(scene: Scene) -> list[Job]:
-    """The settings that ``scene`` is solved with, cheapest first within each series.
+    """Return the jobs for all settings of ``scene``, cheapest first within each series.
 
     Raises
     ------
     InputError
-        If there is nothing exact to compare with.
+        If the exact method cannot solve the scene.
     """
     reference = default_methods(scene)[0]
     if reference != "exact" or scene.finite:
         raise InputError(
-            f"{scene.name}: a cost study needs the exact method: bodies alike, half-planes, loads in phase"
+            f"{scene.name}: a cost study needs the exact method: half-planes of equal material, loads in phase"
         )
     cases = [_case(scene, ("exact",), "exact", "", {})]
     if plan(scene).needs("friction"):
@@ -105,11 +118,16 @@ def _case(scene: Scene, methods: tuple[str, ...], series: str, setting: str, fem
 def measure(
     scene: Scene, ledger: Ledger, repeats: int, progress: Callable[[int, int, str], None] = lambda *_: None
 ) -> list[Point]:
-    """Solve the ladder of ``scene`` ``repeats`` times, each setting in a process of its own, but for what ``ledger``
-    has.
+    """Solve the ladder of ``scene``, one new process per job. Jobs in ``ledger`` are not solved again.
 
-    One repeat of all settings comes after the other, so that what disturbs the machine for a while disturbs no setting
-    alone. ``progress`` is called with how many are done, how many there are, and the next one in words.
+    Parameters
+    ----------
+    scene : Scene
+    ledger : Ledger
+    repeats : int
+        Each repeat runs the whole ladder, so that other load on the machine affects all settings alike.
+    progress : callable
+        ``progress(done, total, next)``, with the next setting as text.
     """
     cases = ladder(scene)
     runs = [
@@ -124,7 +142,7 @@ def measure(
 
 
 def points(entries: Iterable[Solved]) -> list[Point]:
-    """Medians of the ``entries`` of a ledger, setting by setting."""
+    """Return medians of the ``entries`` of a ledger by setting."""
     by_setting: dict[tuple[str, str], list[Solved]] = {}
     for entry in entries:
         if entry.run:
@@ -152,14 +170,15 @@ def _point(series: str, setting: str, entries: Sequence[Solved]) -> Point:
 
 
 def _method(run: Record) -> ResultRecord:
-    """The method that ``run`` compares with the exact one; the exact one where that is alone."""
+    """Return the method of ``run`` other than exact; exact if there is no other."""
     return next((found for name, found in run.methods.items() if name != "exact"), run.methods["exact"])
 
 
 def read_peers(path: Path, scene: str) -> list[Point]:
-    """Other codes' results for ``scene`` from the file ``path``, one a line as JSON: ``scene``, ``method``,
-    ``setting``, ``element_size``, ``dofs``, ``errors``, ``cpu_s``, ``process_cpu_s``, ``wall_s`` and ``peak_rss_mb``
-    (see ``benchmarks/peers``).
+    """Read other codes' results for ``scene`` from the file ``path``, one JSON object per line.
+
+    Keys: ``scene``, ``method``, ``setting``, ``element_size``, ``dofs``, ``errors``, ``cpu_s``, ``process_cpu_s``,
+    ``wall_s`` and ``peak_rss_mb`` (see ``benchmarks/peers``).
 
     Raises
     ------
@@ -190,7 +209,9 @@ def read_peers(path: Path, scene: str) -> list[Point]:
                     )
                 )
         except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
-            raise InputError(f"--peers {path}: line {number}: must be a peer's result ({error})") from None
+            raise InputError(
+                f"--peers {path}: line {number}: must be a JSON result of another code, see benchmarks/peers ({error})"
+            ) from None
     return found
 
 
@@ -199,7 +220,7 @@ def _short(setting: str) -> str:
 
 
 def front(points: Iterable[Point]) -> list[Point]:
-    """Those of ``points`` that no other one beats in CPU seconds of the process and in m and n, cheapest first."""
+    """Return the Pareto front of ``points``, cheapest first: CPU seconds of the process against errors of m and n."""
     best, found = np.inf, []
     for point in sorted((point for point in points if point.errors), key=lambda point: (point.process_s, point.ends)):
         if point.ends < best:
@@ -209,15 +230,15 @@ def front(points: Iterable[Point]) -> list[Point]:
 
 
 def slope(x: Sequence[float], y: Sequence[float]) -> float:
-    """The exponent k of the power law ``y = C x^k`` by least squares in logarithms; NaN for fewer than two points."""
+    """Return k of the power law ``y = C x^k``, by least squares in logarithms; NaN for fewer than two points."""
     if len(x) < 2:
         return float("nan")
     return float(np.polyfit(np.log(x), np.log(np.maximum(y, 1e-300)), 1)[0])
 
 
 def slopes(points: Iterable[Point]) -> dict[str, dict[str, float]]:
-    """By series of finite elements among ``points``: exponents of the errors of m, n and q against unknowns, and of CPU
-    seconds."""
+    """Return exponents of the errors of m, n and q and of CPU seconds against unknowns, by series of finite elements
+    among ``points``."""
     by_series: dict[str, list[Point]] = {}
     for point in points:
         if "dofs" in point.counts:
@@ -233,8 +254,21 @@ def slopes(points: Iterable[Point]) -> dict[str, dict[str, float]]:
 
 
 def against(ours: Sequence[Point], peer: Sequence[Point], key: str) -> dict[str, float]:
-    """What a ``peer``'s best error in ``key`` costs here, over what it costs there (CPU of the method, and of the
-    process), and the best error here at its CPU, over its own; NaN where ``ours`` never get there."""
+    """Compare points of partialslip with points of another code.
+
+    Parameters
+    ----------
+    ours, peer : sequence of Point
+    key : str
+        Quantity whose error is compared.
+
+    Returns
+    -------
+    dict of str to float
+        ``error``: best error of the peer. ``cpu``, ``process``: CPU seconds of partialslip for the same error, of the
+        method and of the process, over the peer's. ``error at its cpu``: best error of partialslip within the peer's
+        CPU seconds, over the peer's. NaN where no point of ``ours`` qualifies.
+    """
     best = min((point for point in peer if key in point.errors), key=lambda point: point.errors[key])
     good = [point for point in ours if point.errors.get(key, np.inf) <= best.errors[key]]
     in_time = [point.errors[key] for point in ours if key in point.errors and point.cpu_s <= best.cpu_s]
@@ -247,7 +281,7 @@ def against(ours: Sequence[Point], peer: Sequence[Point], key: str) -> dict[str,
 
 
 def table(points: Sequence[Point]) -> tuple[list[str], list[list[float | str]]]:
-    """Headings and rows for a CSV file: every figure of all ``points``."""
+    """Return headings and rows for a CSV file with all values of ``points``."""
     phases = list(dict.fromkeys(phase for point in points for phase in point.phases))
     counts = list(dict.fromkeys(count for point in points for count in point.counts))
     costs = ["cpu_s", "process_s", "report_s", "wall_s", "peak_rss_mb"]
@@ -267,5 +301,5 @@ def table(points: Sequence[Point]) -> tuple[list[str], list[list[float | str]]]:
 
 
 def errors_of(points: Iterable[Point], key: str) -> Array:
-    """(k, 2) array: CPU seconds of the process and the error in ``key``, of those ``points`` that have one."""
+    """Return CPU seconds of the process and error in ``key``, (k, 2), of the ``points`` with an error in ``key``."""
     return np.array([[point.process_s, point.errors[key]] for point in points if key in point.errors]).reshape(-1, 2)

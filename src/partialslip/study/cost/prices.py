@@ -1,10 +1,9 @@
-"""The price list: what a run by finite elements of some accuracy will cost, fitted to a ledger of measured cases.
+"""The price list: predicted CPU seconds of a finite-element run by accuracy, fitted to a ledger of measured cases.
 
-CPU seconds of the method are taken as exp(c0 + c1 d + c2 d^2), d = log10(1/accuracy), by the order of the elements,
-times a factor of the profile's kind and one of SuperLU, that grows with d; twice that for bodies that are not mirror
-images.
-Start, report and the other methods come on top. CPU seconds depend on the machine and on what else it does, so that all
-are scaled by what the start of this very process took. Long paths of loads cost more.
+CPU seconds of the method are modelled as exp(c0 + c1 d + c2 d^2) with d = log10(1/accuracy) and c by element order,
+times a factor of the profile's kind and a factor of SuperLU, which grows with d. Bodies that are not mirror images cost
+twice as much. Start, report and the other methods are added. All seconds are scaled by the CPU seconds that this
+process took to start, because they depend on the machine and on other load. Long load paths cost more than predicted.
 """
 
 import importlib.util
@@ -28,14 +27,25 @@ if TYPE_CHECKING:
     from partialslip.batch.job import Solved
 
 _FINEST, _COARSEST = 1e-9, 1e-2
-_CHOICES = 141  # accuracies between the two
-_SPEEDS = 0.2, 5.0  # of this process: a start that took longer had other reasons
+_CHOICES = 141  # number of accuracies from _COARSEST to _FINEST
+_SPEEDS = 0.2, 5.0  # limits of the scale factor: a slower start has other reasons than the machine
 
 
 @dataclass(frozen=True)
 class Price:
-    """What a run by finite elements of ``order`` at ``accuracy`` (of a) is expected to cost: ``cpu_s`` of the whole
-    process, ``start_s`` and ``closing_s`` of which go into its start and into report and end."""
+    """Predicted cost of a finite-element run.
+
+    Parameters
+    ----------
+    order : int
+        Order of the elements.
+    accuracy : float
+        Accuracy, as a fraction of a.
+    cpu_s : float
+        CPU seconds of the whole process.
+    start_s, closing_s : float
+        Parts of ``cpu_s`` for the start, and for report and exit.
+    """
 
     order: int
     accuracy: float
@@ -45,7 +55,7 @@ class Price:
 
     @property
     def overrides(self) -> list[str]:
-        """The setting, as :func:`partialslip.load_scene` takes it."""
+        """Settings of order and accuracy for :func:`partialslip.load_scene`."""
         return [f"fem.order={self.order}", f"fem.accuracy={self.accuracy!r}"]
 
     def __str__(self) -> str:
@@ -60,19 +70,19 @@ class Prices(msgspec.Struct, frozen=True, kw_only=True):
     orders : dict
         c0, c1 and c2 by element order, with CHOLMOD and a Hertz contact.
     kinds : dict
-        Logarithms of the factors of the profiles' kinds.
+        Logarithm of the factor by kind of profile.
     superlu : tuple
-        Logarithm of SuperLU's factor, and how much it grows with each digit.
+        Logarithm of SuperLU's factor, and its increase per digit.
     finest : dict
-        The finest accuracy that each order was measured at: it is not offered beyond, unless none is.
+        Finest measured accuracy by order. An order is not offered beyond, except the order measured finest.
     methods : dict
         CPU seconds of the other methods.
     start, closing : float
-        CPU seconds until the work starts, and of the report and the end.
+        CPU seconds of the start, and of report and exit.
     spread : float
-        The factor within which nine of ten cases of the fit are.
+        Factor between predicted and measured cost that nine of ten fitted cases do not exceed.
     machine : str
-        What it was measured on.
+        Machine of the measurements.
     """
 
     orders: dict[str, tuple[float, float, float]]
@@ -93,10 +103,18 @@ class Prices(msgspec.Struct, frozen=True, kw_only=True):
         methods: Sequence[str] = ("exact", "fem"),
         start: float | None = None,
     ) -> Price:
-        """What ``scene`` costs by the ``methods``, fem with elements of ``order`` at ``accuracy``.
+        """Return the price of ``scene`` by ``methods``, with finite elements of ``order`` at ``accuracy``.
 
-        ``start`` is the CPU seconds that the start of this process has taken; without it, the process is taken to be as
-        fast as the machine of the list.
+        Parameters
+        ----------
+        scene : Scene
+        accuracy : float
+            Fraction of a.
+        order : int
+            Order of the elements.
+        methods : sequence of str
+        start : float, optional
+            CPU seconds that this process took to start; default: as on the machine of the measurements.
         """
         speed = float(np.clip(start / self.start, *_SPEEDS)) if start else 1.0
         digits = math.log10(1 / accuracy)
@@ -111,7 +129,7 @@ class Prices(msgspec.Struct, frozen=True, kw_only=True):
     def cheapest(
         self, scene: Scene, accuracy: float, methods: Sequence[str] = ("exact", "fem"), start: float | None = None
     ) -> Price:
-        """The least price of ``accuracy`` for ``scene``; ``methods`` and ``start`` as for :meth:`price`."""
+        """Return the lowest price of ``accuracy`` for ``scene``; ``methods`` and ``start`` as for :meth:`price`."""
         least = min(self.finest.values())
         offered = [order for order, finest in self.finest.items() if finest <= max(accuracy, least) * 1.01]
         prices = (self.price(scene, accuracy, int(order), methods, start) for order in offered)
@@ -120,19 +138,20 @@ class Prices(msgspec.Struct, frozen=True, kw_only=True):
     def best(
         self, scene: Scene, budget: float, methods: Sequence[str] = ("exact", "fem"), start: float | None = None
     ) -> Price:
-        """The best accuracy to be had of ``scene`` for ``budget`` CPU seconds; ``methods`` and ``start`` as for
-        :meth:`price`.
+        """Return the price of the finest accuracy of ``scene`` within ``budget`` CPU seconds.
+
+        ``methods`` and ``start`` as for :meth:`price`.
 
         Raises
         ------
         InputError
-            If even 1e-2 costs more.
+            If an accuracy of 1e-2 costs more than the budget.
         """
         least = self.cheapest(scene, _COARSEST, methods, start)
         if least.cpu_s > budget:
             raise InputError(
-                f"--budget {budget:g}s: must be at least {math.ceil(10 * least.cpu_s) / 10:g}s here and now, the price "
-                f"of {_COARSEST:g} a by finite elements; the exact method alone (--with exact) takes less"
+                f"--budget {budget:g}s: must be at least {math.ceil(10 * least.cpu_s) / 10:g} s on this machine, the "
+                f"price of an accuracy of {_COARSEST:g} a; or use the exact method alone (--with exact)"
             )
         accuracies = np.geomspace(_COARSEST, max(_FINEST, min(self.finest.values())), _CHOICES)
         prices = (self.cheapest(scene, asked, methods, start) for asked in accuracies.tolist())
@@ -140,22 +159,28 @@ class Prices(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def load_prices() -> Prices:
-    """The shipped price list."""
+    """Return the shipped price list."""
     text = (resources.files("partialslip.study.cost") / "prices.json").read_text("utf-8")
     return msgspec.json.decode(text, type=Prices)
 
 
 def fit(entries: "Iterable[Solved]", overheads: Mapping[str, float], machine: str) -> Prices:
-    """The price list of adapted finite elements by the ``entries`` of a ledger, measured on ``machine``.
+    """Fit the price list of adapted finite elements.
 
-    Cases that :func:`partialslip.batch.job.solve_apart` has measured are scaled by the start of their processes, as
-    the machine may have been busy with other things. ``overheads`` are the seconds "start" and "closing", and those of
-    other methods by their names.
+    Parameters
+    ----------
+    entries : iterable of Solved
+        Entries of a ledger. Cases from :func:`partialslip.batch.job.solve_apart` are scaled by the start of the
+        process, because the machine may have had other load.
+    overheads : mapping of str to float
+        CPU seconds "start" and "closing", and of other methods by name.
+    machine : str
+        Machine of the measurements.
 
     Raises
     ------
     InputError
-        If there are fewer than ten.
+        If there are fewer than ten cases.
     """
     cases = []
     for entry in entries:
@@ -178,7 +203,7 @@ def fit(entries: "Iterable[Solved]", overheads: Mapping[str, float], machine: st
             for order, kind, other, digits, *_ in cases
         ]
     )
-    # prices do not fall with the digits
+    # prices must not decrease with the digits
     lower = np.concatenate([np.tile([-np.inf, 0.0, 0.0], len(orders)), np.full(len(kinds) + 2, -np.inf)])
     guess = np.maximum(lower, np.zeros(columns.shape[1])) + 0.01
 
@@ -204,17 +229,17 @@ def fit(entries: "Iterable[Solved]", overheads: Mapping[str, float], machine: st
 
 
 def to_json(prices: Prices) -> str:
-    """``prices`` as :func:`load_prices` reads them."""
+    """Return ``prices`` as JSON for :func:`load_prices`."""
     return json.dumps(msgspec.to_builtins(prices), indent=1) + "\n"
 
 
 def _bodies(scene: Scene) -> int:
-    """Bodies to mesh and to factor."""
+    """Return the number of bodies to mesh and to factor."""
     return 1 if scene.mirrored and scene.fem.lower_size == 1 and not plan(scene).needs("coupling") else 2
 
 
 def _kind(scene: Scene) -> str:
-    """Of its profile, as a scene file names it."""
+    """Return the kind of the scene's profile, as named in scene files."""
     return str(type(scene.profile).__struct_config__.tag)
 
 

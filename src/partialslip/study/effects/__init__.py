@@ -1,1 +1,1 @@
-"""What each effect is worth and what it costs: the study of effects."""
+"""The study of effects: changes and costs caused by each effect."""

@@ -1,4 +1,4 @@
-"""The picture of the ledger of effects, legible in black and white: what each changes, and what it costs."""
+"""Figure of the study of effects, legible in black and white: changes and costs by effect."""
 
 from typing import TYPE_CHECKING
 
@@ -9,12 +9,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_LEAST = 1e-14  # changes below it are shown there
+_LEAST = 1e-14  # smaller changes are drawn here
 _MARKS = {"a": ("o", "white"), "m": ("<", "white"), "n": (">", "white"), "q": ("s", "black"), "q2": ("D", "0.7")}
 
 
 def effects_svg(study: EffectStudy) -> str:
-    """On the left changes, on the right CPU seconds on and off."""
+    """Return the figure of ``study`` as SVG: changes on the left, CPU seconds with and without each effect on the
+    right."""
 
     def draw(figure: "Figure") -> None:
         changes, costs = figure.subplots(1, 2, sharey=True, width_ratios=(3, 2))

@@ -1,11 +1,10 @@
-"""The ledger of effects: each of them on and off, what it changes and what it costs, by finite elements.
+"""The ledger of effects: changes and costs of switching each effect on and off, by finite elements.
 
-All on one element size along the contact, so that an effect is not mixed up with another mesh.
+All runs have one element size along the contact, so that changes are not due to the mesh.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import msgspec
 import numpy as np
@@ -16,11 +15,12 @@ from partialslip.judge import cell_errors
 from partialslip.output.csv import csv_text
 from partialslip.plan import Effect, Plan, plan, reduced
 from partialslip.report.rows import engineering
-from partialslip.result import Result
+from partialslip.result import Regime, Result
+from partialslip.result.record import Number, number
 from partialslip.scene import Scene
 
 SCHEMA = "partialslip/effects/1"
-SIZE = 0.02  # of elements, in contact half-widths, where the scene gives none
+SIZE = 0.02  # default element size, in contact half-widths
 CHANGES = ("a", "m", "n", "q", "q2")
 COSTS = {
     "cpu_s": "CPU s",
@@ -31,17 +31,27 @@ COSTS = {
     "load_steps": "steps",
     "back_solves": "back-solves",
 }
-_REPEATS = 2  # the best CPU time of
+_REPEATS = 2  # runs per setting; the one with the least CPU time counts
 
 
 @dataclass(frozen=True)
 class Entry:
-    """An ``effect``, on and off.
+    """One effect, on and off.
 
-    ``called_for`` says whether the scene calls for it, and ``why``. ``changes``, between on and off: of a, m and n in
-    a, of q = (q2 - q1)/2 as relative L2 of cell averages, and of q2 as relative L2; None where there is nothing to
-    compare, as without a stick zone. ``costs``: (on, off) by name; of what is ``refused`` (why it cannot be switched)
-    only one of them is there.
+    Parameters
+    ----------
+    effect : str
+    called_for : bool
+        Whether the scene calls for the effect.
+    why : str
+        Why the effect is called for or left out.
+    refused : str
+        Why the effect cannot be switched; empty if it can.
+    changes : dict of str to float or None
+        Changes between on and off: a, m and n as fractions of a; q = (q2 - q1)/2 as relative L2 of cell averages; q2
+        as relative L2. None without values to compare, for example without a stick zone.
+    costs : dict of str to (float or None, float or None)
+        Costs (on, off) by name; only one of the two if refused.
     """
 
     effect: Effect
@@ -60,7 +70,17 @@ class Entry:
 
 @dataclass(frozen=True)
 class EffectStudy:
-    """A ``scene``, as solved, its ``plan`` and ``result``, and the ledger of its effects, the ``entries``."""
+    """The ledger of effects of one scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene as solved.
+    plan : Plan
+    result : Result
+        Result with the effects of the plan.
+    entries : tuple of Entry
+    """
 
     scene: Scene
     plan: Plan
@@ -68,21 +88,43 @@ class EffectStudy:
     entries: tuple[Entry, ...]
 
 
-def study_effects(scene: Scene, progress: Callable[[str], None] = lambda _: None) -> EffectStudy:
-    """Solve ``scene`` as its plan says, and once more with each of the effects turned over.
+class ResultSummary(msgspec.Struct, frozen=True):
+    """Summary of a :class:`partialslip.Result`, with the result's names and units."""
 
-    ``progress`` is called with the name of each effect. CPU times are the better of two, of meshes that are made anew.
+    a: Number
+    p0: Number
+    regime: Regime
+    m: Number
+    n: Number
+    counts: dict[str, int]
+    certificate: dict[str, Number]
+
+
+class EffectsRecord(msgspec.Struct, frozen=True):
+    """Content of ``worth.json``, in SI units: ``schema``, ``scene``, ``result`` and one entry per effect, ``effects``."""
+
+    schema: str
+    scene: Scene
+    result: ResultSummary
+    effects: tuple[Entry, ...]
+
+
+def study_effects(scene: Scene, progress: Callable[[str], None] = lambda _: None) -> EffectStudy:
+    """Solve ``scene`` with the effects of its plan, and once more with each effect switched.
+
+    Each setting is meshed and solved twice; the run with less CPU time counts. ``progress`` is called with the name of
+    each effect.
 
     Raises
     ------
     InputError
-        If the scene itself cannot be solved.
+        If the scene cannot be solved.
     MissingLibraryError
-        If gmsh, or a system library that it needs, is not there.
+        If gmsh, or a system library of gmsh, is missing.
     """
     scene = replace(scene, fem=replace(scene.fem, size=scene.fem.size or SIZE))
     own = plan(scene)
-    _solve(replace(scene, fem=replace(scene.fem, size=0.5)))  # imports, and what else only the first one pays
+    _solve(replace(scene, fem=replace(scene.fem, size=0.5)))  # warm-up: imports, and other costs of a first run
     progress("as planned")
     result = _measured(scene)
     entries = []
@@ -110,16 +152,16 @@ def _entry(scene: Scene, own: Plan, result: Result, effect: Effect) -> Entry:
 
 
 def _measured(scene: Scene) -> Result:
-    """By the quickest of a few runs."""
+    """Solve a few times and return the result with the least CPU time."""
     return min((_solve(scene) for _ in range(_REPEATS)), key=lambda result: result.cost.cpu_s)
 
 
 def _solve(scene: Scene) -> Result:
     from partialslip_fem import solve
 
-    its = plan(scene)
-    result = solve(reduced(scene), its)
-    its.accept(result.regime)
+    planned = plan(scene)
+    result = solve(reduced(scene), planned)
+    planned.accept(result.regime)
     return result
 
 
@@ -134,7 +176,7 @@ def _changes(on: Result, off: Result) -> dict[str, float | None]:
 
 
 def _apart(on: Result, off: Result) -> float | None:
-    """Relative L2 difference of q at load point 2."""
+    """Return the relative L2 difference of q at load point 2."""
     if on.traction.q2 is None or off.traction.q2 is None:
         return None
     x = on.traction.x
@@ -154,7 +196,7 @@ def _costs(result: Result) -> dict[str, float | None]:
 
 
 def changes_table(study: EffectStudy) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Headings and rows: what each effect of ``study`` changes."""
+    """Return headings and rows of the changes by each effect of ``study``."""
     rows = [
         (entry.effect, "called for" if entry.called_for else "left out", *(change(entry, key) for key in CHANGES))
         for entry in study.entries
@@ -163,7 +205,7 @@ def changes_table(study: EffectStudy) -> tuple[tuple[str, ...], list[tuple[str, 
 
 
 def costs_table(study: EffectStudy) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Headings and rows: what the scene of ``study`` costs as planned, and with each effect turned over."""
+    """Return headings and rows of the costs of ``study``: as planned, and with each effect switched."""
     rows = [("as planned", *map(_digits, _costs(study.result).values()))]
     for entry in study.entries:
         if not entry.refused:
@@ -173,12 +215,12 @@ def costs_table(study: EffectStudy) -> tuple[tuple[str, ...], list[tuple[str, ..
 
 
 def turned_over(entry: Entry) -> str:
-    """What is different where the effect of ``entry`` is not as the scene has it."""
+    """Return "without EFFECT" or "with EFFECT", for the run in which the effect of ``entry`` is switched."""
     return f"{'without' if entry.called_for else 'with'} {entry.effect}"
 
 
 def change(entry: Entry, key: str) -> str:
-    """The change of ``key`` by the effect of ``entry`` in digits; "-" where there is nothing to compare."""
+    """Return the change of ``key`` by the effect of ``entry`` as text; "-" without values to compare."""
     value = entry.changes.get(key)
     return "-" if value is None else "0" if value == 0 else f"{value:.1e}"
 
@@ -188,12 +230,12 @@ def _digits(cost: float | None) -> str:
 
 
 def notes(study: EffectStudy) -> list[str]:
-    """What cannot be switched in ``study``, in lines of text."""
+    """Return why effects of ``study`` cannot be switched, as lines of text."""
     return [entry.refused for entry in study.entries if entry.refused]
 
 
 def heading(study: EffectStudy) -> str:
-    """The scene of ``study``, and what it comes to with its own effects."""
+    """Return name, regime, a, m and n of the scene of ``study`` as one line."""
     result = study.result
     ends = ", ".join(
         f"{key} = {'none' if getattr(result, key) is None else f'{getattr(result, key) / result.a:.5f} a'}"
@@ -203,7 +245,7 @@ def heading(study: EffectStudy) -> str:
 
 
 def effects_csv(study: EffectStudy) -> str:
-    """The ledger of ``study``, one row an effect; fractions, CPU seconds and counts, empty where there is nothing."""
+    """Return the ledger of ``study`` as CSV, one row per effect; empty cells where there is no value."""
     costs = [f"{key}_{state}" for key in COSTS for state in ("on", "off")]
     rows = [
         [
@@ -219,13 +261,16 @@ def effects_csv(study: EffectStudy) -> str:
     return csv_text(["effect", "called_for", *(f"change_{key}" for key in CHANGES), *costs, "why", "refused"], rows)
 
 
-def effects_record(study: EffectStudy) -> dict[str, Any]:
-    """The ledger of ``study`` as plain data."""
+def effects_record(study: EffectStudy) -> EffectsRecord:
+    """Make the record of ``study``."""
     result = study.result
-    return {
-        "schema": SCHEMA,
-        "scene": msgspec.to_builtins(study.scene),
-        "result": {key: getattr(result, key) for key in ("a", "p0", "regime", "m", "n")}
-        | {"counts": dict(result.counts), "certificate": dict(result.certificate)},
-        "effects": [msgspec.to_builtins(entry) for entry in study.entries],
-    }
+    summary = ResultSummary(
+        a=number(result.a),
+        p0=number(result.p0),
+        regime=result.regime,
+        m=number(result.m),
+        n=number(result.n),
+        counts=dict(result.counts),
+        certificate={key: number(residual) for key, residual in result.certificate.items()},
+    )
+    return EffectsRecord(SCHEMA, study.scene, summary, study.entries)

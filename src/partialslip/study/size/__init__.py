@@ -1,1 +1,1 @@
-"""When a half-plane describes a body of a size: the study of sizes."""
+"""The study of sizes: how large a body must be to act as a half-plane."""

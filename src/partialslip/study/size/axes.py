@@ -1,4 +1,4 @@
-"""What a sweep goes over: parameters of a scene and their values, and the cases that they make."""
+"""Axes of a sweep: parameters of a scene and their values, and the cases of the grid."""
 
 import itertools
 import math
@@ -18,7 +18,7 @@ from partialslip.run import run
 from partialslip.scene import Scene
 from partialslip.scene.reading import parse_scene
 
-ACCURACY = "accuracy"  # the label that is not an axis
+ACCURACY = "accuracy"  # label of a case besides the axes
 _COUNT = 9
 _KEY = re.compile(r"(?:([0-9.]+(?:[eE][-+]?[0-9]+)?)\*)?([^*0-9].*|\*\..*)")
 _NUMBER = re.compile(r"([0-9.]+(?:[eE][-+]?[0-9]+)?)(a?)")
@@ -26,8 +26,16 @@ _NUMBER = re.compile(r"([0-9.]+(?:[eE][-+]?[0-9]+)?)(a?)")
 
 @dataclass(frozen=True)
 class Axis:
-    """A parameter to sweep over: its keys in the scene, each with how many times the value it is set to; and the
-    values, in the half-plane's contact half-widths where ``in_a`` is true."""
+    """One axis of a sweep.
+
+    Parameters
+    ----------
+    keys : mapping of str to float
+        Keys of the scene, each with the factor by which the value is multiplied.
+    values : tuple of float
+        Values, in contact half-widths of the half-plane if ``in_a``, else in the scene's units.
+    in_a : bool
+    """
 
     keys: Mapping[str, float]
     values: tuple[float, ...]
@@ -35,19 +43,21 @@ class Axis:
 
     @property
     def name(self) -> str:
-        """For headings: the keys that are set to the values themselves."""
+        """Name for headings: the keys with a factor of 1."""
         return " = ".join(key for key, times in self.keys.items() if times == 1) or " = ".join(self.keys)
 
 
 def axis(text: str) -> Axis:
-    """Read ``KEY[+KEY ...]=VALUES``: a list ``4a,8a,16a``, or a range ``4a..256a`` or ``4a..256a:13`` of 9, or 13,
-    values in equal ratios; ``a`` is the half-plane's contact half-width. ``*`` in a key stands for any one table, and
-    ``3*KEY`` is set to three times the value.
+    """Parse ``text``, ``KEY[+KEY ...]=VALUES``, as an axis.
+
+    Values are a list ``4a,8a,16a`` or a range in equal ratios: ``4a..256a`` of 9 values, ``4a..256a:13`` of 13. The
+    unit ``a`` is the half-plane's contact half-width. ``*`` in a key stands for any one table; ``3*KEY`` is set to
+    three times the value.
 
     Raises
     ------
     InputError
-        If it is not that.
+        If ``text`` has another form.
     """
     keys, equals, values = text.partition("=")
     named = [_KEY.fullmatch(key.strip()) for key in keys.split("+")]
@@ -60,7 +70,7 @@ def axis(text: str) -> Axis:
         raise InputError(f"--over {text}: values must be a list 4a,8a,16a or a range 4a..256a or 4a..256a:13")
     matches = [match for match in found if match]
     if len({match[2] for match in matches}) > 1:
-        raise InputError(f"--over {text}: values must be all in a or none")
+        raise InputError(f"--over {text}: values must be all in a or all without a")
     try:
         times = {match[2]: float(match[1] or 1) for match in named if match}
         if not all(0 < each < math.inf for each in times.values()):
@@ -73,19 +83,25 @@ def axis(text: str) -> Axis:
             numbers = np.geomspace(numbers[0], numbers[1], number).tolist()
     except ValueError:
         raise InputError(
-            f"--over {text}: a range must rise from above 0, in 2 to 10000 steps, and times be above 0"
+            f"--over {text}: a range must increase from above 0, in 2 to 10000 values; factors must be > 0"
         ) from None
     return Axis(times, tuple(float(f"{number:.12g}") for number in numbers), bool(matches[0][2]))
 
 
 def cases(scene: Scene, axes: Sequence[Axis], accuracies: Sequence[float] = (1.0,)) -> list[Job]:
-    """The cases of a sweep over the grid of all ``axes``, each at all ``accuracies``, in the scene's; these are labels,
-    too.
+    """Return the jobs of a sweep over the grid of ``axes``.
+
+    Parameters
+    ----------
+    scene : Scene
+    axes : sequence of Axis
+    accuracies : sequence of float
+        Each point is solved at each of these multiples of the scene's accuracy; the multiple is a label of the job.
 
     Raises
     ------
     InputError
-        If a key is not in the scene, or a value not allowed.
+        If a key is not in the scene, or a value is not allowed.
     """
     a = run(scene, ["exact"]).results["exact"].a
     plain = msgspec.to_builtins(scene)
@@ -104,7 +120,7 @@ def cases(scene: Scene, axes: Sequence[Axis], accuracies: Sequence[float] = (1.0
 
 
 def _put(data: dict[str, Any], path: list[str], value: float, key: str) -> None:
-    """Set what ``path`` leads to, in every table that its stars stand for."""
+    """Set the key at ``path`` to ``value``, in every table that matches a star in the path."""
     head, *rest = path
     if not rest:
         if head not in data:
@@ -113,6 +129,6 @@ def _put(data: dict[str, Any], path: list[str], value: float, key: str) -> None:
         return
     tables = [name for name, table in data.items() if fnmatchcase(name, head) and isinstance(table, dict)]
     if not tables:
-        raise InputError(f"--over {key}: there is no table {head!r} in the scene")
+        raise InputError(f"--over {key}: no table {head!r} in the scene")
     for name in tables:
         _put(data[name], rest, value, key)

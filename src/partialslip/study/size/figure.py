@@ -12,13 +12,21 @@ from partialslip.study.size.sizes import QUANTITIES, Law, Sizes
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_LEVELS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3)  # of maps
+_LEVELS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3)  # contours of the change
 _STYLE = {"a": ("o", "-"), "p0": ("s", "--"), "p": ("x", ":"), "m": ("^", "-"), "n": ("v", "--"), "q": ("D", ":")}
 _UNIT = {"a": "a", "p0": "p0, largest p", "p": "p, relative L2", "m": "m, in a", "n": "n, in a", "q": "q, relative L2"}
 
 
 def size_svg(sizes: Sizes, laws: Sequence[Law], title: str, unit: str) -> str:
-    """What the size changes, by quantity, with the fitted laws; what may be due to the mesh, in grey."""
+    """Return the changes over the size by quantity as SVG, with fitted laws; errors of the mesh in grey.
+
+    Parameters
+    ----------
+    sizes : Sizes
+    laws : sequence of Law
+    title, unit : str
+        Title of the figure, and unit of the sizes.
+    """
 
     def draw(figure: "Figure") -> None:
         axes = figure.subplots()
@@ -44,8 +52,18 @@ def size_svg(sizes: Sizes, laws: Sequence[Law], title: str, unit: str) -> str:
 
 
 def grid_svg(x: Array, y: Array, off: Array, labels: tuple[str, str], title: str) -> str:
-    """Lines of equal change over two parameters, darker where it is larger; hatched where nothing was solved. ``off``
-    is (len(y), len(x))."""
+    """Return contours of the change over two parameters as SVG; hatched where nothing was solved.
+
+    Parameters
+    ----------
+    x, y : (k,) and (l,) arrays
+        Values of the parameters.
+    off : (l, k) array
+        Change; NaN where not solved.
+    labels : (str, str)
+        Labels of the axes.
+    title : str
+    """
     from matplotlib import colormaps
     from matplotlib.colors import LogNorm
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter

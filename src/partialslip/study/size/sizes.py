@@ -1,4 +1,4 @@
-"""When is a body a half-plane? Sweeps over sizes, or anything else in a scene, against the half-plane's solution."""
+"""Sweeps over sizes of bodies, or other settings of a scene, compared with the half-plane's solution."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -18,10 +18,10 @@ from partialslip.study.size.axes import ACCURACY, Axis, cases
 
 QUANTITIES = ("a", "p0", "p", "m", "n", "q")
 LEVELS = (0.05, 0.01, 0.001)
-_COARSER = 8.0  # accuracy of one mesh in the next one's
-_FINER = 3  # meshes at most that follow where the size changes hardly more than the mesh
-_FINEST = 1e-8  # accuracy that rounding allows
-_CLEAR = 10.0  # a change counts where it is so many times what the mesh may be off by
+_COARSER = 8.0  # ratio of the accuracies of two successive meshes
+_FINER = 3  # largest number of additional meshes where the change is hardly larger than the mesh's error
+_FINEST = 1e-8  # finest accuracy that rounding allows
+_CLEAR = 10.0  # a change counts if it exceeds the mesh's error by this factor
 
 
 def measure(
@@ -32,18 +32,32 @@ def measure(
     progress: Progress = lambda *_: None,
     control: bool = True,
 ) -> list[Solved]:
-    """Solve the grid of ``axes``, but for what ``ledger`` has; returns its entries.
+    """Solve ``scene`` over the grid of ``axes``. Cases in ``ledger`` are not solved again.
 
-    With ``control`` each point is solved on two meshes at least, for the accuracy that the scene asks for and for one
-    eight times coarser. Where a change is not ten times what the mesh may be off by, another one follows that is eight
-    times finer, up to three of them.
+    Parameters
+    ----------
+    scene : Scene
+    axes : sequence of Axis
+    ledger : Ledger
+    executor : Executor
+    progress : callable
+        ``progress(done, total, seconds_left)``.
+    control : bool
+        Whether to solve each point on at least two meshes: for the scene's accuracy and for one eight times coarser.
+        Where a change is less than ten times the mesh's error, up to three further meshes follow, each eight times
+        finer.
+
+    Returns
+    -------
+    list of Solved
+        Entries of the ledger.
 
     Raises
     ------
     InputError
-        If a key is not in the scene, or a value not allowed.
+        If a key is not in the scene, or a value is not allowed.
     PartialslipError
-        If a worker process dies; what was finished is in the ledger.
+        If a worker process dies; finished cases are in the ledger.
     """
     solve, asked = Sharing(), cases(scene, axes, (_COARSER, 1.0) if control else (1.0,))
     sweep([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
@@ -64,8 +78,17 @@ def measure(
 class Sizes:
     """A sweep along one axis.
 
-    ``size`` (k,), in a or as swept; ``off`` (k,) by quantity: what the body changes: a and p0, the largest p, relative,
-    m and n in a, p and q in the relative L2 norm; ``mesh`` (k,): what of it may be due to the mesh.
+    Parameters
+    ----------
+    name : str
+        Name of the axis.
+    size : (k,) array
+        Values along the axis.
+    off : mapping of str to (k,) array
+        Change from the half-plane by quantity: a and p0 (largest p) relative, m and n as fractions of a, p and q in
+        relative L2.
+    mesh : mapping of str to (k,) array
+        Part of the change that may be an error of the mesh.
     """
 
     name: str
@@ -76,8 +99,20 @@ class Sizes:
 
 @dataclass(frozen=True)
 class Law:
-    """off = C size^-k, fitted by least squares in logarithms where the size dominates, k with bounds of 95 %; and the
-    sizes ``needed`` for LEVELS, infinite where there is no law to go by."""
+    """Fitted law change = C size^-k of one quantity.
+
+    Parameters
+    ----------
+    quantity : str
+    C, k : float
+        By least squares in logarithms, where the change is well above the mesh's error.
+    bounds : (float, float)
+        95 % confidence interval of k.
+    points : int
+        Number of fitted points.
+    needed : tuple of float
+        Sizes from which on the change is below each of LEVELS; infinite if the law gives none.
+    """
 
     quantity: str
     C: float
@@ -88,7 +123,7 @@ class Law:
 
 
 def along(axis: Axis, entries: Iterable[Solved]) -> Sizes:
-    """The sweep along ``axis``, from the entries of a ledger with its label; cases that failed are left out."""
+    """Return the sweep along ``axis`` from ``entries`` of a ledger; failed cases are left out."""
     points = {point[0]: _change(meshes) for point, meshes in sorted(_by_point([axis], entries).items())}
     return Sizes(
         axis.name,
@@ -99,7 +134,7 @@ def along(axis: Axis, entries: Iterable[Solved]) -> Sizes:
 
 
 def _by_point(axes: Sequence[Axis], entries: Iterable[Solved]) -> dict[tuple[float, ...], list[Solved]]:
-    """The entries of each point of the grid, from the coarsest mesh to the finest; without those that failed."""
+    """Return the entries by point of the grid, from the coarsest mesh to the finest, without failed cases."""
     points: dict[tuple[float, ...], list[Solved]] = {}
     for entry in sorted(entries, key=lambda entry: -float(entry.labels[ACCURACY])):
         if entry.run:
@@ -108,8 +143,10 @@ def _by_point(axes: Sequence[Axis], entries: Iterable[Solved]) -> dict[tuple[flo
 
 
 def _change(meshes: Sequence[Solved]) -> tuple[dict[str, float], dict[str, float]]:
-    """What the body changes at one point, by its finest mesh, and what of it may be due to that mesh: its own estimate,
-    or an eighth of what the last refinement changed, if that is more."""
+    """Return the change at one point on the finest mesh, and the error of the finest mesh.
+
+    The error is the larger of the method's estimate and an eighth of the change by the last refinement.
+    """
     found, estimate = _off(meshes[-1]), _estimate(meshes[-1])
     estimate["p0"] = estimate.get("p", math.nan)
     rough = _off(meshes[-2]) if len(meshes) > 1 else {}
@@ -124,26 +161,28 @@ def _clear(meshes: Sequence[Solved]) -> bool:
 
 
 def _estimate(entry: Solved) -> dict[str, float]:
-    """What the finite elements may be off by, by quantity."""
+    """Return the error estimates of the finite elements by quantity."""
     assert entry.run
     return {key: error for key, error in entry.run.methods["fem"].estimate.items() if error is not None}
 
 
 def _off(entry: Solved) -> dict[str, float]:
-    """What the body changes at one point, by one mesh."""
+    """Return the change from the half-plane at one point on one mesh, by quantity."""
     assert entry.run
     fem, exact, errors = entry.run.methods["fem"], entry.run.methods["exact"], entry.run.comparison["fem"].errors
     a = exact.a or math.nan
     found = {"a": (fem.a or math.nan) / a - 1, "p0": (fem.p_max or math.nan) / (exact.p_max or math.nan) - 1}
-    for key, mine, its in (("m", fem.m, exact.m), ("n", fem.n, exact.n)):
-        if mine is not None and its is not None:
-            found[key] = (mine - its) / a
+    for key, end, true in (("m", fem.m, exact.m), ("n", fem.n, exact.n)):
+        if end is not None and true is not None:
+            found[key] = (end - true) / a
     return found | {key: error for key in ("p", "q") if (error := errors[key]) is not None}
 
 
 def law(sizes: Sizes, quantity: str) -> Law | None:
-    """The law of a quantity, from the larger half of the sizes at which the mesh is ten times better than the size is
-    bad; None where there are fewer than three."""
+    """Fit the law of ``quantity`` over ``sizes``; None for fewer than three points.
+
+    Points count if the change is at least ten times the mesh's error. The larger half of their sizes is fitted.
+    """
     off = sizes.off[quantity]
     clear = np.flatnonzero((off > _CLEAR * sizes.mesh[quantity]) & (off > 0))
     used = clear[len(clear) // 2 :] if len(clear) >= 6 else clear[-3:]
@@ -158,7 +197,7 @@ def law(sizes: Sizes, quantity: str) -> Law | None:
 
 
 def _needed(size: Array, off: Array, level: float, C: float, k: float) -> float:
-    """The size from which on the error is below ``level``: between those measured, or beyond them by the law."""
+    """Return the size from which on the change is below ``level``, interpolated or extrapolated by the law."""
     above = np.flatnonzero(off > level)
     if len(above) == 0:
         return float(size[0])
@@ -170,14 +209,17 @@ def _needed(size: Array, off: Array, level: float, C: float, k: float) -> float:
 
 
 def grid(axes: Sequence[Axis], entries: Iterable[Solved], quantity: str) -> tuple[Array, Array, Array]:
-    """The values of two ``axes``, and |change| of ``quantity`` over them, (second, first); NaN where not solved."""
+    """Return the values of two ``axes`` and the absolute change of ``quantity``, (second, first), from ``entries``.
+
+    NaN where not solved.
+    """
     x, y = (np.array(each.values) for each in axes)
     points = {point: _change(meshes)[0][quantity] for point, meshes in _by_point(axes, entries).items()}
     return x, y, np.array([[points.get((first, second), math.nan) for first in x.tolist()] for second in y.tolist()])
 
 
 def table(axes: Sequence[Axis], entries: Iterable[Solved]) -> tuple[list[str], list[list[Any]]]:
-    """Headings and rows for a CSV file: one row a case."""
+    """Return headings and rows for a CSV file, one row per case, from ``axes`` and ``entries``."""
     figures = ("a", "p_max", "m", "n", "regime")
     head = [*(each.name for each in axes), ACCURACY, *figures, *(f"change of {key}" for key in QUANTITIES)]
     head += ["dofs", "cpu_s", "error"]
