@@ -1,4 +1,4 @@
-"""The command line; :mod:`partialslip.cli.ending` has the exit codes."""
+"""The command line. Exit codes: see :mod:`partialslip.cli.ending`."""
 
 import argparse
 from collections.abc import Sequence
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 class _Parser(argparse.ArgumentParser):
-    """Errors in one line, like all others; no abbreviations; examples and exit codes at the end of the help."""
+    """Parser with one-line errors, without abbreviations, and with examples and exit codes at the end of the help."""
 
     def __init__(self, examples: Sequence[str] = (), failure: str = "", **settings: Any) -> None:
         super().__init__(allow_abbrev=False, **settings)
         codes = [
-            "0    fine",
+            "0    success",
             *([f"1    {failure}"] if failure else []),
             "2    bad input, or output that cannot be written",
             "130  interrupted",
@@ -28,12 +28,12 @@ class _Parser(argparse.ArgumentParser):
         self._end = {"examples": examples, "exit codes": codes}
 
     def format_help(self) -> str:
-        """The help, its examples one a line as they are typed."""
+        """Return the help with examples and exit codes, one per line."""
         ends = ["\n  ".join([f"\n{head}:", *lines]) + "\n" for head, lines in self._end.items() if lines]
         return super().format_help() + "".join(ends)
 
     def _print_message(self, message: str, file: "SupportsWrite[str] | None" = None) -> None:
-        """Print help and version as everything else is printed, so that a full disk is noticed."""
+        """Print help and version with ``print``, so that a failed write raises."""
         print(message, end="", file=file)
 
     def error(self, message: str) -> NoReturn:
@@ -41,7 +41,13 @@ class _Parser(argparse.ArgumentParser):
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; returns the exit code. With ``arguments`` it is not a process of its own that is run."""
+    """Run the command line and return the exit code.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Arguments of a call from Python; default: the arguments of this process.
+    """
     return ended(lambda: _command(arguments))
 
 
@@ -52,10 +58,11 @@ def _command(arguments: Sequence[str] | None) -> int:
 
 
 def parser() -> argparse.ArgumentParser:
-    """What reads the command line: all commands and their options."""
+    """Return the parser with all commands and options."""
     root = _Parser(
         prog="partialslip",
-        description="How right is a frictional contact calculation? Exact solution and finite elements, side by side.",
+        description="Benchmark frictional contact calculations: compare the exact solution, finite elements and other "
+        "codes.",
         examples=[
             "partialslip run fretting-aluminium",
             "partialslip scenes",
@@ -72,8 +79,7 @@ def parser() -> argparse.ArgumentParser:
     scenes = commands.add_parser(
         "scenes",
         help="list the shipped scenes",
-        description="List the scenes that come with partialslip: their names, by which every command knows them, and "
-        "titles.",
+        description="List names and titles of the shipped scenes. Every command accepts a name in place of a file.",
         examples=["partialslip scenes", "partialslip run hertz-shear"],
     )
     scenes.set_defaults(command=_scenes)

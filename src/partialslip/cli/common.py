@@ -1,4 +1,4 @@
-"""What several commands share."""
+"""Functions shared by several commands."""
 
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
@@ -18,44 +18,57 @@ if TYPE_CHECKING:
 
 
 def add_scene(parser: "argparse.ArgumentParser") -> None:
-    """Add the scene and ``--set``, the changes to it."""
+    """Add SCENE and ``--set`` to ``parser``."""
     parser.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
     parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
                         help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
 
 
 def held(folder: Path | None) -> AbstractContextManager[None]:
-    """Hold ``folder`` for this command, until the block ends. Raises InputError if another one writes there."""
+    """Lock ``folder`` until the block ends. Raises InputError if another process writes to the folder."""
     from partialslip.output.lock import locked
 
     return nullcontext() if folder is None else locked(folder)
 
 
 def check_folder(out: str | None) -> None:
-    """Raise InputError if ``--out`` names nothing."""
+    """Raise InputError if ``out``, the value of ``--out``, is empty."""
     if out == "":
         raise InputError("--out '': must name a folder")
 
 
 def out_folder(options: "argparse.Namespace", name: str) -> Path | None:
-    """Where a run's files go: into ``--out``, or results/NAME; with ``--json`` into ``--out`` alone."""
+    """Return the folder for the files of a run: ``--out`` of ``options``, else results/``name``.
+
+    With ``--json`` and without ``--out``, None: no files.
+    """
     return Path(options.out) if options.out else None if options.json else Path("results") / name
 
 
 def print_written(files: list[Path], console: "Console") -> None:
-    """Say which files a command leaves behind."""
+    """Print the paths of ``files`` on ``console``."""
     console.print("written: " + ", ".join(map(str, files)), soft_wrap=True, markup=False)
 
 
 def print_outdated(ledger: "Ledger", console: "Console") -> None:
-    """Say how many entries of a study's ledger the program no longer fits."""
+    """Print on ``console`` how many entries of ``ledger`` were made by other source files."""
     if count := ledger.outdated:
-        console.print(f"{ledger.path}: {count:,} entries are by other source files: not used", markup=False)
+        console.print(f"{ledger.path}: {count:,} entries ignored: made by other source files", markup=False)
 
 
 def print_outcome(outcome: "Run", options: "argparse.Namespace", files: list[Path], last: str = "") -> int:
-    """Print a run, a ``last`` line and which files there are, or with ``--json`` the record alone. Returns the exit
-    code."""
+    """Print a run and return the exit code.
+
+    Parameters
+    ----------
+    outcome : Run
+    options : Namespace
+        With ``json`` set, only the record is printed.
+    files : list of Path
+        Files written.
+    last : str
+        Line to print after the run.
+    """
     from partialslip.cli.consoles import output
     from partialslip.judge import Outcome
     from partialslip.report import print_run, record

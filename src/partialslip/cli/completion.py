@@ -1,4 +1,4 @@
-"""partialslip completion: what a shell needs to complete commands, options, scenes and files."""
+"""partialslip completion: shell completion of commands, options, scenes and files."""
 
 import argparse
 import sys
@@ -29,11 +29,11 @@ _partialslip_scenes() {{
 
 
 def add(commands: "Commands", root: argparse.ArgumentParser) -> None:
-    """Add the command to the parser; it completes what ``root`` knows."""
+    """Add the command to ``commands``; it completes the commands and options of ``root``."""
     completion = commands.add_parser(
         "completion",
-        help="print what bash or zsh needs to complete commands, options and scenes",
-        description="Print a script by which the shell completes commands, options, names of scenes and files.",
+        help="print a completion script for bash or zsh",
+        description="Print a script for shell completion of commands, options, names of scenes and files.",
         examples=[
             'eval "$(partialslip completion bash)"',
             "partialslip completion bash > ~/.local/share/bash-completion/completions/partialslip",
@@ -57,7 +57,7 @@ def _completion(root: argparse.ArgumentParser, shell: str) -> int:
 
 
 def _actions(parser: argparse.ArgumentParser) -> Iterator[argparse.Action]:
-    """All arguments of ``parser`` and of the commands below it."""
+    """Yield all arguments of ``parser`` and of its subcommands."""
     for action in parser._actions:
         yield action
         if isinstance(action, argparse._SubParsersAction):

@@ -1,4 +1,4 @@
-"""What commands print on: tables and results on stdout, progress and messages on stderr."""
+"""Consoles: tables and results on stdout, progress and messages on stderr."""
 
 import shutil
 from collections.abc import Callable, Iterator
@@ -13,24 +13,26 @@ _WIDEST = 1000  # columns
 
 class _Console(Console):
     def on_broken_pipe(self) -> NoReturn:
-        """Called where BrokenPipeError is caught: leave it to the command line, which knows the exit code."""
+        """Raise BrokenPipeError again: the command line sets the exit code."""
         raise
 
 
 def output() -> Console:
-    """For what a command has found."""
+    """Return the console for results, stdout."""
     return _fitted(_Console(highlight=False))
 
 
 def messages() -> Console:
-    """For what is said while it works."""
+    """Return the console for progress and messages, stderr."""
     return _fitted(_Console(stderr=True, highlight=False))
 
 
 @contextmanager
 def working(name: str) -> Iterator[Callable[[str], None]]:
-    """Show a line that says what is being done, where there is a person to see it; the block is given what says more
-    of it."""
+    """Show a status line with ``name`` while the block runs, on a terminal only.
+
+    Yields ``tell(line)``, which changes the line.
+    """
     console = messages()
     spinner = "dots" if console.encoding.startswith("utf") else "line"
     with console.status(f"{name} ...", spinner=spinner) as status:
@@ -39,13 +41,13 @@ def working(name: str) -> Iterator[Callable[[str], None]]:
 
 @contextmanager
 def shown(bar: Progress) -> Iterator[None]:
-    """Show a progress bar while the block runs; elsewhere than on a terminal print nothing, not even a line end."""
+    """Show the progress ``bar`` while the block runs; print nothing if the output is not a terminal."""
     with bar if bar.console.is_interactive else nullcontext():
         yield
 
 
 def _fitted(console: Console) -> Console:
-    if console.width < 1:  # COLUMNS=0 says that nobody knows
+    if console.width < 1:  # COLUMNS=0 means unknown
         console.width = shutil.get_terminal_size().columns
     console.width = min(console.width, _WIDEST)
     return console

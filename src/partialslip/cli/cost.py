@@ -15,20 +15,20 @@ if TYPE_CHECKING:
 
 
 def add(topics: "Commands") -> None:
-    """Add the topic to the parser."""
+    """Add the topic to the parser of ``topics``."""
     cost = topics.add_parser(
         "cost",
-        help="what accuracy costs: a ladder of settings of every method, each in a process of its own",
-        description="Solve a scene by a ladder of settings of every method, each in a process of its own, and print "
-        "errors against CPU seconds. Stopped, it goes on where it was.",
+        help="errors against CPU seconds, over a ladder of settings of every method",
+        description="Solve a scene with a ladder of settings of every method, one process per setting. Print errors "
+        "against CPU seconds. A stopped study continues.",
         examples=[
             "partialslip study cost hertz-large-tension --repeats 1",
             "partialslip study cost hertz-small-tension --peers benchmarks/peers/measured.jsonl",
         ],
     )
     add_scene(cost)
-    cost.add_argument("--repeats", type=int, default=3, metavar="N", help="of each setting, for medians (default: 3)")
-    cost.add_argument("--peers", metavar="FILE", help="other codes' results, JSON lines, for the same diagram")
+    cost.add_argument("--repeats", type=int, default=3, metavar="N", help="repeats of each setting (default: 3)")
+    cost.add_argument("--peers", metavar="FILE", help="results of other codes, JSON lines, to add to the diagram")
     cost.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-cost)")
     cost.set_defaults(command=_cost)
 
@@ -90,7 +90,7 @@ def _number(value: float, form: str) -> str:
 
 
 def _against(found: "list[Point]", peers: "list[Point]") -> list[str]:
-    """How the finite elements here do beside each peer."""
+    """Return lines that compare the finite elements of partialslip with each peer."""
     from partialslip.study.cost.ladder import against
 
     ours = [point for point in found if point.series.startswith("P")]
@@ -101,7 +101,8 @@ def _against(found: "list[Point]", peers: "list[Point]") -> list[str]:
             if any(key in point.errors for point in theirs):
                 ratio = {name: f"{value:.2g}" for name, value in against(ours, theirs, key).items()}
                 lines.append(
-                    f"{series}, {key}: its best error {ratio['error']} takes {ratio['cpu']} of its CPU here (whole "
-                    f"process {ratio['process']}); in its CPU, {ratio['error at its cpu']} of its error"
+                    f"{series}, {key}: best error {ratio['error']}; partialslip reaches the same error in "
+                    f"{ratio['cpu']} of the CPU seconds ({ratio['process']} with the whole process), and "
+                    f"{ratio['error at its cpu']} of the error in the same CPU seconds"
                 )
     return lines

@@ -1,9 +1,8 @@
-"""How a command ends: whatever is raised becomes one line on stderr and an exit code, whatever the standard streams
-are.
+"""End of a command: turn every exception into one line on stderr and an exit code.
 
-Exit codes: 0 fine; 1 a bar missed, or a case not solved; 2 bad input, or output that cannot be written; 3 a fault of
-partialslip itself; 128 + the signal's number for what ended from outside: 129 (the terminal closed), 130 (Ctrl-C), 141
-(whoever read the output has gone) and 143 (terminated), as shells report it of other programs.
+Exit codes: 0 success; 1 a bar missed, or a case not solved; 2 bad input, or output that cannot be written; 3 a fault of
+partialslip; 128 + signal number if ended by a signal: 129 (terminal closed), 130 (Ctrl-C), 141 (reader of the output
+closed) and 143 (terminated).
 """
 
 import codecs
@@ -23,7 +22,7 @@ from typing import Any, NamedTuple, NoReturn, TextIO
 from partialslip.errors import PartialslipError, one_line
 
 REFUSED, FAULT, INTERRUPTED, NO_READER = 2, 3, 130, 141
-TRACEBACK = "PARTIALSLIP_TRACEBACK"  # an environment variable: if it is set, faults are raised
+TRACEBACK = "PARTIALSLIP_TRACEBACK"  # environment variable: if set, faults are raised
 
 _FALLBACK = "partialslip"
 _ASCII = {"µ": "u"}
@@ -32,7 +31,7 @@ _SIGNALS = {"SIGTERM": "terminated", "SIGHUP": "the terminal has gone"}
 
 
 class _Signal(BaseException):
-    """Raised where a signal arrives, so that files, locks and worker processes are left in order."""
+    """Raised when a signal arrives, so that files, locks and worker processes are cleaned up."""
 
     def __init__(self, number: int) -> None:
         super().__init__(number)
@@ -40,14 +39,14 @@ class _Signal(BaseException):
 
 
 class _End(NamedTuple):
-    """Exit code and what is said, if anything."""
+    """Exit code and message; the message may be empty."""
 
     code: int
     line: str = ""
 
 
 def ended(command: Callable[[], int]) -> int:
-    """Run ``command``; returns its exit code, or that of what it raises, which is printed in one line."""
+    """Run ``command`` and return the exit code. Exceptions are printed in one line and set the exit code."""
     with _streams(), _quiet_libraries():
         if sys.stdout is None or sys.stdout.closed:
             end = _End(REFUSED, "standard output: cannot be written: is closed")
@@ -65,7 +64,7 @@ def _ended(command: Callable[[], int]) -> _End:
     except PartialslipError as error:
         return _End(REFUSED, str(error))
     except MemoryError:
-        return _End(REFUSED, "not enough memory: ask for less accuracy, or larger elements")
+        return _End(REFUSED, "not enough memory: use a coarser accuracy or larger elements")
     except BrokenPipeError:
         return _End(NO_READER)
     except OSError as error:
@@ -92,7 +91,7 @@ def _place(error: OSError) -> str:
 
 
 def _flushed(end: _End) -> _End:
-    """``end``, or what keeps the output from being written, which is then dropped."""
+    """Flush stdout. Returns ``end``, or the end for a failed write; the unwritten output is dropped."""
     try:
         sys.stdout.flush()
     except OSError as error:
@@ -106,12 +105,12 @@ def _flushed(end: _End) -> _End:
 def _say(text: str) -> None:
     try:
         print(f"partialslip: {one_line(text)}", file=sys.stderr, flush=True)
-    except (OSError, ValueError):  # there is nobody to tell
+    except (OSError, ValueError):  # stderr cannot be written either
         _drop(sys.stderr)
 
 
 def _drop(stream: TextIO) -> None:
-    """Let what ``stream`` could not write go nowhere: Python would try again at its end, and change the exit code."""
+    """Redirect ``stream`` to the null device. Python would otherwise retry at exit and change the exit code."""
     with contextlib.suppress(OSError, ValueError):
         void = os.open(os.devnull, os.O_WRONLY)
         os.dup2(void, stream.fileno())
@@ -120,8 +119,10 @@ def _drop(stream: TextIO) -> None:
 
 @contextlib.contextmanager
 def _streams() -> Iterator[None]:
-    """Standard streams that take every character, and of which none is missing: otherwise the next file that is opened
-    takes its number, and its place."""
+    """Make standard streams accept every character, and open missing ones.
+
+    The next file opened would otherwise get the number of the missing stream, and the stream's output.
+    """
     while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
         pass
     os.close(handle)
@@ -140,7 +141,7 @@ def _streams() -> Iterator[None]:
 
 
 def _fallback(error: UnicodeError) -> tuple[str | bytes, int]:
-    """What stands for characters that an encoding does not have: plain letters of units, otherwise their numbers."""
+    """Replace characters that an encoding lacks: ASCII letters for units, else escaped character codes."""
     if isinstance(error, UnicodeEncodeError) and (plain := _ASCII.get(error.object[error.start])):
         return plain, error.start + 1
     return codecs.backslashreplace_errors(error)
@@ -148,7 +149,7 @@ def _fallback(error: UnicodeError) -> tuple[str | bytes, int]:
 
 @contextlib.contextmanager
 def _quiet_libraries() -> Iterator[None]:
-    """What libraries have to tell programmers is nothing for stderr: it is for one line."""
+    """Silence warnings of libraries: stderr gets one line only."""
     logger = logging.getLogger("matplotlib")
     level = logger.level
     logger.setLevel(logging.ERROR)
@@ -160,7 +161,7 @@ def _quiet_libraries() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _signals() -> Iterator[None]:
-    """Signals that would end the process at once end the command in order; what is ignored stays so (nohup)."""
+    """Turn terminating signals into exceptions while the block runs; ignored signals (nohup) stay ignored."""
     numbers = [getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)]
     if threading.current_thread() is not threading.main_thread():
         numbers = []
@@ -175,7 +176,7 @@ def _signals() -> Iterator[None]:
 
 
 def _raise(number: int, _: FrameType | None) -> NoReturn:
-    signal.signal(number, signal.SIG_DFL)  # a second one ends it at once
+    signal.signal(number, signal.SIG_DFL)  # a second signal ends the process at once
     raise _Signal(number)
 
 

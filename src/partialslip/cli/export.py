@@ -1,4 +1,4 @@
-"""partialslip export: a scene as a model for another code."""
+"""partialslip export: write a scene as a model for another code."""
 
 import argparse
 from pathlib import Path
@@ -15,12 +15,12 @@ _TO = ("calculix", "abaqus", "gmsh")
 
 
 def add(commands: "Commands") -> None:
-    """Add the command to the parser."""
+    """Add the command to the parser of ``commands``."""
     exports = commands.add_parser(
         "export",
         help="write a scene as a model for another code",
-        description="Mesh both bodies of a scene and write them for another code, with contact, friction and load "
-        "steps, ready to run; partialslip score takes the results.",
+        description="Mesh both bodies of a scene and write a model for another code, with contact, friction and load "
+        "steps. Compare the results with partialslip score.",
         examples=[
             "partialslip export hertz-small-tension --to calculix --size 0.025 -o hertz.inp",
             "partialslip export fretting-aluminium --to abaqus --stiffer 100",
@@ -29,25 +29,28 @@ def add(commands: "Commands") -> None:
     )
     exports.add_argument("scene", metavar="SCENE", help="a shipped scene or a TOML file")
     exports.add_argument("--to", required=True, choices=_TO,
-                         help="calculix, abaqus: a deck with contact and load steps, ready to run; gmsh: the meshes of "
-                         "both bodies")  # fmt: skip
+                         help="calculix, abaqus: an input deck, ready to run; gmsh: the meshes of both "
+                         "bodies")  # fmt: skip
     exports.add_argument("--size", metavar="H", default="0.05",
-                         help="of the elements along the contact, in contact half-widths (default: 0.05)")  # fmt: skip
+                         help="element size along the contact, in contact half-widths (default: 0.05)")  # fmt: skip
     exports.add_argument("--growth", metavar="G", default="0.1",
-                         help="element size gained per unit of distance from the contact (default: 0.1)")  # fmt: skip
+                         help="growth of the element size per unit of distance from the contact (default: "
+                         "0.1)")  # fmt: skip
     exports.add_argument("--width", metavar="W",
-                         help="of the blocks on either side of the contact, in contact half-widths (default: wide "
-                         "enough for --size)")  # fmt: skip
+                         help="width of the blocks on either side of the contact, in contact half-widths (default: "
+                         "wide enough for --size)")  # fmt: skip
     exports.add_argument("--stiffer", metavar="K", default="1",
-                         help="bodies K times stiffer, gap K times flatter: the same tractions, but no effects of "
-                         "sloping surfaces, which the half-plane does not know (default: 1)")  # fmt: skip
+                         help="make bodies K times stiffer and the gap K times flatter: same tractions, but smaller "
+                         "slopes of the surfaces, which half-planes neglect (default: 1)")  # fmt: skip
     exports.add_argument("--ends", metavar="X,...",
-                         help="points on the contact, in contact half-widths, towards which elements get finer: "
+                         help="points on the contact, in contact half-widths, at which the mesh is refined: "
                          "--ends=-1,-0.8,0.2,1")  # fmt: skip
-    exports.add_argument("--fine", metavar="H", help="size of the elements there (default: a tenth of --size)")
+    exports.add_argument("--fine", metavar="H",
+                         help="element size at --ends, in contact half-widths (default: a tenth of "
+                         "--size)")  # fmt: skip
     exports.add_argument("--penalty", action="store_true",
-                         help="calculix: contact by penalties, instead of mortar elements")  # fmt: skip
-    exports.add_argument("-o", "--out", metavar="FILE", help="(default: results/NAME.inp or .msh)")
+                         help="calculix: penalty contact instead of mortar contact")  # fmt: skip
+    exports.add_argument("-o", "--out", metavar="FILE", help="file to write (default: results/NAME.inp or .msh)")
     exports.set_defaults(command=_export)
 
 

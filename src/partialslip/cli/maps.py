@@ -12,16 +12,16 @@ if TYPE_CHECKING:
 
 
 def add(commands: "Commands") -> None:
-    """Add the command to the parser."""
+    """Add the command to the parser of ``commands``."""
     maps = commands.add_parser(
         "map",
         help="draw the stick zones over all loads",
-        description="Draw where a profile sticks under all loads, as map.svg, ends.svg and map.csv, mark the scene's "
-        "own loads, and print their regime and stick zone.",
+        description="Draw the stick zones of a profile over all loads: map.svg, ends.svg and map.csv. Mark the loads "
+        "of the scene, and print the scene's regime and stick zone.",
         examples=["partialslip map", "partialslip map flat-rounded", "partialslip map my-scene.toml --out maps"],
     )
     maps.add_argument("scene", nargs="?", metavar="SCENE",
-                      help="a shipped scene or a TOML file, whose profile is mapped and loads marked "
+                      help="a shipped scene or a TOML file, with the profile to map and the loads to mark "
                       "(default: Hertz)")  # fmt: skip
     maps.add_argument("--out", metavar="DIR", help="folder for the files (default: results/map, results/NAME-map)")
     maps.set_defaults(command=_map)

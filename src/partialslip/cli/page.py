@@ -1,4 +1,4 @@
-"""partialslip page: loads to move with a slider, and what the contact does under them."""
+"""partialslip page: a live page with sliders for loads and friction."""
 
 import argparse
 from pathlib import Path
@@ -14,17 +14,17 @@ _SCENE = "fretting-aluminium"
 
 
 def add(commands: "Commands") -> None:
-    """Add the command to the parser."""
+    """Add the command to the parser of ``commands``."""
     page = commands.add_parser(
         "page",
         help="make a live page: sliders for loads and friction",
-        description="Make one HTML file, in which sliders move the loads and the friction, and tractions, stick zone "
-        "and the place on the map follow. It calculates in the browser and needs no network.",
+        description="Make one HTML file with sliders for the loads and the friction. The page shows tractions, stick "
+        "zone and the point on the stick-zone map. It calculates in the browser, without network.",
         examples=["partialslip page", "partialslip page hertz-large-tension --out live"],
     )
     page.add_argument("scene", nargs="?", default=_SCENE, metavar="SCENE",
-                      help="a shipped scene or a TOML file of a Hertz contact, with whose loads it begins "
-                      f"(default: {_SCENE})")  # fmt: skip
+                      help="a shipped scene or a TOML file, with a Hertz profile; the sliders start at the scene's "
+                      f"loads (default: {_SCENE})")  # fmt: skip
     page.add_argument("--out", metavar="DIR", help="folder for page.html (default: results/NAME-page)")
     page.set_defaults(command=_page)
 

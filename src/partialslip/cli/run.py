@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 
 def add(commands: "Commands") -> None:
-    """Add the command to the parser."""
+    """Add the command to the parser of ``commands``."""
     runs = commands.add_parser(
         "run",
         help="solve a scene, compare the methods, write the report",
-        description="Solve a scene exactly and by finite elements, print by how much they differ, and write "
-        "report.html, results.json and tractions.csv.",
+        description="Solve a scene exactly and by finite elements, print the errors, and write report.html, "
+        "results.json and tractions.csv.",
         examples=[
             "partialslip run fretting-aluminium",
             "partialslip run my-scene.toml --set load.Q=[-30e3,30e3] --accuracy 1e-6",
@@ -36,20 +36,21 @@ def add(commands: "Commands") -> None:
     )
     add_scene(runs)
     runs.add_argument("--with", dest="methods", metavar="METHODS",
-                      help="methods, separated by commas, of exact, march, fem (default: exact,fem; march,fem where "
-                      "Q and sigma are out of phase)")  # fmt: skip
+                      help="methods of exact, march and fem, separated by commas (default: exact,fem; march,fem if Q "
+                      "and sigma are out of phase)")  # fmt: skip
     runs.add_argument("--accuracy", metavar="FRACTION",
-                      help="of a, m and n, as a fraction of a: fem takes the elements that reach it for the least, by "
-                      "the price list, unless --set fem.order says which")  # fmt: skip
+                      help="accuracy of a, m and n, as a fraction of a; fem takes the element order with the lowest "
+                      "predicted cost; --set fem.order overrides it")  # fmt: skip
     runs.add_argument("--budget", metavar="SECONDS",
-                      help="CPU seconds, e.g. 5s, from the start of the process to its end: fem takes the best "
-                      "accuracy to be had for that")  # fmt: skip
+                      help="CPU seconds of the whole process, e.g. 5s; fem picks the best accuracy within the budget; "
+                      "--set overrides it")  # fmt: skip
     runs.add_argument("--fields", action="store_true",
-                      help="also stresses: compared, and written to surface.csv and bodies.vtu")  # fmt: skip
+                      help="also compare stresses and write surface.csv and bodies.vtu")  # fmt: skip
     runs.add_argument("--start", metavar="FILE",
-                      help="begin with the state that FILE holds, instead of without shear")  # fmt: skip
+                      help="start from the state in FILE (see --save) instead of from zero shear")  # fmt: skip
     runs.add_argument("--save", metavar="FILE",
-                      help="write the state that the path ends with to FILE, .npz (of fem, else of march)")  # fmt: skip
+                      help="write the state at the end of the load path to FILE, .npz (of fem, else of "
+                      "march)")  # fmt: skip
     runs.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME)")
     runs.add_argument("--json", action="store_true", help="print results.json and nothing else; files only with --out")
     runs.set_defaults(command=_run)
@@ -64,7 +65,7 @@ def _run(options: argparse.Namespace) -> int:
     if options.save == "":
         raise InputError("--save '': must name a file")
     if options.fields and methods and "fem" not in methods:
-        raise InputError("--fields: needs the method fem")
+        raise InputError("--fields: needs the method fem: add fem to --with")
     scene = load_scene(options.scene, options.overrides)
     start = load_state(options.start) if options.start is not None else None
     budget = _budget(options, scene, methods)
@@ -91,31 +92,31 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _budget(options: argparse.Namespace, scene: "Scene", methods: list[str] | None) -> float | None:
-    """CPU seconds for the whole process; None if it may take what it needs."""
+    """Return the CPU seconds for the whole process; None without ``--budget``."""
     if options.budget is None:
         return None
     if options.accuracy is not None:
-        raise InputError("--budget: not together with --accuracy")
+        raise InputError("--budget: must not be given together with --accuracy")
     try:
         budget = float(options.budget.removesuffix("s"))
     except ValueError:
         budget = 0.0
     if not 0 < budget < math.inf:
-        raise InputError(f"--budget {options.budget!r}: must be seconds, more than 0, for example 5s")
+        raise InputError(f"--budget {options.budget!r}: must be a number of seconds > 0, for example 5s")
     if methods and "fem" not in methods:
-        raise InputError("--budget: needs the method fem, whose accuracy it chooses")
+        raise InputError("--budget: needs the method fem: add fem to --with")
     if scene.fem.size is not None or scene.meshed:
-        raise InputError("--budget: needs meshes that follow an accuracy, not fem.size or meshes that are given")
+        raise InputError("--budget: needs adaptive meshes: remove fem.size and given meshes from the scene")
     return budget
 
 
 def _price(
     options: argparse.Namespace, scene: "Scene", methods: list[str] | None, budget: float | None
 ) -> "Price | None":
-    """What --accuracy or ``budget`` asks for; None if the scene says it all."""
+    """Return the price for ``--accuracy`` or ``budget``; None if neither is given."""
     if options.accuracy is None and budget is None:
         return None
-    import partialslip_fem.model  # noqa: F401 - the start ends here
+    import partialslip_fem.model  # noqa: F401 - imports count as start
     from partialslip.study.cost.prices import load_prices
 
     prices, chosen = load_prices(), tuple(methods or default_methods(scene))
@@ -125,13 +126,15 @@ def _price(
     try:
         accuracy = float(options.accuracy)
     except ValueError:
-        raise InputError(f"--accuracy {options.accuracy!r}: must be a number, for example 1e-4") from None
+        raise InputError(
+            f"--accuracy {options.accuracy!r}: must be a number, a fraction of a, for example 1e-4"
+        ) from None
     check = load_scene(options.scene, [*options.overrides, f"fem.accuracy={accuracy!r}"])
     return prices.cheapest(check, accuracy, chosen, start)
 
 
 def _paid(price: "Price", outcome: Run, priced_at: float) -> str:
-    """What was predicted and what the process took, with those that made meshes for it."""
+    """Return a line with the predicted and the actual CPU seconds, meshing processes included."""
     taken = (
         price.start_s
         + time.process_time()
@@ -145,8 +148,8 @@ def _paid(price: "Price", outcome: Run, priced_at: float) -> str:
 
 
 def _state(outcome: Run) -> State:
-    """The one to save."""
+    """Return the state at the end of the load path, of fem, else of march."""
     for name in ("fem", "march"):
         if name in outcome.results and (state := outcome.results[name].state):
             return state
-    raise InputError("--save: no method has followed a path of loads with friction; take march or fem")
+    raise InputError("--save: no method has followed a path of loads with friction; use --with march or fem")

@@ -1,4 +1,4 @@
-"""partialslip score: somebody else's results against a scene."""
+"""partialslip score: compare results of another code with the reference."""
 
 import argparse
 import sys
@@ -21,12 +21,12 @@ _T = TypeVar("_T")
 
 
 def add(commands: "Commands") -> None:
-    """Add the command to the parser."""
+    """Add the command to the parser of ``commands``."""
     scores = commands.add_parser(
         "score",
-        help="score somebody else's tractions for a scene",
-        description="Compare tractions from another code, in a table, CalculiX's results or a mesh with point data, "
-        "with the exact ones: the same table, page and files as of partialslip run.",
+        help="compare tractions of another code with the reference",
+        description="Compare tractions of another code with the exact ones. The file is a table, CalculiX results or a "
+        "mesh with point data. Output: the table, page and files of partialslip run.",
         examples=[
             "partialslip score fretting-aluminium --template > mine.csv",
             "partialslip score fretting-aluminium mine.csv --bar 1e-2",
@@ -36,23 +36,25 @@ def add(commands: "Commands") -> None:
     )
     add_scene(scores)
     scores.add_argument("file", metavar="FILE", nargs="?",
-                        help="tractions: a table (.csv, .txt, .tsv, .rpt), CalculiX's .frd, .dat, .vtu")  # fmt: skip
+                        help="tractions: a table (.csv, .txt, .tsv, .rpt), or .frd, .dat, .vtu")  # fmt: skip
     scores.add_argument("--template", action="store_true", help="print a table to fill in, and nothing else")
     scores.add_argument("--factors", metavar="X,P,Q", default="1,1,1",
-                        help="multiply x, p and q by these: 1e-3,1e6,1e6 for mm and MPa; -1 turns round")  # fmt: skip
+                        help="multiply x, p and q by these factors: 1e-3,1e6,1e6 for mm and MPa; -1 changes the "
+                        "sign")  # fmt: skip
     scores.add_argument("--columns", metavar="NAMES",
-                        help="what the columns are: x=X,p=CPRESS,dq=S2-S1, by name or number (from 1)")  # fmt: skip
+                        help="columns of x, p and dq by name or number (from 1): x=X,p=CPRESS,dq=S2-S1")  # fmt: skip
     scores.add_argument("--centre", choices=("given", "auto"), default="given",
                         help="auto puts x = 0 in the middle of the contact (default: given)")  # fmt: skip
     scores.add_argument("--order", metavar="1|2", default="1",
-                        help="of the elements that nodal forces (columns Fn, Ft) are from (default: 1)")  # fmt: skip
+                        help="order of the elements, for nodal forces (columns Fn, Ft) (default: 1)")  # fmt: skip
     scores.add_argument("--at", metavar="I,J",
-                        help="of CalculiX: which contact results are load points 1 and 2, counted from 1 (default: at "
-                        "the ends of the last steps)")  # fmt: skip
+                        help="CalculiX: numbers, from 1, of the contact results at load points 1 and 2 (default: ends "
+                        "of the last steps)")  # fmt: skip
     scores.add_argument("--with", dest="reference", metavar="METHOD", choices=METHODS,
-                        help="compare with exact, march or fem (default: the first that knows the scene)")  # fmt: skip
+                        help="compare with exact, march or fem (default: the first that solves the scene)")  # fmt: skip
     scores.add_argument("--bar", metavar="FRACTION",
-                        help="what errors of a, m and n may be, of a (p 10, q 15 times that); else code 1")  # fmt: skip
+                        help="largest allowed error of a, m and n, as a fraction of a (p: 10 times, q: 15 times); "
+                        "exit code 1 if missed")  # fmt: skip
     scores.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-FILE)")
     scores.add_argument("--json", action="store_true", help="print results.json, nothing else; files only with --out")
     scores.set_defaults(command=_score)
@@ -72,19 +74,19 @@ def _score(options: argparse.Namespace) -> int:
     scene = load_scene(options.scene, options.overrides)
     if options.template:
         if options.file is not None:
-            raise InputError(f"--template {options.file}: must go without a file")
+            raise InputError(f"--template {options.file}: must go without a file: remove {options.file}")
         from partialslip.halfplane import contact
 
         sys.stdout.write(template(scene, contact(scene).a))
         return 0
     if options.file is None:
-        raise InputError("FILE: missing; --template prints one to fill in")
+        raise InputError("FILE: missing: must be a file with tractions; --template prints a table to fill in")
 
     from partialslip.cli.consoles import working
     from partialslip.report import write_run
 
     file = Path(options.file)
-    check(file)  # before a folder is made for it
+    check(file)  # before a folder is created
     folder = out_folder(options, f"{scene.name}-{file.stem}")
     with held(folder), working(scene.name) as tell:
         outcome = score(
@@ -104,12 +106,12 @@ def _score(options: argparse.Namespace) -> int:
 
 
 def _columns(text: str | None) -> dict[str, str] | None:
-    """What --columns says."""
+    """Parse the value of ``--columns``."""
     if text is None:
         return None
     pairs = [pair.partition("=") for pair in text.split(",")]
     if not all(name.strip() and made.strip() for name, _, made in pairs):
-        raise InputError(f"--columns {text}: must be like x=X,p=CPRESS,dq=S2-S1")
+        raise InputError(f"--columns {text}: must be pairs NAME=COLUMN, for example x=X,p=CPRESS,dq=S2-S1")
     return {name.strip(): made.strip() for name, _, made in pairs}
 
 

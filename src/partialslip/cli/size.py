@@ -1,4 +1,4 @@
-"""partialslip study size: when is a body a half-plane?"""
+"""partialslip study size: changes from the half-plane over sizes of bodies."""
 
 import argparse
 import math
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 def add(topics: "Commands") -> None:
-    """Add the topic to the parser."""
+    """Add the topic to the parser of ``topics``."""
     size = topics.add_parser(
         "size",
-        help="when is a body a half-plane? a sweep over sizes, or over anything else in a scene",
-        description="Sweep over sizes of bodies, or anything else in a scene, on meshes that tell what is of the "
-        "mesh, and fit how the change from half-planes falls with size. Stopped, it goes on where it was.",
+        help="changes from the half-plane, over sizes of bodies or other settings",
+        description="Sweep over sizes of bodies, or other settings of a scene. Refined meshes separate the change by "
+        "the body from the error of the mesh. Fit a law for the change over the size. A stopped study continues.",
         examples=[
             "partialslip study size block.toml --over bodies.*.width+bodies.*.height=4a..256a",
             "partialslip study size pad.toml --over bodies.upper.height=8a,16a,32a --over friction.f=0.2,0.4",
@@ -31,14 +31,15 @@ def add(topics: "Commands") -> None:
     )
     add_scene(size)
     size.add_argument("--over", action="append", required=True, metavar="KEY[+KEY]=VALUES",
-                      help="4a,8a,16a or 4a..256a (equal ratios) or 4a..256a:13, in contact half-widths of the "
-                      "half-plane, or without a as in the scene; 3*KEY is set to three times that; "
-                      "twice for a map")  # fmt: skip
-    size.add_argument("--processes", type=int, metavar="N", help="at once on this machine (default: its cores)")
-    size.add_argument("--cluster", metavar="ADDRESS", help="of a Dask scheduler, whose workers solve instead")
-    size.add_argument(
-        "--one-mesh", action="store_true", help="of each size, instead of two or more that tell what is of the mesh"
-    )
+                      help="values: a list 4a,8a,16a or a range in equal ratios 4a..256a or 4a..256a:13; a is the "
+                      "contact half-width of the half-plane, without a the unit is the scene's; 3*KEY is set to three "
+                      "times the value; give --over twice for a map")  # fmt: skip
+    size.add_argument("--processes", type=int, metavar="N",
+                      help="parallel processes on this machine (default: number of cores)")  # fmt: skip
+    size.add_argument("--cluster", metavar="ADDRESS",
+                      help="address of a Dask scheduler; the cluster's workers solve the cases")  # fmt: skip
+    size.add_argument("--one-mesh", action="store_true",
+                      help="one mesh per size, without estimating the error of the mesh")  # fmt: skip
     size.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-size)")
     size.set_defaults(command=_size)
 
@@ -48,7 +49,7 @@ def _size(options: argparse.Namespace) -> int:
     if options.processes is not None and options.processes < 1:
         raise InputError(f"--processes {options.processes}: must be >= 1")
     if len(options.over) > 2:
-        raise InputError("--over: at most twice")
+        raise InputError(f"--over: given {len(options.over)} times: must be at most 2")
     from partialslip.study.size.axes import axis
 
     scene = load_scene(options.scene, options.overrides)
@@ -117,7 +118,7 @@ def _number(value: float) -> str:
 
 
 def _share(sizes: "Sizes", k: int) -> str:
-    """The largest share of a change that may be due to the mesh."""
+    """Return the largest share of a change that may be an error of the mesh, as text."""
     shares = [sizes.mesh[key][k] / off[k] for key, off in sizes.off.items() if off[k] > 0]
     return f"{max(shares):.1%}" if shares else ""
 

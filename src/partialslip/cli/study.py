@@ -1,4 +1,4 @@
-"""partialslip study: many cases of a scene, and what they say together."""
+"""partialslip study: solve many cases of a scene and evaluate them together."""
 
 from typing import TYPE_CHECKING
 
@@ -9,12 +9,12 @@ if TYPE_CHECKING:
 
 
 def add(commands: "Commands") -> None:
-    """Add the command to the parser."""
+    """Add the command to the parser of ``commands``."""
     study = commands.add_parser(
         "study",
-        help="many cases of a scene: its effects, what accuracy costs, sizes of bodies",
-        description="Solve many cases of a scene and say what they show together, as tables, files and pictures. "
-        "What was stopped goes on where it was.",
+        help="studies of a scene: effects, cost of accuracy, sizes of bodies",
+        description="Solve many cases of a scene; print tables and write files and figures. A stopped study of cost or "
+        "size continues.",
         examples=[
             "partialslip study effects fretting-aluminium",
             "partialslip study cost hertz-large-tension --repeats 1",

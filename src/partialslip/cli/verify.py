@@ -1,4 +1,4 @@
-"""partialslip verify: the shipped scenes, hard cases or random scenes against their bars, and a report on it."""
+"""partialslip verify: judge the methods on shipped scenes, hard cases or random scenes, and write a report."""
 
 import argparse
 import math
@@ -14,11 +14,12 @@ _SUITES = ("quick", "full", "stress")
 
 
 def add(commands: "Commands") -> None:
-    """Add the command to the parser."""
+    """Add the command to the parser of ``commands``."""
     verify = commands.add_parser(
         "verify",
-        help="hold the methods against their bars: shipped scenes, hard cases, random scenes",
-        description="Hold every method against its bars. What was interrupted goes on where it stopped.",
+        help="judge the methods on shipped scenes, hard cases or random scenes",
+        description="Solve scenes by every method, judge the results against the bars, and write a report. An "
+        "interrupted run continues.",
         examples=[
             "partialslip verify",
             "partialslip verify --suite full --only near-sliding-1e-6",
@@ -27,17 +28,18 @@ def add(commands: "Commands") -> None:
         failure="a bar missed",
     )
     verify.add_argument("--suite", choices=_SUITES, default="quick",
-                        help="quick: the shipped scenes; full: these and the hard cases; stress: random scenes "
+                        help="quick: shipped scenes; full: shipped scenes and hard cases; stress: random scenes "
                         "(default: quick)")  # fmt: skip
     verify.add_argument("--only", action="append", default=[], metavar="NAME",
-                        help="only these cases (* and ? stand for anything; of random scenes their numbers); may be "
+                        help="only this case, wildcards * and ?; for random scenes the number; may be "
                         "repeated")  # fmt: skip
-    verify.add_argument("--count", type=int, metavar="N", help="stress: how many scenes (default: 100)")
-    verify.add_argument("--seed", type=int, metavar="S", help="stress: other scenes (default: 0)")
+    verify.add_argument("--count", type=int, metavar="N", help="stress: number of scenes (default: 100)")
+    verify.add_argument("--seed", type=int, metavar="S", help="stress: seed of the scenes (default: 0)")
     verify.add_argument("--method", metavar="METHOD", help="stress: exact, march or fem (default: exact)")
-    verify.add_argument("--processes", type=int, metavar="N", help="at once on this machine (default: its cores)")
+    verify.add_argument("--processes", type=int, metavar="N",
+                        help="parallel processes (default: number of cores)")  # fmt: skip
     verify.add_argument("--include", action="append", default=[], metavar="DIR",
-                        help="put the figures of a study (see: partialslip study) into the report; may be "
+                        help="folder of a study (see: partialslip study); the figures are put into the report; may be "
                         "repeated")  # fmt: skip
     verify.add_argument("--out", metavar="DIR", help="folder for the files (default: results/verify-SUITE)")
     verify.set_defaults(command=_verify)
@@ -57,7 +59,7 @@ def _verify(options: argparse.Namespace) -> int:
     columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.fields[left]}"))
     bar = Progress(*columns, console=told, transient=True)
     task = bar.add_task("", total=None, left="")
-    with ExitStack() as running:  # what is refused is so before there is any progress
+    with ExitStack() as running:  # the bar starts with the first progress, after the input checks
 
         def progress(done: int, total: int, left: float) -> None:
             if math.isnan(left):

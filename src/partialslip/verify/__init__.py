@@ -1,4 +1,4 @@
-"""Verification: the shipped scenes, the catalogue of hard cases, and random scenes, each with its verdicts."""
+"""Verification of the methods on the shipped scenes, the catalogue of hard cases, and random scenes."""
 
 from partialslip.judge import Bar as Bar
 from partialslip.verify.case import REQUIREMENTS as REQUIREMENTS

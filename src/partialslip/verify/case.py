@@ -1,5 +1,8 @@
-"""What is verified: a case is a scene, the methods that solve it and the bars they must meet; a verdict is one quantity
-of one method against its bar, and answers one of the requirements, R1 to R9."""
+"""Cases and requirements of the verification.
+
+A case is a scene, methods and bars. A verdict compares one quantity of one method with a bar, and belongs to one of the
+requirements R1 to R9.
+"""
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -22,13 +25,13 @@ Meshes = Callable[[Scene], Sequence[Mesh]]
 REQUIREMENTS = {
     "finishes": "the method ends with a result, without an error",
     "finite": "no value is NaN or infinite",
-    "certificate": "no residual of the method's own conditions, in f p0 and in f P, is larger",
-    "regime": "the regime is that of the exact solution",
-    "a": "the contact's half-width and ends differ from the exact ones by at most that, in a",
-    "m": "the stick zone's left end differs from the exact one by at most that, in a",
-    "n": "the stick zone's right end differs from the exact one by at most that, in a",
-    "p": "cell averages of pressure differ from the exact ones by at most that, relative L2; its resultant from P",
-    "q": "cell averages of shear differ from the exact ones by at most that, relative L2; the resultant of its change "
+    "certificate": "every residual of the method is at most the bar, in f p0 or f P",
+    "regime": "the regime equals the exact solution's",
+    "a": "half-width and ends of the contact differ from the exact values by at most the bar, in a",
+    "m": "the left end of the stick zone differs from the exact value by at most the bar, in a",
+    "n": "the right end of the stick zone differs from the exact value by at most the bar, in a",
+    "p": "cell averages of p differ from the exact ones by at most the bar, relative L2; so does the resultant from P",
+    "q": "cell averages of q differ from the exact ones by at most the bar, relative L2; so does the resultant of dq "
     "from dQ, in 2 f P",
 }
 _PART_OF = {
@@ -39,7 +42,7 @@ _PART_OF = {
 
 
 class Failure(NamedTuple):
-    """What a method raised instead of a result, and the CPU seconds until then."""
+    """Failure of a method: message of the ``error``, and CPU seconds until the error, ``cpu_s``."""
 
     error: str
     cpu_s: float
@@ -59,15 +62,15 @@ class Case:
     methods : sequence of str
         Of "exact", "march" and "fem".
     bars : mapping of str to Bar
-        Where they are not the usual ones, by method and check, as in ``"fem.q"``. The usual ones are the accuracy that
-        the scene asks for, ten times that for p and fifteen times that for q.
+        Unusual bars by method and quantity, for example ``"fem.q"``. Usual bars: the accuracy of the scene, ten times
+        the accuracy for p, fifteen times the accuracy for q.
     compared : bool
-        Whether to compare with the exact solution; without it, certificates are all there is.
+        Whether to compare with the exact solution; if not, only certificates are judged.
     meshes : callable, optional
-        Takes the scene to meshes for the finite elements (see :func:`partialslip_fem.model.solve_meshed`), on which
-        bars are the case's own.
+        ``meshes(scene)``: given meshes for the finite elements (see :func:`partialslip_fem.model.solve_meshed`).
+        There are then no usual bars.
     hard : str
-        Why it is hard, and what goes wrong with it elsewhere.
+        Why the scene is hard, and how other codes fail.
     """
 
     name: str
@@ -87,11 +90,11 @@ class CaseVerdict(Verdict):
     ----------
     case, method : str
     requirement : str
-        What is required: its number and words.
+        Number and text of the requirement.
     iterations : int
-        Linear solves of the active-set iteration, in all, by the method.
+        Linear solves of the active-set iteration, total of the method.
     cpu_s : float
-        CPU seconds of the method in all.
+        CPU seconds, total of the method.
     """
 
     case: str
@@ -102,29 +105,32 @@ class CaseVerdict(Verdict):
 
 
 def requirement_of(quantity: str) -> str:
-    """The key in :data:`REQUIREMENTS` of what is required of a quantity."""
+    """Return the key in :data:`REQUIREMENTS` of the requirement on ``quantity``."""
     return _PART_OF.get(quantity, quantity)
 
 
 def number_of(quantity: str) -> str:
-    """The number of the requirement that a quantity answers: R1 to R9."""
+    """Return the number of the requirement on ``quantity``, R1 to R9."""
     return f"R{list(REQUIREMENTS).index(requirement_of(quantity)) + 1}"
 
 
 def run_case(case: Case) -> list[CaseVerdict]:
-    """Solve the case by each of its methods and judge what they find; what they raise is a verdict, too."""
+    """Solve ``case`` by each method and judge the results; a failure of a method is a missed verdict."""
     return judge_case(case, solve_case(case))
 
 
 def solve_case(case: Case) -> Found:
-    """What each method of the case finds or raises, the exact one's first where it is what others are compared with."""
+    """Return result or failure of each method of ``case``; exact comes first if the case is compared."""
     needed = ["exact"] if case.compared else []
     return {method: _solve(case, method) for method in dict.fromkeys([*needed, *case.methods])}
 
 
 def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
-    """The verdicts on what the methods of a case have found. An exact solution that is missing is missed, too, where
-    others are to be compared with it; the march stands in for one that cannot judge."""
+    """Return the verdicts on the results ``found`` for ``case``.
+
+    If the case is compared and the exact method fails, the failure is a missed verdict. March replaces exact as the
+    reference where slip reverses between the load points.
+    """
     lost = ["exact"] if case.compared and isinstance(found["exact"], Failure) else []
     results = {method: result for method, result in found.items() if isinstance(result, Result)}
     judging = reference_of(results) if case.compared and not lost else None
@@ -152,10 +158,10 @@ def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
 
 
 def _solve(case: Case, method: str) -> Result | Failure:
-    """The result of a method, or what it raises."""
+    """Return the result of a method, or the failure."""
     start = time.process_time()
     try:
-        with np.errstate(all="ignore"):  # what is not finite is found below
+        with np.errstate(all="ignore"):  # the verdict "finite" finds NaN and infinity
             if method == "fem" and case.meshes:
                 from partialslip_fem.model import solve_meshed
 
@@ -166,7 +172,7 @@ def _solve(case: Case, method: str) -> Result | Failure:
 
 
 def _judged(case: Case, method: str, result: Result, reference: Result | None) -> Iterator[Verdict]:
-    """The verdicts on a result: of its residuals on the worst, and on the quantities that have bars as a rule."""
+    """Yield the verdicts on a result: the largest residual, the regime and the quantities that usually have bars."""
     yield Verdict("finishes", Outcome.PASSED)
     finite, *certificate = conditions(result)
     yield finite

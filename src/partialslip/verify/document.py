@@ -1,4 +1,4 @@
-"""The verification report: one self-contained page, which prints, on what was verified and how near to its bars."""
+"""The verification report: one self-contained page with all verdicts and their distances from the bars."""
 
 import shlex
 from collections.abc import Mapping, Sequence
@@ -23,11 +23,11 @@ from partialslip.verify.verdicts import Verdicts, every_one, missed, nearest, ro
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_LEAST = 1e-18  # of a certificate in the figure: a residual can be zero
+_LEAST = 1e-18  # smallest certificate in the figure, drawn for a residual of 0
 
 
 class Study(NamedTuple):
-    """Figures of a study by their files' names, SVG, and the names of its tables."""
+    """Files of a study: ``figures``, SVG text by file name, and ``tables``, file names, in ``folder``."""
 
     folder: Path
     figures: dict[str, str]
@@ -36,16 +36,16 @@ class Study(NamedTuple):
 
 @dataclass(frozen=True)
 class Account:
-    """What there is to report.
+    """Content of the report.
 
     Parameters
     ----------
     settings : Settings
-        What was asked for.
+        Settings of the verification.
     entries : mapping of str to Entry
-        By case, its entry in the ledger.
+        Entries of the ledger by case.
     figures : mapping of str to str
-        By case, its tractions as SVG.
+        Traction plots by case, SVG.
     studies : sequence of Study
     """
 
@@ -56,23 +56,23 @@ class Account:
 
     @property
     def verdicts(self) -> dict[str, list[CaseVerdict]]:
-        """By case."""
+        """Verdicts by case."""
         return {case: list(entry.verdicts) for case, entry in self.entries.items()}
 
 
 def read_study(folder: Path) -> Study:
-    """The figures that ``partialslip study`` has left in a folder. Raises InputError if it has none."""
+    """Read the figures written by ``partialslip study`` into ``folder``. Raises InputError if there are none."""
     try:
         figures = {path.name: path.read_text("utf-8") for path in sorted(folder.glob("*.svg"))}
     except (OSError, ValueError):
-        raise InputError(f"--include {folder}: has figures that cannot be read") from None
+        raise InputError(f"--include {folder}: figures (.svg) cannot be read as UTF-8 text") from None
     if not figures or any("<svg" not in figure for figure in figures.values()):
         raise InputError(f"--include {folder}: must be the folder of a study, with figures (.svg)")
     return Study(folder, figures, sorted(path.name for path in folder.glob("*.csv")))
 
 
 def document(account: Account) -> str:
-    """The report as HTML."""
+    """Return the report on ``account`` as HTML."""
     settings, verdicts = account.settings, account.verdicts
     listed, stress = every_one(verdicts), account.settings.suite == "stress"
     page = template("partialslip.verify", "document.html").render(
@@ -103,13 +103,13 @@ def _title(settings: Settings) -> str:
 
 
 def command(settings: Settings, only: Sequence[str]) -> str:
-    """What repeats a verification, or the ``only`` cases of it."""
+    """Return the command that repeats a verification with ``settings``, limited to the cases ``only`` if any."""
     words = [f"--{key} {value}" for key, value in replace(settings, only=tuple(only)).asked.items()]
     return " ".join(["partialslip verify", *words, *(f"--only {shlex.quote(name)}" for name in only)])
 
 
 def _asked(settings: Settings, origins: Sequence[Made]) -> list[tuple[str, str]]:
-    """What was asked for; when, where and with what it was found, each thing once."""
+    """Return rows of command, dates, commits, versions and machines."""
     times = sorted(origin.at.replace("T", " ").replace("+00:00", " UTC") for origin in origins)
     machines = [origin.machine for origin in origins]
     found = {
@@ -123,7 +123,7 @@ def _asked(settings: Settings, origins: Sequence[Made]) -> list[tuple[str, str]]
 
 
 def _headline(verdicts: Sequence[CaseVerdict]) -> str:
-    """How many verdicts are missed, or else passed and not judged."""
+    """Return the number of missed verdicts, or else of passed and not judged verdicts, as text."""
     counts = {outcome: sum(verdict.outcome is outcome for verdict in verdicts) for outcome in Outcome}
     if counts[Outcome.MISSED]:
         return f"{counts[Outcome.MISSED]:,} of {len(verdicts):,} verdicts missed"
@@ -132,7 +132,7 @@ def _headline(verdicts: Sequence[CaseVerdict]) -> str:
 
 
 def _summary(verdicts: Verdicts) -> list[tuple[str, ...]]:
-    """By method, and in all: cases, verdicts, missed, not judged, CPU seconds."""
+    """Return rows by method, and a total: cases, verdicts, missed, not judged, CPU seconds."""
     closest, listed = nearest(verdicts), every_one(verdicts)
     table: list[tuple[str, ...]] = []
     for method in (*dict.fromkeys(verdict.method for verdict in closest), None):
@@ -145,7 +145,7 @@ def _summary(verdicts: Verdicts) -> list[tuple[str, ...]]:
 
 
 def _requirements(verdicts: Sequence[CaseVerdict]) -> list[tuple[str, ...]]:
-    """Number, requirement, how many verdicts, how many missed, the largest share of a bar, and where."""
+    """Return rows of number, requirement, verdicts, missed, largest share of a bar, and case and method."""
     table: list[tuple[str, ...]] = []
     for key, text in REQUIREMENTS.items():
         some = [
@@ -160,7 +160,7 @@ def _requirements(verdicts: Sequence[CaseVerdict]) -> list[tuple[str, ...]]:
 
 
 def _close(verdict: CaseVerdict) -> tuple[str, ...]:
-    """Case, requirement, check, error, bar, its share, CPU seconds and verdict."""
+    """Return a row of case, requirement, check, error, bar, share of the bar, CPU seconds and verdict."""
     numbers = _number(verdict.error), _number(verdict.bar), _share(verdict), f"{verdict.cpu_s:.2f}"
     return (
         verdict.case,
@@ -172,8 +172,7 @@ def _close(verdict: CaseVerdict) -> tuple[str, ...]:
 
 
 def _found(verdict: CaseVerdict) -> tuple[str, ...]:
-    """Requirement, check, unit, the exact method's value and the method's own, error or residual, bar, its share, and
-    verdict."""
+    """Return a row of requirement, check, unit, exact value, value, error or residual, bar, share and verdict."""
     unit, *pair = rows.numbers(verdict)[:3]
     numbers = _number(verdict.error), _number(verdict.bar), _share(verdict)
     check = f"{verdict.method}.{verdict.quantity}"
@@ -181,7 +180,7 @@ def _found(verdict: CaseVerdict) -> tuple[str, ...]:
 
 
 def _reasons(verdicts: Sequence[CaseVerdict]) -> list[str]:
-    """Why bars are not the usual ones, or quantities are missed or not judged, each reason once."""
+    """Return the reasons for unusual bars and for missed or unjudged quantities, each reason once."""
     reasons: dict[str, list[str]] = {}
     for verdict in verdicts:
         if verdict.reason:
@@ -200,7 +199,7 @@ def _share(verdict: CaseVerdict) -> str:
 
 
 def _kinds(account: Account) -> list[tuple[str, ...]]:
-    """By kind of loads: how many scenes, median and largest of the certificates, and where that is."""
+    """Return rows by kind of loads: number of certificates, median, largest, and case of the largest."""
     groups: dict[str, list[CaseVerdict]] = {}
     for case, verdicts in account.verdicts.items():
         groups.setdefault(account.entries[case].hard, []).extend(_certificates(verdicts))
@@ -214,7 +213,7 @@ def _kinds(account: Account) -> list[tuple[str, ...]]:
 
 
 def _spread(verdicts: Sequence[CaseVerdict]) -> str | None:
-    """How the certificates are spread, as SVG; None where there are none."""
+    """Return a histogram of the certificates as SVG; None without certificates."""
     some = _certificates(verdicts)
     if not some:
         return None

@@ -1,5 +1,4 @@
-"""Verification from end to end: the cases of a suite, solved on several processes and kept in a ledger, their verdicts,
-and the document about them."""
+"""Run a verification: solve the cases of a suite in parallel, keep a ledger, judge, and write the report."""
 
 import os
 from collections.abc import Mapping, Sequence
@@ -38,19 +37,18 @@ _MOST = 999_999_999
 
 @dataclass(frozen=True)
 class Verification:
-    """What came of a suite.
+    """Outcome of the verification of a suite.
 
     Parameters
     ----------
     verdicts : dict of str to list of CaseVerdict
-        By case.
+        Verdicts by case.
     files : list of Path
-        What was written.
+        Files written.
     missing : str
-        What the PDF would need, where there is none.
+        Library missing for the PDF; empty if the PDF was written.
     again : tuple of str
-        Cases that an earlier, stopped run had finished, but of another scene, other settings or by other source files,
-        so that they were solved again.
+        Cases solved again, because scene, settings or source files had changed since an earlier, stopped run.
     """
 
     verdicts: dict[str, list[CaseVerdict]]
@@ -60,7 +58,7 @@ class Verification:
 
     @property
     def outcome(self) -> Outcome:
-        """Passed, missed or not judged, as a whole (:func:`partialslip.judge.overall`)."""
+        """Overall outcome (:func:`partialslip.judge.overall`)."""
         return overall(verdict for some in self.verdicts.values() for verdict in some)
 
     @property
@@ -81,49 +79,50 @@ def verify_suite(
     include: Sequence[str | Path] = (),
     progress: Progress = lambda *_: None,
 ) -> Verification:
-    """Hold the methods against their bars on the cases of a suite, and write the verdicts and the report on them.
+    """Solve and judge the cases of a suite, and write verdicts and report.
 
-    A run that was stopped goes on where it was, but for cases whose scene, settings or source files have changed
-    meanwhile: these are solved again. A run that had come to its end begins anew.
+    A stopped run continues. Cases whose scene, settings or source files have changed are solved again. A finished run
+    starts anew.
 
     Parameters
     ----------
     name : str
-        "quick": the shipped scenes; "full": these and the hard cases; "stress": random scenes.
+        "quick": shipped scenes; "full": shipped scenes and hard cases; "stress": random scenes.
     only : sequence of str
-        Only these cases, by names in which * and ? stand for anything; of random scenes by their numbers.
+        Names of cases, with wildcards * and ?; numbers of random scenes. Default: all cases.
     method, seed, count : optional
-        Of random scenes only: by which method (as a rule "exact"), which (0), and how many (100).
+        For random scenes only: method (default "exact"), seed (0) and number of scenes (100).
     processes : int, optional
-        At once; as a rule as many as there are cores. With more than one, a script must call this under
-        ``if __name__ == "__main__":``, as each of them imports it.
+        Number of parallel processes (default: number of cores). With more than one, a script must call this function
+        under ``if __name__ == "__main__":``, because each process imports the script.
     out : str or Path, optional
         Folder for ``ledger.jsonl``, ``results.json``, ``results.csv``, ``report.html``, ``report.pdf`` and ``scenes``
-        (``scene.toml``, ``tractions.csv`` and ``tractions.svg`` of each; not of random ones); as a rule
+        (``scene.toml``, ``tractions.csv`` and ``tractions.svg`` of each scene, except random ones). Default:
         ``results/verify-SUITE``.
     include : sequence of str or Path
-        Folders of studies (``partialslip study``), whose figures go into the report.
+        Folders of studies (``partialslip study``); their figures are put into the report.
     progress : callable
-        Called with how many cases are done, how many there are, and the seconds left.
+        ``progress(done, total, seconds_left)``.
 
     Raises
     ------
     InputError
-        If something asked for does not exist, or the folder cannot be written, or another process writes there.
+        If a suite, case, method or study does not exist, if the folder cannot be written, or if another process writes
+        to the folder.
     """
     if processes is not None and processes < 1:
         raise InputError(f"--processes {processes}: must be >= 1")
-    settings, makers, contents = _cases(name, only, method, seed, count)
+    settings, makers, keys = _cases(name, only, method, seed, count)
     studies = [read_study(Path(each)) for each in include]
     folder = Path(out) if out is not None else Path("results") / _folder(settings)
     with locked(folder):
-        return _verify(settings, makers, contents, studies, folder, processes, progress)
+        return _verify(settings, makers, keys, studies, folder, processes, progress)
 
 
 def _verify(
     settings: Settings,
     makers: Makers,
-    contents: Mapping[str, Any],
+    keys: Mapping[str, str],
     studies: Sequence[Study],
     folder: Path,
     processes: int | None,
@@ -131,7 +130,6 @@ def _verify(
 ) -> Verification:
     ledger = _ledger(folder)
     write_verdicts(folder, settings, {}, finished=False)
-    keys = {case: key_of(content) for case, content in contents.items()}
     finished = {entry["case"] for entry in ledger}
     again = tuple(case for case, key in keys.items() if case in finished and key not in ledger)
     work = partial(solve_and_judge, folder=None if settings.suite == "stress" else folder / _SCENES)
@@ -155,8 +153,16 @@ def _verify(
 
 
 def solve_and_judge(make: Maker, folder: Path | None) -> Entry:
-    """The verdicts on a case, as an entry of a ledger. With a ``folder`` also what a document shows of it; its scene,
-    tractions and their figure go into a folder of its name in there."""
+    """Make, solve and judge a case. Returns the entry for a ledger.
+
+    Parameters
+    ----------
+    make : callable
+        ``make() -> Case``.
+    folder : Path or None
+        Folder for the scene, the tractions and their figure, in a subfolder with the name of the case. None: no files,
+        and no sheet for the report.
+    """
     case = make()
     found = solve_case(case)
     return Entry(
@@ -181,8 +187,8 @@ def _file(case: Case, found: Found, folder: Path) -> Sheet | None:
 
 def _cases(
     name: Suite, only: Sequence[str], method: str | None, seed: int | None, count: int | None
-) -> tuple[Settings, Makers, dict[str, Any]]:
-    """What was asked for, the cases, and the content that a ledger knows each of them by."""
+) -> tuple[Settings, Makers, dict[str, str]]:
+    """Return the settings, the functions that make the cases, and the ledger's keys, by case."""
     if name not in SUITES:
         raise InputError(f"--suite {name!r}: must be one of {', '.join(SUITES)}")
     settings = Settings(suite=name, only=tuple(only))
@@ -192,19 +198,19 @@ def _cases(
             if value is not None:
                 raise InputError(f"--{key} {value}: only with --suite stress")
         makers = suite(name, only)
-        return settings, makers, {case: _content(make()) for case, make in makers.items()}
+        return settings, makers, {case: key_of(_content(make())) for case, make in makers.items()}
     method = "exact" if method is None else method
     if method not in METHODS:
         raise InputError(f"--method {method!r}: must be one of {', '.join(METHODS)}")
     seed, count = _within("seed", seed, 0, 0), _within("count", count, 100, 1)
     makers = stress_suite(method, seed, count, only)
-    # a random scene is made of its name, by the source files
-    contents = {case: {"method": method, "case": case} for case in makers}
-    return replace(settings, method=method, seed=seed, count=count), makers, contents
+    # the name holds seed and number, which determine a random scene
+    keys = {case: key_of({"method": method, "case": case}) for case in makers}
+    return replace(settings, method=method, seed=seed, count=count), makers, keys
 
 
 def _content(case: Case) -> dict[str, Any]:
-    """A case as plain data: its scene and what is asked of the methods."""
+    """Return a case as plain data for the ledger's key."""
     meshes = [case.meshes.func, case.meshes.keywords] if isinstance(case.meshes, partial) else [case.meshes]
     own = {
         "methods": list(case.methods),
@@ -216,7 +222,7 @@ def _content(case: Case) -> dict[str, Any]:
 
 
 def _named(part: Any) -> Any:
-    """A function by its name."""
+    """Return the name of a function; other objects as they are."""
     return getattr(part, "__qualname__", part)
 
 
@@ -228,13 +234,13 @@ def _within(key: str, value: int | None, usual: int, least: int) -> int:
 
 
 def _folder(settings: Settings) -> str:
-    """What the folder of a verification is called."""
+    """Return the default name of the folder."""
     parts = ["verify", settings.suite, settings.method, "only" if settings.only else None]
     return "-".join(filter(None, parts))
 
 
 def _ledger(folder: Path) -> Ledger:
-    """That of a run that was stopped; of one that was finished nothing stays that could be taken for the next one's."""
+    """Open the ledger of a stopped run, or start a new one; ledger and report of a finished run are removed."""
     if was_finished(folder):
         try:
             for name in ("ledger.jsonl", _PAGE, _PDF):
@@ -245,14 +251,14 @@ def _ledger(folder: Path) -> Ledger:
 
 
 def _verdicts(ledger: Ledger, keys: Mapping[str, str]) -> dict[str, list[CaseVerdict]]:
-    """Those that are in the ledger, in the order of ``keys``."""
+    """Return the verdicts in the ledger by case, in the order of ``keys``."""
     return {case: list(Entry.of(ledger[key]).verdicts) for case, key in keys.items() if key in ledger}
 
 
 def _figures(folder: Path, entries: Mapping[str, Entry]) -> dict[str, str]:
-    """The figures of those cases that have one."""
+    """Return the figures by case, of cases with a sheet."""
     paths = {case: folder / case / _FIGURE for case, entry in entries.items() if entry.sheet}
     try:
         return {case: path.read_text("utf-8") for case, path in paths.items()}
     except (OSError, ValueError):
-        raise InputError(f"{folder}: figures of finished cases are gone: remove ledger.jsonl to begin anew") from None
+        raise InputError(f"{folder}: figures of finished cases are missing; remove ledger.jsonl to restart") from None

@@ -1,4 +1,4 @@
-"""What a verification keeps: what was asked for, and for each finished case its verdicts and what a document shows."""
+"""Settings of a verification, and the ledger's entries of finished cases."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -12,8 +12,16 @@ from partialslip.verify.suites import Suite
 
 
 class Settings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """What was asked for: the ``suite``, ``only`` some of its cases (all, if empty), and of random scenes the
-    ``method``, the ``seed`` and how many, ``count``."""
+    """Settings of a verification.
+
+    Parameters
+    ----------
+    suite : str
+    only : tuple of str
+        Names of cases; empty for all.
+    method, seed, count : optional
+        For random scenes: method, seed and number of scenes.
+    """
 
     suite: Suite
     only: tuple[str, ...]
@@ -23,7 +31,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
     @property
     def asked(self) -> dict[str, str | int]:
-        """The settings that were given, by name; a count of random scenes only where they were not named."""
+        """Given settings by name; ``count`` only if ``only`` is empty."""
         given = {"suite": self.suite, "method": self.method, "seed": self.seed, "count": self.count}
         if self.only:
             del given["count"]
@@ -31,9 +39,22 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class Entry(msgspec.Struct, frozen=True, kw_only=True):
-    """A finished case: its name, why it is ``hard``, its ``verdicts``, the ``sheet`` that a document shows (None where
-    no method found anything, and of random scenes), whether it has meshes of its own, and when and with what it was
-    ``made`` (None before a ledger has it)."""
+    """A finished case.
+
+    Parameters
+    ----------
+    case : str
+        Name.
+    hard : str
+        Why the case is hard; kind of loads of a random scene.
+    verdicts : tuple of CaseVerdict
+    sheet : Sheet or None
+        Tables for the report; None if every method failed, and for random scenes.
+    own_meshes : bool
+        Whether the meshes are given.
+    made : Made or None
+        Origin of the entry; None before it is in a ledger.
+    """
 
     case: str
     hard: str
@@ -44,5 +65,5 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True):
 
     @classmethod
     def of(cls, entry: Mapping[str, Any]) -> "Entry":
-        """The entry of a ledger as this type."""
+        """Convert an ``entry`` of a ledger to this type."""
         return msgspec.convert(entry, cls)

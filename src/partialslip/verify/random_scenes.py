@@ -1,5 +1,4 @@
-"""Random scenes: every profile, regime, sign and unit, and what lies between regimes; each made again by its seed and
-number."""
+"""Random scenes of every profile, regime, sign and unit, and near the transitions; determined by seed and number."""
 
 import math
 from typing import Any, NamedTuple
@@ -19,23 +18,23 @@ KINDS = (
     "any", "small", "large", "stuck", "near-stuck", "near-sliding", "lost digits", "sliding", "ratchets", "narrow",
     "late", "transition", "no dQ", "no dsigma", "mean loads", "out of phase",
 )  # fmt: skip
-SHORT = 1 - 1e-12  # of sliding, but for rounding
+SHORT = 1 - 1e-12  # largest |Q| in f P without sliding, with room for rounding
 
 
 class Drawn(NamedTuple):
-    """A scene, and the kind of loads it has."""
+    """A random ``scene``, and the ``kind`` of the loads, one of ``KINDS``."""
 
     kind: str
     scene: Scene
 
 
 def kind_of(number: int) -> str:
-    """Kind of loads of the scene of that ``number``, one of ``KINDS``, whatever the seed."""
+    """Return the kind of loads, one of ``KINDS``, of the scene ``number``; independent of the seed."""
     return KINDS[number % len(KINDS)]
 
 
 def draw(seed: int, number: int) -> Drawn:
-    """The scene of that ``seed`` and ``number``."""
+    """Return the random scene of ``seed`` and ``number``."""
     random = np.random.default_rng([seed, number])
     kind, profile = kind_of(number), PROFILES[number // len(KINDS) % len(PROFILES)]
     data = without_shear(random, profile)
@@ -55,7 +54,7 @@ def draw(seed: int, number: int) -> Drawn:
 
 
 def without_shear(random: np.random.Generator, profile: str) -> dict[str, Any]:
-    """Tables of a scene of that profile, one of ``PROFILES``, without tangential loads; SI units."""
+    """Return the tables of a scene with ``profile``, one of ``PROFILES``, and without tangential loads; SI units."""
     length, stress = 10 ** random.uniform(-9, 6), 10 ** random.uniform(-3, 15)
     material: dict[str, Any] = {
         "E": stress,
@@ -83,7 +82,7 @@ def without_shear(random: np.random.Generator, profile: str) -> dict[str, Any]:
 
 
 def table(random: np.random.Generator, length: float) -> dict[str, Any]:
-    """A convex gap at 6 to 12 points: flat or curved in the middle, straight here and there."""
+    """Return a tabulated profile: a convex gap at 6 to 12 points, of ``length`` in m, straight in some intervals."""
     count = int(random.integers(6, 13))
     x = np.concatenate([[0.0], np.cumsum(random.uniform(0.2, 1.0, count - 1))])
     bends = random.exponential(1.0, count - 1) ** random.uniform(0.5, 3) * (random.random(count - 1) > 0.2)
@@ -93,7 +92,10 @@ def table(random: np.random.Generator, length: float) -> dict[str, Any]:
 
 
 def cycle(random: np.random.Generator, kind: str, shape: Shape) -> tuple[Array, Array]:
-    """Q in f P and sigma in f p0 at the load points of a ``kind`` of loads: two, of ``out of phase`` three to eight."""
+    """Return Q in f P and sigma in f p0 at the load points for a ``kind`` of loads and the pressure of ``shape``.
+
+    There are two load points; three to eight for ``out of phase``.
+    """
     Qf, sf = changes(random, kind, shape)
     Q, sigma = means(random, kind, Qf, sf, shape)
     turned = random.choice([-1.0, 1.0], 4)
@@ -109,10 +111,10 @@ def cycle(random: np.random.Generator, kind: str, shape: Shape) -> tuple[Array, 
 
 
 def changes(random: np.random.Generator, kind: str, shape: Shape) -> tuple[float, float]:
-    """dQ in 2 f P and dsigma in f p0, neither of them negative."""
+    """Return dQ in 2 f P and dsigma in f p0, both >= 0, for a ``kind`` of loads and the pressure of ``shape``."""
     if kind == "stuck":
         return 0.0, 0.0
-    if kind == "narrow":  # the other way round: the loads of a zone
+    if kind == "narrow":  # inverse problem: loads of a given stick zone
         c = 10 ** random.uniform(-8, -1)
         found = shape.conditions(np.array((1 - c) * random.uniform(0.02, 1)), np.array(c), np.array(-1))
         return float(found.Qf), float(found.sf)
@@ -121,7 +123,7 @@ def changes(random: np.random.Generator, kind: str, shape: Shape) -> tuple[float
         return Qf, Qf * random.uniform(0, 8)
     if kind == "no dQ":
         return 0.0, 10 ** random.uniform(-6, 1.5)
-    if kind == "sliding":  # by the change of Q, or by its mean
+    if kind == "sliding":  # by the change of Q or by the mean of Q
         Qf = float(random.choice([0.0, random.random(), 1 + 10 ** random.uniform(-6, 2)]))
         return Qf, float(random.choice([0.0, 1.0, float(transition(min(Qf, 0.9), shape))]))
     Qf = {
@@ -146,7 +148,7 @@ def changes(random: np.random.Generator, kind: str, shape: Shape) -> tuple[float
 
 
 def means(random: np.random.Generator, kind: str, Qf: float, sf: float, shape: Shape) -> tuple[float, float]:
-    """Those of Q in f P and of sigma in f p0, of loads whose changes are ``Qf`` and ``sf``."""
+    """Return the means of Q in f P and of sigma in f p0, for changes ``Qf`` in 2 f P and ``sf`` in f p0."""
     room = 1 - Qf
     if kind == "sliding":
         over = 10 ** random.uniform(-6, 2)

@@ -1,4 +1,4 @@
-"""Suites of cases, by name; made one at a time, as there may be many."""
+"""Suites of cases by name. Cases are made one at a time, because there may be many."""
 
 import difflib
 import fnmatch
@@ -20,13 +20,19 @@ Makers = Mapping[str, Maker]
 
 
 def suite(name: Suite, only: Sequence[str] = ()) -> Makers:
-    """The shipped scenes (``quick``), or these and the catalogue of hard cases (``full``): of these the ``only`` ones,
-    by names in which * and ? stand for anything.
+    """Return functions that make the cases of a suite, by name of the case.
+
+    Parameters
+    ----------
+    name : str
+        "quick": shipped scenes; "full": shipped scenes and hard cases.
+    only : sequence of str
+        Names of cases, with wildcards * and ?; default: all cases.
 
     Raises
     ------
     InputError
-        If one of the names in ``only`` is no case's.
+        If a name in ``only`` matches no case.
     """
     cases = [*shipped(), *(hard_cases() if name == "full" else [])]
     known = {case.name: case for case in cases}
@@ -40,16 +46,25 @@ def suite(name: Suite, only: Sequence[str] = ()) -> Makers:
 
 
 def stress_suite(method: str, seed: int, count: int, only: Sequence[str] = ()) -> Makers:
-    """The first ``count`` random scenes of a ``seed`` that ``method`` is for, or the ``only`` ones of these numbers.
+    """Return functions that make random cases, by name of the case.
+
+    Parameters
+    ----------
+    method : str
+        Method of all cases.
+    seed, count : int
+        Seed, and number of scenes: the first ``count`` that ``method`` solves.
+    only : sequence of str
+        Numbers of scenes in place of ``count``.
 
     Raises
     ------
     InputError
-        If one of ``only`` is not a number.
+        If an item of ``only`` is not a number.
     """
     for number in only:
         if not number.isdecimal() or len(number) > 18:
-            raise InputError(f"--only {number!r}: must be the number of a random scene")
+            raise InputError(f"--only {number!r}: must be the number of a random scene, at most 18 digits")
     numbers = [int(number) for number in only] or itertools.islice(stress_numbers(method), count)
     return {f"stress-{seed}-{number}": partial(stress_case, method, seed, number) for number in numbers}
 

@@ -1,4 +1,4 @@
-"""Verdicts for people and files: results.json, results.csv and the terminal's table."""
+"""Write and print verdicts: results.json, results.csv and the terminal table."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -25,8 +25,19 @@ Verdicts = Mapping[str, Sequence[CaseVerdict]]
 
 
 class VerificationRecord(msgspec.Struct, frozen=True):
-    """The content of a verification's ``results.json``: what was asked for, whether the run came to its end, versions,
-    and the verdicts by case."""
+    """Content of the ``results.json`` of a verification.
+
+    Parameters
+    ----------
+    schema : str
+    settings : Settings
+    finished : bool
+        Whether the run finished.
+    versions : dict of str to str
+        Versions of Python and packages.
+    cases : dict of str to tuple of CaseVerdict
+        Verdicts by case.
+    """
 
     schema: str
     settings: Settings
@@ -41,8 +52,22 @@ class _Finished(msgspec.Struct):
 
 
 def write_verdicts(folder: Path, settings: Settings, verdicts: Verdicts, finished: bool) -> list[Path]:
-    """Write results.json and results.csv into ``folder``: the verdicts by case, and what was asked for. Returns their
-    paths. Raises InputError if the folder cannot be written."""
+    """Write results.json and results.csv into ``folder``. Returns the paths.
+
+    Parameters
+    ----------
+    folder : Path
+    settings : Settings
+    verdicts : mapping of str to sequence of CaseVerdict
+        Verdicts by case.
+    finished : bool
+        Whether the run is finished.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
+    """
     found = VerificationRecord(
         schema=SCHEMA,
         settings=settings,
@@ -58,7 +83,7 @@ def write_verdicts(folder: Path, settings: Settings, verdicts: Verdicts, finishe
 
 
 def was_finished(folder: Path) -> bool:
-    """Whether ``folder`` holds the verdicts of a run that came to its end."""
+    """Return whether ``folder`` holds the verdicts of a finished run."""
     try:
         found = msgspec.json.decode((folder / _FILE).read_bytes(), type=_Finished)
     except (OSError, ValueError, RecursionError):
@@ -67,8 +92,10 @@ def was_finished(folder: Path) -> bool:
 
 
 def print_verdicts(verdicts: Verdicts, console: Console, every: bool = True) -> None:
-    """Print a line for each case and method, of its quantity nearest to its bar (or without ``every`` for what is
-    missed only), and the sum of all."""
+    """Print ``verdicts`` on ``console``: one row per case and method, for the quantity nearest to the bar, and totals.
+
+    Without ``every`` only rows with a missed verdict are printed.
+    """
     closest = nearest(verdicts)
     shown = closest if every else [row for row in closest if missed(row)]
     if shown:
@@ -100,17 +127,17 @@ def _row(row: CaseVerdict) -> list[str]:
 
 
 def missed(verdict: CaseVerdict) -> bool:
-    """Whether a verdict says so."""
+    """Return whether ``verdict`` is missed."""
     return verdict.outcome is Outcome.MISSED
 
 
 def every_one(verdicts: Verdicts) -> list[CaseVerdict]:
-    """All of them in one list."""
+    """Return all ``verdicts`` in one list."""
     return [verdict for some in verdicts.values() for verdict in some]
 
 
 def nearest(verdicts: Verdicts) -> list[CaseVerdict]:
-    """Of each case and method the verdict that is missed, or nearest to its bar."""
+    """Return one verdict per case and method: a missed one, else the one nearest to the bar."""
     groups: dict[tuple[str, str], list[CaseVerdict]] = {}
     for verdict in every_one(verdicts):
         groups.setdefault((verdict.case, verdict.method), []).append(verdict)
@@ -118,6 +145,6 @@ def nearest(verdicts: Verdicts) -> list[CaseVerdict]:
 
 
 def room(verdict: CaseVerdict) -> tuple[bool, float]:
-    """To sort by: what is missed first, then by how much of the bar is left."""
+    """Return the sort key of ``verdict``: missed verdicts first, then by the remaining fraction of the bar."""
     share = verdict.share if verdict.outcome is not Outcome.NOT_JUDGED else None
     return not missed(verdict), math.inf if share is None else 1 - share

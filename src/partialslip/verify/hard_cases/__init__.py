@@ -1,1 +1,1 @@
-"""Hard cases: scenes on which codes go wrong, each with its bars and the reason."""
+"""Hard cases: scenes on which contact codes fail, with bars and reasons."""

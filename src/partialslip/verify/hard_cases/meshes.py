@@ -1,4 +1,4 @@
-"""Meshes that are hard by themselves, for scenes whose bodies are mirror images; lengths in m."""
+"""Meshes of poor quality for hard cases, for scenes whose bodies are mirror images; lengths in m."""
 
 import numpy as np
 
@@ -8,25 +8,26 @@ from partialslip.scene import Scene
 from partialslip_meshes.blocks import block
 from partialslip_meshes.mesh import Mesh
 
-_WIDTH = 16.0  # of blocks, in contact half-widths
+_WIDTH = 16.0  # width of the blocks, in contact half-widths
 _ALONG = 0.05  # element size along the contact, in contact half-widths
 
 
 def one_node(scene: Scene) -> list[Mesh]:
-    """Elements so large that one vertex is in contact."""
+    """Return a mesh for ``scene`` with elements so large that one vertex is in contact."""
     a = contact(scene).a
     return [block(16 * _WIDTH * a, (-32 * a, 32 * a), {0.0: 16 * a}, 0.7)]
 
 
 def shifted(scene: Scene, share: float) -> list[Mesh]:
-    """Even elements along the contact, off the middle by a share of their size."""
+    """Return a mesh for ``scene`` of equal elements along the contact, shifted by ``share`` of their size."""
     a = contact(scene).a
     mesh = block(_WIDTH * a, (-1.5 * a, 1.5 * a), {}, 0.3, along=_ALONG * a)
     return [Mesh(mesh.points + np.array([share * _ALONG * a, 0.0]), mesh.triangles, mesh.lines)]
 
 
 def flat_triangles(scene: Scene, aspect: float) -> list[Mesh]:
-    """A grid of even columns along the contact, whose first row is ``aspect`` times as long as it is high."""
+    """Return a grid for ``scene`` with equal columns along the contact; cells of the first row are ``aspect`` times
+    wider than high."""
     a = contact(scene).a
     middle = np.linspace(-1.5, 1.5, round(3 / _ALONG) + 1)
     beyond = 1.5 + _growing(_ALONG, _WIDTH - 1.5)
@@ -53,7 +54,7 @@ def flat_triangles(scene: Scene, aspect: float) -> list[Mesh]:
 
 
 def _growing(first: float, end: float) -> Array:
-    """Distances up to ``end``, whose steps grow by a half from the first one on."""
+    """Return distances up to ``end``; the first step is about ``first``, each next step 1.5 times the previous."""
     count = int(np.ceil(np.log1p(end / first / 2) / np.log(1.5)))
     result: Array = (1.5 ** np.arange(1.0, count + 1) - 1) * end / (1.5**count - 1)
     return result
