@@ -39,7 +39,7 @@ def add(topics: "Commands") -> None:
     size.add_argument("--cluster", metavar="ADDRESS",
                       help="address of a Dask scheduler; the cluster's workers solve the cases")  # fmt: skip
     size.add_argument("--one-mesh", action="store_true",
-                      help="one mesh per size, without estimating the error of the mesh")  # fmt: skip
+                      help="one mesh per size, without further meshes to check the error of the mesh")  # fmt: skip
     size.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-size)")
     size.set_defaults(command=_size)
 

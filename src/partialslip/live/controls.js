@@ -1,13 +1,13 @@
 "use strict";
 
-// The loads: what is set by the controls, the answer to it, and the numbers. The scene is what the page starts with.
+// The loads set by the controls, the solution for them, and the table of numbers. The page starts with the scene.
 const page = (() => {
   const scene = JSON.parse(document.getElementById("scene").textContent);
   const { a, P, p0 } = scene;
   const by = (id) => document.getElementById(id);
-  const DIGITS = 5, LARGEST = 1e9;  // shown of a setting, and taken
+  const DIGITS = 5, LARGEST = 1e9;  // digits shown of a setting, and largest setting accepted
 
-  // In the scene's units, sizes of dQ (N/m) and dsigma (Pa); `turn` is the sign of dQ, `mirror` that of dQ dsigma.
+  // |dQ| (N/m) and |dsigma| (Pa); `turn` is the sign of dQ, `mirror` the sign of dQ dsigma.
   const start = {
     dQ: Math.abs(scene.dQ), dsigma: Math.abs(scene.dsigma), f: scene.f,
     turn: scene.dQ < 0 ? -1 : 1, mirror: scene.dQ * scene.dsigma < 0 ? -1 : 1,
@@ -28,7 +28,7 @@ const page = (() => {
   }
   const minus = (text) => text.replace(/-(?=[\d.])/, "\u2212");
 
-  // What the half-planes do under the loads, as the exact method says it.
+  // Solution for the loads, by the exact method.
   function answer({ dQ, dsigma, f, turn, mirror }) {
     const Qf = dQ / (2 * f * P), sf = dsigma / (f * p0), mean = Math.abs(scene.Q_mean) / (f * P);
     const found = { Qf, sf, turn, mirror, f, zone: null, m: null, n: null, q: null, bound: null };
@@ -45,21 +45,21 @@ const page = (() => {
 
   const REGIMES = {
     stuck: "the loads do not change",
-    "small tension": "both ends slip the same way",
-    "large tension": "the ends slip opposite ways",
-    frictionless: "there is neither friction nor shear force: nothing sticks, and nothing drives the bodies apart",
+    "small tension": "both ends slip in the same direction",
+    "large tension": "the ends slip in opposite directions",
+    frictionless: "neither friction nor shear force: no stick zone, no sliding",
     sliding: "the whole contact slides: there is no stick zone",
-    ratchets: "every cycle adds slip: the mean of Q is beyond what a steady state can hold, m and n are not reached",
+    ratchets: "every cycle adds slip: the mean of Q exceeds the limit of a steady state; m and n are not reached",
   };
 
   function note({ zone, Qf, sf }) {
     if (!zone || sf === 0) return "";
     const turns = zone.s > 0 ? sf > 4 * Qf : zone.c * sf < 4 * Qf;
-    return turns ? "On a gradual way between these load points, slip at one end turns round: q then differs from the " +
-      "closed form; march with load.steps shows by how much." : "";
+    return turns ? "Under a gradual load path between these load points, slip at one end reverses. q then differs from " +
+      "the closed form; march with load.steps gives the difference." : "";
   }
 
-  // [scaled, SI] of every number in the table.
+  // [scaled, SI] values of the table.
   function numbers({ zone, f, m, n, q, Qf, bound }) {
     const none = ["none", ""], length = (at) => engineering(at * a, "m", 6), turns = hertz.transition(Qf);
     const table = { m: none, n: none, width: none, q: none, turns: none, mean: none };
@@ -78,7 +78,7 @@ const page = (() => {
     };
   }
 
-  // Every control of a load or of friction: its own value, and how it is set.
+  // Controls of loads and friction: how to read and set each value.
   const force = prefix(2 * scene.f * P), stress = prefix(scene.f * p0);
   const controls = {
     Qf: { get: ({ Qf }) => Qf, set: (value) => ({ dQ: value * 2 * loads.f * P }) },

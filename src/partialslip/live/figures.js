@@ -1,11 +1,11 @@
 "use strict";
 
-// The two figures, drawn in the size that they have on the page: the tractions over the contact, and the stick-zone map
-// with the loads as a point that can be dragged.
+// The two figures, drawn in their size on the page: tractions over the contact, and the stick-zone map with the loads as
+// a point to drag.
 const figures = (() => {
   const NAMESPACE = "http://www.w3.org/2000/svg";
-  const STRIP = 0.04;  // of sliding, on the map beyond dQ = 2 f P
-  const ROOM = 44;  // that a word in a zone needs, pixels
+  const STRIP = 0.04;  // width of the strip of sliding, beyond dQ = 2 f P
+  const ROOM = 44;  // width of a word in a zone, pixels
 
   function element(parent, tag, attributes = {}, text = "") {
     const made = document.createElementNS(NAMESPACE, tag);
@@ -18,7 +18,7 @@ const figures = (() => {
   const path = (points) => points.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(2)} ${y.toFixed(2)}`).join("");
   const tick = (value) => String(+value.toFixed(2)).replace("-", "\u2212");
 
-  // Empties the SVG and draws axes over the ranges; returns the scales and a layer that is clipped to the axes.
+  // Clears the SVG and draws axes over the ranges. Returns the scales and a layer clipped to the axes.
   function axes(svg, { x, y, xTicks, yTicks, xLabel, yLabel }) {
     const width = Math.max(Math.round(svg.parentNode.clientWidth), 240);
     const height = Math.round(Math.max(0.62 * width, Math.min(0.8 * width, 300)));
@@ -77,7 +77,7 @@ const figures = (() => {
       if (!found) return word(-1, 1, "slides");
       const [low, high] = [found.centre - found.c, found.centre + found.c].map((x) => mirror * x).sort((a, b) => a - b);
       zone.setAttribute("x", toX(low));
-      zone.setAttribute("width", Math.max(toX(high) - toX(low), 1));  // there is always one
+      zone.setAttribute("width", Math.max(toX(high) - toX(low), 1));  // show the narrowest zone
       ends.setAttribute("d", [low, high].map((x) => path([[toX(x), box.top], [toX(x), box.bottom]])).join(""));
       const points = regime === "stuck" ? [{ x: -1, q: 0 }, { x: 1, q: 0 }] : hertz.tractions(found);
       shear.setAttribute("d", path(points.map(({ x, q }) => [toX(mirror * x), toY(turn * q)])));
@@ -90,7 +90,7 @@ const figures = (() => {
     };
   }
 
-  // Returns draw(answer). `move` is told the loads (Qf, sf) to which the point is dragged or stepped.
+  // Returns draw(answer). Calls `move` with the loads (Qf, sf) to which the point is dragged or stepped.
   function map(svg, { m, n, border, top }, move) {
     const step = top > 20 ? 10 : top > 10 ? 4 : 2;
     const plot = axes(svg, {
@@ -137,7 +137,7 @@ const figures = (() => {
     };
     svg.onpointerdown = (event) => {
       const { left, top: above } = svg.getBoundingClientRect(), x = event.clientX - left, y = event.clientY - above;
-      // a finger that misses the point scrolls the page
+      // a touch beside the point scrolls the page
       if (event.pointerType !== "mouse" && !handle.contains(event.target)) return;
       if (x < box.left || x > box.right || y < box.top || y > box.bottom) return;
       svg.setPointerCapture(event.pointerId);
@@ -157,7 +157,7 @@ const figures = (() => {
 
     return (answer) => {
       now = answer;
-      // friction alone moves the loads along a ray; on it they stay where they leave the map
+      // a change of f moves the loads along a ray; beyond the map the point stays at the border
       const far = Math.min((1 + STRIP) / Math.max(answer.Qf, 1e-9), top / Math.max(answer.sf, 1e-9));
       const on = (share) => at([answer.Qf * share, answer.sf * share]);
       ray.setAttribute("d", path([at([0, 0]), on(far)]));
@@ -166,7 +166,7 @@ const figures = (() => {
       const [Qf, sf] = [answer.Qf, answer.sf].map((value) => +value.toFixed(4));
       handle.setAttribute("aria-valuetext", `\u0394Q/(2 f P) = ${Qf}, \u0394\u03c3/(f p0) = ${sf}`);
       handle.classList.toggle("beyond", far < 1);
-      const name = (end) => (answer.mirror > 0 ? end : { m: "n", n: "m" }[end]);  // mirrored, they change places
+      const name = (end) => (answer.mirror > 0 ? end : { m: "n", n: "m" }[end]);  // swapped if mirrored
       for (const { kind, value, text } of labels) {
         text.textContent = `${name(kind)} ${value.toFixed(1)}`.replace("-", "\u2212");
       }

@@ -1,12 +1,12 @@
 "use strict";
 
 // The steady state of Hertz's contact, in plain JavaScript: docs/theory.md, sections 4 to 7. Lengths are scaled by a,
-// pressures by p0, loads by friction: Qf = dQ/(2 f P) and sf = dsigma/(f p0), both >= 0. A stick zone [-m, n] is held
-// as in Python: its centre (n - m)/2, its half-width c = (n + m)/2, and s, +1 where both ends slip the same way.
+// pressures by p0, loads by friction: Qf = dQ/(2 f P) and sf = dsigma/(f p0), both >= 0. A stick zone [-m, n] is stored
+// as in Python: centre (n - m)/2, half-width c = (n + m)/2, and s, +1 where both ends slip in the same direction.
 const hertz = (() => {
-  const NARROWEST = 1e-100;  // stick zones narrower than that are not told apart
+  const NARROWEST = 1e-100;  // smallest half-width of a stick zone
   const NARROW = 1e-5;
-  const CLOSE = 1e-9;  // after a Newton step as small as that, rounding is all that is left
+  const CLOSE = 1e-9;  // converged after a Newton step as small as this: the error is then rounding
   const SETTLED = 1e-13;
   const ROUNDING = 4 * Number.EPSILON;
   const STEPS = 40;
@@ -21,8 +21,8 @@ const hertz = (() => {
   const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
   const pressure = (x) => Math.sqrt(Math.max((1 - x) * (1 + x), 0));
 
-  // Bulirsch's complete elliptic integral (1969) of a positive p: from 0 to pi/2 over
-  // (a cos^2 + b sin^2)/((cos^2 + p sin^2) sqrt(cos^2 + k^2 sin^2)), k being the complementary modulus.
+  // Bulirsch's complete elliptic integral (1969) for positive p: integral from 0 to pi/2 of
+  // (a cos^2 + b sin^2)/((cos^2 + p sin^2) sqrt(cos^2 + k^2 sin^2)), with the complementary modulus k.
   function elliptic(k, p, a, b) {
     let root = Math.sqrt(p), product = k, mean = 1;
     b /= root;
@@ -38,8 +38,8 @@ const hertz = (() => {
     }
   }
 
-  // The loads that belong to a stick zone at the distance `edge` = 1 - m from the contact's left end, and how stiff its
-  // ends are: nothing large cancels (eqs. (21), (22) and (24)-(26); X = K - Pi((m-1)/(m+1))).
+  // Loads of a stick zone at the distance `edge` = 1 - m from the contact's left end, and their derivatives, without
+  // cancellation (eqs. (21), (22) and (24)-(26); X = K - Pi((m-1)/(m+1))).
   function conditions(edge, c, s) {
     if (s > 0) return { sf: 8 * (1 - c - edge), Qf: (1 - c) * (1 + c), right: c, left: c, skew: 0 };
     const centre = edge + c - 1, fromLeft = edge + 2 * c;  // 1 + n
@@ -54,10 +54,10 @@ const hertz = (() => {
     return { sf: 8 / Math.PI * first, Qf: 2 / Math.PI * second, right, left: right - c * skew, skew };
   }
 
-  // The stick zone for 0 <= Qf < 1 and sf >= 0: closed for small tension, otherwise by Newton's method in s * edge,
-  // which goes through the transition smoothly, and log c (section 6). `steps` counts its steps.
+  // The stick zone for 0 <= Qf < 1 and sf >= 0: in closed form for small tension, else by Newton's method in s * edge,
+  // which is smooth across the transition, and log c (section 6). `steps` counts the Newton steps.
   function stickZone(Qf, sf) {
-    sf = Math.min(sf, 1e5);  // beyond, all are narrowest
+    sf = Math.min(sf, 1e5);  // larger values give the smallest half-width
     let c = Math.sqrt(1 - Qf), edge = Qf / (1 + c) - sf / 8, steps = 0;
     if (edge < 0) [edge, c] = late(Qf, edge, c);
     else return { centre: edge + c - 1, c, s: 1, steps };
@@ -78,8 +78,8 @@ const hertz = (() => {
     return { centre: Math.abs(edge) + c - 1, c, s: edge < 0 ? -1 : 1, steps };
   }
 
-  // A first guess for large tension, from s * edge and c that small tension would have: between the transition and what
-  // the stick zone tends to as it gets narrow (section 5).
+  // Initial guess for large tension, from s * edge and c of small tension: between the transition and the limit of a
+  // narrow stick zone (section 5).
   function late(Qf, edge, c) {
     const y = Math.PI / 2 * Qf;
     let b = y / 2;  // b + sin(b) cos(b) = y is the condition on dQ; -sin(b) is the centre
@@ -95,8 +95,8 @@ const hertz = (() => {
   // dsigma/(f p0) at which small tension ends, eq. (23).
   const transition = (Qf) => 8 * Qf / (1 + Math.sqrt(1 - Qf));
 
-  // Points and weights in the slip zone on one side (1 right, -1 left): the integral of g/w is sum of weight g(t), with
-  // t = centre +- c cosh(theta); double exponential towards the square root at the contact's end.
+  // Points and weights in the slip zone on one side (1 right, -1 left): the integral of g/w is the sum of weight g(t),
+  // t = centre +- c cosh(theta); double exponential at the square root at the contact's end.
   function slipRule(gap, zone, side) {
     const end = 2 * Math.asinh(Math.sqrt(gap / (2 * zone.c))), middle = Math.max(end - 3, 0);
     return [[0, middle], [middle, end]].filter(([low, high]) => high > low).flatMap(([low, high]) =>
@@ -106,7 +106,7 @@ const hertz = (() => {
       }));
   }
 
-  // dq/(2 f p0) in the stick zone, as a function of x's offset from its centre: section 4.
+  // dq/(2 f p0) in the stick zone, as a function of the distance from the centre of the zone (section 4).
   function insideOf(zone) {
     const edge = Math.max(1 + zone.centre - zone.c, 0);
     const sides = [[1, 1, Math.max(2 - edge - 2 * zone.c, 0)], [-1, zone.s, edge]].map(([side, sign, gap]) => {
@@ -128,7 +128,7 @@ const hertz = (() => {
     };
   }
 
-  // x, p/p0 and dq/(2 f p0) over the contact, crowding towards the ends of its zones.
+  // x, p/p0 and dq/(2 f p0) over the contact, denser at the ends of the zones.
   function tractions(zone, count = 80) {
     const inside = insideOf(zone), crowd = Array.from({ length: count + 1 }, (_, i) => -Math.cos(Math.PI * i / count));
     const left = zone.centre - zone.c, right = zone.centre + zone.c;
@@ -143,17 +143,17 @@ const hertz = (() => {
     return [...slip(-1, left, zone.s), ...stick, ...slip(right, 1, 1)];
   }
 
-  // The largest |q| = |dq|/2, in f p0: at an end of the stick zone, or in the middle of the contact where that slips.
+  // The largest |q| = |dq|/2, in f p0: at an end of the stick zone, or in the middle of the contact if the middle slips.
   function largest({ centre, c }) {
     const ends = [centre - c, centre + c].map(Math.abs);
     return Math.abs(centre) >= c ? 1 : pressure(Math.min(...ends));
   }
 
-  // The largest |Q_mean|/(f P) that a steady state can hold: what |dq|/2 leaves of f P (section 7).
+  // The largest |Q_mean|/(f P) of a steady state: f P less the resultant of |dq|/2 (section 7).
   function meanLoadBound(zone, Qf) {
     if (zone.s > 0) return 1 - Qf;
     const inside = insideOf(zone), at = (angle) => inside(zone.c * Math.cos(angle));
-    let low = 0, high = Math.PI;  // dq changes sign on the way from n to -m
+    let low = 0, high = Math.PI;  // dq changes sign between n and -m
     for (let i = 0; i < 60; i++) {
       const middle = (low + high) / 2;
       if (at(middle) > 0) low = middle; else high = middle;

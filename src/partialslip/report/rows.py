@@ -96,7 +96,7 @@ def verdict(run: Run) -> str:
     if run.judged:
         return "not judged: no quantity can be judged"
     if run.plan.missing:
-        return f"not judged: no bars: forced off: {', '.join(run.plan.missing)}; the errors are what that is worth"
+        return f"not judged: no bars: forced off: {', '.join(run.plan.missing)}; the errors measure these effects"
     reasons = {"finite bodies": run.scene.finite, "the element size was given": run.scene.fem.size is not None}
     return "not judged: no bars: " + next((why for why, applies in reasons.items() if applies), "none were asked for")
 
