@@ -1,4 +1,4 @@
-"""The command line: what it writes, prints and returns."""
+"""The command line: files, output and exit codes."""
 
 import contextlib
 import csv
@@ -28,7 +28,7 @@ HEAVY = ("gmsh", "skfem", "meshio", "matplotlib")
 
 
 def call(folder, *arguments):
-    """Run in ``folder``, 80 columns wide; returns code, stdout as ``out``, the record and the folder of results."""
+    """Run in ``folder``, 80 columns wide. Returns exit code, stdout ``out``, record and folder of results."""
     out = io.StringIO()
     with contextlib.chdir(folder), contextlib.redirect_stdout(out), mock.patch.dict(os.environ, COLUMNS="80"):
         code = main(arguments)
@@ -37,7 +37,7 @@ def call(folder, *arguments):
 
 
 def strict(source):
-    """JSON from a file or a string, in which NaN and Infinity are errors."""
+    """Return JSON from a file or a string; NaN and Infinity are errors."""
     text = source.read_text("utf-8") if isinstance(source, Path) else source
     return json.loads(text, parse_constant=lambda token: pytest.fail(token))
 
@@ -216,7 +216,7 @@ def test_errors_are_legible_in_80_columns(missed):
         assert words[-1] == "MISSED"
         assert words[-2] == f"{bar:.1e}"
         assert f"{comparison['errors'][key]:.1e}" in words
-    for each in comparison["verdicts"]:  # a reader who subtracts finds the error
+    for each in comparison["verdicts"]:  # the difference of the printed values is the error
         if each["quantity"] in ("a", "m", "n", "p_max", "q_max"):
             assert abs(each["found"] - each["reference"]) == pytest.approx(each["error"], abs=1e-12)
 

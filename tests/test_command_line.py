@@ -1,4 +1,4 @@
-"""What the command line is like to use: help, completion, colours and widths."""
+"""Use of the command line: help, completion, colours and widths."""
 
 import argparse
 import contextlib
@@ -19,7 +19,7 @@ EXACT = ("run", "hertz-shear", "--with", "exact")
 
 
 def commands(top, above=()):
-    """All commands, as the words that are typed, and what reads their arguments."""
+    """Return the parsers of all commands by the words of the command."""
     yield above, top
     for action in top._actions:
         if isinstance(action, argparse._SubParsersAction):
@@ -104,7 +104,7 @@ def test_a_shell_without_completion_is_refused(capsys):
 
 
 def completed(script, line):
-    """What bash offers for the last word of ``line``."""
+    """Return bash's completions of the last word of ``line``."""
     words = line.split(" ")
     asked = f"""
         source {script}

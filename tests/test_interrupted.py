@@ -1,4 +1,4 @@
-"""Stopped at any moment, by Ctrl-C or by kill -9: whole files or none, and a rerun works."""
+"""Runs stopped at any moment by Ctrl-C or kill -9: no partial files, and a rerun works."""
 
 import json
 import os
@@ -12,7 +12,7 @@ import pytest
 
 from partialslip.cli import main
 from partialslip.output.files import write_files
-from partialslip.output.lock import NAME  # a file that may stay; the lock does not
+from partialslip.output.lock import NAME  # this file may stay; the lock does not
 
 RUN = (
     "run",
@@ -56,7 +56,7 @@ def stopped(folder, at, kind=signal.SIGKILL, arguments=RUN):
 
 
 def whole(folder):
-    """Checks every file that has its final name; returns their names, and what else is there."""
+    """Check every file with a final name. Returns the names, and the names of all other files."""
     names = sorted(path.name for path in folder.iterdir() if path.name != NAME) if folder.exists() else []
     for name in names:
         path = folder / name
@@ -73,7 +73,7 @@ def whole(folder):
 
 
 def moments(folder):
-    """How many moments there are to stop at."""
+    """Return the number of moments at which to stop."""
     code, said = stopped(folder, 0)
     assert code == 0
     return int(said.split("moments")[1])
@@ -85,8 +85,8 @@ def stop_and_rerun(folder, at, kind):
     _, left = whole(folder / "out")
     if kind == signal.SIGINT:
         assert said.splitlines()[0] == "partialslip: interrupted"
-        assert left == []  # nothing half done is left behind
-    assert all(name.startswith(".") for name in left)  # of a killed one, hidden
+        assert left == []  # no partial file is left
+    assert all(name.startswith(".") for name in left)  # hidden files of a killed run
     assert main([*RUN[:-3], str(folder / "out" / "state.npz"), "--out", str(folder / "out")]) == 0
     assert whole(folder / "out") == (FILES, [])
 
@@ -99,7 +99,7 @@ def test_stopped_at_a_write(tmp_path, at, kind):
 
 @pytest.mark.parametrize(("at", "cases", "kind"), [(19, 1, signal.SIGKILL), (29, 2, signal.SIGINT)])
 def test_a_verification_stopped_at_a_write_goes_on(tmp_path, at, cases, kind):
-    """Before its second case is in the ledger, and while it writes the PDF."""
+    """Before the second case is in the ledger, and while the PDF is written."""
     assert stopped(tmp_path, at, kind, VERIFY)[0] == (-signal.SIGKILL if kind == signal.SIGKILL else 130)
     ledger = tmp_path / "out" / "ledger.jsonl"
     kept = ledger.read_bytes() if ledger.exists() else b""
@@ -114,7 +114,7 @@ def test_a_verification_stopped_at_a_write_goes_on(tmp_path, at, cases, kind):
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
 def test_stopped_at_every_write(tmp_path, kind):
-    """Also over the files of an earlier run, which stay whole."""
+    """Also over the files of an earlier run, which stay complete."""
     count = moments(tmp_path)
     assert count >= 4 * len(FILES)
     for at in range(1, count + 1):
@@ -147,7 +147,7 @@ def test_stopped_at_any_time(tmp_path, kind, arguments):
 
 
 def test_half_a_file_never_takes_a_name(tmp_path):
-    """Deliberate fault for comparison: written in place, a stopped write leaves half a file under the final name."""
+    """Deliberate fault for comparison: a stopped write in place leaves a partial file under the final name."""
 
     def half(path):
         path.write_text("half", "utf-8")
@@ -163,7 +163,7 @@ def test_half_a_file_never_takes_a_name(tmp_path):
 
 
 def test_only_what_nobody_writes_is_tidied_up(tmp_path):
-    """What a killed write has left goes; what another process is writing at this moment stays, and so do others'."""
+    """Temporary files of killed writes are removed; files that another process is writing, and other files, stay."""
     code = (
         "import sys, time; from pathlib import Path; from partialslip.report.files import write_files\n"
         "def write(path):\n path.write_text('half', 'utf-8'); print('busy', flush=True); time.sleep(60)\n"

@@ -1,4 +1,4 @@
-"""The stick-zone map: its data, its files and pictures, a scene's place on it; and the figures of the documents."""
+"""The stick-zone map: data, files, figures and a scene's point; and the figures of the documents."""
 
 import csv
 import re
@@ -37,7 +37,7 @@ def column(table, key):
 
 
 def texts(path):
-    """All text of an SVG, which must be well-formed."""
+    """Return all text of an SVG, which must be well-formed."""
     return ["".join(node.itertext()) for node in ElementTree.parse(path).iter() if node.tag.endswith("}text")]
 
 
@@ -48,7 +48,7 @@ def scene(*overrides):
 
 @pytest.fixture
 def coarse(monkeypatch):
-    """Small maps, where it does not matter how fine they are."""
+    """Coarse maps, for tests independent of the resolution."""
     monkeypatch.setattr(grid, "_COUNT", 4)
     monkeypatch.setattr(grid, "_COUNT_KINKED", 4)
     monkeypatch.setattr(grid, "_RATIOS", np.linspace(0, 8, 5))
@@ -88,7 +88,7 @@ def test_table_against_closed_forms(hertz):
     Qf, sf, m, n = (column(table, key) for key in ("Qf", "sf", "m_over_a", "n_over_a"))
     assert (len(table), Qf.max(), sf.max()) == (50 * 51, 0.98, 10.0)
     large = np.array([row["regime"] == "large tension" for row in table])
-    above = sf - 8 * (1 - np.sqrt(1 - Qf))  # zero but for rounding at (0, 0) and where sqrt(1 - Qf) is round
+    above = sf - 8 * (1 - np.sqrt(1 - Qf))  # zero except for rounding at (0, 0) and where sqrt(1 - Qf) is round
     np.testing.assert_array_equal(large[abs(above) > 1e-12], above[abs(above) > 1e-12] > 0)
     np.testing.assert_allclose(((n - m) / 2)[~large], (-sf / 8)[~large], rtol=0, atol=1e-14)  # eq. (21)
     np.testing.assert_allclose(((n + m) / 2)[~large], np.sqrt(1 - Qf)[~large], rtol=0, atol=1e-14)  # eq. (22)
@@ -118,10 +118,10 @@ def test_border_is_where_the_regime_turns(shape):
     np.testing.assert_allclose(sf, transition(Qf, shape), rtol=1e-9)
     for way, s in ((1 - 1e-6, 1), (1 + 1e-6, -1)):
         assert (stick_zones(Qf, sf * way, shape)[2] == s).all()
-    np.testing.assert_allclose(data.turns.zone.m, 1, rtol=0, atol=1e-9)
-    for number, turn in enumerate(data.turns.sf):  # the curves have their crest
+    np.testing.assert_allclose(data.turns.m, 1, rtol=0, atol=1e-9)
+    for number, turn in enumerate(data.turns.sf):  # the curves have a maximum
         assert turn in data.curves.sf[number]
-    assert (data.curves.zone.m.max(axis=1) > 1 - 1e-9).all()
+    assert (data.curves.m.max(axis=1) > 1 - 1e-9).all()
 
 
 def test_progress_is_told():

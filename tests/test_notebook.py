@@ -1,4 +1,4 @@
-"""What notebooks see of scenes, results, comparisons and runs: tables, plots, data frames."""
+"""Notebook display of scenes, results, comparisons and runs: tables, plots, data frames."""
 
 import csv
 import subprocess
@@ -17,7 +17,7 @@ matplotlib.use("Agg")
 
 
 class Cells(HTMLParser):
-    """The text of the cells, row by row; a tag that is not closed is an error."""
+    """Parse the text of the cells by row; an unclosed tag is an error."""
 
     def __init__(self, text):
         super().__init__()

@@ -1,4 +1,4 @@
-"""Results are plain data: they go through a pickle and a process, and come back from their file."""
+"""Results are plain data: unchanged by pickle, by another process, and by writing and reading a file."""
 
 import json
 import pickle
@@ -33,7 +33,7 @@ def found(request):
 
 
 def test_a_run_is_the_same_after_a_pickle(found):
-    """At points between those of its columns, too."""
+    """Also at points between the points of the columns."""
     back = pickle.loads(pickle.dumps(found))
     assert record(back) == record(found)
     for name, mine in found.results.items():
@@ -72,7 +72,7 @@ def test_a_pool_brings_a_run_back():
 
 
 def test_numbers_that_json_does_not_have_are_null():
-    """A result of NaN is kept as one without that number, and stays missed."""
+    """NaN is stored as null, and the verdict stays missed."""
     outcome = run(load_scene("hertz-shear", FAST), ["exact", "march"])
     traction = outcome.results["march"].traction
     traction.dq[:3] = np.nan, np.inf, -np.inf

@@ -1,4 +1,4 @@
-"""Standard streams that are full, closed or poor in characters; signals; two commands in one folder."""
+"""Standard streams that are full, closed or lack characters; signals; two commands in one folder."""
 
 import os
 import re
@@ -20,7 +20,7 @@ FULL = pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full h
 
 
 def partialslip(folder, *arguments, **settings):
-    """Exit code, stdout and stderr of a process of its own."""
+    """Run in a new process. Returns exit code, stdout and stderr."""
     environment = {**os.environ, **settings.pop("env", {})}
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | settings
     done = subprocess.run([*COMMAND, *arguments], cwd=folder, check=False, env=environment, **streams)
@@ -38,7 +38,7 @@ def test_a_full_disk(tmp_path, arguments, unbuffered):
 
 @pytest.mark.parametrize("arguments", [["scenes"], ["--help"], EXACT], ids=" ".join)
 def test_a_reader_that_has_gone(tmp_path, arguments):
-    """Nothing is said; the exit code is the shell's for SIGPIPE, not that of a missed bar, and files are written."""
+    """No message; the exit code is the shell's for SIGPIPE, not 1 for a missed bar; files are written."""
     reader, writer = os.pipe()
     os.close(reader)
     code, _, said = partialslip(tmp_path, *arguments, stdout=writer)
@@ -49,7 +49,7 @@ def test_a_reader_that_has_gone(tmp_path, arguments):
 
 @pytest.mark.parametrize(("closing", "code"), [(">&-", 2), ("2>&-", 2), ("2>/dev/full", 2), ("<&-", 2)])
 def test_closed_streams(tmp_path, closing, code):
-    """What is wrong is never said on stdout; and no file takes a closed stream's number."""
+    """Errors never go to stdout, and no file gets the number of a closed stream."""
     line = f'"$0" -m partialslip run nosuch {closing}'
     done = subprocess.run(["sh", "-c", line, sys.executable], cwd=tmp_path, capture_output=True, check=False)
     assert (done.returncode, done.stdout) == (code, b"")
@@ -58,7 +58,7 @@ def test_closed_streams(tmp_path, closing, code):
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp932"])
 def test_poor_encodings(tmp_path, encoding):
-    """Every character is printed, or stands as its number, and tables are ruled in ASCII."""
+    """Every character is printed or escaped, and tables have ASCII rules."""
     title = "Größe ΔQ 接触"
     code, out, said = partialslip(tmp_path, *EXACT, "--set", f"title={title}", env={"PYTHONIOENCODING": encoding})
     assert (code, said) == (0, "")
@@ -103,7 +103,7 @@ def test_a_fault_is_one_line_and_its_own_exit_code(monkeypatch, capsys):
 
 
 def test_an_error_without_a_progress_bar_is_one_line(tmp_path, monkeypatch, capsys):
-    """Where stderr is no terminal; the case beyond all proportion is refused after the bar would have begun."""
+    """If stderr is not a terminal. The oversized case is refused after the start of the progress bar."""
     monkeypatch.chdir(tmp_path)
     over = ["--over", "bodies.*.depth=1,2"]
     assert main(["study", "size", "hertz-shear", *over, "--processes", "1"]) == 2
@@ -115,7 +115,7 @@ VERIFY = ("verify", "--suite", "stress", "--method", "march", "--count", "500", 
 
 
 def started(folder, *arguments):
-    """A command at work, its first results in the ledger."""
+    """Start a command and wait for the first results in the ledger."""
     process = subprocess.Popen([*COMMAND, *arguments], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     ledger = folder / "out" / "ledger.jsonl"
     for _ in range(2400):
@@ -136,7 +136,7 @@ def test_the_second_in_a_folder_is_told(tmp_path):
     finally:
         first.kill()
         first.communicate()
-    assert (tmp_path / "out" / NAME).exists()  # a killed one leaves the file, and no lock
+    assert (tmp_path / "out" / NAME).exists()  # a killed command leaves the file, but no lock
     assert partialslip(tmp_path, "run", "hertz-shear", "--with", "exact", "--out", "out")[0] == 0
     assert not (tmp_path / "out" / NAME).exists()
 
@@ -159,14 +159,14 @@ def test_a_lock_goes_and_takes_empty_folders_with_it(tmp_path):
         assert folder.exists()
     assert list(tmp_path.iterdir()) == []
     folder.mkdir(parents=True)
-    (folder / NAME).write_text("process 1 on another", "utf-8")  # of a killed one
+    (folder / NAME).write_text("process 1 on another", "utf-8")  # left by a killed command
     with locked(folder):
         (folder / "results.json").touch()
     assert [path.name for path in folder.iterdir()] == ["results.json"]
 
 
 def test_without_locks_a_folder_is_written_all_the_same(tmp_path, monkeypatch):
-    """Some file systems know no locks."""
+    """Some file systems have no locks."""
 
     def none(*_):
         raise OSError(95, "Operation not supported")

@@ -1,4 +1,4 @@
-"""Results made by hand: Hertz under shear alone, after Cattaneo and Mindlin, and what can be wrong with them."""
+"""Artificial results: Hertz under shear alone, after Cattaneo and Mindlin, with optional errors."""
 
 from dataclasses import replace
 
@@ -20,13 +20,13 @@ def root(x, half_width=1.0):
 
 
 def tractions(x):
-    """p and dq at x, m."""
+    """Return p and dq, Pa, at x, m."""
     return P0 * root(x / A), 2 * F * P0 * (root(x / A) - root(x / A, C))
 
 
 def traction(p=1.0, q=1.0, levels=True, cells=41, add=lambda x: 0 * x, p1=None):
-    """Tractions with pressure and shear scaled; ``add`` is more shear at load point 2, in f p0, over x/a; ``p1`` scales
-    the pressure at load point 1."""
+    """Return tractions with scaled pressure and shear. ``add`` is additional shear at load point 2, in f p0, over x/a;
+    ``p1`` scales the pressure at load point 1."""
 
     def at(x):
         pressure, dq = tractions(x)
@@ -50,7 +50,7 @@ def traction(p=1.0, q=1.0, levels=True, cells=41, add=lambda x: 0 * x, p1=None):
 
 
 def result(method="fem", centre=0.0, half_width=C, a=1.0, regime="small tension", of=None, **more):
-    """A result with lengths in the true a; ``centre`` None is no stick zone."""
+    """Return a result with lengths in the exact a; ``centre`` None means no stick zone."""
     return Result(
         method=method,
         a=a * A,

@@ -1,4 +1,4 @@
-"""Error measures on tractions that are known, and perturbations that they must see."""
+"""Error measures on known tractions, and perturbations that the measures must detect."""
 
 from dataclasses import replace
 
@@ -30,7 +30,7 @@ def exact():
 
 
 def with_cells(result, p_factor=lambda x: 1 + 0 * x, q_added=lambda x: 0 * x):
-    """The result as a method on a mesh would give it, tampered with."""
+    """Return the result of a method on a mesh, with perturbations."""
     scaled = np.linspace(-1.05, 1.05, 43) * result.a
 
     def at(x):
@@ -73,7 +73,7 @@ def test_scaled_pressure_is_measured_as_such(exact):
 
 @pytest.mark.fault
 def test_perturbation_that_keeps_the_resultant_is_seen(exact):
-    """Deliberate fault: shear moved from one side to the other, sum unchanged."""
+    """Deliberate fault: shear moved from one side to the other, resultant unchanged."""
     moved = with_cells(exact, q_added=lambda x: 2e6 * np.sin(2 * np.pi * x) * (np.abs(x) < 1))
     comparison = compare(moved, exact, SCENE, 2e-5)
     assert not comparison.passed
@@ -129,14 +129,14 @@ def test_without_cells_the_spaces_between_points_are_cells(exact):
 def test_the_largest_pressure_is_found_between_points():
     traction = traction_of(root, root)
     assert traction.p.max() < 1 - 1e-4
-    assert traction.p_max == pytest.approx(1, abs=(traction.x[1] - traction.x[0]) ** 4 / 8)  # the term left out
-    corner = traction_of(lambda x: 1 - np.abs(x - traction.x[7]), root)  # a top that is none of a parabola is no less
+    assert traction.p_max == pytest.approx(1, abs=(traction.x[1] - traction.x[0]) ** 4 / 8)  # the neglected term
+    corner = traction_of(lambda x: 1 - np.abs(x - traction.x[7]), root)  # a corner is not below its value
     assert 1 <= corner.p_max <= 1.01
 
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_pressure_beyond_the_contact_is_an_error_in_the_cell_of_its_end(side):
-    """On 0.15 beyond the reference's end, in a cell of 0.3 that reaches beyond: a mean that is 0.5 off there."""
+    """Traction on 0.15 beyond the reference's end, in a cell of 0.3: the mean there is wrong by 0.5."""
     cells = np.array([-1.2, -0.9, -0.5, 0.1, 0.5, 0.9, 1.2])
     beyond = lambda x: root(x) + ((side * x > 1) & (side * x < 1.15))  # noqa: E731
     ends = sorted([-1.0, 1.0, 1.15 * side])
@@ -156,7 +156,7 @@ def test_pressure_beyond_the_contact_is_an_error_in_the_cell_of_its_end(side):
         (6e-4, 6e-4, 1e-3, Outcome.MISSED),  # every method is given the same table
         (9e-4, 5e-4, 1.4e-3, Outcome.MISSED),
         (1e-3, 0.0, 2e-3, Outcome.PASSED),
-        (1.1e-3, 0.0, None, Outcome.NOT_JUDGED),  # what the reference itself does not know to the bar
+        (1.1e-3, 0.0, None, Outcome.NOT_JUDGED),  # the reference's error exceeds the bar
     ],
 )
 def test_what_the_reference_is_off_by_is_added_to_the_bar(exact, own, table, bar, outcome):
@@ -182,7 +182,7 @@ def test_nodes_that_all_lie_beyond_the_contact_have_no_relative_error(exact):
 
 
 def test_a_reference_that_is_known_by_its_cells_is_compared_on_these():
-    """The true means over cells, a constant in each, as marching in time knows them: no finer cell says more."""
+    """The exact means over cells, constant in each cell, as from marching: finer cells add no information."""
     coarse = np.array([-1.0, -0.9, -0.5, 0.1, 0.3, 0.97, 1.0])
     p, _ = cell_means(traction_of(root, root), coarse)
 

@@ -1,4 +1,4 @@
-"""Errors of stresses along surfaces and inside bodies, on fields that are known."""
+"""Errors of stresses along surfaces and inside bodies, on known fields."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from partialslip.judge.stresses import inside_error, surface_error
 from partialslip.result import DeformedBody, SurfaceStress
 
 POINTS = np.array([[0, 0], [1, 0], [0, -1], [2, 0], [0, -2.2], [3.2, 0.1], [3.7, 0.1], [3.7, -0.2]]) * known.A
-TRIANGLES = np.array([[0, 1, 2], [1, 3, 4], [5, 6, 7]])  # areas 0.5 and 1.1 a^2, and one whose middle is at 3.5 a
+TRIANGLES = np.array([[0, 1, 2], [1, 3, 4], [5, 6, 7]])  # areas 0.5 and 1.1 a^2, and one with its centroid at 3.5 a
 AREAS = np.array([0.5, 1.1])
 
 
@@ -26,12 +26,12 @@ def surface(of=lambda x: 1.0 + 0 * x):
 
 
 def stresses(x, y):
-    """At two load points, three components, the second of them zero."""
+    """Stresses at two load points, three components; the second component is zero."""
     return np.array([[1, 0, 2], [3, 0, 4]])[:, :, None] * (1 + (x + 2 * y) / known.A)
 
 
 def inside(add=(0.0, 0.0, 0.0)):
-    """A body with the true stresses and what is added to the first component at load point 2 in each triangle."""
+    """Return a body with the exact stresses, plus a perturbation of the first component at load point 2."""
     x, y = POINTS[TRIANGLES].mean(axis=1).T
     first, second = np.moveaxis(stresses(x, y), 2, 1)
     off = np.array(add)[:, None] * [1, 0, 0]
@@ -82,14 +82,14 @@ def test_what_one_result_does_not_have_is_not_compared():
 
 
 def test_shear_that_all_but_vanishes_is_measured_in_pressure():
-    """Errors of q are relative to 1e-3 of f p's norm at least, whatever else is asked for beside it."""
+    """Errors of q are relative to at least 1e-3 of f p's norm, whatever other quantities are asked for."""
     true, off = known.traction(q=0.0), known.traction(q=1e-5)
     large = known.traction(q=1.0)
     norm = norm_errors(large, true, known.F, ("q",))["q"]
     assert norm_errors(off, true, known.F, ("q",))["q"] == pytest.approx(1e-5 * norm, rel=1e-9)
     p = norm_errors(known.traction(p=2.0), true, known.F, ("p",))["p"]
     assert p == pytest.approx(1.0, rel=1e-12)
-    ratio = norm_errors(known.traction(q=2.0), large, known.F, ("q",))["q"]  # there q's own norm
+    ratio = norm_errors(known.traction(q=2.0), large, known.F, ("q",))["q"]  # here q's norm is the larger
     assert ratio == pytest.approx(1.0, rel=1e-9)
     of_q, of_p = (known.traction(q=1.0, p=p).at(np.linspace(-1, 1, 4001) * known.A)[i] for i, p in ((1, 1.0), (0, 1.0)))
     assert norm == pytest.approx(np.linalg.norm(of_q / 2) / (1e-3 * known.F * np.linalg.norm(of_p)), rel=1e-2)

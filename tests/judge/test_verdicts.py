@@ -1,4 +1,4 @@
-"""What is passed, missed and not judged: results made by hand, nothing is solved."""
+"""Passed, missed and unjudged quantities of artificial results; nothing is solved."""
 
 import math
 from dataclasses import replace
@@ -82,7 +82,7 @@ def test_a_verdict_in_words_and_as_data():
     assert all(replace(nothing, **{key: 0.0}).known for key in ("reference", "found", "error"))
 
 
-# scales and errors: a reader who subtracts finds the error
+# scales and errors: the difference of the values is the error
 
 
 SPOILT = {
@@ -169,7 +169,7 @@ def test_estimates_stand_beside_errors():
 )
 @pytest.mark.parametrize("accuracy", [1e-3, None])
 def test_nan_is_missed(found, keys, accuracy):
-    """Deliberate fault: a value that is no number. It used to be passed, as it is not more than its bar."""
+    """Deliberate fault: a value is NaN. NaN once passed, because NaN > bar is false."""
     assert those(found, MISSED, accuracy=accuracy) == keys
     run = ran({"exact": EXACT, "fem": found}, accuracy)
     assert run.outcome is MISSED
@@ -179,7 +179,7 @@ def test_nan_is_missed(found, keys, accuracy):
 
 @pytest.mark.fault
 def test_no_stick_zone_where_there_is_one_is_missed():
-    """Deliberate fault: a method that calls it sliding gives no m and n. It used to be passed over."""
+    """Deliberate fault: a method reports sliding and gives no m and n. This was once ignored."""
     found = result(centre=None, regime="sliding")
     assert those(found, MISSED) == {"m", "n", "regime"}
     assert "no value" in verdicts(found)["m"].reason
@@ -191,13 +191,13 @@ def test_no_stick_zone_where_there_is_one_is_missed():
 @pytest.mark.fault
 @pytest.mark.parametrize(("found", "key"), [(traction(p=1.05), "P"), (traction(q=1.05), "dQ")])
 def test_sums_that_are_off_are_seen(found, key):
-    """Deliberate fault: tractions that do not carry the loads."""
+    """Deliberate fault: tractions are not in equilibrium with the loads."""
     assert key in those(result(of=found), MISSED)
 
 
 @pytest.mark.fault
 def test_cells_that_leave_out_what_is_wrong_hide_nothing():
-    """Deliberate fault: a method with cells in the middle alone, where it is right, and no traction beyond."""
+    """Deliberate fault: a method is right in the middle, and has no cells and tractions elsewhere."""
     sound = traction()
 
     def at(x):
@@ -214,7 +214,7 @@ def test_cells_that_leave_out_what_is_wrong_hide_nothing():
 
 @pytest.mark.fault
 def test_shear_at_both_load_points_alike_is_seen():
-    """Deliberate fault: shear that is locked in, the same at load points 1 and 2, so that dq is right."""
+    """Deliberate fault: equal additional shear at load points 1 and 2, so that dq is right."""
     sound = traction()
 
     def levels_at(x):
@@ -225,7 +225,7 @@ def test_shear_at_both_load_points_alike_is_seen():
 
 
 def test_q_is_judged_by_f_p_where_there_is_hardly_any():
-    """Stuck: q is zero, and what a method finds is relative to 1e-3 of f p."""
+    """Stuck: q is zero, and errors are relative to 1e-3 of f p."""
     none = traction(q=0.0)
     still = changed(SCENE, load=changed(SCENE.load, Q=(0.0, 0.0)))
     exact = replace(EXACT, regime="stuck", stick_half_width=A, traction=none)
@@ -252,7 +252,7 @@ def test_both_pressures_and_all_ends_where_they_differ():
     assert {"left", "right"} <= verdicts(result(contact_ends=same), replace(EXACT, contact_ends=same)).keys()
 
 
-# what does not exist is not judged, with the reason
+# quantities that do not exist are not judged, with the reason
 
 
 @pytest.mark.parametrize(
@@ -273,7 +273,7 @@ def test_what_the_reference_says_is_not_there_is_not_judged(reference, scene, ke
     assert unjudged.keys() == set(keys.split())
     assert all(reason in each.reason for each in unjudged.values())
     assert all(each.bar is None for each in unjudged.values())
-    there = reason == "exact: "  # what is undetermined has values
+    there = reason == "exact: "  # undetermined quantities have values
     assert all((each.error is not None) == there for each in unjudged.values())
     assert {found[key].outcome for key in ("a", "P", "p")} == {PASSED}
 
@@ -437,7 +437,7 @@ def test_nodal_errors_stand_beside():
 
 @pytest.mark.fault
 def test_a_run_is_missed_where_its_reference_alone_is_wrong():
-    """Deliberate fault: the reference has not closed, or holds NaN; what agrees with it has not passed."""
+    """Deliberate fault: the reference is not converged or holds NaN; a result that agrees with it does not pass."""
     for wrong in ({"certificate": {"kkt": 1.0}}, {"limits": {"Q_mean": NAN}}):
         run = ran({"exact": replace(EXACT, **wrong), "fem": result()})
         assert (run.outcome, run.passed) == (MISSED, False)

@@ -1,4 +1,4 @@
-"""A real browser for tests of the live page: headless Chromium, told by its own protocol over a pipe."""
+"""A browser for tests of the live page: headless Chromium, controlled by its protocol over a pipe."""
 
 import base64
 import contextlib
@@ -23,7 +23,7 @@ os.execv(sys.argv[3], sys.argv[3:])
 
 
 class Browser:
-    """One tab. What the page logs as errors, and what it asks the network for, is kept."""
+    """One tab. Records logged errors and network requests of the page."""
 
     def __init__(self, program, profile):
         down, self._to = os.pipe()
@@ -48,7 +48,7 @@ class Browser:
             self.send(f"{domain}.enable")
 
     def send(self, method, **parameters):
-        """The result of a command of the protocol."""
+        """Return the result of a command of the protocol."""
         number = next(self._ids)
         message = {"id": number, "method": method, "params": parameters}
         if self._session:
@@ -74,27 +74,27 @@ class Browser:
                 return message
 
     def open(self, path, width=1440, height=900, mobile=False):
-        """Load a file in a window of that size; what it logs and asks for begins anew."""
+        """Load a file in a window of that size; clear recorded errors and requests."""
         self.errors, self.asked = [], []
         self.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=mobile)
         self.send("Page.navigate", url=path.as_uri())
         self._until(lambda message: message.get("method") == "Page.loadEventFired")
 
     def run(self, script):
-        """The value of a piece of JavaScript."""
+        """Return the value of a JavaScript expression."""
         answer = self.send("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
         assert "exceptionDetails" not in answer, answer["exceptionDetails"]
         return answer["result"].get("value")
 
     def press(self, key, times=1):
-        """A key, as a keyboard sends it."""
+        """Press a key."""
         code = {"ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Tab": 9, " ": 32}[key]
         for _ in range(times):
             for way in ("rawKeyDown", "keyUp"):
                 self.send("Input.dispatchKeyEvent", type=way, key=key, code=key, windowsVirtualKeyCode=code)
 
     def drag(self, start, end):
-        """The mouse, pressed at ``start`` and let go at ``end`` (x and y on the page)."""
+        """Drag the mouse from ``start`` to ``end`` (x and y on the page)."""
         for way, (x, y), buttons in (
             ("mousePressed", start, 1),
             ("mouseMoved", end, 1),
@@ -103,14 +103,14 @@ class Browser:
             self.send("Input.dispatchMouseEvent", type=way, x=x, y=y, button="left", buttons=buttons, clickCount=1)
 
     def picture(self, path):
-        """The whole page as PNG."""
+        """Return the whole page as PNG."""
         size = self.send("Page.getLayoutMetrics")["cssContentSize"]
         clip = {"x": 0, "y": 0, "width": size["width"], "height": size["height"], "scale": 1}
         shot = self.send("Page.captureScreenshot", format="png", clip=clip, captureBeyondViewport=True)
         path.write_bytes(base64.b64decode(shot["data"]))
 
     def close(self):
-        """End it."""
+        """End the browser."""
         os.close(self._to)
         os.close(self._from)
         try:

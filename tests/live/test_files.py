@@ -1,4 +1,4 @@
-"""The live page as a file, without a browser: it stands alone, and says no in one line."""
+"""The live page as a file, without a browser: self-contained, errors in one line."""
 
 import html.parser
 import json
@@ -73,7 +73,7 @@ def test_what_it_knows_of_the_scene(text):
         assert known[key] == value
     for kind, way in (("m", -1), ("n", 1)):
         points = [(*point, line["value"]) for line in known["map"][kind] for point in line["points"][::7]]
-        Qf, sf, value = np.array([point for point in points if point[0] < 0.95]).T  # where rounding Qf does not matter
+        Qf, sf, value = np.array([point for point in points if point[0] < 0.95]).T  # Qf is rounded
         centre, half_width, _ = stick_zones(Qf, sf, Hertz())
         assert len(Qf) > 40
         np.testing.assert_allclose(half_width + way * centre, value, rtol=0, atol=1e-3)
@@ -116,6 +116,6 @@ def test_scenes_that_it_is_not_for(scene, overrides, says):
 def test_refused_in_one_line(tmp_path, capsys):
     assert main(["page", "flat-rounded", "--out", str(tmp_path / "out")]) == 2
     assert capsys.readouterr().err.splitlines() == [
-        'partialslip: profile.kind = "flat-rounded": must be "hertz" for a live page, which has its closed form only'
+        'partialslip: profile.kind = "flat-rounded": must be "hertz" for a live page (closed form for Hertz only)'
     ]
     assert not (tmp_path / "out").exists()

@@ -1,4 +1,4 @@
-"""The live page in a browser: its mechanics against Python, its controls as a hand or a keyboard moves them."""
+"""The live page in a browser: mechanics compared with Python, controls moved by mouse and keyboard."""
 
 import functools
 import json
@@ -37,7 +37,7 @@ def folder(tmp_path_factory):
 
 
 def opened(browser, folder, scene=None, change=lambda text: text, **window):
-    """The page of a scene in the browser."""
+    """Load the page of a scene in the browser."""
     path = folder / "page.html"
     path.write_text(change(made(scene or load_scene(LARGE))), "utf-8")
     browser.open(path, **window)
@@ -54,7 +54,7 @@ def answer(page):
 
 
 def zones(page, Qf, sf):
-    """Centres, half-widths, s and steps of stick zones, by the page."""
+    """Return centres, half-widths, s and steps of stick zones from the page."""
     pairs = json.dumps(np.column_stack([Qf, sf]).tolist())
     found = page.run(
         f"{pairs}.map(([Qf, sf]) => {{ const z = hertz.stickZone(Qf, sf); return [z.centre, z.c, z.s, z.steps]; }})"
@@ -63,7 +63,7 @@ def zones(page, Qf, sf):
 
 
 def all_loads():
-    """A grid and hard cases: next to the transition, next to sliding, next to nothing, and tiny stick zones."""
+    """Return a grid and hard cases: near the transition, near sliding, near zero loads, and tiny stick zones."""
     Qf, sf = (values.ravel() for values in np.meshgrid(np.linspace(0, 0.98, 50), np.linspace(0, 20, 81)))
     near = np.concatenate([1 - np.logspace(-1, -8, 15), np.logspace(-8, -1, 15)])
     some = np.linspace(0.02, 0.98, 17)
@@ -80,7 +80,7 @@ def all_loads():
 
 
 def worst(page, Qf, sf):
-    """The largest error of m and n, as a fraction of a."""
+    """Return the largest error of m and n, as a fraction of a."""
     centre, half_width, _, _ = zones(page, Qf, sf)
     true_centre, true_half_width, _ = stick_zones(Qf, sf, Hertz())
     return max(np.abs(half_width + way * centre - true_half_width - way * true_centre).max() for way in (-1, 1))
@@ -92,12 +92,12 @@ def test_stick_zones(page):
     assert worst(page, Qf, sf) < 1e-9
     _, half_width, s, steps = zones(page, Qf, sf)
     _, true, true_s = stick_zones(Qf, sf, Hertz())
-    conditioned = Qf < 1 - 1e-5  # beyond, the rounding of Qf itself is seen in c
+    conditioned = Qf < 1 - 1e-5  # beyond, the rounding of Qf affects c
     np.testing.assert_allclose(half_width[conditioned], true[conditioned], rtol=1e-9)
     assert true.min() == 1e-100
     clear = np.abs(sf - transition(Qf, Hertz())) > 1e-12
     np.testing.assert_array_equal(s[clear], true_s[clear])
-    assert steps.max() <= 20  # it never gives up
+    assert steps.max() <= 20  # Newton always converges
 
 
 @pytest.mark.parametrize(
@@ -163,7 +163,7 @@ def test_it_starts_with_the_loads_of_the_scene(browser, folder, overrides, regim
 
 
 def drawn_ends(page):
-    """q as it is drawn, in pixels above the axis, next to the ends of the contact."""
+    """Return q as drawn, in pixels above the axis, next to the ends of the contact."""
     path = "document.querySelector('#tractions .{}').getAttribute('d')"
     points, zero = (
         [[float(at) for at in point.split()] for point in page.run(path.format(of)).strip("M").split("L")]
@@ -174,7 +174,7 @@ def drawn_ends(page):
 
 
 def python_zone(page, scene):
-    """m and n by Python of the loads that the page shows, in SI units."""
+    """Return m and n by Python for the loads shown on the page, in SI units."""
     loads = page.run("page.loads()")
     pressed = halfplane.contact(scene)
     signs = loads["turn"], loads["turn"] * loads["mirror"]
@@ -197,7 +197,7 @@ def test_sliders_by_keyboard(page, control, key):
     assert abs(after.m - before.m) > 1e-4
     shown = page.run("['m-0', 'n-0'].map((id) => document.getElementById(id).textContent)")
     assert shown == [f"{after.m:.7f} a", f"{after.n:.7f} a".replace("-", "\u2212")]
-    if control == "f":  # the loads stay what they are, in SI units
+    if control == "f":  # the loads in SI units do not change
         assert page.run("page.loads()") == {**loads, "f": after.f}
         assert (after.Qf, after.sf) == pytest.approx((before.Qf * 0.5 / after.f, before.sf * 0.5 / after.f), rel=1e-12)
 
@@ -227,7 +227,7 @@ def test_what_is_no_load_is_marked_and_left_out(page, control, text):
 
 
 def handle(page):
-    """Where on the page the point of the map is."""
+    """Return the position of the map's point on the page."""
     return page.run("(() => { const { left, right, top, bottom } = document.querySelector('.handle .dot')"
                     ".getBoundingClientRect(); return [(left + right) / 2, (top + bottom) / 2]; })()")  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""What came of a job, made up."""
+"""Artificial outcomes of jobs."""
 
 from known import EXACT
 
@@ -14,13 +14,13 @@ def cost(cpu_s, **phases):
 
 
 def method(**changes):
-    """The record of a result, with some fields of its own."""
+    """Return the record of a result with some fields replaced."""
     fields = {name: getattr(ResultRecord.of(EXACT, curves=False), name) for name in ResultRecord.__struct_fields__}
     return ResultRecord(**fields | changes)
 
 
 def solved(scene, labels=None, errors=None, process=None, **methods):
-    """A job by ``methods``, each the fields of its record, with ``errors`` of the finite elements by quantity."""
+    """Return a solved job: ``methods`` gives fields of the records, ``errors`` those of the finite elements."""
     compared = ComparisonRecord(Outcome.NOT_JUDGED, errors or {}, None, None, None, None, {}, (), (), ())
     run = Record(
         schema=SCHEMA,

@@ -1,4 +1,4 @@
-"""What accuracy costs: the ladder, its figures, other codes beside it, and the price list."""
+"""The study of cost: ladder, figures, results of other codes, and price list."""
 
 import json
 import math
@@ -45,7 +45,7 @@ def test_a_case_in_a_process_of_its_own_is_the_same_as_here():
 
 
 def test_what_was_measured_is_not_measured_again(tmp_path, monkeypatch):
-    """And medians are over the repeats of a setting."""
+    """Medians are taken over the repeats of a setting."""
     solved = []
 
     def apart(case):
@@ -95,7 +95,7 @@ OVERHEADS = {"start": 0.7, "closing": 0.5, "march": 0.2}
 
 
 def entries(spread=0.0):
-    """Made up by the model itself: CPU seconds of Hertz contacts and punches, orders 2 and 4, both factorisations."""
+    """Artificial costs from the model: Hertz contacts and punches, orders 2 and 4, both factorisations."""
     random = np.random.default_rng(3)
     for name in ("hertz-shear", "flat-rounded"):
         for order, growth, factor in ((2, 1.0, "cholmod"), (4, 0.4, "cholmod"), (4, 0.5, "superlu")):
@@ -110,7 +110,7 @@ def entries(spread=0.0):
 
 
 def test_the_model_is_found_again():
-    """Whatever the machine was busy with, and apart for kinds of profiles, factorisations and orders."""
+    """Independent of other load on the machine; for each kind of profile, factorisation and order."""
     known = prices.fit(entries(), OVERHEADS, "a machine")
     assert known.spread == pytest.approx(1, abs=1e-2)
     slow = known.price(partialslip.load_scene("hertz-shear", ["fem.factor=cholmod"]), 1e-4, 4, ("fem",)).cpu_s - 1.2

@@ -1,4 +1,4 @@
-"""A ledger keeps what was finished, whatever ends the study."""
+"""A ledger keeps finished cases, however the study ends."""
 
 import json
 import os
@@ -52,7 +52,7 @@ def test_what_is_no_ledger_is_refused(tmp_path, line):
 
 
 def test_a_line_that_was_changed_is_refused(tmp_path):
-    """Whichever of its bytes it is: what reads entries relies on their shape, and trusts their figures."""
+    """For each byte of an entry: readers rely on the shape and the values of entries."""
     path = tmp_path / "ledger.jsonl"
     Ledger(path).add("one", {"found": 1.5})
     whole = path.read_bytes()
@@ -63,7 +63,7 @@ def test_a_line_that_was_changed_is_refused(tmp_path):
 
 
 def test_a_killed_writer_leaves_whole_lines(tmp_path):
-    """kill -9 in the middle of many entries: every line that is there is one, and the study can go on."""
+    """kill -9 while many entries are written: every line in the file is an entry, and the study can continue."""
     path = tmp_path / "ledger.jsonl"
     code = (
         "import sys, itertools, pathlib\nfrom partialslip.batch.ledger import Ledger\n"

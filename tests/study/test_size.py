@@ -1,4 +1,4 @@
-"""Sweeps: what is swept over, what is solved once, and the law that the sizes follow."""
+"""Sweeps: axes, cases solved once, and the law of the sizes."""
 
 import json
 import os
@@ -71,7 +71,7 @@ def test_stars_stand_for_every_table_and_a_for_the_half_planes_half_width():
 
 
 def test_a_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
-    """What is in the ledger is not solved again; what cannot be solved is told, and does not stop the rest."""
+    """Cases in the ledger are not solved again; a failed case is reported and does not stop the others."""
     path, solved = tmp_path / "ledger.jsonl", []
     cases = [Job(scene(), ("exact",), {"number": number}) for number in range(6)]
     broken = Job(scene(), ("nothing",), {"number": 6})
@@ -91,7 +91,7 @@ def test_a_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
 
 
 class Counting(ThreadPoolExecutor):
-    """Knows how much was handed over at once."""
+    """Counts the tasks submitted at once."""
 
     waiting = most = 0
 
@@ -153,7 +153,7 @@ def test_workers_end_with_the_process_that_they_work_for(kind):
 
 
 def runs(number):
-    """Whether a process of that number runs, other than as a dead one that nobody has asked after."""
+    """Return whether the process of that number runs; zombies do not count."""
     try:
         return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except OSError:
@@ -171,7 +171,7 @@ def test_the_law_of_made_up_sizes_is_found():
 
 
 def test_what_the_mesh_is_off_by_is_no_law():
-    """Deliberate fault: sizes at which the mesh is as bad as the size would turn the order round."""
+    """Deliberate fault: sizes at which the error of the mesh equals the change by the size give a wrong order."""
     x = np.geomspace(4, 1024, 9)
     off = 0.3 * x**-2.0 + 1e-4
     honest = size.Sizes("W", x, {"m": off}, {"m": np.full(9, 1e-4)})
@@ -181,7 +181,7 @@ def test_what_the_mesh_is_off_by_is_no_law():
 
 
 def test_maps_leave_out_what_was_not_solved():
-    """Each change in its place: the first axis across, the second one up."""
+    """Each change is at the right place: first axis across, second axis up."""
     axes = [read("bodies.*.width=2a,4a,8a"), read("bodies.*.height=3a,9a")]
     entries = [
         made.solved(
@@ -201,7 +201,7 @@ def test_maps_leave_out_what_was_not_solved():
 
 @pytest.mark.slow
 def test_blocks_come_near_the_half_plane_with_the_square_of_their_size(tmp_path):
-    """And meshes get finer until they do not matter, where they do."""
+    """Meshes are refined until the error of the mesh does not matter."""
     axis, ledger = read("bodies.*.width+bodies.*.height=16a..128a:4"), Ledger(tmp_path / "ledger.jsonl")
     with ThreadPoolExecutor(1) as executor:
         found = size.measure(scene(accuracy=1e-3), [axis], ledger, executor)
@@ -253,7 +253,7 @@ def test_a_dask_cluster_goes_on_where_a_worker_is_killed(tmp_path):
     ["tcp://127.0.0.1:9", "127.0.0.1:9", "nonsense", "", "tcp://", "http://127.0.0.1:9", "tcp://127.0.0.1:99999"],
 )
 def test_no_scheduler_is_one_line(address):
-    """At once, and without a word of Dask's."""
+    """At once, without messages of Dask."""
     pytest.importorskip("distributed")
     with pytest.raises(partialslip.InputError, match="--cluster"), workers(address):
         pass
@@ -279,7 +279,7 @@ sys.exit(ended(main))
 @pytest.mark.slow
 @pytest.mark.parametrize("fault", ["scheduler killed", "no package"])
 def test_what_a_cluster_lacks_is_one_line(tmp_path, fault):
-    """And the sweep goes on with another cluster."""
+    """The sweep continues with another cluster."""
     pytest.importorskip("distributed")
     (tmp_path / "bare" / "partialslip").mkdir(parents=True)
     (tmp_path / "bare" / "partialslip" / "__init__.py").write_text("raise ImportError('none here')\n", "utf-8")

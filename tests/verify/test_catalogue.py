@@ -1,4 +1,4 @@
-"""The catalogue of hard cases: a cheap selection by default, all of it with -m slow."""
+"""The catalogue of hard cases: a cheap selection by default, all cases with -m slow."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -52,7 +52,7 @@ def nodes_that_stick(case):
         else partialslip.run(case.scene, ["fem"]).results["fem"]
     )
     traction, f = result.traction, case.scene.friction.f
-    # nodal tractions are not nodal forces: what slips is off its bound by the mass matrix, what sticks by much more
+    # nodal tractions are not nodal forces: the mass matrix moves slipping nodes off the bound, sticking nodes farther
     return int((np.abs(traction.dq) < 1.9 * f * traction.p).sum()), result.counts["contact_nodes"]
 
 
@@ -73,7 +73,7 @@ def test_flat_triangles_are_flat():
 
 
 def test_ends_of_a_zone_that_no_element_sees_are_not_believed(monkeypatch):
-    """Deliberate fault: the errors of a stick zone's ends are estimated as if it had elements enough."""
+    """Deliberate fault: the error estimate of a stick zone's ends ignores that the zone has too few elements."""
     monkeypatch.setattr(estimate, "_FIT", np.full(2, 1e-9))
     assert ("fem", "m") in {found[:2] for found in missed("near-sliding-1e-6", "fem")}
 
@@ -82,15 +82,15 @@ def test_ends_of_a_zone_that_no_element_sees_are_not_believed(monkeypatch):
     strict=True, reason="cells beside narrow zones are small now: a scene that needs the guard is wanted"
 )
 def test_two_meshes_that_miss_a_zone_do_not_agree(monkeypatch):
-    """Deliberate fault: marching takes two meshes that both miss the slip zones for converged, its cells being no
-    smaller where ends are near to each other."""
+    """Deliberate fault: marching does not refine cells where ends are close, and accepts two meshes as converged that
+    both miss the slip zones."""
     monkeypatch.setattr(marching, "_CELLS", 0.0)
     monkeypatch.setattr(marching, "_NEAR", 1e9)
     assert ("march", "n") in {found[:2] for found in missed("near-stuck-1e-3", "march")}
 
 
 def test_a_wrong_zone_has_no_certificate(monkeypatch):
-    """Deliberate fault: the exact stick zone is off by a millionth."""
+    """Deliberate fault: the exact stick zone is wrong by a millionth."""
     right = loading.stick_zone
 
     def wrong(*loads):

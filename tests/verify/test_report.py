@@ -1,4 +1,4 @@
-"""The report of a verification: every verdict can be traced, and what it shows is beside it as data."""
+"""The report of a verification: every verdict can be traced, and the data of every figure are in files."""
 
 import csv
 import html
@@ -40,7 +40,7 @@ def page(folder):
 
 
 def words(text):
-    """The text of each row of each table."""
+    """Return the text of each row of each table."""
     rows = re.findall(r"<tr>(.*?)</tr>", text, re.DOTALL)
     return [
         [html.unescape(re.sub("<[^>]*>", "", cell)) for cell in re.findall(r"<t[dh].*?</t[dh]>", row, re.DOTALL)]
@@ -105,8 +105,8 @@ def test_where_it_was_found_is_told(folder):
 
 
 def test_a_missed_bar_cannot_be_overlooked(tmp_path, monkeypatch):
-    """Deliberate fault: solvers that stop at a residual of 1e-3 f p0. It is in the heading, first in the table, and at
-    its scene."""
+    """Deliberate fault: solvers that stop at a residual of 1e-3 f p0. The missed bar
+    is in the heading, first in the table, and at the scene."""
 
     solve = case._solve
 
@@ -126,7 +126,7 @@ def test_a_missed_bar_cannot_be_overlooked(tmp_path, monkeypatch):
 
 
 def test_stopped_and_continued_it_is_the_same(folder, tmp_path, monkeypatch):
-    """Ctrl-C in the second case: the first is not solved again, and the report tells as much of it as of the other."""
+    """Ctrl-C in the second case: the first case is not solved again, and is fully reported."""
     monkeypatch.setitem(sys.modules, "weasyprint", None)
     solved = []
 

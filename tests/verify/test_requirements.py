@@ -21,7 +21,7 @@ SOUND = result()
 
 
 def wavy(number):
-    """Tractions whose pressure (0) or shear (1) goes up and down by a tenth; its sum is right."""
+    """Return tractions whose pressure (0) or shear (1) oscillates by a tenth; the resultant is right."""
 
     def at(x):
         values = [np.array(each) for each in traction().at(x)]
@@ -55,7 +55,7 @@ def missed(verdicts):
 @pytest.mark.fault
 @pytest.mark.parametrize("number", FAULTS)
 def test_each_requirement_sees_its_fault(number):
-    """Deliberate fault: the requirement, and no other one, is missed."""
+    """Deliberate fault: this requirement is missed, and no other."""
     quantity, wrong = FAULTS[number]
     verdicts = found(wrong)
     (seen,) = (each for each in verdicts if each.outcome is Outcome.MISSED)
@@ -111,13 +111,13 @@ def test_bars_are_the_accuracy_asked_for_unless_a_case_or_its_mesh_says_otherwis
 
 @pytest.mark.fault
 def test_an_exact_solution_that_is_missing_is_missed():
-    """Deliberate fault: the exact method raises, and is not among the case's own: nothing was compared."""
+    """Deliberate fault: the exact method raises and is not one of the case's methods: nothing is compared."""
     verdicts = found(SOUND, exact=Failure("ValueError: no", 1.0))
     assert [(v.method, v.quantity) for v in verdicts if v.outcome is Outcome.MISSED] == [("exact", "finishes")]
     assert {v.quantity for v in verdicts if v.method == "fem"} == {"finishes", "finite", "certificate"}
     both = judge_case(replace(CASE, methods=("exact", "fem")), {"exact": EXACT, "fem": SOUND})
     assert {v.quantity for v in both if v.method == "exact"} == {"finishes", "finite"} | {"certificate"}
-    for results in ({"fem": SOUND}, {"exact": EXACT, "fem": SOUND}):  # not compared, whatever there is
+    for results in ({"fem": SOUND}, {"exact": EXACT, "fem": SOUND}):  # not compared, with any results
         alone = judge_case(replace(CASE, compared=False), results)
         assert {v.quantity for v in alone} == {"finishes", "finite", "certificate"}
 
@@ -144,7 +144,7 @@ def test_a_case_is_solved_by_what_it_needs(monkeypatch):
 
 
 def test_finite_elements_are_solved_on_the_meshes_of_a_case(monkeypatch):
-    """The other methods have no meshes, and finite elements of a case without any make their own."""
+    """Given meshes are for finite elements only; without given meshes the finite elements make meshes."""
     meshed = replace(CASE, methods=("exact", "march", "fem"), meshes=lambda scene: [scene.name])
     monkeypatch.setattr(model, "solve_meshed", lambda scene, _, meshes: (scene, meshes))
     monkeypatch.setattr(module, "run", lambda scene, methods: Run(scene, None, {methods[0]: methods[0]}, {}))

@@ -1,4 +1,4 @@
-"""What the suites hold, by name and number; nothing is solved."""
+"""Cases of the suites by name and number; nothing is solved."""
 
 import itertools
 

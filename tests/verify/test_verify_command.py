@@ -1,4 +1,4 @@
-"""partialslip verify: what it writes, how it goes on, what it refuses."""
+"""partialslip verify: files written, continuing a stopped run, errors."""
 
 import csv
 import itertools
@@ -37,7 +37,7 @@ STRESS = ["verify", "--suite", "stress", "--method", "march", "--seed", "5", "--
 
 @pytest.fixture(autouse=True)
 def without_pdf(monkeypatch):
-    """It takes its time, and is another test's."""
+    """Skip the PDF: slow, and tested elsewhere."""
     monkeypatch.setitem(sys.modules, "weasyprint", None)
 
 
@@ -109,10 +109,10 @@ def test_interrupted_it_goes_on(tmp_path, capsys, monkeypatch):
     ids=str,
 )
 def test_what_another_run_takes_over(change, solved_again, tmp_path, monkeypatch):
-    """What was finished by another method or other source files is done again, and that is said."""
+    """Cases finished by another method or by other source files are solved again, with a message."""
     settings = {"only": ["1"], "method": "march", "seed": 5, "processes": 1, "out": tmp_path}
     driver.verify_suite("stress", **settings)
-    (tmp_path / "results.json").write_text("{", "utf-8")  # as if that had been stopped
+    (tmp_path / "results.json").write_text("{", "utf-8")  # as after a stopped run
     if "code" in change:
         monkeypatch.setattr(ledger, "source_checksum", lambda: "another")
     known = []
@@ -124,7 +124,7 @@ def test_what_another_run_takes_over(change, solved_again, tmp_path, monkeypatch
     assert verified.again == (("stress-5-1",) if solved_again else ())
 
 
-# A verification with one case a worker, stopped by kill -9 when that one is in the ledger.
+# A verification with one case per worker, stopped by kill -9 when the first case is in the ledger.
 KILLED = """
 import os, signal, sys
 from partialslip.batch import ledger
@@ -144,7 +144,7 @@ main(sys.argv[1:])
 @pytest.mark.parametrize("edited", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_a_killed_verification_takes_up_nothing_of_other_code(edited, tmp_path):
     """Deliberate fault: between kill -9 and the next run a source file is edited, with no commit and no other version.
-    The case that was finished is solved again, and that is said."""
+    The finished case is solved again, with a message."""
     for root in ROOTS:
         shutil.copytree(ROOT / root, tmp_path / root, ignore=shutil.ignore_patterns("__pycache__"))
     paths = os.pathsep.join(str((tmp_path / root).parent) for root in ROOTS)
@@ -173,7 +173,7 @@ def test_a_killed_verification_takes_up_nothing_of_other_code(edited, tmp_path):
 @pytest.mark.fault
 @pytest.mark.parametrize("change", ["nothing", "scene", "bars", "methods", "meshes"])
 def test_a_case_that_changed_under_its_name_is_solved_again(change, tmp_path, monkeypatch):
-    """Deliberate fault: a stopped verification has finished a case; then the case changes, and keeps its name."""
+    """Deliberate fault: a case finished by a stopped verification changes but keeps the name."""
     scene = load_scene("hertz-shear")
     one = Case("made", scene, ("exact",))
     other = {
@@ -189,13 +189,13 @@ def test_a_case_that_changed_under_its_name_is_solved_again(change, tmp_path, mo
     for case in (one, other):
         monkeypatch.setattr(driver, "suite", lambda *_, case=case: {case.name: partial(_same, case)})
         verified = driver.verify_suite("quick", processes=1, out=tmp_path)
-        (tmp_path / "results.json").write_text("{", "utf-8")  # as if it had been stopped
+        (tmp_path / "results.json").write_text("{", "utf-8")  # as after a killed run
     assert len(solved) == (1 if change == "nothing" else 2)
     assert verified.again == (() if change == "nothing" else ("made",))
 
 
 def test_two_processes_find_what_one_finds(tmp_path):
-    """And in Python what the command writes."""
+    """And Python gives the verdicts that the command writes."""
     one, two = (
         driver.verify_suite("stress", method="march", seed=5, count=6, processes=processes, out=tmp_path / f"{n}")
         for n, processes in enumerate((1, 2))
@@ -209,8 +209,8 @@ def test_two_processes_find_what_one_finds(tmp_path):
 
 
 def test_verdicts_are_kept_as_they_are_read_back(tmp_path):
-    """Of shear below a thousandth of f p, too, whose norm stands in for it: a NumPy number that was left in one of
-    these verdicts ended every verification of the full suite once."""
+    """Also for shear below a thousandth of f p, where f p's norm is used: a NumPy number left in one of these verdicts
+    once ended every verification of the full suite."""
     verified = driver.verify_suite("full", only=["near-stuck-1e-9"], processes=1, out=tmp_path)
     (verdicts,) = verified.verdicts.values()
     kept = msgspec.json.decode((tmp_path / "results.json").read_bytes(), type=VerificationRecord)
@@ -220,7 +220,7 @@ def test_verdicts_are_kept_as_they_are_read_back(tmp_path):
 
 
 def test_a_finished_run_begins_anew(tmp_path):
-    """What was verified is not taken for verified when it is asked for again: the program may have changed."""
+    """A finished verification starts anew when repeated, because the program may have changed."""
     settings = {"only": ["1"], "method": "march", "seed": 5, "processes": 1, "out": tmp_path}
     driver.verify_suite("stress", **settings)
     first = (tmp_path / "ledger.jsonl").read_text("utf-8")

@@ -55,8 +55,8 @@ const page = (() => {
   function note({ zone, Qf, sf }) {
     if (!zone || sf === 0) return "";
     const turns = zone.s > 0 ? sf > 4 * Qf : zone.c * sf < 4 * Qf;
-    return turns ? "Under a gradual load path between these load points, slip at one end reverses. q then differs from " +
-      "the closed form; march with load.steps gives the difference." : "";
+    return turns ? "Under a gradual load path between these load points, slip at one end reverses. q then differs " +
+      "from the closed form; march with load.steps gives the difference." : "";
   }
 
   // [scaled, SI] values of the table.

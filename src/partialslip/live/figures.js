@@ -1,7 +1,7 @@
 "use strict";
 
-// The two figures, drawn in their size on the page: tractions over the contact, and the stick-zone map with the loads as
-// a point to drag.
+// The two figures, drawn in their size on the page: tractions over the contact, and the stick-zone map with the loads
+// as a point to drag.
 const figures = (() => {
   const NAMESPACE = "http://www.w3.org/2000/svg";
   const STRIP = 0.04;  // width of the strip of sliding, beyond dQ = 2 f P

@@ -38,8 +38,8 @@ const hertz = (() => {
     }
   }
 
-  // Loads of a stick zone at the distance `edge` = 1 - m from the contact's left end, and their derivatives, without
-  // cancellation (eqs. (21), (22) and (24)-(26); X = K - Pi((m-1)/(m+1))).
+  // Loads of a stick zone at the distance `edge` = 1 - m from the contact's left end, and the stiffness of its ends,
+  // without cancellation (eqs. (21), (22) and (24)-(26); X = K - Pi((m-1)/(m+1))).
   function conditions(edge, c, s) {
     if (s > 0) return { sf: 8 * (1 - c - edge), Qf: (1 - c) * (1 + c), right: c, left: c, skew: 0 };
     const centre = edge + c - 1, fromLeft = edge + 2 * c;  // 1 + n
@@ -143,7 +143,7 @@ const hertz = (() => {
     return [...slip(-1, left, zone.s), ...stick, ...slip(right, 1, 1)];
   }
 
-  // The largest |q| = |dq|/2, in f p0: at an end of the stick zone, or in the middle of the contact if the middle slips.
+  // The largest |q| = |dq|/2, in f p0: at an end of the stick zone, or in the middle of the contact if slipping there.
   function largest({ centre, c }) {
     const ends = [centre - c, centre + c].map(Math.abs);
     return Math.abs(centre) >= c ? 1 : pressure(Math.min(...ends));

@@ -31,9 +31,7 @@ def live_page(scene: Scene) -> str:
     """
     if not isinstance(scene.profile, Hertz):
         kind = type(scene.profile).__struct_config__.tag
-        raise InputError(
-            f'profile.kind = "{kind}": must be "hertz" for a live page, which uses the closed form for Hertz'
-        )
+        raise InputError(f'profile.kind = "{kind}": must be "hertz" for a live page (closed form for Hertz only)')
     if not scene.load.in_phase:
         raise InputError("load.sigma: out of phase with load.Q; must be in phase for a live page")
     return (
