@@ -118,10 +118,10 @@ def test_border_is_where_the_regime_turns(shape):
     np.testing.assert_allclose(sf, transition(Qf, shape), rtol=1e-9)
     for way, s in ((1 - 1e-6, 1), (1 + 1e-6, -1)):
         assert (stick_zones(Qf, sf * way, shape)[2] == s).all()
-    np.testing.assert_allclose(data.turns.m, 1, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(data.turns.zone.m, 1, rtol=0, atol=1e-9)
     for number, turn in enumerate(data.turns.sf):  # the curves have a maximum
         assert turn in data.curves.sf[number]
-    assert (data.curves.m.max(axis=1) > 1 - 1e-9).all()
+    assert (data.curves.zone.m.max(axis=1) > 1 - 1e-9).all()
 
 
 def test_progress_is_told():

@@ -51,7 +51,12 @@ class PlanRecord(msgspec.Struct, frozen=True):
 
 
 class ComparisonRecord(msgspec.Struct, frozen=True):
-    """Record of a :class:`partialslip.Comparison`, with ``errors`` and ``bars`` by quantity."""
+    """A :class:`partialslip.Comparison` as plain data.
+
+    ``outcome`` is the verdict on the whole, ``missed`` lists in words what is missed. ``errors`` and ``bars`` are by
+    quantity and belong to ``verdicts``; ``conditions`` are verdicts that need no reference: finite numbers and small
+    residuals. ``p_nodal``, ``q_nodal``, ``p_nodal_max`` and ``q_nodal_max`` are as in :class:`partialslip.Comparison`.
+    """
 
     outcome: Outcome
     errors: dict[str, Number]

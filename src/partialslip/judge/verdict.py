@@ -16,14 +16,6 @@ P_BAR, Q_BAR = BARS["p"], BARS["q"]
 
 NAN, NO_BAR = "not a number", "no bar"
 
-#: Bars by quantity, in multiples of the accuracy asked for. Quantities that are not listed have no bar.
-BARS = {
-    **dict.fromkeys(("a", "left", "right", "left_1", "right_1", "left_2", "right_2", "m", "n"), 1.0),
-    **dict.fromkeys(("P", "P_1", "p", "p_1"), P_BAR),
-    **dict.fromkeys(("dQ", "q", "q1", "q2"), Q_BAR),
-}
-
-
 _Value = TypeVar("_Value", float | str | None, float | None)
 
 

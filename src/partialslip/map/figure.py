@@ -70,7 +70,8 @@ def ends_svg(data: StickMap) -> str:
 
 def _draw_ends(axes: "Axes", data: StickMap, number: int) -> None:
     """Draw the stick zone of one curve, and the transition from small to large tension."""
-    Qf, sf, m, n = (values[number] for values in data.curves[:4])
+    zone = data.curves.zone
+    Qf, sf, m, n = (values[number] for values in (data.curves.Qf, data.curves.sf, zone.m, zone.n))
     ratio, turn = sf / (np.pi * Qf), data.turns.sf[number] / (np.pi * data.turns.Qf[number])
     axes.fill_between(ratio, -m, n, color="0.88", lw=0, label="stick zone [-m, n]")
     axes.plot(ratio, n, color="black", lw=1.4, ls="--", label="n/a")

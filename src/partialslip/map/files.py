@@ -25,14 +25,14 @@ def write_map(data: StickMap, folder: Path) -> list[Path]:
 
 def map_csv(data: StickMap) -> str:
     """Return the grid's stick zones of ``data`` as CSV, one row per point; with dQ (N/m) and dsigma (Pa) of a scene."""
-    grid = data.grid
-    regime = np.where(grid.s > 0, "small tension", "large tension")
+    grid, zone = data.grid, data.grid.zone
+    regime = np.where(zone.s > 0, "small tension", "large tension")
     regime[(grid.Qf == 0) & (grid.sf == 0)] = "stuck"
     columns = {"Qf": grid.Qf, "sf": grid.sf}
     if data.scene and data.pressed:
         f = data.scene.friction.f
         columns |= {"dQ": 2 * f * data.pressed.P * grid.Qf, "dsigma": f * data.pressed.p0 * grid.sf}
-    columns |= {"m_over_a": grid.m, "n_over_a": grid.n, "half_width_over_a": grid.half_width}
+    columns |= {"m_over_a": zone.m, "n_over_a": zone.n, "half_width_over_a": zone.half_width}
     values = (column.ravel().tolist() for column in (*columns.values(), regime))
     return csv_text([*columns, "regime"], zip(*values, strict=True))
 

@@ -17,7 +17,7 @@ from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zones, transition
-from partialslip.result import Result
+from partialslip.result import Result, StickZone
 from partialslip.run import run
 from partialslip.scene import Scene
 
@@ -33,25 +33,12 @@ _RATIOS = np.linspace(0, 8, 51)
 _ALONG = 101  # points per line
 
 
-class Zones(NamedTuple):
-    """Stick zones [-m, n] with their loads.
-
-    Parameters
-    ----------
-    Qf, sf : arrays of one shape
-        Scaled loads.
-    m, n, half_width : arrays of the same shape
-        Ends and half-width of the stick zone, as fractions of a.
-    s : array of the same shape
-        +1 where both ends slip in the same direction, -1 where they slip in opposite directions.
-    """
+class LoadedZones(NamedTuple):
+    """Loads ``Qf`` and ``sf`` and their stick zones ``zone``, as fractions of a: arrays of one shape."""
 
     Qf: Array
     sf: Array
-    m: Array
-    n: Array
-    half_width: Array
-    s: Array
+    zone: StickZone[Array]
 
 
 class Line(NamedTuple):
@@ -106,12 +93,12 @@ class StickMap:
         Why the scene is not on the map.
     """
 
-    grid: Zones
+    grid: LoadedZones
     m_lines: list[Line]
     n_lines: list[Line]
     border: Line
-    curves: Zones
-    turns: Zones
+    curves: LoadedZones
+    turns: LoadedZones
     scene: Scene | None = None
     pressed: Contact | None = None
     point: Point | None = None
@@ -184,15 +171,15 @@ def _half_widths(low: float, high: float) -> Array:
     return low + (high - low) * np.linspace(1e-4, 1, _ALONG) ** 3
 
 
-def _zones(Qf: Array, sf: Array, shape: Shape, progress: Callable[[float], None] = lambda _: None) -> Zones:
+def _zones(Qf: Array, sf: Array, shape: Shape, progress: Callable[[float], None] = lambda _: None) -> LoadedZones:
     """Compute stick zones in batches and call ``progress`` with the share done: a pressure with corners is slow."""
     parts = []
     for start in range(0, Qf.size, _AT_ONCE):
         progress(start / Qf.size)
         part = slice(start, start + _AT_ONCE)
         parts.append(stick_zones(Qf.ravel()[part], sf.ravel()[part], shape))
-    centre, half_width, s = (np.concatenate(values).reshape(Qf.shape) for values in zip(*parts, strict=True))
-    return Zones(Qf, sf, half_width - centre, half_width + centre, half_width, s)
+    zone = StickZone(*(np.concatenate(values).reshape(Qf.shape) for values in zip(*parts, strict=True)))
+    return LoadedZones(Qf, sf, zone)
 
 
 def _point(scene: Scene, pressed: Contact) -> tuple[Point | None, str]:

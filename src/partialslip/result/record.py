@@ -45,10 +45,13 @@ class TractionRecord(msgspec.Struct, frozen=True, omit_defaults=True):
 
 
 class ResultRecord(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """Record of a :class:`partialslip.Result`, without callables, bodies and state.
+    """A :class:`partialslip.Result` as plain data, without bodies, state and fields at other points.
 
-    Fields have the names, units and meaning of the result's fields. ``slip``, ``surface`` and ``traction`` are None
-    where the result has none, and in ledgers, which keep no curves.
+    Fields have the names, units and meaning of the result: ``a``, ``p0``, ``regime``, ``m``, ``n``,
+    ``stick_half_width``, ``stick_centre``, ``p_max``, ``settings``, ``counts``, ``limits``, ``certificate``,
+    ``last_cycle_change``, ``estimate``, ``shares``, ``undetermined``, ``path_dependent``, ``notes``, ``cost``.
+    ``contact_ends`` are the left and right end (m) at load point 1 and at load point 2. ``slip``, ``surface`` and
+    ``traction`` are None if the result has none, and in ledgers, which keep no curves.
     """
 
     a: Number
