@@ -20,7 +20,7 @@ from partialslip.map import grid, place, stick_map
 from partialslip.scene.reading import load_scene
 
 FILES = ["ends.svg", "map.csv", "map.svg"]
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = Path(__file__).parents[2] / "docs"
 FIGURES = ["adhered.svg", "ends.svg", "large-tension.svg", "loop.svg", "small-tension.svg"]
 
 
@@ -222,7 +222,7 @@ def test_words_on_a_scene(overrides, expected):
     assert (data.point is None) != ("the scene's loads" in map_files.map_svg(data))
 
 
-GOOD = (Path(__file__).parents[1] / "src/partialslip/scene/shipped/hertz-large-tension.toml").read_text("utf-8")
+GOOD = (Path(__file__).parents[2] / "src/partialslip/scene/shipped/hertz-large-tension.toml").read_text("utf-8")
 
 
 @pytest.mark.parametrize(

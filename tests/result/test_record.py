@@ -15,7 +15,7 @@ from partialslip import load_result, load_scene, run
 from partialslip.record import SCHEMA, record, schema
 from partialslip.report import write_run
 
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = Path(__file__).parents[2] / "docs"
 FAST = ["fem.accuracy=1e-2"]
 SCENES = [
     ("hertz-large-tension", [], ("exact", "march", "fem")),
