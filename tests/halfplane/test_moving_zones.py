@@ -9,11 +9,11 @@ from partialslip.condensed import steps
 from partialslip.condensed.history import march
 from partialslip.halfplane import marching
 from partialslip.halfplane.hertz import Hertz
-from partialslip.verify.hard_cases.catalogue import _scene
+from partialslip.verify.hard_cases.scenes import hard_scene
 
 HALF = 1e-5  # of the stick zone that the closed form has, in a; at x = -0.3 a
 LOADS = Hertz().conditions(np.array(0.7 - HALF), np.array(HALF), np.array(-1))
-SCENE = _scene("huge-tension", float(LOADS.Qf), float(LOADS.sf), fem={"accuracy": 1e-2})
+SCENE = hard_scene("huge-tension", float(LOADS.Qf), float(LOADS.sf), fem={"accuracy": 1e-2})
 
 
 def by_march(scene=SCENE):

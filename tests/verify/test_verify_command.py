@@ -23,7 +23,7 @@ from partialslip.judge import Bar, Outcome, verdict
 from partialslip.run import run
 from partialslip.scene.reading import load_scene
 from partialslip.verify import Case, driver, run_case, stress_suite, suite
-from partialslip.verify.hard_cases.meshes import shifted
+from partialslip.verify.hard_cases.given_meshes import shifted
 from partialslip.verify.random_scenes import KINDS, draw
 from partialslip.verify.stress import stress_numbers
 from partialslip.verify.suites import _same
