@@ -190,7 +190,7 @@ def test_pivots_that_go_round_in_circles_end_by_descent():
     _, scene = draw(0, 105)
     with recorded() as steps:
         result = partialslip.run(scene, ["fem"]).results["fem"]
-    assert result.counts["iterations"] < 2000
+    assert result.counts["iterations"] < 20 * result.counts["load_steps"]
     assert max(step.solution.residual.max() for step in steps) < 1e-16
 
 
