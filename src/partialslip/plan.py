@@ -67,7 +67,7 @@ def plan(scene: Scene, *, subsurface: bool = False, start: bool = False) -> Plan
     """
     own = _decide(replace(scene, effects=Effects()), subsurface, start)
     forced = _forced(scene)
-    _refuse(scene, forced, own)
+    _refuse(scene, forced, own, start)
     decided = _decide(reduced(scene), subsurface, start)
     called_for: dict[Effect, str] = {}
     left_out: dict[Effect, str] = {}
@@ -175,7 +175,7 @@ def _why_history(scene: Scene, coupled: bool, start: bool) -> str:
     return ""
 
 
-def _refuse(scene: Scene, forced: dict[Effect, bool], own: _Decisions) -> None:
+def _refuse(scene: Scene, forced: dict[Effect, bool], own: _Decisions, start: bool) -> None:
     """Raise InputError if a forced effect leaves nothing to solve or cannot be built."""
     off = {effect for effect, on in forced.items() if not on}
     on = {effect for effect, on in forced.items() if on}
@@ -189,7 +189,7 @@ def _refuse(scene: Scene, forced: dict[Effect, bool], own: _Decisions) -> None:
          "Q and sigma are out of phase, and slip reverses"),
         ("history", "history" in off and own["history"][0] and (coupled or not scene.load.in_phase),
          own["history"][1]),
-        ("history", "history" in off and own["history"][1].startswith("the path goes on"), own["history"][1]),
+        ("history", "history" in off and start, own["history"][1]),
         ("finite-size", "finite-size" in on and not scene.finite, "bodies.upper and bodies.lower have no size"),
         ("far-field", "far-field" in on and None not in (scene.bodies.upper, scene.bodies.lower),
          "both bodies are finite: there is no half-plane around them"),

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 from partialslip.errors import InputError
-from partialslip.judge.reference import METHODS
+from partialslip.judge.reference import METHODS, reference_for
 from partialslip.result import Result
 from partialslip.run import Run, compared, run
 from partialslip.scene import Scene
@@ -66,9 +66,7 @@ def score(
     """
     file = Path(file)
     name = "".join(c if c.isprintable() else "?" for c in file.name)
-    if reference is None:
-        halfplanes = scene.material.alike and not scene.finite
-        reference = ("exact" if scene.load.in_phase else "march") if halfplanes else "fem"
+    reference = reference_for(scene) if reference is None else reference
     if reference not in METHODS:
         raise InputError(f"reference {reference!r}: must be one of {', '.join(METHODS)}")
     if centre not in ("given", "auto"):

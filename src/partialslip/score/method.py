@@ -20,7 +20,7 @@ _CERTAIN = 0.05  # of a: largest uncertainty of ends of the stick zone that are 
 _SPACINGS = 2.0  # ... or this many spacings of the points
 
 
-class StickZone(NamedTuple):
+class SeenStickZone(NamedTuple):
     """Ends of the stick zone, ``left`` and ``right``, and friction in the slip zones on either side (``sides``)."""
 
     left: ZoneEnd
@@ -122,7 +122,7 @@ def _contact(samples: Samples, origin: str) -> tuple[int, int, ZoneEnd, ZoneEnd]
     return first, last, left, right
 
 
-def _why(stick: StickZone | None, uncertainty: dict[str, float]) -> str:
+def _why(stick: SeenStickZone | None, uncertainty: dict[str, float]) -> str:
     """Reason why ends of the stick zone are left out."""
     known = f"they are known to {uncertainty['m']:.1g} and {uncertainty['n']:.1g} a only"
     unseen = stick is not None and not any(side.seen for side in stick.sides)
@@ -148,7 +148,7 @@ def _widths(samples: Samples) -> Array:
     return widths
 
 
-def _stick_zone(x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool) -> StickZone | None:
+def _stick_zone(x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool) -> SeenStickZone | None:
     """Stick zone from 2 f p - |dq| at the points in contact; None if nothing sticks."""
     sides = frictions(p, dq, asked)
     slacks = [2 * side.uncertainty * p for side in sides]
@@ -167,11 +167,11 @@ def _stick_zone(x: Array, p: Array, dq: Array, asked: float, p0: float, cells: b
     told = [least if side.seen else 0.0 for least, side in zip(hidden, sides, strict=True)]
     left = left_end(x, rooms[0], first, last, cells=cells, slack=slacks[0], least=told[0])
     right = right_end(x, rooms[1], last, first, cells=cells, slack=slacks[1], least=told[1])
-    return StickZone(left, right if right.x > left.x else ZoneEnd(left.x, right.uncertainty), sides)
+    return SeenStickZone(left, right if right.x > left.x else ZoneEnd(left.x, right.uncertainty), sides)
 
 
 def _regime(
-    scene: Scene, stick: StickZone | None, left: ZoneEnd, right: ZoneEnd, slips: bool
+    scene: Scene, stick: SeenStickZone | None, left: ZoneEnd, right: ZoneEnd, slips: bool
 ) -> tuple[Regime, tuple[ZoneEnd, ZoneEnd] | None]:
     """Regime, and the ends of the stick zone limited to the contact."""
     if scene.free:
