@@ -93,7 +93,12 @@ def test_scenes_without_friction_to_solve():
     assert sliding.counts["load_steps"] == 0
 
 
-TURNS = [(0.3, 1.0, False), (0.4, 4.03, False), (0.5, 2.8, True), (0.75, 4.5, True)]
+TURNS = [
+    (0.3, 1.0, False),
+    (0.4, 4.03, False),
+    (0.5, 2.8, True),
+    pytest.param(0.75, 4.5, True, marks=pytest.mark.slow),
+]
 
 
 @pytest.mark.parametrize(("Qf", "sf", "turns"), TURNS)
@@ -114,6 +119,7 @@ def test_slip_that_turns_round_on_a_gradual_way(Qf, sf, turns):
         assert gradual.comparisons["march"].q == pytest.approx(one.comparisons["march"].q, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_slip_that_turns_round_as_the_loads_do():
     """Points that finally slip to the right are first pushed to the left: a flat remembers, and the notes say so."""
     scene = partialslip.load_scene("flat-rounded")

@@ -96,7 +96,7 @@ def test_more_loads_than_go_at_a_time():
 # --- signs and ends
 
 
-@pytest.mark.parametrize("profile", [HERTZ, FLAT])
+@pytest.mark.parametrize("profile", [HERTZ, pytest.param(FLAT, marks=pytest.mark.slow)])
 def test_turning_one_load_round_mirrors_the_zone(profile):
     pressed = contact(scene(profile))
     dQ, dsigma = loads(pressed, QF, SF)

@@ -454,7 +454,7 @@ def trials() -> Iterator[Trial]:
         for method, kind in product(("march", "fem"), kinds):
             if _has(method, kind):
                 asked = partial(run, method, kind, f"fem.accuracy={ACCURACY}", own=True)
-                slow = kind != ("large tension" if method == "fem" else "mean loads") or name == "restart"
+                slow = kind != "large tension" or name == "restart"
                 yield Trial(f"{name}; own meshes", method, kind, asked, bars, slow)
 
 

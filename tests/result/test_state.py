@@ -16,8 +16,8 @@ def solved(method, cycles, start=None, extra=()):
 
 
 def test_a_state_of_one_method_starts_another():
-    start = solved("march", 2).state
-    assert solved("fem", 3, start).m == pytest.approx(solved("fem", 5).m, rel=1e-4)
+    start = solved("march", 1).state
+    assert solved("fem", 1, start).m == pytest.approx(solved("fem", 2).m, rel=1e-4)
 
 
 def test_steady_cycles_are_not_repeated():
