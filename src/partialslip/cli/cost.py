@@ -55,8 +55,8 @@ def _cost(options: argparse.Namespace) -> int:
         print_outdated(ledger, messages())
         found = ladder.measure(scene, ledger, options.repeats, lambda done, of, what: tell(f"{done} of {of}, {what}"))
         texts = {
-            "ladder.csv": csv_text(*ladder.table([*found, *peers])),
-            "ladder.svg": errors_svg(found, peers, f"{scene.name}: error against cost"),
+            "cost.csv": csv_text(*ladder.table([*found, *peers])),
+            "cost.svg": errors_svg(found, peers, f"{scene.name}: error against cost"),
             "phases.svg": phases_svg(found, f"{scene.name}: where the time goes"),
         }
         files = [ledger.path, *write_texts(folder, texts)]

@@ -43,9 +43,9 @@ def _effects(options: argparse.Namespace) -> int:
     with held(folder), working(name) as tell:
         study = worth.study_effects(scene, tell)
         texts = {
-            "worth.json": json_text(worth.effects_record(study)),
-            "worth.csv": worth.effects_csv(study),
-            "worth.svg": effects_svg(study),
+            "effects.json": json_text(worth.effects_record(study)),
+            "effects.csv": worth.effects_csv(study),
+            "effects.svg": effects_svg(study),
         }
         files = write_texts(folder, texts)
     console = output()

@@ -88,7 +88,7 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", fold
     if len(axes) == 1:
         found = sizes.along(axes[0], entries)
         laws = [law for quantity in sizes.QUANTITIES if (law := sizes.law(found, quantity))]
-        texts["sizes.svg"] = size_svg(found, laws, scene.name, unit)
+        texts["size.svg"] = size_svg(found, laws, scene.name, unit)
         console.print(f"{scene.name}: change from the half-plane, over {axes[0].name} {unit}", style="bold")
         rows = [
             [f"{value:.4g}", *(_number(found.off[quantity][k]) for quantity in sizes.QUANTITIES), _share(found, k)]

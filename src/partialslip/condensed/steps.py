@@ -20,7 +20,7 @@ _TRIED = (0, 1 / 32, 1 / 8, 1 / 2, 3 / 4, 7 / 8, 1)  # fractions of a step tried
 _MANY = 4  # steps per load point from which on each step is tried in halves only
 _PROBED = 16  # steps from load point to load point with which fewer steps are compared
 _FINER = 16.0  # factor by which the tolerance of steps is reduced if their errors are too large
-MOST = 64  # steps from load point to load point above which steps are not halved
+MOST = 64  # mean number of steps between load points above which steps are not refined
 _CLOSES = 3  # fewest cycles if the first loading does not determine the cycle; most cycles on which steps are chosen
 
 

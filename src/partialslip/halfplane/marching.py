@@ -88,7 +88,7 @@ def solve(
         State in which the path of the loads begins; default: no shear.
     allowance : Allowance, optional
         CPU seconds. From the third mesh on, a mesh is not begun if it is likely to take more than a third of the
-        remaining seconds. Load steps are halved at most once.
+        remaining seconds. Load steps are compared with finer steps once.
     """
     clock = Clock(allowance)
     pressed = contact(scene)

@@ -8,8 +8,6 @@ from rich.table import Table
 from rich.text import Text
 
 _WIDEST = 1000
-
-
 _NARROW = 60
 
 

@@ -101,7 +101,7 @@ class ResultSummary(msgspec.Struct, frozen=True):
 
 
 class EffectsRecord(msgspec.Struct, frozen=True):
-    """Content of ``worth.json``, SI units: ``schema``, ``scene``, ``result`` and the entries by effect, ``effects``."""
+    """Content of ``effects.json``, SI units: ``schema``, ``scene``, ``result``, and the entries by effect (``effects``)."""
 
     schema: str
     scene: Scene
