@@ -33,4 +33,4 @@ def solved(scene, labels=None, errors=None, process=None, **methods):
         comparison={"fem": compared},
         versions={},
     )
-    return Solved(scene=scene, labels=labels or {}, run=run, process=process)
+    return Solved(labels=labels or {}, run=run, process=process)

@@ -191,7 +191,7 @@ def test_maps_leave_out_what_was_not_solved():
         )
         for x in axes[0].values for y in axes[1].values
     ]  # fmt: skip
-    entries[0] = Solved(scene=scene(), labels=entries[0].labels, error="too narrow")
+    entries[0] = Solved(labels=entries[0].labels, error="too narrow")
     x, y, off = size.grid(axes, entries, "a")
     expected = 0.1 / x / y[:, None]
     expected[0, 0] = np.nan

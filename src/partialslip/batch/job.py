@@ -77,7 +77,6 @@ class Solved(msgspec.Struct, frozen=True, kw_only=True):
 
     Parameters
     ----------
-    scene : Scene
     labels : mapping of str to str or float
         Point of the study.
     run : Record or None
@@ -88,7 +87,6 @@ class Solved(msgspec.Struct, frozen=True, kw_only=True):
         Cost of the process, if the job had a process to itself.
     """
 
-    scene: Scene
     labels: Labels
     run: Record | None = None
     error: str = ""
@@ -109,8 +107,8 @@ def _solved(job: Job, keep: "Kept | None" = None) -> tuple[Solved, Run | None]:
     try:
         outcome = run(job.scene, job.methods, keep=keep)
     except InputError as error:  # a library missing on this machine must not enter the ledger, and is raised
-        return Solved(scene=job.scene, labels=job.labels, error=str(error)), None
-    return Solved(scene=job.scene, labels=job.labels, run=record(outcome, curves=False)), outcome
+        return Solved(labels=job.labels, error=str(error)), None
+    return Solved(labels=job.labels, run=record(outcome, curves=False)), outcome
 
 
 class Sharing:

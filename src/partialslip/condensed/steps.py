@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -53,31 +54,31 @@ def march_refined(
     moves while the loads change, a few steps all end with the same tractions, and only many steps follow the zone. The
     first cycles decide.
     """
+    along = partial(march, tangential, stretch, bound)
     known = bool(path.ways)
-    history = march(tangential, stretch, bound, path if known else refined(tangential, stretch, bound, path, accuracy))
+    history = along(path if known else refined(tangential, stretch, bound, path, accuracy))
     if errors is None or history.path.half or _tension_stays(path):
         return history, {}
     if known:
-        halved = march(tangential, stretch, bound, path.halved)
+        halved = along(path.halved)
         return halved, errors(history, halved)
     tolerance, cycles = accuracy, min(path.cycles, _CLOSES)
     while True:
         own = history.path
-        first = history if own.cycles <= cycles else march(tangential, stretch, bound, replace(own, cycles=cycles))
-        finer = march(tangential, stretch, bound, replace(own.halved.with_steps(_PROBED), cycles=first.path.cycles))
+        whole = own.cycles <= cycles
+        first = history if whole else along(replace(own, cycles=cycles))
+        finer = along(replace(own.halved.with_steps(_PROBED), cycles=first.path.cycles))
         left = errors(first, finer)
         if all(error <= BARS[key] * accuracy / 2 for key, error in left.items()):
             return history, left
         if finer.path.mean_steps > most:
-            return (finer if first is history else history), left
+            return (finer if whole else history), left
         tolerance /= _FINER
         chosen = refined(tangential, stretch, bound, path, tolerance)
         if chosen.most_steps > own.most_steps:
-            history = march(tangential, stretch, bound, chosen.with_steps(_PROBED))
+            history = along(chosen.with_steps(_PROBED))
         else:
-            history = (
-                finer if first is history else march(tangential, stretch, bound, replace(finer.path, cycles=own.cycles))
-            )
+            history = finer if whole else along(replace(finer.path, cycles=own.cycles))
 
 
 def _tension_stays(path: Path) -> bool:

@@ -75,15 +75,15 @@ class StickMap:
 
     Parameters
     ----------
-    grid : Zones
+    grid : LoadedZones
         Stick zones over the loads, (rows of equal sf, columns of equal Qf).
     m_lines, n_lines : list of Line
         Lines of equal m and of equal n.
     border : Line
         Border between small and large tension, where m = a.
-    curves : Zones
+    curves : LoadedZones
         (curves of equal Qf, points), the point on the border included.
-    turns : Zones
+    turns : LoadedZones
         Points of the curves on the border, (curves,).
     scene, pressed : Scene and Contact, or None
         The scene and its normal contact; None for Hertz in general.

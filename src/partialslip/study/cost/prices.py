@@ -184,8 +184,8 @@ def fit(entries: "Iterable[Solved]", overheads: Mapping[str, float], machine: st
     """
     cases = []
     for entry in entries:
-        scene = entry.scene
-        if entry.run and "fem" in entry.run.methods and scene.fem.size is None:
+        if entry.run and "fem" in entry.run.methods and entry.run.scene.fem.size is None:
+            scene = entry.run.scene
             costs = {name: method.cost.cpu_s for name, method in entry.run.methods.items()}
             start = entry.process.cpu_s - sum(costs.values()) if entry.process else 1.0
             digits = math.log10(1 / scene.fem.accuracy)

@@ -16,7 +16,7 @@ from partialslip.output.csv import csv_text
 from partialslip.plan import Effect, Plan, plan, reduced
 from partialslip.report.rows import engineering
 from partialslip.result import Regime, Result
-from partialslip.result.record import Number, number
+from partialslip.result.record import Number, ResultRecord
 from partialslip.scene import Scene
 
 SCHEMA = "partialslip/effects/1"
@@ -101,7 +101,7 @@ class ResultSummary(msgspec.Struct, frozen=True):
 
 
 class EffectsRecord(msgspec.Struct, frozen=True):
-    """Content of ``effects.json``, SI units: ``schema``, ``scene``, ``result``, and the entries by effect (``effects``)."""
+    """Content of ``effects.json``, SI units: ``schema``, ``scene``, ``result``, and the entries in ``effects``."""
 
     schema: str
     scene: Scene
@@ -263,14 +263,6 @@ def effects_csv(study: EffectStudy) -> str:
 
 def effects_record(study: EffectStudy) -> EffectsRecord:
     """Make the record of ``study``."""
-    result = study.result
-    summary = ResultSummary(
-        a=number(result.a),
-        p0=number(result.p0),
-        regime=result.regime,
-        m=number(result.m),
-        n=number(result.n),
-        counts=dict(result.counts),
-        certificate={key: number(residual) for key, residual in result.certificate.items()},
-    )
+    whole = ResultRecord.of(study.result, curves=False)
+    summary = msgspec.convert(whole, ResultSummary, from_attributes=True)
     return EffectsRecord(SCHEMA, study.scene, summary, study.entries)
