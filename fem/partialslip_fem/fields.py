@@ -34,20 +34,25 @@ class _Surface:
 
 @dataclass(frozen=True)
 class _Surfaces:
-    """Surfaces of the lower and the upper body; units of ``length`` (m) and ``stress`` (Pa)."""
+    """Surfaces of the lower and the upper body; units of ``length`` (m) and ``stress`` (Pa), and ``origin`` (m)."""
 
     bodies: tuple[_Surface, ...]
     length: float
     stress: float
+    origin: float
 
     def at(self, x: Array) -> Array:
         """sigma_xx at ``x`` (k,), m, by body and load point: (2, 2, k), Pa."""
-        scaled = np.asarray(x, float) / self.length
+        scaled = (np.asarray(x, float) - self.origin) / self.length
         return self.stress * np.array([body.at(scaled) for body in self.bodies])
 
 
 def along_surfaces(
-    bodies: Sequence[DisplacedBody], contact_ends: Sequence[tuple[float, float]], length: float, stress: float
+    bodies: Sequence[DisplacedBody],
+    contact_ends: Sequence[tuple[float, float]],
+    length: float,
+    stress: float,
+    origin: float,
 ) -> SurfaceStress:
     """sigma_xx along the surfaces of the lower and the upper body.
 
@@ -64,6 +69,8 @@ def along_surfaces(
         Ends of the contact at load points 1 and 2, scaled.
     length, stress : float
         Units of length and stress, m and Pa.
+    origin : float
+        Origin of the scaled x, m.
     """
     surfaces = tuple(
         _Surface(
@@ -75,16 +82,16 @@ def along_surfaces(
         for body in bodies
         for mesh in (body.condensed.body,)
     )
-    stresses = _Surfaces(surfaces, length, stress)
+    stresses = _Surfaces(surfaces, length, stress, origin)
     nodes = bodies[0].condensed.body.face_x
     x = np.union1d(nodes, contact_ends)
-    sigma = stresses.at(length * x)
+    sigma = stresses.at(length * x + origin)
     for number, surface in enumerate(surfaces):
         for load, (u, (left, right)) in enumerate(zip(surface.displacements, contact_ends, strict=True)):
             for end, side in ((left, -1), (right, 1)):
                 at_end = stress * 4 / surface.compliance * _strain_beyond(u, end, side)
                 sigma[number, load, np.searchsorted(x, end)] = at_end
-    return SurfaceStress(length * x, sigma, stresses.at)
+    return SurfaceStress(length * x + origin, sigma, stresses.at)
 
 
 def _strain_beyond(u: PPoly, end: float, side: int) -> float:
@@ -103,20 +110,22 @@ def _strain_beyond(u: PPoly, end: float, side: int) -> float:
     return float(fit[0])
 
 
-def deformed(body: DisplacedBody, length: float, unit: float, stress: float) -> DeformedBody:
+def deformed(body: DisplacedBody, length: float, unit: float, stress: float, origin: float) -> DeformedBody:
     """Displacements of the mesh points and stresses in the middle of the triangles of ``body``.
 
     Parameters
     ----------
     length, unit, stress : float
         Units of length and displacement, m, and of stress, Pa.
+    origin : float
+        Origin of the scaled x, m.
     """
     mesh, mirror = body.condensed.mesh, np.array([[1.0], [body.way]])
     moved = body.u[..., body.condensed.body.vertices[0]]
     stresses = _in_the_middle(body)
     return DeformedBody(
         "lower" if body.way > 0 else "upper",
-        length * (mesh.points.T * mirror).T,
+        length * (mesh.points.T * mirror).T + np.array([origin, 0.0]),
         mesh.triangles[:, :: body.way],
         mesh.lines,
         {f"displacement_{point}": unit * (u * mirror).T for point, u in enumerate(moved, start=1)},

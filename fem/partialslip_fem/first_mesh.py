@@ -39,7 +39,7 @@ def solve_on_first_mesh(
     InputError
         If the contact does not fit on a finite body.
     """
-    reach, limit, meshes, factored = 1.5 + max(problem.kinks, default=0.0), contact_line_limit(problem), 0, 0
+    reach, limit, meshes, factored = 1.5 + max(map(abs, problem.kinks), default=0.0), contact_line_limit(problem), 0, 0
     steps = MOST if problem.meshed else None  # on meshes from files this solution is also the last
     while True:
         reach = min(reach, limit)
@@ -63,7 +63,7 @@ def contact_line_limit(problem: Problem) -> float:
         If a kink of the profile lies beyond it.
     """
     limit = min(_limit(part) for part in problem.parts)
-    if max(problem.kinks, default=0.0) >= limit:
+    if max(map(abs, problem.kinks), default=0.0) >= limit:
         raise too_narrow(problem)
     return limit
 

@@ -147,8 +147,7 @@ def gaps(solution: MeshSolution, problem: Problem) -> Array:
     Row 0: from each end of the stick zone to the other end of the stick zone; infinite for other ends. Row 1: to the
     nearest of all other ends and kinks.
     """
-    kinks = np.array(problem.kinks)
-    apart = np.abs(solution.zone_ends[:, None] - np.concatenate([solution.zone_ends, kinks, -kinks]))
+    apart = np.abs(solution.zone_ends[:, None] - np.array([*solution.zone_ends, *problem.kinks]))
     np.fill_diagonal(apart, np.inf)
     across = np.full(len(solution.zone_ends), np.inf)
     if solution.stick:

@@ -102,7 +102,7 @@ def _check_incompressibility(scene: Scene) -> None:
 
 def _check_sizes(scene: Scene) -> None:
     """Raise InputError for flats and bodies whose size would be lost to rounding."""
-    if max(scene.profile.kinks, default=0.0) > _FLATTEST * scene.length:
+    if max(map(abs, scene.profile.kinks), default=0.0) > _FLATTEST * scene.length:
         raise InputError(f"load.P = {scene.P:g}: must press the contact beyond its flat")
     for name, own in (("lower", scene.bodies.lower), ("upper", scene.bodies.upper)):
         for key, size in (("width", own.width), ("height", own.height)) if own else ():

@@ -129,7 +129,8 @@ class Part:
 
 @dataclass(frozen=True)
 class Problem:
-    """The scaled contact problem; P = 1.
+    """The scaled contact problem; P = 1. Where the bodies turn, x counts from the line of action of P, about which the
+    pressure then has no moment.
 
     Parameters
     ----------
@@ -161,6 +162,10 @@ class Problem:
         Whether the contact keeps its shape while it grows, as in Hertz contact of half-planes.
     accuracy : float
         Accuracy asked for: error of the contact's ends, in its half-width.
+    turns : bool
+        Whether the bodies turn until the pressure has no moment.
+    origin : float
+        Position of the origin of x in the scene.
     """
 
     gap: Callable[[Array], Array]
@@ -177,6 +182,8 @@ class Problem:
     strain: float = 0.0
     similar: bool = False
     accuracy: float = 1e-3
+    turns: bool = False
+    origin: float = 0.0
 
     @property
     def meshed(self) -> bool:
@@ -192,32 +199,34 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
     InputError
         If a mesh file cannot be read.
     """
-    P, A, L = scene.P, scene.material.A, scene.length
+    P, A, L, origin = scene.P, scene.material.A, scene.length, scene.origin
     sides = (("lower", scene.bodies.lower, scene.fem.lower_size), ("upper", scene.bodies.upper, 1.0))
     kinds = zip(sides, scene.material.bodies, strict=True)
     parts = tuple(_finite(Part(name, own.kappa, own.A / A, size), body, scene) for (name, body, size), own in kinds)
     return Problem(
-        gap=lambda x: scene.gap_at(x * L) / (A * P),
-        kinks=tuple(kink / L for kink in scene.profile.kinks),
+        gap=lambda x: scene.gap_at(x * L + origin) / (A * P),
+        kinks=tuple((kink - origin) / L for kink in scene.profile.kinks),
         f=scene.friction.f,
         path=load_path(scene, plan, start),
         parts=parts[:1] if scene.fem.lower_size == 1 and not plan.needs("coupling") and scene.mirrored else parts,
         order=scene.fem.order,
         far_field=scene.fem.far_field,
         backend=scene.fem.factor or default_backend(),
-        start=tuple(rescaled(q, L / P, 1 / L) for q in (start.p, start.q)) if start else None,
+        start=tuple(rescaled(q, L / P, 1 / L, -origin / L) for q in (start.p, start.q)) if start else None,
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
         strain=lower_strain(scene, scene.load.points[scene.load.ends[1]][1]),
-        similar=isinstance(scene.profile, Hertz) and not scene.finite,
+        similar=isinstance(scene.profile, Hertz) and not scene.finite and scene.even,
         accuracy=scene.fem.accuracy,
+        turns=plan.needs("moment"),
+        origin=origin / L,
     )
 
 
-def rescaled(polynomials: PPoly, value: float, length: float) -> PPoly:
-    """Convert ``polynomials`` to other units: values times ``value``, abscissae times ``length``."""
+def rescaled(polynomials: PPoly, value: float, length: float, origin: float = 0.0) -> PPoly:
+    """Convert ``polynomials`` to other units: values times ``value``, abscissae times ``length`` plus ``origin``."""
     powers = np.arange(len(polynomials.c) - 1, -1, -1)[:, None]
-    return PPoly(polynomials.c * value / length**powers, polynomials.x * length)
+    return PPoly(polynomials.c * value / length**powers, polynomials.x * length + origin)
 
 
 def _finite(plain: Part, body: Body | None, scene: Scene) -> Part:

@@ -39,15 +39,16 @@ def inside(polynomial: PPoly | None, points: Array) -> Array:
 class Pair:
     """Two scaled tractions along the contact line, ``first`` and ``second``; None is zero.
 
-    Lengths are scaled by ``length`` (m), stresses by ``stress`` (Pa).
+    Lengths are scaled by ``length`` (m) from the ``origin`` (m), stresses by ``stress`` (Pa).
     """
 
     first: PPoly | None
     second: PPoly | None
     length: float
     stress: float
+    origin: float = 0.0
 
     def at(self, x: Array) -> tuple[Array, Array]:
         """Both tractions at ``x`` (k,), m, in Pa; zero off their cells."""
-        points = x / self.length
+        points = (x - self.origin) / self.length
         return self.stress * inside(self.first, points), self.stress * inside(self.second, points)

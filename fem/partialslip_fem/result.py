@@ -24,6 +24,7 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
     ``plan`` says whether to solve for displacements inside the bodies; ``clock`` has counted the CPU seconds.
     """
     solution, L, stress = adapted.solution, scene.length, scene.P / scene.length
+    origin = problem.origin * L
     accuracy = adapted.settled or scene.fem.accuracy
     pressure = solution.pressure()
     x = solution.lower.x[solution.nodes]
@@ -57,23 +58,23 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
         a=solution.half_width * L,
         p0=p0 * stress,
         regime=found.regime,
-        stick_centre=None if found.centre is None else found.centre * L,
+        stick_centre=None if found.centre is None else found.centre * L + origin,
         stick_half_width=None if found.half_width is None else found.half_width * L,
         traction=Traction(
-            x=x * L,
+            x=x * L + origin,
             p=stress * pressure(x),
             dq=q2 - q1,
             q1=q1 if known else None,
             q2=q2 if known else None,
-            at=Pair(pressure, dq, L, stress).at,
-            breaks=np.unique([*solution.zone_ends, *solution.kinks, *problem.kinks]) * L,
-            cells=solution.lower.x[:: solution.lower.order] * L,
-            levels_at=Pair(at1, at2, L, stress).at if known else None,
+            at=Pair(pressure, dq, L, stress, origin).at,
+            breaks=np.unique([*solution.zone_ends, *solution.kinks, *problem.kinks]) * L + origin,
+            cells=solution.lower.x[:: solution.lower.order] * L + origin,
+            levels_at=Pair(at1, at2, L, stress, origin).at if known else None,
             p1=stress * pressures[0](x) if pressures else None,
-            pressures_at=Pair(*pressures, L, stress).at if pressures else None,
+            pressures_at=Pair(*pressures, L, stress, origin).at if pressures else None,
         ),
         cost=clock.cost(),
-        slip=Slip(x * L, history.slip * unit, history.dissipated * unit * scene.P) if history else None,
+        slip=Slip(x * L + origin, history.slip * unit, history.dissipated * unit * scene.P) if history else None,
         settings={
             "bodies": _bodies(solution, problem),
             "elements": f"P{problem.order}",
@@ -92,22 +93,22 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
         + _note_on_the_middle(scene, solution, adapted)
         + _note_on_the_allowance(adapted, scene)
         + doubts(change, estimate, accuracy),
-        bodies=tuple(deformed(body, L, unit, stress) for body in displaced),
-        contact_ends=((left1 * L, right1 * L), (left2 * L, right2 * L)),
-        state=_state(scene, solution),
-        surface=along_surfaces(displaced, solution.contact_ends, L, stress) if displaced else None,
+        bodies=tuple(deformed(body, L, unit, stress, origin) for body in displaced),
+        contact_ends=((left1 * L + origin, right1 * L + origin), (left2 * L + origin, right2 * L + origin)),
+        state=_state(scene, problem, solution),
+        surface=along_surfaces(displaced, solution.contact_ends, L, stress, origin) if displaced else None,
     )
 
 
-def _state(scene: Scene, solution: MeshSolution) -> State | None:
+def _state(scene: Scene, problem: Problem, solution: MeshSolution) -> State | None:
     """Loads and tractions at the end of the load path; None without friction."""
     if not solution.history:
         return None
     shear, bound = solution.history.end
     p, q = (solution.shear(forces) for forces in (bound / scene.friction.f, shear))
-    L = scene.length
+    L, origin = scene.length, problem.origin * scene.length
     return State(
-        scene.P, scene.material.A, *scene.load.points[-1], *(rescaled(each, scene.P / L, L) for each in (p, q))
+        scene.P, scene.material.A, *scene.load.points[-1], *(rescaled(each, scene.P / L, L, origin) for each in (p, q))
     )
 
 
@@ -204,7 +205,7 @@ def _note_on_the_middle(scene: Scene, solution: MeshSolution, adapted: Adapted) 
     """A note on a contact whose middle is farther from x = 0 than the accuracy."""
     a = solution.half_width
     middles = [(left + right) / 2 / a for left, right in solution.contact_ends]
-    if not adapted.errors or max(map(abs, middles)) <= scene.fem.accuracy:
+    if not adapted.errors or not scene.even or max(map(abs, middles)) <= scene.fem.accuracy:
         return ()
     at = " and ".join(f"{middle:+.2g} a" for middle in middles)
     return (f"the middle of the contact is off x = 0: by {at} at load points 1 and 2",)

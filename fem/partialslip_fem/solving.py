@@ -126,7 +126,8 @@ def _contact_forces(problem: Problem, C: coupled.Relative, lower: CondensedBody,
         history, pressing, first = coupled.march(C, gap, stretch, problem.f, path, pressed, along, near)
         nodes = np.flatnonzero(history.bound > 0)
         return _ContactForces(pressing, history.of(nodes), nodes, first)
-    pressing = press(C.yy, gap if path else gap - problem.strain * stretch[1], 1.0)
+    opened = gap if path else gap - problem.strain * stretch[1]
+    pressing = press(C.yy, opened, 1.0, line.x if problem.turns else None)
     nodes = np.flatnonzero(pressing.x > 0)
     if not path:
         return _ContactForces(pressing, None, nodes)

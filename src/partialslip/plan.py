@@ -15,6 +15,7 @@ from partialslip.scene import WIDTHS, Bodies, Effects, Friction, Scene
 
 Effect = Literal[
     "normal",
+    "moment",
     "friction",
     "shear",
     "tension",
@@ -92,6 +93,8 @@ def reduced(scene: Scene) -> Scene:
         load = replace(load, Q=(0.0,) * len(load.Q))
     if effects.tension is False:
         load = replace(load, sigma=(0.0,) * len(load.sigma))
+    if effects.moment is False:
+        load = replace(load, M=None, e=None)
     if effects.history is False:
         Q, sigma = load.dQ / 2, load.dsigma / 2
         load = replace(load, Q=(-Q, Q), sigma=(-sigma, sigma), cycles=1, steps=1)
@@ -130,6 +133,9 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
     history = _why_history(scene, coupled, start)
     return {
         "normal": (True, "two bodies are pressed together by a constant P", ""),
+        "moment": (not scene.even and scene.M is not None,
+                   f"the bodies turn until the moment of the pressure is {scene.M or 0.0:g} N",
+                   "no moment acts, and the gap is even" if scene.even else "the bodies do not turn"),
         "friction": (friction, why, no_friction),
         "shear": (any(Q), f"Q goes between {min(Q):g} and {max(Q):g} N/m", "Q = 0 at every load point"),
         "tension": (any(sigma), f"sigma goes between {min(sigma):g} and {max(sigma):g} Pa",

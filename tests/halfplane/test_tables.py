@@ -99,7 +99,7 @@ def test_both_forms_of_the_pressure_of_a_flat(flat):
 def test_work_does_not_grow_with_the_square_of_the_points():
     """The number of kinks that a pressure takes one by one, and of points of a rule."""
     few, many = (contact(table(np.linspace(0, 1.5, count))).shape for count in (100, 1000))
-    assert few._panels._flats.shape[1] == many._panels._flats.shape[1] <= 6
+    assert few._panels._which.shape[1] == many._panels._which.shape[1] <= 6
     assert len(many.rule(0.3, 0.2, 1).t) < 4 * len(few.rule(0.3, 0.2, 1).t)
 
 

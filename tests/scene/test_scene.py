@@ -291,6 +291,7 @@ TRUE_IF = {
     "the bodies stand for half-planes": lambda s: not (s.bodies.upper or s.bodies.lower),
     "a block is held by": lambda s: s.fem.far_field == "half-plane" and not (s.bodies.upper and s.bodies.lower),
     "blocks are held as they are": lambda s: s.fem.far_field == "box" or (s.bodies.upper and s.bodies.lower),
+    "no moment acts, and the gap is even": lambda s: s.even,
     "fields inside the bodies were not asked": lambda _: True,
 }
 

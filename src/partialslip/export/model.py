@@ -153,10 +153,11 @@ def modelled(
     Raises
     ------
     InputError
-        If the bodies are of finite size, or the loads make the contact slide.
+        If the bodies are of finite size, the pressure is not even, or the loads make the contact slide.
     """
     if scene.finite:
         raise InputError("bodies: must be left out to export; only half-planes can be exported")
+    scene.require_even("to export")
     f, P = scene.friction.f, scene.P
     if any(abs(Q) >= f * P for Q, _ in scene.load.points if Q) or (f == 0 and scene.load.dsigma):
         raise InputError(f"load.Q: must be within f P = {f * P:g}; beyond it the contact slides and has no equilibrium")

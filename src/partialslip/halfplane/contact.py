@@ -15,6 +15,7 @@ from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch, punch_force
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zones
+from partialslip.halfplane.uneven import press
 from partialslip.result import StickZone
 from partialslip.scene import Hertz as HertzProfile
 from partialslip.scene import Scene
@@ -24,12 +25,15 @@ _HARDLY = 1e-13  # of the flat's half-width: rounding hides how far the contact 
 
 @dataclass(frozen=True)
 class Contact:
-    """Two half-planes pressed together: contact half-width ``a`` (m), normal force ``P`` (N/m) and ``shape``, the
-    scaled pressure (:mod:`partialslip.halfplane.shape`)."""
+    """Two half-planes pressed together: contact half-width ``a`` (m), normal force ``P`` (N/m), ``shape``, the scaled
+    pressure (:mod:`partialslip.halfplane.shape`), middle of the contact ``centre`` (m), and ``tilt`` (rad), the angle
+    by which the bodies have turned."""
 
     a: float
     P: float
     shape: Shape
+    centre: float = 0.0
+    tilt: float = 0.0
 
     @property
     def p0(self) -> float:
@@ -38,14 +42,20 @@ class Contact:
 
     def pressure(self, x: Array) -> Array:
         """Pressure at ``x`` (m), Pa."""
-        return self.p0 * self.shape.pressure(np.asarray(x, float) / self.a)
+        return self.p0 * self.shape.pressure(self.scaled(x))
+
+    def scaled(self, x: npt.ArrayLike) -> Array:
+        """Distance of ``x`` (m) from the middle of the contact, as a fraction of a."""
+        result: Array = (np.asarray(x, float) - self.centre) / self.a
+        return result
 
 
 def contact(scene: Scene) -> Contact:
     """Contact of ``scene`` under P, as two half-planes of one material.
 
     Hertz: P = pi a^2/(2 A R). Profiles whose curvature steps by w at |x| = b (flat and rounded: by 1/R at b):
-    P = a^2/(2 A) sum w (2 psi - sin 2 psi), b = a cos(psi) (Ciavarella, Hills and Monno, 1998).
+    P = a^2/(2 A) sum w (2 psi - sin 2 psi), b = a cos(psi) (Ciavarella, Hills and Monno, 1998). A moment moves a Hertz
+    contact along x by M/P; other contacts that are not even: :mod:`partialslip.halfplane.uneven`.
 
     Raises
     ------
@@ -59,7 +69,12 @@ def contact(scene: Scene) -> Contact:
         )
     A, P, profile = scene.material.A, scene.P, scene.profile
     if isinstance(profile, HertzProfile):
-        return Contact(math.sqrt(2 * A * profile.R * P / math.pi), P, Hertz())
+        a = math.sqrt(2 * A * profile.R * P / math.pi)
+        return Contact(a, P, Hertz(), scene.origin, scene.origin / profile.R)
+    if not scene.even:
+        moment = None if scene.M is None else A * scene.M
+        centre, a, shape, tilt = press(profile.curvature, A * P, moment, scene.length)
+        return Contact(a, P, shape, centre, tilt)
     at, steps = profile.curvature_steps()
     inner, reach = float(at[0]), profile.reach
 
@@ -86,28 +101,34 @@ def contact(scene: Scene) -> Contact:
     return Contact(a, P, Punch(at[within] / a, steps[within], psi(beyond)[within]))
 
 
-def contact_of(pressure: Callable[[Array], Array], a: float, kinks: Sequence[float] = ()) -> Contact:
+def contact_of(
+    pressure: Callable[[Array], Array], a: float, kinks: Sequence[float] = (), centre: float = 0.0
+) -> Contact:
     """Contact with a given pressure.
 
     Parameters
     ----------
     pressure : callable
-        ``pressure(x) -> p``: points (n,) in [-a, a], m, to pressures (n,), Pa. Even, positive inside, and zero at +-a
-        like a square root, as under any smooth profile.
+        ``pressure(x) -> p``: points (n,) in [centre - a, centre + a], m, to pressures (n,), Pa. Positive inside, and
+        zero at both ends like a square root, as under any smooth profile.
     a : float
         Contact half-width, m.
     kinks : sequence of float
-        Points at which p is not smooth, m; -x is added for each x.
+        Points at which p is not smooth, m; of an even pressure, the point -x need not be given beside x.
+    centre : float
+        Middle of the contact, m.
 
     Raises
     ------
     InputError
-        If the pressure is not even, finite and positive, or ``a`` is not finite and positive.
+        If the pressure is not finite and positive, ``a`` not finite and positive, or ``centre`` not finite.
     """
     if not (math.isfinite(a) and a > 0):
         raise InputError(f"a = {a}: must be finite and > 0")
-    shape = Given(lambda x: pressure(x * a), [kink / a for kink in kinks])
-    return Contact(a, shape.scale * math.pi * a / 2, shape)
+    if not math.isfinite(centre):
+        raise InputError(f"centre = {centre}: must be finite")
+    shape = Given(lambda x: pressure(centre + x * a), [(kink - centre) / a for kink in kinks])
+    return Contact(a, shape.scale * math.pi * a / 2, shape, centre)
 
 
 def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: npt.ArrayLike) -> StickZone[Array]:
@@ -137,6 +158,12 @@ def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: np
     Qf, sf = np.abs(dQ_) / (2 * f_ * contact.P), np.abs(dsigma_) / (f_ * contact.p0)
     if (slides := Qf >= 1).any():
         raise InputError(f"dQ = {dQ_[slides].flat[0]}: must be less than 2 f P in size, or the contact slides")
-    centre, half_width, s = stick_zones(Qf, sf, contact.shape)
     mirror = np.where((dQ_ < 0) == (dsigma_ < 0), 1, -1)
-    return StickZone(mirror * centre * contact.a, half_width * contact.a, s)
+    if contact.shape.even:
+        centre, half_width, s = stick_zones(Qf, sf, contact.shape)
+    else:
+        centre, half_width, s = np.empty(Qf.shape), np.empty(Qf.shape), np.empty(Qf.shape, dtype=np.int64)
+        for way, shape in ((1, contact.shape), (-1, contact.shape.mirrored)):
+            here = mirror == way
+            centre[here], half_width[here], s[here] = stick_zones(Qf[here], sf[here], shape)
+    return StickZone(contact.centre + mirror * centre * contact.a, half_width * contact.a, s)

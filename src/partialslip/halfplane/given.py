@@ -9,11 +9,11 @@ from partialslip.errors import InputError
 from partialslip.halfplane.shape import Shape
 
 _CHECKED = 1000  # points at which the pressure is checked
-_EVEN = 1e-9  # tolerance of p(x) - p(-x), relative to the largest p
+_EVEN = 1e-9  # tolerance of p(x) - p(-x), relative to the largest p, of an even pressure
 
 
 class Given(Shape):
-    """Even pressure, given as a function on [-1, 1].
+    """Pressure, given as a function on [-1, 1].
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ class Given(Shape):
     Raises
     ------
     InputError
-        If the pressure is not even, finite and positive inside.
+        If the pressure is not finite and positive inside.
     """
 
     def __init__(self, function: Callable[[Array], Array], kinks: Sequence[float] = ()) -> None:
@@ -33,16 +33,14 @@ class Given(Shape):
         self.kinks = tuple(sorted({sign * float(kink) for kink in kinks if abs(kink) < 1 for sign in (-1, 1)}))
         x = np.cos((np.arange(_CHECKED) + 0.5) * np.pi / (2 * _CHECKED))
         p, mirrored = self.pressure(x), self.pressure(-x)
-        for fine, allowed in (
-            (lambda: np.isfinite(p) & np.isfinite(mirrored), "finite"),
-            (lambda: p > 0, "> 0 inside the contact"),
-            (lambda: np.abs(p - mirrored) <= _EVEN * np.abs(p).max(), "even, equal at x and -x"),
-        ):
-            if not (right := fine()).all():
-                raise InputError(f"pressure at x = {x[~right][0]:g} a: must be {allowed}, not {p[~right][0]:g}")
+        at, both = np.append(x, -x), np.append(p, mirrored)
+        for right, allowed in ((np.isfinite(both), "finite"), (~(both <= 0), "> 0 inside the contact")):
+            if not right.all():
+                raise InputError(f"pressure at x = {at[~right][0]:g} a: must be {allowed}, not {both[~right][0]:g}")
+        self.even = bool((np.abs(p - mirrored) <= _EVEN * np.abs(p).max()).all())
         # P = pi/2 p0 at half-width 1, by the rule for a slip zone beside a stick zone that shrinks to nothing
-        t, _, weights = self.rule(1.0, 1e-30, 1)
-        self.scale = 4 / np.pi * float((weights * self.pressure(t) * t).sum())
+        rules = (self.rule(1.0, 1e-30, side) for side in (1, -1))
+        self.scale = 2 / np.pi * sum(float((weights * self.pressure(t) * np.abs(t)).sum()) for t, _, weights in rules)
 
     def pressure(self, x: Array) -> Array:
         values = np.asarray(self._function(np.clip(x, -1.0, 1.0).ravel()), float)

@@ -1,7 +1,7 @@
 """One proportional change of the loads: the first loading of a contact without shear, or half a steady cycle, which is
 a first loading under twice the bound. Scaled: lengths by a, tractions by f p0, slip by A f p0 a."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,7 +33,7 @@ class Loading:
     bound : int
         Largest change of traction, in f p: 1 for a first loading, 2 for half a cycle.
     zone : StickZone
-        Stick zone for positive changes of both loads; ``ends`` has the mirrored one.
+        Stick zone for positive changes of both loads, on the mirrored pressure; ``ends`` has the mirrored one.
     """
 
     shape: Shape
@@ -43,6 +43,11 @@ class Loading:
     mirror: int
     bound: int
     zone: StickZone[float]
+
+    @property
+    def seen(self) -> Shape:
+        """Pressure over the mirrored x, on which both changes of the loads are positive."""
+        return self.shape if self.mirror > 0 else self.shape.mirrored
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -65,13 +70,13 @@ class Loading:
         """Change of shear traction at ``x``, in f p0."""
         if self.nothing:
             return np.zeros_like(x)
-        return self.turn * self.bound * half_range(self.mirror * x, self.zone, self.shape)
+        return self.turn * self.bound * half_range(self.mirror * x, self.zone, self.seen)
 
     def slip(self, x: Array) -> Array:
         """Slip at ``x``, in A f p0 a."""
         if self.nothing:
             return np.zeros_like(x)
-        return self.turn * self.bound / 2 * slip(self.mirror * x, self.zone, self.shape)
+        return self.turn * self.bound / 2 * slip(self.mirror * x, self.zone, self.seen)
 
     def left_end_turns(self, half_width: float | None = None) -> bool:
         """Whether slip in the left slip zone reverses under gradual loading before the stick zone has ``half_width``
@@ -90,5 +95,5 @@ def loading(pressed: Contact, f: float, dQ: float, dsigma: float, bound: int) ->
     Qf, sf = abs(dQ) / (bound * f * pressed.P), 2 * abs(dsigma) / (bound * f * pressed.p0)
     turn = -1 if dQ < 0 else 1
     mirror = turn * (-1 if dsigma < 0 else 1)
-    zone = stick_zone(Qf, sf, pressed.shape) if Qf or sf else _NOTHING
-    return Loading(pressed.shape, Qf, sf, turn, mirror, bound, zone)
+    found = Loading(pressed.shape, Qf, sf, turn, mirror, bound, _NOTHING)
+    return replace(found, zone=stick_zone(Qf, sf, found.seen)) if Qf or sf else found

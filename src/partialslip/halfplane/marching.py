@@ -6,7 +6,7 @@ with a certificate.
 """
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -50,8 +50,9 @@ _JUDGED = ("m", "n", "q", "q1", "q2")
 
 @dataclass(frozen=True)
 class _Level:
-    """Solution on one mesh of cells; lengths in contact half-widths, forces in P. ``kinks`` are the kinks of q at the
-    load points; ``stepped`` are errors due to the load steps, if the steps were chosen on this mesh.
+    """Solution on one mesh of cells; lengths in contact half-widths from the middle of the contact, forces in P.
+    ``kinks`` are the kinks of q at the load points; ``stepped`` are errors due to the load steps, if the steps were
+    chosen on this mesh.
     """
 
     vertices: Array
@@ -93,8 +94,8 @@ def solve(
     clock = Clock(allowance)
     pressed = contact(scene)
     path = load_path(scene, plan, start)
-    ends = [-1.0, 1.0, *(kink / pressed.a for kink in scene.profile.kinks if abs(kink) < pressed.a)]
-    inner = [x / pressed.a for x in finest(start.q.x) if abs(x) < pressed.a] if start else []
+    ends = [-1.0, 1.0, *_within(pressed, scene.profile.kinks)]
+    inner = _within(pressed, finest(start.q.x)) if start else []
     level: _Level | None = None
     errors: dict[str, float] = {}
     shares: dict[str, dict[str, float]] = {}
@@ -130,6 +131,13 @@ def solve(
                 break
     assert level is not None
     return _result(scene, pressed, level, errors, shares, {"meshes": meshes, "iterations": iterations}, clock)
+
+
+def _within(pressed: Contact, points: Sequence[float]) -> list[float]:
+    """Those ``points`` (m) that lie in the contact, scaled."""
+    scaled = pressed.scaled(points)
+    inside: list[float] = scaled[np.abs(scaled) < 1].tolist()
+    return inside
 
 
 def _accuracy(scene: Scene) -> float:
@@ -170,7 +178,7 @@ def _solve_level(
     bound = scene.friction.f * normal
     if start:
         resultant, known = start.q.antiderivative(), start.q.x
-        before = np.diff(resultant(np.clip(vertices * pressed.a, known[0], known[-1]))) / scene.P
+        before = np.diff(resultant(np.clip(pressed.centre + vertices * pressed.a, known[0], known[-1]))) / scene.P
         path = replace(path, before=before)
     with clock.phase("compliance"):
         tangential = compliance(vertices / 2)  # scaling lengths adds a rigid shift only
@@ -239,10 +247,11 @@ def _result(
     clock: Clock,
 ) -> Result:
     P, a, p0, widths, history = scene.P, pressed.a, pressed.p0, np.diff(level.vertices), level.history
+    places = pressed.centre + a * level.vertices
     certified = certificate(history, widths, scene.friction.f, 2 / np.pi) if history else {}
     change = last_cycle_change(history, widths, scene.friction.f, 2 / np.pi) if history else None
     found = steady_state(scene, history, level.stick, 1.0)
-    x = (level.vertices[1:] + level.vertices[:-1]) / 2
+    x = (places[1:] + places[:-1]) / 2
     q1, q2 = (P / a * force / widths for force in (history.q1, history.q2)) if history else (0 * x, 0 * x)
     unit = scene.material.A * P  # of displacement
 
@@ -254,22 +263,22 @@ def _result(
         a=a,
         p0=p0,
         regime=found.regime,
-        stick_centre=None if found.centre is None else found.centre * a,
+        stick_centre=None if found.centre is None else pressed.centre + found.centre * a,
         stick_half_width=None if found.half_width is None else found.half_width * a,
         traction=Traction(
-            x=x * a,
-            p=pressed.pressure(x * a),
+            x=x,
+            p=pressed.pressure(x),
             dq=q2 - q1,
             q1=q1 if known else None,
             q2=q2 if known else None,
             at=tractions.change,
-            breaks=level.vertices * a,
-            cells=level.vertices * a,
+            breaks=places,
+            cells=places,
             levels_at=tractions.at_load_points if known else None,
         ),
         cost=clock.cost(),
-        state=_state(scene, level, a) if history else None,
-        slip=Slip(x * a, history.slip * unit, history.dissipated * unit * P) if history else None,
+        state=_state(scene, level, places) if history else None,
+        slip=Slip(x, history.slip * unit, history.dissipated * unit * P) if history else None,
         settings={"model": "two half-planes, exact pressure, cells of constant shear", "accuracy": _accuracy(scene)},
         counts={
             "cells": len(x),
@@ -286,13 +295,14 @@ def _result(
         estimate=errors,
         shares=shares,
         notes=found.notes + doubts(change, errors, _accuracy(scene)),
+        contact_ends=((float(places[0]), float(places[-1])),) * 2 if pressed.centre else None,
     )
 
 
-def _state(scene: Scene, level: _Level, a: float) -> State:
-    """State at the end of the path of the loads."""
+def _state(scene: Scene, level: _Level, places: Array) -> State:
+    """State at the end of the path of the loads; ``places`` are the ends of the cells, m."""
     assert level.history
     shear, bound = level.history.end
-    stress = scene.P / (a * np.diff(level.vertices))
-    p, q = (PPoly((stress * forces)[None], a * level.vertices) for forces in (bound / scene.friction.f, shear))
+    stress = scene.P / np.diff(places)
+    p, q = (PPoly((stress * forces)[None], places) for forces in (bound / scene.friction.f, shear))
     return State(scene.P, scene.material.A, *scene.load.points[-1], p, q)

@@ -56,14 +56,15 @@ def solve(
     found = _levels(scene, pressed, regime, cycle, start)
     turns = cycle is not None and cycle.turns_round
     tractions = ExactTractions(pressed, f, cycle, found if isinstance(found, Levels) else None)
-    breaks = _breaks(scene, a, cycle, found)
-    x = _sample(np.union1d(breaks, [0.0]))
+    breaks = _breaks(scene, pressed, cycle, found)
+    x = _sample(np.union1d(breaks, [pressed.centre]))
     p, dq = tractions.change(x)
     levels_at = tractions.at_load_points if tractions.levels else None
     q1, q2 = levels_at(x) if levels_at else (None, None)
+    far = abs(pressed.centre) + _BEYOND * a
     reversed_ = load.fully_reversed and isinstance(found, Levels)
     stress = Stress(pressed, f, load.dQ, load.dsigma) if plan.needs("subsurface") and reversed_ else None
-    surface = _surface(stress, np.concatenate([[-_BEYOND * a], breaks, [_BEYOND * a]])) if stress else None
+    surface = _surface(stress, np.concatenate([[-far], breaks, [far]])) if stress else None
     slips = cycle and not cycle.nothing
     undetermined = _undetermined(regime, turns, found)
     table = table_error(scene, pressed, cycle)
@@ -72,14 +73,14 @@ def solve(
         a=a,
         p0=p0,
         regime=regime,
-        stick_centre=cycle.mirror * cycle.zone.centre * a if cycle else None,
+        stick_centre=pressed.centre + cycle.mirror * cycle.zone.centre * a if cycle else None,
         stick_half_width=cycle.zone.half_width * a if cycle else None,
         traction=Traction(x, p, dq, q1, q2, tractions.change, breaks, levels_at=levels_at),
         cost=clock.cost(),
         slip=_slip(scene, pressed, cycle) if cycle and slips and regime != "ratchets" else None,
         settings={"model": "two half-planes, steady state"},
         limits=_limits(scene, pressed, cycle) if plan.needs("friction") or (scene.slides and f > 0) else {},
-        certificate=_certificate(pressed, cycle) if cycle and slips else {},
+        certificate=_certificate(cycle) if cycle and slips else {},
         estimate=table,
         shares={"table": table} if table else {},
         notes=_notes(regime, turns, undetermined) + _coarse(table, scene.fem.accuracy),
@@ -87,6 +88,7 @@ def solve(
         stress_at=stress.inside if stress else None,
         undetermined=undetermined,
         path_dependent=turns,
+        contact_ends=((pressed.centre - a, pressed.centre + a),) * 2 if pressed.centre else None,
     )
 
 
@@ -120,7 +122,7 @@ def _steady_state(scene: Scene, plan: Plan) -> tuple[Contact, Regime, Loading | 
     # for small tension the bound is gross sliding, ruled out above; a zero mean is within any bound, even one that
     # rounding makes negative
     mean = abs(load.Q_mean)
-    if cycle.zone.s < 0 and mean > 0 and mean > limit * mean_load_bound(cycle.zone, pressed.shape):
+    if cycle.zone.s < 0 and mean > 0 and mean > limit * mean_load_bound(cycle.zone, cycle.seen):
         return pressed, "ratchets", cycle
     return pressed, ("small tension" if cycle.zone.s > 0 else "large tension"), cycle
 
@@ -140,40 +142,41 @@ def _levels(scene: Scene, pressed: Contact, regime: Regime, cycle: Loading | Non
     return levels(pressed, scene.friction.f, scene.load, cycle)
 
 
-def _breaks(scene: Scene, a: float, cycle: Loading | None, found: Levels | str) -> Array:
+def _breaks(scene: Scene, pressed: Contact, cycle: Loading | None, found: Levels | str) -> Array:
     """Ends of the contact and of stick zones, and kinks of p (b,), ascending, m."""
     ends = [*(cycle.ends if cycle else ()), *(found.first.ends if isinstance(found, Levels) else ())]
-    kinks = [kink for kink in scene.profile.kinks if abs(kink) < a]
-    return np.unique([-a, *kinks, *(a * np.clip(ends, -1, 1)), a])
+    a, centre = pressed.a, pressed.centre
+    kinks = [kink for kink in scene.profile.kinks if abs(kink - centre) < a]
+    return np.unique([centre - a, *kinks, *(centre + a * np.clip(ends, -1, 1)), centre + a])
 
 
 def _limits(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[str, float]:
     limit = scene.friction.f * scene.P
     limits = {"Q_sliding": limit}
     if cycle:
-        limits["dsigma_transition"] = float(transition(cycle.Qf, pressed.shape)) * scene.friction.f * pressed.p0
-        limits["Q_mean"] = limit * mean_load_bound(cycle.zone, pressed.shape)
+        limits["dsigma_transition"] = float(transition(cycle.Qf, cycle.seen)) * scene.friction.f * pressed.p0
+        limits["Q_mean"] = limit * mean_load_bound(cycle.zone, cycle.seen)
     return limits
 
 
-def _certificate(pressed: Contact, cycle: Loading) -> dict[str, float]:
+def _certificate(cycle: Loading) -> dict[str, float]:
     """Residuals of the loads of the stick zone: ``tension`` in f p0, or relative if sf > 1, and ``shear`` in 2 f P.
 
     The narrowest stick zone stands for all larger tensions. Near sliding, 1 - Qf is known only to the rounding of dQ,
     which the tension residual therefore leaves out.
     """
     c, sf, Qf = cycle.zone.half_width, cycle.sf, cycle.Qf
-    found = pressed.shape.conditions(*map(np.array, (1 + cycle.zone.centre - c, c, cycle.zone.s)))
+    found = cycle.seen.conditions(*map(np.array, (1 + cycle.zone.centre - c, c, cycle.zone.s)))
     tension = 0.0 if c <= NARROWEST and sf > found.sf else abs(float(found.sf) - sf) / max(sf, 1.0)
     rounding = np.finfo(float).eps / max(1 - Qf, np.finfo(float).eps)
     return {"tension": max(tension - float(rounding), 0.0), "shear": abs(float(found.Qf) - Qf)}
 
 
 def _slip(scene: Scene, pressed: Contact, cycle: Loading) -> Slip:
-    x, slips, dissipated = dissipation(cycle.zone, pressed.shape)
+    x, slips, dissipated = dissipation(cycle.zone, cycle.seen)
     stress, unit = scene.friction.f * pressed.p0, scene.material.A * scene.friction.f * pressed.p0 * pressed.a
     return Slip(
-        cycle.mirror * pressed.a * x[:: cycle.mirror],
+        pressed.centre + cycle.mirror * pressed.a * x[:: cycle.mirror],
         cycle.turn * unit * slips[:: cycle.mirror],
         dissipated * unit * stress * pressed.a,
     )

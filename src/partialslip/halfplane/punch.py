@@ -5,20 +5,12 @@ import math
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from partialslip.arrays import Array
+from partialslip.halfplane.panels import Panels
 from partialslip.halfplane.shape import Shape
 
-_FEW = 24  # flats up to which pressures are summed directly
-_NEAR = 6  # flats near a panel, summed directly
-_NARROWEST = 1e-13  # width below which panels are not halved
-_DEGREES = 22  # coefficients, and nodes, of a panel's polynomial
-_NODES = np.cos(np.pi * (np.arange(_DEGREES) + 0.5) / _DEGREES)
-_TO_COEFFICIENTS = np.polynomial.chebyshev.chebvander(_NODES, _DEGREES - 1).T * 2 / _DEGREES
-_TO_COEFFICIENTS[0] /= 2
-# values at the nodes of each half of a panel from the panel's coefficients
-_VALUES = [np.polynomial.chebyshev.chebvander((_NODES + side) / 2, _DEGREES - 1) for side in (-1, 1)]
+FEW = 24  # flats up to which pressures are summed directly
 
 
 class Punch(Shape):
@@ -45,14 +37,14 @@ class Punch(Shape):
 
     @property
     def strong_kinks(self) -> tuple[float, ...]:
-        if len(self.flats) <= _FEW:
+        if len(self.flats) <= FEW:
             return self.kinks
-        strong = self.flats[np.abs(self._weights) > np.abs(self._weights).sum() / _FEW]
+        strong = self.flats[np.abs(self._weights) > np.abs(self._weights).sum() / FEW]
         return tuple(sorted({sign * float(flat) for flat in strong if flat > 0 for sign in (-1, 1)}))
 
     def pressure(self, x: Array) -> Array:
         x = np.minimum(np.abs(x), 1.0)
-        sum_ = self._all(x) if len(self.flats) <= _FEW else self._panels(x)
+        sum_ = self._all(x) if len(self.flats) <= FEW else self._panels(x)
         result: Array = np.where(x < 1, np.maximum(sum_, 0.0), 0.0)
         return result
 
@@ -68,74 +60,9 @@ class Punch(Shape):
         return total
 
     @cached_property
-    def _panels(self) -> "_Panels":
-        return _Panels(self.flats, self._ends, self._weights)
-
-
-class _Panels:
-    """Pressure of many flats at a cost per point independent of the number of flats.
-
-    The range [0, pi/2] of arcsin(x) is halved into panels until at most ``_NEAR`` kinks, or few more, lie within a
-    panel or a panel's width of it. The pressures of these near flats are summed directly. The sum of all far flats is
-    interpolated: its nearest singularity is a panel's width away, and Chebyshev interpolation converges like 5.8^-k.
-    Each half inherits the far sum of its parent and adds the flats that have become far.
-    """
-
-    def __init__(self, flats: Array, ends: Array, weights: Array) -> None:
-        # the last flat has weight 0 and pads rows of indices
-        flats, wedges, weights = (np.append(values, 0.0) for values in (flats, math.pi - 2 * ends, weights))
-        low, high, far = np.array([0.0]), np.array([np.pi / 2]), np.zeros((_DEGREES, 1))
-        near = np.arange(len(ends))[None]
-        done: list[tuple[Array, Array, Array, npt.NDArray[np.int64]]] = []
-        while len(low):
-            split = (near < len(ends)).sum(axis=1) > _NEAR
-            split &= high - low > _NARROWEST
-            done.append((low[~split], high[~split], far[:, ~split], near[~split]))
-            middle = (low[split] + high[split]) / 2
-            halves = (low[split], middle), (middle, high[split])
-            inherited = [_VALUES[side] @ far[:, split] for side in (0, 1)]
-            low, high = (np.concatenate(each) for each in zip(*halves, strict=True))
-            parents = np.concatenate([near[split], near[split]])
-            angles = np.append(ends, np.inf)[parents]
-            width = (high - low)[:, None]
-            stays = (angles > low[:, None] - width) & (angles < high[:, None] + width)
-            gone = np.where(stays, len(ends), parents)
-            x = np.sin((low + high) / 2 + width.T / 2 * _NODES[:, None])
-            unit = _unit(x[..., None], flats[gone], wedges[gone])
-            far = _TO_COEFFICIENTS @ (np.concatenate(inherited, axis=1) + (unit * weights[gone]).sum(axis=-1))
-            near = np.sort(np.where(stays, parents, len(ends)), axis=1)[:, : stays.sum(axis=1).max(initial=0)]
-        order = np.argsort(np.concatenate([each[0] for each in done]))
-        low, high = (np.concatenate([each[i] for each in done])[order] for i in (0, 1))
-        self._low, self._middles, self._halves = low, (low + high) / 2, (high - low) / 2
-        self._far = np.concatenate([each[2] for each in done], axis=1)[:, order]
-        most = max(int((each[3] < len(ends)).sum(axis=1).max(initial=0)) for each in done)
-        which = np.full((len(low), most), len(ends))
-        row = 0
-        for *_, near in done:
-            part = near[:, :most]
-            which[row : row + len(part), : part.shape[1]] = part
-            row += len(part)
-        which = which[order]
-        self._flats, self._wedges, self._weights = flats[which], wedges[which], weights[which]
-
-    def __call__(self, x: Array) -> Array:
-        """Pressure at ``x`` in [0, 1], an array of any shape."""
-        flat_x, angle = x.ravel(), np.arcsin(x).ravel()
-        panel = np.searchsorted(self._low, angle, "right") - 1
-        place = (angle - self._middles[panel]) / self._halves[panel]
-        result = _clenshaw(place, self._far, panel)
-        for flats, wedges, weights in zip(self._flats.T, self._wedges.T, self._weights.T, strict=True):
-            result += weights[panel] * _unit(flat_x, flats[panel], wedges[panel])
-        return result.reshape(x.shape)
-
-
-def _clenshaw(place: Array, coefficients: Array, column: npt.NDArray[np.int64]) -> Array:
-    """Chebyshev sums at ``place`` (n,), each with the ``column`` (n,) of ``coefficients`` (k, columns)."""
-    one, two = np.zeros_like(place), np.zeros_like(place)
-    for row in coefficients[:0:-1]:
-        one, two = row[column] + 2 * place * one - two, one
-    result: Array = coefficients[0][column] + place * one - two
-    return result
+    def _panels(self) -> Panels:
+        wedges = math.pi - 2 * self._ends
+        return Panels((0.0, np.pi / 2), self._ends, self._weights, lambda x, k: _unit(x, self.flats[k], wedges[k]))
 
 
 def _unit(x: Array, flats: Array, wedges: Array) -> Array:

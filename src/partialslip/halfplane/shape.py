@@ -1,4 +1,4 @@
-"""Even pressures over [-1, 1] and the consistency conditions on the stick zone (paper, eqs. (17) and (18)).
+"""Pressures over [-1, 1] and the consistency conditions on the stick zone (paper, eqs. (17) and (18)).
 
 Scaled: lengths by a, pressures by p0 = 2 P/(pi a) (for Hertz the largest pressure), so that every pressure has the
 resultant pi/2; loads Qf = dQ/(2 f P) and sf = dsigma/(f p0). A stick zone is given by ``edge`` = 1 - m, the width of
@@ -41,14 +41,20 @@ class Conditions(NamedTuple):
 
 
 class Shape:
-    """Even pressure, given by values and by ``kinks``, the points at which it is not smooth."""
+    """Pressure, given by values and by ``kinks``, the points at which it is not smooth; ``even`` or not."""
 
     kinks: tuple[float, ...] = ()
+    even = True
 
     @property
     def strong_kinks(self) -> tuple[float, ...]:
         """Kinks that quadrature of functions smoother than p must respect."""
         return self.kinks
+
+    @property
+    def mirrored(self) -> "Shape":
+        """The mirror image."""
+        return self if self.even else Mirrored(self)
 
     def pressure(self, x: Array) -> Array:
         """p/p0 at ``x``; zero outside [-1, 1]."""
@@ -109,6 +115,30 @@ class Shape:
         step = t - x
         result: Array = (values - self.pressure(x)) / np.where(step == 0, np.inf, step)
         return result
+
+
+class Mirrored(Shape):
+    """Mirror image of the pressure ``of``."""
+
+    even = False
+
+    def __init__(self, of: Shape) -> None:
+        self._of = of
+        self.kinks = tuple(-kink for kink in reversed(of.kinks))
+
+    @property
+    def mirrored(self) -> Shape:
+        return self._of
+
+    @property
+    def strong_kinks(self) -> tuple[float, ...]:
+        return tuple(-kink for kink in reversed(self._of.strong_kinks))
+
+    def pressure(self, x: Array) -> Array:
+        return self._of.pressure(-x)
+
+    def difference(self, t: Array, x: Array) -> Array:
+        return -self._of.difference(-t, -x)
 
 
 def rule_between(ends: Array, edge: Array | float, c: Array | float, side: int) -> Rule:

@@ -63,6 +63,7 @@ def _solve(Qf: Array, sf: Array, shape: Shape) -> tuple[Array, Array]:
     """
     edge, c, exact = Hertz().guess(Qf, sf)
     active = np.flatnonzero(~exact | (not isinstance(shape, Hertz)))
+    last = _last(shape)
     for _ in range(_STEPS):
         if not len(active):
             return edge, c
@@ -77,7 +78,7 @@ def _solve(Qf: Array, sf: Array, shape: Shape) -> tuple[Array, Array]:
         new = np.maximum(
             np.minimum(width * np.exp(np.clip(grow, np.log(width) / 2 - 1, 1.0)), (1 + width) / 2), NARROWEST
         )
-        edge[active], c[active] = np.clip(e + to_edge, new - 1, 1 - new), new
+        edge[active], c[active] = np.clip(e + to_edge, last * (new - 1), last * (1 - new)), new
         slip = 2 - 2 * width  # both slip zones together: the scale of the tolerances
         close = (np.abs(to_edge) < _CLOSE * slip + _ROUNDING) & (np.abs(grow) < _CLOSE * slip + _ROUNDING)
         # the step of log c leaves out dQf where skew is unknown
@@ -104,9 +105,10 @@ def _bracketed(Qf: Array, sf: Array, shape: Shape) -> tuple[Array, Array]:
 def _bracketed_small(Qf: Array, sf: Array, shape: Shape) -> tuple[Array, Array]:
     """Small tension: sf fixes ``edge`` at a given c; along this line Qf decreases with c, up to the c at which the
     stick zone touches the contact's end."""
+    last = _last(shape)
 
     def edge(c: Array, sf: Array) -> Array:
-        return (1 - c) * _root(lambda way, c, sf: _at(shape, (1 - c) * way, c).sf - sf, 0 * c, 1 + 0 * c, c, sf)
+        return (1 - c) * _root(lambda way, c, sf: _at(shape, (1 - c) * way, c).sf - sf, 0 * c, last + 0 * c, c, sf)
 
     def excess(log_c: Array, Qf: Array, sf: Array) -> Array:
         c = np.exp(log_c)
@@ -119,14 +121,15 @@ def _bracketed_small(Qf: Array, sf: Array, shape: Shape) -> tuple[Array, Array]:
 
 
 def _bracketed_large(Qf: Array, sf: Array, touching: Array, shape: Shape) -> tuple[Array, Array]:
-    """Large tension: Qf fixes ``edge`` at a given c (``way``: 0 at the contact's end, 1 in the middle); along this line
-    sf decreases with c, up to the c at which the stick zone touches the contact's end."""
+    """Large tension: Qf fixes ``edge`` at a given c (``way``: 0 at the contact's left end, 1 in the middle, 2 at the
+    right end); along this line sf decreases with c, up to the c at which the stick zone touches the contact's end."""
+    last = _last(shape)  # in the middle of an even pressure, dQ = 0
 
     def edge(c: Array, Qf: Array) -> Array:
         def excess(way: Array, c: Array, Qf: Array) -> Array:
-            return np.where(way < 1, _at(shape, (c - 1) * way, c).Qf, 0.0) - Qf  # in the middle dQ = 0
+            return np.where(shape.even & (way == 1), 0.0, _at(shape, (c - 1) * way, c).Qf) - Qf
 
-        return (c - 1) * _root(excess, 0 * c, 1 + 0 * c, c, Qf)
+        return (c - 1) * _root(excess, 0 * c, last + 0 * c, c, Qf)
 
     def excess(log_c: Array, Qf: Array, sf: Array) -> Array:
         c = np.exp(log_c)
@@ -134,6 +137,11 @@ def _bracketed_large(Qf: Array, sf: Array, touching: Array, shape: Shape) -> tup
 
     c = np.exp(_root(excess, math.log(NARROWEST) + 0 * Qf, np.log(touching), Qf, sf))
     return edge(c, Qf), c
+
+
+def _last(shape: Shape) -> int:
+    """Largest ``edge`` of the stick zones, in 1 - c: under an even pressure their centres are on the left."""
+    return 1 if shape.even else 2
 
 
 def _touching(Qf: Array, shape: Shape) -> Array:

@@ -64,7 +64,7 @@ class Stress:
         image of the lower body under the opposite q.
         """
         y = -depth / self.contact.a
-        (P, T), (P_z, T_z) = self._cauchy(x / self.contact.a + 1j * np.minimum(y, -_SURFACE))
+        (P, T), (P_z, T_z) = self._cauchy(self.contact.scaled(x) + 1j * np.minimum(y, -_SURFACE))
         along = y * T_z.imag - 2 * T.real
         sticks = (y == 0) & (np.abs(x - self._zone.centre) <= self._zone.half_width)
         unit = self.f * self.contact.p0
@@ -80,12 +80,12 @@ class Stress:
         shape = self.contact.shape
         turn = -1 if self.dQ < 0 else 1
         mirror = turn * (-1 if self.dsigma < 0 else 1)
-        centre, c = (float(length) / self.contact.a for length in (self._zone.centre, self._zone.half_width))
-        zone = StickZone(mirror * centre, c, int(self._zone.s))
+        centre, c = float(self.contact.scaled(self._zone.centre)), float(self._zone.half_width) / self.contact.a
+        zone, seen = StickZone(mirror * centre, c, int(self._zone.s)), shape if mirror > 0 else shape.mirrored
         ends = [centre - c, centre + c] if c > _APART else [centre]
         inner = np.sort([place for place in (*shape.kinks, *ends) if abs(place) < 1 - _APART])
         inner = inner[np.diff(inner, prepend=-1.0) > _APART]
         return Cauchy(
-            lambda x: np.stack([shape.pressure(x), turn * half_range(mirror * x, zone, shape)]),
+            lambda x: np.stack([shape.pressure(x), turn * half_range(mirror * x, zone, seen)]),
             np.concatenate([[-1.0], inner, [1.0]]),
         )

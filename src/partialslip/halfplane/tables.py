@@ -15,7 +15,8 @@ _NODES = 200  # quadrature points of norms
 
 
 def table_error(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[str, float]:
-    """Estimate the error of a, m, n (fractions of a), p and q (relative L2) due to the spacing of a tabulated profile.
+    """Estimate the error of a, m, n (fractions of a), p and q (relative L2) due to the spacing of a tabulated profile;
+    of a contact that is not even, of its ``left`` and ``right`` end, too.
 
     Richardson extrapolation: a third of the change if every second point of the table is left out, as a table is of
     second order in the spacing. Empty for other profiles, and if the coarser table cannot be pressed.
@@ -37,14 +38,19 @@ def table_error(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[s
         return {}
     a = pressed.a
     angle = (np.arange(_NODES) + 0.5) / _NODES * np.pi
-    x, weights = -a * np.cos(angle), np.sin(angle)
+    x, weights = pressed.centre - a * np.cos(angle), np.sin(angle)
     errors = {"a": abs(other.a - a) / a, "p": _apart(pressed.pressure(x), other.pressure(x), weights)}
+    if not pressed.shape.even:
+        moved = other.centre - pressed.centre + (other.a - a) * np.array([-1, 1])
+        errors["left"], errors["right"] = (np.abs(moved) / a).tolist()
     if cycle and not cycle.nothing:
         f, load = scene.friction.f, scene.load
         coarse_cycle = loading(other, f, load.dQ, load.dsigma, bound=2)
-        ends, moved = np.array(cycle.ends), np.array(coarse_cycle.ends) * other.a / a
+        ends, moved = np.array(cycle.ends), pressed.scaled(other.centre + np.array(coarse_cycle.ends) * other.a)
         errors["m"], errors["n"] = np.abs(moved - ends).tolist()
-        dq, coarse_dq = pressed.p0 * cycle.traction(x / a), other.p0 * coarse_cycle.traction(x / other.a)
+        dq, coarse_dq = (
+            each.p0 * way.traction(each.scaled(x)) for each, way in ((pressed, cycle), (other, coarse_cycle))
+        )
         errors["q"] = _apart(dq, coarse_dq, weights)
     return {key: error / _LESS for key, error in errors.items()}
 
@@ -57,7 +63,7 @@ def _every_second(scene: Scene) -> Scene | None:
     count = len(profile.x)
     kept = sorted({*range(0, count, 2), count - 1})
     x, gap = (tuple(values[i] for i in kept) for values in (profile.x, profile.gap))
-    return replace(scene, profile=Tabulated(x=x, gap=gap))
+    return replace(scene, profile=Tabulated(x=x, gap=gap, tilt=profile.tilt))
 
 
 def _apart(values: Array, others: Array, weights: Array) -> float:

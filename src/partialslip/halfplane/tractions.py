@@ -26,12 +26,12 @@ class ExactTractions:
     def change(self, x: Array) -> tuple[Array, Array]:
         """p and dq at ``x`` (m), Pa; zero outside the contact."""
         p = self.pressed.pressure(x)
-        return p, self._unit * self.cycle.traction(x / self.pressed.a) if self.cycle else np.zeros_like(p)
+        return p, self._unit * self.cycle.traction(self.pressed.scaled(x)) if self.cycle else np.zeros_like(p)
 
     def at_load_points(self, x: Array) -> tuple[Array, Array]:
         """q1 and q2 at ``x`` (m), Pa; zero outside the contact."""
         assert self.levels
-        q1, q2 = self.levels.at(x / self.pressed.a)
+        q1, q2 = self.levels.at(self.pressed.scaled(x))
         return self._unit * q1, self._unit * q2
 
     @property
@@ -42,7 +42,7 @@ class ExactTractions:
 @dataclass(frozen=True)
 class CellTractions:
     """Tractions of marching: the exact pressure of the contact ``pressed``, and shear tractions ``q1`` and ``q2`` (c,),
-    Pa, constant on the cells between ``vertices`` (c + 1,), fractions of a."""
+    Pa, constant on the cells between ``vertices`` (c + 1,), fractions of a from the middle of the contact."""
 
     pressed: Contact
     vertices: Array
@@ -56,7 +56,7 @@ class CellTractions:
 
     def at_load_points(self, x: Array) -> tuple[Array, Array]:
         """q1 and q2 at ``x`` (m), Pa; zero outside the contact."""
-        scaled = x / self.pressed.a
+        scaled = self.pressed.scaled(x)
         cell = np.clip(np.searchsorted(self.vertices, scaled) - 1, 0, len(self.q1) - 1)
         inside = np.abs(scaled) <= 1
         return np.where(inside, self.q1[cell], 0.0), np.where(inside, self.q2[cell], 0.0)

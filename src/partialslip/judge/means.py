@@ -58,6 +58,12 @@ def resultants(traction: Traction, keys: tuple[str, ...]) -> dict[str, float]:
     return dict(zip(keys, sums.tolist(), strict=True))
 
 
+def moment(traction: Traction) -> float:
+    """Return the moment int x p dx of the ``traction`` about x = 0, N."""
+    cells = np.unique(np.concatenate([traction.breaks, [] if traction.cells is None else traction.cells]))
+    return float(means(lambda x: x * traction.at(x)[0], cells, cells) @ np.diff(cells))
+
+
 def fields(traction: Traction, x: Array, keys: tuple[str, ...]) -> Array:
     """Return tractions at ``x`` (n,), (keys, n), Pa.
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip.judge.means import norm_errors, resultants
+from partialslip.judge.means import moment, norm_errors, resultants
 from partialslip.judge.stresses import inside_error, surface_error
 from partialslip.result import Result, Traction
 from partialslip.scene import Scene
@@ -96,6 +96,9 @@ def _measured(result: Result, reference: Result, scene: Scene) -> Iterator[_Valu
     for key in pressures:
         yield _apart(key.replace("p", "P"), "P", 1.0, sums[key] / scene.P)
         yield key, NORM, None, None, errors[key]
+    if not scene.even:
+        known = moment(to) if scene.M is None else scene.M
+        yield _apart("M", "P a", *(each / (scene.P * a) for each in (known, moment(of))))
     yield _apart("p_max", "p0", to.p_max / p0, of.p_max / p0)
     limit = f * scene.P
     yield _apart("dQ", "2 f P", *((half / limit if limit else math.nan) for half in (scene.load.dQ / 2, sums["q"])))

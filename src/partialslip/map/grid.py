@@ -118,12 +118,13 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
     Raises
     ------
     InputError
-        If there is no friction; and as :func:`partialslip.halfplane.contact`.
+        If there is no friction, or the pressure is not even; and as :func:`partialslip.halfplane.contact`.
     """
     if scene is None:
         return _mapped(Hertz(), _TOP, progress)
     if scene.friction.f == 0:
         raise InputError("friction.f = 0: must be > 0 for a map: without friction there is no stick zone")
+    scene.require_even("for a map")
     pressed = contact(scene)
     point, missing = _point(scene, pressed)
     top = max(_TOP, math.ceil(1.2 * point.sf)) if point else _TOP

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _MARKERS = 41
+_MARGIN = 0.04  # beyond the contact, in a
 _P_MARKS = {"march": "x", "fem": "+", ALL_EFFECTS: "1"}
 _Q_MARKS = {"march": "s", "fem": "o", ALL_EFFECTS: "D"}
 
@@ -71,7 +72,9 @@ def draw_tractions(axes: "Axes", results: Mapping[str, Result], f: float | None 
                     label=f"{shear}, {name}",
                 )
     axes.axhline(0, color="0.7", lw=0.6, zorder=0)
-    axes.set(xlabel="x/a", ylabel=f"tractions: p/p0 and {shear}", xlim=(-1.04, 1.04))
+    left, right = np.array(reference.ends).T / a
+    limits = min(left) - _MARGIN, max(right) + _MARGIN
+    axes.set(xlabel="x/a", ylabel=f"tractions: p/p0 and {shear}", xlim=limits)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
 
 

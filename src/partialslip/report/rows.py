@@ -20,6 +20,7 @@ _MEANING = {
     "m": "m, stick from -m",
     "n": "n, stick to n",
     "P": "P, sum of p",
+    "M": "M, moment of p",
     "p": "p, pressure",
     "p_max": "p, largest",
     "dQ": "dQ, sum of dq",

@@ -15,22 +15,27 @@ Turns = Annotated[tuple[float, ...], msgspec.Meta(min_length=2, max_length=1000)
 class Load(Table, frozen=True, kw_only=True):
     """Loads per unit depth; they vary linearly from one load point of the cycle to the next.
 
-    ``P`` (N/m) is constant; for Hertz ``a`` (m) or ``p0`` (Pa) may be given instead. ``Q`` (N/m) and ``sigma`` (Pa,
-    bulk tension of the lower body less that of the upper body) are values at the load points: usually points 1 and 2,
-    between which the loads cycle in phase, or more points. The path begins at zero load, goes to the last point, and
-    then ``cycles`` times through all points. Methods that follow the path take at least ``steps`` load steps between
-    points.
+    ``P`` (N/m) is constant; for Hertz ``a`` (m) or ``p0`` (Pa) may be given instead. ``M`` (N) is the moment of the
+    pressure about x = 0, int x p dx; instead the eccentricity ``e`` = M/P (m) may be given. Without either M = 0.
+    ``Q`` (N/m) and ``sigma`` (Pa, bulk tension of the lower body less that of the upper body) are values at the load
+    points: usually points 1 and 2, between which the loads cycle in phase, or more points. The path begins at zero
+    load, goes to the last point, and then ``cycles`` times through all points. Methods that follow the path take at
+    least ``steps`` load steps between points.
     """
 
     P: Positive | None = None
     a: Positive | None = None
     p0: Positive | None = None
+    M: float | None = None
+    e: float | None = None
     Q: Turns = (0.0, 0.0)
     sigma: Turns = (0.0, 0.0)
     cycles: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 1
     steps: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 1
 
     def __post_init__(self) -> None:
+        if self.M is not None and self.e is not None:
+            raise InputError(f"load.e = {self.e}: must not be given together with load.M")
         others = [values for values in (self.Q, self.sigma) if any(values) or len(values) > 2]
         if len(self.Q) != len(self.sigma) and len(others) > 1:
             raise InputError(f"load.sigma: must have as many numbers as load.Q, {len(self.Q)}, not {len(self.sigma)}")

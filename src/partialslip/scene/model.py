@@ -58,9 +58,35 @@ class Scene(Table, frozen=True, kw_only=True):
             value = getattr(self.load, given[0])
             sizes = f"from {SMALLEST} to {LARGEST} with this E and R"
             raise InputError(f"load.{given[0]} = {value!r}: must give P and sqrt(A R P) {sizes}")
+        self._check_moment()
         for name, body in self.bodies:
             if body.kind == "pad" and body.width is not None and body.height is not None:
                 self._check_pad(name, body.width, body.height)
+
+    def _check_moment(self) -> None:
+        """Raise InputError if a moment is given to bodies that do not turn, or an uneven gap to a pad."""
+        key = next((key for key in ("M", "e") if getattr(self.load, key) is not None), None)
+        if key and not self.profile.turns:
+            raise InputError(f"load.{key} = {getattr(self.load, key)}: must not be given with profile.tilt = 'fixed'")
+        still = ""  # bodies that do not turn
+        if self.finite:
+            still = "finite bodies, whose plates do not turn"
+        elif not self.material.alike:
+            still = "bodies of different materials, which are not turned"
+        if key and still:
+            raise InputError(f"load.{key} = {getattr(self.load, key)}: must not be given with {still}")
+        if not self.profile.even and self.profile.turns and still:
+            raise InputError(f"profile.tilt = 'free': must be 'fixed' with {still}")
+        if not self.profile.even and self.bodies.pad:
+            raise InputError(f"{self.bodies.pad}.kind = 'pad': must be 'block' with a profile that is not even")
+
+    def require_even(self, purpose: str) -> None:
+        """Raise InputError if the pressure of half-planes is not even, which the ``purpose`` (in words) needs."""
+        if not self.profile.even:
+            raise InputError(f"profile.x: must begin at 0 {purpose}; only even gaps")
+        for key in ("M", "e"):
+            if getattr(self.load, key):
+                raise InputError(f"load.{key} = {getattr(self.load, key)}: must be 0 or left out {purpose}")
 
     def _check_pad(self, name: str, width: float, height: float) -> None:
         if not width <= 2 * self.profile.widest:
@@ -111,6 +137,25 @@ class Scene(Table, frozen=True, kw_only=True):
             return self.load.P
         a = self.load.a if self.load.a is not None else (self.load.p0 or 0.0) * A * R
         return math.pi * a**2 / (2 * A * R)
+
+    @property
+    def M(self) -> float | None:
+        """Moment int x p dx of the pressure about x = 0, N; None if the bodies do not turn."""
+        if not self.profile.turns or self.effects.moment is False:
+            return None
+        if self.load.M is not None:
+            return self.load.M
+        return self.P * self.load.e if self.load.e is not None else 0.0
+
+    @property
+    def even(self) -> bool:
+        """Whether the pressure of half-planes is even in x: an even gap, and no moment."""
+        return self.profile.even and not self.M
+
+    @property
+    def origin(self) -> float:
+        """x of the line of action of P, M/P, m; zero if the bodies do not turn."""
+        return (self.M or 0.0) / self.P
 
     @property
     def length(self) -> float:

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from typing import Annotated
+from typing import Annotated, Literal, NamedTuple
 
 import msgspec
 import numpy as np
@@ -16,10 +16,71 @@ from partialslip.scene.table import Positive, Table
 _SHARP = 0.05  # step of curvature, relative to the largest curvature, above which a point is a kink
 
 
+class Curvature(NamedTuple):
+    """Curvature of a gap, constant between points.
+
+    Parameters
+    ----------
+    lowest : float
+        Point of zero slope, m.
+    breaks : (k,) array
+        Points of the steps of curvature, ascending, m.
+    values : (k + 1,) array
+        Curvatures between the points, 1/m, not negative.
+    reach : (float, float)
+        Ends of the range in which the gap is known, m.
+    """
+
+    lowest: float
+    breaks: Array
+    values: Array
+    reach: tuple[float, float]
+
+    @property
+    def mirrored(self) -> "Curvature":
+        """Curvature of the mirror image."""
+        low, high = self.reach
+        return Curvature(-self.lowest, -self.breaks[::-1], self.values[::-1], (-high, -low))
+
+    def slope_at(self, x: Array) -> Array:
+        """Slope of the gap at ``x`` (m)."""
+        return self._integrated(1, x)
+
+    def gap_at(self, x: Array) -> Array:
+        """Gap at ``x`` (m), m; zero at the lowest point."""
+        return self._integrated(2, x)
+
+    def _integrated(self, times: int, x: Array) -> Array:
+        """Curvature integrated once or twice (``times``) from the lowest point outwards."""
+        x = np.asarray(x, float)
+        right, steps = self.breaks >= self.lowest, np.diff(self.values)
+        base = self.values[np.count_nonzero(~right)]
+        ahead = np.maximum(x[..., None] - self.breaks[right], 0.0)
+        behind = np.maximum(self.breaks[~right] - x[..., None], 0.0)
+        sums = ahead**times @ steps[right] - (-1) ** times * (behind**times @ steps[~right])
+        result: Array = (base * (x - self.lowest) ** times + sums) / times
+        return result
+
+
 class Hertz(Table, frozen=True, kw_only=True, tag_field="kind", tag="hertz"):
     """Undeformed gap x^2/(2R); relative radius ``R``, m."""
 
     R: Positive
+
+    @property
+    def even(self) -> bool:
+        """Whether the gap is even in x: yes."""
+        return True
+
+    @property
+    def turns(self) -> bool:
+        """Whether the bodies turn until the moment is the given one: yes."""
+        return True
+
+    @property
+    def curvature(self) -> Curvature:
+        """Curvature of the gap."""
+        return Curvature(0.0, np.array([]), np.array([1 / self.R]), (-math.inf, math.inf))
 
     @property
     def kinks(self) -> tuple[float, ...]:
@@ -46,6 +107,21 @@ class FlatRounded(Table, frozen=True, kw_only=True, tag_field="kind", tag="flat-
 
     R: Positive
     b: Positive
+
+    @property
+    def even(self) -> bool:
+        """Whether the gap is even in x: yes."""
+        return True
+
+    @property
+    def turns(self) -> bool:
+        """Whether the bodies turn until the moment is the given one: yes."""
+        return True
+
+    @property
+    def curvature(self) -> Curvature:
+        """Curvature of the gap."""
+        return Curvature(0.0, np.array(self.kinks), np.array([1, 0, 1]) / self.R, (-math.inf, math.inf))
 
     @property
     def kinks(self) -> tuple[float, ...]:
@@ -77,7 +153,11 @@ class FlatRounded(Table, frozen=True, kw_only=True, tag_field="kind", tag="flat-
 
 
 class Tabulated(Table, frozen=True, kw_only=True, tag_field="kind", tag="tabulated"):
-    """Even, convex gap given by a table: ``gap`` (m) at ``x`` (m), both beginning at 0.
+    """Convex gap given by a table: ``gap`` (m) at ``x`` (m), ascending.
+
+    If x begins at 0 the gap is even, and begins at 0. If x begins below 0 the table has both sides, and any gap may be
+    the smallest. ``tilt`` = "fixed": the bodies do not turn, and the tilt of
+    the table stays. By default they turn until the moment of the pressure is load.M.
 
     The slope in the middle of each interval is that of the chord and is interpolated linearly between middles. This is
     of second order, exact for a parabola, and convex like the table. Beyond the last middle the curvature is constant.
@@ -85,43 +165,89 @@ class Tabulated(Table, frozen=True, kw_only=True, tag_field="kind", tag="tabulat
 
     x: Annotated[tuple[float, ...], msgspec.Meta(min_length=3, max_length=1000)]
     gap: Annotated[tuple[float, ...], msgspec.Meta(min_length=3, max_length=1000)]
+    tilt: Literal["free", "fixed"] = "free"
 
     def __post_init__(self) -> None:
         if len(self.x) != len(self.gap):
             raise InputError(f"profile.gap: must have as many numbers as profile.x, {len(self.x)}, not {len(self.gap)}")
-        for name, values in (("x", self.x), ("gap", self.gap)):
-            if values[0] != 0:
-                raise InputError(f"profile.{name}[0] = {values[0]}: must be 0, the middle of the contact")
-        for i, (before, x) in enumerate(itertools.pairwise(self.x)):
-            if not x > before:
-                raise InputError(f"profile.x[{i + 1}] = {x}: must be > profile.x[{i}] = {before}")
+        self._check_points()
         slopes = np.diff(self.gap) / np.diff(self.x)
-        falls = np.flatnonzero(np.diff(slopes, prepend=0.0) < -ROUGH * max(slopes.max(), 0.0))
+        falls = np.flatnonzero(np.diff(slopes, prepend=0.0 if self.even else -math.inf) < -ROUGH * np.abs(slopes).max())
         if len(falls):
             x = self.x[falls[0]]
             raise InputError(f"profile.gap: must be convex; its slope decreases at x = {x} m")
         if not slopes[-1] > 0:
-            raise InputError("profile.gap: must increase with x; the gap is constant")
+            raise InputError(f"profile.gap: must increase with x; {'the gap is constant' if self.even else 'it falls'}")
+        if not (self.even or slopes[0] < 0):
+            raise InputError("profile.gap: must fall at the first x, left of the lowest point; it increases")
+
+    def _check_points(self) -> None:
+        """Raise InputError if the points are not ascending, or the gap does not begin at 0."""
+        if self.x[0] > 0 or (self.even and self.gap[0] != 0):
+            name, values = ("x", self.x) if self.x[0] > 0 else ("gap", self.gap)
+            sides = ", or below 0 for a table of both sides" if name == "x" else ""
+            raise InputError(f"profile.{name}[0] = {values[0]}: must be 0, the middle of the contact{sides}")
+        for i, (before, x) in enumerate(itertools.pairwise(self.x)):
+            if not x > before:
+                raise InputError(f"profile.x[{i + 1}] = {x}: must be > profile.x[{i}] = {before}")
+        if self.x[-1] <= 0:
+            raise InputError(f"profile.x[{len(self.x) - 1}] = {self.x[-1]}: must be > 0")
+
+    @property
+    def even(self) -> bool:
+        """Whether the gap is even in x: the table begins at x = 0."""
+        return self.x[0] == 0
+
+    @property
+    def turns(self) -> bool:
+        """Whether the bodies turn until the moment is the given one."""
+        return self.tilt == "free"
 
     @property
     def R(self) -> float:
-        """Radius of the parabola through the last point, m, as a measure of size."""
-        return self.x[-1] ** 2 / (2 * self.gap[-1])
+        """Radius of a parabola of about the table's size, m, as a measure of size."""
+        if self.even:
+            return self.x[-1] ** 2 / (2 * self.gap[-1])
+        return (self.x[-1] - self.x[0]) ** 2 / (4 * (self.gap[0] + self.gap[-1] - 2 * min(self.gap)))
 
     @property
     def reach(self) -> float:
         """Largest |x| at which the gap is known, m."""
-        return self.x[-1]
+        return min(self.x[-1], -self.x[0]) if not self.even else self.x[-1]
+
+    @property
+    def curvature(self) -> Curvature:
+        """Curvature of the gap."""
+        if self.even:
+            at, steps = self.curvature_steps()
+            curvatures = np.cumsum(steps)
+            inner = at > 0
+            base = 0.0 if at[0] else curvatures[0]  # a flat in the middle, or none
+            values = np.array([*curvatures[inner][::-1], base, *curvatures[inner]])
+            breaks = np.concatenate([-at[inner][::-1], at[inner]])
+            return Curvature(0.0, breaks, values, (-self.reach, self.reach))
+        x = np.array(self.x)
+        middles, slopes = (x[1:] + x[:-1]) / 2, np.maximum.accumulate(np.diff(self.gap) / np.diff(x))
+        curvatures = np.diff(slopes) / np.diff(middles)
+        steps = np.diff(curvatures)
+        real = np.abs(steps) > ROUGH * curvatures.max()
+        values = curvatures[np.append(True, real)]
+        # the slope is zero between two middles, or beyond all of them, where the curvature goes on
+        after = int(np.clip(np.searchsorted(slopes, 0.0), 1, len(slopes) - 1))
+        flat = np.flatnonzero(slopes == 0)
+        lowest = middles[flat].mean() if len(flat) else middles[after] - slopes[after] / curvatures[after - 1]
+        return Curvature(float(lowest), middles[1:-1][real], values, (self.x[0], self.x[-1]))
 
     @property
     def kinks(self) -> tuple[float, ...]:
         """Points at which the gap is not smooth, m: steps of curvature above 5 % of the largest curvature."""
-        at, steps = self.curvature_steps()
-        sharp = at[(np.abs(steps) > _SHARP * np.cumsum(steps).max()) & (at > 0)]
-        return (*(-sharp[::-1]).tolist(), *sharp.tolist())
+        _, breaks, values, _ = self.curvature
+        return tuple(breaks[np.abs(np.diff(values)) > _SHARP * values.max()].tolist())
 
     def gap_at(self, x: Array) -> Array:
         """Gap before loading at ``x`` (m), m."""
+        if not self.even:
+            return self.curvature.gap_at(x)
         at, steps = self.curvature_steps()
         beyond = np.maximum(np.abs(x)[..., None] - at, 0.0)
         result: Array = beyond**2 @ steps / 2
@@ -137,7 +263,7 @@ class Tabulated(Table, frozen=True, kw_only=True, tag_field="kind", tag="tabulat
         return self.gap_at(x)
 
     def curvature_steps(self) -> tuple[Array, Array]:
-        """Points of the steps of the gap's curvature (|x|, m), (k,), and the steps (1/m), (k,)."""
+        """Points of the steps of an even gap's curvature (|x|, m), (k,), and the steps (1/m), (k,)."""
         x = np.array(self.x)
         middles = np.concatenate([[0.0], (x[1:] + x[:-1]) / 2])
         slopes = np.maximum.accumulate(np.concatenate([[0.0], np.diff(self.gap) / np.diff(x)]))

@@ -1,0 +1,78 @@
+"""Bodies that turn: moments and profiles that are not even, by finite elements against the exact solution."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from msgspec import to_builtins
+
+import partialslip
+from partialslip import parse_scene, run
+from partialslip_fem import contact, model
+
+TABLE = np.linspace(-2e-3, 2.5e-3, 91)
+SIDES = np.where(TABLE < 0, TABLE**2 / 0.02, TABLE**2 / 0.04 + np.maximum(TABLE, 0) ** 4 * 3e4)
+
+
+def scene(kind="table", tilt="free", **load):
+    profiles = {
+        "table": {"kind": "tabulated", "x": TABLE, "gap": SIDES, "tilt": tilt},
+        "flat": {"kind": "flat-rounded", "R": 0.01, "b": 1e-3},
+        "hertz": {"kind": "hertz", "R": 0.01},
+    }
+    return parse_scene({
+        "name": "turned",
+        "material": {"E": 72.1e9, "nu": 0.33},
+        "friction": {"f": 0.3},
+        "profile": profiles[kind],
+        "load": {"P": 1e5, "Q": [-1e4, 1e4], "sigma": [-3e7, 3e7], **load},
+        "fem": {"accuracy": 1e-3},
+    })  # fmt: skip
+
+
+@pytest.mark.parametrize("given", [
+    scene(), scene(tilt="fixed", sigma=[-1e8, 1e8]), scene("flat", e=6e-4), scene("hertz", M=-30.0),
+], ids=["uneven gap", "fixed tilt", "flat on one corner", "far from x = 0"])  # fmt: skip
+def test_finite_elements_agree(given):
+    outcome = run(given, ["exact", "fem"], subsurface=given.M == 0)
+    assert outcome.passed, outcome.missed
+    fem, exact = outcome.results["fem"], outcome.results["exact"]
+    for key, error in outcome.comparisons["fem"].errors.items():
+        if key in fem.estimate:
+            assert error <= 2 * fem.estimate[key], key  # estimates are right within a factor of two
+    assert fem.certificate["equilibrium"] < 1e-12
+    assert outcome.plan.needs("moment") == (given.M is not None)
+    assert fem.ends[1] == pytest.approx(exact.ends[1], abs=1e-3 * exact.a)
+
+
+@pytest.mark.slow
+def test_mirrored_bodies_have_mirrored_results():
+    given = scene()
+    mirrored = parse_scene({
+        **to_builtins(given),
+        "profile": {"kind": "tabulated", "x": -TABLE[::-1], "gap": SIDES[::-1]},
+        "load": {"P": 1e5, "Q": [1e4, -1e4], "sigma": [-3e7, 3e7]},
+    })  # fmt: skip
+    one, other = (run(each, ["fem"]).results["fem"] for each in (given, mirrored))
+    assert (one.m, one.n) == pytest.approx((other.n, other.m), abs=1e-4 * one.a)
+
+
+def test_constant_contacts_do_no_work_for_a_moment(monkeypatch):
+    """An even contact is pressed by one quadratic programme; a turned one needs a few."""
+    solved = []
+    true = contact.solve_bounded
+    monkeypatch.setattr(contact, "solve_bounded", lambda *args: (solved.append(1), true(*args))[1])
+    fixed = partialslip.load_scene("hertz-shear", ["fem.size=0.1"])
+    run(fixed, ["fem"])
+    even, solved[:] = len(solved), []
+    run(partialslip.load_scene("hertz-shear", ["fem.size=0.1", "load.e=1e-5"]), ["fem"])
+    assert even == 2  # the first mesh and the uniform one
+    assert even < len(solved) < 10 * even
+
+
+@pytest.mark.fault
+def test_bodies_that_do_not_turn_would_be_seen(monkeypatch):
+    scaled = model.scaled
+    monkeypatch.setattr(model, "scaled", lambda *args: replace(scaled(*args), turns=False))
+    outcome = run(parse_scene(to_builtins(scene()) | {"fem": {"size": 0.1}}), ["exact", "fem"])
+    assert outcome.comparisons["fem"].errors["M"] > 1e-2

@@ -1,0 +1,173 @@
+"""Contacts that are not even: moments, tilted bodies and profiles with two different sides."""
+
+import numpy as np
+import pytest
+from msgspec import to_builtins
+
+from partialslip import InputError, parse_scene, run
+from partialslip.halfplane import contact, contact_of, stick_zone
+from partialslip.halfplane.uneven import press
+
+TABLE = np.linspace(-2e-3, 2.5e-3, 91)
+SIDES = np.where(TABLE < 0, TABLE**2 / 0.02, TABLE**2 / 0.04 + np.maximum(TABLE, 0) ** 4 * 3e4)
+PROFILES = {
+    "hertz": {"kind": "hertz", "R": 0.01},
+    "flat": {"kind": "flat-rounded", "R": 0.01, "b": 1e-3},
+    "narrow corners": {"kind": "flat-rounded", "R": 0.01, "b": 0.1},
+    "table": {"kind": "tabulated", "x": TABLE, "gap": SIDES},
+    "even table": {"kind": "tabulated", "x": np.linspace(0, 2e-3, 60), "gap": np.linspace(0, 2e-3, 60) ** 4 * 1e5},
+}
+
+
+def made(profile, **load):
+    return parse_scene({
+        "name": "uneven",
+        "material": {"E": 72.1e9, "nu": 0.33},
+        "friction": {"f": 0.3},
+        "profile": PROFILES[profile] if isinstance(profile, str) else profile,
+        "load": {"P": 1e5, "Q": [-1e4, 1e4], "sigma": [-3e7, 3e7], **load},
+    })  # fmt: skip
+
+
+def integrals(pressed):
+    """int p dx and int x p dx by the tanh-sinh rule in the angle, between the kinks, where p has logarithms."""
+    ends = np.arccos(np.clip([1.0, *pressed.shape.kinks[::-1], -1.0], -1, 1))
+    k = np.linspace(-3.2, 3.2, 81)
+    nodes, weights = np.tanh(np.pi / 2 * np.sinh(k)), np.pi / 2 * np.cosh(k) / np.cosh(np.pi / 2 * np.sinh(k)) ** 2
+    half = np.diff(ends)[:, None] / 2
+    angle = ((ends[1:] + ends[:-1])[:, None] / 2 + half * nodes).ravel()
+    x = np.cos(angle)
+    p = (
+        pressed.p0
+        * pressed.shape.pressure(x)
+        * np.sin(angle)
+        * (half * weights * 2 / weights.sum()).ravel()
+        * pressed.a
+    )
+    return p.sum(), ((pressed.centre + pressed.a * x) * p).sum()
+
+
+@pytest.mark.parametrize("profile", ["hertz", "flat", "narrow corners", "even table"])
+@pytest.mark.parametrize("moment", [0.0, None])
+def test_even_contacts_are_a_special_case(profile, moment):
+    scene = made(profile)
+    even, A = contact(scene), scene.material.A
+    found = press(scene.profile.curvature, A * scene.P, moment, scene.length)
+    x = np.linspace(-1, 1, 101)
+    assert found.a == pytest.approx(even.a, rel=1e-14)
+    assert abs(found.centre) < 1e-14 * even.a
+    assert abs(found.tilt) < 1e-14
+    # where the corners are narrow, the even form loses digits: its terms cancel
+    np.testing.assert_allclose(found.shape.pressure(x), even.shape.pressure(x), atol=2e-10)
+
+
+@pytest.mark.parametrize(("profile", "e"), [
+    ("hertz", 3e-5), ("flat", 1e-6), ("flat", 5e-4), ("flat", 8e-4), ("flat", 1.5e-3), ("narrow corners", 0.02),
+    ("table", -4e-5), ("table", 0.0), ("even table", 2e-5),
+])  # fmt: skip
+def test_pressure_carries_force_and_moment(profile, e):
+    pressed = contact(made(profile, e=e))
+    force, moment = integrals(pressed)
+    assert force == pytest.approx(1e5, rel=1e-8)
+    assert moment / force == pytest.approx(e, abs=1e-8 * pressed.a)
+
+
+def test_moment_moves_a_parabola():
+    scene = made("hertz", M=3.0)
+    found = press(scene.profile.curvature, scene.material.A * scene.P, scene.material.A * 3.0, scene.length)
+    pressed = contact(scene)
+    assert (pressed.centre, pressed.tilt) == pytest.approx((3e-5, 3e-3), rel=1e-14)
+    assert (found.centre, found.a, found.tilt) == pytest.approx((3e-5, pressed.a, 3e-3), rel=1e-13)
+
+
+@pytest.mark.parametrize("profile", ["flat", "table"])
+def test_bodies_conform_to_the_gap(profile):
+    """The surfaces' slope under p is that of the gap, less the tilt: by an independent sum over cells."""
+    scene = made(profile, e=2e-5)
+    pressed, A = contact(scene), scene.material.A
+    x = pressed.centre + pressed.a * np.array([-0.7, 0.05, 0.6])
+    ends = pressed.centre - pressed.a * np.cos(np.linspace(0, np.pi, 4001))
+    middle = (ends[1:] + ends[:-1]) / 2
+    kernel = np.log(np.abs((ends[:-1] - x[:, None]) / (ends[1:] - x[:, None])))
+    slope = -A / np.pi * kernel @ pressed.pressure(middle)
+    np.testing.assert_allclose(slope, pressed.tilt - scene.profile.curvature.slope_at(x), atol=2e-5)
+
+
+def test_fixed_tilt_is_kept():
+    turned = {**PROFILES["table"], "tilt": "fixed"}
+    fixed = contact(made(turned))
+    assert abs(fixed.tilt) < 1e-14
+    free = contact(made("table", M=integrals(fixed)[1]))
+    assert (free.centre, free.a) == pytest.approx((fixed.centre, fixed.a), rel=1e-8)
+    assert abs(free.tilt) < 1e-8
+
+
+@pytest.mark.parametrize(("profile", "load"), [
+    ("table", {}), ("table", {"sigma": [-1.5e8, 1.5e8]}), ("flat", {"e": 4e-4, "sigma": [4e7, -4e7]}),
+])  # fmt: skip
+def test_mirrored_scenes_have_mirrored_results(profile, load):
+    x, gap = (PROFILES["table"][key] for key in ("x", "gap"))
+    mirrored = {"kind": "tabulated", "x": -x[::-1], "gap": gap[::-1]} if profile == "table" else profile
+    one = made(profile, **load)
+    other = made(mirrored, **load | {"e": -load.get("e", 0.0), "Q": [1e4, -1e4]})
+    a, b = (run(each, ["exact"]).results["exact"] for each in (one, other))
+    assert a.regime == b.regime
+    assert (a.m, a.n) == pytest.approx((b.n, b.m), abs=1e-12 * a.a)
+    at = np.linspace(*a.ends[1], 41)[1:-1]
+    np.testing.assert_allclose(a.traction.at(at), [[1], [-1]] * np.array(b.traction.at(-at)), atol=1e-9 * a.p0)
+
+
+@pytest.mark.parametrize("sigma", [2e7, 1.2e8])
+def test_consistency_conditions_about_any_point(sigma):
+    """The conditions on the stick zone, evaluated about x = 0 (paper, eqs. (17) and (18)), for a contact off x = 0."""
+    scene = made("table", sigma=[-sigma, sigma], M=4.0)
+    pressed = contact(scene)
+    zone = stick_zone(pressed, 0.3, 2e4, 2 * sigma)
+    left, right, s = float(zone.left), float(zone.right), int(zone.s)
+    low, high = pressed.centre - pressed.a, pressed.centre + pressed.a
+    nodes, weights = np.polynomial.legendre.leggauss(400)
+
+    def over(start, end, of):
+        """int of(x) p/w dx over a slip zone, which begins where w = 0."""
+        u = (nodes + 1) / 2
+        x = start + (end - start) * u**2
+        w = np.sqrt(np.abs((x - right) * (x - left)))
+        return np.sum(weights / 2 * of(x) * pressed.pressure(x) / w * np.abs(end - start) * 2 * u)
+
+    for of, load in (
+        (np.ones_like, 2 * sigma * np.pi / 8),
+        (lambda x: x, 2e4 / 2 + (right + left) * 2 * sigma * np.pi / 16),
+    ):
+        assert 0.3 * (over(right, high, of) - s * over(left, low, of)) == pytest.approx(load, rel=1e-5)
+
+
+def test_a_given_pressure_need_not_be_even():
+    pressed = contact(made("table"))
+    given = contact_of(pressed.pressure, pressed.a, np.array(pressed.shape.kinks) * pressed.a + pressed.centre,
+                       pressed.centre)  # fmt: skip
+    assert pytest.approx(pressed.P, rel=1e-9) == given.P
+    zones = [stick_zone(each, 0.3, 2e4, [-9e7, 0.0, 9e7]) for each in (pressed, given)]
+    np.testing.assert_allclose(zones[0].m, zones[1].m, rtol=1e-7)
+    np.testing.assert_allclose(zones[0].n, zones[1].n, rtol=1e-7)
+
+
+@pytest.mark.parametrize("sigma", [2e7, -1.2e8])
+def test_marching_agrees(sigma):
+    scene = made("table", sigma=[-sigma, sigma], e=1e-5)
+    scene = parse_scene({**to_builtins(scene), "fem": {"accuracy": 1e-3}})
+    outcome = run(scene, ["exact", "march"])
+    assert outcome.passed
+    assert outcome.comparisons["march"].errors["M"] < 1e-9
+
+
+@pytest.mark.parametrize(("profile", "load", "message"), [
+    ({**PROFILES["table"], "tilt": "fixed"}, {"M": 1.0}, "load.M = 1.0: must not be given with profile.tilt = 'fixed'"),
+    ("hertz", {"M": 1.0, "e": 1e-5}, "load.e = 1e-05: must not be given together with load.M"),
+    ({**PROFILES["table"], "gap": SIDES[::-1] * 0 + np.linspace(0, 1, 91)}, {}, "profile.gap: must fall at the first"),
+    ({**PROFILES["table"], "x": TABLE + 3e-3}, {}, "profile.x[0] = 0.001: must be 0, the middle of the contact, or"),
+    ("table", {"e": 2.4e-3}, "load.P: must keep the contact within profile.x, from -0.002 to 0.0025 m"),
+])  # fmt: skip
+def test_bad_input_is_named(profile, load, message):
+    with pytest.raises(InputError) as error:
+        contact(made(profile, **load))
+    assert message in str(error.value)
