@@ -119,6 +119,9 @@ class Record(msgspec.Struct, frozen=True):
     comparison: dict[str, ComparisonRecord]
     versions: dict[str, str]
 
+    def __repr__(self) -> str:
+        return f"Record of {self.scene.name}: {self.outcome}; {', '.join(self.methods)}"
+
     @property
     def json(self) -> str:
         """The record as JSON."""

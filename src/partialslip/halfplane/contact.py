@@ -16,13 +16,14 @@ from partialslip.halfplane.punch import Punch, punch_force
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zones
 from partialslip.result import StickZone
+from partialslip.result.points import AtPoints
 from partialslip.scene import Hertz as HertzProfile
 from partialslip.scene import Scene
 
 _HARDLY = 1e-13  # of the flat's half-width: rounding hides how far the contact extends beyond the flat by less
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Contact:
     """Two half-planes pressed together: contact half-width ``a`` (m), normal force ``P`` (N/m) and ``shape``, the
     scaled pressure (:mod:`partialslip.halfplane.shape`)."""
@@ -31,14 +32,19 @@ class Contact:
     P: float
     shape: Shape
 
+    def __repr__(self) -> str:
+        shape = type(self.shape).__name__
+        return f"Contact: a = {self.a:.7g} m, P = {self.P:.7g} N/m, p0 = {self.p0:.7g} Pa, pressure {shape}"
+
     @property
     def p0(self) -> float:
         """2 P/(pi a), Pa; for Hertz the largest pressure."""
         return 2 * self.P / (math.pi * self.a)
 
-    def pressure(self, x: Array) -> Array:
-        """Pressure at ``x`` (m), Pa."""
-        return self.p0 * self.shape.pressure(np.asarray(x, float) / self.a)
+    def pressure(self, x: npt.ArrayLike) -> Array:
+        """Pressure, Pa, at ``x``, m: a number, a list or an array of any shape."""
+        found: Array = AtPoints(lambda points: self.p0 * self.shape.pressure(points / self.a))(x)
+        return found
 
 
 def contact(scene: Scene) -> Contact:
@@ -113,6 +119,9 @@ def contact_of(pressure: Callable[[Array], Array], a: float, kinks: Sequence[flo
 def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: npt.ArrayLike) -> StickZone[Array]:
     """Permanent stick zones of the steady state (paper, eqs. (17) and (18)), m; arrays of the broadcast shape.
 
+    Where the loads of an array make the contact slide, |dQ| >= 2 f P, the stick zone is NaN, and
+    :attr:`StickZone.slides` is true. Numbers give numbers; a single pair of loads that slides is an error.
+
     Parameters
     ----------
     contact : Contact
@@ -124,7 +133,7 @@ def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: np
     Raises
     ------
     InputError
-        If f is not positive, a number is not finite, or |dQ| >= 2 f P (the contact slides).
+        If f is not positive, a number is not finite, or f, dQ and dsigma are numbers and the contact slides.
     """
     given = {"f": f, "dQ": dQ, "dsigma": dsigma}
     arrays = np.broadcast_arrays(*(np.asarray(values, float) for values in given.values()))
@@ -135,8 +144,10 @@ def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: np
     if not (f_ > 0).all():
         raise InputError(f"f = {f_[~(f_ > 0)].flat[0]}: must be > 0")
     Qf, sf = np.abs(dQ_) / (2 * f_ * contact.P), np.abs(dsigma_) / (f_ * contact.p0)
-    if (slides := Qf >= 1).any():
-        raise InputError(f"dQ = {dQ_[slides].flat[0]}: must be less than 2 f P in size, or the contact slides")
-    centre, half_width, s = stick_zones(Qf, sf, contact.shape)
+    slides = Qf >= 1
+    if slides.ndim == 0 and slides:
+        raise InputError(f"dQ = {dQ_}: must be less than 2 f P in size, or the contact slides")
+    centre, half_width, s = stick_zones(np.where(slides, 0.0, Qf), sf, contact.shape)
     mirror = np.where((dQ_ < 0) == (dsigma_ < 0), 1, -1)
-    return StickZone(mirror * centre * contact.a, half_width * contact.a, s)
+    a = np.where(slides, np.nan, contact.a)
+    return StickZone((mirror * centre * a)[()], (half_width * a)[()], np.where(slides, 0, s)[()])

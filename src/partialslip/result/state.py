@@ -11,6 +11,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.inputfile import check_regular
 from partialslip.scene import Scene
+from partialslip.shown import Short
 
 _ARRAYS = ("loads", "cells", "p", "q")
 _LARGEST = 100_000_000  # bytes of a file, and of the arrays in it
@@ -18,8 +19,8 @@ _HELD = 1e-6  # tolerance of equilibrium, relative to P
 _SAME = 1e-9  # relative difference of P and A allowed as rounding
 
 
-@dataclass(frozen=True)
-class State:
+@dataclass(frozen=True, repr=False)
+class State(Short):
     """Loads and tractions at one moment.
 
     Under a constant normal force, the shear traction holds the whole effect of earlier loads.
