@@ -1,6 +1,7 @@
 """A run as plain data: the content of ``results.json``. The types here define the schema of the file."""
 
 import platform
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -170,6 +171,7 @@ def schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(Record)}
 
 
+@cache
 def versions() -> dict[str, str]:
     """Return the versions of Python and of the packages that compute the results."""
     return {"python": platform.python_version(), **{package: version(package) for package in _PACKAGES}}
