@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import brentq
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
@@ -86,6 +85,8 @@ def contact(scene: Scene) -> Contact:
     high = math.log(reach - inner) if reach < math.inf else scale + 120.0
     if excess(high) < 0:
         raise InputError(f"load.P = {P:g}: must keep the contact within profile.x, which ends at {reach:g} m")
+    from scipy.optimize import brentq  # takes long to import
+
     beyond = math.exp(brentq(excess, low, high, xtol=1e-15, rtol=8.9e-16))
     a = inner + beyond
     within = at < a

@@ -3,15 +3,18 @@
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.inputfile import check_regular
 from partialslip.scene import Scene
 from partialslip.shown import Short
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 _ARRAYS = ("loads", "cells", "p", "q")
 _LARGEST = 100_000_000  # bytes of a file, and of the arrays in it
@@ -39,8 +42,8 @@ class State(Short):
     A: float
     Q: float
     sigma: float
-    p: PPoly
-    q: PPoly
+    p: "PPoly"
+    q: "PPoly"
 
     def check(self, scene: Scene) -> None:
         """Raise InputError if ``scene`` cannot continue from this state: P or the materials differ."""
@@ -76,6 +79,8 @@ def load_state(path: str | Path) -> State:
     loads, cells, p, q = (arrays[name] for name in _ARRAYS)
     if not _sound(loads, cells, p, q):
         raise InputError(f"{path}: not a state that partialslip has saved")
+    from scipy.interpolate import PPoly  # takes long to import
+
     P, A, Q, sigma = loads.tolist()
     state = State(P, A, Q, sigma, PPoly(p, cells), PPoly(q, cells))
     held = [float(traction.integrate(cells[0], cells[-1])) for traction in (state.p, state.q)]
