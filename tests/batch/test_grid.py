@@ -79,6 +79,9 @@ def test_a_point_that_fails_says_why_and_the_others_stand(solved):
     assert "in phase" in table["failure"][1]
     assert table["m"].notna().tolist() == [True, False]
     assert len(solved) == 2
+    failed = partialslip.sweep(scene, {"load.sigma": [[-1e8, 1e8, 1e7]]}, (name for name in ["exact"]))
+    assert list(failed) == list(table)
+    assert failed["m"].isna().all()
 
 
 def test_columns_of_another_method():

@@ -22,6 +22,7 @@ from partialslip.scene import Scene
 if TYPE_CHECKING:
     from partialslip.frame import DataFrame
 
+_VALUES = ("regime", "a", "p0", "m", "n")
 _QUANTITIES = ("a", "m", "n", "p", "q")  # with columns for errors and estimates
 _SESSION = Ledger()  # solved points of sweeps without a file
 
@@ -79,9 +80,10 @@ def sweep(
         If pandas is not installed.
     """
     frame({})  # pandas is missing before the first point is solved, not after the last one
-    if cores is not None and not (isinstance(cores, int) and cores >= 1):
+    if cores is not None and not (isinstance(cores, (int, np.integer)) and cores >= 1):
         raise InputError(f"cores = {cores}: must be a whole number >= 1")
     points = _points(over)
+    methods = [methods] if isinstance(methods, str) else None if methods is None else list(methods)
     jobs = [_job(scene.replace(point), methods, point) for point in points]
     if cores is None and all(job.methods == ("exact",) for job in jobs):
         cores = 1
@@ -120,9 +122,8 @@ def _plain(value: Any) -> Any:
     return tuple(value) if isinstance(value, list) else value
 
 
-def _job(scene: Scene, methods: str | Iterable[str] | None, point: Mapping[str, Any]) -> Job:
-    named = default_methods(scene) if methods is None else [methods] if isinstance(methods, str) else methods
-    chosen = tuple(dict.fromkeys(named))
+def _job(scene: Scene, methods: list[str] | None, point: Mapping[str, Any]) -> Job:
+    chosen = tuple(dict.fromkeys(default_methods(scene) if methods is None else methods))
     if not chosen or not set(chosen) <= set(METHODS):
         raise InputError(f"methods = {', '.join(map(str, chosen)) or 'none'}: must be of {', '.join(METHODS)}")
     return Job(scene, chosen, {key: value if isinstance(value, float) else str(value) for key, value in point.items()})
@@ -131,7 +132,7 @@ def _job(scene: Scene, methods: str | Iterable[str] | None, point: Mapping[str, 
 def _row(point: Mapping[str, Any], solved: Solved) -> dict[str, Any]:
     """Columns of a point."""
     if solved.run is None:
-        return {**point, "failure": solved.error}
+        return {**point, **dict.fromkeys(("method", *_VALUES, "cpu_s", "outcome")), "failure": solved.error}
     return {**point, **_columns(solved.run), "outcome": str(solved.run.outcome), "failure": ""}
 
 
@@ -141,7 +142,7 @@ def _columns(run: Record) -> dict[str, Any]:
     columns: dict[str, Any] = {"method": reference}
     for name in sorted(run.methods, key=lambda name: name != reference):
         result, own = run.methods[name], "" if name == reference else f"{name}."
-        columns |= {own + key: getattr(result, key) for key in ("regime", "a", "p0", "m", "n")}
+        columns |= {own + key: getattr(result, key) for key in _VALUES}
         if name in run.comparison:
             errors = run.comparison[name].errors
             columns |= {f"{own}error.{key}": errors.get(key) for key in _QUANTITIES}

@@ -75,9 +75,10 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
 
     def __repr__(self) -> str:
         """Name and title, then a line for each table that is not the default."""
-        tables = (getattr(self, key) for key in self.__struct_fields__ if key not in ("name", "title"))
-        set_ = [short(table) for table in tables if table not in (Bodies(), Fem(), Effects())]
-        return "\n  ".join([f"Scene {self.name}{': ' if self.title else ''}{self.title}", *set_])
+        title = f"{self.name}: {self.title}" if self.title else self.name
+        entries = (getattr(self, key) for key in self.__struct_fields__)
+        tables = (each for each in entries if isinstance(each, Table) and each not in (Bodies(), Fem(), Effects()))
+        return "\n  ".join([f"Scene {title}", *map(short, tables)])
 
     def replace(self, changes: Mapping[str, Any] | None = None, /, **tables: Any) -> "Scene":
         """Return a changed scene, validated like a scene file.
