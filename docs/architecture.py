@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 ROOTS = ("partialslip", "partialslip_fem", "partialslip_meshes")
 # What nearly every package uses; its arrows would hide the others.
-EVERYWHERE = {"errors", "inputfile", "arrays", "bars", "frame", "allowance", "output", "__main__"}
-# Scenes, results and runs ask it what a notebook shows of them; pyproject.toml declares these imports, which go up.
+EVERYWHERE = {"errors", "inputfile", "arrays", "bars", "frame", "shown", "allowance", "output", "__main__"}
+# `shown` asks it what a notebook shows of scenes, results and runs; pyproject.toml declares this import, which goes up.
 NOTEBOOK = "partialslip.report.notebook"
 _SIZE = (7.4, 6.2)
 

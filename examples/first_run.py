@@ -7,7 +7,7 @@ import partialslip
 
 scene = partialslip.load_scene("fretting-aluminium", ["fem.accuracy=1e-4"])
 outcome = partialslip.run(scene)
-exact, fem = outcome.results["exact"], outcome.results["fem"]
+exact, fem = outcome["exact"], outcome["fem"]
 
 print(f"{scene.title}: {exact.regime}")
 print(f"stick zone: exact [{-exact.m / exact.a:.6f}, {exact.n / exact.a:.6f}] a")

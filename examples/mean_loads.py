@@ -20,7 +20,7 @@ scene = partialslip.parse_scene(
     }
 )
 outcome = partialslip.run(scene, ["exact", "march"])
-march = outcome.results["march"]
+march = outcome["march"]
 
 print(f"stick zone [{-march.m / march.a:.4f}, {march.n / march.a:.4f}] a, {march.counts['cycles']} cycles followed")
 print(f"q changed by {march.last_cycle_change:.1e} f p0 in the last cycle")

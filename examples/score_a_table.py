@@ -12,7 +12,7 @@ import numpy as np
 import partialslip
 
 scene = partialslip.load_scene("hertz-large-tension")
-exact = partialslip.run(scene, ["exact"]).results["exact"]
+exact = partialslip.run(scene, "exact")["exact"]
 x = np.linspace(-1.1, 1.1, 201) * exact.a
 p, dq = exact.traction.at(x)
 dq = dq * (1 - 1e-3)  # slip never quite reaches 2 f p
@@ -25,7 +25,7 @@ with tempfile.TemporaryDirectory() as folder:
         writer.writerows(np.column_stack([x, p, dq]).tolist())
     scored = partialslip.score(scene, path, bar=1e-2)
 
-found, errors = scored.results["tractions.csv"], scored.comparisons["tractions.csv"]
+found, errors = scored["tractions.csv"], scored.comparisons["tractions.csv"]
 print(f"friction seen in the slip zones: f = {found.settings['f_seen']} (the scene has {scene.friction.f})")
 print(
     f"a, m, n read to {errors.a:.1e}, {errors.m:.1e}, {errors.n:.1e} a; spacing {x[1] / exact.a - x[0] / exact.a:.1e} a"

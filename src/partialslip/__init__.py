@@ -1,37 +1,124 @@
-"""partialslip: benchmarks for frictional contact calculations.
+"""Benchmarks for frictional contact calculations in partial slip. All values are in SI units.
+
+Scenes
+    load_scene("fretting-aluminium")    a shipped scene by name (shipped_scenes), or a TOML file
+    parse_scene({...})                  a scene from nested tables; Scene(...) from Python objects
+    scene.replace(friction={"f": 0.4})  a changed scene
+
+Solving
+    run(scene)                          exact and fem, compared: a Run; run["fem"] is a Result
+    run(scene, "exact")                 one method of exact, march and fem
+    sweep(scene, {"friction.f": [...]}) many points, as a data frame
+    plan(scene)                         the effects that the scene calls for
+    compare(result, reference, ...)     a Comparison of two results
+
+Results
+    result.a, .m, .n, .p0, .regime      half-width, stick zone [-m, n], 2 P/(pi a), regime
+    result.traction.at(x)               p and dq at any points; .levels_at(x): q1 and q2
+    run.plot(), run.to_dataframe()      figure and table of the tractions
+
+Other codes and files
+    score(scene, file), export(scene, ...), load_result(file), load_state(file)
+
+Half-planes alone, for many loads at once: partialslip.halfplane.
 
 >>> import partialslip
 >>> scene = partialslip.load_scene("fretting-aluminium")
->>> exact = partialslip.run(scene, methods=["exact"]).results["exact"]
+>>> exact = partialslip.run(scene, "exact")["exact"]
 >>> round(exact.m / exact.a, 6), round(exact.n / exact.a, 6)
 (0.419531, 0.020906)
 """
 
-from importlib.metadata import version
+import importlib
+import sys
+from importlib.util import find_spec
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
-from partialslip.allowance import Allowance as Allowance
-from partialslip.errors import InputError as InputError
-from partialslip.errors import PartialslipError as PartialslipError
-from partialslip.export import export as export
-from partialslip.judge import Comparison as Comparison
-from partialslip.judge import Outcome as Outcome
-from partialslip.judge import Verdict as Verdict
-from partialslip.judge import compare as compare
-from partialslip.plan import Plan as Plan
-from partialslip.plan import plan as plan
-from partialslip.record import Record as Record
-from partialslip.record import load_result as load_result
-from partialslip.result import Result as Result
-from partialslip.result import Slip as Slip
-from partialslip.result import Traction as Traction
-from partialslip.result.state import State as State
-from partialslip.result.state import load_state as load_state
-from partialslip.run import Run as Run
-from partialslip.run import run as run
-from partialslip.scene import Scene as Scene
-from partialslip.scene.reading import load_scene as load_scene
-from partialslip.scene.reading import parse_scene as parse_scene
-from partialslip.scene.reading import shipped_scenes as shipped_scenes
-from partialslip.score import score as score
+if TYPE_CHECKING:
+    from partialslip.allowance import Allowance as Allowance
+    from partialslip.batch.grid import sweep as sweep
+    from partialslip.errors import InputError as InputError
+    from partialslip.errors import PartialslipError as PartialslipError
+    from partialslip.export import export as export
+    from partialslip.judge import Comparison as Comparison
+    from partialslip.judge import Outcome as Outcome
+    from partialslip.judge import Verdict as Verdict
+    from partialslip.judge import compare as compare
+    from partialslip.plan import Plan as Plan
+    from partialslip.plan import plan as plan
+    from partialslip.record import Record as Record
+    from partialslip.record import load_result as load_result
+    from partialslip.result import Result as Result
+    from partialslip.result import Slip as Slip
+    from partialslip.result import Traction as Traction
+    from partialslip.result.state import State as State
+    from partialslip.result.state import load_state as load_state
+    from partialslip.run import Run as Run
+    from partialslip.run import run as run
+    from partialslip.scene import Scene as Scene
+    from partialslip.scene.reading import load_scene as load_scene
+    from partialslip.scene.reading import parse_scene as parse_scene
+    from partialslip.scene.reading import shipped_scenes as shipped_scenes
+    from partialslip.score import score as score
 
-__version__ = version("partialslip")
+    __version__: str
+
+# Where each name is defined: modules are imported when a name is used first, so that the command line starts fast.
+_HOMES = {
+    "Allowance": "allowance",
+    "Comparison": "judge",
+    "InputError": "errors",
+    "Outcome": "judge",
+    "PartialslipError": "errors",
+    "Plan": "plan",
+    "Record": "record",
+    "Result": "result",
+    "Run": "run",
+    "Scene": "scene",
+    "Slip": "result",
+    "State": "result.state",
+    "Traction": "result",
+    "Verdict": "judge",
+    "compare": "judge",
+    "export": "export",
+    "load_result": "record",
+    "load_scene": "scene.reading",
+    "load_state": "result.state",
+    "parse_scene": "scene.reading",
+    "plan": "plan",
+    "run": "run",
+    "score": "score",
+    "shipped_scenes": "scene.reading",
+    "sweep": "batch.grid",
+}
+__all__ = [*_HOMES]
+_SHOWN = [*__all__, "__version__", "halfplane"]
+
+
+class _Package(ModuleType):
+    """This package. A function keeps its name when the module of the same name is imported (``run``, ``plan``)."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not (name in _HOMES and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+    def __dir__(self) -> list[str]:
+        return sorted(_SHOWN)
+
+    def __getattr__(self, name: str) -> Any:
+        if name in _HOMES:
+            value = getattr(importlib.import_module(f"{self.__name__}.{_HOMES[name]}"), name)
+        elif name == "__version__":
+            from importlib.metadata import version
+
+            value = version(self.__name__)
+        elif not name.startswith("_") and find_spec(f"{self.__name__}.{name}"):
+            value = importlib.import_module(f"{self.__name__}.{name}")
+        else:
+            raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
+        setattr(self, name, value)
+        return value
+
+
+sys.modules[__name__].__class__ = _Package

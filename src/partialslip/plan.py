@@ -29,7 +29,7 @@ Effect = Literal[
 _Decisions = dict[Effect, tuple[bool, str, str]]  # whether needed; reason if needed; reason if not
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Plan:
     """Effects by name: ``called_for`` and ``left_out``, with the reason of each. ``missing`` are effects that the scene
     calls for but ``[effects]`` force off."""
@@ -37,6 +37,11 @@ class Plan:
     called_for: dict[Effect, str]
     left_out: dict[Effect, str]
     missing: dict[Effect, str] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        """The names of the effects; the fields have the reasons."""
+        groups = {"called for": self.called_for, "left out": self.left_out, "forced off": self.missing}
+        return "Plan: " + "; ".join(f"{name} {', '.join(effects)}" for name, effects in groups.items() if effects)
 
     def needs(self, effect: Effect) -> bool:
         """Whether the scene calls for ``effect``."""

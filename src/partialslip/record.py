@@ -1,6 +1,7 @@
 """A run as plain data: the content of ``results.json``. The types here define the schema of the file."""
 
 import platform
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -119,6 +120,9 @@ class Record(msgspec.Struct, frozen=True):
     comparison: dict[str, ComparisonRecord]
     versions: dict[str, str]
 
+    def __repr__(self) -> str:
+        return f"Record of {self.scene.name}: {self.outcome}; {', '.join(self.methods)}"
+
     @property
     def json(self) -> str:
         """The record as JSON."""
@@ -167,6 +171,7 @@ def schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(Record)}
 
 
+@cache
 def versions() -> dict[str, str]:
     """Return the versions of Python and of the packages that compute the results."""
     return {"python": platform.python_version(), **{package: version(package) for package in _PACKAGES}}

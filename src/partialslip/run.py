@@ -1,6 +1,6 @@
 """A run: solve one scene by one or more methods, and compare each result with the reference."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -19,18 +19,17 @@ from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
 from partialslip.result.state import State
 from partialslip.scene import Effects, Scene
+from partialslip.shown import Drawn
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from partialslip.frame import DataFrame
     from partialslip_fem import Kept
 
 Progress = Callable[[str], None]
 
 
-@dataclass(frozen=True)
-class Run:
+@dataclass(frozen=True, repr=False)
+class Run(Drawn):
     """A solved scene with its comparisons.
 
     Parameters
@@ -50,6 +49,29 @@ class Run:
     results: dict[str, Result]
     comparisons: dict[str, Comparison]
     accuracy: float | None = None
+
+    def __getitem__(self, method: str) -> Result:
+        """Return the result of ``method``: ``run["fem"]`` is ``run.results["fem"]``."""
+        try:
+            return self.results[method]
+        except KeyError:
+            raise KeyError(f"method {method!r}: the run has {', '.join(self.results)}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names of the methods."""
+        return iter(self.results)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self.results)
+
+    def __repr__(self) -> str:
+        """Scene and outcome, then a line for each result and each comparison."""
+        results = [
+            line
+            for name, result in self.results.items()
+            for line in (result, *([self.comparisons[name]] if name in self.comparisons else []))
+        ]
+        return "\n  ".join([f"Run of {self.scene.name}: {self.outcome}", *map(repr, results)])
 
     @property
     def reference(self) -> str | None:
@@ -118,20 +140,6 @@ class Run:
         """
         return frame(self.columns)
 
-    def plot(self, axes: "Axes | None" = None) -> "Axes":
-        """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of all methods over x/a on matplotlib ``axes`` (default: new axes).
-
-        Returns the axes.
-        """
-        from partialslip.report.notebook import plot
-
-        return plot(self, axes)
-
-    def _repr_html_(self) -> str:
-        from partialslip.report.notebook import html
-
-        return html(self)
-
 
 def default_methods(scene: Scene) -> tuple[str, ...]:
     """Return the default methods for ``scene``: fem, and for half-planes the reference method.
@@ -152,7 +160,7 @@ def default_methods(scene: Scene) -> tuple[str, ...]:
 
 def run(
     scene: Scene,
-    methods: Iterable[str] | None = None,
+    methods: str | Iterable[str] | None = None,
     *,
     subsurface: bool = False,
     progress: Progress = lambda _: None,
@@ -165,8 +173,8 @@ def run(
     Parameters
     ----------
     scene : Scene
-    methods : iterable of str, optional
-        Of "exact", "march" and "fem"; default: :func:`default_methods`.
+    methods : str or iterable of str, optional
+        Of "exact", "march" and "fem", one or several; default: :func:`default_methods`.
     subsurface : bool
         Whether to compute fields inside the bodies: displacements (fem) and stresses (exact).
     progress : callable
@@ -191,7 +199,8 @@ def run(
     if start:
         start.check(scene)
     effects = plan(scene, subsurface=subsurface, start=start is not None)
-    chosen = dict.fromkeys(default_methods(scene) if methods is None else methods)
+    methods = default_methods(scene) if methods is None else methods
+    chosen = dict.fromkeys([methods] if isinstance(methods, str) else methods)
     tasks = {name: (name, reduced(scene), effects) for name in chosen}
     if effects.missing:
         whole = replace(scene, effects=Effects())

@@ -93,7 +93,7 @@ def test_a_fault_is_one_line_and_its_own_exit_code(monkeypatch, capsys):
     def fault(*_):
         raise ZeroDivisionError("none\nleft")
 
-    monkeypatch.setattr("partialslip.cli.shipped_scenes", fault)
+    monkeypatch.setattr("partialslip.shipped_scenes", fault)
     assert main(["scenes"]) == 3
     said = capsys.readouterr().err
     assert re.fullmatch(r"partialslip: a fault of partialslip, .*: test_streams.py, line \d+: .*\n", said)

@@ -9,7 +9,7 @@ import pytest
 
 import partialslip
 from partialslip.errors import InputError
-from partialslip.halfplane import Contact, contact, contact_of, steady, stick_zone
+from partialslip.halfplane import Contact, contact, contact_of, hysteresis, steady, stick_zone
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch
 
@@ -146,7 +146,7 @@ def test_shear_alone_sticks_over_the_contact_of_the_smaller_load():
     ("f", "dQ", "dsigma", "line"),
     [
         (F, 2 * F * PRESSED.P, 0.0, "dQ = 600000"),
-        (F, [1.0, -1e6], [[0.0], [1e8]], r"dQ = -1000000\.0: must be less than 2 f P in size, or the contact slides"),
+        (F, -1e6, 1e8, r"dQ = -1000000\.0: must be less than 2 f P in size, or the contact slides"),
         (F, math.nan, 0.0, "dQ = nan: must be finite"),
         (F, 0.0, [1.0, -math.inf], "dsigma = -inf: must be finite"),
         (math.inf, 0.0, 0.0, "f = inf: must be finite"),
@@ -158,6 +158,29 @@ def test_what_is_no_partial_slip_is_refused(f, dQ, dsigma, line):
     with pytest.raises(InputError, match=f"^{line}") as raised:
         stick_zone(PRESSED, f, dQ, dsigma)
     assert "\n" not in str(raised.value)
+
+
+def test_loads_of_an_array_that_slide_have_no_stick_zone():
+    """They are NaN under a mask; the others are as alone."""
+    limit = 2 * F * PRESSED.P
+    dQ, dsigma = np.array([0.5, -0.9, 1.0, -1.0, 7.0]) * limit, np.array([[0.0], [1e8]])
+    zones = stick_zone(PRESSED, F, dQ, dsigma)
+    assert zones.slides.tolist() == [[False, False, True, True, True]] * 2
+    for values in (zones.m, zones.n, zones.left, zones.right, zones.centre, zones.half_width):
+        assert (np.isnan(values) == zones.slides).all()
+    assert ((zones.s == 0) == zones.slides).all()
+    for column in (0, 1):
+        alone = stick_zone(PRESSED, F, dQ[column], 1e8)
+        assert isinstance(alone.m, float)
+        assert not alone.slides
+        assert (alone.m, alone.n, alone.s) == (zones.m[1, column], zones.n[1, column], zones.s[1, column])
+    assert stick_zone(PRESSED, F, dQ[2:3], 0.0).slides.all()
+
+
+@pytest.mark.parametrize("dQ", [1.0, -1.5])
+def test_a_loop_of_a_contact_that_slides_is_refused(dQ):
+    with pytest.raises(InputError, match=r"or the contact slides$"):
+        hysteresis(PRESSED, 1e-11, F, dQ * 2 * F * PRESSED.P, 0.0)
 
 
 @pytest.mark.parametrize("shape", [Hertz(), Punch(0.5)])

@@ -161,7 +161,7 @@ def test_a_budget_needs_elements_that_follow_an_accuracy(capsys, extra):
 
 
 def test_a_budget_below_the_least_price_is_refused_before_work_starts(monkeypatch, capsys):
-    monkeypatch.setattr("partialslip.cli.run.run", lambda *_, **__: pytest.fail("work has started"))
+    monkeypatch.setattr(partialslip, "run", lambda *_, **__: pytest.fail("work has started"))
     assert main(["run", "hertz-shear", "--budget", "0.01s"]) == 2
     printed = capsys.readouterr()
     assert printed.err.count("\n") == 1

@@ -61,8 +61,9 @@ class Ledger:
 
     Parameters
     ----------
-    path : Path
-        File, created with the first entry. An unfinished last line, left by a killed study, is removed.
+    path : Path, optional
+        File, created with the first entry. An unfinished last line, left by a killed study, is removed. Without a file
+        the entries last as long as the object.
 
     Raises
     ------
@@ -70,9 +71,11 @@ class Ledger:
         If the file is not a ledger, or cannot be read or written.
     """
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
+    def __init__(self, path: Path | None = None) -> None:
+        self._path = path
         self._entries: dict[str, dict[str, Any]] = {}
+        if path is None:
+            return
         try:
             text = path.read_bytes() if path.exists() else b""
             whole, _, torn = text.rpartition(b"\n")
@@ -89,6 +92,12 @@ class Ledger:
                     f"{path}: line {number}: must be an entry of a ledger, unchanged since it was written; remove the "
                     "line to solve the case again"
                 ) from None
+
+    @property
+    def path(self) -> Path:
+        """The file of a ledger that has one."""
+        assert self._path
+        return self._path
 
     def __contains__(self, key: str) -> bool:
         return key in self._entries
@@ -108,7 +117,7 @@ class Ledger:
         return sum(entry.get("made", {}).get("code") != source_checksum() for entry in self)
 
     def add(self, key: str, found: object) -> None:
-        """Append an entry under ``key`` and sync the file to disk.
+        """Add an entry under ``key``; a file is synced to disk.
 
         Parameters
         ----------
@@ -123,15 +132,20 @@ class Ledger:
         """
         made = msgspec.structs.replace(_origin(), at=datetime.now(UTC).isoformat(timespec="seconds"))
         entry = {"key": key, **msgspec.to_builtins(found), "made": msgspec.to_builtins(made)}
-        line = _sealed(json.dumps(entry, allow_nan=False)) + b"\n"
-        try:
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-            with open(self.path, "ab", buffering=0) as file:
-                file.write(line)
-                os.fsync(file.fileno())
-        except OSError as error:
-            raise InputError(f"{self.path}: cannot be written: {error.strerror}") from None
+        if self._path:
+            _append(self._path, _sealed(json.dumps(entry, allow_nan=False)) + b"\n")
         self._entries[key] = entry
+
+
+def _append(path: Path, line: bytes) -> None:
+    """Append ``line`` to the file and sync the file to disk."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with open(path, "ab", buffering=0) as file:
+            file.write(line)
+            os.fsync(file.fileno())
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
 
 
 _SEAL = b', "sum": "'

@@ -4,6 +4,7 @@ import itertools
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Collection, Iterator
@@ -11,6 +12,7 @@ from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from queue import Empty, SimpleQueue
+from types import ModuleType
 from typing import Any, NamedTuple
 
 from partialslip.batch.cluster import Cluster, dask
@@ -87,6 +89,21 @@ def _next(finished: "SimpleQueue[Future[Any]]", executor: Executor) -> "Future[A
             executor.check()  # type: ignore[attr-defined]
 
 
+class _Processes(ProcessPoolExecutor):
+    """Pool of processes that do not import the script of the parent process again.
+
+    A script can then use a pool without ``if __name__ == "__main__"``. The tasks are functions of modules.
+    """
+
+    def submit(self, do: Callable[..., Any], /, *arguments: Any, **named: Any) -> Future[Any]:
+        script = sys.modules["__main__"]
+        sys.modules["__main__"] = ModuleType("__main__")  # where processes, which start here, look for a script
+        try:
+            return super().submit(do, *arguments, **named)
+        finally:
+            sys.modules["__main__"] = script
+
+
 class _Here(Executor):
     """Executor in this process: ``submit`` does the work at once and raises its exceptions."""
 
@@ -122,7 +139,7 @@ def workers(cluster: str | None = None, processes: int | None = None) -> Iterato
     if cluster is None:
         context = multiprocessing.get_context("spawn")  # BLAS threads and gmsh do not survive a fork
         others = set(multiprocessing.active_children())
-        pool = ProcessPoolExecutor(processes or os.cpu_count(), context, _begin)
+        pool = _Processes(processes or os.cpu_count(), context, _begin)
         try:
             yield pool
         except BaseException:

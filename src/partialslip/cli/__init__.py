@@ -4,11 +4,10 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from partialslip import __version__
+import partialslip
 from partialslip.cli import completion, export, maps, page, run, score, study, verify
 from partialslip.cli.ending import ended
 from partialslip.errors import InputError
-from partialslip.scene.reading import shipped_scenes
 
 if TYPE_CHECKING:
     from _typeshed import SupportsWrite
@@ -26,6 +25,11 @@ class _Parser(argparse.ArgumentParser):
             "130  interrupted",
         ]
         self._end = {"examples": examples, "exit codes": codes}
+
+    @property
+    def version(self) -> str:
+        """Text of ``--version``; read when it is asked for, as reading takes long."""
+        return f"partialslip {partialslip.__version__}"
 
     def format_help(self) -> str:
         """Return the help with examples and exit codes, one per line."""
@@ -70,7 +74,7 @@ def parser() -> argparse.ArgumentParser:
         ],
         failure="a bar missed, or a case not solved",
     )
-    root.add_argument("--version", action="version", version=f"partialslip {__version__}")
+    root.add_argument("--version", action="version")  # of _Parser.version
     commands = root.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
 
     for command in (run, maps, page, verify, study, score, export):
@@ -88,7 +92,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _scenes(_: argparse.Namespace) -> int:
-    scenes = shipped_scenes()
+    scenes = partialslip.shipped_scenes()
     width = max(map(len, scenes))
     for name, title in scenes.items():
         print(f"{name:{width}}  {title}")

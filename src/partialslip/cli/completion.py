@@ -5,7 +5,7 @@ import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from partialslip.scene.reading import shipped_scenes
+import partialslip
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -51,7 +51,7 @@ def _completion(root: argparse.ArgumentParser, shell: str) -> int:
     for action in _actions(root):
         if action.metavar in files:
             action.complete = files[action.metavar]  # type: ignore[attr-defined]
-    preamble = _FUNCTIONS[shell].format(names=" ".join(shipped_scenes()))
+    preamble = _FUNCTIONS[shell].format(names=" ".join(partialslip.shipped_scenes()))
     sys.stdout.write(shtab.complete(root, shell, preamble=preamble))
     return 0
 

@@ -5,9 +5,9 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import partialslip
 from partialslip.cli.common import add_scene, check_folder, held, print_outdated, print_written
 from partialslip.errors import InputError
-from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -37,7 +37,7 @@ def _cost(options: argparse.Namespace) -> int:
     check_folder(options.out)
     if options.repeats < 1:
         raise InputError(f"--repeats {options.repeats}: must be >= 1")
-    scene = load_scene(options.scene, options.overrides)
+    scene = partialslip.load_scene(options.scene, options.overrides)
 
     from partialslip.batch.ledger import Ledger
     from partialslip.cli.consoles import messages, output, working

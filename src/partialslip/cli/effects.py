@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import partialslip
 from partialslip.cli.common import add_scene, check_folder, held, print_written
-from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -29,7 +29,7 @@ def add(topics: "Commands") -> None:
 
 def _effects(options: argparse.Namespace) -> int:
     check_folder(options.out)
-    scene = load_scene(options.scene, options.overrides)
+    scene = partialslip.load_scene(options.scene, options.overrides)
 
     from partialslip.cli.consoles import output, working
     from partialslip.output.files import write_texts

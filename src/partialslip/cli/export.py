@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import partialslip
 from partialslip.cli.common import print_written
 from partialslip.errors import InputError
-from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -68,7 +68,7 @@ def _export(options: argparse.Namespace) -> int:
     width = None if options.width is None else _number(options.width, "--width", 4, 1e6)
     ends = [_number(end, "--ends", -1.1, 1.1) for end in options.ends.split(",")] if options.ends else []
     fine = None if options.fine is None else _number(options.fine, "--fine", 1e-6, size)
-    scene = load_scene(options.scene)
+    scene = partialslip.load_scene(options.scene)
     write = export(
         scene,
         options.to,

@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import partialslip
 from partialslip.cli.common import check_folder, held, print_written
-from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -29,7 +29,7 @@ def add(commands: "Commands") -> None:
 
 def _map(options: argparse.Namespace) -> int:
     check_folder(options.out)
-    scene = None if options.scene is None else load_scene(options.scene)
+    scene = None if options.scene is None else partialslip.load_scene(options.scene)
     name = "map" if scene is None else f"{scene.name}-map"
 
     from partialslip.cli.consoles import output, working

@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import partialslip
 from partialslip.cli.common import check_folder, print_written
-from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -31,7 +31,7 @@ def add(commands: "Commands") -> None:
 
 def _page(options: argparse.Namespace) -> int:
     check_folder(options.out)
-    scene = load_scene(options.scene)
+    scene = partialslip.load_scene(options.scene)
 
     from partialslip.cli.consoles import output
     from partialslip.live import live_page

@@ -6,16 +6,15 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import partialslip
 from partialslip.allowance import Allowance
 from partialslip.cli.common import add_scene, check_folder, held, out_folder, print_outcome
 from partialslip.errors import InputError
-from partialslip.judge.reference import METHODS
-from partialslip.result.state import State, load_state
-from partialslip.run import Run, default_methods, run
-from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
+    from partialslip.result.state import State
+    from partialslip.run import Run
     from partialslip.scene import Scene
     from partialslip.study.cost.prices import Price
 
@@ -57,6 +56,8 @@ def add(commands: "Commands") -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
+    from partialslip.judge.reference import METHODS
+
     methods = None if options.methods is None else [method.strip() for method in options.methods.split(",")]
     for method in methods or []:
         if method not in METHODS:
@@ -66,8 +67,8 @@ def _run(options: argparse.Namespace) -> int:
         raise InputError("--save '': must name a file")
     if options.fields and methods and "fem" not in methods:
         raise InputError("--fields: needs the method fem: add fem to --with")
-    scene = load_scene(options.scene, options.overrides)
-    start = load_state(options.start) if options.start is not None else None
+    scene = partialslip.load_scene(options.scene, options.overrides)
+    start = partialslip.load_state(options.start) if options.start is not None else None
     budget = _budget(options, scene, methods)
 
     from partialslip.cli.consoles import messages, working
@@ -77,12 +78,14 @@ def _run(options: argparse.Namespace) -> int:
     price = _price(options, scene, methods, budget)
     priced_at, allowance = time.process_time(), None
     if price:
-        scene = load_scene(options.scene, [*price.overrides, *options.overrides])
+        scene = partialslip.load_scene(options.scene, [*price.overrides, *options.overrides])
         allowance = Allowance(budget - price.closing_s - price.start_s) if budget else None
         messages().print(f"{price}, predicted", soft_wrap=True, markup=False)
     folder = out_folder(options, scene.name)
     with held(folder), working(scene.name) as tell:
-        outcome = run(scene, methods, subsurface=options.fields, progress=tell, start=start, allowance=allowance)
+        outcome = partialslip.run(
+            scene, methods, subsurface=options.fields, progress=tell, start=start, allowance=allowance
+        )
         files = []
         if options.save is not None:
             save = Path(options.save)
@@ -117,6 +120,7 @@ def _price(
     if options.accuracy is None and budget is None:
         return None
     import partialslip_fem.model  # noqa: F401 - imports count as start
+    from partialslip.run import default_methods
     from partialslip.study.cost.prices import load_prices
 
     prices, chosen = load_prices(), tuple(methods or default_methods(scene))
@@ -129,11 +133,11 @@ def _price(
         raise InputError(
             f"--accuracy {options.accuracy!r}: must be a number, a fraction of a, for example 1e-4"
         ) from None
-    check = load_scene(options.scene, [*options.overrides, f"fem.accuracy={accuracy!r}"])
+    check = partialslip.load_scene(options.scene, [*options.overrides, f"fem.accuracy={accuracy!r}"])
     return prices.cheapest(check, accuracy, chosen, start)
 
 
-def _paid(price: "Price", outcome: Run, priced_at: float) -> str:
+def _paid(price: "Price", outcome: "Run", priced_at: float) -> str:
     """Return a line with the predicted and the actual CPU seconds, meshing processes included."""
     taken = (
         price.start_s
@@ -147,7 +151,7 @@ def _paid(price: "Price", outcome: Run, priced_at: float) -> str:
     return f"{price}, predicted; {taken:.2g} CPU s, actual{reached}"
 
 
-def _state(outcome: Run) -> State:
+def _state(outcome: "Run") -> "State":
     """Return the state at the end of the load path, of fem, else of march."""
     for name in ("fem", "march"):
         if name in outcome.results and (state := outcome.results[name].state):

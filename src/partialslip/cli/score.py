@@ -6,13 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+import partialslip
 from partialslip.cli.common import add_scene, check_folder, held, out_folder, print_outcome
 from partialslip.errors import InputError
-from partialslip.judge.reference import METHODS
-from partialslip.scene.reading import load_scene
-from partialslip.score import score
-from partialslip.score.csvfile import template
-from partialslip.score.read import check
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -50,7 +46,7 @@ def add(commands: "Commands") -> None:
     scores.add_argument("--at", metavar="I,J",
                         help="CalculiX: numbers, from 1, of the contact results at load points 1 and 2 (default: ends "
                         "of the last steps)")  # fmt: skip
-    scores.add_argument("--with", dest="reference", metavar="METHOD", choices=METHODS,
+    scores.add_argument("--with", dest="reference", metavar="METHOD", choices=["exact", "march", "fem"],
                         help="compare with exact, march or fem (default: the first that solves the scene)")  # fmt: skip
     scores.add_argument("--bar", metavar="FRACTION",
                         help="largest allowed error of a, m and n, as a fraction of a (p: 10 times, q: 15 times); "
@@ -71,11 +67,12 @@ def _score(options: argparse.Namespace) -> int:
         raise InputError(f"--factors {options.factors}: must be finite and not zero")
     if options.order not in ("1", "2"):
         raise InputError(f"--order {options.order}: must be 1 or 2")
-    scene = load_scene(options.scene, options.overrides)
+    scene = partialslip.load_scene(options.scene, options.overrides)
     if options.template:
         if options.file is not None:
             raise InputError(f"--template {options.file}: must go without a file: remove {options.file}")
         from partialslip.halfplane import contact
+        from partialslip.score.csvfile import template
 
         sys.stdout.write(template(scene, contact(scene).a))
         return 0
@@ -84,12 +81,13 @@ def _score(options: argparse.Namespace) -> int:
 
     from partialslip.cli.consoles import working
     from partialslip.report import write_run
+    from partialslip.score.read import check
 
     file = Path(options.file)
     check(file)  # before a folder is created
     folder = out_folder(options, f"{scene.name}-{file.stem}")
     with held(folder), working(scene.name) as tell:
-        outcome = score(
+        outcome = partialslip.score(
             scene,
             file,
             bar=bar,

@@ -5,9 +5,9 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import partialslip
 from partialslip.cli.common import add_scene, check_folder, held, print_outdated, print_written
 from partialslip.errors import InputError
-from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -52,7 +52,7 @@ def _size(options: argparse.Namespace) -> int:
         raise InputError(f"--over: given {len(options.over)} times: must be at most 2")
     from partialslip.study.size.axes import axis
 
-    scene = load_scene(options.scene, options.overrides)
+    scene = partialslip.load_scene(options.scene, options.overrides)
     folder = Path(options.out) if options.out else Path("results") / f"{scene.name}-size"
     axes = [axis(text) for text in options.over]
     with held(folder):

@@ -19,3 +19,21 @@ from partialslip.halfplane.loop import hysteresis as hysteresis
 from partialslip.halfplane.method import solve as solve
 from partialslip.halfplane.stress import Stress as Stress
 from partialslip.result import StickZone as StickZone
+
+__all__ = [
+    "Contact",
+    "Loop",
+    "StickZone",
+    "Stress",
+    "adhered",
+    "contact",
+    "contact_of",
+    "hysteresis",
+    "solve",
+    "stick_zone",
+]
+
+
+def __dir__() -> list[str]:
+    """The public names."""
+    return __all__

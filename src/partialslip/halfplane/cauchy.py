@@ -87,11 +87,11 @@ class Cauchy:
             far, v_z = beyond - apart[..., None], np.sqrt(way * apart)
             near = _ellipse((v_z - middle) / half) < _NEAR
             far[near] = np.inf
-            result[part] = (1 / far).reshape(len(part), -1) @ of_nodes + (1 / (ends - z[part, None])) @ of_ends
+            result[part] = (1 / far).reshape(len(part), v.size) @ of_nodes + (1 / (ends - z[part, None])) @ of_ends
             point, panel = np.nonzero(near)
             np.add.at(result, part[point], self._near(z[part][point], v_z[near], panel).T)
         result /= np.pi
-        return result.T.reshape(2, -1, len(z))
+        return result.T.reshape(2, len(edges), len(z))
 
     def _near(self, z: Complex, v_z: Complex, panel: npt.NDArray[np.int64]) -> Complex:
         """Integrals and derivatives over near panels, one per pair of point and panel, (2 k, pairs).

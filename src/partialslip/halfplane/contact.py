@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import brentq
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
@@ -17,13 +16,14 @@ from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zones
 from partialslip.halfplane.uneven import press
 from partialslip.result import StickZone
+from partialslip.result.points import AtPoints
 from partialslip.scene import Hertz as HertzProfile
 from partialslip.scene import Scene
 
 _HARDLY = 1e-13  # of the flat's half-width: rounding hides how far the contact extends beyond the flat by less
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Contact:
     """Two half-planes pressed together: contact half-width ``a`` (m), normal force ``P`` (N/m), ``shape``, the scaled
     pressure (:mod:`partialslip.halfplane.shape`), middle of the contact ``centre`` (m), and ``tilt`` (rad), the angle
@@ -35,14 +35,19 @@ class Contact:
     centre: float = 0.0
     tilt: float = 0.0
 
+    def __repr__(self) -> str:
+        shape = type(self.shape).__name__
+        return f"Contact: a = {self.a:.7g} m, P = {self.P:.7g} N/m, p0 = {self.p0:.7g} Pa, pressure {shape}"
+
     @property
     def p0(self) -> float:
         """2 P/(pi a), Pa; for Hertz the largest pressure."""
         return 2 * self.P / (math.pi * self.a)
 
-    def pressure(self, x: Array) -> Array:
-        """Pressure at ``x`` (m), Pa."""
-        return self.p0 * self.shape.pressure(self.scaled(x))
+    def pressure(self, x: npt.ArrayLike) -> Array:
+        """Pressure, Pa, at ``x``, m: a number, a list or an array of any shape."""
+        found: Array = AtPoints(lambda points: self.p0 * self.shape.pressure(self.scaled(points)))(x)
+        return found
 
     def scaled(self, x: npt.ArrayLike) -> Array:
         """Distance of ``x`` (m) from the middle of the contact, as a fraction of a."""
@@ -95,6 +100,8 @@ def contact(scene: Scene) -> Contact:
     high = math.log(reach - inner) if reach < math.inf else scale + 120.0
     if excess(high) < 0:
         raise InputError(f"load.P = {P:g}: must keep the contact within profile.x, which ends at {reach:g} m")
+    from scipy.optimize import brentq  # takes long to import
+
     beyond = math.exp(brentq(excess, low, high, xtol=1e-15, rtol=8.9e-16))
     a = inner + beyond
     within = at < a
@@ -134,6 +141,9 @@ def contact_of(
 def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: npt.ArrayLike) -> StickZone[Array]:
     """Permanent stick zones of the steady state (paper, eqs. (17) and (18)), m; arrays of the broadcast shape.
 
+    Where the loads of an array make the contact slide, |dQ| >= 2 f P, the stick zone is NaN, and
+    :attr:`StickZone.slides` is true. Numbers give numbers; a single pair of loads that slides is an error.
+
     Parameters
     ----------
     contact : Contact
@@ -145,7 +155,7 @@ def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: np
     Raises
     ------
     InputError
-        If f is not positive, a number is not finite, or |dQ| >= 2 f P (the contact slides).
+        If f is not positive, a number is not finite, or f, dQ and dsigma are numbers and the contact slides.
     """
     given = {"f": f, "dQ": dQ, "dsigma": dsigma}
     arrays = np.broadcast_arrays(*(np.asarray(values, float) for values in given.values()))
@@ -156,9 +166,10 @@ def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: np
     if not (f_ > 0).all():
         raise InputError(f"f = {f_[~(f_ > 0)].flat[0]}: must be > 0")
     Qf, sf = np.abs(dQ_) / (2 * f_ * contact.P), np.abs(dsigma_) / (f_ * contact.p0)
-    if (slides := Qf >= 1).any():
-        raise InputError(f"dQ = {dQ_[slides].flat[0]}: must be less than 2 f P in size, or the contact slides")
-    mirror = np.where((dQ_ < 0) == (dsigma_ < 0), 1, -1)
+    slides = Qf >= 1
+    if slides.ndim == 0 and slides:
+        raise InputError(f"dQ = {dQ_}: must be less than 2 f P in size, or the contact slides")
+    Qf, mirror = np.where(slides, 0.0, Qf), np.where((dQ_ < 0) == (dsigma_ < 0), 1, -1)
     if contact.shape.even:
         centre, half_width, s = stick_zones(Qf, sf, contact.shape)
     else:
@@ -166,4 +177,5 @@ def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: np
         for way, shape in ((1, contact.shape), (-1, contact.shape.mirrored)):
             here = mirror == way
             centre[here], half_width[here], s[here] = stick_zones(Qf[here], sf[here], shape)
-    return StickZone(contact.centre + mirror * centre * contact.a, half_width * contact.a, s)
+    a = np.where(slides, np.nan, contact.a)
+    return StickZone((contact.centre + mirror * centre * a)[()], (half_width * a)[()], np.where(slides, 0, s)[()])

@@ -2,7 +2,6 @@
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import ellipe, ellipkm1, elliprj
 
 from partialslip.arrays import Array
 from partialslip.halfplane.shape import Conditions, Shape
@@ -61,6 +60,8 @@ class Hertz(Shape):
 
 def _opposite(edge: Array, c: Array) -> Conditions:
     """Loads for large tension, eqs. (24)-(26); the modulus chi of K and E has 1 - chi^2 = 4 c/((1+m)(1+n))."""
+    from scipy.special import ellipe, ellipkm1, elliprj  # takes long to import
+
     centre, from_left = edge + c - 1, edge + 2 * c  # 1 + n
     square = (2 - edge) * from_left  # (1+m)(1+n)
     root, complement = np.sqrt(square), 4 * c / square

@@ -7,6 +7,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact, stick_zone
+from partialslip.shown import short
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
@@ -24,6 +25,9 @@ class Loop(NamedTuple):
     sigma: Array
     displacement: Array
     moment: Array
+
+    def __repr__(self) -> str:
+        return short(self)
 
 
 def hysteresis(contact: Contact, A: float, f: float, dQ: float, dsigma: float, count: int = 51) -> Loop:
@@ -53,6 +57,7 @@ def hysteresis(contact: Contact, A: float, f: float, dQ: float, dsigma: float, c
     """
     if count < 2:
         raise InputError(f"count = {count}: must be >= 2")
+    stick_zone(contact, f, dQ, dsigma)  # refuses loads under which the contact slides
     share = np.linspace(0, 1, count)
     # closer points near the end, where the stick zone may shrink fast
     ends = 1 - (1 - share) ** 2

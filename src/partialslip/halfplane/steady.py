@@ -5,7 +5,6 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize.elementwise import find_root
 
 from partialslip.arrays import Array
 from partialslip.halfplane.hertz import Hertz
@@ -146,6 +145,8 @@ def _last(shape: Shape) -> int:
 
 def _touching(Qf: Array, shape: Shape) -> Array:
     """Half-width of the stick zone that touches the contact's end, at the transition to large tension."""
+    if isinstance(shape, Hertz):
+        return np.maximum(np.sqrt(1 - Qf), NARROWEST)  # paper, eq. (22)
     low = math.log(NARROWEST) + 0 * Qf
     return np.exp(_root(lambda log_c, Qf: _at(shape, 0.0, np.exp(log_c)).Qf - Qf, low, 0 * Qf, Qf))
 
@@ -157,6 +158,8 @@ def _at(shape: Shape, edge: Array | float, c: Array) -> Conditions:
 
 def _root(function: Callable[..., Array], low: Array, high: Array, *args: Array) -> Array:
     """Roots of decreasing functions; an end of the bracket if the function does not change sign within it."""
+    from scipy.optimize.elementwise import find_root  # takes long to import
+
     with np.errstate(invalid="ignore"):  # find_root divides 0 by 0 in intervals of rounding size
         found = find_root(function, (low, high), args=args)
     result: Array = np.where(found.success, found.x, np.where(found.f_bracket[1] >= 0, high, low))

@@ -3,12 +3,14 @@
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.halfplane.cauchy import Cauchy
 from partialslip.halfplane.contact import Contact, stick_zone
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
+from partialslip.result.points import AtPoints
 
 _SURFACE = 1e-30  # depth of points on the surface, as a fraction of a
 _APART = 1e-12  # distance below which breaks are merged, as a fraction of a
@@ -38,19 +40,23 @@ class Stress:
         self.contact, self.f, self.dQ, self.dsigma = contact, f, dQ, dsigma
         self._zone = stick_zone(contact, f, dQ, dsigma)
 
-    def surface(self, x: Array) -> Array:
-        """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body (lower, upper) and load point.
+    def surface(self, x: npt.ArrayLike) -> Array:
+        """sigma_xx (Pa) along the surfaces at ``x``, m: (2, 2, ...), by body (lower, upper), load point and the shape
+        of ``x``.
 
         Continuous; usually largest at the trailing edge of the contact, where the slope is infinite.
         """
-        x = np.asarray(x, float)
-        return np.stack([self._at(x, 0 * x, side)[:, 0] for side in (np.ones_like(x), -np.ones_like(x))])
+        found: Array = AtPoints(self._on_surfaces)(x)
+        return found
 
-    def inside(self, x: Array, y: Array) -> Array:
-        """sigma_xx, sigma_yy and sigma_xy (Pa) at the points (``x``, ``y``), (k,) each, m: (2, 3, k), by load point and
-        component. Points with y <= 0 are in the lower body."""
-        x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-        return self._at(x, np.abs(y), np.where(y <= 0, 1.0, -1.0))
+    def inside(self, x: npt.ArrayLike, y: npt.ArrayLike) -> Array:
+        """sigma_xx, sigma_yy and sigma_xy (Pa) at the points (``x``, ``y``), m: (2, 3, ...), by load point, component
+        and the common shape of ``x`` and ``y``. Points with y <= 0 are in the lower body."""
+        found: Array = AtPoints(lambda x, y: self._at(x, np.abs(y), np.where(y <= 0, 1.0, -1.0)))(x, y)
+        return found
+
+    def _on_surfaces(self, x: Array) -> Array:
+        return np.stack([self._at(x, 0 * x, side)[:, 0] for side in (np.ones_like(x), -np.ones_like(x))])
 
     def _at(self, x: Array, depth: Array, side: Array) -> Array:
         """Stresses (2, 3, k), Pa, in the lower (``side`` = 1) and the upper body (-1).

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from scipy.optimize import brentq
 
 from partialslip.arrays import Array
 from partialslip.halfplane.shape import Shape
@@ -50,6 +49,8 @@ def mean_load_bound(zone: StickZone[float], shape: Shape) -> float:
         if angle in (0.0, math.pi):
             return 1.0 - 2.0 * (angle > 0)
         return float(half_range(np.array([centre + c * math.cos(angle)]), zone, shape)[0])
+
+    from scipy.optimize import brentq  # takes long to import
 
     turn = brentq(sign, 0.0, math.pi)
     return (room - 2 * _resultant(turn, slips, zone) + _resultant(math.pi, slips, zone)) * 2 / np.pi

@@ -18,7 +18,6 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import brentq
 
 from partialslip.arrays import Array, Indices
 from partialslip.errors import InputError
@@ -202,8 +201,10 @@ class _Search:
     def bracketed(self, scale: float) -> _Ends:
         """Ends by nested bracketing: at a given right end the force grows with the left distance; along the contacts
         with the right force, moment and tilt grow with the right end."""
-        low, high = self.of.reach
+        from scipy.optimize import brentq  # imports slowly, and Newton's method hardly ever fails
+
         far = 1e8 * max(scale, self.high - self.low)
+        low, high = self.of.reach
         most = np.arcsinh(np.minimum([self.low - low, high - self.high], far) / self.tiny)
         span = self.high - self.low
 

@@ -12,12 +12,13 @@ from partialslip.judge.measures import Measure, measures
 from partialslip.judge.verdict import NAN, NO_BAR, Bar, Outcome, Verdict, conditions, judged, overall
 from partialslip.result import Result
 from partialslip.scene import Scene
+from partialslip.shown import Notebook
 
 _TENSIONS = {"small tension", "large tension"}
 
 
-@dataclass(frozen=True)
-class Comparison:
+@dataclass(frozen=True, repr=False)
+class Comparison(Notebook):
     """Verdicts on a result against a reference.
 
     Parameters
@@ -57,6 +58,14 @@ class Comparison:
     q_nodal: float | None
     p_nodal_max: float
     q_nodal_max: float | None
+
+    def __repr__(self) -> str:
+        """Outcome and main errors, in a line."""
+        lengths, norms = (
+            ", ".join(f"{key} {error:.1e}" for key in keys if (error := self.errors.get(key)) is not None)
+            for keys in (("a", "m", "n"), ("p", "q"))
+        )
+        return f"Comparison: {self.outcome}; errors in a: {lengths}; relative L2: {norms}"
 
     @property
     def outcome(self) -> Outcome:
@@ -108,11 +117,6 @@ class Comparison:
     def q(self) -> float | None:
         """Relative L2 error of the cell averages of q = (q2 - q1)/2."""
         return self.errors["q"]
-
-    def _repr_html_(self) -> str:
-        from partialslip.report.notebook import html
-
-        return html(self)
 
 
 def compare(

@@ -4,10 +4,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from partialslip.arrays import Array, Indices
+from partialslip.result.points import at_points
+from partialslip.shown import Short
 
 
-@dataclass(frozen=True)
-class Slip:
+@dataclass(frozen=True, repr=False)
+class Slip(Short):
     """Slip over half a cycle.
 
     Parameters
@@ -26,8 +28,8 @@ class Slip:
     dissipated: float
 
 
-@dataclass(frozen=True)
-class SurfaceStress:
+@dataclass(frozen=True, repr=False)
+class SurfaceStress(Short):
     """Direct stress sigma_xx along the surfaces of the bodies, bulk tension included.
 
     Parameters
@@ -38,12 +40,15 @@ class SurfaceStress:
         sigma_xx by body (lower, upper) and load point, Pa. The lower body carries the bulk tension and exerts q on the
         upper body.
     at : callable
-        ``at(x) -> (2, 2, k)``: sigma_xx at any points ``x``, Pa.
+        ``at(x) -> (2, 2, ...)``: sigma_xx, Pa, at points ``x``, m: a number, a list or an array of any shape.
     """
 
     x: Array
     sigma: Array
     at: Callable[[Array], Array]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "at", at_points(self.at))
 
     @property
     def largest(self) -> tuple[float, float]:
@@ -52,8 +57,8 @@ class SurfaceStress:
         return float(self.x[highest.argmax()]), float(highest.max())
 
 
-@dataclass(frozen=True)
-class DeformedBody:
+@dataclass(frozen=True, repr=False)
+class DeformedBody(Short):
     """Mesh of a body with displacements and stresses.
 
     Parameters

@@ -8,12 +8,13 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.result.cost import Cost
 from partialslip.result.result import Regime, Result
+from partialslip.shown import Short
 
 Number = float | None  # None: NaN or infinite, which JSON cannot hold
 Numbers = tuple[Number, ...]
 
 
-class SlipRecord(msgspec.Struct, frozen=True):
+class SlipRecord(Short, msgspec.Struct, frozen=True):
     """Record of a :class:`partialslip.Slip`: points ``x`` (m), ``slip`` (m), work ``dissipated`` in a cycle (J/m)."""
 
     x: Numbers
@@ -21,7 +22,7 @@ class SlipRecord(msgspec.Struct, frozen=True):
     dissipated: Number
 
 
-class SurfaceRecord(msgspec.Struct, frozen=True):
+class SurfaceRecord(Short, msgspec.Struct, frozen=True):
     """Record of a :class:`partialslip.result.SurfaceStress`: ``sigma_xx`` (Pa) by body, load point and point ``x``
     (m)."""
 
@@ -29,7 +30,7 @@ class SurfaceRecord(msgspec.Struct, frozen=True):
     sigma_xx: tuple[tuple[Numbers, Numbers], tuple[Numbers, Numbers]]
 
 
-class TractionRecord(msgspec.Struct, frozen=True, omit_defaults=True):
+class TractionRecord(Short, msgspec.Struct, frozen=True, omit_defaults=True):
     """Columns of a :class:`partialslip.Traction`: ``x`` (m) and ``p``, ``dq``, ``q1``, ``q2``, ``p1`` (Pa).
 
     ``q1`` and ``q2`` are None where the method does not determine them, ``p1`` where the pressure is the same at both
@@ -44,7 +45,7 @@ class TractionRecord(msgspec.Struct, frozen=True, omit_defaults=True):
     p1: Numbers | None = None
 
 
-class ResultRecord(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """A :class:`partialslip.Result` as plain data, without bodies, state and fields at other points.
 
     Fields have the names, units and meaning of the result: ``a``, ``p0``, ``regime``, ``m``, ``n``,

@@ -8,12 +8,12 @@ from partialslip.arrays import Array
 from partialslip.frame import frame
 from partialslip.result.cost import Cost
 from partialslip.result.fields import DeformedBody, Slip, SurfaceStress
+from partialslip.result.points import at_points
 from partialslip.result.state import State
 from partialslip.result.traction import Traction
+from partialslip.shown import Drawn
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from partialslip.frame import DataFrame
 
 FRICTIONLESS = "f = 0 and Q = 0: nothing sticks, and without shear force the contact stays where it is"
@@ -23,8 +23,8 @@ Regime = Literal[
 ]
 
 
-@dataclass(frozen=True)
-class Result:
+@dataclass(frozen=True, repr=False)
+class Result(Drawn):
     """Solution of a scene by one method.
 
     Parameters
@@ -65,8 +65,8 @@ class Result:
     surface : SurfaceStress or None
         sigma_xx along the surfaces, if asked for and known (exact method: fully reversed loads without sliding).
     stress_at : callable or None
-        ``stress_at(x, y) -> (2, 3, k)``: stresses by load point and component xx, yy, xy, Pa, at points (k,); the
-        lower body is y <= 0. Known where ``surface`` is.
+        ``stress_at(x, y) -> (2, 3, ...)``: stresses by load point and component xx, yy, xy, Pa, at points of any
+        shape, m; the lower body is y <= 0. Known where ``surface`` is.
     contact_ends : ((float, float), (float, float)) or None
         Left and right end of the contact at load points 1 and 2, m; None stands for -a and a at both.
     shares : mapping of str to mapping
@@ -102,6 +102,16 @@ class Result:
     shares: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     undetermined: Mapping[str, str] = field(default_factory=dict)
     path_dependent: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "stress_at", at_points(self.stress_at))
+
+    def __repr__(self) -> str:
+        """Method, regime, a, m, n and p0, in a line."""
+        ends = {"m": self.m, "n": self.n}
+        found = ", ".join(f"{key} = {end / self.a:.7g} a" for key, end in ends.items() if end is not None)
+        stick = found or "no stick zone"
+        return f"Result of {self.method}: {self.regime}; a = {self.a:.7g} m, {stick}; p0 = {self.p0:.7g} Pa"
 
     @property
     def ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -143,14 +153,3 @@ class Result:
             If pandas is not installed.
         """
         return frame(self.columns)
-
-    def plot(self, axes: "Axes | None" = None) -> "Axes":
-        """Draw p/p0 and q/p0, q = (q2 - q1)/2, over x/a on matplotlib ``axes`` (default: new axes); return the axes."""
-        from partialslip.report.notebook import plot
-
-        return plot(self, axes)
-
-    def _repr_html_(self) -> str:
-        from partialslip.report.notebook import html
-
-        return html(self)

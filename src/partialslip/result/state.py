@@ -3,14 +3,18 @@
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.inputfile import check_regular
 from partialslip.scene import Scene
+from partialslip.shown import Short
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 _ARRAYS = ("loads", "cells", "p", "q")
 _LARGEST = 100_000_000  # bytes of a file, and of the arrays in it
@@ -18,8 +22,8 @@ _HELD = 1e-6  # tolerance of equilibrium, relative to P
 _SAME = 1e-9  # relative difference of P and A allowed as rounding
 
 
-@dataclass(frozen=True)
-class State:
+@dataclass(frozen=True, repr=False)
+class State(Short):
     """Loads and tractions at one moment.
 
     Under a constant normal force, the shear traction holds the whole effect of earlier loads.
@@ -38,8 +42,8 @@ class State:
     A: float
     Q: float
     sigma: float
-    p: PPoly
-    q: PPoly
+    p: "PPoly"
+    q: "PPoly"
 
     def check(self, scene: Scene) -> None:
         """Raise InputError if ``scene`` cannot continue from this state: P or the materials differ."""
@@ -75,6 +79,8 @@ def load_state(path: str | Path) -> State:
     loads, cells, p, q = (arrays[name] for name in _ARRAYS)
     if not _sound(loads, cells, p, q):
         raise InputError(f"{path}: not a state that partialslip has saved")
+    from scipy.interpolate import PPoly  # takes long to import
+
     P, A, Q, sigma = loads.tolist()
     state = State(P, A, Q, sigma, PPoly(p, cells), PPoly(q, cells))
     held = [float(traction.integrate(cells[0], cells[-1])) for traction in (state.p, state.q)]

@@ -1,8 +1,11 @@
 """The stick zone, of one pair of loads or of many."""
 
-from typing import Generic, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
-from partialslip.arrays import Array
+import numpy as np
+
+from partialslip.arrays import Array, Mask
+from partialslip.shown import span
 
 Number = TypeVar("Number", float, Array)
 
@@ -11,12 +14,26 @@ class StickZone(NamedTuple, Generic[Number]):
     """Stick zone [-m, n], or arrays of stick zones of one shape. All lengths are in m, or all are fractions of a.
 
     ``centre`` is (n - m)/2. ``half_width`` is (n + m)/2, which keeps its digits in a narrow zone. ``s`` is +1 where
-    both ends slip the same way (small tension) and -1 where they slip opposite ways (large tension).
+    both ends slip the same way (small tension) and -1 where they slip opposite ways (large tension). Where the contact
+    slides as a whole, ``centre`` and ``half_width`` are NaN and ``s`` is 0; see :attr:`slides`.
     """
 
     centre: Number
     half_width: Number
     s: Number
+
+    def __repr__(self: "StickZone[Any]") -> str:
+        """m, n and s; the ranges of arrays."""
+        shape = np.shape(self.half_width)
+        m, n, s = (span(np.asarray(values)) for values in (self.m, self.n, self.s))
+        count = f", shape {shape}, {np.count_nonzero(self.slides)} sliding" if shape else ""
+        return f"StickZone(m = {m}, n = {n}, s = {s}{count})"
+
+    @property
+    def slides(self) -> Mask:
+        """Whether the contact slides as a whole and there is no stick zone; an array of the zones' shape."""
+        result: Mask = np.isnan(self.half_width)
+        return result
 
     @property
     def left(self) -> Number:

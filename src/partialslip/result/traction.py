@@ -6,11 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.arrays import Array
+from partialslip.result.points import at_points
+from partialslip.shown import Short
 
 
-@dataclass(frozen=True)
-class Traction:
+@dataclass(frozen=True, repr=False)
+class Traction(Short):
     """Tractions over the contact line.
+
+    The functions take a number, a list or an array of any shape, and return values of that shape.
 
     Parameters
     ----------
@@ -47,6 +51,10 @@ class Traction:
     levels_at: Callable[[Array], tuple[Array, Array]] | None = None
     p1: Array | None = None
     pressures_at: Callable[[Array], tuple[Array, Array]] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("at", "levels_at", "pressures_at"):
+            object.__setattr__(self, name, at_points(getattr(self, name)))
 
     @property
     def p_max(self) -> float:

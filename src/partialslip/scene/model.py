@@ -2,10 +2,12 @@
 towards -a."""
 
 import math
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any
 
 import msgspec
 import numpy as np
+import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
@@ -16,6 +18,7 @@ from partialslip.scene.materials import Material
 from partialslip.scene.profiles import Hertz, Profile
 from partialslip.scene.settings import Effects, Fem
 from partialslip.scene.table import Table
+from partialslip.shown import Notebook, short
 
 
 class Friction(Table, frozen=True, kw_only=True):
@@ -24,11 +27,12 @@ class Friction(Table, frozen=True, kw_only=True):
     f: Annotated[float, msgspec.Meta(ge=0, le=1000)]
 
 
-class Scene(Table, frozen=True, kw_only=True):
+class Scene(Notebook, Table, frozen=True, kw_only=True):
     """Contents of a scene file; docs/reference/scene.md lists the keys.
 
     :func:`partialslip.load_scene` reads a scene from a file, :func:`partialslip.parse_scene` makes one from nested
-    tables. Both validate types and ranges; the constructor does not.
+    tables. The constructor takes the tables of :mod:`partialslip.scene`, or mappings. All of them validate types and
+    ranges and raise InputError with the same one line. A scene is immutable: :meth:`replace` makes a changed one.
 
     ``name`` (letters, digits, ".", "_" and "-"), ``title``, and the tables ``material``, ``profile``, ``load``,
     ``friction``, ``bodies``, ``fem`` and ``effects``.
@@ -95,10 +99,35 @@ class Scene(Table, frozen=True, kw_only=True):
             least = f"{edge / STEEPEST:g} m, as the face recedes by {edge:g} m"
             raise InputError(f"{name}.height = {height}: must be > {least}")
 
-    def _repr_html_(self) -> str:
-        from partialslip.report.notebook import html
+    def __repr__(self) -> str:
+        """Name and title, then a line for each table that is not the default."""
+        title = f"{self.name}: {self.title}" if self.title else self.name
+        entries = (getattr(self, key) for key in self.__struct_fields__)
+        tables = (each for each in entries if isinstance(each, Table) and each not in (Bodies(), Fem(), Effects()))
+        return "\n  ".join([f"Scene {title}", *map(short, tables)])
 
-        return html(self)
+    def replace(self, changes: Mapping[str, Any] | None = None, /, **tables: Any) -> "Scene":
+        """Return a changed scene, validated like a scene file.
+
+        ``scene.replace(load={"Q": [-2e4, 2e4]}, friction={"f": 0.4}, name="mine")`` changes keys of tables and keeps
+        the other keys. None unsets a key: ``load={"P": None, "a": 2e-4}``. A profile of another kind replaces the
+        profile. A table such as :class:`partialslip.scene.Load` replaces the whole table.
+
+        Parameters
+        ----------
+        changes : mapping, optional
+            Values by dotted key, ``{"friction.f": 0.4}``. ``*`` stands for any one table: ``bodies.*.width``.
+        **tables
+            Keys and values by table; values of ``name`` and ``title``.
+
+        Raises
+        ------
+        InputError
+            With the same line as for a scene file.
+        """
+        from partialslip.scene.reading import changed
+
+        return changed(self, {**(changes or {}), **tables})
 
     @property
     def mirrored(self) -> bool:
@@ -125,8 +154,9 @@ class Scene(Table, frozen=True, kw_only=True):
         """Whether a mesh file is given for a body."""
         return any(body.mesh is not None for _, body in self.bodies)
 
-    def gap_at(self, x: Array) -> Array:
-        """Gap before loading at ``x`` (m), m: the profile's gap, or the true distance of a pad's face."""
+    def gap_at(self, x: npt.ArrayLike) -> Array:
+        """Gap before loading at ``x`` (m, of any shape), m: the profile's gap, or the true distance of a pad's face."""
+        x = np.asarray(x, float)
         return self.profile.face_at(x) if self.bodies.pad else self.profile.gap_at(x)
 
     @property

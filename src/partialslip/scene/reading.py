@@ -2,15 +2,15 @@
 
 import difflib
 import math
+import os
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from importlib import resources
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, TypeVar, get_args
 
 import msgspec
-import numpy as np
 
 from partialslip.errors import InputError
 from partialslip.inputfile import read_text
@@ -22,6 +22,7 @@ _BITS = 8192  # largest whole numbers shown in digits
 _DEEPEST = 10  # nested tables and arrays; a scene has three levels
 # A dotted key of more than 20 parts: the time of tomllib grows at least like the square of their number.
 _DEEP_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){20}""", re.ASCII)
+_Made = TypeVar("_Made", bound=Table)
 _KINDS = {
     "object": "a table",
     "array": "an array",
@@ -68,8 +69,9 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
 
 
 def parse_scene(data: Mapping[str, Any]) -> Scene:
-    """Make a scene from nested tables ``data``, as in a scene file or in ``results.json``. NumPy numbers and arrays are
-    accepted.
+    """Make a scene from nested tables ``data``, as in a scene file or in ``results.json``.
+
+    Values may be NumPy numbers and arrays, paths, and tables such as :class:`partialslip.scene.Load`.
 
     Raises
     ------
@@ -78,18 +80,63 @@ def parse_scene(data: Mapping[str, Any]) -> Scene:
     """
     if not isinstance(data, Mapping):
         raise InputError(f"scene = {_shown(data)}: must be a table")
-    data = _plain(data)
-    for path, value in _leaves(data):
+    return make_table(Scene, data)
+
+
+def changed(scene: Scene, changes: Mapping[str, Any]) -> Scene:
+    """Make a scene from ``scene`` with ``changes`` by key; see :meth:`partialslip.Scene.replace`."""
+    data = msgspec.to_builtins(scene)
+    for key, value in changes.items():
+        _put(data, key.split("."), value, key)
+    return parse_scene(data)
+
+
+def _put(data: dict[str, Any], path: list[str], value: Any, key: str) -> None:
+    """Set the entry of nested tables at ``path``; a mapping changes the entries of a table."""
+    head, *rest = path
+    if head == "*" and rest:
+        if not (tables := [name for name, table in data.items() if isinstance(table, dict)]):
+            raise InputError(f"{key}: the scene has no table in place of *")
+        for name in tables:
+            _put(data[name], rest, value, key)
+    elif rest:
+        if not isinstance(data.setdefault(head, {}), dict):
+            data[head] = {}
+        _put(data[head], rest, value, key)
+    elif isinstance(value, Mapping) and isinstance(data.get(head), dict) and not _other_kind(head, value, data[head]):
+        for name, entry in value.items():
+            _put(data[head], [name], entry, f"{key}.{name}")
+    else:
+        data[head] = value
+
+
+def _other_kind(head: str, change: Mapping[str, Any], table: Mapping[str, Any]) -> bool:
+    """Whether a ``change`` of the profile makes it one of another kind, which has other keys."""
+    return head == "profile" and change.get("kind", table["kind"]) != table["kind"]
+
+
+def make_table(kind: type[_Made], data: Mapping[str, Any]) -> _Made:
+    """Make a table of type ``kind``, a scene or one of its tables, from ``data``; see :func:`parse_scene`."""
+    place = _place(kind)
+    data = _plain(data, place)
+    for path, value in _leaves(data, place):
         if isinstance(value, float) and not math.isfinite(value):
             raise InputError(f"{path} = {value}: must be finite")
         if type(value) in (int, float) and value != 0 and not SMALLEST <= abs(value) <= LARGEST:
             raise InputError(f"{path} = {_shown(value)}: must be zero or of a size from {SMALLEST} to {LARGEST}")
     try:
-        return msgspec.convert(data, Scene)
+        return msgspec.convert(data, kind)
     except msgspec.ValidationError as error:
         if isinstance(error.__cause__, InputError):
             raise error.__cause__ from None
-        raise InputError(_explain(str(error), data)) from None
+        raise InputError(_explain(str(error), data, kind, place)) from None
+
+
+def _place(kind: type[Table]) -> str:
+    """Name of a table in messages, as in a scene file; empty for the scene itself."""
+    if kind is Scene:
+        return ""
+    return "profile" if kind.__struct_config__.tag_field else kind.__name__.lower()
 
 
 def _text(scene: str | Path) -> str:
@@ -150,9 +197,13 @@ def _find_meshes(data: dict[str, Any], scene: str | Path) -> None:
 
 
 def _plain(value: Any, path: str = "", depth: int = 0) -> Any:
-    """``value`` as dicts, lists and Python numbers; InputError if nested too deep or too long."""
-    if isinstance(value, (np.generic, np.ndarray)):
+    """``value`` as dicts, lists, strings and Python numbers; InputError if nested too deep or too long."""
+    if hasattr(value, "tolist"):  # of NumPy and pandas
         value = value.tolist()
+    elif isinstance(value, Table):
+        value = msgspec.to_builtins(value)
+    elif isinstance(value, os.PathLike):
+        value = os.fspath(value)
     if isinstance(value, (Mapping, list, tuple)) and depth == _DEEPEST:
         raise InputError(f"{path}: must be nested at most {_DEEPEST} levels deep")
     if isinstance(value, Mapping):
@@ -177,16 +228,15 @@ def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
         yield path, value
 
 
-def _explain(message: str, data: Any) -> str:
-    """Turn the decoder's message into "field = value: must be ..."."""
+def _explain(message: str, data: Any, kind: Any, place: str) -> str:
+    """Turn the decoder's message about ``data`` into "field = value: must be ..."."""
     what, _, where = message.partition(" - at `$")
     path = where.rstrip("`").lstrip(".")
     value: Any = data
-    kind: Any = Scene
     for key, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", path):
         kind = kind if index else _fields(_table(kind, value)).get(key)
         value = value[int(index)] if index else value[key]
-    kind = _table(kind, value)
+    kind, path = _table(kind, value), ".".join(filter(None, (place, path)))
     if unknown := re.fullmatch(r"(?s)Object contains unknown field `(.*)`", what):
         return f"{_join(path, unknown[1])}: unknown key{_nearest(unknown[1], _keys(kind))}"
     if missing := re.fullmatch(r"Object missing required field `(.*)`", what):

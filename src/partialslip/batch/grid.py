@@ -1,0 +1,167 @@
+"""Sweeps of a scene over values of its keys, as a data frame."""
+
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from partialslip.batch.job import Job, Sharing, Solved
+from partialslip.batch.ledger import Ledger
+from partialslip.batch.sweep import Progress, workers
+from partialslip.batch.sweep import sweep as work_through
+from partialslip.errors import InputError
+from partialslip.frame import frame
+from partialslip.judge.reference import METHODS
+from partialslip.record import Record
+from partialslip.run import default_methods
+from partialslip.scene import Scene
+
+if TYPE_CHECKING:
+    from partialslip.frame import DataFrame
+
+_VALUES = ("regime", "a", "p0", "m", "n")
+_QUANTITIES = ("a", "m", "n", "p", "q")  # with columns for errors and estimates
+_SESSION = Ledger()  # solved points of sweeps without a file
+
+
+def sweep(
+    scene: Scene,
+    over: Mapping[str, Iterable[Any]] | Sequence[Mapping[str, Any]],
+    methods: str | Iterable[str] | None = None,
+    *,
+    cores: int | None = None,
+    cluster: str | None = None,
+    ledger: str | Path | None = None,
+    progress: Progress | None = None,
+) -> "DataFrame":
+    """Solve ``scene`` at many points and return a table with one row for each point.
+
+    Every solved point is kept at once: in the file ``ledger``, or without a file in this Python process. After Ctrl-C
+    or a crash the same call solves only what is missing.
+
+    Parameters
+    ----------
+    scene : Scene
+    over : mapping of str to values, or sequence of mappings
+        Values by dotted key (:meth:`Scene.replace`), e.g. ``{"friction.f": [0.3, 0.4], "load.P": [1e5, 2e5]}``: the
+        points are all combinations, and the last key varies fastest. A value of ``load.Q`` is a list of numbers. A
+        sequence ``[{"friction.f": 0.3, "load.P": 1e5}, ...]`` gives the points themselves.
+    methods : str or iterable of str, optional
+        As for :func:`partialslip.run`.
+    cores : int, optional
+        Number of processes; default: all cores, and for the exact method alone this process, as the start of another
+        process takes longer than many points. 1 means this process.
+    cluster : str, optional
+        Address of a Dask scheduler, ``tcp://host:port``, whose workers solve the points.
+    ledger : str or Path, optional
+        File of solved points; created if it does not exist.
+    progress : callable, optional
+        ``progress(done, total, seconds_left)``; default: a bar on the terminal.
+
+    Returns
+    -------
+    DataFrame
+        SI units. The keys of ``over``; ``method``, ``regime``, ``a``, ``p0``, ``m``, ``n``, ``estimate.*`` (the
+        method's own estimates) and ``cpu_s`` of the reference method; the same with the prefix ``fem.`` (or
+        ``march.``) of other methods, with ``fem.error.*`` against the reference; ``outcome``: passed, missed or not
+        judged; ``failure``: why the point could not be solved, empty if it was. Errors and estimates of a, m and n are
+        fractions of a, those of p and q are relative L2. Values that do not exist are NaN or None.
+
+    Raises
+    ------
+    InputError
+        If a key or a value is not allowed in the scene, before any point is solved.
+    PartialslipError
+        If a worker process dies or the cluster is lost; solved points are kept.
+    MissingLibraryError
+        If pandas is not installed.
+    """
+    frame({})  # pandas is missing before the first point is solved, not after the last one
+    if cores is not None and not (isinstance(cores, (int, np.integer)) and cores >= 1):
+        raise InputError(f"cores = {cores}: must be a whole number >= 1")
+    points = _points(over)
+    methods = [methods] if isinstance(methods, str) else None if methods is None else list(methods)
+    jobs = [_job(scene.replace(point), methods, point) for point in points]
+    if cores is None and all(job.methods == ("exact",) for job in jobs):
+        cores = 1
+    known, solve = _SESSION if ledger is None else Ledger(Path(ledger)), Sharing()
+    tasks = [job.task._replace(do=solve) for job in jobs]
+    with _told(progress, scene.name) as tell, workers(cluster, cores) as executor:
+        work_through(tasks, known, executor, tell)
+    rows = [_row(point, Solved.of(known[task.key])) for point, task in zip(points, tasks, strict=True)]
+    keys = dict.fromkeys(key for row in rows for key in row)
+    last = ("outcome", "failure")
+    return frame({key: [row.get(key) for row in rows] for key in (*(key for key in keys if key not in last), *last)})
+
+
+def _points(over: Mapping[str, Iterable[Any]] | Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Values by key of each point."""
+    if not isinstance(over, Mapping):
+        points = list(over) if isinstance(over, Iterable) else []
+        if not points or not all(isinstance(point, Mapping) for point in points):
+            raise InputError("over: must be values by key, or a list of points, each with a value by key")
+        return [{key: _plain(value) for key, value in point.items()} for point in points]
+    values = {key: _values(key, given) for key, given in over.items()}
+    return [dict(zip(values, point, strict=True)) for point in itertools.product(*values.values())]
+
+
+def _values(key: str, given: Any) -> list[Any]:
+    if isinstance(given, (str, Mapping)) or not np.iterable(given):
+        raise InputError(f"over: {key} = {given!r}: must be a list of values")
+    if not (values := [_plain(value) for value in given]):
+        raise InputError(f"over: {key}: must be a list of at least one value")
+    return values
+
+
+def _plain(value: Any) -> Any:
+    """A value as Python's number, string or tuple."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _job(scene: Scene, methods: list[str] | None, point: Mapping[str, Any]) -> Job:
+    chosen = tuple(dict.fromkeys(default_methods(scene) if methods is None else methods))
+    if not chosen or not set(chosen) <= set(METHODS):
+        raise InputError(f"methods = {', '.join(map(str, chosen)) or 'none'}: must be of {', '.join(METHODS)}")
+    return Job(scene, chosen, {key: value if isinstance(value, float) else str(value) for key, value in point.items()})
+
+
+def _row(point: Mapping[str, Any], solved: Solved) -> dict[str, Any]:
+    """Columns of a point."""
+    if solved.run is None:
+        return {**point, **dict.fromkeys(("method", *_VALUES, "cpu_s", "outcome")), "failure": solved.error}
+    return {**point, **_columns(solved.run), "outcome": str(solved.run.outcome), "failure": ""}
+
+
+def _columns(run: Record) -> dict[str, Any]:
+    """Columns of a solved point, those of the reference first."""
+    reference = run.reference or next(iter(run.methods))
+    columns: dict[str, Any] = {"method": reference}
+    for name in sorted(run.methods, key=lambda name: name != reference):
+        result, own = run.methods[name], "" if name == reference else f"{name}."
+        columns |= {own + key: getattr(result, key) for key in _VALUES}
+        if name in run.comparison:
+            errors = run.comparison[name].errors
+            columns |= {f"{own}error.{key}": errors.get(key) for key in _QUANTITIES}
+        columns |= {f"{own}estimate.{key}": result.estimate[key] for key in _QUANTITIES if key in result.estimate}
+        columns[f"{own}cpu_s"] = result.cost.cpu_s
+    return columns
+
+
+@contextmanager
+def _told(progress: Progress | None, name: str) -> Iterator[Progress]:
+    """Yield ``progress``, or the progress of a bar that is shown on a terminal while the block runs."""
+    if progress:
+        yield progress
+        return
+    from rich import progress as rich
+    from rich.console import Console
+
+    columns = (rich.TextColumn(f"sweep of {name}"), rich.BarColumn(), rich.MofNCompleteColumn())
+    bar = rich.Progress(*columns, rich.TimeRemainingColumn(), console=Console(stderr=True), transient=True)
+    task = bar.add_task("", total=None)
+    with bar if bar.console.is_interactive else nullcontext():
+        yield lambda done, total, _: bar.update(task, completed=done, total=total)

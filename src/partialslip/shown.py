@@ -1,0 +1,93 @@
+"""Display of objects: short reprs, notebook tables and plots."""
+
+import dataclasses
+import reprlib
+from collections.abc import Sized
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import numpy as np
+
+from partialslip.arrays import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Short:
+    """Mixin: the repr names the fields that are set; of an array it shows the shape and the range."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+class Notebook:
+    """Mixin: a notebook shows the object as tables."""
+
+    __slots__ = ()
+
+    def _repr_html_(self) -> str:
+        from partialslip.report.notebook import html
+
+        return html(self)  # type: ignore[arg-type]
+
+
+class Drawn(Notebook):
+    """Mixin: the object can also be drawn."""
+
+    __slots__ = ()
+
+    def plot(self, axes: "Axes | None" = None) -> "Axes":
+        """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of all methods over x/a on matplotlib ``axes`` (default: new axes).
+
+        A result alone does not know f: its plot shows q/p0. Returns the axes.
+        """
+        from partialslip.report.notebook import plot
+
+        return plot(self, axes)  # type: ignore[arg-type]
+
+
+def short(record: Any) -> str:
+    """Return the fields of ``record`` that are set, as text of one line.
+
+    Parameters
+    ----------
+    record : dataclass, msgspec struct or named tuple
+        Functions and empty fields are left out, and fields of a struct that equal the default.
+    """
+    if isinstance(record, msgspec.Struct):
+        infos = msgspec.structs.fields(record)
+        fields = {each.name: getattr(record, each.name) for each in infos if getattr(record, each.name) != each.default}
+    elif isinstance(record, tuple):
+        fields = record._asdict()  # type: ignore[attr-defined]
+    else:
+        fields = {each.name: getattr(record, each.name) for each in dataclasses.fields(record)}
+    shown = (f"{name}={_SHORT.repr(value)}" for name, value in fields.items() if not _empty(value))
+    return f"{type(record).__name__}({', '.join(shown)})"
+
+
+def span(values: Array) -> str:
+    """Return the range of ``values``, without NaN, as text."""
+    low, high = (float(which.reduce(values, axis=None)) for which in (np.fmin, np.fmax))
+    return f"{low:g}" if low == high else f"{low:g} to {high:g}"
+
+
+def _empty(value: Any) -> bool:
+    return value is None or callable(value) or (isinstance(value, Sized) and len(value) == 0)
+
+
+class _Short(reprlib.Repr):
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxstring = self.maxother = 1000
+
+    def repr_float(self, number: float, _: int) -> str:
+        return f"{number:g}" if float(f"{number:g}") == number else repr(number)
+
+    def repr_ndarray(self, values: Array, _: int) -> str:
+        return f"<{' x '.join(map(str, values.shape))}: {span(values)}>" if values.ndim else str(values)
+
+
+_SHORT = _Short()

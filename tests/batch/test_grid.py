@@ -1,0 +1,139 @@
+"""partialslip.sweep: one row for each point, resumable, refused before anything is solved."""
+
+import subprocess
+import sys
+
+import known
+import made
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip.batch import grid, job
+from partialslip.batch.ledger import Ledger
+
+pytest.importorskip("pandas")
+SCENE = partialslip.load_scene("fretting-aluminium")
+F = np.linspace(0.3, 0.6, 4)
+
+
+@pytest.fixture
+def solved(monkeypatch):
+    """Coefficients of friction of the scenes that are solved, in a fresh session."""
+    found = []
+    monkeypatch.setattr(grid, "_SESSION", Ledger())
+    monkeypatch.setattr(job, "run", lambda scene, *rest, **more: (
+        found.append(scene.friction.f) or partialslip.run(scene, *rest, **more)))  # fmt: skip
+    return found
+
+
+def test_a_row_is_a_run(solved):
+    table = partialslip.sweep(SCENE, {"friction.f": F}, "exact")
+    assert table["friction.f"].tolist() == F.tolist() == solved
+    assert list(table) == ["friction.f", "method", "regime", "a", "p0", "m", "n", "cpu_s", "outcome", "failure"]
+    for row in table.itertuples(index=False):
+        exact = partialslip.run(SCENE.replace(friction={"f": row[0]}), "exact")["exact"]
+        assert (row.method, row.regime, row.a, row.p0, row.m, row.n) == (
+            "exact", exact.regime, exact.a, exact.p0, exact.m, exact.n
+        )  # fmt: skip
+        assert (row.outcome, row.failure) == ("not judged", "")
+
+
+def test_the_grid_is_all_combinations_and_points_may_be_given(solved):
+    Q = [[-1e4, 1e4], (-2e4, 2e4)]
+    table = partialslip.sweep(SCENE, {"load.Q": np.array(Q), "friction.f": F[:3]}, ["exact"])
+    assert table["friction.f"].tolist() == [*F[:3], *F[:3]]
+    assert table["load.Q"].tolist() == [(-1e4, 1e4)] * 3 + [(-2e4, 2e4)] * 3
+    assert len(solved) == 6
+    points = [{"load.Q": Q[1], "friction.f": F[0]}, {"load.Q": Q[0], "friction.f": F[2]}]
+    pairs = partialslip.sweep(SCENE, points, "exact")
+    assert pairs["m"].tolist() == table["m"].tolist()[3:1:-1]
+    assert len(solved) == 6  # known in this session
+
+
+def test_a_sweep_that_was_stopped_goes_on(solved, tmp_path):
+    """Ctrl-C after two points: both are in the file, and the next call solves the other two."""
+
+    def stop(done, total, _):
+        assert total == 4
+        if done == 2:
+            raise KeyboardInterrupt
+
+    path = tmp_path / "new" / "friction.jsonl"
+    with pytest.raises(KeyboardInterrupt):
+        partialslip.sweep(SCENE, {"friction.f": F}, "exact", ledger=path, progress=stop)
+    assert len(Ledger(path)) == len(solved) == 2
+    steps = []
+    table = partialslip.sweep(
+        SCENE, {"friction.f": F}, "exact", ledger=str(path), progress=lambda *at: steps.append(at)
+    )
+    assert solved == F.tolist()
+    assert [done for done, *_ in steps] == [2, 3, 4]
+    assert table["m"].notna().all()
+
+
+def test_a_point_that_fails_says_why_and_the_others_stand(solved):
+    scene = SCENE.replace(load={"Q": [-1e4, 1e4, 0.0], "sigma": [-1e8, 1e8, 0.0]})
+    table = partialslip.sweep(scene, {"load.sigma": [[-1e8, 1e8, 0.0], [-1e8, 1e8, 1e7]]}, "exact")
+    assert table["failure"][0] == ""
+    assert "in phase" in table["failure"][1]
+    assert table["m"].notna().tolist() == [True, False]
+    assert len(solved) == 2
+    failed = partialslip.sweep(scene, {"load.sigma": [[-1e8, 1e8, 1e7]]}, (name for name in ["exact"]))
+    assert list(failed) == list(table)
+    assert failed["m"].isna().all()
+
+
+def test_columns_of_another_method():
+    """Those of the reference have no prefix; errors and estimates belong to the other method."""
+    entry = made.solved(known.SCENE, errors={"a": 1e-5, "m": 2e-5, "n": 3e-5, "p": 4e-5, "q": 5e-5},
+                        exact={"estimate": {}}, fem={"a": 1.0, "estimate": {"m": 1e-4, "left": 2e-4}})  # fmt: skip
+    row = grid._row({"friction.f": 0.5}, entry)
+    assert (row["method"], row["a"], row["fem.a"]) == ("exact", known.A, 1.0)
+    assert {key: row[key] for key in row if "error" in key or "estimate" in key} == {
+        "fem.error.a": 1e-5, "fem.error.m": 2e-5, "fem.error.n": 3e-5, "fem.error.p": 4e-5, "fem.error.q": 5e-5,
+        "fem.estimate.m": 1e-4,
+    }  # fmt: skip
+    assert [*row][-2:] == ["outcome", "failure"]
+
+
+@pytest.mark.parametrize(
+    ("over", "more", "line"),
+    [
+        ({"friction.g": [1]}, {}, "friction.g: unknown key; known are f"),
+        ({"friction.f": [0.3, -1.0]}, {}, "friction.f = -1.0: must be >= 0.0"),
+        ({"load.Q": [1e4]}, {}, "load.Q = 10000.0: must be an array, not a number"),
+        ({"friction.f": 0.3}, {}, "over: friction.f = 0.3: must be a list of values"),
+        ({"friction.f": []}, {}, "over: friction.f: must be a list of at least one value"),
+        ([], {}, "over: must be values by key, or a list of points, each with a value by key"),
+        (3, {}, "over: must be values by key, or a list of points, each with a value by key"),
+        ({"friction.f": F}, {"methods": "exactly"}, "methods = exactly: must be of exact, march, fem"),
+        ({"friction.f": F}, {"methods": []}, "methods = none: must be of exact, march, fem"),
+        ({"friction.f": F}, {"cores": 0}, "cores = 0: must be a whole number >= 1"),
+        ({"friction.f": F}, {"cluster": "nowhere"}, "--cluster 'nowhere': must be a scheduler's address"),
+    ],
+)
+def test_what_is_refused_before_anything_is_solved(solved, over, more, line):
+    with pytest.raises(partialslip.InputError) as raised:
+        partialslip.sweep(SCENE, over, **{"methods": "exact", **more})
+    assert str(raised.value).startswith(line)
+    assert solved == []
+
+
+def test_without_pandas_nothing_is_solved(solved, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(partialslip.PartialslipError, match="pandas is not installed"):
+        partialslip.sweep(SCENE, {"friction.f": F}, "exact")
+    assert solved == []
+
+
+def test_a_script_may_use_all_cores_without_a_guard(tmp_path):
+    """Worker processes do not run the script again."""
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import partialslip\nprint('begun')\nscene = partialslip.load_scene('hertz-shear')\n"
+        "print(len(partialslip.sweep(scene, {'friction.f': [0.5, 0.6]}, 'exact', cores=2)))\n",
+        "utf-8",
+    )
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr) == ("begun\n2\n", "")

@@ -1,0 +1,76 @@
+"""Functions of points take numbers, lists and arrays of any shape."""
+
+from dataclasses import replace
+
+import known
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip import halfplane
+
+SCENE = partialslip.load_scene("fretting-aluminium")
+
+
+@pytest.fixture(scope="module")
+def exact():
+    return partialslip.run(SCENE, "exact", subsurface=True)["exact"]
+
+
+@pytest.fixture(scope="module")
+def march():
+    return partialslip.run(SCENE.replace(fem={"accuracy": 1e-2}), "march")["march"]
+
+
+def functions(result):
+    """Functions of x, by name, each as one array."""
+    traction = result.traction
+    found = {"at": lambda x: np.stack(traction.at(x)), "levels_at": lambda x: np.stack(traction.levels_at(x))}
+    if result.surface:
+        found |= {"surface": result.surface.at, "inside": lambda x: result.stress_at(x, -0.1 * result.a)}
+    return found
+
+
+@pytest.mark.parametrize("method", ["exact", "march"])
+def test_values_have_the_shape_of_the_points(method, request):
+    result = request.getfixturevalue(method)
+    x = np.linspace(-1.2, 1.2, 12) * result.a
+    for function in functions(result).values():
+        line = function(x)
+        assert line.shape[-1] == 12
+        np.testing.assert_array_equal(function(x.tolist()), line)
+        box = function(x.reshape(3, 2, 2))
+        np.testing.assert_array_equal(box, line.reshape(*line.shape[:-1], 3, 2, 2))
+        np.testing.assert_allclose(function(x[4]), line[..., 4], rtol=0, atol=1e-12 * result.p0)
+        assert function([]).shape == (*line.shape[:-1], 0)
+
+
+def test_a_number_gives_numbers(exact):
+    for value in (*exact.traction.at(0), *exact.traction.levels_at(0.0), exact.surface.at(0)[0, 0]):
+        assert isinstance(value, float)
+    pressed = halfplane.contact(SCENE)
+    assert pressed.pressure(0) == pytest.approx(pressed.p0)
+    assert isinstance(halfplane.adhered(0, pressed.a, 1e4, 0.0), float)
+    assert SCENE.gap_at(2e-3) == pytest.approx(2e-4)
+    assert SCENE.gap_at([[0, 2e-3]]).shape == pressed.pressure([[0, 1e-4]]).shape == (1, 2)
+
+
+def test_coordinates_are_broadcast(exact):
+    x, y = np.linspace(-1, 1, 3) * exact.a, -np.array([[0.1], [0.5]]) * exact.a
+    found = exact.stress_at(x, y)
+    assert found.shape == (2, 3, 2, 3)
+    np.testing.assert_allclose(found[..., 1, 2], exact.stress_at(x[2], y[1, 0]), rtol=0, atol=1e-12 * exact.p0)
+
+
+def test_points_that_are_none_are_refused_in_one_line(exact):
+    for points in (("x",), ([1.0, [2.0]],)):
+        with pytest.raises(partialslip.InputError, match=r"^points: must be numbers or arrays of numbers"):
+            exact.traction.at(*points)
+    with pytest.raises(partialslip.InputError, match="shapes that fit"):
+        exact.stress_at([0, 0], [0, 0, 0])
+
+
+def test_a_changed_traction_is_wrapped_once():
+    once = replace(known.traction(), cells=None)
+    assert once.at == replace(once, cells=None).at
+    assert once.levels_at(0)[1] == pytest.approx(known.tractions(0.0)[1] / 2)
