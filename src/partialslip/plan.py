@@ -131,8 +131,8 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
     return {
         "normal": (True, "two bodies are pressed together by a constant P", ""),
         "friction": (friction, why, no_friction),
-        "shear": (any(Q), f"Q goes between {min(Q):g} and {max(Q):g} N/m", "Q = 0 at every load point"),
-        "tension": (any(sigma), f"sigma goes between {min(sigma):g} and {max(sigma):g} Pa",
+        "shear": (any(Q), f"Q goes between {scene.units.span(Q, 'N/m')}", "Q = 0 at every load point"),
+        "tension": (any(sigma), f"sigma goes between {scene.units.span(sigma, 'Pa')}",
                     "sigma = 0 at every load point: the problem is symmetric in x up to sign"),
         "opposing-slip": (friction and (coupled or (load.dsigma != 0 and not small)),
                           "pressure drags the ends of the contact opposite ways" if coupled else opposing,

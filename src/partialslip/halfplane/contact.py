@@ -75,11 +75,12 @@ def contact(scene: Scene) -> Contact:
     scale = math.log(max(inner, scene.length))
     low = math.log(_HARDLY * inner) if inner > 0 else scale - 120.0
     if excess(low) > 0:
-        least = f"{_HARDLY:g} of the flat's half-width"
-        raise InputError(f"load.P = {P:g}: must press the contact beyond its flat, by more than {least}")
+        shown, least = scene.units.plain(P, "N/m"), f"{_HARDLY:g} of the flat's half-width"
+        raise InputError(f"load.P = {shown}: must press the contact beyond its flat, by more than {least}")
     high = math.log(reach - inner) if reach < math.inf else scale + 120.0
     if excess(high) < 0:
-        raise InputError(f"load.P = {P:g}: must keep the contact within profile.x, which ends at {reach:g} m")
+        shown, end = scene.units.plain(P, "N/m"), scene.units.labelled(reach, "m")
+        raise InputError(f"load.P = {shown}: must keep the contact within profile.x, which ends at {end}")
     beyond = math.exp(brentq(excess, low, high, xtol=1e-15, rtol=8.9e-16))
     a = inner + beyond
     within = at < a

@@ -16,6 +16,7 @@ from partialslip.scene.materials import Material
 from partialslip.scene.profiles import Hertz, Profile
 from partialslip.scene.settings import Effects, Fem
 from partialslip.scene.table import Table
+from partialslip.units import UNITS, System, Units
 
 
 class Friction(Table, frozen=True, kw_only=True):
@@ -31,7 +32,8 @@ class Scene(Table, frozen=True, kw_only=True):
     tables. Both validate types and ranges; the constructor does not.
 
     ``name`` (letters, digits, ".", "_" and "-"), ``title``, and the tables ``material``, ``profile``, ``load``,
-    ``friction``, ``bodies``, ``fem`` and ``effects``.
+    ``friction``, ``bodies``, ``fem`` and ``effects``. All numbers are in SI units. ``shown_in``: units of tables,
+    reports and CSV files, and of tables to score.
     """
 
     name: Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*\Z", max_length=100)]
@@ -43,6 +45,7 @@ class Scene(Table, frozen=True, kw_only=True):
     bodies: Bodies = Bodies()
     fem: Fem = Fem()
     effects: Effects = Effects()
+    shown_in: System = "SI"
 
     def __post_init__(self) -> None:
         given = [key for key in ("P", "a", "p0") if getattr(self.load, key) is not None]
@@ -73,6 +76,11 @@ class Scene(Table, frozen=True, kw_only=True):
         from partialslip.report.notebook import html
 
         return html(self)
+
+    @property
+    def units(self) -> Units:
+        """Units in which the scene and its results are shown; all numbers of the scene itself are in SI units."""
+        return UNITS[self.shown_in]
 
     @property
     def mirrored(self) -> bool:
