@@ -35,6 +35,11 @@ class Units:
     words: str
     units: Mapping[Dimension, tuple[str, int]]
 
+    @property
+    def identifier(self) -> str:
+        """The name in capitals and underscores, as decks of other codes allow."""
+        return self.name.upper().replace("-", "_")
+
     def label(self, of: Dimension) -> str:
         """Return the label of the unit of dimension ``of``."""
         return self.units[of][0]
@@ -95,6 +100,7 @@ SI = _newton("SI", "SI units", "m", "Pa", "J/m", 0)
 N_MM = _newton("N-mm", "N, mm and MPa", "mm", "MPa", "N mm/mm", -3)
 N_UM = _newton("N-um", "N, um and N/um^2", "um", "N/um^2", "N um/um", -6)
 N_NM = _newton("N-nm", "N, nm and N/nm^2", "nm", "N/nm^2", "N nm/nm", -9)
+SYSTEMS = (SI, N_MM, N_UM, N_NM)  # from the largest unit of length on
 UNITS: Mapping[str, Units] = {each.name: each for each in (SI, N_MM)}  # of scenes
 
 

@@ -155,8 +155,10 @@ def test_a_table_in_other_units_than_the_scene_is_named_with_the_factors_that_he
     path = tmp_path / "t.csv"
     path.write_text("x,p,dq\n" + lines(X, P, DQ), "utf-8")
     notes = score(SHOWN, path).results["t.csv"].notes
-    told = "x may be in m, p may be in Pa, dq may be in Pa: correct with --factors 1000,1e-06,1e-06"
-    assert told in notes
+    told = "x may be in m, p may be in Pa, dq may be in Pa: correct with --factors 1000,1e-06,1e-06 "
+    assert f"{told}or --set shown_in=SI" in notes
+    (tmp_path / "mm.txt").write_text(IN_MM["Abaqus"], "utf-8")
+    assert "or --set shown_in=N-mm" in " ".join(score(SCENE, tmp_path / "mm.txt").results["mm.txt"].notes)
     helped = score(SHOWN, path, factors=(1e3, 1e-6, 1e-6))
     assert not any("may be" in note for note in helped.results["t.csv"].notes)
     assert helped.results["t.csv"].m == pytest.approx(score(SCENE, path).results["t.csv"].m, rel=1e-9)

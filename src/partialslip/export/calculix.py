@@ -5,8 +5,7 @@ from typing import Literal
 from partialslip.export.deck import bodies, heading, load_step, sheeted, tied
 from partialslip.export.model import Model
 from partialslip.scene import Scene
-from partialslip.score.calculix import DECKS, material_ending
-from partialslip.units import Units
+from partialslip.units import SYSTEMS, Units
 
 Contact = Literal["mortar", "penalty"]
 
@@ -34,7 +33,7 @@ RF
 def deck_units(scene: Scene, model: Model) -> Units:
     """Units of the deck of ``model``: those of ``scene``, or with a smaller unit of length if a is less than 100 of
     its."""
-    smaller = [units for units in DECKS if units.size("m") <= scene.units.size("m")]
+    smaller = [units for units in SYSTEMS if units.size("m") <= scene.units.size("m")]
     return next((units for units in smaller if units.from_si(model.a, "m") >= _LEAST), smaller[-1])
 
 
@@ -55,7 +54,7 @@ def calculix_deck(scene: Scene, model: Model, contact: Contact = "mortar") -> li
         f"** a slice of thickness {thickness:.12e} {units.label('m')}; the results are scored by",
         f"** partialslip score {scene.name} JOB.frd: the names of the materials tell the units",
     ]
-    blocks, starts = bodies(model, "C3D8", "", thickness, material_ending(units))
+    blocks, starts = bodies(model, "C3D8", "", thickness, f"_{units.identifier}")
     held, frame = (
         sheeted(part.outer, len(part.mesh.points), 2) + start for part, start in zip(model.parts, starts, strict=True)
     )

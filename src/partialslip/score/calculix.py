@@ -13,11 +13,10 @@ import numpy.typing as npt
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.score.calculix_faces import FACE_CORNERS
-from partialslip.units import N_MM, N_NM, N_UM, SI, Units
+from partialslip.units import SYSTEMS, Units
 
 _CONTACT = ("CPRESS", "CSHEAR1")
 _STRESS = " contact stress (slave "
-DECKS = (SI, N_MM, N_UM, N_NM)  # units of decks, from the largest unit of length on
 _WIDTH = 12  # characters of a number
 
 Indices = npt.NDArray[np.int64]
@@ -92,16 +91,13 @@ def read_dat(
 
 
 def stated_units(mesh: str) -> Units | None:
-    """Units of an .frd file, from the names of the materials, if the deck is of :mod:`partialslip.export`; else
-    None."""
+    """Units of an .frd file, from the names of the materials, if the deck is of :mod:`partialslip.export`; else None.
+
+    CalculiX copies only these names from the deck to the file.
+    """
     head = mesh[: mesh.find("\n    2C")].splitlines()
     names = [line[14:].strip() for line in head if line.startswith("    1UMAT")]
-    return next((units for units in DECKS if any(name.endswith(material_ending(units)) for name in names)), None)
-
-
-def material_ending(units: Units) -> str:
-    """End of the names of materials in a deck in ``units``: CalculiX copies only these names to the .frd file."""
-    return f"_{units.name.upper().replace('-', '_')}"
+    return next((units for units in SYSTEMS if any(name.endswith(f"_{units.identifier}") for name in names)), None)
 
 
 def _pair(

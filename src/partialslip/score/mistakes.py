@@ -6,9 +6,11 @@ import numpy as np
 
 from partialslip.result import Result
 from partialslip.scene import Scene
+from partialslip.units import UNITS, Dimension
 
 _LENGTHS = {"in m": 1.0, "in mm": 1e-3, "in um": 1e-6, "in cm": 1e-2, "in inches": 0.0254}
 _STRESSES = {"in Pa": 1.0, "in MPa": 1e6, "in GPa": 1e9, "in kPa": 1e3, "in N/um^2": 1e12, "in psi": 6894.757}
+_COLUMNS: tuple[Dimension, ...] = ("m", "Pa")
 _TURNS = {"": 1.0, "of the opposite sign": -1.0, "of half a cycle": 2.0,
           "of half a cycle and of the opposite sign": -2.0, "twice too large": 0.5}  # fmt: skip
 _LIKE = 0.15  # relative difference up to which another unit explains a sum
@@ -50,7 +52,7 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
     notes = []
     if found := [f"{column} may be {guess.name}" for column, guess in columns if guess.name]:
         factors = ",".join(f"{guess.factor:g}" for guess in (x, p, q))
-        notes.append(f"{', '.join(found)}: correct with --factors {factors}")
+        notes.append(f"{', '.join(found)}: correct with --factors {factors}{_or_shown_in(scene, x, p, q)}")
     if abs(P / scene.P - 1) > max(_OFF, _SIGMAS * P_off):
         notes.append(f"p adds up to {P / scene.P:.3g} of the scene's P")
     slides, load = 2 * scene.friction.f * scene.P, scene.load.dQ
@@ -104,6 +106,16 @@ def _places(scene: Scene, result: Result, reference: Result, factor: float) -> l
 def _others(units: dict[str, float], own: float) -> dict[str, float]:
     """Sizes of ``units`` in the scene's ``own`` unit, of all others than that."""
     return {name: float(f"{size / own:.7g}") for name, size in units.items() if size != own}
+
+
+def _or_shown_in(scene: Scene, x: _Guess, p: _Guess, q: _Guess) -> str:
+    """Advice to show the scene in the units of the table, if these are units of scenes."""
+    own, found = scene.units, (x.factor, p.factor, q.factor)
+    for name, other in UNITS.items():
+        length, stress = (float(f"{other.size(of) / own.size(of):.7g}") for of in _COLUMNS)
+        if other != own and found == (length, stress, stress):
+            return f" or --set shown_in={name}"
+    return ""
 
 
 def _guess(ratio: float, units: dict[str, float]) -> _Guess | None:
