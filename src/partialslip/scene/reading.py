@@ -104,8 +104,8 @@ def _scene(data: dict[str, Any], written: dict[str, Any], units: Units) -> Scene
         if isinstance(value, float) and not math.isfinite(value):
             raise InputError(f"{path} = {value}: must be finite")
         if type(value) in (int, float) and value != 0 and not SMALLEST <= abs(value) <= LARGEST:
-            shown = _shown(known.get(path, value))
-            raise InputError(f"{path} = {shown}: must be zero or of a size from {SMALLEST} to {LARGEST}")
+            shown, where = _shown(known.get(path, value)), "" if data is written else " in SI units"
+            raise InputError(f"{path} = {shown}: must be zero or of a size from {SMALLEST} to {LARGEST}{where}")
     try:
         return msgspec.convert(data, Scene)
     except msgspec.ValidationError as error:
