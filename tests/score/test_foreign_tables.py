@@ -192,4 +192,5 @@ def test_a_result_of_an_exported_deck_states_the_units_of_the_deck(tmp_path, end
     (tmp_path / "si.frd").write_text(text, "ascii")
     found, known = read(path, SHOWN), read(tmp_path / "si.frd", SCENE)
     assert found.x == pytest.approx(known.x * size, rel=1e-12)
+    assert ["the units of the deck" in note for note in found.notes] == [True] * bool(ending)
     assert found.p == pytest.approx(known.p * {1.0: 1.0}.get(size, size**-2), rel=1e-12)

@@ -41,7 +41,7 @@ def converted(data: Mapping[str, Any], convert: Callable[[float, Dimension], flo
         if isinstance(value, Mapping):
             if path in _BODIES and value.get("mesh") is not None and value.get("unit") is None:
                 value = {**value, "unit": 1.0}
-            return {key: each(child, f"{path}.{key}" if path else key) for key, child in value.items()}
+            return {key: each(child, f"{path}.{key}") for key, child in value.items()}
         of = DIMENSIONS.get(path, "1")
         if of == "1":
             return value

@@ -65,7 +65,10 @@ def read(
             found = read_frd(mesh, origin, at, load_points)
         else:
             found = read_dat(text(file), mesh, origin, at, load_points)
-        columns = _in_si(found, stated_units(mesh) or scene.units)
+        units = stated_units(mesh) or scene.units
+        columns = _in_si(found, units)
+        if units != scene.units:
+            columns = columns._replace(notes=(f"read in {units.words}, the units of the deck",))
     else:
         columns = _in_si(_point_data(file), scene.units)
     notes = columns.notes
