@@ -1,9 +1,9 @@
 """Units in which people read and write quantities: SI, or N, mm and MPa. All Python objects hold SI units."""
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from decimal import Decimal
 from typing import Literal, TypeVar, get_args
 
 from partialslip.arrays import Array
@@ -121,5 +121,6 @@ def _shifted(value: _T, power: int) -> _T:
     if not power:
         return value
     if isinstance(value, (int, float)):
-        return float(Decimal(repr(float(value))).scaleb(power))
+        digits, _, exponent = repr(float(value)).partition("e")
+        return float(f"{digits}e{int(exponent or 0) + power}") if math.isfinite(value) else value
     return value * 10.0**power if power >= 0 else value / 10.0**-power
