@@ -3,7 +3,6 @@
 from setting import Setting
 
 from partialslip.export import export
-from partialslip.export.calculix import length_unit
 from partialslip.export.model import modelled
 
 _MORTAR, _PENALTY = "C3D8, mortar", "C3D8, surface-to-surface penalty"
@@ -23,7 +22,5 @@ def run(scene, setting, ends, stiffer, folder, ccx, measured):
     text, cost = measured([ccx, "peer"], folder)
     if "Job finished" not in text:
         raise RuntimeError(f"CalculiX gave up: {text.strip()[-300:]}")
-    _, unit = length_unit(made)
     dofs = sum(4 * (len(part.mesh.points) - len(part.outer)) for part in made.parts) + 2  # two sheets of nodes
-    factors = (unit, unit**-2, unit**-2)
-    return folder / "peer.frd", factors, dofs, {"cpu_s": cost["process_cpu_s"]} | cost
+    return folder / "peer.frd", (1.0, 1.0, 1.0), dofs, {"cpu_s": cost["process_cpu_s"]} | cost

@@ -92,22 +92,21 @@ def solve_meshed(scene: Scene, plan: Plan, meshes: Sequence[Mesh]) -> Result:
 
 def _check_incompressibility(scene: Scene) -> None:
     """Raise InputError for materials whose stiffness would be lost to rounding."""
-    material = scene.material
-    for name, elastic in (("", material), (".upper", material.upper), (".lower", material.lower)):
-        if elastic and material.plane == "strain" and elastic.nu > _LARGEST_NU:
-            raise InputError(
-                f"material{name}.nu = {elastic.nu}: must be <= {_LARGEST_NU} in plane strain by finite elements"
-            )
+    for name, elastic in scene.material:
+        if scene.material.plane == "strain" and elastic.nu > _LARGEST_NU:
+            raise InputError(f"{name}.nu = {elastic.nu}: must be <= {_LARGEST_NU} in plane strain by finite elements")
 
 
 def _check_sizes(scene: Scene) -> None:
     """Raise InputError for flats and bodies whose size would be lost to rounding."""
     if max(map(abs, scene.profile.kinks), default=0.0) > _FLATTEST * scene.length:
-        raise InputError(f"load.P = {scene.P:g}: must press the contact beyond its flat")
+        raise InputError(f"load.P = {scene.units.plain(scene.P, 'N/m')}: must press the contact beyond its flat")
     for name, own in (("lower", scene.bodies.lower), ("upper", scene.bodies.upper)):
         for key, size in (("width", own.width), ("height", own.height)) if own else ():
             if size is not None and not _SIZES[0] <= size / scene.length <= _SIZES[1]:
-                low, high = (share * scene.length for share in _SIZES)
-                raise InputError(f"bodies.{name}.{key} = {size}: must be from {low:.2g} to {high:.2g} in this contact")
+                low, high = (scene.units.plain(share * scene.length, "m", 2) for share in _SIZES)
+                given = scene.units.from_si(size, "m")
+                raise InputError(f"bodies.{name}.{key} = {given}: must be from {low} to {high} in this contact")
         if own and own.height and own.width and own.height > _SLENDER * own.width:
-            raise InputError(f"bodies.{name}.height = {own.height}: must be <= {_SLENDER:g} times bodies.{name}.width")
+            height = scene.units.from_si(own.height, "m")
+            raise InputError(f"bodies.{name}.height = {height}: must be <= {_SLENDER:g} times bodies.{name}.width")

@@ -131,7 +131,8 @@ class Run(Drawn):
         }
 
     def to_dataframe(self) -> "DataFrame":
-        """Return the table of ``tractions.csv``: :meth:`Result.to_dataframe` of all methods, and a column ``method``.
+        """Return the table of ``tractions.csv`` in SI units: :meth:`Result.to_dataframe` of all methods, and a column
+        ``method``.
 
         Raises
         ------

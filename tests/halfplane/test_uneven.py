@@ -165,7 +165,7 @@ def test_marching_agrees(sigma):
     ("hertz", {"M": 1.0, "e": 1e-5}, "load.e = 1e-05: must not be given together with load.M"),
     ({**PROFILES["table"], "gap": SIDES[::-1] * 0 + np.linspace(0, 1, 91)}, {}, "profile.gap: must fall at the first"),
     ({**PROFILES["table"], "x": TABLE + 3e-3}, {}, "profile.x[0] = 0.001: must be 0, the middle of the contact, or"),
-    ("table", {"e": 2.4e-3}, "load.P: must keep the contact within profile.x, from -0.002 to 0.0025 m"),
+    ("table", {"e": 2.4e-3}, "must keep the contact within profile.x, between -0.002 and 0.0025 m"),
 ])  # fmt: skip
 def test_bad_input_is_named(profile, load, message):
     with pytest.raises(InputError) as error:

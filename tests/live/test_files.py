@@ -83,6 +83,14 @@ def test_the_map_reaches_as_far_as_the_loads():
     assert Outline(live_page(load_scene("hertz-shear", ["load.sigma=[-2e9, 2e9]"]))).scene["map"]["top"] > 20
 
 
+def test_numbers_are_in_the_units_of_the_scene():
+    shown = live_page(load_scene("fretting-aluminium", ["shown_in=N-mm"]))
+    assert "p0 = 418.104 MPa, P = 135.75 N/mm" in shown
+    data = json.loads(next(script for script in Outline(shown).scripts if script.lstrip().startswith("{")))
+    assert data["units"] == {"m": ["mm", 1e-3], "Pa": ["MPa", 1e6], "N/m": ["N/mm", 1e3]}
+    assert data["P"] == 135750.0
+
+
 def test_every_field_has_a_label(text):
     tags = Outline(text).tags
     labels = {attributes["for"] for tag, attributes in tags if tag == "label" and "for" in attributes}

@@ -1,5 +1,7 @@
 """Tables as codes write them: names, units, separators, decimals, encodings, rows without values."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -118,3 +120,77 @@ def test_names_of_other_codes_change_a_sign_at_most():
     signs = {(key, name): sign for key, names in headers.NAMES.items() for name, sign in names.items()}
     assert {name: sign for name, sign in signs.items() if sign != 1} == {("p", "lags_c"): -1}
     assert all(name == name.lower() for _, name in signs)
+
+
+# --- units of the scene
+
+SHOWN = load_scene("fretting-aluminium", ["shown_in=N-mm"])
+IN_MM = {
+    "Abaqus": "COOR1 CPRESS CSHEAR1\n" + lines(X * 1e3, P / 1e6, DQ / 2e6, separator="   "),
+    "one column with a unit": "x,p,dq [kPa]\n" + lines(X * 1e3, P / 1e6, DQ / 1e3),
+    "all columns with units": "x [m],p [Pa],dq [Pa]\n" + lines(X, P, DQ),
+    "negative pressure": "COOR_X;LAGS_C;LAGS_F1\n" + lines(X * 1e3, -P / 1e6, DQ / 2e6, separator=";"),
+}
+
+
+@pytest.mark.parametrize("kind", IN_MM)
+def test_a_table_is_in_the_units_of_its_scene_unless_it_states_others(tmp_path, kind):
+    path = tmp_path / "t.txt"
+    path.write_text(IN_MM[kind], "utf-8")
+    found = read(path, SHOWN)
+    for column, wanted in ((found.x, X), (found.p, P), (found.dq, DQ)):
+        assert column == pytest.approx(wanted, rel=1e-12, abs=1e-9 * np.abs(wanted).max())
+    assert read(path, SHOWN, factors=(1.0, 1.0, -1.0)).dq == pytest.approx(-found.dq)
+
+
+def test_nodal_forces_are_in_N_per_mm_of_depth(tmp_path):
+    h = X[1] - X[0]
+    for scene, size, force in ((SCENE, 1.0, 1.0), (SHOWN, 1e-3, 1e3)):
+        path = tmp_path / "t.csv"
+        path.write_text("x,Fn,dFt\n" + lines(X / size, P * h / force, DQ * h / force), "utf-8")
+        assert read(path, scene).p[1:-1] == pytest.approx(P[1:-1], rel=1e-9)
+
+
+def test_a_table_in_other_units_than_the_scene_is_named_with_the_factors_that_help(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text("x,p,dq\n" + lines(X, P, DQ), "utf-8")
+    notes = score(SHOWN, path).results["t.csv"].notes
+    told = "x may be in m, p may be in Pa, dq may be in Pa: correct with --factors 1000,1e-06,1e-06 "
+    assert f"{told}or --set shown_in=SI" in notes
+    (tmp_path / "mm.txt").write_text(IN_MM["Abaqus"], "utf-8")
+    assert "or --set shown_in=N-mm" in " ".join(score(SCENE, tmp_path / "mm.txt").results["mm.txt"].notes)
+    helped = score(SHOWN, path, factors=(1e3, 1e-6, 1e-6))
+    assert not any("may be" in note for note in helped.results["t.csv"].notes)
+    assert helped.results["t.csv"].m == pytest.approx(score(SCENE, path).results["t.csv"].m, rel=1e-9)
+
+
+def test_the_files_of_a_run_and_the_template_state_their_units(tmp_path, monkeypatch, capsys):
+    """In the units of the scene or not: they are scored without factors."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["score", "fretting-aluminium", "--set", "shown_in=N-mm", "--template"]) == 0
+    text = capsys.readouterr().out
+    assert "P = 135.75 N/mm, dQ = 77.5 N/mm, dsigma = 200 MPa" in text
+    head, *rows = [line for line in text.splitlines() if not line.startswith("#")]
+    assert head == "x [mm],p [MPa],dq [MPa]"
+    x = np.array([float(row.partition(",")[0]) for row in rows]) / 1e3
+    (tmp_path / "t.csv").write_text(
+        f"{head}\n" + lines(x * 1e3, *(each / 1e6 for each in EXACT.traction.at(x))), "utf-8"
+    )
+    for scene in (SCENE, SHOWN):
+        assert score(scene, tmp_path / "t.csv").comparisons["t.csv"].m < 1e-3
+
+
+@pytest.mark.parametrize(("ending", "size"), [("", 1e-3), ("_SI", 1.0), ("_N_UM", 1e-6), ("_N_NM", 1e-9)])
+def test_a_result_of_an_exported_deck_states_the_units_of_the_deck(tmp_path, ending, size):
+    """In the names of its materials; other results are in the units of the scene."""
+    text = (Path(__file__).parent / "calculix.frd").read_text("ascii")
+    name, plain = f"    1UMAT    1{'LOWER' + ending:20s}", "    1UMAT    1AL                  "
+    path = tmp_path / "a.frd"
+    path.write_text(
+        text.replace(next(line for line in text.splitlines() if line.startswith(plain[:16])), name), "ascii"
+    )
+    (tmp_path / "si.frd").write_text(text, "ascii")
+    found, known = read(path, SHOWN), read(tmp_path / "si.frd", SCENE)
+    assert found.x == pytest.approx(known.x * size, rel=1e-12)
+    assert ["the units of the deck" in note for note in found.notes] == [True] * bool(ending)
+    assert found.p == pytest.approx(known.p * {1.0: 1.0}.get(size, size**-2), rel=1e-12)

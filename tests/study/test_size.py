@@ -10,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import made
+import msgspec
 import numpy as np
 import pytest
 
@@ -46,6 +47,17 @@ def test_axes_are_read(text, values, in_a):
     axis = read(text)
     assert axis.values == pytest.approx(values, rel=1e-11)
     assert axis.in_a is in_a
+
+
+def test_values_are_in_the_units_in_which_the_scene_is_shown():
+    plain = scene()
+    shown = msgspec.structs.replace(plain, shown_in="N-mm")
+    for one, other in (("bodies.*.width=1..4:3", "bodies.*.width=1e3..4e3:3"), ("bodies.*.height=4a,8a",) * 2):
+        jobs = zip(make(plain, [read(one)]), make(shown, [read(other)]), strict=True)
+        for job, same in jobs:
+            for (_, body), (_, again) in zip(job.scene.bodies, same.scene.bodies, strict=True):
+                assert (again.width, again.height) == pytest.approx((body.width, body.height), rel=1e-15)
+            assert (same.scene.shown_in, same.scene.load) == ("N-mm", job.scene.load)
 
 
 @pytest.mark.parametrize(

@@ -178,9 +178,14 @@ def key_of(data: Mapping[str, Any]) -> str:
 
 
 def scene_content(scene: Scene) -> dict[str, Any]:
-    """Return ``scene`` as plain data, with checksums of its mesh files (None for a file that cannot be read)."""
+    """Return ``scene`` as plain data, with checksums of its mesh files (None for a file that cannot be read).
+
+    The units in which the scene is shown are left out: they change no result, and entries are in SI units.
+    """
     files = [body.mesh for _, body in scene.bodies if body.mesh is not None]
-    return {**msgspec.to_builtins(scene), "mesh files": {file: _checksum([Path(file)]) for file in files}}
+    content = msgspec.to_builtins(scene)
+    del content["shown_in"]
+    return {**content, "mesh files": {file: _checksum([Path(file)]) for file in files}}
 
 
 @cache

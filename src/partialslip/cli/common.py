@@ -21,7 +21,8 @@ def add_scene(parser: "argparse.ArgumentParser") -> None:
     """Add SCENE and ``--set`` to ``parser``."""
     parser.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
     parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
-                        help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
+                        help="change a setting of the scene, e.g. load.P=2e5, in the scene's units; may be "
+                        "repeated")  # fmt: skip
 
 
 def held(folder: Path | None) -> AbstractContextManager[None]:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import print_written
+from partialslip.cli.common import add_scene, print_written
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
@@ -23,11 +23,11 @@ def add(commands: "Commands") -> None:
         "steps. Compare the results with partialslip score.",
         examples=[
             "partialslip export hertz-small-tension --to calculix --size 0.025 -o hertz.inp",
-            "partialslip export fretting-aluminium --to abaqus --stiffer 100",
+            "partialslip export fretting-aluminium --to abaqus --stiffer 100 --set shown_in=N-mm",
             "partialslip export flat-rounded --to gmsh",
         ],
     )
-    exports.add_argument("scene", metavar="SCENE", help="a shipped scene or a TOML file")
+    add_scene(exports)
     exports.add_argument("--to", required=True, choices=_TO,
                          help="calculix, abaqus: an input deck, ready to run; gmsh: the meshes of both "
                          "bodies")  # fmt: skip
@@ -68,7 +68,7 @@ def _export(options: argparse.Namespace) -> int:
     width = None if options.width is None else _number(options.width, "--width", 4, 1e6)
     ends = [_number(end, "--ends", -1.1, 1.1) for end in options.ends.split(",")] if options.ends else []
     fine = None if options.fine is None else _number(options.fine, "--fine", 1e-6, size)
-    scene = partialslip.load_scene(options.scene)
+    scene = partialslip.load_scene(options.scene, options.overrides)
     write = export(
         scene,
         options.to,

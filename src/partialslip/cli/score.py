@@ -35,8 +35,8 @@ def add(commands: "Commands") -> None:
                         help="tractions: a table (.csv, .txt, .tsv, .rpt), or .frd, .dat, .vtu")  # fmt: skip
     scores.add_argument("--template", action="store_true", help="print a table to fill in, and nothing else")
     scores.add_argument("--factors", metavar="X,P,Q", default="1,1,1",
-                        help="multiply x, p and q by these factors: 1e-3,1e6,1e6 for mm and MPa; -1 changes the "
-                        "sign")  # fmt: skip
+                        help="multiply x, p and q by these factors, after the units of the scene or of the columns: "
+                        "1e-3,1e6,1e6 for mm and MPa in an SI scene; -1 changes the sign")  # fmt: skip
     scores.add_argument("--columns", metavar="NAMES",
                         help="columns of x, p and dq by name or number (from 1): x=X,p=CPRESS,dq=S2-S1")  # fmt: skip
     scores.add_argument("--centre", choices=("given", "auto"), default="given",

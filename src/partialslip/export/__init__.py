@@ -28,7 +28,8 @@ def export(
 ) -> Callable[[Path], None]:
     """Return a function that writes ``scene`` to a path, for another code.
 
-    The file has the meshes of both bodies; for calculix and abaqus also contact and load steps, ready to run.
+    The file has the meshes of both bodies; for calculix and abaqus also contact and load steps, ready to run. It is in
+    the scene's units (:attr:`Scene.shown_in`); for calculix the unit of length may be smaller, as its comments say.
 
     Parameters
     ----------
@@ -56,7 +57,7 @@ def export(
     if to == "gmsh":
         from partialslip_meshes.write import write_quads
 
-        return partial(write_quads, bodies={part.name: part.mesh for part in made.parts})
+        return partial(write_quads, bodies={part.name: part.mesh for part in made.in_units(scene.units).parts})
     lines = (
         abaqus_deck(scene, made) if to == "abaqus" else calculix_deck(scene, made, "penalty" if penalty else "mortar")
     )

@@ -22,7 +22,8 @@ def abaqus_deck(scene: Scene, model: Model) -> list[str]:
     Elements CPE4; small sliding, surface to surface; hard contact enforced directly; friction by Lagrange multipliers.
     At the end of each step contact stresses and nodal contact forces go to the .dat and the .odb file.
     """
-    lines = ["*HEADING", scene.name, *heading(scene, model, "Abaqus deck, SI units")]
+    lines = ["*HEADING", scene.name, *heading(scene, model, f"Abaqus deck in {scene.units.words}")]
+    model = model.in_units(scene.units)
     blocks, (lower, upper) = bodies(model, "CPE4", "\n1.,")
     lines += [*blocks, "*SURFACE INTERACTION, NAME=INTERFACE", "1."]
     lines += ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD, DIRECT"]

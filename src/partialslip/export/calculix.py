@@ -5,6 +5,7 @@ from typing import Literal
 from partialslip.export.deck import bodies, heading, load_step, sheeted, tied
 from partialslip.export.model import Model
 from partialslip.scene import Scene
+from partialslip.units import SYSTEMS, Units
 
 Contact = Literal["mortar", "penalty"]
 
@@ -14,8 +15,8 @@ _NORMAL = 1e3
 _STICK = {"mortar": 1e5, "penalty": 1e2}
 
 # Mortar contact of version 2.20 is wrong, without a message, if elements are smaller than about one unit of length: a
-# is off by 30 % at a = 1e-3 units, by 0.2 % at 1. The unit is the largest of these in which a is 100 or more.
-_UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
+# is off by 30 % at a = 1e-3 units, by 0.2 % at 1.
+_LEAST = 100.0  # least a in the unit of length of a deck
 
 _RESULTS = """\
 *NODE FILE, FREQUENCY=1000
@@ -29,9 +30,11 @@ RF
 *END STEP"""
 
 
-def length_unit(model: Model) -> tuple[str, float]:
-    """Name of the deck's unit of length for ``model``, and its size in m."""
-    return next(((name, unit) for name, unit in _UNITS.items() if model.a >= 100 * unit), ("nm", _UNITS["nm"]))
+def deck_units(scene: Scene, model: Model) -> Units:
+    """Units of the deck of ``model``: those of ``scene``, or with a smaller unit of length if a is less than 100 of
+    its."""
+    smaller = [units for units in SYSTEMS if units.size("m") <= scene.units.size("m")]
+    return next((units for units in smaller if units.from_si(model.a, "m") >= _LEAST), smaller[-1])
 
 
 def calculix_deck(scene: Scene, model: Model, contact: Contact = "mortar") -> list[str]:
@@ -41,15 +44,17 @@ def calculix_deck(scene: Scene, model: Model, contact: Contact = "mortar") -> li
     contact stresses CONTACT at the lower body's nodes and displacements to the .frd file, forces RF on the nodes of
     both contact lines to the .dat file.
     """
-    name, unit = length_unit(model)
+    units = deck_units(scene, model)
     lines = heading(scene, model, "CalculiX deck")
-    model = model.in_unit(unit)
+    model = model.in_units(units)
     thickness = model.size
+    small = "" if units == scene.units else ", as CalculiX's mortar contact needs a of 100 units or more"
     lines += [
-        f"** in N, {name} and N/{name}^2, a slice of thickness {thickness:.12e} {name}. The results are scored by",
-        f"** partialslip score {scene.name} JOB.frd --factors {unit:g},{unit**-2:g},{unit**-2:g}",
+        f"** the deck is in {units.words}{small}",
+        f"** a slice of thickness {thickness:.12e} {units.label('m')}; the results are scored by",
+        f"** partialslip score {scene.name} JOB.frd: the names of the materials tell the units",
     ]
-    blocks, starts = bodies(model, "C3D8", "", thickness)
+    blocks, starts = bodies(model, "C3D8", "", thickness, f"_{units.identifier}")
     held, frame = (
         sheeted(part.outer, len(part.mesh.points), 2) + start for part, start in zip(model.parts, starts, strict=True)
     )

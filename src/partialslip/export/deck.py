@@ -8,14 +8,14 @@ from partialslip.scene import Scene
 
 
 def heading(scene: Scene, model: Model, what: str) -> list[str]:
-    """Comment lines of the deck: scene, mesh, sign of q, load steps.
+    """Comment lines of the deck: scene, mesh, sign of q, load steps, in the scene's units.
 
-    ``scene`` and ``model`` are exported; ``what`` names the format and the units.
+    ``scene`` and ``model``, in SI units, are exported; ``what`` names the format.
     """
-    a = model.a
+    a, shown = model.a, scene.units.labelled
     lines = [
         f"** {scene.name}: {what}, written by partialslip export",
-        f"** expected a = {a:.6g} m; f = {model.f:g}, P = {scene.P:.10g} N/m",
+        f"** expected a = {shown(a, 'm')}; f = {model.f:g}, P = {shown(scene.P, 'N/m', 10)}",
         f"** elements of {model.size / a:g} a along the contact, blocks {model.width:g} a wide on either side",
     ]
     if model.stiffer != 1:
@@ -25,12 +25,14 @@ def heading(scene: Scene, model: Model, what: str) -> list[str]:
         ]
     lines += ["** q acts along x from the lower on the upper body: positive Q and sigma add up at x = a"]
     return lines + [
-        f"** step {number}: {step.name}: Q = {step.Q:.10g} N/m, sigma = {step.sigma:.10g} Pa"
+        f"** step {number}: {step.name}: Q = {shown(step.Q, 'N/m', 10)}, sigma = {shown(step.sigma, 'Pa', 10)}"
         for number, step in enumerate(model.steps, start=1)
     ]
 
 
-def bodies(model: Model, element: str, section: str, thickness: float | None = None) -> tuple[list[str], list[int]]:
+def bodies(
+    model: Model, element: str, section: str, thickness: float | None = None, ending: str = ""
+) -> tuple[list[str], list[int]]:
     """Nodes, elements, material, contact surface NAME_FACE and node sets NAME_OUTER and NAME_CONTACT of each body.
 
     Parameters
@@ -43,6 +45,8 @@ def bodies(model: Model, element: str, section: str, thickness: float | None = N
     thickness : float, optional
         Thickness of one layer of bricks between two plane meshes; the nodes of the second mesh follow those of the
         first. By default plane elements.
+    ending : str
+        End of the names of the materials.
 
     Returns
     -------
@@ -63,8 +67,8 @@ def bodies(model: Model, element: str, section: str, thickness: float | None = N
             )
         lines += [f"*NODE, NSET={name}", *rows("%.12e", points, first)]  # 20 characters at most
         lines += [f"*ELEMENT, TYPE={element}, ELSET={name}", *rows("%d", quads + first, first_element)]
-        lines += [f"*MATERIAL, NAME={name}", "*ELASTIC", f"{part.E:.12e}, {part.nu:.12e}"]
-        lines += [f"*SOLID SECTION, ELSET={name}, MATERIAL={name}{section}"]
+        lines += [f"*MATERIAL, NAME={name}{ending}", "*ELASTIC", f"{part.E:.12e}, {part.nu:.12e}"]
+        lines += [f"*SOLID SECTION, ELSET={name}, MATERIAL={name}{ending}{section}"]
         elements, sides = part.face
         lines += [f"*SURFACE, NAME={name}_FACE, TYPE=ELEMENT"]
         lines += [

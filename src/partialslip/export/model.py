@@ -15,6 +15,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import contact
 from partialslip.scene import Constants, Scene
+from partialslip.units import Units
 
 if TYPE_CHECKING:
     from partialslip_meshes import QuadMesh
@@ -67,7 +68,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Model:
-    """A finite-element model of a scene.
+    """A finite-element model of a scene, in SI units until :meth:`in_units` converts the model.
 
     Parameters
     ----------
@@ -108,16 +109,17 @@ class Model:
         moved: Array = lower.mesh.points[lower.outer] * strain
         return moved
 
-    def in_unit(self, length: float) -> "Model":
-        """Convert the model to the unit of ``length`` (m); forces stay in N."""
+    def in_units(self, units: Units) -> "Model":
+        """Convert the model from SI to ``units``."""
+        of = units.from_si
 
-        def scaled(part: Part) -> Part:
-            return replace(part, mesh=replace(part.mesh, points=part.mesh.points / length), E=part.E * length**2)
+        def converted(part: Part) -> Part:
+            return replace(part, mesh=replace(part.mesh, points=of(part.mesh.points, "m")), E=of(part.E, "Pa"))
 
         lower, upper = self.parts
-        steps = (Step(name, P * length, Q * length, sigma * length**2) for name, P, Q, sigma in self.steps)
-        parts = scaled(lower), scaled(upper)
-        return replace(self, parts=parts, steps=tuple(steps), a=self.a / length, size=self.size / length)
+        steps = (Step(name, of(P, "N/m"), of(Q, "N/m"), of(sigma, "Pa")) for name, P, Q, sigma in self.steps)
+        parts = converted(lower), converted(upper)
+        return replace(self, parts=parts, steps=tuple(steps), a=of(self.a, "m"), size=of(self.size, "m"))
 
 
 def modelled(
@@ -160,7 +162,8 @@ def modelled(
     scene.require_even("to export")
     f, P = scene.friction.f, scene.P
     if any(abs(Q) >= f * P for Q, _ in scene.load.points if Q) or (f == 0 and scene.load.dsigma):
-        raise InputError(f"load.Q: must be within f P = {f * P:g}; beyond it the contact slides and has no equilibrium")
+        bound = scene.units.labelled(f * P, "N/m")
+        raise InputError(f"load.Q: must be within f P = {bound}; beyond it the contact slides and has no equilibrium")
     pressed = contact(scene)
     a = pressed.a
     kinks = [kink / a for kink in scene.profile.kinks if abs(kink) < _REACH * a]

@@ -78,8 +78,10 @@ def contact(scene: Scene) -> Contact:
         return Contact(a, P, Hertz(), scene.origin, scene.origin / profile.R)
     if not scene.even:
         moment = None if scene.M is None else A * scene.M
-        centre, a, shape, tilt = press(profile.curvature, A * P, moment, scene.length)
-        return Contact(a, P, shape, centre, tilt)
+        if not (pressed := press(profile.curvature, A * P, moment, scene.length)):
+            shown, span = scene.units.plain(P, "N/m"), scene.units.span(profile.curvature.reach, "m")
+            raise InputError(f"load.P = {shown}: must keep the contact within profile.x, between {span}")
+        return Contact(pressed.a, P, pressed.shape, pressed.centre, pressed.tilt)
     at, steps = profile.curvature_steps()
     inner, reach = float(at[0]), profile.reach
 
@@ -95,11 +97,12 @@ def contact(scene: Scene) -> Contact:
     scale = math.log(max(inner, scene.length))
     low = math.log(_HARDLY * inner) if inner > 0 else scale - 120.0
     if excess(low) > 0:
-        least = f"{_HARDLY:g} of the flat's half-width"
-        raise InputError(f"load.P = {P:g}: must press the contact beyond its flat, by more than {least}")
+        shown, least = scene.units.plain(P, "N/m"), f"{_HARDLY:g} of the flat's half-width"
+        raise InputError(f"load.P = {shown}: must press the contact beyond its flat, by more than {least}")
     high = math.log(reach - inner) if reach < math.inf else scale + 120.0
     if excess(high) < 0:
-        raise InputError(f"load.P = {P:g}: must keep the contact within profile.x, which ends at {reach:g} m")
+        shown, end = scene.units.plain(P, "N/m"), scene.units.labelled(reach, "m")
+        raise InputError(f"load.P = {shown}: must keep the contact within profile.x, which ends at {end}")
     from scipy.optimize import brentq  # takes long to import
 
     beyond = math.exp(brentq(excess, low, high, xtol=1e-15, rtol=8.9e-16))

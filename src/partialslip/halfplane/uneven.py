@@ -20,7 +20,6 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.arrays import Array, Indices
-from partialslip.errors import InputError
 from partialslip.halfplane.panels import Panels
 from partialslip.halfplane.punch import FEW, punch_force
 from partialslip.halfplane.shape import Shape
@@ -119,8 +118,8 @@ class Pressed(NamedTuple):
     tilt: float
 
 
-def press(of: Curvature, force: float, moment: float | None, scale: float) -> Pressed:
-    """Press two half-planes together.
+def press(of: Curvature, force: float, moment: float | None, scale: float) -> Pressed | None:
+    """Press two half-planes together; None if the contact extends beyond the range in which the gap is known.
 
     Parameters
     ----------
@@ -132,11 +131,6 @@ def press(of: Curvature, force: float, moment: float | None, scale: float) -> Pr
         A M about x = 0, m^2; None if the bodies do not turn.
     scale : float
         Length of about the contact's size, m.
-
-    Raises
-    ------
-    InputError
-        If the contact extends beyond the range in which the gap is known.
     """
     number = int(np.searchsorted(of.breaks, of.lowest, "right"))
     flat = of.values[number] == 0
@@ -144,6 +138,8 @@ def press(of: Curvature, force: float, moment: float | None, scale: float) -> Pr
     origin = moment / force if moment is not None else 0.0
     search = _Search(of, force, moment, float(low), float(high), _TINY * scale, origin)
     ends = search.newton(scale) or search.bracketed(scale)
+    if not ends:
+        return None
     steps = ends.steps(of)
     return Pressed(steps.centre, steps.a, Uneven(steps), steps.tilt)
 
@@ -198,9 +194,12 @@ class _Search:
                 return self.ends(u) if (u <= most).all() else None
         return None
 
-    def bracketed(self, scale: float) -> _Ends:
-        """Ends by nested bracketing: at a given right end the force grows with the left distance; along the contacts
-        with the right force, moment and tilt grow with the right end."""
+    def bracketed(self, scale: float) -> _Ends | None:
+        """Ends by nested bracketing; None if they are beyond the reach of the gap.
+
+        At a given right end the force grows with the left distance. Along the contacts with the right force, moment and
+        tilt grow with the right end.
+        """
         from scipy.optimize import brentq  # imports slowly, and Newton's method hardly ever fails
 
         far = 1e8 * max(scale, self.high - self.low)
@@ -225,16 +224,12 @@ class _Search:
 
         least = narrowest(self.tiny * math.sinh(most[0])) + 1.0
         if turned(most[1]) < 0 or turned(least) > 0:
-            raise self._beyond()
+            return None
         right = brentq(turned, least, most[1], xtol=1e-14, rtol=1e-15)
         ends = self.ends(np.array([left(right), right]))
         if abs(self.missing(ends)[0][0]) > 1e-6:
-            raise self._beyond()
+            return None
         return ends
-
-    def _beyond(self) -> InputError:
-        low, high = self.of.reach
-        return InputError(f"load.P: must keep the contact within profile.x, from {low:g} to {high:g} m")
 
 
 class Uneven(Shape):

@@ -16,15 +16,19 @@ const page = (() => {
   let loads = { ...start };
 
   const prefixes = [[9, "G"], [6, "M"], [3, "k"], [0, ""], [-3, "m"], [-6, "\u00b5"], [-9, "n"]];
-  function prefix(number) {
+  // Factor and label of the unit in which a number (SI) is shown: the scene's, or SI with a prefix.
+  function shownIn(number, unit) {
+    if (scene.units[unit]) return { label: scene.units[unit][0], factor: scene.units[unit][1] };
     number = +number.toPrecision(12);
     const [exponent, letter] = prefixes.find(([power]) => Math.abs(number) >= 10 ** power) ?? [0, ""];
-    return { factor: 10 ** exponent, letter };
+    return { factor: 10 ** exponent, label: letter + unit };
   }
   function engineering(number, unit, digits) {
-    if (Math.abs(number) < 1e-9 || Math.abs(number) >= 1e12) return `${+number.toPrecision(4)} ${unit}`;
-    const { factor, letter } = prefix(number);
-    return `${+(number / factor).toPrecision(digits)} ${letter}${unit}`;
+    if (!scene.units[unit] && (Math.abs(number) < 1e-9 || Math.abs(number) >= 1e12)) {
+      return `${+number.toPrecision(4)} ${unit}`;
+    }
+    const { factor, label } = shownIn(number, unit);
+    return `${+(number / factor).toPrecision(digits)} ${label}`;
   }
   const minus = (text) => text.replace(/-(?=[\d.])/, "\u2212");
 
@@ -59,7 +63,7 @@ const page = (() => {
       "from the closed form; march with load.steps gives the difference." : "";
   }
 
-  // [scaled, SI] values of the table.
+  // [scaled, dimensional] values of the table.
   function numbers({ zone, f, m, n, q, Qf, bound }) {
     const none = ["none", ""], length = (at) => engineering(at * a, "m", 6), turns = hertz.transition(Qf);
     const table = { m: none, n: none, width: none, q: none, turns: none, mean: none };
@@ -79,7 +83,7 @@ const page = (() => {
   }
 
   // Controls of loads and friction: how to read and set each value.
-  const force = prefix(2 * scene.f * P), stress = prefix(scene.f * p0);
+  const force = shownIn(2 * scene.f * P, "N/m"), stress = shownIn(scene.f * p0, "Pa");
   const controls = {
     Qf: { get: ({ Qf }) => Qf, set: (value) => ({ dQ: value * 2 * loads.f * P }) },
     sf: { get: ({ sf }) => sf, set: (value) => ({ dsigma: value * loads.f * p0 }) },
@@ -151,8 +155,8 @@ const page = (() => {
     show();
   }
 
-  by("dQ-unit").textContent = `${force.letter}N/m`;
-  by("dsigma-unit").textContent = `${stress.letter}Pa`;
+  by("dQ-unit").textContent = force.label;
+  by("dsigma-unit").textContent = stress.label;
   listen();
   layOut();
   let width = by("map").parentNode.clientWidth;

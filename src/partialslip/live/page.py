@@ -10,8 +10,8 @@ from partialslip.errors import InputError
 from partialslip.map.grid import Line, StickMap, stick_map
 from partialslip.output.labels import label_places
 from partialslip.output.template import template
-from partialslip.report import rows
 from partialslip.scene import Hertz, Scene
+from partialslip.units import SI
 
 _SHAPE = 1.5  # width over height of the map on the page
 _NAMES = np.array([(0.05, 0.94), (0.12, 0.94), (0.19, 0.94), (0.8, 0.03), (0.88, 0.03), (0.96, 0.03)])  # regime names
@@ -35,16 +35,21 @@ def live_page(scene: Scene) -> str:
     if not scene.load.in_phase:
         raise InputError("load.sigma: out of phase with load.Q; must be in phase for a live page")
     return (
-        template("partialslip.live", "live.html").render(data=_data(scene), rows=rows, version=version("partialslip"))
+        template("partialslip.live", "live.html").render(
+            data=_data(scene), units=scene.units, version=version("partialslip")
+        )
         + "\n"
     )
 
 
 def _data(scene: Scene) -> dict[str, Any]:
-    """Return the page's data of the scene, in SI units; the map's lines are scaled."""
+    """Return the page's data of the scene, in SI units; the map's lines are scaled.
+
+    ``units`` has labels and sizes of the units in which the page shows numbers; none for SI with prefixes.
+    """
     found = stick_map(scene)
     assert found.pressed
-    pressed, load, f = found.pressed, scene.load, scene.friction.f
+    pressed, load, f, units = found.pressed, scene.load, scene.friction.f, scene.units
     return {
         "name": scene.name,
         "title": scene.title,
@@ -56,6 +61,7 @@ def _data(scene: Scene) -> dict[str, Any]:
         "dQ": load.dQ,
         "dsigma": load.dsigma,
         "Q_mean": load.Q_mean,
+        "units": {of: [units.label(of), units.size(of)] for of in ("m", "Pa", "N/m")} if units != SI else {},
         "map": _lines(found),
     }
 

@@ -24,14 +24,17 @@ def write_map(data: StickMap, folder: Path) -> list[Path]:
 
 
 def map_csv(data: StickMap) -> str:
-    """Return the grid's stick zones of ``data`` as CSV, one row per point; with dQ (N/m) and dsigma (Pa) of a scene."""
+    """Return the grid's stick zones of ``data`` as CSV, one row per point; with dQ and dsigma in a scene's units."""
     grid, zone = data.grid, data.grid.zone
     regime = np.where(zone.s > 0, "small tension", "large tension")
     regime[(grid.Qf == 0) & (grid.sf == 0)] = "stuck"
     columns = {"Qf": grid.Qf, "sf": grid.sf}
     if data.scene and data.pressed:
-        f = data.scene.friction.f
-        columns |= {"dQ": 2 * f * data.pressed.P * grid.Qf, "dsigma": f * data.pressed.p0 * grid.sf}
+        f, units = data.scene.friction.f, data.scene.units
+        columns |= {
+            units.heading("dQ", "N/m"): units.from_si(2 * f * data.pressed.P * grid.Qf, "N/m"),
+            units.heading("dsigma", "Pa"): units.from_si(f * data.pressed.p0 * grid.sf, "Pa"),
+        }
     columns |= {"m_over_a": zone.m, "n_over_a": zone.n, "half_width_over_a": zone.half_width}
     values = (column.ravel().tolist() for column in (*columns.values(), regime))
     return csv_text([*columns, "regime"], zip(*values, strict=True))
@@ -47,5 +50,5 @@ def place(data: StickMap) -> list[str]:
     exact, ends = point.exact, ", ".join(f"{key} = {rows.value(point.exact, key)}" for key in ("m", "n"))
     reached = ", which are not reached" if exact.regime == "ratchets" else ""
     mirrored = " (dQ and dsigma differ in sign: on the map m and n change places)" if point.mirrored else ""
-    limits = rows.limits(exact)
+    limits = rows.limits(exact, data.scene.units)
     return [f"{name}: {exact.regime}, {ends}{reached}{mirrored}", *([limits] if limits else [])]

@@ -193,5 +193,5 @@ def _point(scene: Scene, pressed: Contact) -> tuple[Point | None, str]:
         return None, exact.notes[0]
     Qf, sf = abs(load.dQ) / (2 * f * pressed.P), abs(load.dsigma) / (f * pressed.p0)
     if sf > _HIGHEST:
-        return None, f"dsigma = {load.dsigma:g} Pa is more than {_HIGHEST:g} f p0"
+        return None, f"dsigma = {scene.units.labelled(load.dsigma, 'Pa')} is more than {_HIGHEST:g} f p0"
     return Point(Qf, sf, load.dQ * load.dsigma < 0, exact), ""

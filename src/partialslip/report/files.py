@@ -1,10 +1,12 @@
 """Write the files of a run."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from partialslip.output.csv import csv_text
 from partialslip.output.files import write_files
@@ -12,6 +14,9 @@ from partialslip.record import record
 from partialslip.report.figure import traction_svg
 from partialslip.report.page import page
 from partialslip.run import Run
+from partialslip.units import Dimension, Units
+
+_DIMENSIONS: dict[str, Dimension] = {"method": "1", "x": "m", "x_over_a": "1"}  # all other columns are stresses
 
 
 def write_run(run: Run, folder: Path) -> list[Path]:
@@ -43,17 +48,28 @@ def write_run(run: Run, folder: Path) -> list[Path]:
 
 
 def tractions_csv(run: Run) -> str:
-    """Return the tractions of all methods as CSV, one row per point, SI units; empty where a method has no value."""
-    columns = run.columns
-    values = ([("" if number != number else number) for number in column.tolist()] for column in columns.values())
-    return csv_text(list(columns), zip(*values, strict=True))
+    """Return the tractions of all methods as CSV, one row per point, in the scene's units; empty where a method has no
+    value."""
+    table = _in_units(run.columns, run.scene.units)
+    values = ([("" if number != number else number) for number in column.tolist()] for column in table.values())
+    return csv_text(list(table), zip(*values, strict=True))
 
 
 def surface_csv(run: Run) -> str:
-    """Return sigma_xx along the surfaces as CSV, for the methods that compute it, one row per point, SI units."""
-    rows: list[list[object]] = []
-    for name, result in run.results.items():
-        if surface := result.surface:
-            columns = np.vstack([surface.x, surface.x / result.a, *surface.sigma[0], *surface.sigma[1]])
-            rows += [[name, *row] for row in columns.T.tolist()]
-    return csv_text(["method", "x", "x_over_a", "lower_1", "lower_2", "upper_1", "upper_2"], rows)
+    """Return sigma_xx along the surfaces as CSV, for the methods that compute it, one row per point, in the scene's
+    units."""
+    surfaces = {name: (result.a, result.surface) for name, result in run.results.items() if result.surface}
+    columns = [
+        [np.full(surface.x.shape, name), surface.x, surface.x / a, *surface.sigma[0], *surface.sigma[1]]
+        for name, (a, surface) in surfaces.items()
+    ]
+    names = ("method", "x", "x_over_a", "lower_1", "lower_2", "upper_1", "upper_2")
+    table = dict(zip(names, map(np.concatenate, zip(*columns, strict=True)), strict=True))
+    table = _in_units(table, run.scene.units)
+    return csv_text(list(table), zip(*(column.tolist() for column in table.values()), strict=True))
+
+
+def _in_units(columns: Mapping[str, npt.NDArray[Any]], units: Units) -> dict[str, npt.NDArray[Any]]:
+    """Convert ``columns`` from SI units: x, and stresses. The headings name the units if not SI."""
+    of = {name: _DIMENSIONS.get(name, "Pa") for name in columns}
+    return {units.heading(name, of[name]): units.from_si(column, of[name]) for name, column in columns.items()}

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator, Mapping
 
-import msgspec
 import numpy as np
 
 from partialslip.judge import NO_BAR, Comparison, Outcome, Verdict
@@ -11,6 +10,8 @@ from partialslip.plan import Plan
 from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.scene import Scene
+from partialslip.scene.writing import scene_tables
+from partialslip.units import SI, Dimension, Units
 
 HEADINGS = ("quantity", "unit", "reference", "value", "error", "estimate", "bar", "")
 _MEANING = {
@@ -71,10 +72,10 @@ def word(verdict: Verdict) -> str:
 
 def units(run: Run) -> str:
     """Return the units of the error table in one line: a, p0, f p0 and P of the reference."""
-    reference, scene = run.results[run.reference or ""], run.scene
-    limit = f", f p0 = {engineering(scene.friction.f * reference.p0, 'Pa', 6)}" if scene.friction.f else ""
-    p0, P = engineering(reference.p0, "Pa", 6), engineering(scene.P, "N/m", 6)
-    return f"{run.reference}: a = {length(reference.a)}, p0 = {p0}{limit}; P = {P}"
+    reference, scene, text = run.results[run.reference or ""], run.scene, run.scene.units.text
+    limit = f", f p0 = {text(scene.friction.f * reference.p0, 'Pa', 6)}" if scene.friction.f else ""
+    a, p0, P = scene.units.length(reference.a), text(reference.p0, "Pa", 6), text(scene.P, "N/m", 6)
+    return f"{run.reference}: a = {a}, p0 = {p0}{limit}; P = {P}"
 
 
 def unjudged(comparison: Comparison) -> list[str]:
@@ -113,7 +114,7 @@ def effects(plan: Plan) -> list[tuple[str, str, str]]:
 
 
 def settings(scene: Scene) -> list[tuple[str, str, str]]:
-    """Return rows of table (in the first row of each table), key and setting of ``scene``."""
+    """Return rows of table (in the first row of each table), key and setting of ``scene``, in its units."""
     return [
         (table if number == 0 else "", *line)
         for table, lines in _set(scene).items()
@@ -128,7 +129,7 @@ def settings_of_tables(scene: Scene) -> list[tuple[str, str]]:
 
 def _set(scene: Scene) -> dict[str, list[tuple[str, str]]]:
     """Return pairs of key and setting by table."""
-    tables = {table: keys for table, keys in msgspec.to_builtins(scene).items() if isinstance(keys, dict)}
+    tables = {table: keys for table, keys in scene_tables(scene).items() if isinstance(keys, dict)}
     return {
         table: [(key, setting(choice)) for key, choice in _flat(keys) if choice is not None]
         for table, keys in tables.items()
@@ -143,62 +144,48 @@ def _flat(table: Mapping[str, object], before: str = "") -> Iterator[tuple[str, 
             yield before + key, choice
 
 
-def methods(results: Mapping[str, Result], *, compared: bool = False) -> list[tuple[str, str, str]]:
-    """Return rows of method (in the first row of each method), and a key and text of :func:`facts`.
+def methods(results: Mapping[str, Result], *, compared: bool = False, units: Units = SI) -> list[tuple[str, str, str]]:
+    """Return rows of method (in the first row of each method), and a key and text of :func:`facts`, in ``units``.
 
     With ``compared`` the values found are left out: the table of errors shows them.
     """
     return [
         (name if number == 0 else "", *line)
         for name, result in results.items()
-        for number, line in enumerate(facts(result, compared).items())
+        for number, line in enumerate(facts(result, compared, units).items())
     ]
 
 
-def value(result: Result, key: str) -> str:
-    """Return a, m or n (``key``) of ``result`` with the unit."""
+def value(result: Result, key: str, units: Units = SI) -> str:
+    """Return a, m or n (``key``) of ``result`` with the unit; a in ``units``."""
     if key == "a":
-        return length(result.a)
+        return units.length(result.a)
     end = getattr(result, key)
     return "none" if end is None else f"{end / result.a:.7f} a"
 
 
-def length(a: float) -> str:
-    """Return a length ``a``, m, with the unit: mm from 1e-6 m to 1 m, else with another SI prefix."""
-    return f"{a * 1e3:.7g} mm" if 1e-6 <= a < 1 else engineering(a, "m", 7)
-
-
-_LIMITS = {
+_LIMITS: dict[str, tuple[str, Dimension]] = {
     "Q_sliding": ("slides at |Q| = {}", "N/m"),
     "dsigma_transition": ("small tension ends at dsigma = {}", "Pa"),
     "Q_mean": ("the mean of Q can be {}", "N/m"),
 }
 
 
-def limits(result: Result) -> str:
-    """Return the loads at which the regime changes, as text."""
+def limits(result: Result, units: Units = SI) -> str:
+    """Return the loads at which the regime changes, in ``units``, as text."""
     return ", ".join(
-        text.format(engineering(result.limits[key], unit, 4))
-        for key, (text, unit) in _LIMITS.items()
+        text.format(units.text(result.limits[key], of, 4))
+        for key, (text, of) in _LIMITS.items()
         if key in result.limits
     )
 
 
-def slip(result: Result) -> str:
-    """Return the largest slip over half a cycle and the energy dissipated in a cycle, as text."""
+def slip(result: Result, units: Units = SI) -> str:
+    """Return the largest slip over half a cycle and the energy dissipated in a cycle, in ``units``, as text."""
     if result.slip is None:
         return ""
-    largest = engineering(float(np.abs(result.slip.slip).max()), "m", 5)
-    return f"up to {largest} each way, {engineering(result.slip.dissipated, 'J/m', 5)} dissipated a cycle"
-
-
-def engineering(number: float, unit: str, digits: int) -> str:
-    """Return ``number`` in ``unit`` with a suitable SI prefix and ``digits`` significant digits."""
-    number = float(f"{number:.12g}")  # 1 - 1e-16 must become 1, not 1000 m
-    for exponent, prefix in ((9, "G"), (6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ"), (-9, "n")):
-        if 1 <= abs(number) / 10.0**exponent < 1000:
-            return f"{number / 10.0**exponent:.{digits}g} {prefix}{unit}"
-    return f"{number:.4g} {unit}"
+    largest = units.text(float(np.abs(result.slip.slip).max()), "m", 5)
+    return f"up to {largest} each way, {units.text(result.slip.dissipated, 'J/m', 5)} dissipated a cycle"
 
 
 def setting(choice: object) -> str:
@@ -210,18 +197,18 @@ def setting(choice: object) -> str:
     return min(f"{choice:.10g}", np.format_float_scientific(choice, 9, trim="-", exp_digits=1), key=len)
 
 
-def facts(result: Result, compared: bool = False) -> dict[str, str]:
-    """Return what a method found, built and certified, and the cost, as texts by key.
+def facts(result: Result, compared: bool = False, units: Units = SI) -> dict[str, str]:
+    """Return what a method found, built and certified, and the cost, as texts by key, in ``units``.
 
     With ``compared`` the values found are left out: the table of errors shows them.
     """
     lines = {
         "regime": result.regime,
-        "found": "" if compared else ", ".join(f"{key} = {value(result, key)}" for key in ("a", "m", "n")),
+        "found": "" if compared else ", ".join(f"{key} = {value(result, key, units)}" for key in ("a", "m", "n")),
         "built": work(result),
         "certificate": certificate(result),
-        "limits": limits(result),
-        "slip": slip(result),
+        "limits": limits(result, units),
+        "slip": slip(result, units),
         "cost": cost(result),
         "note": "; ".join(result.notes),
     }

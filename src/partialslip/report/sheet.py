@@ -21,5 +21,5 @@ def sheet(run: Run) -> Sheet:
         run.scene.title,
         tuple(rows.settings_of_tables(run.scene)),
         tuple(rows.effects(run.plan)),
-        tuple(rows.methods(run.results, compared=True)),
+        tuple(rows.methods(run.results, compared=True, units=run.scene.units)),
     )

@@ -17,6 +17,6 @@ def print_run(run: Run, console: Console) -> None:
         print_table(console, rows.headings(run, name), rows.error_rows(comparison), words=(0, 1, 7))
         for line in rows.unjudged(comparison):
             console.print(line, markup=False)
-    methods = rows.methods(run.results, compared=bool(run.comparisons))
+    methods = rows.methods(run.results, compared=bool(run.comparisons), units=run.scene.units)
     print_lines(console, [*methods, *rows.effects(run.plan)])
     console.print(rows.verdict(run), style="bold", markup=False)

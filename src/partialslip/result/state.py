@@ -1,6 +1,7 @@
 """The state of the contact at the end of a load path, from which a later run continues. SI units."""
 
 import zipfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -47,9 +48,15 @@ class State(Short):
 
     def check(self, scene: Scene) -> None:
         """Raise InputError if ``scene`` cannot continue from this state: P or the materials differ."""
-        for name, mine, its in (("P", self.P, scene.P), ("A", self.A, scene.material.A)):
+
+        def check(name: str, mine: float, its: float, shown: Callable[[float], str]) -> None:
             if abs(mine - its) > _SAME * abs(its):
-                raise InputError(f"state: is of {name} = {mine:.10g}; the scene has {its:.10g}; the two must be equal")
+                raise InputError(
+                    f"state: is of {name} = {shown(mine)}; the scene has {shown(its)}; the two must be equal"
+                )
+
+        check("P", self.P, scene.P, lambda P: scene.units.labelled(P, "N/m", 10))
+        check("A", self.A, scene.material.A, lambda A: f"{A:.10g} 1/Pa")
 
     def save(self, path: Path) -> None:
         """Write the state to ``path`` as an .npz file."""

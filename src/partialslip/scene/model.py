@@ -19,6 +19,7 @@ from partialslip.scene.profiles import Hertz, Profile
 from partialslip.scene.settings import Effects, Fem
 from partialslip.scene.table import Table
 from partialslip.shown import Notebook, short
+from partialslip.units import UNITS, System, Units
 
 
 class Friction(Table, frozen=True, kw_only=True):
@@ -35,7 +36,8 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     ranges and raise InputError with the same one line. A scene is immutable: :meth:`replace` makes a changed one.
 
     ``name`` (letters, digits, ".", "_" and "-"), ``title``, and the tables ``material``, ``profile``, ``load``,
-    ``friction``, ``bodies``, ``fem`` and ``effects``.
+    ``friction``, ``bodies``, ``fem`` and ``effects``. All numbers are in SI units. ``shown_in``: units of tables,
+    reports and CSV files, and of tables to score.
     """
 
     name: Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*\Z", max_length=100)]
@@ -47,6 +49,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     bodies: Bodies = Bodies()
     fem: Fem = Fem()
     effects: Effects = Effects()
+    shown_in: System = "SI"
 
     def __post_init__(self) -> None:
         given = [key for key in ("P", "a", "p0") if getattr(self.load, key) is not None]
@@ -128,6 +131,11 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         from partialslip.scene.reading import changed
 
         return changed(self, {**(changes or {}), **tables})
+
+    @property
+    def units(self) -> Units:
+        """Units in which the scene and its results are shown; all numbers of the scene itself are in SI units."""
+        return UNITS[self.shown_in]
 
     @property
     def mirrored(self) -> bool:

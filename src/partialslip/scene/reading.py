@@ -15,6 +15,8 @@ import msgspec
 from partialslip.errors import InputError
 from partialslip.inputfile import read_text
 from partialslip.scene import LARGEST, SMALLEST, Scene, Table
+from partialslip.scene.dimensions import converted
+from partialslip.units import SI, UNITS, Units
 
 _LARGEST_FILE = 500_000  # bytes; a profile and a cycle of 1,000 numbers each take 120,000
 _LONGEST = 1000  # numbers in an array
@@ -51,7 +53,8 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
     scene : str or Path
         The name of a shipped scene or the path of a TOML file.
     overrides : iterable of str
-        Settings to change, each as ``"table.key=value"`` with a TOML value, e.g. ``"load.P=2e5"``.
+        Settings to change, each as ``"table.key=value"`` with a TOML value, e.g. ``"load.P=2e5"``, in the units of the
+        scene file.
 
     Raises
     ------
@@ -71,7 +74,8 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
 def parse_scene(data: Mapping[str, Any]) -> Scene:
     """Make a scene from nested tables ``data``, as in a scene file or in ``results.json``.
 
-    Values may be NumPy numbers and arrays, paths, and tables such as :class:`partialslip.scene.Load`.
+    Values may be NumPy numbers and arrays, paths, and tables such as :class:`partialslip.scene.Load`. Numbers are in SI
+    units, or in those that the key ``units`` names.
 
     Raises
     ------
@@ -119,17 +123,38 @@ def make_table(kind: type[_Made], data: Mapping[str, Any]) -> _Made:
     """Make a table of type ``kind``, a scene or one of its tables, from ``data``; see :func:`parse_scene`."""
     place = _place(kind)
     data = _plain(data, place)
+    if kind is not Scene:
+        return _made(kind, place, data, data, SI)
+    units = _units(data)
+    written = {"shown_in": units.name} | {key: value for key, value in data.items() if key != "units"}
+    made = _made(kind, place, written, written, units)
+    # What a scene must be is the same in all units: checked as written, messages show the numbers that the user knows.
+    return made if units == SI else _made(kind, place, converted(written, units.to_si), written, SI)
+
+
+def _units(data: Mapping[str, Any]) -> Units:
+    """Units of the numbers of ``data``."""
+    name = data.get("units", SI.name)
+    if not (isinstance(name, str) and name in UNITS):
+        raise InputError(f"units = {_shown(repr(name))}: must be one of {', '.join(map(repr, UNITS))}")
+    return UNITS[name]
+
+
+def _made(kind: type[_Made], place: str, data: Mapping[str, Any], written: Mapping[str, Any], units: Units) -> _Made:
+    """Make a table from the numbers of ``data``, which are in ``units``; messages show the values ``written``."""
+    known = dict(_leaves(written, place))
     for path, value in _leaves(data, place):
         if isinstance(value, float) and not math.isfinite(value):
             raise InputError(f"{path} = {value}: must be finite")
         if type(value) in (int, float) and value != 0 and not SMALLEST <= abs(value) <= LARGEST:
-            raise InputError(f"{path} = {_shown(value)}: must be zero or of a size from {SMALLEST} to {LARGEST}")
+            shown, where = _shown(known.get(path, value)), "" if data is written else " in SI units"
+            raise InputError(f"{path} = {shown}: must be zero or of a size from {SMALLEST} to {LARGEST}{where}")
     try:
         return msgspec.convert(data, kind)
     except msgspec.ValidationError as error:
         if isinstance(error.__cause__, InputError):
-            raise error.__cause__ from None
-        raise InputError(_explain(str(error), data, kind, place)) from None
+            raise InputError(units.relabelled(str(error.__cause__))) from None
+        raise InputError(_explain(str(error), written, kind, place)) from None
 
 
 def _place(kind: type[Table]) -> str:
@@ -173,6 +198,8 @@ def _override(data: dict[str, Any], override: str) -> None:
     keys = path.strip().split(".")
     if not (equals and all(keys)):
         raise InputError(f"{origin}: must be table.key=value, for example load.P=2e5")
+    if keys == ["units"]:
+        raise InputError(f"{origin}: must stand in the scene file, whose numbers it is about; see shown_in")
     value = value.strip()
     if value[:1].isalpha() and value not in ("true", "false", "nan", "inf"):
         parsed: Any = value  # words are a string: fem.far_field=box
@@ -238,7 +265,8 @@ def _explain(message: str, data: Any, kind: Any, place: str) -> str:
         value = value[int(index)] if index else value[key]
     kind, path = _table(kind, value), ".".join(filter(None, (place, path)))
     if unknown := re.fullmatch(r"(?s)Object contains unknown field `(.*)`", what):
-        return f"{_join(path, unknown[1])}: unknown key{_nearest(unknown[1], _keys(kind))}"
+        keys = [*_keys(kind), *(["units"] if kind is Scene else [])]
+        return f"{_join(path, unknown[1])}: unknown key{_nearest(unknown[1], keys)}"
     if missing := re.fullmatch(r"Object missing required field `(.*)`", what):
         return f"{_join(path, missing[1])}: missing"
     return f"{path} = {_shown(repr(value) if isinstance(value, str) else value)}: must be {_allowed(what, kind)}"

@@ -1,4 +1,4 @@
-"""Writing scenes as TOML."""
+"""Writing scenes as tables and as TOML."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -7,11 +7,23 @@ import msgspec
 import tomli_w
 
 from partialslip.scene import Scene
+from partialslip.scene.dimensions import converted
+from partialslip.units import SI
+
+
+def scene_tables(scene: Scene) -> dict[str, Any]:
+    """Return ``scene`` as the tables of a scene file in the units in which it is shown; None for keys not set.
+
+    :func:`partialslip.parse_scene` makes the scene from these tables again.
+    """
+    tables, units = msgspec.to_builtins(scene), scene.units
+    del tables["shown_in"]
+    return {"units": units.name} | (tables if units == SI else converted(tables, units.from_si))
 
 
 def scene_toml(scene: Scene) -> str:
-    """Text of a scene file for ``scene``, with all settings that are not None."""
-    return tomli_w.dumps(_set(msgspec.to_builtins(scene)))
+    """Text of a scene file for ``scene``, in the units in which it is shown, with all settings that are not None."""
+    return tomli_w.dumps(_set(scene_tables(scene)))
 
 
 def _set(table: Mapping[str, Any]) -> dict[str, Any]:

@@ -40,13 +40,16 @@ def score(
           q = dq/2, or q1 and q2 (Pa), or dFt, Ft, or Ft1 and Ft2 (N/m). Names of other codes are known, too.
         - CalculiX's .frd, or .dat with the .frd of the same name;
         - a format of meshio with point data p and dq, q, or q1 and q2.
+
+        Numbers are in the units in which the scene is shown (:attr:`Scene.shown_in`), in other units if the table's
+        header states them, and in those of the deck if CalculiX ran a deck of :func:`partialslip.export.export`.
     bar : float, optional
         Largest errors of a, m and n, as fractions of a; p and q have 10 and 15 times this bar. By default no bars.
     reference : str, optional
         Method to compare with. By default exact; march if Q and sigma are out of phase; fem for bodies of different
         materials or of finite size.
     factors : (float, float, float)
-        Factors of x, p (Fn) and q (Ft), for other units and signs.
+        Further factors of x, p (Fn) and q (Ft), for other units and signs.
     order : int
         Order of the elements of nodal forces, 1 or 2.
     at : (int, int), optional
@@ -73,7 +76,7 @@ def score(
         raise InputError(f"centre {centre!r}: must be 'given' or 'auto'")
     found = read(file, scene, factors, order, at, columns)
     if centre == "auto":
-        found = centred(found, str(file))
+        found = centred(found, str(file), scene.units)
     result = scored(scene, found, name, str(file))
     outcome = run(scene, [reference], progress=progress)
     return compared(
@@ -84,7 +87,7 @@ def score(
 def _read_as(scene: Scene, result: Result, reference: Result) -> Result:
     """Add notes on likely mistakes to ``result``, and remove quantities that they make meaningless."""
     result = replace(result, notes=(*mistakes(scene, result, reference), *result.notes))
-    if in_another_unit(result, reference):
+    if in_another_unit(scene, result, reference):
         why = dict.fromkeys(("m", "n"), "x is in another unit than the scene")
         result = replace(result, stick_centre=None, stick_half_width=None, undetermined=why)
     if reference.regime == "ratchets":  # not visible in tractions

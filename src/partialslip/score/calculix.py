@@ -13,6 +13,7 @@ import numpy.typing as npt
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.score.calculix_faces import FACE_CORNERS
+from partialslip.units import SYSTEMS, Units
 
 _CONTACT = ("CPRESS", "CSHEAR1")
 _STRESS = " contact stress (slave "
@@ -87,6 +88,16 @@ def read_dat(
     else:
         x = _x_of_nodes(numbers, points[:, 0], keys[:, 0], origin)
     return {"x": x, "p": two[:, 0], "q1": one[:, 1], "q2": two[:, 1]}
+
+
+def stated_units(mesh: str) -> Units | None:
+    """Units of an .frd file, from the names of the materials, if the deck is of :mod:`partialslip.export`; else None.
+
+    CalculiX copies only these names from the deck to the file.
+    """
+    head = mesh[: mesh.find("\n    2C")].splitlines()
+    names = [line[14:].strip() for line in head if line.startswith("    1UMAT")]
+    return next((units for units in SYSTEMS if any(name.endswith(f"_{units.identifier}") for name in names)), None)
 
 
 def _pair(

@@ -8,7 +8,8 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.scene import Scene
-from partialslip.score.headers import headings, known, selected
+from partialslip.score.headers import DIMENSIONS, headings, known, selected
+from partialslip.units import SI, Units
 
 _NO_VALUE = ("", "-", "--", "novalue", "no value", "n/a", "na")
 _MOST_ROWS = 1_000_000
@@ -22,7 +23,7 @@ class Columns(NamedTuple):
     Parameters
     ----------
     values : dict of (n,) arrays
-        By name, SI units.
+        By name.
     made_of : str
         Expressions for the columns, if they differ from the columns' names.
     notes : tuple of str
@@ -36,12 +37,13 @@ class Columns(NamedTuple):
     moment: bool = False
 
 
-def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None) -> Columns:
+def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None, units: Units = SI) -> Columns:
     """Read columns x, p (or Fn) and shear from a table with a header line, in SI units.
 
     ``#`` begins a comment. Separators are commas, semicolons, tabs or blanks. Decimal commas are allowed where commas
     do not separate. Column names are x, p, Fn, dq, q, q1, q2, dFt, Ft, Ft1, Ft2 or those of other codes
-    (:data:`partialslip.score.headers.NAMES`), with a unit in brackets if not SI. Rows without values are skipped.
+    (:data:`partialslip.score.headers.NAMES`), with a unit in brackets if not in ``units``. Rows without values
+    are skipped.
 
     Parameters
     ----------
@@ -49,6 +51,8 @@ def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None) ->
         Content of the file, and its name for messages.
     chosen : mapping of str to str, optional
         Expression for each column: a name or number (from 1) of a column of the table, or sums and differences.
+    units : Units
+        Units of the columns without a unit in brackets.
 
     Raises
     ------
@@ -81,10 +85,10 @@ def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None) ->
     kept = [row for row, whole in zip(rows, full, strict=True) if whole]
     numbers = [number for number, whole in zip(numbers, full, strict=True) if whole]
     table = {column: _numbers([row[column] for row in kept], numbers, names[column], origin) for column in used}
-    values = {
-        name: sum((sign * table[column] for column, sign in each.parts.items()), np.zeros(len(kept))) * each.factor
-        for name, each in wanted.items()
-    }
+    sums = {name: sum((sign * table[column] for column, sign in each.parts.items()), np.zeros(len(kept)))
+            for name, each in wanted.items()}  # fmt: skip
+    values = {name: units.to_si(column, DIMENSIONS[name]) if (unit := wanted[name].unit) is None else column * unit
+              for name, column in sums.items()}  # fmt: skip
     notes = [f"{len(rows) - len(kept)} rows without values were left out"] if len(kept) < len(rows) else []
     expressions = [f"{name} = {each.text}" for name, each in wanted.items() if each.text != name]
     return Columns(values, ", ".join(expressions), tuple(notes), any(each.moment for each in wanted.values()))
@@ -105,16 +109,20 @@ def _unquoted(field: str) -> str:
 
 
 def template(scene: Scene, a: float) -> str:
-    """A table to fill in for ``scene``: points on a contact of half-width ``a`` (m) and beyond, zero tractions."""
-    x = _TEMPLATE_REACH * a * np.linspace(-1, 1, _TEMPLATE_ROWS)
+    """A table to fill in for ``scene``: points on a contact of half-width ``a`` (m) and beyond, zero tractions; in the
+    scene's units."""
+    units, load = scene.units, scene.load
+    x = units.from_si(_TEMPLATE_REACH * a * np.linspace(-1, 1, _TEMPLATE_ROWS), "m")
+    m, Pa, forces = (units.label(of) for of in ("m", "Pa", "N/m"))
+    P, dQ = (units.labelled(force, "N/m", 10) for force in (scene.P, load.dQ))
     head = (
         f"# {scene.name}: put your tractions here and run: partialslip score {scene.name} THIS-FILE\n"
-        "# x: along the contact, m, its middle at 0 (any points will do); p: pressure, Pa;\n"
-        "# dq: change q2 - q1 of the shear traction between load points 1 and 2, Pa, positive where Q is.\n"
-        "# Instead of dq: q (half of it), or q1 and q2. From nodal forces, N per m of depth: Fn, and dFt or Ft1, Ft2.\n"
-        f"# The scene: P = {scene.P:.10g} N/m, dQ = {scene.load.dQ:.10g} N/m, dsigma = {scene.load.dsigma:.10g} Pa, "
+        f"# x: along the contact, {m}, its middle at 0 (any points will do); p: pressure, {Pa};\n"
+        f"# dq: change q2 - q1 of the shear traction between load points 1 and 2, {Pa}, positive where Q is.\n"
+        f"# Instead of dq: q (half of it), or q1 and q2. Nodal forces per depth, {forces}: Fn, and dFt or Ft1, Ft2.\n"
+        f"# The scene: P = {P}, dQ = {dQ}, dsigma = {units.labelled(load.dsigma, 'Pa', 10)}, "
         f"f = {scene.friction.f:.10g}\n"
-        "x,p,dq\n"
+        f"{','.join(units.heading(name, DIMENSIONS[name]) for name in ('x', 'p', 'dq'))}\n"
     )
     return head + "".join(f"{point:.9e},0,0\n" for point in x)
 

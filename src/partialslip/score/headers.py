@@ -5,11 +5,17 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from partialslip.errors import InputError
+from partialslip.units import Dimension
 
 NORMAL = ("p", "Fn")
 SHEARS = (("dq",), ("q",), ("q1", "q2"), ("dFt",), ("Ft",), ("Ft1", "Ft2"))
 
-_OWN = ("x", *NORMAL, *(name for shear in SHEARS for name in shear))
+#: Dimensions of the columns.
+DIMENSIONS: dict[str, Dimension] = {
+    "x": "m", "p": "Pa", "Fn": "N/m",
+    "dq": "Pa", "q": "Pa", "q1": "Pa", "q2": "Pa", "dFt": "N/m", "Ft": "N/m", "Ft1": "N/m", "Ft2": "N/m",
+}  # fmt: skip
+_OWN = tuple(DIMENSIONS)
 
 #: Other names of x, p and the shear traction at one load point, in lower case, with the sign that makes p positive.
 NAMES = {
@@ -45,8 +51,8 @@ class Wanted(NamedTuple):
     ----------
     parts : dict of int to float
         Signs of the table's columns in the sum, by index.
-    factor : float
-        Unit of the columns, in SI units.
+    unit : float or None
+        Unit of the columns, in SI units; None if the header does not state it.
     text : str
         The expression in words.
     moment : bool
@@ -54,7 +60,7 @@ class Wanted(NamedTuple):
     """
 
     parts: dict[int, float]
-    factor: float
+    unit: float | None
     text: str
     moment: bool = False
 
@@ -91,7 +97,7 @@ def known(names: list[str], origin: str) -> dict[str, Wanted]:
         if not any(found[each] for each in group):
             signs, others = NAMES[name], [(k, own.lower(), unit) for k, (own, unit) in enumerate(plain)]
             found[name] = [
-                Wanted({k: 1.0}, unit * signs[own], names[k], name == "q") for k, own, unit in others if own in signs
+                Wanted({k: signs[own]}, unit, names[k], name == "q") for k, own, unit in others if own in signs
             ]
     for name, places in found.items():
         if len(places) > 1:
@@ -142,28 +148,28 @@ def _made_of(text: str, names: list[str], origin: str) -> Wanted:
     for sign in reversed(list(_TERM.finditer(text))):
         first = _made_of(text[: sign.start()], names, origin)
         second = _made_of(text[sign.end() :], names, origin)
-        if first.factor != second.factor:
+        if first.unit != second.unit:
             raise InputError(f"--columns {text}: {first.text} and {second.text} must be in the same unit")
         turn = 1.0 if sign[1] == "+" else -1.0
         parts = dict(first.parts)
         for column, own in second.parts.items():
             parts[column] = parts.get(column, 0.0) + turn * own
-        return Wanted(parts, first.factor, text)
+        return Wanted(parts, first.unit, text)
     if not places and text.startswith("-"):
         first = _made_of(text[1:].strip(), names, origin)
-        return Wanted({column: -sign for column, sign in first.parts.items()}, first.factor, text)
+        return Wanted({column: -sign for column, sign in first.parts.items()}, first.unit, text)
     shown = ", ".join(repr(name) for name in names)[:100]
     raise InputError(
         f"--columns {text}: {origin} has the columns {shown}; must be one of them once, or a number from 1"
     )
 
 
-def _split(name: str) -> tuple[str, float]:
-    """Split a column's name into the name and the unit, as a factor to SI units."""
+def _split(name: str) -> tuple[str, float | None]:
+    """Split a column's name into the name and the unit, as a factor to SI units; None if there is no unit."""
     parts = _UNIT.match(name)
     if parts is None:
-        return name, 1.0
+        return name, None
     unit = parts["unit"].strip().lower()
     if unit not in UNITS:
-        return name, 1.0
+        return name, None
     return parts["name"], UNITS[unit]

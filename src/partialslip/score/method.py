@@ -12,6 +12,7 @@ from partialslip.scene import Scene
 from partialslip.score.ends import NOISE_FACTOR, ZERO_LEVEL, ZoneEnd, left_end, noise, right_end, zone_around_peak
 from partialslip.score.friction import Friction, frictions
 from partialslip.score.samples import FEWEST, Samples
+from partialslip.units import Units
 
 _SLIDES = 0.02  # of 2 f p0: where 2 f p - |dq| is less everywhere, the contact slides
 _F_SIGMAS = 3.0  # uncertainties of f: largest error of 2 f p
@@ -98,11 +99,14 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     )
 
 
-def centred(samples: Samples, origin: str) -> Samples:
-    """Move ``samples`` so that x = 0 is in the middle of the contact. Raises InputError like :func:`scored`."""
+def centred(samples: Samples, origin: str, units: Units) -> Samples:
+    """Move ``samples`` so that x = 0 is in the middle of the contact, with a note in ``units``.
+
+    Raises InputError like :func:`scored`.
+    """
     _, _, left, right = _contact(samples, origin)
     middle = (left.x + right.x) / 2
-    note = f"x = 0 was put in the middle of the contact, at x = {middle:.6g} m"
+    note = f"x = 0 was put in the middle of the contact, at x = {units.labelled(middle, 'm')}"
     return replace(samples.moved(-middle), notes=(*samples.notes, note))
 
 

@@ -6,9 +6,11 @@ import numpy as np
 
 from partialslip.result import Result
 from partialslip.scene import Scene
+from partialslip.units import UNITS, Dimension
 
-_LENGTHS = {"in mm": 1e-3, "in um": 1e-6, "in cm": 1e-2, "in inches": 0.0254}
-_STRESSES = {"in MPa": 1e6, "in GPa": 1e9, "in kPa": 1e3, "in N/um^2": 1e12, "in psi": 6894.757}
+_LENGTHS = {"in m": 1.0, "in mm": 1e-3, "in um": 1e-6, "in cm": 1e-2, "in inches": 0.0254}
+_STRESSES = {"in Pa": 1.0, "in MPa": 1e6, "in GPa": 1e9, "in kPa": 1e3, "in N/um^2": 1e12, "in psi": 6894.757}
+_COLUMNS: tuple[Dimension, ...] = ("m", "Pa")
 _TURNS = {"": 1.0, "of the opposite sign": -1.0, "of half a cycle": 2.0,
           "of half a cycle and of the opposite sign": -2.0, "twice too large": 0.5}  # fmt: skip
 _LIKE = 0.15  # relative difference up to which another unit explains a sum
@@ -25,9 +27,9 @@ class _Guess(NamedTuple):
     factor: float
 
 
-def in_another_unit(result: Result, reference: Result) -> bool:
-    """Whether x in ``result`` is in another unit than in ``reference``."""
-    return _guess(result.a / reference.a, _LENGTHS) is not None
+def in_another_unit(scene: Scene, result: Result, reference: Result) -> bool:
+    """Whether x in the file of ``result`` is in another unit than ``scene``."""
+    return _guess(result.a / reference.a, _others(_LENGTHS, scene.units.size("m"))) is not None
 
 
 def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]:
@@ -38,24 +40,27 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
     f_seen, f_known = (result.settings.get(key) for key in ("f_seen", "f_seen_to"))
     seen = float(f_seen) if isinstance(f_seen, float) and scene.friction.f > 0 else None
     (P, P_off), (dQ, dQ_off) = _sums(result)
-    x = _guess(result.a / reference.a, _LENGTHS) or _Guess("", 1.0)
+    stresses = _others(_STRESSES, scene.units.size("Pa"))
+    x = _guess(result.a / reference.a, _others(_LENGTHS, scene.units.size("m"))) or _Guess("", 1.0)
     P, dQ = P * x.factor, dQ * x.factor
-    p = _guess(P / scene.P, _STRESSES) or _Guess("", 1.0)
+    p = _guess(P / scene.P, stresses) or _Guess("", 1.0)
     P *= p.factor
     share = 1.0 if seen is None else seen / scene.friction.f / p.factor  # of dq, in the dq that friction requires
-    q = _shear(dQ, share, seen is not None, scene)
+    q = _shear(dQ, share, seen is not None, scene, stresses)
     dQ, share = dQ * q.factor, abs(share * q.factor)
     columns = zip(("x", "p", "dq"), (x, p, q), strict=True)
     notes = []
     if found := [f"{column} may be {guess.name}" for column, guess in columns if guess.name]:
         factors = ",".join(f"{guess.factor:g}" for guess in (x, p, q))
-        notes.append(f"{', '.join(found)}: correct with --factors {factors}")
+        notes.append(f"{', '.join(found)}: correct with --factors {factors}{_or_shown_in(scene, x, p, q)}")
     if abs(P / scene.P - 1) > max(_OFF, _SIGMAS * P_off):
         notes.append(f"p adds up to {P / scene.P:.3g} of the scene's P")
     slides, load = 2 * scene.friction.f * scene.P, scene.load.dQ
     if abs(dQ - load) > max(_OFF, _SIGMAS * dQ_off) * max(abs(load), 0.1 * slides):
         notes.append(
-            f"dq adds up to {dQ / load:.3g} of the scene's dQ" if load else f"dq adds up to {dQ:.3g} N/m, not 0"
+            f"dq adds up to {dQ / load:.3g} of the scene's dQ"
+            if load
+            else f"dq adds up to {scene.units.labelled(dQ, 'N/m', 3)}, not 0"
         )
     unsure = float(f_known) / seen if seen and isinstance(f_known, float) else 0.0
     if seen is not None and abs(share - 1) > max(_FRICTION, _SIGMAS * unsure):
@@ -64,9 +69,9 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
     return (*notes, *_places(scene, result, reference, x.factor))
 
 
-def _shear(dQ: float, share: float, seen: bool, scene: Scene) -> _Guess:
+def _shear(dQ: float, share: float, seen: bool, scene: Scene, stresses: dict[str, float]) -> _Guess:
     """Likely mistake in dq, from its resultant ``dQ`` and from ``share``, dq in the dq that friction requires."""
-    turned = {f"{unit} {turn}".strip(): size * sign for unit, size in ({"": 1.0} | _STRESSES).items()
+    turned = {f"{unit} {turn}".strip(): size * sign for unit, size in ({"": 1.0} | stresses).items()
               for turn, sign in _TURNS.items() if unit or turn}  # fmt: skip
     of = dQ / scene.load.dQ if abs(scene.load.dQ) > 0.1 * scene.friction.f * scene.P else np.copysign(share, 1.0)
     if scene.load.dQ == 0 and not seen:
@@ -98,8 +103,23 @@ def _places(scene: Scene, result: Result, reference: Result, factor: float) -> l
     return notes
 
 
+def _others(units: dict[str, float], own: float) -> dict[str, float]:
+    """Sizes of ``units`` in the scene's ``own`` unit, of all others than that."""
+    return {name: float(f"{size / own:.7g}") for name, size in units.items() if size != own}
+
+
+def _or_shown_in(scene: Scene, x: _Guess, p: _Guess, q: _Guess) -> str:
+    """Advice to show the scene in the units of the table, if these are units of scenes."""
+    own, found = scene.units, (x.factor, p.factor, q.factor)
+    for name, other in UNITS.items():
+        length, stress = (float(f"{other.size(of) / own.size(of):.7g}") for of in _COLUMNS)
+        if other != own and found == (length, stress, stress):
+            return f" or --set shown_in={name}"
+    return ""
+
+
 def _guess(ratio: float, units: dict[str, float]) -> _Guess | None:
-    """The unit that explains ``ratio``: a number in the file over the number in SI units; None if no unit does."""
+    """The unit that explains ``ratio``: a number as read over the number that it should be; None if no unit does."""
     return next((_Guess(name, size) for name, size in units.items() if abs(ratio * size - 1) < _LIKE), None)
 
 

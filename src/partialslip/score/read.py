@@ -11,10 +11,11 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.inputfile import check_regular, read_bytes
 from partialslip.scene import Scene
-from partialslip.score.calculix import read_dat, read_frd
+from partialslip.score.calculix import read_dat, read_frd, stated_units
 from partialslip.score.csvfile import Columns, read_csv
-from partialslip.score.headers import NORMAL, SHEARS
+from partialslip.score.headers import DIMENSIONS, NORMAL, SHEARS
 from partialslip.score.samples import Samples, samples
+from partialslip.units import Units
 
 TABLES = (".csv", ".txt", ".tsv", ".rpt")
 LARGEST = 1_000_000_000  # bytes of a file
@@ -41,7 +42,8 @@ def read(
     """Read tractions from ``file``.
 
     Formats: .csv, .txt, .tsv and .rpt tables; .frd and .dat of CalculiX; formats of meshio with point data p and dq, q,
-    or q1 and q2. Parameters as for :func:`partialslip.score`; ``chosen`` are its ``columns``.
+    or q1 and q2. Parameters as for :func:`partialslip.score`; ``chosen`` are its ``columns``. Numbers are in the
+    scene's units unless the file states others.
 
     Raises
     ------
@@ -56,13 +58,19 @@ def read(
     if chosen and suffix not in TABLES:
         raise InputError(f"--columns: must be left out except for tables ({', '.join(TABLES)})")
     if suffix in TABLES:
-        columns = read_csv(text(file), origin, chosen)
-    elif suffix == ".frd":
-        columns = Columns(read_frd(text(file), origin, at, load_points))
-    elif suffix == ".dat":
-        columns = Columns(read_dat(text(file), text(file.with_suffix(".frd")), origin, at, load_points))
+        columns = read_csv(text(file), origin, chosen, scene.units)
+    elif suffix in (".frd", ".dat"):
+        mesh = text(file.with_suffix(".frd"))
+        if suffix == ".frd":
+            found = read_frd(mesh, origin, at, load_points)
+        else:
+            found = read_dat(text(file), mesh, origin, at, load_points)
+        units = stated_units(mesh) or scene.units
+        columns = _in_si(found, units)
+        if units != scene.units:
+            columns = columns._replace(notes=(f"read in {units.words}, the units of the deck",))
     else:
-        columns = Columns(_point_data(file))
+        columns = _in_si(_point_data(file), scene.units)
     notes = columns.notes
     if columns.moment:
         if not load.fully_reversed:
@@ -71,8 +79,13 @@ def read(
                 "give both with --columns q1=...,q2=..."
             )
         notes += (f"{columns.made_of}: shear at load point 2, taken as half of its change",)
-    found = samples(columns.values, origin, factors, order)
-    return replace(found, made_of=columns.made_of, notes=notes)
+    made = samples(columns.values, origin, factors, order)
+    return replace(made, made_of=columns.made_of, notes=notes)
+
+
+def _in_si(values: dict[str, Array], units: Units) -> Columns:
+    """Convert columns in ``units`` to SI units."""
+    return Columns({name: units.to_si(column, DIMENSIONS[name]) for name, column in values.items()})
 
 
 def text(file: Path) -> str:

@@ -14,7 +14,6 @@ from partialslip.errors import InputError
 from partialslip.judge import cell_errors
 from partialslip.output.csv import csv_text
 from partialslip.plan import Effect, Plan, plan, reduced
-from partialslip.report.rows import engineering
 from partialslip.result import Regime, Result
 from partialslip.result.record import Number, ResultRecord
 from partialslip.scene import Scene
@@ -241,7 +240,7 @@ def heading(study: EffectStudy) -> str:
         f"{key} = {'none' if getattr(result, key) is None else f'{getattr(result, key) / result.a:.5f} a'}"
         for key in ("m", "n")
     )
-    return f"{study.scene.name}: {result.regime}, a = {engineering(result.a, 'm', 6)}, {ends}"
+    return f"{study.scene.name}: {result.regime}, a = {study.scene.units.text(result.a, 'm', 6)}, {ends}"
 
 
 def effects_csv(study: EffectStudy) -> str:

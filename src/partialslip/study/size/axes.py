@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import Any
 
-import msgspec
 import numpy as np
 
 from partialslip.batch.job import Job
@@ -17,6 +16,7 @@ from partialslip.errors import InputError
 from partialslip.run import run
 from partialslip.scene import Scene
 from partialslip.scene.reading import parse_scene
+from partialslip.scene.writing import scene_tables
 
 ACCURACY = "accuracy"  # label of a case besides the axes
 _COUNT = 9
@@ -103,8 +103,8 @@ def cases(scene: Scene, axes: Sequence[Axis], accuracies: Sequence[float] = (1.0
     InputError
         If a key is not in the scene, or a value is not allowed.
     """
-    a = run(scene, ["exact"]).results["exact"].a
-    plain = msgspec.to_builtins(scene)
+    a = scene.units.from_si(run(scene, ["exact"]).results["exact"].a, "m")
+    plain = scene_tables(scene)
     found = []
     for values in itertools.product(*(each.values for each in axes)):
         data = deepcopy(plain)

@@ -1,0 +1,54 @@
+"""Dimensions of the numbers of a scene, and scenes as tables in other units."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from partialslip.units import Dimension
+
+_BODIES = ("bodies.upper", "bodies.lower")
+_BODY: dict[str, Dimension] = {"width": "m", "height": "m", "holder.width": "m", "holder.height": "m", "unit": "m"}
+
+#: Dimension of every number of a scene, by key; of an array, of all its numbers.
+DIMENSIONS: dict[str, Dimension] = {
+    **{f"material.{body}E": "Pa" for body in ("", "upper.", "lower.")},
+    **{f"material.{body}nu": "1" for body in ("", "upper.", "lower.")},
+    "profile.R": "m",
+    "profile.b": "m",
+    "profile.x": "m",
+    "profile.gap": "m",
+    "friction.f": "1",
+    "load.P": "N/m",
+    "load.a": "m",
+    "load.p0": "Pa",
+    "load.M": "N",
+    "load.e": "m",
+    "load.Q": "N/m",
+    "load.sigma": "Pa",
+    **{f"{body}.{key}": of for body in _BODIES for key, of in _BODY.items()},
+    "fem.accuracy": "1",
+    "fem.width": "1",
+    "fem.lower_size": "1",
+    "fem.size": "1",
+}
+
+
+def converted(data: Mapping[str, Any], convert: Callable[[float, Dimension], float]) -> dict[str, Any]:
+    """Return the tables ``data`` of a scene with ``convert(number, dimension)`` of every number that has a dimension.
+
+    Keys that are not in a scene, and values that are no numbers, stay as they are. A mesh without ``unit`` is in the
+    unit of length of ``data``.
+    """
+
+    def each(value: Any, path: str) -> Any:
+        if isinstance(value, Mapping):
+            if path in _BODIES and value.get("mesh") is not None and value.get("unit") is None:
+                value = {**value, "unit": 1.0}
+            return {key: each(child, f"{path}.{key}") for key, child in value.items()}
+        of = DIMENSIONS.get(path, "1")
+        if of == "1":
+            return value
+        if isinstance(value, (list, tuple)):
+            return [each(child, path) for child in value]
+        return convert(value, of) if type(value) in (int, float) else value
+
+    return {key: each(value, key) for key, value in data.items()}
