@@ -227,7 +227,23 @@ def test_every_point_is_fitted_or_says_why_not():
     points = trend(made_sizes(off, mesh), "m").points
     assert points == (Point.SMALLER, Point.FITTED, Point.NO_VALUE, Point.FITTED, Point.UNCLEAR, Point.FITTED)
     assert trend(made_sizes(off, np.where(X > 8, 1.0, 0.0)), "m").points[:2] == (Point.FEW, Point.FEW)
-    assert trend(made_sizes(off, np.nan), "m").points[0] is Point.UNCLEAR  # the mesh's error is not known
+    assert trend(made_sizes(off, np.nan), "m").points[0] is Point.UNKNOWN
+
+
+def test_the_same_mesh_twice_gives_no_error_of_the_mesh():
+    """A fixed element size gives the same mesh for every accuracy, and no estimate."""
+    axis = read("load.P=1,2")
+    meshes = [
+        made.solved(
+            scene(), {"load.P": 1.0, "accuracy": accuracy}, {"p": None, "q": None},
+            fem={"a": a, "p_max": 1.0, "m": None, "n": None, "estimate": {}, "counts": {"dofs": dofs}},
+            exact={"a": 1.0, "p_max": 1.0, "m": None, "n": None},
+        )
+        for accuracy, a, dofs in ((8.0, 1.08, 10), (1.0, 1.0, 20), (0.125, 1.0, 20))
+    ]  # fmt: skip
+    assert size.along(axis, meshes[:1]).mesh["a"] == pytest.approx(np.nan, nan_ok=True)
+    assert size.along(axis, meshes[1:]).mesh["a"] == pytest.approx(np.nan, nan_ok=True)
+    assert size.along(axis, meshes).mesh["a"] == pytest.approx(0.01)
 
 
 def entries(name, found, failed=()):

@@ -86,8 +86,9 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", fold
     if len(axes) == 1:
         study = tables.size_study(scene, axes[0], entries)
         texts |= {"points.csv": tables.points_csv(study), "laws.csv": tables.laws_csv(study)}
-        texts["size.svg"] = size_svg(study)
         console.print(tables.heading(study), style="bold", markup=False)
+        if study.trends:
+            texts["size.svg"] = size_svg(study)
         for headings, rows in (tables.changes_table(study), tables.laws_table(study), tables.needed_table(study)):
             if rows:
                 print_table(console, headings, rows)

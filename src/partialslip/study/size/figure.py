@@ -22,18 +22,18 @@ _NAMES = {
 }  # fmt: skip
 _COLUMNS = 2  # panels side by side: few, to be read on a phone
 _FARTHEST = 10.0  # times the largest size: what is shown of extrapolated sizes
-_APART = 0.07  # distance between two labels of the axis, as a fraction of the axis
+_LETTER = 0.036  # width of a letter of the axis, as a fraction of the axis
 _LINE = 80  # characters of the heading
 
 
 def size_svg(study: SizeStudy) -> str:
-    """Return the changes of ``study`` over the size as SVG, a panel for each quantity.
+    """Return the changes of ``study`` over the size as SVG, a panel for each quantity; one size at least is solved.
 
     Fitted points are filled, others open. Lines show the law, errors of the mesh are grey, and marks on the levels the
     sizes from which on the change is below.
     """
     found = study.trends
-    count = max(-(-len(found) // _COLUMNS), 1)
+    count = -(-len(found) // _COLUMNS)
     title = textwrap.fill(heading(study), _LINE)
 
     def draw(figure: "Figure") -> None:
@@ -65,7 +65,7 @@ def _draw_trend(axes: "Axes", study: SizeStudy, trend: Trend) -> None:
         axes.text(1.01, needed.level, f"{100 * needed.level:g} %", transform=across, fontsize=8, va="center")
         _draw_needed(axes, needed, _farthest(study))
     if law := trend.law:
-        title += f": {law.C:.2g} size$^{{-{law.k:.2f}}}$ (k ± {(law.bounds[1] - law.bounds[0]) / 2:.2f})"
+        title += f": {law.C:.2g} size$^{{-{law.k:.2f}}}$ (k ± {(law.bounds[1] - law.bounds[0]) / 2:.1g})"
         for reach, style in (((min(law.sizes), max(law.sizes)), "-"), ((size.min(), _farthest(study)), ":")):
             ends = np.array(reach)
             axes.plot(ends, law.C * ends**-law.k, color="black", ls=style, lw=0.9, zorder=1)
@@ -107,14 +107,14 @@ def _put_sizes(axes: "Axes", study: SizeStudy) -> None:
 
     axes.set(xscale="log", yscale="log")
     sizes = sorted(size for size in (*study.sizes.size.tolist(), *study.sizes.failed) if size > 0)
-    if not sizes:
-        return
     width = math.log(_farthest(study) / sizes[0]) or 1.0
     axes.set_xlim(sizes[0] * math.exp(-0.05 * width), _farthest(study) * math.exp(0.05 * width))
     labels, free = [], -math.inf
     for size in sizes:
-        labels.append(f"{size:.4g}" if math.log(size) >= free else "")
-        free = math.log(size) + _APART * width if labels[-1] else free
+        label = f"{size:.3g}"
+        half = 0.5 * _LETTER * (len(label) + 1) * width
+        labels.append(label if math.log(size) - half >= free else "")
+        free = math.log(size) + half if labels[-1] else free
     axes.xaxis.set_major_locator(FixedLocator(sizes))
     axes.xaxis.set_major_formatter(FixedFormatter(labels))
     axes.xaxis.set_minor_locator(NullLocator())
@@ -141,13 +141,14 @@ def _keys(study: SizeStudy) -> "list[Line2D]":
         ("fitted", {"mfc": "black", **_POINT}, Point.FITTED in points),
         ("not fitted", {"mfc": "white", **_POINT}, bool(points - {Point.FITTED})),
         ("law, dotted beyond the fitted sizes", {"color": "black", "lw": 0.9}, Point.FITTED in points),
-        ("error of the mesh", {"color": "0.6", "marker": ".", "ms": 3, "lw": 0.6}, True),
+        ("error of the mesh", {"color": "0.6", "marker": ".", "ms": 3, "lw": 0.6},
+         any((mesh > 0).any() for mesh in study.sizes.mesh.values())),
         ("change below the level from here on", _MARKS["size"], len(bounds) < 3 * len(study.trends)),
         ("95 % interval, extrapolated", _MARKS["interval"], bool(_extrapolated(study))),
         ("at most this size", _MARKS["at most"], any(needed.high < math.inf for needed in bounds)),
         ("more than this size", _MARKS["more"], any(needed.low > 0 for needed in bounds)),
         ("not solved", _FAILED, bool(study.sizes.failed)),
-    ]
+    ]  # fmt: skip
     return [Line2D([], [], label=label, **style) for label, style, drawn in entries if drawn]
 
 

@@ -22,6 +22,7 @@ class Point(StrEnum):
     FITTED = "fitted"
     SMALLER = "among the smaller sizes; the law holds for large ones"
     UNCLEAR = f"change less than {CLEAR:g} times the mesh's error"
+    UNKNOWN = "the mesh's error is not known: give fem.accuracy instead of fem.size"
     FEW = f"fewer than {_FEWEST} points are left for a law"
     NO_VALUE = "no value to compare"
 
@@ -137,8 +138,9 @@ class Trend:
 
 
 def trends(sizes: Sizes) -> list[Trend]:
-    """Return the trends of all quantities that have a value at one size at least."""
-    return [trend(sizes, quantity) for quantity in QUANTITIES if np.isfinite(sizes.off[quantity]).any()]
+    """Return the trends of all quantities that have a value at one size above 0 at least."""
+    known = [quantity for quantity in QUANTITIES if np.isfinite(sizes.off[quantity][sizes.size > 0]).any()]
+    return [trend(sizes, quantity) for quantity in known]
 
 
 def trend(sizes: Sizes, quantity: str) -> Trend:
@@ -154,7 +156,8 @@ def trend(sizes: Sizes, quantity: str) -> Trend:
     used = at[len(at) // 2 :] if len(at) >= 2 * _FEWEST else at[-_FEWEST:]
     fitted = np.isin(np.arange(len(size)), used) & (len(used) >= _FEWEST)
     clear_but = Point.SMALLER if fitted.any() else Point.FEW
-    points = np.select([fitted, clear, known], [Point.FITTED, clear_but, Point.UNCLEAR], Point.NO_VALUE)
+    which = [fitted, clear, known & np.isnan(mesh), known]
+    points = np.select(which, [Point.FITTED, clear_but, Point.UNKNOWN, Point.UNCLEAR], Point.NO_VALUE)
     law = _fit(size[fitted], off[fitted]) if fitted.any() else None
     order = np.flatnonzero(known)
     needed = tuple(_needed(level, size[order], off[order], mesh[order], clear[order], law) for level in LEVELS)

@@ -124,11 +124,13 @@ def _by_point(axes: Sequence[Axis], entries: Iterable[Solved]) -> dict[tuple[flo
 def _change(meshes: Sequence[Solved]) -> tuple[dict[str, float], dict[str, float]]:
     """Return the change at one point on the finest mesh, and the error of the finest mesh.
 
-    The error is the larger of the method's estimate and an eighth of the change by the last refinement.
+    The error is the larger of the method's estimate and an eighth of the change by the last refinement; NaN without
+    either, as for a fixed element size.
     """
     found, estimate = _off(meshes[-1]), _estimate(meshes[-1])
     estimate["p0"] = estimate.get("p", math.nan)
-    rough = _off(meshes[-2]) if len(meshes) > 1 else {}
+    coarser = [each for each in meshes[:-1] if _dofs(each) != _dofs(meshes[-1])]
+    rough = _off(coarser[-1]) if coarser else {}
     changed = {key: abs(rough.get(key, math.nan) - found.get(key, math.nan)) / _COARSER for key in QUANTITIES}
     mesh = {key: float(np.fmax(estimate.get(key, math.nan), changed[key])) for key in QUANTITIES}
     return {key: abs(found.get(key, math.nan)) for key in QUANTITIES}, mesh
@@ -137,6 +139,11 @@ def _change(meshes: Sequence[Solved]) -> tuple[dict[str, float], dict[str, float
 def _clear(meshes: Sequence[Solved]) -> bool:
     off, mesh = _change(meshes)
     return all(not off[key] < CLEAR * mesh[key] for key in QUANTITIES)
+
+
+def _dofs(entry: Solved) -> int | None:
+    assert entry.run
+    return entry.run.methods["fem"].counts.get("dofs")
 
 
 def _estimate(entry: Solved) -> dict[str, float]:

@@ -12,7 +12,8 @@ from partialslip.study.size.law import LEVELS, Kind, Point, Trend, trends
 from partialslip.study.size.sizes import QUANTITIES, Sizes, along
 
 Rows = list[tuple[str, ...]]
-_MARKS = {Point.FITTED: "f", Point.SMALLER: "s", Point.UNCLEAR: "e", Point.FEW: "x"}
+_MARKS = {Point.FITTED: "f", Point.SMALLER: "s", Point.UNCLEAR: "e", Point.UNKNOWN: "u", Point.FEW: "x"}
+_LISTED = 3  # largest number of sizes that are listed
 _MEANINGS = {
     Kind.MEASURED: "measured: a solved size, where the change is the level within the mesh's error",
     Kind.INTERPOLATED: "interpolated: between two solved sizes",
@@ -77,7 +78,7 @@ def changes_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
         for k, size in enumerate(found.size.tolist())
     }
     failed = {size: (*["-"] * len(points), "") for size in found.failed}
-    rows = [(_short(size), *cells) for size, cells in sorted((solved | failed).items())]
+    rows = [(_short(size), *cells) for size, cells in sorted((solved | failed).items())] if points else []
     return ("size", *points, "mesh"), rows
 
 
@@ -158,5 +159,7 @@ def _short(size: float) -> str:
     return f"{size:.4g}"
 
 
-def _listed(sizes: Iterable[float]) -> str:
-    return ", ".join(map(_short, sizes))
+def _listed(sizes: Sequence[float]) -> str:
+    if len(sizes) <= _LISTED:
+        return ", ".join(map(_short, sizes))
+    return f"{len(sizes)} from {_short(min(sizes))} to {_short(max(sizes))}"
