@@ -23,7 +23,7 @@ _NAMES = {
 _COLUMNS = 2  # panels side by side: few, to be read on a phone
 _FARTHEST = 10.0  # times the largest size: what is shown of extrapolated sizes
 _LETTER = 0.036  # width of a letter of the axis, as a fraction of the axis
-_LINE = 80  # characters of the heading
+_LINE = 66  # characters of the heading
 
 
 def size_svg(study: SizeStudy) -> str:
@@ -44,15 +44,15 @@ def size_svg(study: SizeStudy) -> str:
         for number, trend in enumerate(found):
             axes = panels.flat[number]
             _draw_trend(axes, study, trend)
+            axes.tick_params(axis="x", labelsize=8, labelbottom=number + _COLUMNS >= len(found))
             if number + _COLUMNS >= len(found):
-                axes.tick_params(labelbottom=True)
                 axes.set_xlabel("size")
         for axes in panels[:, 0]:
             axes.set_ylabel("change")
         figure.suptitle(title, x=0.01, ha="left", fontsize=10)
-        figure.legend(handles=_keys(study), loc="outside lower left", ncols=2, frameon=False, fontsize=9)
+        figure.legend(handles=_keys(study), loc="outside lower left", ncols=2, frameon=False, fontsize=8)
 
-    return svg(draw, (6.4, 1.5 + 2.0 * count + 0.15 * title.count("\n")))
+    return svg(draw, (5.2, 1.5 + 2.1 * count + 0.15 * title.count("\n")))
 
 
 def _draw_trend(axes: "Axes", study: SizeStudy, trend: Trend) -> None:
@@ -65,7 +65,7 @@ def _draw_trend(axes: "Axes", study: SizeStudy, trend: Trend) -> None:
         axes.text(1.01, needed.level, f"{100 * needed.level:g} %", transform=across, fontsize=8, va="center")
         _draw_needed(axes, needed, _farthest(study))
     if law := trend.law:
-        title += f": {law.C:.2g} size$^{{-{law.k:.2f}}}$ (k ± {(law.bounds[1] - law.bounds[0]) / 2:.1g})"
+        title += f"\n{law.C:.2g} size$^{{-{law.k:.2f}}}$ (k ± {(law.bounds[1] - law.bounds[0]) / 2:.1g})"
         for reach, style in (((min(law.sizes), max(law.sizes)), "-"), ((size.min(), _farthest(study)), ":")):
             ends = np.array(reach)
             axes.plot(ends, law.C * ends**-law.k, color="black", ls=style, lw=0.9, zorder=1)

@@ -109,12 +109,19 @@ class Needed:
 
     def __str__(self) -> str:
         if self.kind is Kind.EXTRAPOLATED:
-            return f"{self.size:.3g} ({self.low:.3g} to {self.high:.3g}), {self.kind}"
-        if self.kind is not Kind.BOUND:
+            return f"{_digits(self.size)} ({_digits(self.low)} to {_digits(self.high)}), {self.kind}"
+        if self.kind is Kind.INTERPOLATED:
+            return f"{_digits(self.size)}, {self.kind}"
+        if self.kind is Kind.MEASURED:
             return f"{self.size:.3g}, {self.kind}"
         if self.low == 0:
             return f"<= {self.high:.3g}" if self.high < math.inf else "not known"
         return f"> {self.low:.3g}" if self.high == math.inf else f"{self.low:.3g} to {self.high:.3g}"
+
+
+def _digits(size: float) -> str:
+    """Return ``size`` with three digits, zeros included."""
+    return f"{size:#.3g}".removesuffix(".")
 
 
 @dataclass(frozen=True)
