@@ -20,6 +20,7 @@ import partialslip
 from partialslip.batch.job import Job, Solved, solve
 from partialslip.batch.ledger import Ledger
 from partialslip.batch.sweep import Task, sweep, workers
+from partialslip.cli import main
 from partialslip.study.size import sizes as size
 from partialslip.study.size import tables
 from partialslip.study.size.axes import axis as read
@@ -230,6 +231,23 @@ def test_every_point_is_fitted_or_says_why_not():
     assert trend(made_sizes(off, np.nan), "m").points[0] is Point.UNKNOWN
 
 
+def test_the_command_prints_and_writes_what_was_found(tmp_path, monkeypatch, capsys):
+    key = "load.P"
+    solved = entries(key, {at: 40 * at**-2.0 for at in (4.0, 8.0, 16.0, 32.0, 64.0, 128.0)})
+    monkeypatch.setattr(size, "measure", lambda *_, **__: solved)
+    command = ["study", "size", "hertz-shear", "--over", "load.P=4,8,16,32,64,128", "--processes", "1"]
+    assert main([*command, "--out", str(tmp_path / "solved")]) == 0
+    printed = capsys.readouterr().out
+    for text in ("63.2, interpolated", "200 (200 to 200), extrapolated", "3.9e-02 f", "6.2e-01 s"):
+        assert text in printed
+    files = ["cases.csv", "laws.csv", "points.csv", "size.svg"]
+    assert sorted(path.name for path in (tmp_path / "solved").glob("*.[cs]*v*")) == files
+    monkeypatch.setattr(size, "measure", lambda *_, **__: entries(key, {}, [4.0]))
+    assert main([*command, "--out", str(tmp_path / "failed")]) == 1
+    assert "not solved: load.P 4.0, accuracy 1.0: too narrow" in capsys.readouterr().out
+    assert not (tmp_path / "failed" / "size.svg").exists()
+
+
 def test_the_same_mesh_twice_gives_no_error_of_the_mesh():
     """A fixed element size gives the same mesh for every accuracy, and no estimate."""
     axis = read("load.P=1,2")
@@ -252,7 +270,7 @@ def entries(name, found, failed=()):
     solved = [
         made.solved(
             scene(), {name: at, "accuracy": 1.0}, {"p": None, "q": None},
-            fem={"a": 1 - off, "estimate": {"a": 3e-5}, **none}, exact={"a": 1.0, **none},
+            fem={"a": 1 + off, "estimate": {"a": 3e-5}, "counts": {"dofs": 100}, **none}, exact={"a": 1.0, **none},
         )
         for at, off in found.items()
     ]  # fmt: skip

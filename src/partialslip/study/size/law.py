@@ -113,15 +113,16 @@ class Needed:
         if self.kind is Kind.INTERPOLATED:
             return f"{_digits(self.size)}, {self.kind}"
         if self.kind is Kind.MEASURED:
-            return f"{self.size:.3g}, {self.kind}"
+            return f"{self.size:.4g}, {self.kind}"
         if self.low == 0:
-            return f"<= {self.high:.3g}" if self.high < math.inf else "not known"
-        return f"> {self.low:.3g}" if self.high == math.inf else f"{self.low:.3g} to {self.high:.3g}"
+            return f"<= {self.high:.4g}" if self.high < math.inf else "not known"
+        return f"> {self.low:.4g}" if self.high == math.inf else f"{self.low:.4g} to {self.high:.4g}"
 
 
 def _digits(size: float) -> str:
-    """Return ``size`` with three digits, zeros included."""
-    return f"{size:#.3g}".removesuffix(".")
+    """Return ``size`` with three digits, zeros included, and without an exponent up to a million."""
+    text = f"{size:#.3g}".removesuffix(".")
+    return f"{float(text):.0f}" if "e+" in text and size < 1e6 else text
 
 
 @dataclass(frozen=True)
