@@ -65,6 +65,13 @@ def test_bad_axes_are_refused_in_one_line(text):
         read(text)
 
 
+@pytest.mark.parametrize("values", ["1e5", "1e5,1e5", "0,1e5"])
+def test_a_map_needs_two_values_of_each(values, tmp_path, capsys):
+    command = ["study", "size", "hertz-shear", "--over", "friction.f=0.5,0.9", "--over", f"load.P={values}"]
+    assert main([*command, "--out", str(tmp_path / "map")]) == 2
+    assert capsys.readouterr().err == ("partialslip: --over load.P: must have at least 2 values, all > 0, for a map\n")
+
+
 def test_stars_stand_for_every_table_and_a_for_the_half_planes_half_width():
     cases = make(scene(), [read("2*bodies.*.width+bodies.*.height=4a,16a")])
     assert len(cases) == 2

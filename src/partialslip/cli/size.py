@@ -54,6 +54,9 @@ def _size(options: argparse.Namespace) -> int:
     scene = load_scene(options.scene, options.overrides)
     folder = Path(options.out) if options.out else Path("results") / f"{scene.name}-size"
     axes = [axis(text) for text in options.over]
+    for each in axes if len(axes) > 1 else []:
+        if len(set(each.values)) < 2 or min(each.values) <= 0:
+            raise InputError(f"--over {each.name}: must have at least 2 values, all > 0, for a map")
     with held(folder):
         return _swept(options, scene, axes, folder)
 

@@ -2,6 +2,7 @@
 
 import math
 import textwrap
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from partialslip.study.size.tables import SizeStudy, heading
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import XAxis, YAxis
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
@@ -22,7 +24,8 @@ _NAMES = {
 }  # fmt: skip
 _COLUMNS = 2  # panels side by side: few, to be read on a phone
 _FARTHEST = 10.0  # times the largest size: what is shown of extrapolated sizes
-_LETTER = 0.036  # width of a letter of the axis, as a fraction of the axis
+_LETTER = 0.036  # width of a letter of a label, as a fraction of the axis
+_LETTER_WIDE, _LINE_HIGH = 0.018, 0.05  # the same on a map, and the height of a label
 _LINE = 66  # characters of the heading
 
 
@@ -102,22 +105,27 @@ def _draw_needed(axes: "Axes", needed: Needed, farthest: float) -> None:
 
 
 def _put_sizes(axes: "Axes", study: SizeStudy) -> None:
-    """Set logarithmic axes with ticks at the sizes that were solved or failed, and labels where there is room."""
-    from matplotlib.ticker import FixedFormatter, FixedLocator, NullLocator
-
+    """Set logarithmic axes with ticks at the sizes that were solved or failed."""
     axes.set(xscale="log", yscale="log")
     sizes = sorted(size for size in (*study.sizes.size.tolist(), *study.sizes.failed) if size > 0)
     width = math.log(_farthest(study) / sizes[0]) or 1.0
     axes.set_xlim(sizes[0] * math.exp(-0.05 * width), _farthest(study) * math.exp(0.05 * width))
+    _put_ticks(axes.xaxis, sizes, lambda label: width * _LETTER * (len(label) + 1))
+
+
+def _put_ticks(axis: "XAxis | YAxis", values: Sequence[float], room: Callable[[str], float]) -> None:
+    """Put the ticks of a logarithmic axis at ``values``, and labels where there is ``room(label)``, in logarithms."""
+    from matplotlib.ticker import FixedFormatter, FixedLocator, NullLocator
+
     labels, free = [], -math.inf
-    for size in sizes:
-        label = f"{size:.3g}"
-        half = 0.5 * _LETTER * (len(label) + 1) * width
-        labels.append(label if math.log(size) - half >= free else "")
-        free = math.log(size) + half if labels[-1] else free
-    axes.xaxis.set_major_locator(FixedLocator(sizes))
-    axes.xaxis.set_major_formatter(FixedFormatter(labels))
-    axes.xaxis.set_minor_locator(NullLocator())
+    for value in values:
+        label = f"{value:.3g}"
+        at, half = math.log(value), 0.5 * room(label)
+        labels.append(label if at - half >= free else "")
+        free = at + half if labels[-1] else free
+    axis.set_major_locator(FixedLocator(values))
+    axis.set_major_formatter(FixedFormatter(labels))
+    axis.set_minor_locator(NullLocator())
 
 
 _POINT = {"marker": "o", "ls": "", "mec": "black", "ms": 5}
@@ -167,7 +175,6 @@ def grid_svg(x: Array, y: Array, off: Array, labels: tuple[str, str], title: str
     """
     from matplotlib import colormaps
     from matplotlib.colors import LogNorm
-    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
     def draw(figure: "Figure") -> None:
         axes = figure.subplots()
@@ -181,10 +188,9 @@ def grid_svg(x: Array, y: Array, off: Array, labels: tuple[str, str], title: str
         bar = figure.colorbar(filled, ax=axes, ticks=levels, format="%g", label="change")
         bar.ax.minorticks_off()
         axes.set(xscale="log", yscale="log", xlabel=labels[0], ylabel=labels[1])
-        for side in (axes.xaxis, axes.yaxis):
-            side.set_major_locator(LogLocator(subs=(1, 2, 5)))
-            side.set_major_formatter(StrMethodFormatter("{x:g}"))
-            side.set_minor_formatter(NullFormatter())
+        wide, high = (math.log(values.max() / values.min()) for values in (x, y))
+        _put_ticks(axes.xaxis, sorted(x.tolist()), lambda label: wide * _LETTER_WIDE * (len(label) + 1))
+        _put_ticks(axes.yaxis, sorted(y.tolist()), lambda _: high * _LINE_HIGH)
         axes.set_title(title, loc="left", fontsize=10)
 
     return svg(draw, (6.6, 4.6))
