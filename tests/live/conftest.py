@@ -73,12 +73,13 @@ class Browser:
             if wanted(message):
                 return message
 
-    def open(self, path, width=1440, height=900, mobile=False):
-        """Load a file in a window of that size; clear recorded errors and requests."""
+    def open(self, path, width=1440, height=900, mobile=False, link=""):
+        """Load a file, with ``link`` after the name, in a window of that size; clear recorded errors and requests."""
         self.errors, self.asked = [], []
         self.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=mobile)
-        self.send("Page.navigate", url=path.as_uri())
-        self._until(lambda message: message.get("method") == "Page.loadEventFired")
+        for url in (["about:blank"] if link else []) + [path.as_uri() + link]:  # a link alone would not load anew
+            self.send("Page.navigate", url=url)
+            self._until(lambda message: message.get("method") == "Page.loadEventFired")
 
     def run(self, script):
         """Return the value of a JavaScript expression."""

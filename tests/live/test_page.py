@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 import partialslip
 from partialslip import halfplane
@@ -13,6 +14,7 @@ from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.steady import stick_zone, stick_zones, transition
 from partialslip.halfplane.traction import half_range, mean_load_bound
 from partialslip.live import live_page
+from partialslip.report import rows
 from partialslip.scene.reading import load_scene
 
 LARGE = "hertz-large-tension"
@@ -173,10 +175,15 @@ def drawn_ends(page):
     return [zero[0][1] - points[next_to][1] for next_to in (1, -2)]
 
 
+def pressed_by(P, scene):
+    """Return the contact of the scene under another normal force."""
+    return halfplane.contact(replace(scene, load=replace(scene.load, P=P, a=None, p0=None)))
+
+
 def python_zone(page, scene):
     """Return m and n by Python for the loads shown on the page, in SI units."""
     loads = page.run("page.loads()")
-    pressed = halfplane.contact(scene)
+    pressed = pressed_by(loads["P"], scene)
     signs = loads["turn"], loads["turn"] * loads["mirror"]
     found = halfplane.stick_zone(pressed, loads["f"], signs[0] * loads["dQ"], signs[1] * loads["dsigma"])
     return float(found.m) / pressed.a, float(found.n) / pressed.a
@@ -224,6 +231,71 @@ def test_what_is_no_load_is_marked_and_left_out(page, control, text):
     assert answer(page) == before
     page.run("field.blur()")
     assert page.run("[field.getAttribute('aria-invalid'), field.value !== '']") == [None, True]
+
+
+def test_a_normal_force_is_typed(page):
+    """P changes a and p0; dQ, dsigma and f stay, in SI units."""
+    before, scene = page.run("page.loads()"), load_scene(LARGE)
+    page.run("const force = document.querySelector('[type=number][data-sets=P]'); force.focus(); force.select()")
+    page.send("Input.insertText", text="700")
+    found, pressed = answer(page), pressed_by(7e5, scene)
+    assert page.run("page.loads()") == {**before, "P": 7e5}
+    assert (found.a, found.p0) == pytest.approx((pressed.a, pressed.p0), rel=1e-12)
+    assert found.Qf == pytest.approx(scene.load.dQ / (2 * scene.friction.f * 7e5), rel=1e-12)
+    assert found.sf == pytest.approx(scene.load.dsigma / (scene.friction.f * pressed.p0), rel=1e-12)
+    assert (found.m, found.n) == pytest.approx(python_zone(page, scene), abs=1e-9)
+    shown = page.run("['a-1', 'p0-1'].map((id) => document.getElementById(id).textContent)")
+    assert shown == [rows.engineering(pressed.a, "m", 6), rows.engineering(pressed.p0, "Pa", 6)]
+    assert rows.engineering(pressed.a, "m", 5) in page.run("document.querySelector('#tractions').textContent")
+
+
+def test_the_slider_of_P_by_keyboard(page):
+    slider = page.run("(() => { const { min, max, step, value } = document.getElementById('P');"
+                      "return [min, max, step, value].map(Number); })()")  # fmt: skip
+    low, high, step, value = slider
+    assert 0 < low < value < high
+    assert abs(value * 1e3 - load_scene(LARGE).P) <= step * 1e3 / 2
+    page.run("document.getElementById('P').focus()")
+    page.press("ArrowRight", times=3)
+    assert page.run("page.loads().P") == pytest.approx((value + 3 * step) * 1e3, rel=1e-12)
+
+
+SETTINGS = "document.getElementById('opposite').click();" + "".join(
+    f"for (const field of document.querySelectorAll('[type=number][data-sets={name}]')) {{ field.value = '{value}';"
+    "field.dispatchEvent(new Event('input')); }"
+    for name, value in (("P", "701.5"), ("f", "0.4321"), ("sf", "1.2345"), ("Qf", "0"))
+)
+
+
+def test_a_link_holds_the_settings(browser, folder):
+    page = opened(browser, folder)
+    page.run(SETTINGS)
+    before, loads, link = answer(page), page.run("page.loads()"), page.run("document.getElementById('link').hash")
+    assert page.run("new Promise((done) => setTimeout(() => done(location.hash), 600))") == link
+    page = opened(browser, folder, link=link)
+    assert page.run("page.loads()") == pytest.approx(loads, rel=1e-11)
+    after = answer(page)
+    assert [after.m, after.n, after.a] == pytest.approx([before.m, before.n, before.a], rel=1e-9)
+    assert page.run("document.getElementById('opposite').checked")
+    page.run("document.getElementById('reset').click()")
+    assert page.run("new Promise((done) => setTimeout(() => done(location.href), 600))").endswith("page.html")
+    page.run(f"location.hash = {json.dumps(link)}")  # pasted into the address of the open page
+    pasted = page.run("new Promise((done) => setTimeout(() => done(page.loads()), 50))")
+    assert pasted == pytest.approx(loads, rel=1e-11)
+
+
+@pytest.mark.parametrize(
+    "link",
+    ["#", "#nonsense", "#P=&f=&dQ=&dsigma=", "#P=-1&f=0&dQ=1e400&dsigma=NaN", "#P=0&f=1e-9&dQ=0x10&dsigma=Infinity",
+     "#P=1e99&f=%ff&dQ=%3Cscript%3E&other=1", "#__proto__=1&P=1,2&f=0.3a", "#f=0.25&P=none"],
+)  # fmt: skip
+def test_what_is_no_setting_in_a_link_is_left_out(browser, folder, link):
+    page = opened(browser, folder, link=link)
+    loads = page.run("page.loads()")
+    scene = load_scene(LARGE)
+    f = 0.25 if "0.25" in link else scene.friction.f
+    assert loads == {"P": scene.P, "f": f, "dQ": scene.load.dQ, "dsigma": scene.load.dsigma, "turn": 1, "mirror": 1}
+    assert page.errors == []
 
 
 def handle(page):
@@ -284,7 +356,9 @@ def test_mirrored_contact(page):
 def test_it_fits_the_window(browser, folder, width, mobile, scheme):
     browser.send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
     page = opened(browser, folder, width=width, height=900, mobile=mobile)
-    assert page.run("document.documentElement.scrollWidth") == width
+    width_shown = page.run("document.documentElement.clientWidth")  # less a scroll bar
+    assert page.run("document.documentElement.scrollWidth") == width_shown
+    assert width_shown >= width - 20
     if width == 1440:
         assert page.run("document.documentElement.scrollHeight") <= 900
     assert page.run("document.querySelector('#map').getBoundingClientRect().width") > 280
@@ -301,5 +375,5 @@ def test_every_control_has_a_name(page):
         if node.get("role", {}).get("value") in ("slider", "spinbutton", "checkbox", "button", "image", "img")
     ]
     assert [role for role, name in named if not name] == []
-    assert [role for role, _ in named].count("slider") == 4  # three and the map's point
-    assert len({name for role, name in named if role == "spinbutton"}) == 5
+    assert [role for role, _ in named].count("slider") == 5  # four and the map's point
+    assert len({name for role, name in named if role == "spinbutton"}) == 6

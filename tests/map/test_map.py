@@ -194,6 +194,12 @@ def test_other_signs_are_mirrored():
 
 
 @pytest.mark.usefixtures("coarse")
+def test_finite_bodies_are_said_to_be_left_out():
+    lines = place(stick_map(scene("bodies.lower={width=1, height=1}")))
+    assert lines[-1] == "the map shows half-planes: bodies.lower left out"
+
+
+@pytest.mark.usefixtures("coarse")
 def test_the_map_reaches_up_to_the_scene():
     data = stick_map(scene("load.sigma=[-3e9, 3e9]"))
     assert data.point.sf == pytest.approx(30)

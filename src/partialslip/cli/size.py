@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from partialslip.cli.common import Commands
     from partialslip.scene import Scene
     from partialslip.study.size.axes import Axis
-    from partialslip.study.size.sizes import Law, Sizes
 
 
 def add(topics: "Commands") -> None:
@@ -55,6 +54,9 @@ def _size(options: argparse.Namespace) -> int:
     scene = partialslip.load_scene(options.scene, options.overrides)
     folder = Path(options.out) if options.out else Path("results") / f"{scene.name}-size"
     axes = [axis(text) for text in options.over]
+    for each in axes if len(axes) > 1 else []:
+        if len(set(each.values)) < 2 or min(each.values) <= 0:
+            raise InputError(f"--over {each.name}: must have at least 2 values, all > 0, for a map")
     with held(folder):
         return _swept(options, scene, axes, folder)
 
@@ -68,7 +70,7 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", fold
     from partialslip.output.csv import csv_text
     from partialslip.output.files import write_texts
     from partialslip.output.tables import print_table
-    from partialslip.study.size import sizes
+    from partialslip.study.size import sizes, tables
     from partialslip.study.size.figure import grid_svg, size_svg
 
     ledger = Ledger(folder / "ledger.jsonl")
@@ -84,45 +86,23 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", fold
         entries = sizes.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
     console = output()
     texts = {"cases.csv": csv_text(*sizes.table(axes, entries))}
-    unit = "in contact half-widths" if axes[0].in_a else "as in the scene"
     if len(axes) == 1:
-        found = sizes.along(axes[0], entries)
-        laws = [law for quantity in sizes.QUANTITIES if (law := sizes.law(found, quantity))]
-        texts["size.svg"] = size_svg(found, laws, scene.name, unit)
-        console.print(f"{scene.name}: change from the half-plane, over {axes[0].name} {unit}", style="bold")
-        rows = [
-            [f"{value:.4g}", *(_number(found.off[quantity][k]) for quantity in sizes.QUANTITIES), _share(found, k)]
-            for k, value in enumerate(found.size)
-        ]
-        print_table(console, ["size", *sizes.QUANTITIES, "mesh"], rows)
-        if laws:
-            needed = [f"{level:.1%}" for level in sizes.LEVELS]
-            head = ["change = C size^-k", "C", "k", "95 %", "points", *needed]
-            console.print("the law, and the size from which on the change is below", markup=False)
-            print_table(console, head, [_law(law) for law in laws])
+        study = tables.size_study(scene, axes[0], entries)
+        texts |= {"points.csv": tables.points_csv(study), "laws.csv": tables.laws_csv(study)}
+        console.print(tables.heading(study), style="bold", markup=False)
+        if study.trends:
+            texts["size.svg"] = size_svg(study)
+        for headings, rows in (tables.changes_table(study), tables.laws_table(study), tables.needed_table(study)):
+            if rows:
+                print_table(console, headings, rows)
+        lines = tables.notes(study)
     else:
         for quantity in sizes.QUANTITIES:
             grid = sizes.grid(axes, entries, quantity)
             names = tuple(f"{each.name}{', in a' if each.in_a else ''}" for each in axes)
             texts[f"map-{quantity}.svg"] = grid_svg(*grid, (names[0], names[1]), f"{scene.name}: change of {quantity}")
-    failed = [entry for entry in entries if entry.error]
-    for entry in failed:
-        labels = ", ".join(f"{key} {value}" for key, value in entry.labels.items())
-        console.print(f"not solved: {labels}: {entry.error}", soft_wrap=True, markup=False)
+        lines = tables.unsolved(entries)
+    for line in lines:
+        console.print(line, soft_wrap=True, markup=False)
     print_written([ledger.path, *write_texts(folder, texts)], console)
-    return 1 if failed else 0
-
-
-def _number(value: float) -> str:
-    return "" if math.isnan(value) else f"{value:.1e}"
-
-
-def _share(sizes: "Sizes", k: int) -> str:
-    """Return the largest share of a change that may be an error of the mesh, as text."""
-    shares = [sizes.mesh[key][k] / off[k] for key, off in sizes.off.items() if off[k] > 0]
-    return f"{max(shares):.1%}" if shares else ""
-
-
-def _law(law: "Law") -> list[str]:
-    bounds = f"{law.bounds[0]:.2f} to {law.bounds[1]:.2f}"
-    return [law.quantity, f"{law.C:.3g}", f"{law.k:.2f}", bounds, str(law.points), *(f"{s:.3g}" for s in law.needed)]
+    return 1 if any(entry.error for entry in entries) else 0

@@ -43,17 +43,18 @@ const figures = (() => {
       element(svg, "path", { class: "axis", d: path([[box.left - 5, toY(at)], [box.left, toY(at)]]) });
       element(svg, "text", { class: "tick", x: box.left - 8, y: toY(at) + 4, "text-anchor": "end" }, tick(at));
     }
-    element(svg, "text", { x: (box.left + box.right) / 2, y: height - 6, "text-anchor": "middle" }, xLabel);
+    const below = { x: (box.left + box.right) / 2, y: height - 6, "text-anchor": "middle" };
+    const across = element(svg, "text", below, xLabel);
     const middle = (box.top + box.bottom) / 2;
     element(svg, "text", { transform: `translate(12 ${middle}) rotate(-90)`, "text-anchor": "middle" }, yLabel);
-    return { toX, toY, fromX, fromY, box, back, front: element(svg, "g") };
+    return { toX, toY, fromX, fromY, box, back, across, front: element(svg, "g") };
   }
 
-  // Returns draw(answer): tractions and stick zone of the loads.
+  // Returns draw(answer): tractions and stick zone of the loads. `xLabel` gives the label of the axis for an answer.
   function tractions(svg, xLabel) {
     const plot = axes(svg, {
       x: [-1.04, 1.04], y: [-1.1, 1.3], xTicks: [-1, -0.5, 0, 0.5, 1], yTicks: [-1, -0.5, 0, 0.5, 1],
-      xLabel, yLabel: "p/p0 and q/(f p0)",
+      xLabel: "", yLabel: "p/p0 and q/(f p0)",
     });
     const { toX, toY, box } = plot;
     const bound = Array.from({ length: 201 }, (_, i) => -Math.cos(Math.PI * i / 200));
@@ -69,7 +70,9 @@ const figures = (() => {
       if (toX(high) - toX(low) < ROOM) return;
       element(words, "text", { x: (toX(low) + toX(high)) / 2, y: box.top + 15, "text-anchor": "middle" }, text);
     };
-    return ({ zone: found, mirror, turn, regime }) => {
+    return (answer) => {
+      const { zone: found, mirror, turn, regime } = answer;
+      plot.across.textContent = xLabel(answer);
       words.replaceChildren();
       zone.setAttribute("width", 0);
       ends.setAttribute("d", "");

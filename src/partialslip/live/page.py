@@ -4,6 +4,7 @@ from importlib.metadata import version
 from typing import Any
 
 import numpy as np
+from msgspec.structs import fields
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
@@ -15,6 +16,12 @@ from partialslip.units import SI
 
 _SHAPE = 1.5  # width over height of the map on the page
 _NAMES = np.array([(0.05, 0.94), (0.12, 0.94), (0.19, 0.94), (0.8, 0.03), (0.88, 0.03), (0.96, 0.03)])  # regime names
+_SOLVED = {  # fields that the page takes into account; any other that is given is refused
+    "profile": ("R",),
+    "load": ("P", "a", "p0", "Q", "sigma", "cycles", "steps"),
+    "bodies": (),
+    "effects": (),
+}
 _ROUNDED = 5  # decimals of the map's lines
 
 
@@ -26,20 +33,35 @@ def live_page(scene: Scene) -> str:
     Raises
     ------
     InputError
-        If the profile is not ``hertz``, there is no friction, Q and sigma are out of phase, or the bodies' materials
-        differ.
+        If the profile is not ``hertz``, a body is finite, the bodies' materials differ, an effect is forced on or off,
+        there is no friction, or Q and sigma are out of phase.
     """
-    if not isinstance(scene.profile, Hertz):
-        kind = type(scene.profile).__struct_config__.tag
-        raise InputError(f'profile.kind = "{kind}": must be "hertz" for a live page (closed form for Hertz only)')
-    if not scene.load.in_phase:
-        raise InputError("load.sigma: out of phase with load.Q; must be in phase for a live page")
+    _check(scene)
     return (
         template("partialslip.live", "live.html").render(
             data=_data(scene), units=scene.units, version=version("partialslip")
         )
         + "\n"
     )
+
+
+def _check(scene: Scene) -> None:
+    """Raise InputError if the page does not solve ``scene``."""
+    if not isinstance(scene.profile, Hertz):
+        kind = type(scene.profile).__struct_config__.tag
+        raise InputError(f'profile.kind = "{kind}": must be "hertz" for a live page (closed form for Hertz only)')
+    for name, solved in _SOLVED.items():
+        table = getattr(scene, name)
+        for field in fields(table):
+            if field.name not in solved and getattr(table, field.name) != field.default:
+                raise InputError(
+                    f"{name}.{field.encode_name}: must not be given for a live page, which shows the steady state of "
+                    "two half-planes"
+                )
+    if not scene.material.alike:
+        raise InputError("material.upper, material.lower: the bodies differ; must be of one material for a live page")
+    if not scene.load.in_phase:
+        raise InputError("load.sigma: out of phase with load.Q; must be in phase for a live page")
 
 
 def _data(scene: Scene) -> dict[str, Any]:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+_SIZE = (5.2, 5.0)  # inches; narrow, with the legend below, to be read on a phone
 _STRIP = 0.025  # width of the strip of sliding beyond dQ = 2 f P
 
 
@@ -24,7 +25,7 @@ def map_svg(data: StickMap) -> str:
         axes.set(xlabel="ΔQ/(2 f P)", ylabel="Δσ/(f p0)", xlim=(0, 1 + _STRIP), ylim=(0, data.grid.sf.max()))
         axes.plot([], color="black", lw=1, label="m/a, stick from -m")
         axes.plot([], color="black", lw=1, ls="--", label="n/a, stick to n")
-        axes.plot(*data.border[1:], color="black", lw=2.8, label="m = a: large tension above,\nsmall tension below")
+        axes.plot(*data.border[1:], color="black", lw=2.8, label="m = a: large tension above, small below")
         axes.axvspan(1, 1 + _STRIP, color="0.7", lw=0, label="sliding")
         avoided = np.column_stack(data.border[1:])  # no label on the border, nor on the scene's loads
         if data.point:
@@ -33,11 +34,11 @@ def map_svg(data: StickMap) -> str:
             avoided = np.vstack([avoided, place])
         axes.tick_params(pad=9)  # room for the mark of a scene without dQ or dsigma, on an axis
         axes.set_title(data.scene.name if data.scene else "hertz", loc="left", fontsize=10)
-        axes.legend(loc="upper left", bbox_to_anchor=(1.03, 1.0), frameon=False)
+        figure.legend(loc="outside lower left", ncols=2, frameon=False, fontsize=9)
         figure.draw_without_rendering()  # label_lines needs the final size of the axes
         _draw_lines(axes, data, avoided)
 
-    return svg(draw, (7.4, 4.6))
+    return svg(draw, _SIZE)
 
 
 def _draw_lines(axes: "Axes", data: StickMap, avoided: Array) -> None:
@@ -63,9 +64,10 @@ def ends_svg(data: StickMap) -> str:
             axes.set_xlabel("Δσ a/ΔQ")
         for axes in panels[:, 0]:
             axes.set_ylabel("x/a")
-        figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside right upper", frameon=False)
+        keys = panels[0, 0].get_legend_handles_labels()
+        figure.legend(*keys, loc="outside lower left", ncols=2, frameon=False, fontsize=9)
 
-    return svg(draw, (7.4, 5.0))
+    return svg(draw, _SIZE)
 
 
 def _draw_ends(axes: "Axes", data: StickMap, number: int) -> None:
@@ -76,6 +78,6 @@ def _draw_ends(axes: "Axes", data: StickMap, number: int) -> None:
     axes.fill_between(ratio, -m, n, color="0.88", lw=0, label="stick zone [-m, n]")
     axes.plot(ratio, n, color="black", lw=1.4, ls="--", label="n/a")
     axes.plot(ratio, -m, color="black", lw=1.4, label="-m/a")
-    axes.axvline(turn, color="black", lw=1, ls=":", label="from small (left)\nto large tension")
+    axes.axvline(turn, color="black", lw=1, ls=":", label="from small (left) to large tension")
     axes.set(title=f"ΔQ/(2 f P) = {Qf[0]:g}", xlim=(0, ratio[-1]), ylim=(-1.05, 1.05))
     axes.title.set_fontsize(10)

@@ -51,4 +51,6 @@ def place(data: StickMap) -> list[str]:
     reached = ", which are not reached" if exact.regime == "ratchets" else ""
     mirrored = " (dQ and dsigma differ in sign: on the map m and n change places)" if point.mirrored else ""
     limits = rows.limits(exact, data.scene.units)
-    return [f"{name}: {exact.regime}, {ends}{reached}{mirrored}", *([limits] if limits else [])]
+    finite = ", ".join(key for key, _ in data.scene.bodies)
+    left_out = f"the map shows half-planes: {finite} left out" if finite else ""
+    return [f"{name}: {exact.regime}, {ends}{reached}{mirrored}", *filter(None, (limits, left_out))]

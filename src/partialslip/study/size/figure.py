@@ -1,54 +1,163 @@
 """Figures of a size study, legible in black and white."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+import math
+import textwrap
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.output.svg import svg
-from partialslip.study.size.sizes import QUANTITIES, Law, Sizes
+from partialslip.study.size.law import Kind, Needed, Point, Trend
+from partialslip.study.size.tables import SizeStudy, heading
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import XAxis, YAxis
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 _LEVELS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3)  # contours of the change
-_STYLE = {"a": ("o", "-"), "p0": ("s", "--"), "p": ("x", ":"), "m": ("^", "-"), "n": ("v", "--"), "q": ("D", ":")}
-_UNIT = {"a": "a", "p0": "p0, largest p", "p": "p, relative L2", "m": "m, in a", "n": "n, in a", "q": "q, relative L2"}
+_NAMES = {
+    "a": "a", "p0": "p0, largest p", "p": "p, relative L2", "m": "m, in a", "n": "n, in a", "q": "q, relative L2",
+}  # fmt: skip
+_COLUMNS = 2  # panels side by side: few, to be read on a phone
+_FARTHEST = 10.0  # times the largest size: what is shown of extrapolated sizes
+_LETTER = 0.036  # width of a letter of a label, as a fraction of the axis
+_LETTER_WIDE, _LINE_HIGH = 0.018, 0.05  # the same on a map, and the height of a label
+_LINE = 66  # characters of the heading
 
 
-def size_svg(sizes: Sizes, laws: Sequence[Law], title: str, unit: str) -> str:
-    """Return the changes over the size by quantity as SVG, with fitted laws; errors of the mesh in grey.
+def size_svg(study: SizeStudy) -> str:
+    """Return the changes of ``study`` over the size as SVG, a panel for each quantity; one size at least is solved.
 
-    Parameters
-    ----------
-    sizes : Sizes
-    laws : sequence of Law
-    title, unit : str
-        Title of the figure, and unit of the sizes.
+    Fitted points are filled, others open. Lines show the law, errors of the mesh are grey, and marks on the levels the
+    sizes from which on the change is below.
     """
+    found = study.trends
+    count = -(-len(found) // _COLUMNS)
+    title = textwrap.fill(heading(study), _LINE)
 
     def draw(figure: "Figure") -> None:
-        axes = figure.subplots()
-        fitted = {law.quantity: law for law in laws}
-        for quantity in QUANTITIES:
-            mark, line = _STYLE[quantity]
-            off, mesh = sizes.off[quantity], sizes.mesh[quantity]
-            if not np.any(off > 0):
-                continue
-            label = _UNIT[quantity]
-            if law := fitted.get(quantity):
-                label += f": {law.C:.2g} size^-{law.k:.2f} (±{(law.bounds[1] - law.bounds[0]) / 2:.2f})"
-                axes.loglog(sizes.size, law.C * sizes.size**-law.k, color="black", ls=line, lw=0.9)
-            axes.loglog(sizes.size, off, mark, color="black", mfc="white", ms=6, label=label, ls="none")
-            axes.loglog(sizes.size, np.where(mesh > 0, mesh, np.nan), mark, color="0.7", ms=3, ls=line, lw=0.6)
-        axes.plot([], [], color="0.7", lw=0.6, label="of the mesh")
-        axes.set(xlabel=f"{sizes.name}, {unit}", ylabel="change from the half-plane")
-        axes.grid(which="major", color="0.92", lw=0.6)
-        axes.set_title(title, loc="left", fontsize=10)
-        axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), frameon=False, fontsize=9)
+        panels = figure.subplots(count, _COLUMNS, sharex=True, sharey=True, squeeze=False)
+        for axes in panels.flat[len(found) :]:
+            axes.set_axis_off()
+        _put_sizes(panels.flat[0], study)
+        for number, trend in enumerate(found):
+            axes = panels.flat[number]
+            _draw_trend(axes, study, trend)
+            axes.tick_params(axis="x", labelsize=8, labelbottom=number + _COLUMNS >= len(found))
+            if number + _COLUMNS >= len(found):
+                axes.set_xlabel("size")
+        for axes in panels[:, 0]:
+            axes.set_ylabel("change")
+        figure.suptitle(title, x=0.01, ha="left", fontsize=10)
+        figure.legend(handles=_keys(study), loc="outside lower left", ncols=2, frameon=False, fontsize=8)
 
-    return svg(draw, (8.6, 4.6))
+    return svg(draw, (5.2, 1.5 + 2.1 * count + 0.15 * title.count("\n")))
+
+
+def _draw_trend(axes: "Axes", study: SizeStudy, trend: Trend) -> None:
+    """Draw points, law and needed sizes of one quantity."""
+    size, off, mesh = study.sizes.size, study.sizes.off[trend.quantity], study.sizes.mesh[trend.quantity]
+    fitted = np.array([point is Point.FITTED for point in trend.points])
+    title, across = _NAMES[trend.quantity], axes.get_yaxis_transform()
+    for needed in trend.needed:
+        axes.axhline(needed.level, color="0.8", lw=0.6, zorder=0)
+        axes.text(1.01, needed.level, f"{100 * needed.level:g} %", transform=across, fontsize=8, va="center")
+        _draw_needed(axes, needed, _farthest(study))
+    if law := trend.law:
+        title += f"\n{law.C:.2g} size$^{{-{law.k:.2f}}}$ (k ± {(law.bounds[1] - law.bounds[0]) / 2:.1g})"
+        for reach, style in (((min(law.sizes), max(law.sizes)), "-"), ((size.min(), _farthest(study)), ":")):
+            ends = np.array(reach)
+            axes.plot(ends, law.C * ends**-law.k, color="black", ls=style, lw=0.9, zorder=1)
+    axes.plot(size, np.where(mesh > 0, mesh, np.nan), ".-", color="0.6", ms=3, lw=0.6, zorder=1)
+    for which, fill in ((~fitted, "white"), (fitted, "black")):
+        axes.plot(size[which], np.where(off > 0, off, np.nan)[which], "o", mec="black", mfc=fill, ms=5, zorder=3)
+    for failed in study.sizes.failed:
+        axes.axvline(failed, **_FAILED, zorder=0)
+    axes.set_title(title, loc="left", fontsize=9)
+
+
+def _farthest(study: SizeStudy) -> float:
+    """Return the largest size that is shown."""
+    sizes: list[float] = [*study.sizes.size.tolist(), *study.sizes.failed]
+    return min(max([*sizes, *_extrapolated(study)]), _FARTHEST * max(sizes))
+
+
+def _extrapolated(study: SizeStudy) -> list[float]:
+    """Return the upper ends of extrapolated sizes."""
+    return [needed.high for trend in study.trends for needed in trend.needed if needed.kind is Kind.EXTRAPOLATED]
+
+
+def _draw_needed(axes: "Axes", needed: Needed, farthest: float) -> None:
+    """Draw the size for one level on the level's line."""
+    if needed.kind is Kind.BOUND:
+        for at, key in ((needed.low, "more"), (needed.high, "at most")):
+            if 0 < at < np.inf:
+                axes.plot(at, needed.level, **_MARKS[key], zorder=2)
+        return
+    if needed.kind is Kind.EXTRAPOLATED:
+        axes.plot([needed.low, min(needed.high, farthest)], [needed.level] * 2, **_MARKS["interval"], zorder=2)
+    if needed.size <= farthest:
+        axes.plot(needed.size, needed.level, **_MARKS["size"], zorder=2)
+
+
+def _put_sizes(axes: "Axes", study: SizeStudy) -> None:
+    """Set logarithmic axes with ticks at the sizes that were solved or failed."""
+    axes.set(xscale="log", yscale="log")
+    sizes = sorted(size for size in (*study.sizes.size.tolist(), *study.sizes.failed) if size > 0)
+    width = math.log(_farthest(study) / sizes[0]) or 1.0
+    axes.set_xlim(sizes[0] * math.exp(-0.05 * width), _farthest(study) * math.exp(0.05 * width))
+    _put_ticks(axes.xaxis, sizes, lambda label: width * _LETTER * (len(label) + 1))
+
+
+def _put_ticks(axis: "XAxis | YAxis", values: Sequence[float], room: Callable[[str], float]) -> None:
+    """Put the ticks of a logarithmic axis at ``values``, and labels where there is ``room(label)``, in logarithms."""
+    from matplotlib.ticker import FixedFormatter, FixedLocator, NullLocator
+
+    labels, free = [], -math.inf
+    for value in values:
+        label = f"{value:.3g}"
+        at, half = math.log(value), 0.5 * room(label)
+        labels.append(label if at - half >= free else "")
+        free = at + half if labels[-1] else free
+    axis.set_major_locator(FixedLocator(values))
+    axis.set_major_formatter(FixedFormatter(labels))
+    axis.set_minor_locator(NullLocator())
+
+
+_POINT = {"marker": "o", "ls": "", "mec": "black", "ms": 5}
+_BOUND = {"mec": "black", "mfc": "white", "ls": "", "ms": 5}
+_FAILED: dict[str, Any] = {"color": "0.5", "lw": 1.2, "ls": (0, (1, 2))}
+_MARKS: dict[str, dict[str, Any]] = {
+    "size": {"color": "black", "marker": "|", "ls": "", "ms": 9, "mew": 1.6},
+    "interval": {"color": "black", "alpha": 0.5, "lw": 2.4, "solid_capstyle": "butt"},
+    "at most": {"marker": "<", **_BOUND},
+    "more": {"marker": ">", **_BOUND},
+}
+
+
+def _keys(study: SizeStudy) -> "list[Line2D]":
+    """Return the entries of the legend: of what is drawn."""
+    from matplotlib.lines import Line2D
+
+    points = {point for trend in study.trends for point in trend.points}
+    bounds = [needed for trend in study.trends for needed in trend.needed if needed.kind is Kind.BOUND]
+    entries: list[tuple[str, dict[str, Any], bool]] = [
+        ("fitted", {"mfc": "black", **_POINT}, Point.FITTED in points),
+        ("not fitted", {"mfc": "white", **_POINT}, bool(points - {Point.FITTED})),
+        ("law, dotted beyond the fitted sizes", {"color": "black", "lw": 0.9}, Point.FITTED in points),
+        ("error of the mesh", {"color": "0.6", "marker": ".", "ms": 3, "lw": 0.6},
+         any((mesh > 0).any() for mesh in study.sizes.mesh.values())),
+        ("change below the level from here on", _MARKS["size"], len(bounds) < 3 * len(study.trends)),
+        ("95 % interval, extrapolated", _MARKS["interval"], bool(_extrapolated(study))),
+        ("at most this size", _MARKS["at most"], any(needed.high < math.inf for needed in bounds)),
+        ("more than this size", _MARKS["more"], any(needed.low > 0 for needed in bounds)),
+        ("not solved", _FAILED, bool(study.sizes.failed)),
+    ]  # fmt: skip
+    return [Line2D([], [], label=label, **style) for label, style, drawn in entries if drawn]
 
 
 def grid_svg(x: Array, y: Array, off: Array, labels: tuple[str, str], title: str) -> str:
@@ -66,7 +175,6 @@ def grid_svg(x: Array, y: Array, off: Array, labels: tuple[str, str], title: str
     """
     from matplotlib import colormaps
     from matplotlib.colors import LogNorm
-    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
     def draw(figure: "Figure") -> None:
         axes = figure.subplots()
@@ -80,10 +188,9 @@ def grid_svg(x: Array, y: Array, off: Array, labels: tuple[str, str], title: str
         bar = figure.colorbar(filled, ax=axes, ticks=levels, format="%g", label="change")
         bar.ax.minorticks_off()
         axes.set(xscale="log", yscale="log", xlabel=labels[0], ylabel=labels[1])
-        for side in (axes.xaxis, axes.yaxis):
-            side.set_major_locator(LogLocator(subs=(1, 2, 5)))
-            side.set_major_formatter(StrMethodFormatter("{x:g}"))
-            side.set_minor_formatter(NullFormatter())
+        wide, high = (math.log(values.max() / values.min()) for values in (x, y))
+        _put_ticks(axes.xaxis, sorted(x.tolist()), lambda label: wide * _LETTER_WIDE * (len(label) + 1))
+        _put_ticks(axes.yaxis, sorted(y.tolist()), lambda _: high * _LINE_HIGH)
         axes.set_title(title, loc="left", fontsize=10)
 
     return svg(draw, (6.6, 4.6))

@@ -3,11 +3,10 @@
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy.stats import t as student
 
 from partialslip.arrays import Array
 from partialslip.batch.job import Sharing, Solved
@@ -17,11 +16,10 @@ from partialslip.scene import Scene
 from partialslip.study.size.axes import ACCURACY, Axis, cases
 
 QUANTITIES = ("a", "p0", "p", "m", "n", "q")
-LEVELS = (0.05, 0.01, 0.001)
+CLEAR = 10.0  # a change counts if it exceeds the mesh's error by this factor
 _COARSER = 8.0  # ratio of the accuracies of two successive meshes
 _FINER = 3  # largest number of additional meshes where the change is hardly larger than the mesh's error
 _FINEST = 1e-8  # finest accuracy that rounding allows
-_CLEAR = 10.0  # a change counts if it exceeds the mesh's error by this factor
 
 
 def measure(
@@ -88,48 +86,29 @@ class Sizes:
         Change from the half-plane by quantity: a and p0 (largest p) relative, m and n as fractions of a, p and q in
         relative L2.
     mesh : mapping of str to (k,) array
-        Part of the change that may be an error of the mesh.
+        Part of the change that may be an error of the mesh; NaN if not known.
+    failed : mapping of float to str
+        Values along the axis without a solution, and why.
     """
 
     name: str
     size: Array
     off: Mapping[str, Array]
     mesh: Mapping[str, Array]
-
-
-@dataclass(frozen=True)
-class Law:
-    """Fitted law change = C size^-k of one quantity.
-
-    Parameters
-    ----------
-    quantity : str
-    C, k : float
-        By least squares in logarithms, where the change is well above the mesh's error.
-    bounds : (float, float)
-        95 % confidence interval of k.
-    points : int
-        Number of fitted points.
-    needed : tuple of float
-        Sizes from which on the change is below each of LEVELS; infinite if the law gives none.
-    """
-
-    quantity: str
-    C: float
-    k: float
-    bounds: tuple[float, float]
-    points: int
-    needed: tuple[float, ...]
+    failed: Mapping[float, str] = field(default_factory=dict)
 
 
 def along(axis: Axis, entries: Iterable[Solved]) -> Sizes:
-    """Return the sweep along ``axis`` from ``entries`` of a ledger; failed cases are left out."""
+    """Return the sweep along ``axis`` from ``entries`` of a ledger."""
+    entries = list(entries)
     points = {point[0]: _change(meshes) for point, meshes in sorted(_by_point([axis], entries).items())}
+    errors = {float(entry.labels[axis.name]): entry.error for entry in entries if entry.error}
     return Sizes(
         axis.name,
         np.array(list(points)),
         {key: np.array([off[key] for off, _ in points.values()]) for key in QUANTITIES},
         {key: np.array([mesh[key] for _, mesh in points.values()]) for key in QUANTITIES},
+        {size: error for size, error in sorted(errors.items()) if size not in points},
     )
 
 
@@ -145,19 +124,26 @@ def _by_point(axes: Sequence[Axis], entries: Iterable[Solved]) -> dict[tuple[flo
 def _change(meshes: Sequence[Solved]) -> tuple[dict[str, float], dict[str, float]]:
     """Return the change at one point on the finest mesh, and the error of the finest mesh.
 
-    The error is the larger of the method's estimate and an eighth of the change by the last refinement.
+    The error is the larger of the method's estimate and an eighth of the change by the last refinement; NaN without
+    either, as for a fixed element size.
     """
     found, estimate = _off(meshes[-1]), _estimate(meshes[-1])
     estimate["p0"] = estimate.get("p", math.nan)
-    rough = _off(meshes[-2]) if len(meshes) > 1 else {}
+    coarser = [each for each in meshes[:-1] if _dofs(each) != _dofs(meshes[-1])]
+    rough = _off(coarser[-1]) if coarser else {}
     changed = {key: abs(rough.get(key, math.nan) - found.get(key, math.nan)) / _COARSER for key in QUANTITIES}
-    mesh = {key: float(np.fmax(estimate.get(key, math.nan), np.nan_to_num(changed[key]))) for key in QUANTITIES}
+    mesh = {key: float(np.fmax(estimate.get(key, math.nan), changed[key])) for key in QUANTITIES}
     return {key: abs(found.get(key, math.nan)) for key in QUANTITIES}, mesh
 
 
 def _clear(meshes: Sequence[Solved]) -> bool:
     off, mesh = _change(meshes)
-    return all(not off[key] < _CLEAR * mesh[key] for key in QUANTITIES)
+    return all(not off[key] < CLEAR * mesh[key] for key in QUANTITIES)
+
+
+def _dofs(entry: Solved) -> int | None:
+    assert entry.run
+    return entry.run.methods["fem"].counts.get("dofs")
 
 
 def _estimate(entry: Solved) -> dict[str, float]:
@@ -176,36 +162,6 @@ def _off(entry: Solved) -> dict[str, float]:
         if end is not None and true is not None:
             found[key] = (end - true) / a
     return found | {key: error for key in ("p", "q") if (error := errors[key]) is not None}
-
-
-def law(sizes: Sizes, quantity: str) -> Law | None:
-    """Fit the law of ``quantity`` over ``sizes``; None for fewer than three points.
-
-    Points count if the change is at least ten times the mesh's error. The larger half of their sizes is fitted.
-    """
-    off = sizes.off[quantity]
-    clear = np.flatnonzero((off > _CLEAR * sizes.mesh[quantity]) & (off > 0))
-    used = clear[len(clear) // 2 :] if len(clear) >= 6 else clear[-3:]
-    if len(used) < 3:
-        return None
-    x, y = np.log(sizes.size[used]), np.log(off[used])
-    slope, start = np.polyfit(x, y, 1)
-    spread = math.sqrt(np.sum((y - slope * x - start) ** 2) / (len(used) - 2) / np.sum((x - x.mean()) ** 2))
-    beside = float(student.ppf(0.975, len(used) - 2)) * spread
-    needed = tuple(_needed(sizes.size[clear], off[clear], level, math.exp(start), -slope) for level in LEVELS)
-    return Law(quantity, math.exp(start), -slope, (-slope - beside, -slope + beside), len(used), needed)
-
-
-def _needed(size: Array, off: Array, level: float, C: float, k: float) -> float:
-    """Return the size from which on the change is below ``level``, interpolated or extrapolated by the law."""
-    above = np.flatnonzero(off > level)
-    if len(above) == 0:
-        return float(size[0])
-    last = above[-1]
-    if last == len(size) - 1:
-        return float((C / level) ** (1 / k)) if k > 0 else math.inf
-    ends = slice(last, last + 2)
-    return float(np.exp(np.interp(-np.log(level), -np.log(off[ends]), np.log(size[ends]))))
 
 
 def grid(axes: Sequence[Axis], entries: Iterable[Solved], quantity: str) -> tuple[Array, Array, Array]:
