@@ -164,7 +164,8 @@ def methods_in_short(results: Mapping[str, Result], *, compared: bool = False) -
 
 def _spent(result: Result) -> list[str]:
     counts = [_counted(result.counts[key], key) for key in ("dofs", "cells") if result.counts.get(key)]
-    return [f"{result.cost.cpu_s:.3g} CPU s", *counts]
+    seconds = result.cost.cpu_s
+    return [f"{seconds:.3f} CPU s" if seconds < 0.1 else f"{seconds:.1f} CPU s", *counts]
 
 
 def notes(run: Run) -> list[str]:
