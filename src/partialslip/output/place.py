@@ -19,7 +19,7 @@ from partialslip.inputfile import reason
 from partialslip.output.files import write_files, write_new_file, write_texts
 from partialslip.output.lock import FolderInUseError, locked
 
-NAME = ".partialslip.json"
+NAME = ".partialslip"
 # Files of results: a folder that holds one of them, but no request, was written by an earlier version or copied.
 RESULTS = ("results.json", "report.html", "ledger.jsonl", "effects.json", "map.csv", "page.html")
 _TRIES, _PAUSE = 20, 0.1  # s: the holder of a lock writes the request at once
