@@ -58,7 +58,9 @@ def stopped(folder, at, kind=signal.SIGKILL, arguments=RUN):
 
 def whole(folder):
     """Check every file with a final name. Returns the names, and the names of all other files."""
-    names = sorted(path.name for path in folder.iterdir() if path.name not in (NAME, place.NAME)) if folder.exists() else []
+    names = (
+        sorted(path.name for path in folder.iterdir() if path.name not in (NAME, place.NAME)) if folder.exists() else []
+    )
     for name in names:
         path = folder / name
         if name == "results.json":

@@ -122,7 +122,7 @@ def print_elsewhere(place: "Place", console: "Console") -> None:
     """Print on ``console`` that a study goes to another folder than usual, and how to continue the study there."""
     if place.passed:
         usual = place.passed.partition(" holds ")[0]
-        text = f"{place.passed}: starting in {place.path}; to reuse its cases: --out {usual} --force"
+        text = f"{place.passed}; starting in {place.path}; to reuse its cases: --out {usual} --force"
         console.print(text, soft_wrap=True, markup=False)
 
 

@@ -76,20 +76,21 @@ def _cost(options: argparse.Namespace) -> int:
         files = [ledger.path, *write_texts(folder, texts)]
     console = output()
     console.print(f"{scene.name}: what accuracy costs, medians of {options.repeats}", style="bold", markup=False)
-    console.print(ladder.SETTING, soft_wrap=True, markup=False)
+    console.print(ladder.SETTING, markup=False)
     best = {id(point) for point in ladder.front(found)}
-    head = ["series (* on the front)", "setting", "m", "n", "q", "unknowns", "CPU s", "process"]
-    shown = [*found, *peers] if options.verbose else [point for point in found if id(point) in best]
-    print_table(console, head, [_row(point, id(point) in best) for point in shown], words=(0, 1))
+    head = ["setting", "m", "n", "q", "unknowns", "CPU s", "process"]
     if options.verbose:
+        rows = [_row(point, id(point) in best) for point in [*found, *peers]]
+        print_table(console, ["series (* on the front)", *head], rows, words=(0, 1))
         print_table(
             console,
             ["exponent against unknowns", "m, n", "q", "CPU"],
             [[series, *(_number(of[key], ".2f") for key in of)] for series, of in ladder.slopes(found).items()],
         )
-    elif beaten := len(found) - len(best):
-        more = f"{beaten} settings cost more than one of these and err more: --verbose, and cost.csv"
-        console.print(more, soft_wrap=True, markup=False)
+    else:
+        rows = [_row(point, False) for point in found if id(point) in best]
+        print_table(console, ["series", *head], rows, words=(0, 1))
+        console.print(f"{len(found) - len(best)} other settings cost more for the error: --verbose, or cost.csv")
     for line in _against(found, peers):
         console.print(line, soft_wrap=True, markup=False)
     print_written(files, console, place.passed)

@@ -89,8 +89,9 @@ def _score(options: argparse.Namespace) -> int:
 
     file = Path(options.file)
     check(file)  # before a folder is created
-    frd = file.with_suffix(".frd") if file.suffix.lower() == ".dat" else None  # has the mesh of a .dat
-    known = {"file": file, "mesh": frd, "factors": factors, "reference": options.reference or reference_for(scene)}
+    beside = file.with_suffix(".frd")  # has the mesh of a .dat
+    mesh = beside if file.suffix.lower() == ".dat" and beside.is_file() else None
+    known = {"file": file, "mesh": mesh, "factors": factors, "reference": options.reference or reference_for(scene)}
     name = f"{scene.name}-{file.stem}"
     with folder_if_wanted(options, "score", name, scene, **known) as (folder, passed), working(scene.name) as tell:
         outcome = score(

@@ -97,12 +97,12 @@ def ladder(scene: Scene) -> list[Job]:
     cases = [_case(scene, ("exact",), "exact", "", {})]
     if plan(scene).needs("friction"):
         cases += [
-            _case(scene, ("exact", "march"), "march", f"accuracy {asked:g}", {"accuracy": asked})
+            _case(scene, ("exact", "march"), "march", _asked(asked), {"accuracy": asked})
             for asked in (1e-3, 1e-4, 1e-5, 1e-6)
         ]
     for series, (fixed, accuracies) in _ADAPTED.items():
         cases += [
-            _case(scene, ("exact", "fem"), f"{series}, adapted", f"accuracy {asked:g}", {**fixed, "accuracy": asked})
+            _case(scene, ("exact", "fem"), f"{series}, adapted", _asked(asked), {**fixed, "accuracy": asked})
             for asked in accuracies
         ]
     for series, order in _UNIFORM.items():
@@ -112,6 +112,11 @@ def ladder(scene: Scene) -> list[Job]:
             for size in sizes
         ]
     return cases
+
+
+def _asked(accuracy: float) -> str:
+    digits, _, power = f"{accuracy:.0e}".partition("e")
+    return f"accuracy {digits}e{int(power)}"
 
 
 def _case(scene: Scene, methods: tuple[str, ...], series: str, setting: str, fem: dict[str, Any]) -> Job:
