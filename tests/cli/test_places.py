@@ -61,6 +61,22 @@ def test_a_named_folder_is_refused_unless_forced():
         answer(one, "mine")
 
 
+@pytest.mark.fault
+def test_settings_that_are_left_out_of_the_comparison_are_noticed(monkeypatch):
+    """Deliberate fault: only command and scene are compared, so that other settings overwrite."""
+
+    def without_settings(asked):
+        return {**json.loads(json.dumps(asked)), "settings": {}}
+
+    answer(request(methods=["exact"]))
+    assert answer(request(methods=["fem"]))[0] != USUAL
+    (USUAL / NAME).unlink()
+    (USUAL / "results.json").unlink()
+    monkeypatch.setattr(place, "_plain", without_settings)
+    answer(request(methods=["exact"]))
+    assert answer(request(methods=["fem"]))[0] == USUAL
+
+
 def test_files_of_others_stay():
     """Their folder is used; results of unknown settings are not overwritten."""
     USUAL.mkdir(parents=True)

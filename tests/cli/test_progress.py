@@ -30,6 +30,7 @@ def test_cases_are_counted(clock, capsys):
     with consoles.counting("verify full", "writing the report") as progress:
         for clock[0], done in ((0.0, 3), (8.0, 4), (9.0, 5), (20.0, 6)):
             progress(done, 6, math.nan if done == 3 else 60.0 - clock[0])
+        progress(6, 9, math.nan)  # a study adds cases
     assert capsys.readouterr().err.splitlines() == [
         "3 cases were finished before",
         "verify full: 4 of 6 cases, 52 s left (8 s)",

@@ -119,10 +119,9 @@ def _instead(passed: str) -> str:
 
 
 def print_elsewhere(place: "Place", console: "Console") -> None:
-    """Print on ``console`` that a study goes to another folder than usual, and how to continue the study there."""
+    """Print on ``console`` that a study starts in another folder than usual, and how to extend the usual one."""
     if place.passed:
-        usual = place.passed.partition(" holds ")[0]
-        text = f"{place.passed}; starting in {place.path}; to reuse its cases: --out {usual} --force"
+        text = f"{place.passed}; starting in {place.path}; --out and --force with the former folder reuse its cases"
         console.print(text, soft_wrap=True, markup=False)
 
 

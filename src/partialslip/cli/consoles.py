@@ -53,7 +53,7 @@ def working(name: str) -> Iterator[Callable[[str], None]]:
 def counting(name: str, closing: str = "") -> Iterator[Callable[[int, int, float], None]]:
     """Show how many cases of ``name`` are done while the block runs.
 
-    Yields ``progress(done, total, seconds_left)``. The first call, with NaN, starts the bar: input errors come before.
+    Yields ``progress(done, total, seconds_left)``. The first call starts the bar: input errors come before.
     ``closing`` is the work after the last case.
     """
     console = messages()
@@ -67,18 +67,21 @@ def counting(name: str, closing: str = "") -> Iterator[Callable[[int, int, float
     bar = Progress(*columns, console=console, transient=True)
     task = bar.add_task("", total=None, left="")
     log = None if _live(console) else _Log(name, console)
+    began = False
     with ExitStack() as running:
 
         def progress(done: int, total: int, left: float) -> None:
+            nonlocal began
+            if not began and not log:
+                running.enter_context(bar)
+            if not began and done:
+                console.print(f"{done} cases were finished before", markup=False)
+            began = True
             text = closing if done == total else "" if math.isnan(left) else f"{left:.0f} s left"
             if log:
                 log(", ".join(filter(None, [f"{done:,} of {total:,} cases", text])))
             else:
-                if math.isnan(left):
-                    running.enter_context(bar)
                 bar.update(task, completed=done, total=total, left=text)
-            if math.isnan(left) and done:
-                console.print(f"{done} cases were finished before", markup=False)
 
         yield progress
 
