@@ -36,7 +36,7 @@ FINE = 1e-6  # beyond that one scene of each kind
 BUDGETS = (2.0, 5.0, 20.0)
 CHECKED = range(500, 520)
 SHIPPED = Path(partialslip.__file__).parent / "study" / "cost" / "prices.json"
-RUN = [sys.executable, "-m", "partialslip", "run"]
+RUN = [sys.executable, "-m", "partialslip", "run", "--force"]
 
 
 def fitted() -> list[Job]:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from partialslip.cli import main
+from partialslip.output import place
 from partialslip.output.files import write_files
 from partialslip.output.lock import NAME  # this file may stay; the lock does not
 
@@ -57,7 +58,9 @@ def stopped(folder, at, kind=signal.SIGKILL, arguments=RUN):
 
 def whole(folder):
     """Check every file with a final name. Returns the names, and the names of all other files."""
-    names = sorted(path.name for path in folder.iterdir() if path.name != NAME) if folder.exists() else []
+    names = (
+        sorted(path.name for path in folder.iterdir() if path.name not in (NAME, place.NAME)) if folder.exists() else []
+    )
     for name in names:
         path = folder / name
         if name == "results.json":
@@ -97,7 +100,7 @@ def test_stopped_at_a_write(tmp_path, at, kind):
     stop_and_rerun(tmp_path, at, kind)
 
 
-@pytest.mark.parametrize(("at", "cases", "kind"), [(19, 1, signal.SIGKILL), (29, 2, signal.SIGINT)])
+@pytest.mark.parametrize(("at", "cases", "kind"), [(25, 1, signal.SIGKILL), (35, 2, signal.SIGINT)])
 def test_a_verification_stopped_at_a_write_goes_on(tmp_path, at, cases, kind):
     """Before the second case is in the ledger, and while the PDF is written."""
     assert stopped(tmp_path, at, kind, VERIFY)[0] == (-signal.SIGKILL if kind == signal.SIGKILL else 130)
@@ -107,7 +110,7 @@ def test_a_verification_stopped_at_a_write_goes_on(tmp_path, at, cases, kind):
     assert main([*VERIFY[:-1], str(tmp_path / "out")]) == 0
     assert ledger.read_bytes().startswith(kept)
     assert json.loads((tmp_path / "out" / "results.json").read_text("utf-8"))["finished"]
-    names = {path.name for path in (tmp_path / "out").iterdir()}
+    names = {path.name for path in (tmp_path / "out").iterdir() if path.name != place.NAME}
     assert names == {"ledger.jsonl", "report.html", "report.pdf", "results.csv", "results.json"}
 
 

@@ -1,5 +1,6 @@
 """Exported decks and meshes: what is in them is the scene. With CalculiX at hand (slow): what it makes of them, too."""
 
+import os
 import shutil
 import subprocess
 from dataclasses import replace
@@ -319,9 +320,12 @@ def test_bad_options(options, said, capsys, tmp_path, monkeypatch):
 
 def test_command(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert main(["export", SCENE, "--to", "calculix", "--size", "0.5", "--growth", "1"]) == 0
-    assert "hertz-large-tension.inp" in capsys.readouterr().out
-    assert (tmp_path / "results" / f"{SCENE}.inp").is_file()
+    coarse = ("--size", "0.5", "--growth", "1")
+    for to, options in (("calculix", []), ("abaqus", []), ("calculix", []), ("calculix", ["--stiffer", "2"])):
+        assert main(["export", SCENE, "--to", to, *coarse, *options]) == 0
+    assert capsys.readouterr().out.splitlines()[-1].startswith(f"written: results{os.sep}{SCENE}-calculix-2.inp (")
+    decks = sorted(path.name for path in (tmp_path / "results").iterdir())
+    assert decks == [f"{SCENE}-{end}.inp" for end in ("abaqus", "calculix-2", "calculix")]
 
 
 def computed(scene, folder, **how):

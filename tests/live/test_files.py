@@ -14,6 +14,7 @@ from partialslip.halfplane import contact
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.steady import stick_zones
 from partialslip.live import live_page
+from partialslip.output import place
 from partialslip.scene.reading import load_scene
 
 
@@ -54,7 +55,7 @@ def test_one_file(tmp_path, monkeypatch, capsys):
     path = Path("results", "fretting-aluminium-page", "page.html")
     assert capsys.readouterr().out == f"written: {path}\n"
     assert main(["page", "hertz-shear", "--out", "here"]) == 0
-    assert sorted(file.name for file in Path("here").iterdir()) == ["page.html"]
+    assert sorted(file.name for file in Path("here").iterdir()) == [place.NAME, "page.html"]
     assert "<h1>hertz-shear</h1>" in Path("here", "page.html").read_text("utf-8")
 
 

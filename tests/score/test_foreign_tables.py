@@ -89,7 +89,9 @@ def test_centre_auto_puts_x_in_the_middle(tmp_path, capsys):
     assert f"at x = {3 * EXACT.a:.6g} m" in " ".join(put.results["t.csv"].notes)
     folder = str(tmp_path / "out")
     assert main(["score", "fretting-aluminium", str(path), "--centre", "auto", "--bar", "1e-2", "--out", folder]) == 0
-    assert main(["score", "fretting-aluminium", str(path), "--columns", "x=1,p=2,dq=dq", "--out", folder]) == 0
+    assert (
+        main(["score", "fretting-aluminium", str(path), "--columns", "x=1,p=2,dq=dq", "--out", folder, "--force"]) == 0
+    )
     assert "not judged" in capsys.readouterr().out
 
 

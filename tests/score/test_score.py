@@ -12,6 +12,7 @@ import partialslip
 from partialslip import load_scene, run, score
 from partialslip.cli import main
 from partialslip.judge import Outcome
+from partialslip.output import place
 
 SCENES = ("hertz-shear", "hertz-small-tension", "hertz-large-tension", "fretting-aluminium", "flat-rounded")
 FIXTURES = Path(__file__).parent
@@ -253,7 +254,12 @@ def test_on_the_command_line(exact, tmp_path, monkeypatch, capsys):
     assert "$a_[red]$.csv" in printed
     assert "no bars: none were asked for" in printed
     folder = tmp_path / "results" / "hertz-shear-$a_[red]$"
-    assert sorted(path.name for path in folder.iterdir()) == ["report.html", "results.json", "tractions.csv"]
+    assert sorted(path.name for path in folder.iterdir()) == [
+        place.NAME,
+        "report.html",
+        "results.json",
+        "tractions.csv",
+    ]
     assert "p/p0, $a_[red]$.csv" in (folder / "report.html").read_text("utf-8")
     record = json.loads((folder / "results.json").read_text("utf-8"))
     assert record["comparison"]["$a_[red]$.csv"]["errors"]["m"] < 1e-6

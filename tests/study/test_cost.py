@@ -11,6 +11,7 @@ import partialslip
 from partialslip.batch.job import Job, ProcessCost, solve_apart
 from partialslip.batch.ledger import Ledger
 from partialslip.cli import main
+from partialslip.cli.cost import _progress
 from partialslip.study.cost import ladder as cost
 from partialslip.study.cost import prices
 
@@ -60,6 +61,35 @@ def test_what_was_measured_is_not_measured_again(tmp_path, monkeypatch):
     (found,) = cost.measure(SCENE, Ledger(tmp_path / "ledger.jsonl"), 3)
     assert len(solved) == 3
     assert found.cpu_s == 2.0
+
+
+def test_a_study_of_cost_says_what_runs_and_how_long_it_takes(tmp_path, monkeypatch):
+    """The time left follows from an earlier repeat of the same setting, else from the mean."""
+    walls = {"accuracy 0.01": 1.0, "accuracy 1e-05": 9.0}
+
+    def apart(case):
+        wall, errors = walls[case.labels["setting"]], dict.fromkeys(cost.KEYS, 1e-3)
+        fem = {"cost": made.cost(wall), "counts": {"dofs": 10}}
+        return made.solved(SCENE, case.labels, errors, ProcessCost(wall, 0.0, 100.0, wall), exact=fem, fem=fem)
+
+    monkeypatch.setattr(cost, "solve_apart", apart)
+    cases = [Job(SCENE, ("exact", "fem"), {"series": "P4, adapted", "setting": setting}) for setting in walls]
+    monkeypatch.setattr(cost, "ladder", lambda _: cases)
+    told = []
+    cost.measure(SCENE, Ledger(tmp_path / "ledger.jsonl"), 2, lambda *state: told.append(_progress(*state)))
+    assert told == [
+        "run 1 of 4: P4, adapted, accuracy 0.01",
+        "run 2 of 4: P4, adapted, accuracy 1e-05, 3 s left",
+        "run 3 of 4: P4, adapted, accuracy 0.01, 10 s left",
+        "run 4 of 4: P4, adapted, accuracy 1e-05, 9 s left",
+        "drawing",
+    ]
+
+
+def test_every_setting_says_what_it_is():
+    labels = [case.labels for case in cost.ladder(SCENE)]
+    assert {str(label["setting"]).split()[0] for label in labels if label["setting"]} == {"accuracy", "h"}
+    assert [label["series"] for label in labels if not label["setting"]] == ["exact"]
 
 
 def test_the_front_is_what_nothing_beats():

@@ -118,7 +118,7 @@ def test_what_another_run_takes_over(change, solved_again, tmp_path, monkeypatch
     known = []
     verified = driver.verify_suite(
         "stress", **settings | {key: value for key, value in change.items() if key != "code"},
-        progress=lambda done, *_: known.append(done),
+        force=True, progress=lambda done, *_: known.append(done),
     )  # fmt: skip
     assert known[0] == (0 if solved_again else 1)
     assert verified.again == (("stress-5-1",) if solved_again else ())

@@ -17,6 +17,7 @@ from partialslip.batch.ledger import key_of, scene_content
 from partialslip.batch.sweep import Task
 from partialslip.errors import InputError, PartialslipError
 from partialslip.report import Record, record, write_run
+from partialslip.result.memory import process_peak_mb
 from partialslip.run import Run, run
 from partialslip.scene import Scene
 
@@ -61,7 +62,8 @@ class ProcessCost(msgspec.Struct, frozen=True):
     cpu_s, report_cpu_s : float
         CPU seconds without the report, and of writing the report.
     peak_rss_mb : float
-        Peak memory, MB.
+        Peak resident memory since the start of the process, MB, without the report; 0 where the system does not
+        report it.
     wall_s : float
         Wall seconds.
     """
@@ -148,11 +150,12 @@ def solve_apart(job: Job) -> Solved:
 def _costs(outcome: Run) -> ProcessCost:
     """Return the cost of this process up to now, and of writing the report."""
     cpu = time.process_time() + sum(each.cost.meshing_cpu_s for each in outcome.results.values())
+    peak = process_peak_mb() or 0.0
     began = time.process_time()
     with tempfile.TemporaryDirectory() as folder:
         write_run(outcome, Path(folder))
     report = time.process_time() - began
-    return ProcessCost(cpu, report, max(each.cost.peak_rss_mb or 0.0 for each in outcome.results.values()))
+    return ProcessCost(cpu, report, peak)
 
 
 def _apart() -> None:

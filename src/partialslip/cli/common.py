@@ -1,5 +1,6 @@
 """Functions shared by several commands."""
 
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,9 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from partialslip.batch.ledger import Ledger
+    from partialslip.output.place import Place
     from partialslip.run import Run
+    from partialslip.scene import Scene
 
     Commands = argparse._SubParsersAction[Any]
 
@@ -25,11 +28,15 @@ def add_scene(parser: "argparse.ArgumentParser") -> None:
                         "repeated")  # fmt: skip
 
 
-def held(folder: Path | None) -> AbstractContextManager[None]:
-    """Lock ``folder`` until the block ends. Raises InputError if another process writes to the folder."""
-    from partialslip.output.lock import locked
+def add_force(parser: "argparse.ArgumentParser") -> None:
+    """Add ``--force`` to ``parser``."""
+    parser.add_argument("--force", action="store_true",
+                        help="overwrite the files of another scene or other settings")  # fmt: skip
 
-    return nullcontext() if folder is None else locked(folder)
+
+def add_verbose(parser: "argparse.ArgumentParser", what: str) -> None:
+    """Add ``--verbose``, which also prints ``what``, to ``parser``."""
+    parser.add_argument("-v", "--verbose", action="store_true", help=f"also print {what}")
 
 
 def check_folder(out: str | None) -> None:
@@ -38,17 +45,85 @@ def check_folder(out: str | None) -> None:
         raise InputError("--out '': must name a folder")
 
 
-def out_folder(options: "argparse.Namespace", name: str) -> Path | None:
-    """Return the folder for the files of a run: ``--out`` of ``options``, else results/``name``.
+# Options that do not change the results.
+_NEUTRAL = {"command", "scene", "overrides", "own_process", "line"}
+_NEUTRAL |= {"out", "force", "json", "pdf", "verbose", "save", "processes", "cluster"}
 
-    With ``--json`` and without ``--out``, None: no files.
+
+def results_folder(
+    options: "argparse.Namespace", command: str, name: str, scene: "Scene | None", **inputs: object
+) -> "AbstractContextManager[Place]":
+    """Choose and lock the folder for the files of a command (:func:`partialslip.output.place.placed`).
+
+    Parameters
+    ----------
+    options : Namespace
+        ``out``, ``force`` and all other options.
+    command : str
+    name : str
+        The usual folder is results/``name``.
+    scene : Scene or None
+        Scene as the user gave it.
+    inputs : optional
+        By option: an input file, whose content counts, or a setting as the command understands it.
     """
-    return Path(options.out) if options.out else None if options.json else Path("results") / name
+    from partialslip.output.place import placed
+
+    return placed(Path("results") / name, options.out, _request(options, command, scene, inputs), options.force)
 
 
-def print_written(files: list[Path], console: "Console") -> None:
-    """Print the paths of ``files`` on ``console``."""
-    console.print("written: " + ", ".join(map(str, files)), soft_wrap=True, markup=False)
+def folder_if_wanted(
+    options: "argparse.Namespace", command: str, name: str, scene: "Scene", **inputs: object
+) -> AbstractContextManager[tuple[Path | None, str]]:
+    """As :func:`results_folder`; but with ``--json`` and without ``--out`` there is no folder, None."""
+    if options.json and options.out is None:
+        return nullcontext((None, ""))
+    return results_folder(options, command, name, scene, **inputs)
+
+
+def _request(
+    options: "argparse.Namespace", command: str, scene: "Scene | None", inputs: Mapping[str, object]
+) -> dict[str, Any]:
+    """Return command, scene and settings as plain data: what must be the same for files to be overwritten."""
+    from partialslip.batch.ledger import scene_content
+    from partialslip.output.place import content
+
+    given = {key: value for key, value in vars(options).items() if key not in _NEUTRAL} | {**inputs}
+    return {
+        "command": command,
+        "scene": {key: value for key, value in (scene_content(scene) if scene else {}).items() if key != "title"},
+        "settings": {
+            key: content(value) if isinstance(value, Path) else value
+            for key, value in given.items()
+            if value is not None and value is not False
+        },
+    }
+
+
+def print_written(files: list[Path], console: "Console", passed: str = "") -> None:
+    """Print the paths of ``files`` on ``console``, and what the usual place holds if the files are elsewhere."""
+    places = [f"{', '.join(names)} in {folder}" for folder, names in _by_folder(files).items()]
+    text = str(files[0]) if len(files) == 1 else "; ".join(places)
+    console.print(f"written: {text}{_instead(passed)}", soft_wrap=True, markup=False)
+
+
+def _by_folder(files: list[Path]) -> dict[Path, list[str]]:
+    """Return the names of ``files`` by folder."""
+    folders: dict[Path, list[str]] = {}
+    for file in files:
+        folders.setdefault(file.parent, []).append(file.name)
+    return folders
+
+
+def _instead(passed: str) -> str:
+    return f" ({passed})" if passed else ""
+
+
+def print_elsewhere(place: "Place", console: "Console") -> None:
+    """Print on ``console`` that a study starts in another folder than usual, and how to extend the usual one."""
+    if place.passed:
+        text = f"{place.passed}; starting in {place.path}; --out and --force with the former folder reuse its cases"
+        console.print(text, soft_wrap=True, markup=False)
 
 
 def print_outdated(ledger: "Ledger", console: "Console") -> None:
@@ -57,18 +132,22 @@ def print_outdated(ledger: "Ledger", console: "Console") -> None:
         console.print(f"{ledger.path}: {count:,} entries ignored: made by other source files", markup=False)
 
 
-def print_outcome(outcome: "Run", options: "argparse.Namespace", files: list[Path], last: str = "") -> int:
+def print_outcome(
+    outcome: "Run", options: "argparse.Namespace", files: list[Path], lines: Sequence[str] = (), passed: str = ""
+) -> int:
     """Print a run and return the exit code.
 
     Parameters
     ----------
     outcome : Run
     options : Namespace
-        With ``json`` set, only the record is printed.
+        With ``json`` set, only the record is printed. ``verbose``: with details.
     files : list of Path
         Files written.
-    last : str
-        Line to print after the run.
+    lines : sequence of str
+        Lines to print before the last one.
+    passed : str
+        What the usual folder holds, if the files are elsewhere.
     """
     from partialslip.cli.consoles import output
     from partialslip.judge import Outcome
@@ -77,9 +156,10 @@ def print_outcome(outcome: "Run", options: "argparse.Namespace", files: list[Pat
     if options.json:
         print(record(outcome).json, end="")
     else:
-        console = output()
-        print_run(outcome, console)
-        if last:
-            console.print(last, soft_wrap=True, markup=False)
-        print_written(files, console)
+        console, folders = output(), _by_folder(files)
+        places = [str(folder if len(names) > 1 else folder / names[0]) for folder, names in folders.items()]
+        where = f"files in {', '.join(places)}{_instead(passed)}" if places else ""
+        print_run(outcome, console, verbose=options.verbose, lines=lines, where=where)
+        if options.verbose and files:
+            print_written(files, console)
     return 1 if outcome.outcome is Outcome.MISSED else 0

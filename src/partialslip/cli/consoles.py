@@ -1,13 +1,20 @@
-"""Consoles: tables and results on stdout, progress and messages on stderr."""
+"""Consoles: tables and results on stdout, progress and messages on stderr.
 
+Progress is a line that changes on a terminal. In a log it is a new line at an event, but at most one every few seconds,
+so that short commands write none.
+"""
+
+import math
 import shutil
+import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import ExitStack, contextmanager
 from typing import NoReturn
 
 from rich.console import Console
-from rich.progress import Progress
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
+EVERY = 5.0  # s between lines of progress in a log
 _WIDEST = 1000  # columns
 
 
@@ -29,21 +36,74 @@ def messages() -> Console:
 
 @contextmanager
 def working(name: str) -> Iterator[Callable[[str], None]]:
-    """Show a status line with ``name`` while the block runs, on a terminal only.
+    """Show progress of the work on ``name`` while the block runs.
 
-    Yields ``tell(line)``, which changes the line.
+    Yields ``tell(line)``, which shows what is done now.
     """
     console = messages()
+    if not _live(console):
+        yield _Log(name, console)
+        return
     spinner = "dots" if console.encoding.startswith("utf") else "line"
     with console.status(f"{name} ...", spinner=spinner) as status:
         yield lambda line: status.update(f"{name}: {line}")
 
 
 @contextmanager
-def shown(bar: Progress) -> Iterator[None]:
-    """Show the progress ``bar`` while the block runs; print nothing if the output is not a terminal."""
-    with bar if bar.console.is_interactive else nullcontext():
-        yield
+def counting(name: str, closing: str = "") -> Iterator[Callable[[int, int, float], None]]:
+    """Show how many cases of ``name`` are done while the block runs.
+
+    Yields ``progress(done, total, seconds_left)``. The first call starts the bar: input errors come before.
+    ``closing`` is the work after the last case.
+    """
+    console = messages()
+    columns = (
+        TextColumn(name),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[left]}"),
+    )
+    bar = Progress(*columns, console=console, transient=True)
+    task = bar.add_task("", total=None, left="")
+    log = None if _live(console) else _Log(name, console)
+    began = False
+    with ExitStack() as running:
+
+        def progress(done: int, total: int, left: float) -> None:
+            nonlocal began
+            if not began and not log:
+                running.enter_context(bar)
+            if not began and done:
+                console.print(f"{done} cases were finished before", markup=False)
+            began = True
+            text = closing if done == total else "" if math.isnan(left) else f"{left:.0f} s left"
+            if log:
+                log(", ".join(filter(None, [f"{done:,} of {total:,} cases", text])))
+            else:
+                bar.update(task, completed=done, total=total, left=text)
+
+        yield progress
+
+
+class _Log:
+    """Print lines of progress on ``console``, not more often than every ``EVERY`` seconds."""
+
+    def __init__(self, name: str, console: Console) -> None:
+        self._name, self._console = name, console
+        self._began = self._last = time.monotonic()
+
+    def __call__(self, line: str) -> None:
+        now = time.monotonic()
+        if now - self._last >= EVERY:
+            self._last = now
+            text = f"{self._name}: {line} ({now - self._began:.0f} s)"
+            self._console.print(text, soft_wrap=True, markup=False)
+
+
+def _live(console: Console) -> bool:
+    """Return whether lines of ``console`` can change: FORCE_COLOR asks for colours in a log, not for that."""
+    return console.is_interactive and console.file.isatty()
 
 
 def _fitted(console: Console) -> Console:

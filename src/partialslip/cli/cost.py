@@ -6,7 +6,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_scene, check_folder, held, print_outdated, print_written
+from partialslip.cli.common import (
+    add_force,
+    add_scene,
+    add_verbose,
+    check_folder,
+    print_elsewhere,
+    print_outdated,
+    print_written,
+    results_folder,
+)
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
@@ -30,6 +39,8 @@ def add(topics: "Commands") -> None:
     cost.add_argument("--repeats", type=int, default=3, metavar="N", help="repeats of each setting (default: 3)")
     cost.add_argument("--peers", metavar="FILE", help="results of other codes, JSON lines, to add to the diagram")
     cost.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-cost)")
+    add_force(cost)
+    add_verbose(cost, "the settings that another one beats in cost and error, and how errors fall with unknowns")
     cost.set_defaults(command=_cost)
 
 
@@ -49,11 +60,14 @@ def _cost(options: argparse.Namespace) -> int:
 
     peers = ladder.read_peers(Path(options.peers), scene.name) if options.peers is not None else []
     name = f"{scene.name}-cost"
-    folder = Path(options.out) if options.out else Path("results") / name
-    with held(folder), working(name) as tell:
+    known = {"peers": options.peers and Path(options.peers)}
+    with results_folder(options, "study cost", name, scene, **known) as place:
+        folder = place.path
         ledger = Ledger(folder / "ledger.jsonl")
+        print_elsewhere(place, messages())
         print_outdated(ledger, messages())
-        found = ladder.measure(scene, ledger, options.repeats, lambda done, of, what: tell(f"{done} of {of}, {what}"))
+        with working(name) as tell:
+            found = ladder.measure(scene, ledger, options.repeats, lambda *state: tell(_progress(*state)))
         texts = {
             "cost.csv": csv_text(*ladder.table([*found, *peers])),
             "cost.svg": errors_svg(found, peers, f"{scene.name}: error against cost"),
@@ -62,20 +76,32 @@ def _cost(options: argparse.Namespace) -> int:
         files = [ledger.path, *write_texts(folder, texts)]
     console = output()
     console.print(f"{scene.name}: what accuracy costs, medians of {options.repeats}", style="bold", markup=False)
+    console.print(ladder.SETTING, markup=False)
     best = {id(point) for point in ladder.front(found)}
-    head = ["series (* on the front)", "setting", "m", "n", "q", "unknowns", "CPU s", "process"]
-    rows = [_row(point, id(point) in best) for point in [*found, *peers]]
-    print_table(console, head, rows, words=(0, 1))
-    slopes = ladder.slopes(found)
-    print_table(
-        console,
-        ["exponent against unknowns", "m, n", "q", "CPU"],
-        [[series, *(_number(value, ".2f") for value in of.values())] for series, of in slopes.items()],
-    )
+    head = ["setting", "m", "n", "q", "unknowns", "CPU s", "process"]
+    if options.verbose:
+        rows = [_row(point, id(point) in best) for point in [*found, *peers]]
+        print_table(console, ["series (* on the front)", *head], rows, words=(0, 1))
+        print_table(
+            console,
+            ["exponent against unknowns", "m, n", "q", "CPU"],
+            [[series, *(_number(of[key], ".2f") for key in of)] for series, of in ladder.slopes(found).items()],
+        )
+    else:
+        rows = [_row(point, False) for point in found if id(point) in best]
+        print_table(console, ["series", *head], rows, words=(0, 1))
+        console.print(f"{len(found) - len(best)} other settings cost more for the error: --verbose, or cost.csv")
     for line in _against(found, peers):
         console.print(line, soft_wrap=True, markup=False)
-    print_written(files, console)
+    print_written(files, console, place.passed)
     return 0
+
+
+def _progress(done: int, total: int, setting: str, left: float) -> str:
+    """Return the progress of the study as text."""
+    if done == total:
+        return "drawing"
+    return f"run {done + 1} of {total}: {setting}{'' if math.isnan(left) else f', {left:.0f} s left'}"
 
 
 def _row(point: "Point", front: bool) -> list[str]:

@@ -1,11 +1,10 @@
 """partialslip study effects: changes and costs by each effect of a scene."""
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_scene, check_folder, held, print_written
+from partialslip.cli.common import add_force, add_scene, check_folder, print_written, results_folder
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -24,6 +23,7 @@ def add(topics: "Commands") -> None:
     )
     add_scene(effects)
     effects.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-effects)")
+    add_force(effects)
     effects.set_defaults(command=_effects)
 
 
@@ -39,8 +39,7 @@ def _effects(options: argparse.Namespace) -> int:
     from partialslip.study.effects.figure import effects_svg
 
     name = f"{scene.name}-effects"
-    folder = Path(options.out) if options.out else Path("results") / name
-    with held(folder), working(name) as tell:
+    with results_folder(options, "study effects", name, scene) as (folder, passed), working(name) as tell:
         study = worth.study_effects(scene, tell)
         texts = {
             "effects.json": json_text(worth.effects_record(study)),
@@ -54,5 +53,5 @@ def _effects(options: argparse.Namespace) -> int:
     print_table(console, *worth.costs_table(study))
     for line in worth.notes(study):
         console.print(line, soft_wrap=True, markup=False)
-    print_written(files, console)
+    print_written(files, console, passed)
     return 0

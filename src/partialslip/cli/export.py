@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_scene, print_written
+from partialslip.cli.common import add_force, add_scene, print_written
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
@@ -50,14 +50,15 @@ def add(commands: "Commands") -> None:
                          "--size)")  # fmt: skip
     exports.add_argument("--penalty", action="store_true",
                          help="calculix: penalty contact instead of mortar contact")  # fmt: skip
-    exports.add_argument("-o", "--out", metavar="FILE", help="file to write (default: results/NAME.inp or .msh)")
+    exports.add_argument("-o", "--out", metavar="FILE", help="file to write (default: results/NAME-TO.inp or .msh)")
+    add_force(exports)
     exports.set_defaults(command=_export)
 
 
 def _export(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import output
     from partialslip.export import FORMATS, export
-    from partialslip.output.files import write_files
+    from partialslip.output.place import write_placed
 
     if options.out == "":
         raise InputError("--out '': must name a file")
@@ -80,8 +81,9 @@ def _export(options: argparse.Namespace) -> int:
         fine=fine,
         penalty=options.penalty,
     )
-    path = Path(options.out) if options.out else Path("results") / f"{scene.name}{FORMATS[options.to]}"
-    print_written(write_files(path.parent, {path.name: write}), output())
+    usual = Path("results") / f"{scene.name}-{options.to}{FORMATS[options.to]}"
+    path, passed = write_placed(usual, options.out, write, options.force)
+    print_written([path], output(), passed)
     return 0
 
 

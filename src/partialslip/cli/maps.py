@@ -1,11 +1,10 @@
 """partialslip map: draw the stick zones over all loads."""
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import check_folder, held, print_written
+from partialslip.cli.common import add_force, check_folder, print_written, results_folder
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -24,6 +23,7 @@ def add(commands: "Commands") -> None:
                       help="a shipped scene or a TOML file, with the profile to map and the loads to mark "
                       "(default: Hertz)")  # fmt: skip
     maps.add_argument("--out", metavar="DIR", help="folder for the files (default: results/map, results/NAME-map)")
+    add_force(maps)
     maps.set_defaults(command=_map)
 
 
@@ -35,12 +35,11 @@ def _map(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import output, working
     from partialslip.map import place, stick_map, write_map
 
-    folder = Path(options.out) if options.out else Path("results") / name
-    with held(folder), working(name) as tell:
+    with results_folder(options, "map", name, scene) as (folder, passed), working(name) as tell:
         data = stick_map(scene, progress=tell)
         files = write_map(data, folder)
     console = output()
     for line in place(data):
         console.print(line, soft_wrap=True, markup=False)
-    print_written(files, console)
+    print_written(files, console, passed)
     return 0

@@ -1,11 +1,10 @@
 """partialslip page: a live page with sliders for loads and friction."""
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import check_folder, print_written
+from partialslip.cli.common import add_force, check_folder, print_written, results_folder
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -26,6 +25,7 @@ def add(commands: "Commands") -> None:
                       help="a shipped scene or a TOML file, with a Hertz profile; the sliders start at the scene's "
                       f"loads (default: {_SCENE})")  # fmt: skip
     page.add_argument("--out", metavar="DIR", help="folder for page.html (default: results/NAME-page)")
+    add_force(page)
     page.set_defaults(command=_page)
 
 
@@ -37,7 +37,8 @@ def _page(options: argparse.Namespace) -> int:
     from partialslip.live import live_page
     from partialslip.output.files import write_texts
 
-    folder = Path(options.out) if options.out else Path("results") / f"{scene.name}-page"
-    files = write_texts(folder, {"page.html": live_page(scene)})
-    print_written(files, output())
+    text = live_page(scene)
+    with results_folder(options, "page", f"{scene.name}-page", scene) as (folder, passed):
+        files = write_texts(folder, {"page.html": text})
+    print_written(files, output(), passed)
     return 0

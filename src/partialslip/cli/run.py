@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import partialslip
 from partialslip.allowance import Allowance
-from partialslip.cli.common import add_scene, check_folder, held, out_folder, print_outcome
+from partialslip.cli.common import add_force, add_scene, add_verbose, check_folder, folder_if_wanted, print_outcome
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
@@ -51,6 +51,8 @@ def add(commands: "Commands") -> None:
                       help="write the state at the end of the load path to FILE, .npz (of fem, else of "
                       "march)")  # fmt: skip
     runs.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME)")
+    add_force(runs)
+    add_verbose(runs, "limits, slip, certificates, costs by phase, and the effects with reasons")
     runs.add_argument("--json", action="store_true", help="print results.json and nothing else; files only with --out")
     runs.set_defaults(command=_run)
 
@@ -74,24 +76,27 @@ def _run(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import messages, working
     from partialslip.output.files import write_files
     from partialslip.report import write_run
+    from partialslip.run import default_methods
 
     price = _price(options, scene, methods, budget)
     priced_at, allowance = time.process_time(), None
-    if price:
-        scene = partialslip.load_scene(options.scene, [*price.overrides, *options.overrides])
-        allowance = Allowance(budget - price.closing_s - price.start_s) if budget else None
-        messages().print(f"{price}, predicted", soft_wrap=True, markup=False)
-    folder = out_folder(options, scene.name)
-    with held(folder), working(scene.name) as tell:
-        outcome = partialslip.run(
-            scene, methods, subsurface=options.fields, progress=tell, start=start, allowance=allowance
-        )
-        files = []
-        if options.save is not None:
-            save = Path(options.save)
-            files += write_files(save.parent, {save.name: _state(outcome).save})
-        files += write_run(outcome, folder) if folder else []
-    return print_outcome(outcome, options, files, _paid(price, outcome, priced_at) if price else "")
+    chosen = sorted({*(methods or default_methods(scene))})
+    known = {"methods": chosen, "start": options.start and Path(options.start)}
+    with folder_if_wanted(options, "run", scene.name, scene, **known) as (folder, passed):
+        if price:
+            scene = partialslip.load_scene(options.scene, [*price.overrides, *options.overrides])
+            allowance = Allowance(budget - price.closing_s - price.start_s) if budget else None
+            messages().print(f"{price}, predicted", soft_wrap=True, markup=False)
+        with working(scene.name) as tell:
+            outcome = partialslip.run(
+                scene, methods, subsurface=options.fields, progress=tell, start=start, allowance=allowance
+            )
+            files = []
+            if options.save is not None:
+                save = Path(options.save)
+                files += write_files(save.parent, {save.name: _state(outcome).save})
+            files += write_run(outcome, folder) if folder else []
+    return print_outcome(outcome, options, files, [_paid(price, outcome, priced_at)] if price else [], passed)
 
 
 def _budget(options: argparse.Namespace, scene: "Scene", methods: list[str] | None) -> float | None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import partialslip
-from partialslip.cli.common import add_scene, check_folder, held, out_folder, print_outcome
+from partialslip.cli.common import add_force, add_scene, add_verbose, check_folder, folder_if_wanted, print_outcome
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
@@ -52,6 +52,8 @@ def add(commands: "Commands") -> None:
                         help="largest allowed error of a, m and n, as a fraction of a (p: 10 times, q: 15 times); "
                         "exit code 1 if missed")  # fmt: skip
     scores.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-FILE)")
+    add_force(scores)
+    add_verbose(scores, "what was read from the file, and costs and effects of the reference")
     scores.add_argument("--json", action="store_true", help="print results.json, nothing else; files only with --out")
     scores.set_defaults(command=_score)
 
@@ -80,13 +82,17 @@ def _score(options: argparse.Namespace) -> int:
         raise InputError("FILE: missing: must be a file with tractions; --template prints a table to fill in")
 
     from partialslip.cli.consoles import working
+    from partialslip.judge.reference import reference_for
     from partialslip.report import write_run
     from partialslip.score.read import check
 
     file = Path(options.file)
     check(file)  # before a folder is created
-    folder = out_folder(options, f"{scene.name}-{file.stem}")
-    with held(folder), working(scene.name) as tell:
+    beside = file.with_suffix(".frd")  # has the mesh of a .dat
+    mesh = beside if file.suffix.lower() == ".dat" and beside.is_file() else None
+    known = {"file": file, "mesh": mesh, "factors": factors, "reference": options.reference or reference_for(scene)}
+    name = f"{scene.name}-{file.stem}"
+    with folder_if_wanted(options, "score", name, scene, **known) as (folder, passed), working(scene.name) as tell:
         outcome = partialslip.score(
             scene,
             file,
@@ -100,7 +106,7 @@ def _score(options: argparse.Namespace) -> int:
             progress=tell,
         )
         files = write_run(outcome, folder) if folder else []
-    return print_outcome(outcome, options, files)
+    return print_outcome(outcome, options, files, passed=passed)
 
 
 def _columns(text: str | None) -> dict[str, str] | None:

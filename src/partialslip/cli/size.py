@@ -1,16 +1,23 @@
 """partialslip study size: changes from the half-plane over sizes of bodies."""
 
 import argparse
-import math
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_scene, check_folder, held, print_outdated, print_written
+from partialslip.cli.common import (
+    add_force,
+    add_scene,
+    check_folder,
+    print_elsewhere,
+    print_outdated,
+    print_written,
+    results_folder,
+)
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
+    from partialslip.output.place import Place
     from partialslip.scene import Scene
     from partialslip.study.size.axes import Axis
 
@@ -40,6 +47,7 @@ def add(topics: "Commands") -> None:
     size.add_argument("--one-mesh", action="store_true",
                       help="one mesh per size, without further meshes to check the error of the mesh")  # fmt: skip
     size.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-size)")
+    add_force(size)
     size.set_defaults(command=_size)
 
 
@@ -52,37 +60,30 @@ def _size(options: argparse.Namespace) -> int:
     from partialslip.study.size.axes import axis
 
     scene = partialslip.load_scene(options.scene, options.overrides)
-    folder = Path(options.out) if options.out else Path("results") / f"{scene.name}-size"
     axes = [axis(text) for text in options.over]
     for each in axes if len(axes) > 1 else []:
         if len(set(each.values)) < 2 or min(each.values) <= 0:
             raise InputError(f"--over {each.name}: must have at least 2 values, all > 0, for a map")
-    with held(folder):
-        return _swept(options, scene, axes, folder)
+    with results_folder(options, "study size", f"{scene.name}-size", scene) as place:
+        return _swept(options, scene, axes, place)
 
 
-def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", folder: Path) -> int:
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-
+def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", place: "Place") -> int:
     from partialslip.batch.ledger import Ledger
     from partialslip.batch.sweep import workers
-    from partialslip.cli.consoles import messages, output, shown
+    from partialslip.cli.consoles import counting, messages, output
     from partialslip.output.csv import csv_text
     from partialslip.output.files import write_texts
     from partialslip.output.tables import print_table
     from partialslip.study.size import sizes, tables
     from partialslip.study.size.figure import grid_svg, size_svg
 
+    folder = place.path
     ledger = Ledger(folder / "ledger.jsonl")
-    columns = (TextColumn(f"{scene.name}-size"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[left]}"))
+    print_elsewhere(place, messages())
     print_outdated(ledger, messages())
-    bar = Progress(*columns, console=messages(), transient=True)
-    task = bar.add_task("", total=None, left="")
-
-    def progress(done: int, total: int, left: float) -> None:
-        bar.update(task, completed=done, total=total, left="" if math.isnan(left) else f"{left:.0f} s left")
-
-    with shown(bar), workers(options.cluster, options.processes) as executor:
+    name = f"{scene.name}-size"
+    with counting(name) as progress, workers(options.cluster, options.processes) as executor:
         entries = sizes.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
     console = output()
     texts = {"cases.csv": csv_text(*sizes.table(axes, entries))}
@@ -104,5 +105,5 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", fold
         lines = tables.unsolved(entries)
     for line in lines:
         console.print(line, soft_wrap=True, markup=False)
-    print_written([ledger.path, *write_texts(folder, texts)], console)
+    print_written([ledger.path, *write_texts(folder, texts)], console, place.passed)
     return 1 if any(entry.error for entry in entries) else 0

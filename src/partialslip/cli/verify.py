@@ -1,11 +1,9 @@
 """partialslip verify: judge the methods on shipped scenes, hard cases or random scenes, and write a report."""
 
 import argparse
-import math
-from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import check_folder, print_written
+from partialslip.cli.common import add_force, add_verbose, check_folder, print_written
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -42,33 +40,20 @@ def add(commands: "Commands") -> None:
                         help="folder of a study (see: partialslip study); the figures are put into the report; may be "
                         "repeated")  # fmt: skip
     verify.add_argument("--out", metavar="DIR", help="folder for the files (default: results/verify-SUITE)")
+    add_force(verify)
+    add_verbose(verify, "one row for each case and method, also if there are many and nothing is missed")
     verify.set_defaults(command=_verify)
 
 
 def _verify(options: argparse.Namespace) -> int:
     check_folder(options.out)
 
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
-    from partialslip.cli.consoles import messages, output, shown
+    from partialslip.cli.consoles import counting, output
     from partialslip.judge import Outcome
     from partialslip.verify.driver import verify_suite
     from partialslip.verify.verdicts import print_verdicts
 
-    told = messages()
-    columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.fields[left]}"))
-    bar = Progress(*columns, console=told, transient=True)
-    task = bar.add_task("", total=None, left="")
-    with ExitStack() as running:  # the bar starts with the first progress, after the input checks
-
-        def progress(done: int, total: int, left: float) -> None:
-            if math.isnan(left):
-                running.enter_context(shown(bar))
-                if done:
-                    told.print(f"{done} cases were finished before", markup=False)
-            left_text = "" if math.isnan(left) else f"{left:.0f} s left" if done < total else "writing the report"
-            bar.update(task, completed=done, total=total, left=left_text)
-
+    with counting(f"verify {options.suite}", "writing the report") as progress:
         verified = verify_suite(
             options.suite,
             options.only,
@@ -77,18 +62,19 @@ def _verify(options: argparse.Namespace) -> int:
             count=options.count,
             processes=options.processes,
             out=options.out,
+            force=options.force,
             include=options.include,
             progress=progress,
         )
     console = output()
-    print_verdicts(verified.verdicts, console, every=options.suite != "stress" or bool(options.only))
+    print_verdicts(verified.verdicts, console, every=options.verbose)
     if verified.again:
         console.print(
             f"solved again, as the scene, its settings or the program have changed: {', '.join(verified.again)}",
             soft_wrap=True,
             markup=False,
         )
-    print_written(verified.files, console)
+    print_written(verified.files, console, verified.passed_over)
     if verified.missing:
         console.print(verified.missing, soft_wrap=True, markup=False)
     return 1 if verified.outcome is Outcome.MISSED else 0

@@ -1,9 +1,10 @@
 """Write files atomically: a stopped write leaves no partial file."""
 
+import filecmp
 import glob
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -30,18 +31,42 @@ def write_files(folder: Path, files: Mapping[str, Callable[[Path], object]]) -> 
     InputError
         If the folder cannot be written.
     """
-    for name in files:
-        if os.path.isdir(folder / name):
-            raise InputError(f"{folder / name}: cannot be written: is a folder")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with _writing(folder, files):
         for name, write in files.items():
-            with _replacing(folder / name) as path:
-                write(path)
-    except (OSError, ValueError) as error:  # ValueError: invalid file name
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(f"--out {folder}: cannot be written: {reason}") from None
+            with _beside(folder / name, write) as made:
+                made.replace(folder / name)
     return [folder / name for name in files]
+
+
+def write_new_file(path: Path, write: Callable[[Path], object]) -> bool:
+    """Write a file at ``path`` unless a file with other content is there.
+
+    Parameters
+    ----------
+    path : Path
+    write : callable
+        Writes to the path given to it.
+
+    Returns
+    -------
+    bool
+        Whether the file at ``path`` now has the content.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
+    """
+    with _writing(path.parent, [path.name]), _beside(path, write) as made:
+        try:
+            os.link(made, path)  # fails if the file exists, whoever has written it meanwhile
+        except FileExistsError:
+            return filecmp.cmp(made, path, shallow=False)
+        except OSError:  # a file system without hard links
+            if path.exists():
+                return filecmp.cmp(made, path, shallow=False)
+            made.replace(path)
+        return True
 
 
 def write_texts(folder: Path, texts: Mapping[str, str]) -> list[Path]:
@@ -54,8 +79,22 @@ def write_texts(folder: Path, texts: Mapping[str, str]) -> list[Path]:
 
 
 @contextmanager
-def _replacing(path: Path) -> Iterator[Path]:
-    """Provide a temporary path beside ``path``, which replaces ``path`` if the block succeeds.
+def _writing(folder: Path, names: Iterable[str]) -> Iterator[None]:
+    """Create ``folder`` for files of these ``names``. Turn errors of the block into InputError."""
+    for name in names:
+        if os.path.isdir(folder / name):
+            raise InputError(f"{folder / name}: cannot be written: is a folder")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        yield
+    except (OSError, ValueError) as error:  # ValueError: invalid file name
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise InputError(f"--out {folder}: cannot be written: {reason}") from None
+
+
+@contextmanager
+def _beside(path: Path, write: Callable[[Path], object]) -> Iterator[Path]:
+    """Provide a temporary path beside ``path``, written by ``write``; removed at the end unless it got another name.
 
     Temporary files of killed writes are removed.
     """
@@ -63,16 +102,16 @@ def _replacing(path: Path) -> Iterator[Path]:
     for left in path.parent.glob(glob.escape(beginning) + "*" + glob.escape(ending)):
         _unlink_if_free(left)
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=beginning, suffix=ending)
-    beside = Path(name)
+    made = Path(name)
     try:
         lock(handle)
-        yield beside
-        beside.chmod(0o666 & ~_umask())
+        write(made)
+        made.chmod(0o666 & ~_umask())
         os.fsync(handle)  # the content must be on the disk before the name
-        beside.replace(path)
+        yield made
     finally:
         os.close(handle)
-        beside.unlink(missing_ok=True)
+        made.unlink(missing_ok=True)
 
 
 def _unlink_if_free(path: Path) -> None:

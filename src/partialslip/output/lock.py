@@ -21,6 +21,10 @@ _TRIES = 20
 _BEYOND = 1 << 30  # byte locked on Windows: beyond the text, because locked bytes cannot be read
 
 
+class FolderInUseError(InputError):
+    """Another process writes to the folder."""
+
+
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
     """Lock ``folder`` for this process until the block ends. Create the folder if needed; remove it if left empty.
@@ -30,8 +34,10 @@ def locked(folder: Path) -> Iterator[None]:
 
     Raises
     ------
+    FolderInUseError
+        If another process holds the folder.
     InputError
-        If another process holds the folder, or the folder cannot be written.
+        If the folder cannot be written.
     """
     path, made = folder / NAME, []
     try:
@@ -41,7 +47,7 @@ def locked(folder: Path) -> Iterator[None]:
         _remove(made)
         raise InputError(f"--out {folder}: cannot be written: {reason(error)}") from None
     if holder:
-        raise InputError(f"--out {folder}: {holder} is writing there: wait until it ends, or name another folder")
+        raise FolderInUseError(f"--out {folder}: {holder} is writing there: wait until it ends, or name another folder")
     try:
         yield
     finally:

@@ -7,7 +7,7 @@ import numpy as np
 
 from partialslip.judge import NO_BAR, Comparison, Outcome, Verdict
 from partialslip.plan import Plan
-from partialslip.result import Result
+from partialslip.result import Cost, Result
 from partialslip.run import Run
 from partialslip.scene import Scene
 from partialslip.scene.writing import scene_tables
@@ -156,12 +156,42 @@ def methods(results: Mapping[str, Result], *, compared: bool = False, units: Uni
     ]
 
 
+def methods_in_short(
+    results: Mapping[str, Result], *, compared: bool = False, units: Units = SI
+) -> list[tuple[str, str]]:
+    """Return pairs of method and regime, CPU seconds and size in one line; values found unless ``compared``."""
+    return [
+        (name, ", ".join([result.regime, *([] if compared else [found(result, units)]), *_spent(result)]))
+        for name, result in results.items()
+    ]
+
+
+def _spent(result: Result) -> list[str]:
+    counts = [_counted(result.counts[key], key) for key in ("dofs", "cells") if result.counts.get(key)]
+    seconds = result.cost.cpu_s
+    return [f"{seconds:.3f} CPU s" if seconds < 0.1 else f"{seconds:.1f} CPU s", *counts]
+
+
+def notes(run: Run) -> list[str]:
+    """Return why effects were forced off, and the notes of all methods; a note that several methods share once."""
+    by_note: dict[str, list[str]] = {run.plan.left_out[effect]: [effect] for effect in run.plan.missing}
+    for name, result in run.results.items():
+        for note in result.notes:
+            by_note.setdefault(note, []).append(name)
+    return [f"{', '.join(names)}: {note}" for note, names in by_note.items()]
+
+
 def value(result: Result, key: str, units: Units = SI) -> str:
     """Return a, m or n (``key``) of ``result`` with the unit; a in ``units``."""
     if key == "a":
         return units.length(result.a)
     end = getattr(result, key)
     return "none" if end is None else f"{end / result.a:.7f} a"
+
+
+def found(result: Result, units: Units = SI) -> str:
+    """Return a, m and n of ``result`` as text."""
+    return ", ".join(f"{key} = {value(result, key, units)}" for key in ("a", "m", "n"))
 
 
 _LIMITS: dict[str, tuple[str, Dimension]] = {
@@ -204,7 +234,7 @@ def facts(result: Result, compared: bool = False, units: Units = SI) -> dict[str
     """
     lines = {
         "regime": result.regime,
-        "found": "" if compared else ", ".join(f"{key} = {value(result, key, units)}" for key in ("a", "m", "n")),
+        "found": "" if compared else found(result, units),
         "built": work(result),
         "certificate": certificate(result),
         "limits": limits(result, units),
@@ -248,5 +278,11 @@ def cost(result: Result) -> str:
     """Return CPU seconds (total and by phase), wall seconds and memory of ``result`` as text."""
     spent = result.cost
     phases = ", ".join(f"{name} {seconds:.2f}" for name, seconds in spent.phases.items())
-    memory = "" if spent.peak_rss_mb is None else f", peak memory {spent.peak_rss_mb:.0f} MB"
-    return f"{spent.cpu_s:.3f} CPU s{f' ({phases})' if phases else ''}, {spent.wall_s:.3f} s{memory}"
+    return f"{spent.cpu_s:.3f} CPU s{f' ({phases})' if phases else ''}, {spent.wall_s:.3f} s wall time{_memory(spent)}"
+
+
+def _memory(spent: Cost) -> str:
+    if spent.peak_rss_mb is None:
+        return f", peak memory not known: {spent.peak_rss_unknown}" if spent.peak_rss_unknown else ""
+    before = "" if spent.start_rss_mb is None else f" ({spent.start_rss_mb:.0f} MB before the method)"
+    return f", peak memory {spent.peak_rss_mb:.0f} MB{before}"

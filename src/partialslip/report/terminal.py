@@ -1,22 +1,46 @@
 """Print a run on the terminal."""
 
+from collections.abc import Sequence
+
 from rich.console import Console
+from rich.text import Text
 
 from partialslip.output.tables import print_lines, print_table
 from partialslip.report import rows
 from partialslip.run import Run
 
 
-def print_run(run: Run, console: Console) -> None:
-    """Print regimes, errors, certificates and costs of ``run`` on rich's ``console``."""
+def print_run(run: Run, console: Console, *, verbose: bool = False, lines: Sequence[str] = (), where: str = "") -> None:
+    """Print ``run``: errors, one line a method, notes, and a last line with the verdict.
+
+    Parameters
+    ----------
+    run : Run
+    console : rich Console
+    verbose : bool
+        Whether to print everything that is known of each method, and the effects, instead of one line a method.
+    lines : sequence of str
+        Lines to print before the last one.
+    where : str
+        End of the last line: where the files are.
+    """
     title = f"{run.scene.name}: {run.scene.title}" if run.scene.title else run.scene.name
     console.print(title, style="bold", markup=False)
-    if run.comparisons:
+    compared = bool(run.comparisons)
+    if compared:
         console.print(rows.units(run), markup=False)
     for name, comparison in run.comparisons.items():
         print_table(console, rows.headings(run, name), rows.error_rows(comparison), words=(0, 1, 7))
-        for line in rows.unjudged(comparison):
-            console.print(line, markup=False)
-    methods = rows.methods(run.results, compared=bool(run.comparisons), units=run.scene.units)
-    print_lines(console, [*methods, *rows.effects(run.plan)])
-    console.print(rows.verdict(run), style="bold", markup=False)
+    if verbose:
+        methods = rows.methods(run.results, compared=compared, units=run.scene.units)
+        print_lines(console, [*methods, *rows.effects(run.plan)])
+    else:
+        print_lines(console, rows.methods_in_short(run.results, compared=compared, units=run.scene.units))
+    notes = [] if verbose else rows.notes(run)
+    unjudged = [line for comparison in run.comparisons.values() for line in rows.unjudged(comparison)]
+    for line in (*unjudged, *notes):
+        console.print(line, markup=False)
+    for line in lines:
+        console.print(line, soft_wrap=True, markup=False)
+    verdict = Text.assemble((rows.verdict(run), "bold"), f"; {where}" if where else "")
+    console.print(verdict, soft_wrap=True)

@@ -1,18 +1,13 @@
 """The cost of a method: CPU seconds, wall seconds and memory."""
 
 import math
-import sys
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from partialslip.allowance import Allowance
-
-try:
-    import resource
-except ImportError:  # Windows
-    resource = None  # type: ignore[assignment]
+from partialslip.result.memory import PeakMeter
 
 
 @dataclass(frozen=True)
@@ -24,11 +19,16 @@ class Cost:
     cpu_s, wall_s : float
         CPU seconds, meshing process included, and wall seconds.
     peak_rss_mb : float or None
-        Peak resident memory of this process, MB; None where the system does not report it.
+        Peak resident memory of this process while the method ran, MB, without the meshing process; None if not known.
     phases : mapping of str to float
         CPU seconds by phase.
     meshing_cpu_s : float
         CPU seconds of the meshing process; ``cpu_s`` includes them.
+    start_rss_mb : float or None
+        Resident memory when the method started, MB: interpreter, libraries and earlier results. The method itself
+        needed the difference to the peak. None where the system does not report it.
+    peak_rss_unknown : str
+        Why ``peak_rss_mb`` is None; empty if it is known.
     """
 
     cpu_s: float
@@ -36,6 +36,8 @@ class Cost:
     peak_rss_mb: float | None
     phases: Mapping[str, float] = field(default_factory=dict)
     meshing_cpu_s: float = 0.0
+    start_rss_mb: float | None = None
+    peak_rss_unknown: str = ""
 
 
 class Clock:
@@ -48,7 +50,7 @@ class Clock:
     """
 
     def __init__(self, allowance: Allowance | None = None) -> None:
-        self._allowance = allowance
+        self._allowance, self._memory = allowance, PeakMeter()
         self._cpu, self._wall = time.process_time(), time.perf_counter()
         self._meshing = 0.0
         self.phases: dict[str, float] = {}
@@ -81,11 +83,13 @@ class Clock:
     def cost(self) -> Cost:
         """Return the cost up to now."""
         own, wall = time.process_time() - self._cpu, time.perf_counter() - self._wall
-        return Cost(own + self._meshing, wall, _peak_rss_mb(), self.phases, self._meshing)
-
-
-def _peak_rss_mb() -> float | None:
-    if resource is None:
-        return None
-    peak: int = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # bytes on macOS, kilobytes elsewhere
-    return peak / (1024**2 if sys.platform == "darwin" else 1024)
+        memory = self._memory.peak()
+        return Cost(
+            cpu_s=own + self._meshing,
+            wall_s=wall,
+            peak_rss_mb=memory.peak_mb,
+            phases=self.phases,
+            meshing_cpu_s=self._meshing,
+            start_rss_mb=memory.start_mb,
+            peak_rss_unknown=memory.unknown,
+        )

@@ -1,5 +1,6 @@
 """Run a verification: solve the cases of a suite in parallel, keep a ledger, judge, and write the report."""
 
+import dataclasses
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,8 +16,8 @@ from partialslip.errors import InputError, MissingLibraryError
 from partialslip.judge import Outcome, overall
 from partialslip.judge.reference import METHODS
 from partialslip.output.files import write_texts
-from partialslip.output.lock import locked
 from partialslip.output.pdf import write_pdf
+from partialslip.output.place import placed
 from partialslip.plan import plan
 from partialslip.report.figure import traction_svg
 from partialslip.report.files import tractions_csv
@@ -49,12 +50,15 @@ class Verification:
         Library missing for the PDF; empty if the PDF was written.
     again : tuple of str
         Cases solved again, because scene, settings or source files had changed since an earlier, stopped run.
+    passed_over : str
+        What the usual folder holds, if the files are in another one; else empty.
     """
 
     verdicts: dict[str, list[CaseVerdict]]
     files: list[Path]
     missing: str = ""
     again: tuple[str, ...] = ()
+    passed_over: str = ""
 
     @property
     def outcome(self) -> Outcome:
@@ -76,6 +80,7 @@ def verify_suite(
     count: int | None = None,
     processes: int | None = None,
     out: str | Path | None = None,
+    force: bool = False,
     include: Sequence[str | Path] = (),
     progress: Progress = lambda *_: None,
 ) -> Verification:
@@ -98,7 +103,9 @@ def verify_suite(
     out : str or Path, optional
         Folder for ``ledger.jsonl``, ``results.json``, ``results.csv``, ``report.html``, ``report.pdf`` and ``scenes``
         (``scene.toml``, ``tractions.csv`` and ``tractions.svg`` of each scene, except random ones). Default:
-        ``results/verify-SUITE``.
+        ``results/verify-SUITE``, or ``results/verify-SUITE-2`` and so on if that folder has other settings.
+    force : bool
+        Whether to write into a folder that holds another verification or other results.
     include : sequence of str or Path
         Folders of studies (``partialslip study``); their figures are put into the report.
     progress : callable
@@ -107,16 +114,17 @@ def verify_suite(
     Raises
     ------
     InputError
-        If a suite, case, method or study does not exist, if the folder cannot be written, or if another process writes
-        to the folder.
+        If a suite, case, method or study does not exist, if the folder cannot be written or ``out`` holds other
+        results, or if another process writes to the folder.
     """
     if processes is not None and processes < 1:
         raise InputError(f"--processes {processes}: must be >= 1")
     settings, makers, keys = _cases(name, only, method, seed, count)
     studies = [read_study(Path(each)) for each in include]
-    folder = Path(out) if out is not None else Path("results") / _folder(settings)
-    with locked(folder):
-        return _verify(settings, makers, keys, studies, folder, processes, progress)
+    request = {"command": "verify", "settings": {**settings.asked, "only": settings.only}}
+    with placed(Path("results") / _folder(settings), out, request, force) as place:
+        done = _verify(settings, makers, keys, studies, place.path, processes, progress)
+    return dataclasses.replace(done, passed_over=place.passed)
 
 
 def _verify(

@@ -20,6 +20,7 @@ from partialslip.verify.entry import Settings
 
 SCHEMA = "partialslip/verify/2"
 _FILE = "results.json"
+_SCREEN = 24  # rows
 
 Verdicts = Mapping[str, Sequence[CaseVerdict]]
 
@@ -94,10 +95,10 @@ def was_finished(folder: Path) -> bool:
 def print_verdicts(verdicts: Verdicts, console: Console, every: bool = True) -> None:
     """Print ``verdicts`` on ``console``: one row per case and method, for the quantity nearest to the bar, and totals.
 
-    Without ``every`` only rows with a missed verdict are printed.
+    Without ``every``, more rows than a screen shows are left out unless a verdict is missed.
     """
     closest = nearest(verdicts)
-    shown = closest if every else [row for row in closest if missed(row)]
+    shown = closest if every or len(closest) <= _SCREEN else [row for row in closest if missed(row)]
     if shown:
         headings = ("case", "method", "closest", "error", "bar", "iterations", "CPU s", "")
         print_table(console, headings, map(_row, shown), words=(0, 1, 2, 7))

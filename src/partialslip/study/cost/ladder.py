@@ -1,6 +1,7 @@
 """Errors against CPU seconds, over a ladder of settings of every method."""
 
 import json
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +23,10 @@ from partialslip.run import default_methods
 from partialslip.scene import Scene
 from partialslip.scene.reading import parse_scene
 
+SETTING = (
+    "setting: accuracy asked of a, m and n, as a fraction of a (adapted meshes, march), or element size h (uniform "
+    "meshes, other codes)"
+)
 KEYS = ("a", "m", "n", "p", "q")
 _ADAPTED: dict[str, tuple[dict[str, Any], tuple[float, ...]]] = {
     "P4": ({"order": 4}, (1e-2, 1e-3, 1e-4, 2e-5, 1e-6, 1e-7)),
@@ -92,12 +97,12 @@ def ladder(scene: Scene) -> list[Job]:
     cases = [_case(scene, ("exact",), "exact", "", {})]
     if plan(scene).needs("friction"):
         cases += [
-            _case(scene, ("exact", "march"), "march", f"{asked:g}", {"accuracy": asked})
+            _case(scene, ("exact", "march"), "march", _asked(asked), {"accuracy": asked})
             for asked in (1e-3, 1e-4, 1e-5, 1e-6)
         ]
     for series, (fixed, accuracies) in _ADAPTED.items():
         cases += [
-            _case(scene, ("exact", "fem"), f"{series}, adapted", f"{asked:g}", {**fixed, "accuracy": asked})
+            _case(scene, ("exact", "fem"), f"{series}, adapted", _asked(asked), {**fixed, "accuracy": asked})
             for asked in accuracies
         ]
     for series, order in _UNIFORM.items():
@@ -109,6 +114,11 @@ def ladder(scene: Scene) -> list[Job]:
     return cases
 
 
+def _asked(accuracy: float) -> str:
+    digits, _, power = f"{accuracy:.0e}".partition("e")
+    return f"accuracy {digits}e{int(power)}"
+
+
 def _case(scene: Scene, methods: tuple[str, ...], series: str, setting: str, fem: dict[str, Any]) -> Job:
     data = msgspec.to_builtins(scene)
     data["fem"] = {**data["fem"], **fem}
@@ -116,7 +126,7 @@ def _case(scene: Scene, methods: tuple[str, ...], series: str, setting: str, fem
 
 
 def measure(
-    scene: Scene, ledger: Ledger, repeats: int, progress: Callable[[int, int, str], None] = lambda *_: None
+    scene: Scene, ledger: Ledger, repeats: int, progress: Callable[[int, int, str, float], None] = lambda *_: None
 ) -> list[Point]:
     """Solve the ladder of ``scene``, one new process per job. Jobs in ``ledger`` are not solved again.
 
@@ -127,18 +137,26 @@ def measure(
     repeats : int
         Each repeat runs the whole ladder, so that other load on the machine affects all settings alike.
     progress : callable
-        ``progress(done, total, next)``, with the next setting as text.
+        ``progress(done, total, next, seconds_left)``, with the next setting as text. The seconds follow from the wall
+        seconds of the same setting in an earlier repeat, else from the mean of all settings; NaN at first.
     """
     cases = ladder(scene)
     runs = [
         Job(case.scene, case.methods, {**case.labels, "repeat": repeat}) for repeat in range(repeats) for case in cases
     ]
-    for number, case in enumerate(runs):
-        progress(number, len(runs), f"{case.labels['series']} {case.labels['setting']}")
-        if case.key not in ledger:
-            ledger.add(case.key, solve_apart(case))
-    progress(len(runs), len(runs), "")
-    return points(Solved.of(ledger[case.key]) for case in runs)
+    keys = [case.key for case in runs]
+    settings = [", ".join(filter(None, (str(case.labels[name]) for name in ("series", "setting")))) for case in runs]
+    seconds: dict[str, float] = {}
+    for number, (case, key, setting) in enumerate(zip(runs, keys, settings, strict=True)):
+        unsolved = [each for each, its in zip(settings[number:], keys[number:], strict=True) if its not in ledger]
+        usual = float(np.mean([*seconds.values()])) if seconds else math.nan
+        progress(number, len(runs), setting, sum(seconds.get(each, usual) for each in unsolved))
+        if key not in ledger:
+            ledger.add(key, solve_apart(case))
+        if process := Solved.of(ledger[key]).process:
+            seconds[setting] = process.wall_s
+    progress(len(runs), len(runs), "", 0.0)
+    return points(Solved.of(ledger[key]) for key in keys)
 
 
 def points(entries: Iterable[Solved]) -> list[Point]:
