@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 ROOTS = ("partialslip", "partialslip_fem", "partialslip_meshes")
 # What nearly every package uses; its arrows would hide the others.
-EVERYWHERE = {"errors", "inputfile", "arrays", "bars", "frame", "allowance", "output", "__main__"}
+EVERYWHERE = {"errors", "inputfile", "arrays", "bars", "frame", "allowance", "origin", "output", "__main__"}
 # Scenes, results and runs ask it what a notebook shows of them; pyproject.toml declares these imports, which go up.
 NOTEBOOK = "partialslip.report.notebook"
 _SIZE = (7.4, 6.2)

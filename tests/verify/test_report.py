@@ -100,8 +100,8 @@ def test_where_it_was_found_is_told(folder):
     table = dict(row for row in words(page(folder)) if len(row) == 2)
     assert table["command"] == "partialslip verify --suite full --only no-shear --only one-contact-node"
     assert made["machine"]["processor"] in table["machine"]
-    assert all(number in table["versions"] for number in made["versions"].values())
-    assert made["at"][:10] in table["finished"]
+    assert all(number in table["version"] for number in made["versions"].values())
+    assert made["date"][:10] in table["date"]
 
 
 def test_a_missed_bar_cannot_be_overlooked(tmp_path, monkeypatch):

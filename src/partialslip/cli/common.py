@@ -12,7 +12,10 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from partialslip.batch.ledger import Ledger
+    from partialslip.origin import Made
+    from partialslip.report.page import Section
     from partialslip.run import Run
+    from partialslip.scene import Scene
 
     Commands = argparse._SubParsersAction[Any]
 
@@ -22,6 +25,41 @@ def add_scene(parser: "argparse.ArgumentParser") -> None:
     parser.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
     parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
                         help="change a setting of the scene, e.g. load.P=2e5; may be repeated")  # fmt: skip
+
+
+def add_pdf(parser: "argparse.ArgumentParser") -> None:
+    """Add ``--pdf`` to ``parser``."""
+    parser.add_argument("--pdf", action="store_true", help="also write the report as report.pdf, A4")
+
+
+def origin(options: "argparse.Namespace") -> "Made":
+    """Return the origin of results that are finished now, by the command of ``options``."""
+    from partialslip.origin import made_now
+
+    return made_now(options.line, options.overrides)
+
+
+def check_report(options: "argparse.Namespace") -> None:
+    """Raise MissingLibraryError if ``--pdf`` is given and a library is missing, before anything is solved."""
+    if options.pdf:
+        from partialslip.output.pdf import check_pdf
+
+        check_pdf("--pdf")
+
+
+def write_study(
+    options: "argparse.Namespace",
+    folder: Path,
+    title: str,
+    scene: "Scene",
+    sections: "list[Section]",
+    verdict: str = "",
+) -> list[Path]:
+    """Write the report of a study into ``folder``. Returns the paths."""
+    from partialslip.report.files import write_page
+    from partialslip.report.page import study_page
+
+    return write_page(study_page(title, scene, origin(options), sections), folder, pdf=options.pdf)
 
 
 def held(folder: Path | None) -> AbstractContextManager[None]:
@@ -74,7 +112,7 @@ def print_outcome(outcome: "Run", options: "argparse.Namespace", files: list[Pat
     from partialslip.report import print_run, record
 
     if options.json:
-        print(record(outcome).json, end="")
+        print(record(outcome, made=origin(options)).json, end="")
     else:
         console = output()
         print_run(outcome, console)

@@ -5,7 +5,16 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_scene, check_folder, held, print_outdated, print_written
+from partialslip.cli.common import (
+    add_pdf,
+    add_scene,
+    check_folder,
+    check_report,
+    held,
+    print_outdated,
+    print_written,
+    write_study,
+)
 from partialslip.errors import InputError
 from partialslip.scene.reading import load_scene
 
@@ -30,11 +39,13 @@ def add(topics: "Commands") -> None:
     cost.add_argument("--repeats", type=int, default=3, metavar="N", help="repeats of each setting (default: 3)")
     cost.add_argument("--peers", metavar="FILE", help="results of other codes, JSON lines, to add to the diagram")
     cost.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-cost)")
+    add_pdf(cost)
     cost.set_defaults(command=_cost)
 
 
 def _cost(options: argparse.Namespace) -> int:
     check_folder(options.out)
+    check_report(options)
     if options.repeats < 1:
         raise InputError(f"--repeats {options.repeats}: must be >= 1")
     scene = load_scene(options.scene, options.overrides)
@@ -44,6 +55,7 @@ def _cost(options: argparse.Namespace) -> int:
     from partialslip.output.csv import csv_text
     from partialslip.output.files import write_texts
     from partialslip.output.tables import print_table
+    from partialslip.report.page import Section
     from partialslip.study.cost import ladder
     from partialslip.study.cost.figure import errors_svg, phases_svg
 
@@ -59,20 +71,29 @@ def _cost(options: argparse.Namespace) -> int:
             "cost.svg": errors_svg(found, peers, f"{scene.name}: error against cost"),
             "phases.svg": phases_svg(found, f"{scene.name}: where the time goes"),
         }
-        files = [ledger.path, *write_texts(folder, texts)]
+        best = {id(point) for point in ladder.front(found)}
+        head = ["series (* on the front)", "setting", "m, in a", "n, in a", "q, norm", "unknowns", "CPU s", "process"]
+        rows = [_row(point, id(point) in best) for point in [*found, *peers]]
+        slopes = [
+            [each, *(_number(value, ".2f") for value in of.values())] for each, of in ladder.slopes(found).items()
+        ]
+        exponents = ["exponent against unknowns", "m, n", "q", "CPU"]
+        heading = f"{scene.name}: what accuracy costs, medians of {options.repeats}"
+        against = _against(found, peers)
+        sections = [
+            Section("Errors and costs", against, texts["cost.svg"], "", head, rows, (1,)),
+            Section("Growth with the unknowns", (), texts["phases.svg"], "", exponents, slopes),
+        ]
+        files = [
+            ledger.path,
+            *write_texts(folder, texts),
+            *write_study(options, folder, heading, scene, sections),
+        ]
     console = output()
-    console.print(f"{scene.name}: what accuracy costs, medians of {options.repeats}", style="bold", markup=False)
-    best = {id(point) for point in ladder.front(found)}
-    head = ["series (* on the front)", "setting", "m", "n", "q", "unknowns", "CPU s", "process"]
-    rows = [_row(point, id(point) in best) for point in [*found, *peers]]
+    console.print(heading, style="bold", markup=False)
     print_table(console, head, rows, words=(0, 1))
-    slopes = ladder.slopes(found)
-    print_table(
-        console,
-        ["exponent against unknowns", "m, n", "q", "CPU"],
-        [[series, *(_number(value, ".2f") for value in of.values())] for series, of in slopes.items()],
-    )
-    for line in _against(found, peers):
+    print_table(console, exponents, slopes)
+    for line in against:
         console.print(line, soft_wrap=True, markup=False)
     print_written(files, console)
     return 0

@@ -4,7 +4,15 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_scene, check_folder, held, print_written
+from partialslip.cli.common import (
+    add_pdf,
+    add_scene,
+    check_folder,
+    check_report,
+    held,
+    print_written,
+    write_study,
+)
 from partialslip.scene.reading import load_scene
 
 if TYPE_CHECKING:
@@ -24,11 +32,13 @@ def add(topics: "Commands") -> None:
     )
     add_scene(effects)
     effects.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-effects)")
+    add_pdf(effects)
     effects.set_defaults(command=_effects)
 
 
 def _effects(options: argparse.Namespace) -> int:
     check_folder(options.out)
+    check_report(options)
     scene = load_scene(options.scene, options.overrides)
 
     from partialslip.cli.consoles import output, working
@@ -47,7 +57,10 @@ def _effects(options: argparse.Namespace) -> int:
             "effects.csv": worth.effects_csv(study),
             "effects.svg": effects_svg(study),
         }
-        files = write_texts(folder, texts)
+        files = [
+            *write_texts(folder, texts),
+            *write_study(options, folder, f"{scene.name}: effects", scene, worth.sections(study, texts["effects.svg"])),
+        ]
     console = output()
     console.print(worth.heading(study), style="bold", markup=False)
     print_table(console, *worth.changes_table(study), words=(0, 1))

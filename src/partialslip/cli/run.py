@@ -7,7 +7,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from partialslip.allowance import Allowance
-from partialslip.cli.common import add_scene, check_folder, held, out_folder, print_outcome
+from partialslip.cli.common import (
+    add_pdf,
+    add_scene,
+    check_folder,
+    check_report,
+    held,
+    origin,
+    out_folder,
+    print_outcome,
+)
 from partialslip.errors import InputError
 from partialslip.judge.reference import METHODS
 from partialslip.result.state import State, load_state
@@ -52,6 +61,7 @@ def add(commands: "Commands") -> None:
                       help="write the state at the end of the load path to FILE, .npz (of fem, else of "
                       "march)")  # fmt: skip
     runs.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME)")
+    add_pdf(runs)
     runs.add_argument("--json", action="store_true", help="print results.json and nothing else; files only with --out")
     runs.set_defaults(command=_run)
 
@@ -62,6 +72,7 @@ def _run(options: argparse.Namespace) -> int:
         if method not in METHODS:
             raise InputError(f"--with {method!r}: must be of {', '.join(METHODS)}")
     check_folder(options.out)
+    check_report(options)
     if options.save == "":
         raise InputError("--save '': must name a file")
     if options.fields and methods and "fem" not in methods:
@@ -87,7 +98,7 @@ def _run(options: argparse.Namespace) -> int:
         if options.save is not None:
             save = Path(options.save)
             files += write_files(save.parent, {save.name: _state(outcome).save})
-        files += write_run(outcome, folder) if folder else []
+        files += write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
     return print_outcome(outcome, options, files, _paid(price, outcome, priced_at) if price else "")
 
 

@@ -6,7 +6,16 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from partialslip.cli.common import add_scene, check_folder, held, out_folder, print_outcome
+from partialslip.cli.common import (
+    add_pdf,
+    add_scene,
+    check_folder,
+    check_report,
+    held,
+    origin,
+    out_folder,
+    print_outcome,
+)
 from partialslip.errors import InputError
 from partialslip.judge.reference import METHODS
 from partialslip.scene.reading import load_scene
@@ -56,12 +65,14 @@ def add(commands: "Commands") -> None:
                         help="largest allowed error of a, m and n, as a fraction of a (p: 10 times, q: 15 times); "
                         "exit code 1 if missed")  # fmt: skip
     scores.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-FILE)")
+    add_pdf(scores)
     scores.add_argument("--json", action="store_true", help="print results.json, nothing else; files only with --out")
     scores.set_defaults(command=_score)
 
 
 def _score(options: argparse.Namespace) -> int:
     check_folder(options.out)
+    check_report(options)
     factors = _numbers(options.factors, float, "--factors", "three numbers, for example 1e-3,1e6,1e6", 3)
     at = () if options.at is None else _numbers(options.at, int, "--at", "two whole numbers, for example 3,4", 2)
     bar = None if options.bar is None else _numbers(options.bar, float, "--bar", "a number > 0", 1)[0]
@@ -101,7 +112,7 @@ def _score(options: argparse.Namespace) -> int:
             centre=options.centre,
             progress=tell,
         )
-        files = write_run(outcome, folder) if folder else []
+        files = write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
     return print_outcome(outcome, options, files)
 
 

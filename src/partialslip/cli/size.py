@@ -5,7 +5,16 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_scene, check_folder, held, print_outdated, print_written
+from partialslip.cli.common import (
+    add_pdf,
+    add_scene,
+    check_folder,
+    check_report,
+    held,
+    print_outdated,
+    print_written,
+    write_study,
+)
 from partialslip.errors import InputError
 from partialslip.scene.reading import load_scene
 
@@ -41,11 +50,13 @@ def add(topics: "Commands") -> None:
     size.add_argument("--one-mesh", action="store_true",
                       help="one mesh per size, without further meshes to check the error of the mesh")  # fmt: skip
     size.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-size)")
+    add_pdf(size)
     size.set_defaults(command=_size)
 
 
 def _size(options: argparse.Namespace) -> int:
     check_folder(options.out)
+    check_report(options)
     if options.processes is not None and options.processes < 1:
         raise InputError(f"--processes {options.processes}: must be >= 1")
     if len(options.over) > 2:
@@ -68,6 +79,7 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", fold
     from partialslip.output.csv import csv_text
     from partialslip.output.files import write_texts
     from partialslip.output.tables import print_table
+    from partialslip.report.page import Section
     from partialslip.study.size import sizes
     from partialslip.study.size.figure import grid_svg, size_svg
 
@@ -85,6 +97,7 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", fold
     console = output()
     texts = {"cases.csv": csv_text(*sizes.table(axes, entries))}
     unit = "in contact half-widths" if axes[0].in_a else "as in the scene"
+    tables: list[Section] = []
     if len(axes) == 1:
         found = sizes.along(axes[0], entries)
         laws = [law for quantity in sizes.QUANTITIES if (law := sizes.law(found, quantity))]
@@ -94,12 +107,16 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", fold
             [f"{value:.4g}", *(_number(found.off[quantity][k]) for quantity in sizes.QUANTITIES), _share(found, k)]
             for k, value in enumerate(found.size)
         ]
-        print_table(console, ["size", *sizes.QUANTITIES, "mesh"], rows)
+        changes = ["size", *sizes.QUANTITIES, "mesh"]
+        tables.append(Section("Changes from the half-plane", (), "", "", changes, rows))
+        print_table(console, changes, rows)
         if laws:
             needed = [f"{level:.1%}" for level in sizes.LEVELS]
             head = ["change = C size^-k", "C", "k", "95 %", "points", *needed]
             console.print("the law, and the size from which on the change is below", markup=False)
-            print_table(console, head, [_law(law) for law in laws])
+            fitted = [_law(law) for law in laws]
+            tables.append(Section("The law, and the size from which on the change is below", (), "", "", head, fitted))
+            print_table(console, head, fitted)
     else:
         for quantity in sizes.QUANTITIES:
             grid = sizes.grid(axes, entries, quantity)
@@ -109,7 +126,10 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", fold
     for entry in failed:
         labels = ", ".join(f"{key} {value}" for key, value in entry.labels.items())
         console.print(f"not solved: {labels}: {entry.error}", soft_wrap=True, markup=False)
-    print_written([ledger.path, *write_texts(folder, texts)], console)
+    figures = [Section(name.removesuffix(".svg"), (), text) for name, text in texts.items() if name.endswith(".svg")]
+    sections = [*figures, *tables]
+    page = write_study(options, folder, f"{scene.name}: size of the bodies", scene, sections)
+    print_written([ledger.path, *write_texts(folder, texts), *page], console)
     return 1 if failed else 0
 
 

@@ -10,11 +10,11 @@ import numpy as np
 from msgspec.structs import replace
 
 from partialslip.bars import CERTIFICATE_BAR
-from partialslip.batch.ledger import Made
 from partialslip.errors import InputError
 from partialslip.judge import P_BAR, Q_BAR, Outcome
+from partialslip.origin import origin_lines
+from partialslip.output.page import render_page
 from partialslip.output.svg import svg
-from partialslip.output.template import template
 from partialslip.report import rows
 from partialslip.verify.case import REQUIREMENTS, CaseVerdict, number_of, requirement_of
 from partialslip.verify.entry import Entry, Settings
@@ -75,16 +75,19 @@ def document(account: Account) -> str:
     """Return the report on ``account`` as HTML."""
     settings, verdicts = account.settings, account.verdicts
     listed, stress = every_one(verdicts), account.settings.suite == "stress"
-    page = template("partialslip.verify", "document.html").render(
-        account=account,
+    made = [entry.made for entry in account.entries.values() if entry.made]
+    return render_page(
+        "partialslip.verify",
+        "document.html",
         title=_title(settings),
-        asked=_asked(settings, [entry.made for entry in account.entries.values() if entry.made]),
+        verdict=_headline(listed),
+        origin=[("command", command(settings, settings.only)), *origin_lines(made)],
+        account=account,
         verdicts=verdicts,
         again={case: command(settings, [case.rpartition("-")[2] if stress else case]) for case in verdicts},
         stress=stress,
         count=f"{len(listed):,}",
         missed=list(filter(missed, listed)),
-        headline=_headline(listed),
         summary=_summary(verdicts),
         requirements=_requirements(listed),
         usual={"certificate": CERTIFICATE_BAR, "p": P_BAR, "q": Q_BAR},
@@ -94,7 +97,6 @@ def document(account: Account) -> str:
         kinds=_kinds(account) if stress else [],
         spread=_spread(listed) if stress else None,
     )
-    return page + "\n"
 
 
 def _title(settings: Settings) -> str:
@@ -106,20 +108,6 @@ def command(settings: Settings, only: Sequence[str]) -> str:
     """Return the command that repeats a verification with ``settings``, limited to the cases ``only`` if any."""
     words = [f"--{key} {value}" for key, value in replace(settings, only=tuple(only)).asked.items()]
     return " ".join(["partialslip verify", *words, *(f"--only {shlex.quote(name)}" for name in only)])
-
-
-def _asked(settings: Settings, origins: Sequence[Made]) -> list[tuple[str, str]]:
-    """Return rows of command, dates, commits, versions and machines."""
-    times = sorted(origin.at.replace("T", " ").replace("+00:00", " UTC") for origin in origins)
-    machines = [origin.machine for origin in origins]
-    found = {
-        "finished": [times[0] if times[0] == times[-1] else f"{times[0]} to {times[-1]}"],
-        "commit": [origin.commit or "none: not from a clone" for origin in origins],
-        "versions": [", ".join(map(" ".join, origin.versions.items())) for origin in origins],
-        "machine": [f"{each.processor}, {each.cores} cores, {each.system}" for each in machines],
-    }
-    lines = [(key, "; ".join(dict.fromkeys(texts))) for key, texts in found.items()]
-    return [("command", command(settings, settings.only)), *lines]
 
 
 def _headline(verdicts: Sequence[CaseVerdict]) -> str:

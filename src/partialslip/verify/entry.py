@@ -5,7 +5,7 @@ from typing import Any
 
 import msgspec
 
-from partialslip.batch.ledger import Made
+from partialslip.origin import Made
 from partialslip.report.sheet import Sheet
 from partialslip.verify.case import CaseVerdict
 from partialslip.verify.suites import Suite
