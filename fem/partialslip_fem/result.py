@@ -12,7 +12,7 @@ from partialslip.result.state import State
 from partialslip.scene import Scene
 from partialslip_fem.displacements import displace_bodies
 from partialslip_fem.estimate import rounding_error
-from partialslip_fem.fields import along_surfaces, deformed
+from partialslip_fem.fields import along_surfaces, deformed, edges_near_contact
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
 from partialslip_fem.problem import Problem, rescaled
 from partialslip_fem.recovery import Pair
@@ -96,6 +96,7 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
         contact_ends=((left1 * L, right1 * L), (left2 * L, right2 * L)),
         state=_state(scene, solution),
         surface=along_surfaces(displaced, solution.contact_ends, L, stress) if displaced else None,
+        edges=edges_near_contact(solution, L),
     )
 
 

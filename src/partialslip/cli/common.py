@@ -53,7 +53,6 @@ def write_study(
     title: str,
     scene: "Scene",
     sections: "list[Section]",
-    verdict: str = "",
 ) -> list[Path]:
     """Write the report of a study into ``folder``. Returns the paths."""
     from partialslip.report.files import write_page

@@ -7,7 +7,8 @@ from partialslip.origin import Made, origin_lines
 from partialslip.output.page import render_page
 from partialslip.report import rows
 from partialslip.report.amounts import amounts
-from partialslip.report.figure import traction_svg
+from partialslip.report.figure import mesh_svg, traction_svg
+from partialslip.report.sketch import sketch_svg
 from partialslip.run import Run
 from partialslip.scene import Scene
 
@@ -51,7 +52,7 @@ def run_page(run: Run, made: Made) -> str:
         rows=rows,
         figure=traction_svg(run),
         amounts=amounts(run.results),
-        mesh="",
+        mesh=mesh_svg(run),
         **_scene(run.scene),
     )
 
@@ -80,4 +81,4 @@ def study_page(title: str, scene: Scene, made: Made, sections: Sequence[Section]
 
 def _scene(scene: Scene) -> dict[str, object]:
     """Return the variables of the section about a scene."""
-    return {"sketch": "", "settings": rows.settings(scene)}
+    return {"sketch": sketch_svg(scene), "settings": rows.settings(scene)}
