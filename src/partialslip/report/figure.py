@@ -117,21 +117,21 @@ def draw_errors(axes: "Axes", run: Run) -> None:
     """
     reference = run.results[run.reference or ""]
     a, p0, f = reference.a, reference.p0, run.scene.friction.f
-    for name, style in zip(run.comparisons, cycle(_ERROR_LINES)):
+    for name, line in zip(run.comparisons, cycle(_ERROR_LINES)):
         traction, shown = run.results[name].traction, name.replace("$", r"\$")
         x = traction.x[np.abs(traction.x) <= _WIDEST * a]
         (p, dq), (true_p, true_dq) = traction.at(x), reference.traction.at(x)
-        _draw_error(axes, x / a, (p - true_p) / p0, color="0.55", ls=style, label=f"p, {shown}")
+        _draw_error(axes, x / a, (p - true_p) / p0, "0.55", line, f"p, {shown}")
         if f and (dq.any() or true_dq.any()):
-            _draw_error(axes, x / a, (dq - true_dq) / 2 / (f * p0), color="black", ls=style, label=f"q, {shown}")
+            _draw_error(axes, x / a, (dq - true_dq) / 2 / (f * p0), "black", line, f"q, {shown}")
     axes.grid(axis="y", which="major", color="0.92", lw=0.6)
     axes.set(yscale="log", xlabel="x/a", ylabel="error, in p0 and f p0", xlim=(-_WIDEST, _WIDEST))
     _legend_above(axes)
 
 
-def _draw_error(axes: "Axes", x: Array, error: Array, **style: str) -> None:
+def _draw_error(axes: "Axes", x: Array, error: Array, color: str, line: str, label: str) -> None:
     size = np.abs(error)
-    axes.plot(x, np.where(size > _LEAST, size, np.nan), lw=0.9, **style)
+    axes.plot(x, np.where(size > _LEAST, size, np.nan), lw=0.9, color=color, ls=line, label=label)
 
 
 def _legend_above(axes: "Axes") -> None:

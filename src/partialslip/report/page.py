@@ -53,7 +53,8 @@ def run_page(run: Run, made: Made) -> str:
         figure=traction_svg(run),
         amounts=amounts(run.results),
         mesh=mesh_svg(run),
-        **_scene(run.scene),
+        sketch=sketch_svg(run.scene),
+        settings=rows.settings(run.scene),
     )
 
 
@@ -75,10 +76,6 @@ def study_page(title: str, scene: Scene, made: Made, sections: Sequence[Section]
         subtitle=scene.title,
         origin=origin_lines([made]),
         sections=sections,
-        **_scene(scene),
+        sketch=sketch_svg(scene),
+        settings=rows.settings(scene),
     )
-
-
-def _scene(scene: Scene) -> dict[str, object]:
-    """Return the variables of the section about a scene."""
-    return {"sketch": sketch_svg(scene), "settings": rows.settings(scene)}
