@@ -41,6 +41,12 @@ def add(commands: "Commands") -> None:
     verify.add_argument("--include", action="append", default=[], metavar="DIR",
                         help="folder of a study (see: partialslip study); the figures are put into the report; may be "
                         "repeated")  # fmt: skip
+    verify.add_argument("--ladder", action="store_true",
+                        help="add a refinement ladder to each scene, with observed orders and grid convergence indices "
+                        "(about 5 CPU seconds a scene)")  # fmt: skip
+    for field, what in (("project", "project"), ("author", "author"), ("reviewer", "reviewer"),
+                        ("document", "document number")):  # fmt: skip
+        verify.add_argument(f"--{field}", default="", metavar="TEXT", help=f"{what}, for the title block of the report")
     verify.add_argument("--out", metavar="DIR", help="folder for the files (default: results/verify-SUITE)")
     verify.set_defaults(command=_verify)
 
@@ -53,6 +59,7 @@ def _verify(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import messages, output, shown
     from partialslip.judge import Outcome
     from partialslip.verify.driver import verify_suite
+    from partialslip.verify.entry import TitleBlock
     from partialslip.verify.verdicts import print_verdicts
 
     told = messages()
@@ -78,6 +85,8 @@ def _verify(options: argparse.Namespace) -> int:
             processes=options.processes,
             out=options.out,
             include=options.include,
+            ladder=options.ladder,
+            block=TitleBlock(options.project, options.author, options.reviewer, options.document),
             progress=progress,
         )
     console = output()

@@ -18,11 +18,20 @@ from partialslip.output.svg import svg
 from partialslip.report import rows
 from partialslip.verify.case import REQUIREMENTS, CaseVerdict, number_of, requirement_of
 from partialslip.verify.entry import Entry, Settings
+from partialslip.verify.formulas import REFERENCES
+from partialslip.verify.ladder import SIZES, Convergence
 from partialslip.verify.verdicts import Verdicts, every_one, missed, nearest, room
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+SCOPE = {
+    "quick": "The shipped scenes: two half-planes of one material, pressed together and loaded by shear and bulk "
+    "tension in phase. Each scene is solved by every method.",
+    "full": "The shipped scenes and the catalogue of hard cases: scenes on which contact codes fail. Each scene is "
+    "solved by the methods that it names.",
+    "stress": "Random scenes of one method. Each can be made again from its number.",
+}
 _LEAST = 1e-18  # smallest certificate in the figure, drawn for a residual of 0
 
 
@@ -46,12 +55,15 @@ class Account:
         Entries of the ledger by case.
     figures : mapping of str to str
         Traction plots by case, SVG.
+    sketches : mapping of str to str
+        Sketches by case, SVG.
     studies : sequence of Study
     """
 
     settings: Settings
     entries: Mapping[str, Entry]
     figures: Mapping[str, str]
+    sketches: Mapping[str, str]
     studies: Sequence[Study] = ()
 
     @property
@@ -81,7 +93,10 @@ def document(account: Account) -> str:
         "document.html",
         title=_title(settings),
         verdict=_headline(listed),
-        origin=[("command", command(settings, settings.only)), *origin_lines(made)],
+        origin=[*settings.block.given.items(), ("command", command(settings, settings.only)), *origin_lines(made)],
+        scope=SCOPE[settings.suite],
+        references=REFERENCES,
+        sizes=SIZES,
         account=account,
         verdicts=verdicts,
         again={case: command(settings, [case.rpartition("-")[2] if stress else case]) for case in verdicts},
@@ -94,6 +109,9 @@ def document(account: Account) -> str:
         closest=[_close(verdict) for verdict in sorted(nearest(verdicts), key=room)],
         found={case: list(map(_found, some)) for case, some in verdicts.items()},
         reasons={case: _reasons(some) for case, some in verdicts.items()},
+        estimates=_estimates(listed),
+        ladders=_ladders(account.entries),
+        climbed={case: list(map(_converged, entry.ladder)) for case, entry in account.entries.items()},
         kinds=_kinds(account) if stress else [],
         spread=_spread(listed) if stress else None,
     )
@@ -107,7 +125,9 @@ def _title(settings: Settings) -> str:
 def command(settings: Settings, only: Sequence[str]) -> str:
     """Return the command that repeats a verification with ``settings``, limited to the cases ``only`` if any."""
     words = [f"--{key} {value}" for key, value in replace(settings, only=tuple(only)).asked.items()]
-    return " ".join(["partialslip verify", *words, *(f"--only {shlex.quote(name)}" for name in only)])
+    words += [f"--only {shlex.quote(name)}" for name in only]
+    words += ["--ladder"] if settings.ladder else []
+    return " ".join(["partialslip verify", *words])
 
 
 def _headline(verdicts: Sequence[CaseVerdict]) -> str:
@@ -144,6 +164,46 @@ def _requirements(verdicts: Sequence[CaseVerdict]) -> list[tuple[str, ...]]:
         where = f"{worst.case}, {worst.method}" if worst and told else ""
         share = _share(worst) if worst else ""
         table.append((number_of(key), text, f"{len(some):,}", f"{sum(map(missed, some)):,}", share, where))
+    return table
+
+
+def _estimates(verdicts: Sequence[CaseVerdict]) -> list[tuple[str, ...]]:
+    """Return rows of requirement, check, number of estimates, ratio of true error to estimate (median, largest), number
+    of errors above the estimate, and where the ratio is largest."""
+    groups: dict[str, list[CaseVerdict]] = {}
+    for verdict in verdicts:
+        if verdict.estimate and verdict.error is not None:
+            groups.setdefault(f"{verdict.method}.{verdict.quantity}", []).append(verdict)
+    table: list[tuple[str, ...]] = []
+    for check, some in sorted(groups.items(), key=lambda group: number_of(group[1][0].quantity)):
+        ratios = np.array([(each.error or 0.0) / (each.estimate or 1.0) for each in some])
+        counts = f"{len(some):,}", f"{np.median(ratios):.2f}", f"{ratios.max():.2f}", f"{(ratios > 1).sum():,}"
+        table.append((number_of(some[0].quantity), check, *counts, some[int(ratios.argmax())].case))
+    return table
+
+
+def _converged(found: Convergence) -> tuple[str, ...]:
+    """Return a row of requirement, quantity, changes, observed order, GCI, true error and its share of the GCI."""
+    share = "" if found.error is None or not found.gci else f"{100 * found.error / found.gci:.0f} %"
+    order = "" if found.order is None else f"{found.order:.2f}"
+    numbers = *map(_number, found.changes), order, _number(found.gci), _number(found.error), share
+    return number_of(found.quantity), found.quantity, *numbers
+
+
+def _ladders(entries: Mapping[str, Entry]) -> list[tuple[str, ...]]:
+    """Return rows by requirement: ladders, observed order (least, median, largest), largest GCI, errors within it."""
+    groups: dict[str, list[Convergence]] = {}
+    for entry in entries.values():
+        for found in entry.ladder:
+            groups.setdefault(found.quantity, []).append(found)
+    table: list[tuple[str, ...]] = []
+    for quantity, some in groups.items():
+        orders = [each.order for each in some if each.order is not None]
+        spread = [f"{value:.2f}" for value in (min(orders), np.median(orders), max(orders))] if orders else ["", "", ""]
+        known = [each for each in some if each.error is not None]
+        within = sum((each.error or 0.0) <= each.gci for each in known)
+        largest = _number(max(each.gci for each in some))
+        table.append((number_of(quantity), quantity, f"{len(some):,}", *spread, largest, f"{within} of {len(known)}"))
     return table
 
 
