@@ -2,7 +2,7 @@
 
 The ladder solves a scene by linear elements of one size along the contact, each size half the one before. The ends of
 contact and stick zone move by whole elements from mesh to mesh, so that the order of a single triple of meshes scatters
-widely. The order is therefore fitted to all changes of the ladder, and the index bounds all changes:
+widely. The order is therefore fitted to all changes of the ladder, and the index takes all changes into account:
 
     change_i = C h_i^p,   GCI = F_s max_i(change_i h^p / h_i^p) / (2^p - 1)
 
