@@ -21,7 +21,9 @@ The gallery has the shipped scenes, and three other scenes from `docs/scenes`. E
 - Lines are the reference, and markers are the finite elements.
 - The figures show p in units of p0, and half the change of shear between the load points, q = (q2 - q1)/2, in units of
   f p0.
-- Errors are those of `partialslip run`: a, m and n as fractions of a, p and q in the relative L2 norm of cell averages.
+- Below them are the errors of p and q along the contact, in p0 and f p0.
+- Errors in the tables are those of `partialslip run`: a, m and n as fractions of a, p and q in the relative L2 norm of
+  cell averages.
 """
 _ENTRY = """
 ## {name}

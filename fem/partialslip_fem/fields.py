@@ -10,9 +10,11 @@ from partialslip.arrays import Array
 from partialslip.result import DeformedBody, SurfaceStress
 from partialslip_fem.displacements import DisplacedBody
 from partialslip_fem.elasticity import gradients
+from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.recovery import inside, polynomials
 
 _CELLS, _TERMS = 6, 4  # cells and terms of the fit at the ends of the contact
+_REACH, _SHORTEST = 1.5, 0.01  # of the edges drawn near the contact, in contact half-widths
 
 
 @dataclass(frozen=True)
@@ -131,6 +133,25 @@ def deformed(body: DisplacedBody, length: float, unit: float, stress: float, ori
         {f"displacement_{point}": unit * (u * mirror).T for point, u in enumerate(moved, start=1)},
         {f"stress_{point}": stress * sigma.T for point, sigma in enumerate(stresses, start=1)},
     )
+
+
+def edges_near_contact(solution: MeshSolution, length: float, origin: float) -> tuple[Array, Array]:
+    """Element edges of the lower and the upper body near the contact, (k, 2, 2) by edge, end and x, y, m.
+
+    Edges of :data:`_REACH` contact half-widths around the contact, without edges too short to be seen. ``length`` is
+    the unit of length, and ``origin`` the origin of the scaled x, m.
+    """
+    found, middle = [], np.array([(solution.left + solution.right) / 2, 0.0])
+    for condensed, way in zip((solution.bodies * 2)[:2], (1, -1), strict=True):
+        mesh = condensed.mesh
+        sides = np.concatenate([mesh.triangles[:, [0, 1]], mesh.triangles[:, [1, 2]], mesh.triangles[:, [2, 0]]])
+        ends = (mesh.points[np.unique(np.sort(sides, axis=1), axis=0)] - middle) / solution.half_width
+        low, high = ends.min(axis=1), ends.max(axis=1)
+        near = (low[:, 0] < _REACH) & (high[:, 0] > -_REACH) & (high[:, 1] > -_REACH)
+        seen = np.hypot(*(ends[:, 1] - ends[:, 0]).T) > _SHORTEST
+        scaled = (ends[near & seen] * solution.half_width + middle) * (length, way * length) + (origin, 0.0)
+        found.append(scaled.astype(np.float32))
+    return found[0], found[1]
 
 
 def _in_the_middle(body: DisplacedBody) -> Array:

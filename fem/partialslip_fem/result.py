@@ -12,7 +12,7 @@ from partialslip.result.state import State
 from partialslip.scene import Scene
 from partialslip_fem.displacements import displace_bodies
 from partialslip_fem.estimate import rounding_error
-from partialslip_fem.fields import along_surfaces, deformed
+from partialslip_fem.fields import along_surfaces, deformed, edges_near_contact
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
 from partialslip_fem.problem import Problem, rescaled
 from partialslip_fem.recovery import Pair
@@ -97,6 +97,7 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
         contact_ends=((left1 * L + origin, right1 * L + origin), (left2 * L + origin, right2 * L + origin)),
         state=_state(scene, problem, solution),
         surface=along_surfaces(displaced, solution.contact_ends, L, stress, origin) if displaced else None,
+        edges=edges_near_contact(solution, L, origin),
     )
 
 

@@ -1,8 +1,5 @@
 """A run as plain data: the content of ``results.json``. The types here define the schema of the file."""
 
-import platform
-from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +8,7 @@ import msgspec
 from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes
 from partialslip.judge import Comparison, Outcome, Verdict
+from partialslip.origin import Made, versions
 from partialslip.output.json import json_text
 from partialslip.plan import Effect, Plan
 from partialslip.result.record import Number, ResultRecord, number
@@ -19,7 +17,6 @@ from partialslip.scene import Scene
 
 SCHEMA = "partialslip/result/3"
 _LARGEST = 500_000_000  # bytes of a results.json to read
-_PACKAGES = ("partialslip", "numpy", "scipy", "scikit-fem", "gmsh", "meshio")
 
 
 class PlanRecord(msgspec.Struct, frozen=True):
@@ -108,6 +105,8 @@ class Record(msgspec.Struct, frozen=True):
         Comparisons with the reference by method.
     versions : dict of str to str
         Versions of Python and of the packages that compute the results.
+    made : Made or None
+        Date, command, overrides, commit and machine; None in ledgers, whose entries have their own.
     """
 
     schema: str
@@ -119,6 +118,7 @@ class Record(msgspec.Struct, frozen=True):
     methods: dict[str, ResultRecord]
     comparison: dict[str, ComparisonRecord]
     versions: dict[str, str]
+    made: Made | None = None
 
     def __repr__(self) -> str:
         return f"Record of {self.scene.name}: {self.outcome}; {', '.join(self.methods)}"
@@ -129,8 +129,17 @@ class Record(msgspec.Struct, frozen=True):
         return json_text(self)
 
 
-def record(run: Run, *, curves: bool = True) -> Record:
-    """Make the record of ``run``, with or without ``curves`` (tractions, slip, stresses along the surfaces)."""
+def record(run: Run, *, curves: bool = True, made: Made | None = None) -> Record:
+    """Make the record of ``run``.
+
+    Parameters
+    ----------
+    run : Run
+    curves : bool
+        Whether to include tractions, slip and stresses along the surfaces.
+    made : Made, optional
+        Origin of the run (:func:`partialslip.origin.made_now`).
+    """
     return Record(
         schema=SCHEMA,
         outcome=run.outcome,
@@ -141,6 +150,7 @@ def record(run: Run, *, curves: bool = True) -> Record:
         methods={name: ResultRecord.of(result, curves) for name, result in run.results.items()},
         comparison={name: ComparisonRecord.of(comparison) for name, comparison in run.comparisons.items()},
         versions=versions(),
+        made=made,
     )
 
 
@@ -169,9 +179,3 @@ class _Schema(msgspec.Struct):
 def schema() -> dict[str, Any]:
     """Return the JSON Schema (draft 2020-12) of ``results.json``."""
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(Record)}
-
-
-@cache
-def versions() -> dict[str, str]:
-    """Return the versions of Python and of the packages that compute the results."""
-    return {"python": platform.python_version(), **{package: version(package) for package in _PACKAGES}}

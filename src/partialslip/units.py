@@ -15,7 +15,7 @@ Dimension = Literal["m", "Pa", "N/m", "N", "J/m", "1"]
 _DIMENSIONS: tuple[Dimension, ...] = get_args(Dimension)
 _T = TypeVar("_T", float, Array)
 _LABELLED = re.compile(r"(?<=\d) (N/m|m|Pa)(?![\w/])")
-_PREFIXES = ((9, "G"), (6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ"), (-9, "n"))
+PREFIXES = ((9, "G"), (6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ"), (-9, "n"))
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ UNITS: Mapping[str, Units] = {each.name: each for each in (SI, N_MM)}  # of scen
 def engineering(number: float, unit: str, digits: int) -> str:
     """Return ``number`` in ``unit`` with a suitable SI prefix and ``digits`` significant digits."""
     number = float(f"{number:.12g}")  # 1 - 1e-16 must become 1, not 1000 m
-    for exponent, prefix in _PREFIXES:
+    for exponent, prefix in PREFIXES:
         if 1 <= abs(number) / 10.0**exponent < 1000:
             return f"{number / 10.0**exponent:.{digits}g} {prefix}{unit}"
     return f"{number:.4g} {unit}"

@@ -10,9 +10,11 @@ import time
 import pytest
 
 import partialslip
+from partialslip import origin
 from partialslip.batch import ledger as module
 from partialslip.batch.job import Job
-from partialslip.batch.ledger import Ledger, checksum_of, scene_content, source_checksum
+from partialslip.batch.ledger import Ledger, scene_content
+from partialslip.origin import checksum_of, source_checksum
 
 
 def test_entries_are_there_again(tmp_path):
@@ -126,4 +128,4 @@ def test_a_case_of_a_study_is_another_one(change, tmp_path, monkeypatch):
 
 def test_the_source_files_of_all_packages_count():
     assert len(source_checksum()) == 16
-    assert list(module._PACKAGES) == ["partialslip", "partialslip_fem", "partialslip_meshes"]
+    assert list(origin._SOURCES) == ["partialslip", "partialslip_fem", "partialslip_meshes"]

@@ -51,7 +51,7 @@ def test_scene():
     title = "<b>P & Q</b>"
     cells = Cells(partialslip.load_scene("hertz-shear", [f'title="{title}"'])._repr_html_())
     assert f"hertz-shear: {title}" in cells.text
-    assert ["material", "E", "7.28e+10"] in cells.rows
+    assert ["material", "E", "7.28e+10 Pa"] in cells.rows
     assert ["friction", "f", "0.5"] in cells.rows
 
 

@@ -12,6 +12,7 @@ import pytest
 
 import partialslip
 from partialslip import load_result, load_scene, run
+from partialslip.origin import made_now
 from partialslip.record import SCHEMA, record, schema
 from partialslip.report import write_run
 
@@ -49,9 +50,11 @@ def test_a_run_is_the_same_after_a_pickle(found):
 
 
 def test_results_are_read_back_as_they_were(found, tmp_path):
-    write_run(found, tmp_path)
+    made = made_now("partialslip run it", ["friction.f=0.4"])
+    write_run(found, tmp_path, made)
     back = load_result(tmp_path / "results.json")
-    assert back == record(found)
+    assert back == record(found, made=made)
+    assert back.made.overrides == ("friction.f=0.4",)
     assert back.scene == found.scene
     for name, mine in found.results.items():
         its = back.methods[name]

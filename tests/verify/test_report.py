@@ -13,15 +13,28 @@ import pytest
 import partialslip
 from partialslip.cli import main
 from partialslip.run import run
-from partialslip.verify import REQUIREMENTS, case
+from partialslip.verify import REQUIREMENTS, case, driver
 from partialslip.verify.driver import verify_suite
+from partialslip.verify.entry import TitleBlock
+from partialslip.verify.ladder import convergence
 
 CASES = ["no-shear", "one-contact-node"]
 SVG = '<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg"><title>picture of costs</title></svg>'
 
 
+BLOCK = TitleBlock(project="Rig <7>", reviewer="R. Reviewer")
+
+
 def verified(folder, **settings):
-    return verify_suite("full", CASES, processes=1, out=folder, **settings)
+    return verify_suite("full", CASES, processes=1, out=folder, block=BLOCK, ladder=True, **settings)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _climbed():
+    """Ladders are made by hand: tests/verify/test_ladder.py is about them."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(driver, "climb", lambda *_: (convergence("m", [0.064, 0.032, 0.016, 0.008], 0.004),))
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +84,7 @@ def test_every_verdict_is_there_with_its_requirement_and_bar(folder):
 def test_what_repeats_a_case_and_the_data_of_its_figure_are_named(folder):
     for name in CASES:
         own = section(page(folder), name)
-        assert f"<code>partialslip verify --suite full --only {name}</code>" in own
+        assert f"<code>partialslip verify --suite full --only {name} --ladder</code>" in own
         for file in ("scene.toml", "tractions.csv"):
             assert f"scenes/{name}/{file}" in own
             assert (folder / "scenes" / name / file).exists()
@@ -98,10 +111,40 @@ def test_where_it_was_found_is_told(folder):
     made = json.loads((folder / "ledger.jsonl").read_text("utf-8").splitlines()[0])["made"]
     assert "<h1>Verification of partialslip, suite full, in part</h1>" in page(folder)
     table = dict(row for row in words(page(folder)) if len(row) == 2)
-    assert table["command"] == "partialslip verify --suite full --only no-shear --only one-contact-node"
+    assert table["command"] == "partialslip verify --suite full --only no-shear --only one-contact-node --ladder"
+    assert table["project"] == "Rig <7>"
+    assert table["reviewer"] == "R. Reviewer"
+    assert "author" not in table
     assert made["machine"]["processor"] in table["machine"]
-    assert all(number in table["versions"] for number in made["versions"].values())
-    assert made["at"][:10] in table["finished"]
+    assert all(number in table["version"] for number in made["versions"].values())
+    assert made["date"][:10] in table["date"]
+
+
+def test_estimates_stand_against_true_errors(folder):
+    text = page(folder)
+    rows = words(text[text.index("<h2>Estimates against true errors") :])
+    shown = next(row for row in rows if row[1] == "fem.a")
+    found = json.loads((folder / "results.json").read_text("utf-8"))["cases"]["no-shear"]
+    verdict = next(each for each in found if (each["method"], each["quantity"]) == ("fem", "a"))
+    assert float(shown[4]) == pytest.approx(verdict["error"] / verdict["estimate"], abs=0.005)
+    assert shown[5] == str(int(verdict["error"] > verdict["estimate"]))
+
+
+def test_a_ladder_has_orders_and_indices(folder):
+    own = section(page(folder), "no-shear")
+    row = next(row for row in words(own[own.index("<h3>Refinement ladder") :]) if row[1] == "m")
+    assert row == ["R6", "m", "6.4e-02", "3.2e-02", "1.6e-02", "8.0e-03", "1.00", "1.0e-02", "4.0e-03", "40 %"]
+    assert "<h3>Refinement ladder" not in section(page(folder), "one-contact-node")  # on a given mesh
+
+
+def test_each_case_has_a_sketch_formulas_and_references(folder):
+    own = html.unescape(section(page(folder), "no-shear"))
+    assert "half-plane" in own
+    cited = set(re.findall(r"\[(\d)(?:, (\d))?\]", own[own.index("<h3>Formulas") : own.index("</ul>")]))
+    assert cited
+    references = html.unescape(page(folder)).split("<h2>References</h2>")[1]
+    assert all(f"[{number}]" in references for pair in cited for number in pair if number)
+    assert (folder / "scenes" / "no-shear" / "sketch.svg").exists()
 
 
 def test_a_missed_bar_cannot_be_overlooked(tmp_path, monkeypatch):
@@ -122,7 +165,7 @@ def test_a_missed_bar_cannot_be_overlooked(tmp_path, monkeypatch):
     assert words(nearest)[1][1] == "R3"
     assert words(nearest)[1][-1] == "MISSED"
     assert "MISSED" in section(text, "one-contact-node")
-    assert "again with <code>partialslip verify --suite full --only one-contact-node</code>" in text
+    assert "again with <code>partialslip verify --suite full --only one-contact-node --ladder</code>" in text
 
 
 def test_stopped_and_continued_it_is_the_same(folder, tmp_path, monkeypatch):

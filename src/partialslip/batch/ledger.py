@@ -7,53 +7,15 @@ solved again. Commit and versions are recorded only.
 import hashlib
 import json
 import os
-import platform
-import subprocess
-from collections.abc import Iterable, Iterator, Mapping
-from datetime import UTC, datetime
-from functools import cache
-from importlib.util import find_spec
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
 from partialslip.errors import InputError
-from partialslip.record import versions
+from partialslip.origin import checksum, made_now, source_checksum
 from partialslip.scene import Scene
-
-_PACKAGES = ("partialslip", "partialslip_fem", "partialslip_meshes")
-
-
-class Machine(msgspec.Struct, frozen=True):
-    """Machine that solved a case: operating ``system``, ``processor``, number of ``cores``."""
-
-    system: str
-    processor: str
-    cores: int | None
-
-
-class Made(msgspec.Struct, frozen=True, kw_only=True):
-    """Origin of an entry.
-
-    Parameters
-    ----------
-    at : str
-        Date and time, UTC.
-    versions : dict of str to str
-        Versions of Python and packages.
-    machine : Machine
-    commit : str or None
-        Commit of a clone; None outside a clone.
-    code : str
-        Checksum of the source files.
-    """
-
-    at: str = ""
-    versions: dict[str, str]
-    machine: Machine
-    commit: str | None
-    code: str
 
 
 class Ledger:
@@ -130,8 +92,7 @@ class Ledger:
         InputError
             If the file cannot be written.
         """
-        made = msgspec.structs.replace(_origin(), at=datetime.now(UTC).isoformat(timespec="seconds"))
-        entry = {"key": key, **msgspec.to_builtins(found), "made": msgspec.to_builtins(made)}
+        entry = {"key": key, **msgspec.to_builtins(found), "made": msgspec.to_builtins(made_now())}
         if self._path:
             _append(self._path, _sealed(json.dumps(entry, allow_nan=False)) + b"\n")
         self._entries[key] = entry
@@ -185,49 +146,4 @@ def scene_content(scene: Scene) -> dict[str, Any]:
     files = [body.mesh for _, body in scene.bodies if body.mesh is not None]
     content = msgspec.to_builtins(scene)
     del content["shown_in"]
-    return {**content, "mesh files": {file: _checksum([Path(file)]) for file in files}}
-
-
-@cache
-def source_checksum() -> str:
-    """Return the checksum of all installed files of the packages, code and data."""
-    roots = [Path(place) for name in _PACKAGES for place in find_spec(name).submodule_search_locations]  # type: ignore[union-attr]
-    return checksum_of(roots)
-
-
-def checksum_of(folders: Iterable[Path]) -> str:
-    """Return the checksum of names and contents of the files in ``folders``, without ``__pycache__``."""
-    files = [path for folder in folders for path in sorted(folder.rglob("*")) if path.is_file()]
-    return _checksum([path for path in files if "__pycache__" not in path.parts]) or ""
-
-
-def _checksum(files: Iterable[Path]) -> str | None:
-    found = hashlib.sha256()
-    try:
-        for path in files:
-            found.update(f"{path.name}\0{path.stat().st_size}\0".encode())
-            found.update(path.read_bytes())
-    except OSError:
-        return None
-    return found.hexdigest()[:16]
-
-
-@cache
-def _origin() -> Made:
-    """Return versions, machine, checksum of the source files and, in a clone, the commit."""
-    here = Path(__file__).parent
-    git = ["git", "-C", str(here), "describe", "--always", "--dirty", "--abbrev=12"]
-    try:
-        commit = subprocess.run(git, capture_output=True, text=True, check=True, timeout=10).stdout.strip()
-    except (OSError, subprocess.SubprocessError):
-        commit = None
-    machine = Machine(platform.system(), _processor(), os.cpu_count())
-    return Made(versions=versions(), machine=machine, commit=commit, code=source_checksum())
-
-
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text("utf-8").splitlines()
-        return next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
-    except (OSError, StopIteration, IndexError):
-        return platform.processor() or platform.machine()
+    return {**content, "mesh files": {file: checksum([Path(file)]) for file in files}}

@@ -1,6 +1,8 @@
 """The command line. Exit codes: see :mod:`partialslip.cli.ending`."""
 
 import argparse
+import shlex
+import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -56,7 +58,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _command(arguments: Sequence[str] | None) -> int:
-    options = parser().parse_args(arguments, argparse.Namespace(own_process=arguments is None))
+    line = shlex.join(["partialslip", *(sys.argv[1:] if arguments is None else arguments)])
+    options = parser().parse_args(arguments, argparse.Namespace(own_process=arguments is None, line=line))
     code: int = options.command(options)
     return code
 

@@ -13,7 +13,9 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from partialslip.batch.ledger import Ledger
+    from partialslip.origin import Made
     from partialslip.output.place import Place
+    from partialslip.report.page import Section
     from partialslip.run import Run
     from partialslip.scene import Scene
 
@@ -32,6 +34,40 @@ def add_force(parser: "argparse.ArgumentParser") -> None:
     """Add ``--force`` to ``parser``."""
     parser.add_argument("--force", action="store_true",
                         help="overwrite the files of another scene or other settings")  # fmt: skip
+
+
+def add_pdf(parser: "argparse.ArgumentParser") -> None:
+    """Add ``--pdf`` to ``parser``."""
+    parser.add_argument("--pdf", action="store_true", help="also write the report as report.pdf, A4")
+
+
+def origin(options: "argparse.Namespace") -> "Made":
+    """Return the origin of results that are finished now, by the command of ``options``."""
+    from partialslip.origin import made_now
+
+    return made_now(options.line, options.overrides)
+
+
+def check_report(options: "argparse.Namespace") -> None:
+    """Raise MissingLibraryError if ``--pdf`` is given and a library is missing, before anything is solved."""
+    if options.pdf:
+        from partialslip.output.pdf import check_pdf
+
+        check_pdf("--pdf")
+
+
+def write_study(
+    options: "argparse.Namespace",
+    folder: Path,
+    title: str,
+    scene: "Scene",
+    sections: "list[Section]",
+) -> list[Path]:
+    """Write the report of a study into ``folder``. Returns the paths."""
+    from partialslip.report.files import write_page
+    from partialslip.report.page import study_page
+
+    return write_page(study_page(title, scene, origin(options), sections), folder, pdf=options.pdf)
 
 
 def add_verbose(parser: "argparse.ArgumentParser", what: str) -> None:
@@ -154,7 +190,7 @@ def print_outcome(
     from partialslip.report import print_run, record
 
     if options.json:
-        print(record(outcome).json, end="")
+        print(record(outcome, made=origin(options)).json, end="")
     else:
         console, folders = output(), _by_folder(files)
         places = [str(folder if len(names) > 1 else folder / names[0]) for folder, names in folders.items()]

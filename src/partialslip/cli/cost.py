@@ -8,13 +8,16 @@ from typing import TYPE_CHECKING
 import partialslip
 from partialslip.cli.common import (
     add_force,
+    add_pdf,
     add_scene,
     add_verbose,
     check_folder,
+    check_report,
     print_elsewhere,
     print_outdated,
     print_written,
     results_folder,
+    write_study,
 )
 from partialslip.errors import InputError
 
@@ -41,11 +44,13 @@ def add(topics: "Commands") -> None:
     cost.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-cost)")
     add_force(cost)
     add_verbose(cost, "the settings that another one beats in cost and error, and how errors fall with unknowns")
+    add_pdf(cost)
     cost.set_defaults(command=_cost)
 
 
 def _cost(options: argparse.Namespace) -> int:
     check_folder(options.out)
+    check_report(options)
     if options.repeats < 1:
         raise InputError(f"--repeats {options.repeats}: must be >= 1")
     scene = partialslip.load_scene(options.scene, options.overrides)
@@ -55,6 +60,7 @@ def _cost(options: argparse.Namespace) -> int:
     from partialslip.output.csv import csv_text
     from partialslip.output.files import write_texts
     from partialslip.output.tables import print_table
+    from partialslip.report.page import Section
     from partialslip.study.cost import ladder
     from partialslip.study.cost.figure import errors_svg, phases_svg
 
@@ -73,25 +79,35 @@ def _cost(options: argparse.Namespace) -> int:
             "cost.svg": errors_svg(found, peers, f"{scene.name}: error against cost"),
             "phases.svg": phases_svg(found, f"{scene.name}: where the time goes"),
         }
-        files = [ledger.path, *write_texts(folder, texts)]
-    console = output()
-    console.print(f"{scene.name}: what accuracy costs, medians of {options.repeats}", style="bold", markup=False)
-    console.print(ladder.SETTING, markup=False)
-    best = {id(point) for point in ladder.front(found)}
-    head = ["setting", "m", "n", "q", "unknowns", "CPU s", "process"]
-    if options.verbose:
+        best = {id(point) for point in ladder.front(found)}
+        head = ["series (* on the front)", "setting", "m, in a", "n, in a", "q, norm", "unknowns", "CPU s", "process"]
         rows = [_row(point, id(point) in best) for point in [*found, *peers]]
-        print_table(console, ["series (* on the front)", *head], rows, words=(0, 1))
-        print_table(
-            console,
-            ["exponent against unknowns", "m, n", "q", "CPU"],
-            [[series, *(_number(of[key], ".2f") for key in of)] for series, of in ladder.slopes(found).items()],
-        )
+        slopes = [
+            [each, *(_number(value, ".2f") for value in of.values())] for each, of in ladder.slopes(found).items()
+        ]
+        exponents = ["exponent against unknowns", "m, n", "q", "CPU"]
+        heading = f"{scene.name}: what accuracy costs, medians of {options.repeats}"
+        against = _against(found, peers)
+        sections = [
+            Section("Errors and costs", against, texts["cost.svg"], "", head, rows, (1,)),
+            Section("Growth with the unknowns", (), texts["phases.svg"], "", exponents, slopes),
+        ]
+        files = [
+            ledger.path,
+            *write_texts(folder, texts),
+            *write_study(options, folder, heading, scene, sections),
+        ]
+    console = output()
+    console.print(heading, style="bold", markup=False)
+    console.print(ladder.SETTING, markup=False)
+    if options.verbose:
+        print_table(console, head, rows, words=(0, 1))
+        print_table(console, exponents, slopes)
     else:
-        rows = [_row(point, False) for point in found if id(point) in best]
-        print_table(console, ["series", *head], rows, words=(0, 1))
+        front = [_row(point, False) for point in found if id(point) in best]
+        print_table(console, ["series", *head[1:]], front, words=(0, 1))
         console.print(f"{len(found) - len(best)} other settings cost more for the error: --verbose, or cost.csv")
-    for line in _against(found, peers):
+    for line in against:
         console.print(line, soft_wrap=True, markup=False)
     print_written(files, console, place.passed)
     return 0

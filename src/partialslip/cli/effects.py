@@ -4,7 +4,16 @@ import argparse
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_force, add_scene, check_folder, print_written, results_folder
+from partialslip.cli.common import (
+    add_force,
+    add_pdf,
+    add_scene,
+    check_folder,
+    check_report,
+    print_written,
+    results_folder,
+    write_study,
+)
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -24,11 +33,13 @@ def add(topics: "Commands") -> None:
     add_scene(effects)
     effects.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-effects)")
     add_force(effects)
+    add_pdf(effects)
     effects.set_defaults(command=_effects)
 
 
 def _effects(options: argparse.Namespace) -> int:
     check_folder(options.out)
+    check_report(options)
     scene = partialslip.load_scene(options.scene, options.overrides)
 
     from partialslip.cli.consoles import output, working
@@ -46,7 +57,10 @@ def _effects(options: argparse.Namespace) -> int:
             "effects.csv": worth.effects_csv(study),
             "effects.svg": effects_svg(study),
         }
-        files = write_texts(folder, texts)
+        files = [
+            *write_texts(folder, texts),
+            *write_study(options, folder, f"{scene.name}: effects", scene, worth.sections(study, texts["effects.svg"])),
+        ]
     console = output()
     console.print(worth.heading(study), style="bold", markup=False)
     print_table(console, *worth.changes_table(study), words=(0, 1))

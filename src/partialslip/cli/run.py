@@ -8,7 +8,17 @@ from typing import TYPE_CHECKING
 
 import partialslip
 from partialslip.allowance import Allowance
-from partialslip.cli.common import add_force, add_scene, add_verbose, check_folder, folder_if_wanted, print_outcome
+from partialslip.cli.common import (
+    add_force,
+    add_pdf,
+    add_scene,
+    add_verbose,
+    check_folder,
+    check_report,
+    folder_if_wanted,
+    origin,
+    print_outcome,
+)
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
@@ -52,6 +62,7 @@ def add(commands: "Commands") -> None:
                       "march)")  # fmt: skip
     runs.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME)")
     add_force(runs)
+    add_pdf(runs)
     add_verbose(runs, "limits, slip, certificates, costs by phase, and the effects with reasons")
     runs.add_argument("--json", action="store_true", help="print results.json and nothing else; files only with --out")
     runs.set_defaults(command=_run)
@@ -65,6 +76,7 @@ def _run(options: argparse.Namespace) -> int:
         if method not in METHODS:
             raise InputError(f"--with {method!r}: must be of {', '.join(METHODS)}")
     check_folder(options.out)
+    check_report(options)
     if options.save == "":
         raise InputError("--save '': must name a file")
     if options.fields and methods and "fem" not in methods:
@@ -95,7 +107,7 @@ def _run(options: argparse.Namespace) -> int:
             if options.save is not None:
                 save = Path(options.save)
                 files += write_files(save.parent, {save.name: _state(outcome).save})
-            files += write_run(outcome, folder) if folder else []
+            files += write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
     return print_outcome(outcome, options, files, [_paid(price, outcome, priced_at)] if price else [], passed)
 
 

@@ -7,7 +7,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import partialslip
-from partialslip.cli.common import add_force, add_scene, add_verbose, check_folder, folder_if_wanted, print_outcome
+from partialslip.cli.common import (
+    add_force,
+    add_pdf,
+    add_scene,
+    add_verbose,
+    check_folder,
+    check_report,
+    folder_if_wanted,
+    origin,
+    print_outcome,
+)
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
@@ -53,6 +63,7 @@ def add(commands: "Commands") -> None:
                         "exit code 1 if missed")  # fmt: skip
     scores.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-FILE)")
     add_force(scores)
+    add_pdf(scores)
     add_verbose(scores, "what was read from the file, and costs and effects of the reference")
     scores.add_argument("--json", action="store_true", help="print results.json, nothing else; files only with --out")
     scores.set_defaults(command=_score)
@@ -60,6 +71,7 @@ def add(commands: "Commands") -> None:
 
 def _score(options: argparse.Namespace) -> int:
     check_folder(options.out)
+    check_report(options)
     factors = _numbers(options.factors, float, "--factors", "three numbers, for example 1e-3,1e6,1e6", 3)
     at = () if options.at is None else _numbers(options.at, int, "--at", "two whole numbers, for example 3,4", 2)
     bar = None if options.bar is None else _numbers(options.bar, float, "--bar", "a number > 0", 1)[0]
@@ -105,7 +117,7 @@ def _score(options: argparse.Namespace) -> int:
             centre=options.centre,
             progress=tell,
         )
-        files = write_run(outcome, folder) if folder else []
+        files = write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
     return print_outcome(outcome, options, files, passed=passed)
 
 

@@ -6,12 +6,15 @@ from typing import TYPE_CHECKING
 import partialslip
 from partialslip.cli.common import (
     add_force,
+    add_pdf,
     add_scene,
     check_folder,
+    check_report,
     print_elsewhere,
     print_outdated,
     print_written,
     results_folder,
+    write_study,
 )
 from partialslip.errors import InputError
 
@@ -48,11 +51,13 @@ def add(topics: "Commands") -> None:
                       help="one mesh per size, without further meshes to check the error of the mesh")  # fmt: skip
     size.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-size)")
     add_force(size)
+    add_pdf(size)
     size.set_defaults(command=_size)
 
 
 def _size(options: argparse.Namespace) -> int:
     check_folder(options.out)
+    check_report(options)
     if options.processes is not None and options.processes < 1:
         raise InputError(f"--processes {options.processes}: must be >= 1")
     if len(options.over) > 2:
@@ -75,6 +80,7 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", plac
     from partialslip.output.csv import csv_text
     from partialslip.output.files import write_texts
     from partialslip.output.tables import print_table
+    from partialslip.report.page import Section
     from partialslip.study.size import sizes, tables
     from partialslip.study.size.figure import grid_svg, size_svg
 
@@ -87,15 +93,18 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", plac
         entries = sizes.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
     console = output()
     texts = {"cases.csv": csv_text(*sizes.table(axes, entries))}
+    sections = list[Section]()
     if len(axes) == 1:
         study = tables.size_study(scene, axes[0], entries)
         texts |= {"points.csv": tables.points_csv(study), "laws.csv": tables.laws_csv(study)}
         console.print(tables.heading(study), style="bold", markup=False)
         if study.trends:
             texts["size.svg"] = size_svg(study)
-        for headings, rows in (tables.changes_table(study), tables.laws_table(study), tables.needed_table(study)):
+        found = tables.changes_table(study), tables.laws_table(study), tables.needed_table(study)
+        for title, (headings, rows) in zip(("Changes from the half-plane", "Laws", "Sizes needed"), found, strict=True):
             if rows:
                 print_table(console, headings, rows)
+                sections.append(Section(title, (), "", "", headings, rows))
         lines = tables.notes(study)
     else:
         for quantity in sizes.QUANTITIES:
@@ -105,5 +114,8 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", plac
         lines = tables.unsolved(entries)
     for line in lines:
         console.print(line, soft_wrap=True, markup=False)
-    print_written([ledger.path, *write_texts(folder, texts)], console, place.passed)
+    figures = [Section(name.removesuffix(".svg"), (), text) for name, text in texts.items() if name.endswith(".svg")]
+    sections = [*figures, *sections, *([Section("Notes", lines)] if lines else [])]
+    page = write_study(options, folder, f"{scene.name}: size of the bodies", scene, sections)
+    print_written([ledger.path, *write_texts(folder, texts), *page], console, place.passed)
     return 1 if any(entry.error for entry in entries) else 0

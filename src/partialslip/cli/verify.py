@@ -39,6 +39,12 @@ def add(commands: "Commands") -> None:
     verify.add_argument("--include", action="append", default=[], metavar="DIR",
                         help="folder of a study (see: partialslip study); the figures are put into the report; may be "
                         "repeated")  # fmt: skip
+    verify.add_argument("--ladder", action="store_true",
+                        help="add a refinement ladder to each scene, with observed orders and grid convergence indices "
+                        "(about 5 CPU seconds a scene)")  # fmt: skip
+    for field, what in (("project", "project"), ("author", "author"), ("reviewer", "reviewer"),
+                        ("document", "document number")):  # fmt: skip
+        verify.add_argument(f"--{field}", default="", metavar="TEXT", help=f"{what}, for the title block of the report")
     verify.add_argument("--out", metavar="DIR", help="folder for the files (default: results/verify-SUITE)")
     add_force(verify)
     add_verbose(verify, "one row for each case and method, also if there are many and nothing is missed")
@@ -51,6 +57,7 @@ def _verify(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import counting, output
     from partialslip.judge import Outcome
     from partialslip.verify.driver import verify_suite
+    from partialslip.verify.entry import TitleBlock
     from partialslip.verify.verdicts import print_verdicts
 
     with counting(f"verify {options.suite}", "writing the report") as progress:
@@ -64,6 +71,8 @@ def _verify(options: argparse.Namespace) -> int:
             out=options.out,
             force=options.force,
             include=options.include,
+            ladder=options.ladder,
+            block=TitleBlock(options.project, options.author, options.reviewer, options.document),
             progress=progress,
         )
     console = output()

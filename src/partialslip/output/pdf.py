@@ -1,5 +1,6 @@
 """Convert an HTML page to PDF with WeasyPrint."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
 
@@ -19,14 +20,22 @@ def write_pdf(html: str, folder: Path, name: str) -> list[Path]:
     InputError
         If the folder cannot be written.
     """
+    return write_files(folder, {name: lambda path: _writer(name)(html, path)})
+
+
+def check_pdf(name: str) -> None:
+    """Raise MissingLibraryError if a library for the PDF file ``name`` is missing."""
+    _writer(name)
+
+
+def _writer(name: str) -> Callable[[str, Path], object]:
     try:
         from weasyprint import HTML
     except ImportError:
         raise MissingLibraryError(f"{name} needs WeasyPrint: pip install 'partialslip[pdf]'") from None
     except OSError:
         raise MissingLibraryError(f"{name} needs libraries of Pango: apt-get install {LIBRARIES}") from None
-    page = HTML(string=html, url_fetcher=_refuse)
-    return write_files(folder, {name: page.write_pdf})
+    return lambda html, path: HTML(string=html, url_fetcher=_refuse).write_pdf(path)
 
 
 def _refuse(url: str, *_: object, **__: object) -> NoReturn:

@@ -1,6 +1,7 @@
-"""Figures as SVG in one common style."""
+"""Figures as SVG in one common style: black on white, and light on dark where the reader's screen is dark."""
 
 import io
+import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,9 @@ _STYLE: dict[Any, Any] = {
     "axes.spines.top": False,
     "axes.spines.right": False,
 }
+_DARK = "@media screen and (prefers-color-scheme: dark)"
+_INK, _PAPER = (0xE6, 0xE6, 0xE6), (0x13, 0x14, 0x16)  # black and white on a dark screen, as in style.css
+_SHADE = re.compile(r"#([0-9a-f]{2})\1\1\b")
 
 
 def svg(draw: Callable[["Figure"], None], size: tuple[float, float] = (7.4, 4.4)) -> str:
@@ -27,4 +31,27 @@ def svg(draw: Callable[["Figure"], None], size: tuple[float, float] = (7.4, 4.4)
         draw(figure)
         text = io.StringIO()
         figure.savefig(text, format="svg", metadata=dict.fromkeys(("Date", "Creator", "Format", "Type")))
-    return text.getvalue()
+    return with_dark_mode(text.getvalue())
+
+
+def with_dark_mode(text: str) -> str:
+    """Return the SVG ``text`` with a style for dark screens: each shade of grey becomes one between ink and paper.
+
+    The colours themselves stay as they are, because programs other than browsers know no variables and no media.
+    """
+    shades = sorted({found[0] for found in _SHADE.finditer(text)})
+    rules = ["svg { fill: " + _on_dark("#000000") + " }"]
+    rules += [
+        f'[style*="{key}: {shade}"], [{key}="{shade}"] {{ {key}: {_on_dark(shade)} !important }}'
+        for shade in shades
+        for key in ("fill", "stroke")
+    ]
+    style = "\n".join(["<style>", _DARK + " {", *rules, "}", "</style>"])
+    start = text.index(">", text.index("<svg")) + 1
+    return f"{text[:start]}\n{style}{text[start:]}"
+
+
+def _on_dark(shade: str) -> str:
+    """Return the colour of a shade of grey, #rrggbb, on a dark screen."""
+    light = int(shade[1:3], 16) / 255
+    return "#" + "".join(f"{round(ink + (paper - ink) * light):02x}" for ink, paper in zip(_INK, _PAPER, strict=True))

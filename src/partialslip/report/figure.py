@@ -1,6 +1,7 @@
-"""The traction plot: exact line, finite-element markers, stick zone shaded; x/a against q/(f p0)."""
+"""The traction plot: exact line, finite-element markers, stick zone shaded; x/a against q/(f p0); and the errors."""
 
 from collections.abc import Mapping
+from itertools import cycle
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +14,12 @@ from partialslip.run import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
+_SIZE = 5.2, 4.2  # width and height, inches
+_LEAST = 1e-17  # smallest error in the figure
+_ERROR_LINES = ("-", "--", ":", "-.")
+_MESH = 1.5, 1.0  # largest distance from the middle of the contact, and |y|, of the mesh, in a
 _MARKERS = 41
 _MARGIN = 0.04  # beyond the contact, in a
 _P_MARKS = {"march": "x", "fem": "+", ALL_EFFECTS: "1"}
@@ -21,8 +27,42 @@ _Q_MARKS = {"march": "s", "fem": "o", ALL_EFFECTS: "D"}
 
 
 def traction_svg(run: Run) -> str:
-    """Return the traction plot of ``run`` as SVG."""
-    return svg(lambda figure: draw_run(figure.subplots(), run))
+    """Return the traction plot of ``run`` as SVG; below it, the errors of the compared methods along the contact."""
+    if not run.comparisons:
+        return svg(lambda figure: draw_run(figure.subplots(), run), _SIZE)
+
+    def draw(figure: "Figure") -> None:
+        above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+        draw_run(above, run)
+        above.set_xlabel("")
+        draw_errors(below, run)
+
+    return svg(draw, (_SIZE[0], 1.6 * _SIZE[1]))
+
+
+def mesh_svg(run: Run) -> str:
+    """Return the element edges near the contact as SVG, of the first result with elements; empty without one."""
+    result = next((each for each in run.results.values() if each.edges), None)
+    if not result:
+        return ""
+
+    def draw(figure: "Figure") -> None:
+        axes = figure.subplots()
+        for edges in result.edges:
+            apart = np.insert(edges / result.a, 2, np.nan, axis=1)  # one line with gaps: one element of the SVG
+            axes.plot(*apart.reshape(-1, 2).T, color="black", lw=0.4)
+        left, right = (end / result.a for end in result.ends[1])
+        axes.plot([left, right], [0, 0], color="black", lw=2.2, solid_capstyle="butt")
+        middle = (left + right) / 2
+        axes.set(
+            xlim=(middle - _MESH[0], middle + _MESH[0]),
+            ylim=(-_MESH[1], _MESH[1]),
+            aspect="equal",
+            xlabel="x/a",
+            ylabel="y/a",
+        )
+
+    return svg(draw, (_SIZE[0], 3.6))
 
 
 def draw_run(axes: "Axes", run: Run) -> None:
@@ -72,10 +112,45 @@ def draw_tractions(axes: "Axes", results: Mapping[str, Result], f: float | None 
                     label=f"{shear}, {name}",
                 )
     axes.axhline(0, color="0.7", lw=0.6, zorder=0)
-    left, right = np.array(reference.ends).T / a
-    limits = min(left) - _MARGIN, max(right) + _MARGIN
-    axes.set(xlabel="x/a", ylabel=f"tractions: p/p0 and {shear}", xlim=limits)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+    axes.set(xlabel="x/a", ylabel=f"tractions: p/p0 and {shear}", xlim=_limits(reference))
+    _legend_above(axes)
+
+
+def _limits(reference: Result) -> tuple[float, float]:
+    """Return the smallest and the largest x/a of a figure along the contact."""
+    left, right = np.array(reference.ends).T / reference.a
+    return float(left.min()) - _MARGIN, float(right.max()) + _MARGIN
+
+
+def draw_errors(axes: "Axes", run: Run) -> None:
+    """Draw |p - p_ref|/p0 and |q - q_ref|/(f p0) of each compared method on logarithmic ``axes``, at its points.
+
+    ``run`` must have a reference. Errors below 1e-17 are not drawn.
+    """
+    reference = run.results[run.reference or ""]
+    a, p0, f = reference.a, reference.p0, run.scene.friction.f
+    left, right = _limits(reference)
+    for name, line in zip(run.comparisons, cycle(_ERROR_LINES)):
+        traction, shown = run.results[name].traction, name.replace("$", r"\$")
+        x = traction.x[(traction.x >= left * a) & (traction.x <= right * a)]
+        (p, dq), (true_p, true_dq) = traction.at(x), reference.traction.at(x)
+        _draw_error(axes, x / a, (p - true_p) / p0, "0.55", line, f"p, {shown}")
+        if f and (dq.any() or true_dq.any()):
+            _draw_error(axes, x / a, (dq - true_dq) / 2 / (f * p0), "black", line, f"q, {shown}")
+    axes.grid(axis="y", which="major", color="0.92", lw=0.6)
+    axes.set(yscale="log", xlabel="x/a", ylabel="error, in p0 and f p0", xlim=(left, right))
+    _legend_above(axes)
+
+
+def _draw_error(axes: "Axes", x: Array, error: Array, color: str, line: str, label: str) -> None:
+    size = np.abs(error)
+    axes.plot(x, np.where(size > _LEAST, size, np.nan), lw=0.9, color=color, ls=line, label=label)
+
+
+def _legend_above(axes: "Axes") -> None:
+    """Put the legend above the axes: figures stay narrow enough for a phone."""
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, frameon=False, fontsize=9,
+                handlelength=1.6, columnspacing=1.2, borderaxespad=0.2)  # fmt: skip
 
 
 def _spread(result: Result) -> Array:

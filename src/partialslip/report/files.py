@@ -8,20 +8,24 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from partialslip.origin import Made, made_now
 from partialslip.output.csv import csv_text
-from partialslip.output.files import write_files
+from partialslip.output.files import write_files, write_texts
+from partialslip.output.pdf import write_pdf
 from partialslip.record import record
-from partialslip.report.figure import traction_svg
-from partialslip.report.page import page
+from partialslip.report.page import run_page
 from partialslip.run import Run
 from partialslip.units import Dimension, Units
 
 _DIMENSIONS: dict[str, Dimension] = {"method": "1", "x": "m", "x_over_a": "1"}  # all other columns are stresses
 
+PAGE, PDF = "report.html", "report.pdf"
 
-def write_run(run: Run, folder: Path) -> list[Path]:
+
+def write_run(run: Run, folder: Path, made: Made | None = None, *, pdf: bool = False) -> list[Path]:
     """Write results.json, tractions.csv and report.html of ``run`` into ``folder``. Returns the paths.
 
+    ``made`` is the origin of the run (default: now, by a call from Python). With ``pdf``, also write report.pdf.
     If fields inside the bodies were asked for, also write surface.csv, bodies.vtu and mesh.msh; lower.msh and upper.msh
     instead of mesh.msh if the bodies are not mirror images.
 
@@ -29,12 +33,15 @@ def write_run(run: Run, folder: Path) -> list[Path]:
     ------
     InputError
         If the folder cannot be written.
+    MissingLibraryError
+        If a library for the PDF is missing.
     """
-    data = record(run)
+    made = made or made_now()
+    data, html = record(run, made=made), run_page(run, made)
     files: dict[str, Callable[[Path], object]] = {
         "results.json": lambda path: path.write_text(data.json, "utf-8"),
         "tractions.csv": lambda path: path.write_text(tractions_csv(run), "utf-8"),
-        "report.html": lambda path: path.write_text(page(run, data, traction_svg(run)), "utf-8"),
+        PAGE: lambda path: path.write_text(html, "utf-8"),
     }
     if bodies := next((result.bodies for result in run.results.values() if result.bodies), None):
         from partialslip_meshes.write import write_msh, write_vtu
@@ -44,7 +51,20 @@ def write_run(run: Run, folder: Path) -> list[Path]:
         files["bodies.vtu"] = lambda path: write_vtu(path, bodies)
     if any(result.surface for result in run.results.values()):
         files["surface.csv"] = lambda path: path.write_text(surface_csv(run), "utf-8")
-    return write_files(folder, files)
+    return write_files(folder, files) + (write_pdf(html, folder, PDF) if pdf else [])
+
+
+def write_page(html: str, folder: Path, *, pdf: bool = False) -> list[Path]:
+    """Write the report ``html`` as report.html and, with ``pdf``, report.pdf into ``folder``. Returns the paths.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
+    MissingLibraryError
+        If a library for the PDF is missing.
+    """
+    return write_texts(folder, {PAGE: html}) + (write_pdf(html, folder, PDF) if pdf else [])
 
 
 def tractions_csv(run: Run) -> str:

@@ -1,11 +1,82 @@
-"""Report of a run as one self-contained HTML page."""
+"""Reports as self-contained HTML pages: of a run, and of a study."""
 
-from partialslip.output.template import template
-from partialslip.record import Record
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from partialslip.origin import Made, origin_lines
+from partialslip.output.page import render_page
 from partialslip.report import rows
+from partialslip.report.amounts import amounts
+from partialslip.report.figure import mesh_svg, traction_svg
+from partialslip.report.sketch import sketch_svg
 from partialslip.run import Run
+from partialslip.scene import Scene
 
 
-def page(run: Run, data: Record, figure: str) -> str:
-    """Return the report of ``run`` as HTML. ``data`` is the run's record, ``figure`` the traction plot as SVG."""
-    return template("partialslip.report", "page.html").render(run=run, data=data, figure=figure, rows=rows) + "\n"
+@dataclass(frozen=True)
+class Section:
+    """A section of the report of a study: paragraphs, then a figure, then a table.
+
+    Parameters
+    ----------
+    title : str
+    lines : sequence of str
+        Paragraphs.
+    figure, caption : str
+        SVG and caption; empty for no figure.
+    headings, rows : sequence of str, sequence of rows of str
+        The table; without rows there is none.
+    words : sequence of int
+        Columns of words besides the first; all other columns are numbers.
+    """
+
+    title: str
+    lines: Sequence[str] = ()
+    figure: str = ""
+    caption: str = ""
+    headings: Sequence[str] = ()
+    rows: Sequence[Sequence[str]] = ()
+    words: Sequence[int] = ()
+
+
+def run_page(run: Run, made: Made) -> str:
+    """Return the report of ``run``, of the origin ``made``, as HTML."""
+    return render_page(
+        "partialslip.report",
+        "run.html",
+        title=run.scene.name,
+        subtitle=run.scene.title,
+        verdict=rows.verdict(run),
+        origin=origin_lines([made]),
+        run=run,
+        rows=rows,
+        figure=traction_svg(run),
+        amounts=amounts(run.results, run.scene.units),
+        mesh=mesh_svg(run),
+        sketch=sketch_svg(run.scene),
+        settings=rows.settings(run.scene),
+    )
+
+
+def study_page(title: str, scene: Scene, made: Made, sections: Sequence[Section]) -> str:
+    """Return the report of a study of ``scene`` as HTML.
+
+    Parameters
+    ----------
+    title : str
+    scene : Scene
+    made : Made
+        Origin of the study.
+    sections : sequence of Section
+    """
+    return render_page(
+        "partialslip.report",
+        "study.html",
+        title=title,
+        subtitle=scene.title,
+        origin=origin_lines([made]),
+        sections=sections,
+        sketch=sketch_svg(scene),
+        settings=rows.settings(scene),
+        units=scene.units.words,
+    )

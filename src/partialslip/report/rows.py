@@ -35,6 +35,12 @@ _MEANING = {
     for key, text in {"left": "left end", "right": "right end", "P": "P", "p": "p"}.items()
     for point in (1, 2)
 }  # fmt: skip
+_UNITS = {
+    **dict.fromkeys(("E", "p0", "sigma"), "Pa"),
+    **dict.fromkeys(("R", "b", "x", "gap", "a", "width", "height", "unit"), "m"),
+    **dict.fromkeys(("P", "Q"), "N/m"),
+    **dict.fromkeys(("fem.accuracy", "fem.size", "fem.width"), "a"),
+}  # of settings by key, or by table and key
 _WORDS = {Outcome.PASSED: "ok", Outcome.MISSED: "MISSED", Outcome.NOT_JUDGED: "not judged"}
 _DIGITS, _MOST = 7, 10  # decimals of values: the usual number, and the largest if the error is smaller
 
@@ -131,9 +137,15 @@ def _set(scene: Scene) -> dict[str, list[tuple[str, str]]]:
     """Return pairs of key and setting by table."""
     tables = {table: keys for table, keys in scene_tables(scene).items() if isinstance(keys, dict)}
     return {
-        table: [(key, setting(choice)) for key, choice in _flat(keys) if choice is not None]
+        table: [(key, _with_unit(table, key, choice)) for key, choice in _flat(keys) if choice is not None]
         for table, keys in tables.items()
     }
+
+
+def _with_unit(table: str, key: str, choice: object) -> str:
+    """Return a setting as text, numbers with their unit."""
+    unit = _UNITS.get(f"{table}.{key}") or _UNITS.get(key.rpartition(".")[2], "") if table != "effects" else ""
+    return setting(choice) + (f" {unit}" if unit and not isinstance(choice, str) else "")
 
 
 def _flat(table: Mapping[str, object], before: str = "") -> Iterator[tuple[str, object]]:

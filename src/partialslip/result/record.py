@@ -46,7 +46,7 @@ class TractionRecord(Short, msgspec.Struct, frozen=True, omit_defaults=True):
 
 
 class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """A :class:`partialslip.Result` as plain data, without bodies, state and fields at other points.
+    """A :class:`partialslip.Result` as plain data, without bodies, edges, state and fields at other points.
 
     Fields have the names, units and meaning of the result: ``a``, ``p0``, ``regime``, ``m``, ``n``,
     ``stick_half_width``, ``stick_centre``, ``p_max``, ``settings``, ``counts``, ``limits``, ``certificate``,

@@ -76,6 +76,9 @@ class Result(Drawn):
         By quantity (``m``, ``n``, ``q``, ``q1``, ``q2``), why the value cannot serve as a reference.
     path_dependent : bool
         Whether slip reverses between the load points; a method with one load step is then no reference.
+    edges : (Array, Array) or ()
+        Element edges of the lower and the upper body near the contact, (k, 2, 2) by edge, end and x, y, m, undeformed;
+        only edges long enough to be seen. Empty for methods without elements.
     """
 
     method: str
@@ -102,6 +105,7 @@ class Result(Drawn):
     shares: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     undetermined: Mapping[str, str] = field(default_factory=dict)
     path_dependent: bool = False
+    edges: tuple[Array, Array] | tuple[()] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stress_at", at_points(self.stress_at))

@@ -10,19 +10,28 @@ import numpy as np
 from msgspec.structs import replace
 
 from partialslip.bars import CERTIFICATE_BAR
-from partialslip.batch.ledger import Made
 from partialslip.errors import InputError
 from partialslip.judge import P_BAR, Q_BAR, Outcome
+from partialslip.origin import origin_lines
+from partialslip.output.page import render_page
 from partialslip.output.svg import svg
-from partialslip.output.template import template
 from partialslip.report import rows
 from partialslip.verify.case import REQUIREMENTS, CaseVerdict, number_of, requirement_of
 from partialslip.verify.entry import Entry, Settings
+from partialslip.verify.formulas import REFERENCES
+from partialslip.verify.ladder import SIZES, Convergence
 from partialslip.verify.verdicts import Verdicts, every_one, missed, nearest, room
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+SCOPE = {
+    "quick": "The shipped scenes: two half-planes of one material, pressed together and loaded by shear and bulk "
+    "tension in phase. Each scene is solved by every method.",
+    "full": "The shipped scenes and the catalogue of hard cases: scenes on which contact codes fail. Each scene is "
+    "solved by the methods that it names.",
+    "stress": "Random scenes of one method. Each can be made again from its number.",
+}
 _LEAST = 1e-18  # smallest certificate in the figure, drawn for a residual of 0
 
 
@@ -46,12 +55,15 @@ class Account:
         Entries of the ledger by case.
     figures : mapping of str to str
         Traction plots by case, SVG.
+    sketches : mapping of str to str
+        Sketches by case, SVG.
     studies : sequence of Study
     """
 
     settings: Settings
     entries: Mapping[str, Entry]
     figures: Mapping[str, str]
+    sketches: Mapping[str, str]
     studies: Sequence[Study] = ()
 
     @property
@@ -75,26 +87,34 @@ def document(account: Account) -> str:
     """Return the report on ``account`` as HTML."""
     settings, verdicts = account.settings, account.verdicts
     listed, stress = every_one(verdicts), account.settings.suite == "stress"
-    page = template("partialslip.verify", "document.html").render(
-        account=account,
+    made = [entry.made for entry in account.entries.values() if entry.made]
+    return render_page(
+        "partialslip.verify",
+        "document.html",
         title=_title(settings),
-        asked=_asked(settings, [entry.made for entry in account.entries.values() if entry.made]),
+        verdict=_headline(listed),
+        origin=[*settings.block.given.items(), ("command", command(settings, settings.only)), *origin_lines(made)],
+        scope=SCOPE[settings.suite],
+        references=REFERENCES,
+        sizes=SIZES,
+        account=account,
         verdicts=verdicts,
         again={case: command(settings, [case.rpartition("-")[2] if stress else case]) for case in verdicts},
         stress=stress,
         count=f"{len(listed):,}",
         missed=list(filter(missed, listed)),
-        headline=_headline(listed),
         summary=_summary(verdicts),
         requirements=_requirements(listed),
         usual={"certificate": CERTIFICATE_BAR, "p": P_BAR, "q": Q_BAR},
         closest=[_close(verdict) for verdict in sorted(nearest(verdicts), key=room)],
         found={case: list(map(_found, some)) for case, some in verdicts.items()},
         reasons={case: _reasons(some) for case, some in verdicts.items()},
+        estimates=_estimates(listed),
+        ladders=_ladders(account.entries),
+        climbed={case: list(map(_converged, entry.ladder)) for case, entry in account.entries.items()},
         kinds=_kinds(account) if stress else [],
         spread=_spread(listed) if stress else None,
     )
-    return page + "\n"
 
 
 def _title(settings: Settings) -> str:
@@ -105,21 +125,9 @@ def _title(settings: Settings) -> str:
 def command(settings: Settings, only: Sequence[str]) -> str:
     """Return the command that repeats a verification with ``settings``, limited to the cases ``only`` if any."""
     words = [f"--{key} {value}" for key, value in replace(settings, only=tuple(only)).asked.items()]
-    return " ".join(["partialslip verify", *words, *(f"--only {shlex.quote(name)}" for name in only)])
-
-
-def _asked(settings: Settings, origins: Sequence[Made]) -> list[tuple[str, str]]:
-    """Return rows of command, dates, commits, versions and machines."""
-    times = sorted(origin.at.replace("T", " ").replace("+00:00", " UTC") for origin in origins)
-    machines = [origin.machine for origin in origins]
-    found = {
-        "finished": [times[0] if times[0] == times[-1] else f"{times[0]} to {times[-1]}"],
-        "commit": [origin.commit or "none: not from a clone" for origin in origins],
-        "versions": [", ".join(map(" ".join, origin.versions.items())) for origin in origins],
-        "machine": [f"{each.processor}, {each.cores} cores, {each.system}" for each in machines],
-    }
-    lines = [(key, "; ".join(dict.fromkeys(texts))) for key, texts in found.items()]
-    return [("command", command(settings, settings.only)), *lines]
+    words += [f"--only {shlex.quote(name)}" for name in only]
+    words += ["--ladder"] if settings.ladder else []
+    return " ".join(["partialslip verify", *words])
 
 
 def _headline(verdicts: Sequence[CaseVerdict]) -> str:
@@ -156,6 +164,46 @@ def _requirements(verdicts: Sequence[CaseVerdict]) -> list[tuple[str, ...]]:
         where = f"{worst.case}, {worst.method}" if worst and told else ""
         share = _share(worst) if worst else ""
         table.append((number_of(key), text, f"{len(some):,}", f"{sum(map(missed, some)):,}", share, where))
+    return table
+
+
+def _estimates(verdicts: Sequence[CaseVerdict]) -> list[tuple[str, ...]]:
+    """Return rows of requirement, check, number of estimates, ratio of true error to estimate (median, largest), number
+    of errors above the estimate, and where the ratio is largest."""
+    groups: dict[str, list[CaseVerdict]] = {}
+    for verdict in verdicts:
+        if verdict.estimate and verdict.error is not None:
+            groups.setdefault(f"{verdict.method}.{verdict.quantity}", []).append(verdict)
+    table: list[tuple[str, ...]] = []
+    for check, some in sorted(groups.items(), key=lambda group: number_of(group[1][0].quantity)):
+        ratios = np.array([(each.error or 0.0) / (each.estimate or 1.0) for each in some])
+        counts = f"{len(some):,}", f"{np.median(ratios):.2f}", f"{ratios.max():.2f}", f"{(ratios > 1).sum():,}"
+        table.append((number_of(some[0].quantity), check, *counts, some[int(ratios.argmax())].case))
+    return table
+
+
+def _converged(found: Convergence) -> tuple[str, ...]:
+    """Return a row of requirement, quantity, changes, observed order, GCI, true error and its share of the GCI."""
+    share = "" if found.error is None or not found.gci else f"{100 * found.error / found.gci:.0f} %"
+    order = "" if found.order is None else f"{found.order:.2f}"
+    numbers = *map(_number, found.changes), order, _number(found.gci), _number(found.error), share
+    return number_of(found.quantity), found.quantity, *numbers
+
+
+def _ladders(entries: Mapping[str, Entry]) -> list[tuple[str, ...]]:
+    """Return rows by requirement: ladders, observed order (least, median, largest), largest GCI, errors within it."""
+    groups: dict[str, list[Convergence]] = {}
+    for entry in entries.values():
+        for found in entry.ladder:
+            groups.setdefault(found.quantity, []).append(found)
+    table: list[tuple[str, ...]] = []
+    for quantity, some in groups.items():
+        orders = [each.order for each in some if each.order is not None]
+        spread = [f"{value:.2f}" for value in (min(orders), np.median(orders), max(orders))] if orders else ["", "", ""]
+        known = [each for each in some if each.error is not None]
+        within = sum((each.error or 0.0) <= each.gci for each in known)
+        largest = _number(max(each.gci for each in some))
+        table.append((number_of(quantity), quantity, f"{len(some):,}", *spread, largest, f"{within} of {len(known)}"))
     return table
 
 

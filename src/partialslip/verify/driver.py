@@ -20,19 +20,21 @@ from partialslip.output.pdf import write_pdf
 from partialslip.output.place import placed
 from partialslip.plan import plan
 from partialslip.report.figure import traction_svg
-from partialslip.report.files import tractions_csv
+from partialslip.report.files import PAGE, PDF, tractions_csv, write_page
 from partialslip.report.sheet import Sheet, sheet
+from partialslip.report.sketch import sketch_svg
 from partialslip.result import Result
 from partialslip.run import compared
 from partialslip.scene.writing import scene_toml
 from partialslip.verify.case import Case, CaseVerdict, Found, judge_case, solve_case
 from partialslip.verify.document import Account, Study, document, read_study
-from partialslip.verify.entry import Entry, Settings
+from partialslip.verify.entry import Entry, Settings, TitleBlock
+from partialslip.verify.formulas import formulas
+from partialslip.verify.ladder import SIZES, climb, has_ladder
 from partialslip.verify.suites import SUITES, Maker, Makers, Suite, stress_suite, suite
 from partialslip.verify.verdicts import was_finished, write_verdicts
 
-_SCENES, _FIGURE = "scenes", "tractions.svg"
-_PAGE, _PDF = "report.html", "report.pdf"
+_SCENES, _FIGURE, _SKETCH = "scenes", "tractions.svg", "sketch.svg"
 _MOST = 999_999_999
 
 
@@ -82,6 +84,8 @@ def verify_suite(
     out: str | Path | None = None,
     force: bool = False,
     include: Sequence[str | Path] = (),
+    ladder: bool = False,
+    block: TitleBlock = TitleBlock(),  # noqa: B008 - immutable
     progress: Progress = lambda *_: None,
 ) -> Verification:
     """Solve and judge the cases of a suite, and write verdicts and report.
@@ -102,12 +106,16 @@ def verify_suite(
         under ``if __name__ == "__main__":``, because each process imports the script.
     out : str or Path, optional
         Folder for ``ledger.jsonl``, ``results.json``, ``results.csv``, ``report.html``, ``report.pdf`` and ``scenes``
-        (``scene.toml``, ``tractions.csv`` and ``tractions.svg`` of each scene, except random ones). Default:
-        ``results/verify-SUITE``, or ``results/verify-SUITE-2`` and so on if that folder has other settings.
+        (``scene.toml``, ``tractions.csv``, ``tractions.svg`` and ``sketch.svg`` of each scene, except random ones).
+        Default: ``results/verify-SUITE``, or ``results/verify-SUITE-2`` and so on if that folder has other settings.
     force : bool
         Whether to write into a folder that holds another verification or other results.
     include : sequence of str or Path
         Folders of studies (``partialslip study``); their figures are put into the report.
+    ladder : bool
+        Whether to add a refinement ladder (:mod:`partialslip.verify.ladder`) to each case that allows one.
+    block : TitleBlock
+        Project, author, reviewer and document number for the report.
     progress : callable
         ``progress(done, total, seconds_left)``.
 
@@ -119,7 +127,8 @@ def verify_suite(
     """
     if processes is not None and processes < 1:
         raise InputError(f"--processes {processes}: must be >= 1")
-    settings, makers, keys = _cases(name, only, method, seed, count)
+    settings, makers, keys = _cases(name, only, method, seed, count, ladder)
+    settings = replace(settings, block=block)
     studies = [read_study(Path(each)) for each in include]
     request = {"command": "verify", "settings": {**settings.asked, "only": settings.only}}
     with placed(Path("results") / _folder(settings), out, request, force) as place:
@@ -140,16 +149,18 @@ def _verify(
     write_verdicts(folder, settings, {}, finished=False)
     finished = {entry["case"] for entry in ledger}
     again = tuple(case for case, key in keys.items() if case in finished and key not in ledger)
-    work = partial(solve_and_judge, folder=None if settings.suite == "stress" else folder / _SCENES)
+    scenes = None if settings.suite == "stress" else folder / _SCENES
+    work = partial(solve_and_judge, folder=scenes, ladder=settings.ladder)
     tasks = [Task(keys[case], work, make) for case, make in makers.items()]
     try:
         with workers(processes=min(processes or os.cpu_count() or 1, len(tasks))) as executor:
             sweep(tasks, ledger, executor, progress)
         entries = {case: Entry.of(ledger[key]) for case, key in keys.items()}
-        page = document(Account(settings, entries, _figures(folder / _SCENES, entries), studies))
-        files, missing = write_texts(folder, {_PAGE: page}), ""
+        figures, sketches = (_figures(folder / _SCENES, entries, name) for name in (_FIGURE, _SKETCH))
+        page = document(Account(settings, entries, figures, sketches, studies))
+        files, missing = write_page(page, folder), ""
         try:
-            files += write_pdf(page, folder, _PDF)
+            files += write_pdf(page, folder, PDF)
         except MissingLibraryError as error:
             missing = str(error)
         verdicts = _verdicts(ledger, keys)
@@ -160,7 +171,7 @@ def _verify(
     return Verification(verdicts, files, missing, again)
 
 
-def solve_and_judge(make: Maker, folder: Path | None) -> Entry:
+def solve_and_judge(make: Maker, folder: Path | None, ladder: bool = False) -> Entry:
     """Make, solve and judge a case. Returns the entry for a ledger.
 
     Parameters
@@ -170,21 +181,26 @@ def solve_and_judge(make: Maker, folder: Path | None) -> Entry:
     folder : Path or None
         Folder for the scene, the tractions and their figure, in a subfolder with the name of the case. None: no files,
         and no sheet for the report.
+    ladder : bool
+        Whether to add a refinement ladder, if the case allows one.
     """
     case = make()
     found = solve_case(case)
+    exact = found.get("exact")
     return Entry(
         case=case.name,
         hard=case.hard,
         verdicts=tuple(verdict.finite for verdict in judge_case(case, found)),
         sheet=_file(case, found, folder / case.name) if folder else None,
         own_meshes=case.meshes is not None,
+        formulas=formulas(case.scene, exact) if isinstance(exact, Result) else (),
+        ladder=climb(case.scene, exact) if ladder and isinstance(exact, Result) and has_ladder(case) else (),
     )
 
 
 def _file(case: Case, found: Found, folder: Path) -> Sheet | None:
     results = {method: result for method, result in found.items() if isinstance(result, Result)}
-    texts, shown = {"scene.toml": scene_toml(case.scene)}, None
+    texts, shown = {"scene.toml": scene_toml(case.scene), _SKETCH: sketch_svg(case.scene)}, None
     if results:
         run = compared(case.scene, plan(case.scene), results, None)
         texts |= {"tractions.csv": tractions_csv(run), _FIGURE: traction_svg(run)}
@@ -194,19 +210,21 @@ def _file(case: Case, found: Found, folder: Path) -> Sheet | None:
 
 
 def _cases(
-    name: Suite, only: Sequence[str], method: str | None, seed: int | None, count: int | None
+    name: Suite, only: Sequence[str], method: str | None, seed: int | None, count: int | None, ladder: bool
 ) -> tuple[Settings, Makers, dict[str, str]]:
     """Return the settings, the functions that make the cases, and the ledger's keys, by case."""
     if name not in SUITES:
         raise InputError(f"--suite {name!r}: must be one of {', '.join(SUITES)}")
-    settings = Settings(suite=name, only=tuple(only))
+    settings = Settings(suite=name, only=tuple(only), ladder=ladder)
     own = {"method": method, "seed": seed, "count": count}
     if name != "stress":
         for key, value in own.items():
             if value is not None:
                 raise InputError(f"--{key} {value}: only with --suite stress")
-        makers = suite(name, only)
-        return settings, makers, {case: key_of(_content(make())) for case, make in makers.items()}
+        makers, extra = suite(name, only), {"ladder": list(SIZES)} if ladder else {}
+        return settings, makers, {case: key_of(_content(make()) | extra) for case, make in makers.items()}
+    if ladder:
+        raise InputError("--ladder: not with --suite stress: random scenes have no exact solution on each mesh")
     method = "exact" if method is None else method
     if method not in METHODS:
         raise InputError(f"--method {method!r}: must be one of {', '.join(METHODS)}")
@@ -251,7 +269,7 @@ def _ledger(folder: Path) -> Ledger:
     """Open the ledger of a stopped run, or start a new one; ledger and report of a finished run are removed."""
     if was_finished(folder):
         try:
-            for name in ("ledger.jsonl", _PAGE, _PDF):
+            for name in ("ledger.jsonl", PAGE, PDF):
                 (folder / name).unlink(missing_ok=True)
         except OSError as error:
             raise InputError(f"{folder / name}: cannot be removed: {error.strerror}") from None
@@ -263,9 +281,9 @@ def _verdicts(ledger: Ledger, keys: Mapping[str, str]) -> dict[str, list[CaseVer
     return {case: list(Entry.of(ledger[key]).verdicts) for case, key in keys.items() if key in ledger}
 
 
-def _figures(folder: Path, entries: Mapping[str, Entry]) -> dict[str, str]:
-    """Return the figures by case, of cases with a sheet."""
-    paths = {case: folder / case / _FIGURE for case, entry in entries.items() if entry.sheet}
+def _figures(folder: Path, entries: Mapping[str, Entry], name: str) -> dict[str, str]:
+    """Return the figures in the files ``name`` by case, of cases with a sheet."""
+    paths = {case: folder / case / name for case, entry in entries.items() if entry.sheet}
     try:
         return {case: path.read_text("utf-8") for case, path in paths.items()}
     except (OSError, ValueError):

@@ -5,10 +5,26 @@ from typing import Any
 
 import msgspec
 
-from partialslip.batch.ledger import Made
+from partialslip.origin import Made
 from partialslip.report.sheet import Sheet
 from partialslip.verify.case import CaseVerdict
+from partialslip.verify.formulas import Formula
+from partialslip.verify.ladder import Convergence
 from partialslip.verify.suites import Suite
+
+
+class TitleBlock(msgspec.Struct, frozen=True, omit_defaults=True):
+    """Title block of the report: ``project``, ``author``, ``reviewer`` and ``document`` number; empty if not given."""
+
+    project: str = ""
+    author: str = ""
+    reviewer: str = ""
+    document: str = ""
+
+    @property
+    def given(self) -> dict[str, str]:
+        """Given fields by name."""
+        return {key: text for key in self.__struct_fields__ if (text := getattr(self, key))}
 
 
 class Settings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -21,6 +37,9 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
         Names of cases; empty for all.
     method, seed, count : optional
         For random scenes: method, seed and number of scenes.
+    ladder : bool
+        Whether to add a refinement ladder to each case that allows one.
+    block : TitleBlock
     """
 
     suite: Suite
@@ -28,6 +47,8 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     method: str | None = None
     seed: int | None = None
     count: int | None = None
+    ladder: bool = False
+    block: TitleBlock = TitleBlock()
 
     @property
     def asked(self) -> dict[str, str | int]:
@@ -52,6 +73,10 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True):
         Tables for the report; None if every method failed, and for random scenes.
     own_meshes : bool
         Whether the meshes are given.
+    formulas : tuple of (str, str)
+        Formulas that the exact method evaluates, with numbers of references.
+    ladder : tuple of Convergence
+        Convergence by quantity; empty without a refinement ladder.
     made : Made or None
         Origin of the entry; None before it is in a ledger.
     """
@@ -61,6 +86,8 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True):
     verdicts: tuple[CaseVerdict, ...]
     sheet: Sheet | None = None
     own_meshes: bool = False
+    formulas: tuple[Formula, ...] = ()
+    ladder: tuple[Convergence, ...] = ()
     made: Made | None = None
 
     @classmethod

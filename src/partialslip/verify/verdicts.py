@@ -9,11 +9,11 @@ import msgspec
 from rich.console import Console
 
 from partialslip.judge import Outcome
+from partialslip.origin import versions
 from partialslip.output.csv import csv_text
 from partialslip.output.files import write_texts
 from partialslip.output.json import json_text
 from partialslip.output.tables import print_table
-from partialslip.record import versions
 from partialslip.report import rows
 from partialslip.verify.case import CaseVerdict
 from partialslip.verify.entry import Settings

@@ -14,6 +14,7 @@ from partialslip.errors import InputError
 from partialslip.judge import cell_errors
 from partialslip.output.csv import csv_text
 from partialslip.plan import Effect, Plan, plan, reduced
+from partialslip.report.page import Section
 from partialslip.result import Regime, Result
 from partialslip.result.record import Number, ResultRecord
 from partialslip.scene import Scene
@@ -241,6 +242,24 @@ def heading(study: EffectStudy) -> str:
         for key in ("m", "n")
     )
     return f"{study.scene.name}: {result.regime}, a = {study.scene.units.text(result.a, 'm', 6)}, {ends}"
+
+
+def sections(study: EffectStudy, figure: str) -> list[Section]:
+    """Return the sections of the report on ``study``, with the ``figure`` (SVG)."""
+    changes, costs = changes_table(study), costs_table(study)
+    why = [(entry.effect, entry.why) for entry in study.entries]
+    return [
+        Section(
+            "Changes by each effect",
+            [heading(study), "Changes of a, m and n are fractions of a; changes of q and q2 are relative L2."],
+            figure,
+            "Left: change between on and off. Right: CPU seconds with and without each effect.",
+            *changes,
+            words=(1,),
+        ),
+        Section("Costs", notes(study), "", "", *costs),
+        Section("Why an effect is called for or left out", (), "", "", ("effect", "reason"), why, (1,)),
+    ]
 
 
 def effects_csv(study: EffectStudy) -> str:

@@ -1,0 +1,105 @@
+"""Refinement ladders: observed order of convergence and Roache's grid convergence index (GCI), by quantity.
+
+The ladder solves a scene by linear elements of one size along the contact, each size half the one before. The ends of
+contact and stick zone move by whole elements from mesh to mesh, so that the order of a single triple of meshes scatters
+widely. The order is therefore fitted to all changes of the ladder, and the index takes all changes into account:
+
+    change_i = C h_i^p,   GCI = F_s max_i(change_i h^p / h_i^p) / (2^p - 1)
+
+with h the finest size, p the observed order, limited to 0.5 to 1 (the formal order of elements that do not resolve the
+ends), and the safety factor F_s: 1.25 if the observed order is within 0.5 to 1.5, else 3.
+"""
+
+import itertools
+from collections.abc import Sequence
+
+import msgspec
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.judge import compare
+from partialslip.result import Result
+from partialslip.run import run
+from partialslip.scene import Scene
+from partialslip.scene.reading import parse_scene
+from partialslip.verify.case import Case
+
+SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)  # in contact half-widths
+QUANTITIES = ("a", "m", "n", "p", "q")
+_LOWEST, _FORMAL, _HIGHEST = 0.5, 1.0, 1.5  # orders
+_SAFE, _UNSAFE = 1.25, 3.0  # safety factors
+
+
+class Convergence(msgspec.Struct, frozen=True):
+    """Convergence of one quantity over the ladder.
+
+    Parameters
+    ----------
+    quantity : str
+    changes : tuple of float
+        Changes from each mesh to the next: a, m and n as fractions of a, p and q in relative L2 of cell averages.
+    order : float
+        Observed order; NaN as None if the changes vanish.
+    gci : float
+        Grid convergence index of the finest mesh, in the unit of the changes.
+    error : float or None
+        True error of the finest mesh, in the same unit; None if it is unknown.
+    """
+
+    quantity: str
+    changes: tuple[float, ...]
+    order: float | None
+    gci: float
+    error: float | None
+
+
+def has_ladder(case: Case) -> bool:
+    """Return whether ``case`` can be solved on a ladder of uniform meshes and compared with the exact solution."""
+    scene = case.scene
+    usual = case.compared and not case.meshes and not scene.meshed and scene.fem.size is None
+    return usual and "fem" in case.methods and scene.load.in_phase and not scene.finite
+
+
+def climb(scene: Scene, exact: Result) -> tuple[Convergence, ...]:
+    """Solve ``scene`` on all meshes of the ladder and return the convergence by quantity.
+
+    ``exact`` is the exact result. Quantities that do not exist or are undetermined are left out.
+    """
+    results = [_solve(scene, size) for size in SIZES]
+    changes = [compare(coarse, fine, scene, None).errors for coarse, fine in itertools.pairwise(results)]
+    last = compare(results[-1], exact, scene, None).errors
+    found = []
+    for quantity in QUANTITIES:
+        steps = [each.get(quantity) for each in changes]
+        known = [step for step in steps if step is not None and np.isfinite(step)]
+        if len(known) == len(steps):
+            found.append(convergence(quantity, known, last.get(quantity)))
+    return tuple(found)
+
+
+def convergence(quantity: str, changes: Sequence[float], error: float | None) -> Convergence:
+    """Return order and index for the ``changes`` from each mesh to the next, sizes halved each time.
+
+    ``error`` is the true error of the finest mesh, if known.
+    """
+    steps = np.array(changes, float)
+    order = _order(steps)
+    used = float(np.clip(_LOWEST if order is None else order, _LOWEST, _FORMAL))
+    safety = _SAFE if order is not None and _LOWEST <= order <= _HIGHEST else _UNSAFE
+    finest = 0.5 ** (used * np.arange(len(steps))[::-1])  # of each change, by halving on to the finest mesh
+    gci = safety * float((steps * finest).max()) / (2**used - 1)
+    return Convergence(quantity, tuple(steps.tolist()), order, gci, error)
+
+
+def _order(steps: Array) -> float | None:
+    """Return the order fitted to the changes; None for fewer than two changes that do not vanish."""
+    known = steps > 0
+    if known.sum() < 2:
+        return None
+    return float(-np.polyfit(np.flatnonzero(known), np.log2(steps[known]), 1)[0])
+
+
+def _solve(scene: Scene, size: float) -> Result:
+    data = msgspec.to_builtins(scene)
+    data["fem"] = {**data["fem"], "order": 1, "size": size}
+    return run(parse_scene(data), ["fem"]).results["fem"]

@@ -1,0 +1,238 @@
+"""Reports that one can file: origin, verdict, units, sketch, errors along the contact, mesh; dark screens."""
+
+import json
+import re
+import sys
+from dataclasses import replace
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from known import EXACT, P0, SCENE, A, result, traction
+from matplotlib.figure import Figure
+
+import partialslip
+from partialslip.cli import main
+from partialslip.origin import made_now, origin_lines
+from partialslip.output.svg import with_dark_mode
+from partialslip.plan import plan
+from partialslip.report import files
+from partialslip.report.amounts import amounts
+from partialslip.report.figure import draw_errors, mesh_svg
+from partialslip.report.page import Section, run_page, study_page
+from partialslip.report.sketch import sketch_svg
+from partialslip.run import compared
+
+MADE = made_now("partialslip run hertz-shear --set 'friction.f=0.4'", ["friction.f=0.4"])
+EDGES = np.array([[[-1.2, 0], [0, -0.8]], [[0, -0.8], [1.2, 0]]]) * A
+
+
+def page_of(*results):
+    return run_page(compared(SCENE, plan(SCENE), {each.method: each for each in results}, 1e-3), MADE)
+
+
+def words(svg):
+    return [text for node in ElementTree.fromstring(svg).iter() if node.tag.endswith("}text") and (text := node.text)]
+
+
+@pytest.fixture(scope="module")
+def page():
+    return page_of(EXACT, replace(result(), edges=(EDGES, EDGES * (1, -1))))
+
+
+def test_the_origin_is_on_the_page(page):
+    lines = dict(origin_lines([MADE]))
+    assert lines.keys() == {"date", "command", "overrides", "version", "commit", "machine"}
+    assert MADE.date[:10] in lines["date"]
+    assert partialslip.__version__ in lines["version"]
+    text = page[: page.index("<h2>")].replace("&#39;", "'")
+    for line in lines.values():
+        assert line in text
+
+
+def test_several_origins_share_rows():
+    other = made_now("partialslip run yang-laursen")
+    lines = dict(origin_lines([MADE, other, other]))
+    assert lines["command"] == f"{MADE.command}; {other.command}"
+    assert lines["machine"].count(MADE.machine.system) == 1
+
+
+def test_the_verdict_has_a_box_with_one_method_too(page):
+    assert '<div class="verdict">all bars met</div>' in page
+    assert '<div class="verdict">not judged: nothing to compare with</div>' in page_of(EXACT)
+    missed = page_of(EXACT, result(a=1.1))
+    assert re.search(r'<div class="verdict">missed: fem: a: error 0.1 ', missed)
+
+
+def test_values_have_units(page):
+    headings, rows = amounts({"exact": EXACT})
+    assert headings == ["quantity", "unit", "exact"]
+    found = {quantity: (unit, float(value)) for quantity, unit, value in rows}
+    assert found["m, stick from -m"] == ("mm", pytest.approx(EXACT.m * 1e3, rel=1e-6))
+    assert found["p, largest"] == ("MPa", pytest.approx(P0 / 1e6, rel=1e-6))
+    assert "<td>7.28e+10 Pa</td>" in page
+    assert re.search(r"<td>[\d.e+]+ N/m</td>", page)
+
+
+def test_nothing_sticks_and_nothing_slips():
+    sliding = replace(EXACT, stick_centre=None, stick_half_width=None, traction=traction(q=0.0))
+    rows = {row[0]: row[2] for row in amounts({"exact": sliding})[1]}
+    assert rows["m, stick from -m"] == "none"
+    assert "q = (q2 - q1)/2, largest" not in rows
+
+
+def test_errors_along_the_contact_are_those_of_the_methods():
+    """A pressure 1e-4 too large, and a shear off by 1e-6 f p0, are invisible in the figure of the tractions."""
+    fem = result(of=traction(p=1 + 1e-4, add=lambda x: 2e-6 + 0 * x))
+    run = compared(SCENE, plan(SCENE), {"exact": EXACT, "fem": fem}, None)
+    axes = Figure().subplots()
+    draw_errors(axes, run)
+    drawn = {line.get_label(): line.get_xydata() for line in axes.get_lines()}
+    x, p = drawn["p, fem"].T
+    inner = np.abs(x) < 0.99
+    np.testing.assert_allclose(p[inner], 1e-4 * np.sqrt(1 - x[inner] ** 2), rtol=1e-6)
+    np.testing.assert_allclose(drawn["q, fem"][:, 1], 1e-6, rtol=1e-6)
+    assert axes.get_yscale() == "log"
+
+
+def test_the_mesh_is_drawn_where_there_is_one(page):
+    assert "<h2>Mesh near the contact</h2>" in page
+    assert "<h2>Mesh near the contact</h2>" not in page_of(EXACT, result())
+    run = compared(SCENE, plan(SCENE), {"fem": replace(result(), edges=(EDGES, EDGES))}, None)
+    assert len(ElementTree.fromstring(mesh_svg(run)).findall(".//*")) < 300
+
+
+def test_edges_of_finite_elements_are_few_and_near():
+    scene = partialslip.load_scene("hertz-shear", ["fem.size=0.25", "fem.order=1"])
+    fem = partialslip.run(scene, ["fem"]).results["fem"]
+    lower, upper = fem.edges
+    assert 20 < len(lower) < 5000
+    np.testing.assert_array_equal(upper, lower * np.array([1, -1], np.float32))
+    assert (lower[..., 1] <= 0).all()
+    assert (np.abs(lower[..., 0]).min(axis=1) < 1.5 * fem.a).mean() > 0.9
+    assert np.hypot(*(lower[:, 1] - lower[:, 0]).T).min() > 0.009 * fem.a
+    assert (lower[..., 1] == 0).all(axis=1).sum() >= 8  # contact edges
+
+
+def test_everything_wide_scrolls_within_the_page(page):
+    tables = re.findall(r'(.{20})<table class="(?!grouped)|(.{20})<table>', page, re.DOTALL)
+    assert tables
+    assert all('<div class="scroll">' in first + second for first, second in tables)
+    assert not re.search(r"<(script|link|img|iframe)\b|@import|url\((?!#)", page)
+
+
+def test_ids_are_unique(page):
+    ids = re.findall(r'\bid="([^"]+)"', page)
+    assert len(ids) == len(set(ids))
+
+
+def test_a_study_has_the_same_frame():
+    section = Section("Errors", ["One line."], "<svg></svg>", "Of costs.", ("case", "error"), [("first", "1e-3")])
+    page = study_page("study of it", SCENE, MADE, [section])
+    assert "<h1>study of it</h1>" in page
+    assert MADE.date[:10] in page
+    for part in ("<h2>Errors</h2>", "<p>One line.</p>", "Of costs.", '<td class="number">1e-3</td>', "half-plane"):
+        assert part in page
+
+
+# sketches
+FINITE = [
+    "bodies.upper={kind='pad',width=12e-3,height=5e-3,holder={width=20e-3,height=8e-3}}",
+    "bodies.lower={width=80e-3,height=10e-3,support='roller',pulled=true}",
+]
+
+
+def test_a_sketch_names_bodies_and_loads():
+    texts = words(sketch_svg(partialslip.load_scene("fretting-aluminium", FINITE)))
+    for text in ("P = 135.8 kN/m", "Q = -38.75, 38.75 kN/m", "σ = -100, 100 MPa", "12 mm × 5 mm", "80 mm × 10 mm",
+                 "holder 20 mm × 8 mm", "hertz, R = 10 mm, f = 0.3"):  # fmt: skip
+        assert text in texts
+    texts = words(sketch_svg(partialslip.load_scene("hertz-shear", ["load.sigma=[0,0]"])))
+    assert texts.count("half-plane") == 2
+    assert not any("σ" in text for text in texts)
+
+
+def arrows_and_rollers(settings):
+    svg = sketch_svg(partialslip.load_scene("fretting-aluminium", settings)).split("</style>")[1]
+    return svg.count('fill="#000000"'), svg.count("<circle")
+
+
+def test_a_sketch_shows_supports_and_the_pulled_side():
+    """The arrows are those of P, Q, x and sigma: on the right only if the body is pulled. Rollers roll."""
+    pulled, rolling = arrows_and_rollers(FINITE)
+    both, still_rolling = arrows_and_rollers([FINITE[0], FINITE[1].replace("true", "false")])
+    clamped, none = arrows_and_rollers([FINITE[0], "bodies.lower={width=80e-3,height=10e-3}"])
+    assert (pulled, both, clamped) == (5, 7, 7)
+    assert rolling < still_rolling  # a pulled side has no support
+    assert none == 0
+
+
+def test_a_sketch_of_a_given_mesh_needs_no_file():
+    svg = sketch_svg(partialslip.load_scene("fretting-aluminium", ["bodies.lower={mesh='no/such/file<1>.msh'}"]))
+    assert any(text.endswith("file<1>.msh") for text in words(svg))
+
+
+# dark screens
+def test_every_shade_has_one_for_dark_screens():
+    svg = with_dark_mode('<svg xmlns="x"><path style="fill: none; stroke: #000000"/><path fill="#e0e0e0"/></svg>')
+    assert svg.count("@media screen and (prefers-color-scheme: dark)") == 1
+    assert 'style="fill: none; stroke: #000000"' in svg  # as it was, for print and for other programs
+    dark = {
+        shade: int(new[:2], 16) for shade, new in re.findall(r'\[stroke="#(\w{2})\w{4}"\] \{ stroke: #(\w{6})', svg)
+    }
+    assert dark["00"] > 0xC0
+    assert dark["e0"] < 0x40
+
+
+@pytest.mark.fault
+def test_a_figure_of_a_report_has_no_shade_without_its_dark_one(page):
+    """Deliberate fault: a shade that has no rule for dark screens."""
+
+    def without_rule(text):
+        drawn = re.sub(r"<style>.*?</style>", "", text, flags=re.DOTALL)
+        shades = set(re.findall(r'(?:fill|stroke)(?:: |=")(#[0-9a-f]{6})', drawn))
+        return {shade for shade in shades if f'[fill="{shade}"]' not in text}
+
+    svg = re.search(r'<figure class="narrow">(.*?)</figure>', page, re.DOTALL)[1]
+    assert without_rule(svg) == set()
+    assert without_rule(svg.replace("stroke: #000000", "stroke: #0000ff")) == {"#0000ff"}
+
+
+# command line
+def test_results_tell_the_command_and_the_overrides(tmp_path):
+    arguments = ["run", "hertz-shear", "--with", "exact", "--set", "friction.f=0.45", "--out", str(tmp_path / "it")]
+    assert main(arguments) == 0
+    made = json.loads((tmp_path / "it" / "results.json").read_text("utf-8"))["made"]
+    assert made["command"] == f"partialslip {' '.join(arguments)}"
+    assert made["overrides"] == ["friction.f=0.45"]
+    assert made["date"].endswith("+00:00")
+    assert made["command"] in (tmp_path / "it" / "report.html").read_text("utf-8")
+
+
+def test_a_call_from_python_has_no_command(tmp_path):
+    run = partialslip.run(SCENE, ["exact"])
+    partialslip.report.write_run(run, tmp_path)
+    record = partialslip.load_result(tmp_path / "results.json")
+    assert record.made.command is None
+    assert record.made.overrides == ()
+    assert record.made.versions == record.versions
+
+
+def test_a_pdf_is_written_on_request(tmp_path, monkeypatch):
+    """The page itself is turned into the PDF; tests of the verification write a true one."""
+    written = []
+    monkeypatch.setattr(files, "write_pdf", lambda html, folder, name: written.append(html) or [folder / name])
+    assert main(["run", "hertz-shear", "--with", "exact", "--pdf", "--out", str(tmp_path)]) == 0
+    assert written == [(tmp_path / "report.html").read_text("utf-8")]
+
+
+@pytest.mark.parametrize(
+    "command",
+    ["run hertz-shear", "score hertz-shear none.csv", "study cost hertz-shear", "study effects hertz-shear",
+     "study size hertz-shear --over friction.f=0.1,0.2"],
+)  # fmt: skip
+def test_a_missing_library_is_named_before_anything_is_solved(command, tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "weasyprint", None)
+    assert main([*command.split(), "--pdf", "--out", str(tmp_path / "none")]) == 2
+    assert capsys.readouterr().err == "partialslip: --pdf needs WeasyPrint: pip install 'partialslip[pdf]'\n"
+    assert not (tmp_path / "none").exists()
