@@ -72,6 +72,28 @@ def test_exact_run_writes_three_files(exact):
     assert exact.out.splitlines()[-1].endswith(f"; files in {Path('results', 'hertz-shear')}")
 
 
+def test_a_run_is_short_and_verbose_on_demand(both, tmp_path):
+    """What is found, one line a method, the verdict and the folder; the rest with --verbose."""
+    title, units, *_, exact, fem, last = both.out.splitlines()
+    assert title.startswith("hertz-shear: Cattaneo")
+    assert units.startswith("exact: a = 1 mm")
+    assert re.fullmatch(r"exact +small tension, 0\.\d+ CPU s *", exact)
+    assert re.fullmatch(r"fem +small tension, \d+\.\d CPU s, [\d,]+ dofs *", fem)
+    assert last == f"all bars met; files in {Path('results', 'hertz-shear')}"
+    assert len(both.out.splitlines()) <= 30
+    verbose = call(tmp_path, *EXACT, "--verbose").out
+    for word in ("certificate", "limits", "slip", "wall time", "peak memory", "called for", "left out", "written: "):
+        assert word in verbose
+        assert word not in both.out
+
+
+def test_an_exact_run_says_what_it_found(exact):
+    _, first, second, last = exact.out.splitlines()
+    assert first.startswith("exact  small tension, 0.0")
+    assert second.strip() == "a = 1 mm, m = 0.6324555 a, n = 0.6324555 a"
+    assert last.startswith("not judged: nothing to compare with; files in ")
+
+
 def test_record_of_an_exact_run(exact):
     assert (exact.record["schema"], exact.record["comparison"]) == ("partialslip/result/3", {})
     assert exact.record["versions"]["partialslip"] == partialslip.__version__

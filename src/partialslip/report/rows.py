@@ -171,14 +171,19 @@ def methods(results: Mapping[str, Result], *, compared: bool = False, units: Uni
 def methods_in_short(
     results: Mapping[str, Result], *, compared: bool = False, units: Units = SI
 ) -> list[tuple[str, str]]:
-    """Return pairs of method and regime, CPU seconds and size in one line; values found unless ``compared``."""
-    return [
-        (name, ", ".join([result.regime, *([] if compared else [found(result, units)]), *_spent(result)]))
-        for name, result in results.items()
-    ]
+    """Return pairs of method and regime, CPU seconds and size in one line.
+
+    Unless ``compared`` a second line has the values found: no table shows them.
+    """
+    lines = []
+    for name, result in results.items():
+        lines.append((name, ", ".join([result.regime, *_spent(result)])))
+        lines += [] if compared else [("", found(result, units))]
+    return lines
 
 
 def _spent(result: Result) -> list[str]:
+    """Return CPU seconds, and unknowns or cells, as texts."""
     counts = [_counted(result.counts[key], key) for key in ("dofs", "cells") if result.counts.get(key)]
     seconds = result.cost.cpu_s
     return [f"{seconds:.3f} CPU s" if seconds < 0.1 else f"{seconds:.1f} CPU s", *counts]
