@@ -236,3 +236,10 @@ def test_a_missing_library_is_named_before_anything_is_solved(command, tmp_path,
     assert main([*command.split(), "--pdf", "--out", str(tmp_path / "none")]) == 2
     assert capsys.readouterr().err == "partialslip: --pdf needs WeasyPrint: pip install 'partialslip[pdf]'\n"
     assert not (tmp_path / "none").exists()
+
+
+def test_a_command_with_bytes_that_are_no_text_is_written(tmp_path):
+    folder = tmp_path / "no\udcfftext"
+    assert main(["run", "hertz-shear", "--with", "exact", "--out", str(folder)]) == 0
+    made = json.loads((folder / "results.json").read_text("utf-8"))["made"]
+    assert "no?text" in made["command"]

@@ -59,6 +59,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _command(arguments: Sequence[str] | None) -> int:
     line = shlex.join(["partialslip", *(sys.argv[1:] if arguments is None else arguments)])
+    line = line.encode("utf-8", "replace").decode()  # bytes of file names that are no text cannot be written
     options = parser().parse_args(arguments, argparse.Namespace(own_process=arguments is None, line=line))
     code: int = options.command(options)
     return code

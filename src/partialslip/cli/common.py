@@ -42,10 +42,13 @@ def add_pdf(parser: "argparse.ArgumentParser") -> None:
 
 
 def origin(options: "argparse.Namespace") -> "Made":
-    """Return the origin of results that are finished now, by the command of ``options``."""
+    """Return the origin of results by the command of ``options``: the same for what is printed and what is written."""
     from partialslip.origin import made_now
 
-    return made_now(options.line, options.overrides)
+    if "made" not in options:
+        options.made = made_now(options.line, options.overrides)
+    made: Made = options.made
+    return made
 
 
 def check_report(options: "argparse.Namespace") -> None:

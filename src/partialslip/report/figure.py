@@ -137,8 +137,14 @@ def draw_errors(axes: "Axes", run: Run) -> None:
         _draw_error(axes, x / a, (p - true_p) / p0, "0.55", line, f"p, {shown}")
         if f and (dq.any() or true_dq.any()):
             _draw_error(axes, x / a, (dq - true_dq) / 2 / (f * p0), "black", line, f"q, {shown}")
-    axes.grid(axis="y", which="major", color="0.92", lw=0.6)
+    from matplotlib.ticker import LogLocator, NullLocator
+
     axes.set(yscale="log", xlabel="x/a", ylabel="error, in p0 and f p0", xlim=(left, right))
+    # few ticks and plain text: small ticks and formulas take longer to lay out than all lines together
+    axes.yaxis.set_major_locator(LogLocator(numticks=6))
+    axes.yaxis.set_major_formatter("{x:.0e}")
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.grid(axis="y", color="0.92", lw=0.6)
     _legend_above(axes)
 
 
