@@ -11,6 +11,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.scene.limits import ROUGH
 from partialslip.scene.limits import STEEPEST as STEEPEST
+from partialslip.scene.measured import Measured
 from partialslip.scene.table import Positive, Table
 
 _SHARP = 0.05  # step of curvature, relative to the largest curvature, above which a point is a kink
@@ -156,8 +157,8 @@ class Tabulated(Table, frozen=True, kw_only=True, tag_field="kind", tag="tabulat
     """Convex gap given by a table: ``gap`` (m) at ``x`` (m), ascending.
 
     If x begins at 0 the gap is even, and begins at 0. If x begins below 0 the table has both sides, and any gap may be
-    the smallest. ``tilt`` = "fixed": the bodies do not turn, and the tilt of
-    the table stays. By default they turn until the moment of the pressure is load.M.
+    the smallest. ``measured`` tells how a table was made from a file. ``tilt`` = "fixed": the bodies do not turn, and
+    the tilt of the table stays. By default they turn until the moment of the pressure is load.M.
 
     The slope in the middle of each interval is that of the chord and is interpolated linearly between middles. This is
     of second order, exact for a parabola, and convex like the table. Beyond the last middle the curvature is constant.
@@ -166,6 +167,7 @@ class Tabulated(Table, frozen=True, kw_only=True, tag_field="kind", tag="tabulat
     x: Annotated[tuple[float, ...], msgspec.Meta(min_length=3, max_length=1000)]
     gap: Annotated[tuple[float, ...], msgspec.Meta(min_length=3, max_length=1000)]
     tilt: Literal["free", "fixed"] = "free"
+    measured: Measured | None = None
 
     def __post_init__(self) -> None:
         if len(self.x) != len(self.gap):

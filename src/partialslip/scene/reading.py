@@ -16,6 +16,7 @@ from partialslip.errors import InputError
 from partialslip.inputfile import read_text
 from partialslip.scene import LARGEST, SMALLEST, Scene, Table
 from partialslip.scene.dimensions import converted
+from partialslip.scene.measured import ProfileFile, tabulated
 from partialslip.units import SI, UNITS, Units
 
 _LARGEST_FILE = 500_000  # bytes; a profile and a cycle of 1,000 numbers each take 120,000
@@ -64,7 +65,7 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
     data = _parse(_text(scene), str(scene))
     for override in overrides:
         _override(data, override)
-    _find_meshes(data, scene)
+    _find_files(data, scene)
     try:
         return parse_scene(data)
     except InputError as error:
@@ -127,9 +128,27 @@ def make_table(kind: type[_Made], data: Mapping[str, Any]) -> _Made:
         return _made(kind, place, data, data, SI)
     units = _units(data)
     written = {"shown_in": units.name} | {key: value for key, value in data.items() if key != "units"}
+    profile = written.get("profile")
+    if isinstance(profile, dict) and "file" in profile:
+        written["profile"] = _from_file(profile, units)
     made = _made(kind, place, written, written, units)
     # What a scene must be is the same in all units: checked as written, messages show the numbers that the user knows.
     return made if units == SI else _made(kind, place, converted(written, units.to_si), written, SI)
+
+
+def _from_file(profile: dict[str, Any], units: Units) -> dict[str, Any]:
+    """Keys of a tabulated profile, made from the file that the keys of ``profile`` name."""
+    if profile.get("kind") != "tabulated":
+        raise InputError(f"profile.kind = {_shown(repr(profile.get('kind')))}: must be 'tabulated' for a profile.file")
+    for key in ("x", "gap"):
+        if key in profile:
+            raise InputError(f"profile.{key}: must not be given together with profile.file")
+    own = {key: value for key, value in profile.items() if key in ProfileFile.__struct_fields__}
+    try:
+        made = tabulated(_made(ProfileFile, "profile", own, own, units))
+    except InputError as error:
+        raise InputError(units.relabelled(str(error))) from None
+    return {key: value for key, value in profile.items() if key not in own} | made
 
 
 def _units(data: Mapping[str, Any]) -> Units:
@@ -215,8 +234,11 @@ def _override(data: dict[str, Any], override: str) -> None:
     data[keys[-1]] = parsed
 
 
-def _find_meshes(data: dict[str, Any], scene: str | Path) -> None:
-    """Make paths of meshes relative to the folder of the scene file."""
+def _find_files(data: dict[str, Any], scene: str | Path) -> None:
+    """Make paths of meshes and profiles relative to the folder of the scene file."""
+    profile = data.get("profile")
+    if isinstance(profile, dict) and isinstance(file := profile.get("file"), str) and file:
+        profile["file"] = str(Path(scene).parent / file)
     bodies = data.get("bodies")
     for body in bodies.values() if isinstance(bodies, dict) else ():
         if isinstance(body, dict) and isinstance(mesh := body.get("mesh"), str) and mesh:
