@@ -22,6 +22,7 @@ from partialslip.report.figure import draw_errors, mesh_svg
 from partialslip.report.page import Section, run_page, study_page
 from partialslip.report.sketch import sketch_svg
 from partialslip.run import compared
+from partialslip.study.cost import ladder
 
 MADE = made_now("partialslip run hertz-shear --set 'friction.f=0.4'", ["friction.f=0.4"])
 EDGES = np.array([[[-1.2, 0], [0, -0.8]], [[0, -0.8], [1.2, 0]]]) * A
@@ -133,6 +134,23 @@ def test_a_study_has_the_same_frame():
     assert MADE.date[:10] in page
     for part in ("<h2>Errors</h2>", "<p>One line.</p>", "Of costs.", '<td class="number">1e-3</td>', "half-plane"):
         assert part in page
+
+
+def test_a_study_of_cost_writes_its_page(tmp_path, monkeypatch):
+    def point(series, error, cpu_s, **counts):
+        errors = dict.fromkeys("amnpq", error)
+        return ladder.Point(series, f"{error:g}", errors, cpu_s, cpu_s + 1, 0.1, cpu_s, 100.0, {"mesh": cpu_s}, counts)
+
+    found = [point("exact", 1e-15, 0.1)]
+    found += [point("P4, adapted", 10.0**-k, float(k), dofs=1000 * k) for k in (2, 3, 4)]
+    monkeypatch.setattr(ladder, "measure", lambda *_: found)
+    assert main(["study", "cost", "hertz-shear", "--set", "friction.f=0.4", "--out", str(tmp_path)]) == 0
+    page = (tmp_path / "report.html").read_text("utf-8")
+    assert page.count("<svg") == 3  # costs, phases, sketch
+    assert "<td>friction.f=0.4</td>" in page
+    assert '<td class="number">1.0e-04</td>' in page
+    ids = re.findall(r'\bid="([^"]+)"', page)
+    assert len(ids) == len(set(ids))
 
 
 # sketches

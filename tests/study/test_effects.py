@@ -386,6 +386,7 @@ def test_every_effect_is_on_or_off_for_a_reason(scene):
 def test_ledger_of_effects(tmp_path, capsys):
     assert main(["study", "effects", "fretting-aluminium", "--set", "fem.size=0.2", "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out
+    assert "<h2>Changes by each effect</h2>" in (tmp_path / "report.html").read_text("utf-8")
     data = json.loads((tmp_path / "effects.json").read_text("utf-8"))
     entries = {entry["effect"]: entry for entry in data["effects"]}
     exact = partialslip.run(load_scene("fretting-aluminium"), ["exact"]).results["exact"]
