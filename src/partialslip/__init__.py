@@ -4,6 +4,7 @@ Scenes
     load_scene("fretting-aluminium")    a shipped scene by name (shipped_scenes), or a TOML file
     parse_scene({...})                  a scene from nested tables; Scene(...) from Python objects
     scene.replace(friction={"f": 0.4})  a changed scene
+    refitted(scene, 20)                 noisy copies of a measured profile
 
 Solving
     run(scene)                          exact and fem, compared: a Run; run["fem"] is a Result
@@ -57,6 +58,7 @@ if TYPE_CHECKING:
     from partialslip.run import Run as Run
     from partialslip.run import run as run
     from partialslip.scene import Scene as Scene
+    from partialslip.scene.measured import refitted as refitted
     from partialslip.scene.reading import load_scene as load_scene
     from partialslip.scene.reading import parse_scene as parse_scene
     from partialslip.scene.reading import shipped_scenes as shipped_scenes
@@ -87,6 +89,7 @@ _HOMES = {
     "load_state": "result.state",
     "parse_scene": "scene.reading",
     "plan": "plan",
+    "refitted": "scene.measured",
     "run": "run",
     "score": "score",
     "shipped_scenes": "scene.reading",

@@ -101,7 +101,7 @@ def test_contact_points_beyond_a_hidden_gap_dropped(monkeypatch, sound, red):
     a = partialslip.run(scene, ["exact"]).results["exact"].a
     limit = scene.gap_at(0.95 * a) / (scene.material.A * scene.P)
 
-    def cut_off(normal, gap, P):
+    def cut_off(normal, gap, P, _arms):
         candidates = np.flatnonzero(gap < limit)
         solution = true(normal[np.ix_(candidates, candidates)], gap[candidates], P)
         x = np.zeros(len(gap))

@@ -14,8 +14,8 @@ from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.steady import stick_zone, stick_zones, transition
 from partialslip.halfplane.traction import half_range, mean_load_bound
 from partialslip.live import live_page
-from partialslip.report import rows
 from partialslip.scene.reading import load_scene
+from partialslip.units import engineering
 
 LARGE = "hertz-large-tension"
 made = functools.cache(live_page)
@@ -245,8 +245,8 @@ def test_a_normal_force_is_typed(page):
     assert found.sf == pytest.approx(scene.load.dsigma / (scene.friction.f * pressed.p0), rel=1e-12)
     assert (found.m, found.n) == pytest.approx(python_zone(page, scene), abs=1e-9)
     shown = page.run("['a-1', 'p0-1'].map((id) => document.getElementById(id).textContent)")
-    assert shown == [rows.engineering(pressed.a, "m", 6), rows.engineering(pressed.p0, "Pa", 6)]
-    assert rows.engineering(pressed.a, "m", 5) in page.run("document.querySelector('#tractions').textContent")
+    assert shown == [engineering(pressed.a, "m", 6), engineering(pressed.p0, "Pa", 6)]
+    assert engineering(pressed.a, "m", 5) in page.run("document.querySelector('#tractions').textContent")
 
 
 def test_the_slider_of_P_by_keyboard(page):

@@ -10,6 +10,7 @@ from partialslip.plan import Plan
 from partialslip.result import Cost, Result
 from partialslip.run import Run
 from partialslip.scene import Scene
+from partialslip.scene.dimensions import DIMENSIONS
 from partialslip.scene.writing import scene_tables
 from partialslip.units import SI, Dimension, Units
 
@@ -35,12 +36,7 @@ _MEANING = {
     for key, text in {"left": "left end", "right": "right end", "P": "P", "p": "p"}.items()
     for point in (1, 2)
 }  # fmt: skip
-_UNITS = {
-    **dict.fromkeys(("E", "p0", "sigma"), "Pa"),
-    **dict.fromkeys(("R", "b", "x", "gap", "a", "width", "height", "unit"), "m"),
-    **dict.fromkeys(("P", "Q"), "N/m"),
-    **dict.fromkeys(("fem.accuracy", "fem.size", "fem.width"), "a"),
-}  # of settings by key, or by table and key
+_IN_A = ("fem.accuracy", "fem.size", "fem.width")  # settings in contact half-widths
 _WORDS = {Outcome.PASSED: "ok", Outcome.MISSED: "MISSED", Outcome.NOT_JUDGED: "not judged"}
 _DIGITS, _MOST = 7, 10  # decimals of values: the usual number, and the largest if the error is smaller
 
@@ -137,14 +133,18 @@ def _set(scene: Scene) -> dict[str, list[tuple[str, str]]]:
     """Return pairs of key and setting by table."""
     tables = {table: keys for table, keys in scene_tables(scene).items() if isinstance(keys, dict)}
     return {
-        table: [(key, _with_unit(table, key, choice)) for key, choice in _flat(keys) if choice is not None]
+        table: [
+            (key, _with_unit(f"{table}.{key}", choice, scene.units))
+            for key, choice in _flat(keys)
+            if choice is not None
+        ]
         for table, keys in tables.items()
     }
 
 
-def _with_unit(table: str, key: str, choice: object) -> str:
+def _with_unit(path: str, choice: object, units: Units) -> str:
     """Return a setting as text, numbers with their unit."""
-    unit = _UNITS.get(f"{table}.{key}") or _UNITS.get(key.rpartition(".")[2], "") if table != "effects" else ""
+    unit = "a" if path in _IN_A else units.label(DIMENSIONS.get(path, "1"))
     return setting(choice) + (f" {unit}" if unit and not isinstance(choice, str) else "")
 
 

@@ -17,7 +17,6 @@ DIMENSIONS: dict[str, Dimension] = {
     "profile.x": "m",
     "profile.gap": "m",
     **{f"profile.measured.{key}": "m" for key in ("unit", "smooth", "noise", "offset", "misfit")},
-    "profile.measured.points": "1",
     "friction.f": "1",
     "load.P": "N/m",
     "load.a": "m",

@@ -29,9 +29,12 @@ Unit = Positive | Annotated[tuple[Positive, ...], msgspec.Meta(min_length=2, max
 
 
 class ProfileFile(Table, frozen=True, kw_only=True):
-    """Keys of a profile from a file: ``file`` with the columns x and gap, ``unit`` of the numbers (of both columns or of
-    each, m; default: the scene's unit of length), smoothing length ``smooth`` (m), and standard deviation ``noise`` of
-    the gaps (m; default: estimated)."""
+    """Keys of a profile from a file.
+
+    ``file`` has the columns x and gap; ``unit`` (m) is that of its numbers, or of each column (default: the scene's
+    unit of length); ``smooth`` (m) is the smoothing length, and ``noise`` (m) the standard deviation of the gaps
+    (default: estimated).
+    """
 
     file: Annotated[str, msgspec.Meta(min_length=1)]
     smooth: Positive

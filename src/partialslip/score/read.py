@@ -60,11 +60,12 @@ def read(
     if suffix in TABLES:
         columns = read_csv(text(file), origin, chosen, scene.units)
     elif suffix in (".frd", ".dat"):
-        mesh = text(file.with_suffix(".frd"))
+        content = text(file)
+        mesh = content if suffix == ".frd" else text(file.with_suffix(".frd"))
         if suffix == ".frd":
             found = read_frd(mesh, origin, at, load_points)
         else:
-            found = read_dat(text(file), mesh, origin, at, load_points)
+            found = read_dat(content, mesh, origin, at, load_points)
         units = stated_units(mesh) or scene.units
         columns = _in_si(found, units)
         if units != scene.units:

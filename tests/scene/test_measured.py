@@ -1,0 +1,143 @@
+"""Profiles from files of points: smoothed, convex, in any unit, with noise that carries over to m and n."""
+
+import numpy as np
+import pytest
+
+from partialslip import InputError, load_scene, run
+from partialslip.halfplane import contact, stick_zone
+from partialslip.scene.measured import refitted
+
+SCENE = """
+name = "measured"
+material = {E = 72.1e9, nu = 0.33}
+friction.f = 0.3
+[profile]
+kind = "tabulated"
+file = "pad.csv"
+unit = [1e-3, 1e-6]
+smooth = 200e-6
+[load]
+P = 400e3
+Q = [-40e3, 40e3]
+sigma = [-60e6, 60e6]
+"""
+
+
+def gap(x):
+    """Gap of a cylinder on the left and of a barrel on the right, m."""
+    return np.where(x < 0, x**2 / 0.02, x**2 / 0.04 + np.maximum(x, 0) ** 4 * 3e4)
+
+
+def points(noise, seed=0, count=400):
+    random = np.random.default_rng(seed)
+    x = np.sort(random.uniform(-2e-3, 2.5e-3, count))
+    return x, gap(x) + noise * random.standard_normal(count)
+
+
+def scene_of(folder, x, values, text=SCENE, lines=("x [mm], gap [um]",)):
+    rows = [f"{a * 1e3!r},{b * 1e6!r}" for a, b in zip(x.tolist(), values.tolist(), strict=True)]
+    (folder / "pad.csv").write_text("\n".join([*lines, *rows]), "utf-8")
+    (folder / "job.toml").write_text(text, "utf-8")
+    return load_scene(folder / "job.toml")
+
+
+def test_a_parabola_is_followed_exactly(tmp_path):
+    """Offset, tilt of the points and unit do not matter: the bodies turn, and the gap is smooth already."""
+    x, _ = points(0.0)
+    scene = scene_of(tmp_path, x, x**2 / 0.02 + 3e-6 + 1e-3 * x)
+    exact = run(scene, "exact")["exact"]
+    hertz = run(scene.replace(profile={"kind": "hertz", "R": 0.01}), "exact")["exact"]
+    assert exact.a == pytest.approx(hertz.a, rel=1e-9)
+    assert (exact.m, exact.n) == pytest.approx((hertz.m, hertz.n), rel=1e-7)
+    assert scene.profile.measured.misfit < 1e-15
+
+
+def test_a_tilt_that_is_fixed_stays(tmp_path):
+    """A parabola x^2/(2R) + t x has its lowest point at -t R, where bodies that do not turn touch."""
+    x, _ = points(0.0)
+    scene = scene_of(tmp_path, x, x**2 / 0.02 + 1e-2 * x, SCENE.replace("smooth", 'tilt = "fixed"\nsmooth'))
+    assert contact(scene).centre == pytest.approx(-1e-4, rel=1e-8)
+
+
+def test_what_was_changed_is_kept(tmp_path):
+    scene = scene_of(tmp_path, *points(2e-7))
+    known = scene.profile.measured
+    assert known.points == 400
+    assert known.noise == pytest.approx(2e-7, rel=0.1)
+    assert known.misfit == pytest.approx(2e-7, rel=0.1)
+    x = np.linspace(-1.9e-3, 2.4e-3, 50)
+    off = scene.profile.gap_at(x) - gap(x)
+    assert np.ptp(off) < 6e-7
+    assert load_scene(tmp_path / "job.toml") == scene
+
+
+def test_units_of_the_scene(tmp_path):
+    """In N, mm and MPa the unit and the smoothing length are in mm."""
+    own = scene_of(tmp_path, *points(2e-7))
+    text = (
+        SCENE.replace("72.1e9", "72.1e3").replace("[1e-3, 1e-6]", "[1, 1e-3]").replace("200e-6", "0.2")
+        .replace("400e3", "400").replace("[-40e3, 40e3]", "[-40, 40]").replace("[-60e6, 60e6]", "[-60, 60]")
+    )  # fmt: skip
+    other = scene_of(tmp_path, *points(2e-7), 'units = "N-mm"\n' + text)
+    np.testing.assert_allclose(other.profile.gap, own.profile.gap, rtol=1e-12, atol=1e-18)
+    assert other.profile.measured.unit == pytest.approx((1e-3, 1e-6))
+    assert other.profile.measured.noise == pytest.approx(own.profile.measured.noise, rel=1e-12)
+
+
+def test_noise_carries_over(tmp_path):
+    """Refitted noisy copies scatter as refitted noisy measurements do."""
+
+    def ends(scene):
+        zone = stick_zone(contact(scene), 0.3, 80e3, 120e6)
+        return zone.m, zone.n
+
+    measured = np.array([ends(scene_of(tmp_path, *points(2e-7, seed))) for seed in range(12)])
+    copies = np.array([ends(copy) for copy in refitted(scene_of(tmp_path, *points(2e-7)), 12, seed=1)])
+    ratio = copies.std(axis=0, ddof=1) / measured.std(axis=0, ddof=1)
+    assert (ratio > 0.4).all()
+    assert (ratio < 2.5).all()
+
+
+def hollow(x):
+    return gap(x) - 2e-6 * np.exp(-(((x - 6e-4) / 2e-4) ** 2)) + 6e-6 * np.exp(-(((x - 1e-3) / 1e-4) ** 2))
+
+
+@pytest.mark.parametrize(("change", "message"), [
+    (lambda text: text.replace("200e-6", "200"), "profile.smooth = 200.0: must be from"),
+    (lambda text: text.replace('"pad.csv"', '"none.csv"'), "none.csv: cannot be read"),
+    (lambda text: text.replace("tabulated", "hertz"), "profile.kind = 'hertz': must be 'tabulated' for a profile.file"),
+    (lambda text: text.replace("smooth", "x = [0, 1, 2]\nsmooth"), "profile.x: must not be given together with"),
+    (lambda text: text.replace("smooth = 200e-6", ""), "profile.smooth: missing"),
+    (lambda text: text.replace("[1e-3, 1e-6]", "[1e-3, -1e-6]"), "profile.unit[1] = -1e-06: must be > 0.0"),
+])  # fmt: skip
+def test_bad_keys_are_named(tmp_path, change, message):
+    with pytest.raises(InputError) as error:
+        scene_of(tmp_path, *points(2e-7), change(SCENE))
+    assert message in str(error.value)
+
+
+@pytest.mark.parametrize(("lines", "message"), [
+    (("1,2,3",), "pad.csv: line 1: must have two numbers, x and gap"),
+    (("1,2", "x"), "pad.csv: line 2: must have two numbers"),
+])  # fmt: skip
+def test_bad_files_are_named(tmp_path, lines, message):
+    with pytest.raises(InputError) as error:
+        scene_of(tmp_path, *points(2e-7), lines=lines)
+    assert message in str(error.value)
+
+
+def test_points_that_are_not_convex_are_refused_with_the_place(tmp_path):
+    x, values = points(1e-7)
+    with pytest.raises(InputError) as error:
+        scene_of(tmp_path, x, values - gap(x) + hollow(x))
+    assert "the points are off any convex gap by" in str(error.value)
+    place = float(str(error.value).split("at x = ")[1].split(" m ")[0])
+    assert 5e-4 < place < 1.3e-3
+
+
+@pytest.mark.fault
+def test_points_taken_as_a_table_would_be_seen(tmp_path):
+    """Without smoothing, noise makes slopes decrease."""
+    x, values = points(2e-7)
+    with pytest.raises(InputError, match="must be convex; its slope decreases"):
+        scene_of(tmp_path, x, values).replace(profile={"x": x, "gap": values})
