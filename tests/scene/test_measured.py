@@ -5,6 +5,7 @@ import pytest
 
 from partialslip import InputError, load_scene, run
 from partialslip.halfplane import contact, stick_zone
+from partialslip.report.profile import profile_svg
 from partialslip.scene.measured import refitted
 
 SCENE = """
@@ -133,6 +134,15 @@ def test_points_that_are_not_convex_are_refused_with_the_place(tmp_path):
     assert "the points are off any convex gap by" in str(error.value)
     place = float(str(error.value).split("at x = ")[1].split(" m ")[0])
     assert 5e-4 < place < 1.3e-3
+
+
+def test_the_report_draws_points_and_gap(tmp_path):
+    scene = scene_of(tmp_path, *points(2e-7))
+    drawn = profile_svg(scene)
+    assert "convex gap" in drawn
+    assert "points - gap, mm" in drawn
+    (tmp_path / "pad.csv").unlink()
+    assert profile_svg(scene) == ""  # nothing to draw without the file
 
 
 @pytest.mark.fault
