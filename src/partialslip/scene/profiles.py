@@ -63,10 +63,8 @@ class Curvature(NamedTuple):
         return result
 
 
-class Hertz(Table, frozen=True, kw_only=True, tag_field="kind", tag="hertz"):
-    """Undeformed gap x^2/(2R); relative radius ``R``, m."""
-
-    R: Positive
+class Even(Table, frozen=True, kw_only=True):
+    """Profiles with an even gap."""
 
     @property
     def even(self) -> bool:
@@ -77,6 +75,12 @@ class Hertz(Table, frozen=True, kw_only=True, tag_field="kind", tag="hertz"):
     def turns(self) -> bool:
         """Whether the bodies turn until the moment is the given one: yes."""
         return True
+
+
+class Hertz(Even, frozen=True, kw_only=True, tag_field="kind", tag="hertz"):
+    """Undeformed gap x^2/(2R); relative radius ``R``, m."""
+
+    R: Positive
 
     @property
     def curvature(self) -> Curvature:
@@ -103,21 +107,11 @@ class Hertz(Table, frozen=True, kw_only=True, tag_field="kind", tag="hertz"):
         return _arc(x, self.R)
 
 
-class FlatRounded(Table, frozen=True, kw_only=True, tag_field="kind", tag="flat-rounded"):
+class FlatRounded(Even, frozen=True, kw_only=True, tag_field="kind", tag="flat-rounded"):
     """Flat of half-width ``b`` (m) with corners of radius ``R`` (m): undeformed gap (|x| - b)^2/(2R) for |x| > b."""
 
     R: Positive
     b: Positive
-
-    @property
-    def even(self) -> bool:
-        """Whether the gap is even in x: yes."""
-        return True
-
-    @property
-    def turns(self) -> bool:
-        """Whether the bodies turn until the moment is the given one: yes."""
-        return True
 
     @property
     def curvature(self) -> Curvature:
