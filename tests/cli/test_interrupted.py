@@ -100,7 +100,9 @@ def test_stopped_at_a_write(tmp_path, at, kind):
     stop_and_rerun(tmp_path, at, kind)
 
 
-@pytest.mark.parametrize(("at", "cases", "kind"), [(25, 1, signal.SIGKILL), (35, 2, signal.SIGINT)])
+@pytest.mark.parametrize(
+    ("at", "cases", "kind"), [(25, 1, signal.SIGKILL), pytest.param(35, 2, signal.SIGINT, marks=pytest.mark.slow)]
+)
 def test_a_verification_stopped_at_a_write_goes_on(tmp_path, at, cases, kind):
     """Before the second case is in the ledger, and while the PDF is written."""
     assert stopped(tmp_path, at, kind, VERIFY)[0] == (-signal.SIGKILL if kind == signal.SIGKILL else 130)

@@ -43,7 +43,7 @@ def pressed():
     return {f: solve(scene(f), plan(scene(f))) for f in (0.1, 0.3)}
 
 
-@pytest.mark.parametrize(("f", "c"), [(0.1, 0.4058), (0.3, 0.9891)])
+@pytest.mark.parametrize(("f", "c"), [pytest.param(0.1, 0.4058, marks=pytest.mark.slow), (0.3, 0.9891)])
 def test_goodmans_coupling_gives_spences_stick_zone(f, c, monkeypatch):
     assert spence(f) == pytest.approx(c, abs=1e-4)
     true = solving.relative_compliances
