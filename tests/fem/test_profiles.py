@@ -22,7 +22,11 @@ def gaps():
     yield "uneven", uneven, uneven**2 / 0.02 * (1 + 0.3 * (uneven / 4e-4) ** 2)
 
 
-@pytest.mark.parametrize(("x", "gap"), [case[1:] for case in gaps()], ids=[case[0] for case in gaps()])
+ON_DEMAND = "parabola and quartic"
+CASES = [pytest.param(*case, id=name, marks=[pytest.mark.slow] if name == ON_DEMAND else []) for name, *case in gaps()]
+
+
+@pytest.mark.parametrize(("x", "gap"), CASES)
 def test_a_table_by_all_methods(x, gap):
     outcome = partialslip.run(tabulated(x, gap), ["exact", "march", "fem"])
     assert outcome.passed

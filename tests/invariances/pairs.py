@@ -398,6 +398,7 @@ _QUICK = {  # of the scenes of a pair of fem's, the one that is no slow test; as
     "units: 1e12": "large tension",
     "units: 1e-12": "large tension",
     "units: 1e12 m, 1e-12 Pa": "large tension",
+    "f = 1e-9, no friction": "large tension",
     "f = 1e-9, loads in proportion": "large tension",
     "rigid shift": "large tension",
 }
