@@ -6,7 +6,7 @@ from msgspec import to_builtins
 
 from partialslip import InputError, parse_scene, run
 from partialslip.halfplane import contact, contact_of, stick_zone
-from partialslip.halfplane.uneven import press
+from partialslip.halfplane.uneven import _Search, press
 
 TABLE = np.linspace(-2e-3, 2.5e-3, 91)
 SIDES = np.where(TABLE < 0, TABLE**2 / 0.02, TABLE**2 / 0.04 + np.maximum(TABLE, 0) ** 4 * 3e4)
@@ -70,6 +70,28 @@ def test_pressure_carries_force_and_moment(profile, e):
     force, moment = integrals(pressed)
     assert force == pytest.approx(1e5, rel=1e-8)
     assert moment / force == pytest.approx(e, abs=1e-8 * pressed.a)
+
+
+@pytest.mark.parametrize(("profile", "moment"), [
+    ("flat", 1e-6), ("flat", 5e-4), ("flat", 1.5e-3), ("table", -4e-5), ("table", None), ("even table", 2e-5),
+])  # fmt: skip
+def test_brackets_where_newton_fails(monkeypatch, profile, moment):
+    scene = made(profile)
+    force = scene.material.A * scene.P
+    given = scene.profile.curvature, force, None if moment is None else force * moment, scene.length
+    found = press(*given)
+    monkeypatch.setattr(_Search, "newton", lambda *_: None)
+    bracketed = press(*given)
+    assert (bracketed.centre, bracketed.a) == pytest.approx((found.centre, found.a), abs=1e-9 * found.a)
+
+
+def test_far_from_the_middle():
+    """At the largest distance allowed a and the stick zone keep nine digits."""
+    e = 999 * made("hertz").length
+    near, far = (run(made("hertz", e=each), ["exact"]).results["exact"] for each in (0.0, e))
+    assert far.a == pytest.approx(near.a, rel=1e-12)
+    assert far.n - e == pytest.approx(near.n, abs=1e-9 * near.a)
+    assert far.traction.at(e)[0] == pytest.approx(near.traction.at(0.0)[0], rel=1e-9)
 
 
 def test_moment_moves_a_parabola():
@@ -163,6 +185,9 @@ def test_marching_agrees(sigma):
 @pytest.mark.parametrize(("profile", "load", "message"), [
     ({**PROFILES["table"], "tilt": "fixed"}, {"M": 1.0}, "load.M = 1.0: must not be given with profile.tilt = 'fixed'"),
     ("hertz", {"M": 1.0, "e": 1e-5}, "load.e = 1e-05: must not be given together with load.M"),
+    ("hertz", {"e": 1e3}, "load.e = 1000.0: must keep the line of action of P within"),
+    ("hertz", {"M": -1e100}, "load.M = -1e+100: must keep the line of action of P within"),
+    ({**PROFILES["table"], "gap": 0 * SIDES + 3.0}, {}, "profile.gap: must increase at the last x, right of"),
     ({**PROFILES["table"], "gap": SIDES[::-1] * 0 + np.linspace(0, 1, 91)}, {}, "profile.gap: must fall at the first"),
     ({**PROFILES["table"], "x": TABLE + 3e-3}, {}, "profile.x[0] = 0.001: must be 0, the middle of the contact, or"),
     ("table", {"e": 2.4e-3}, "must keep the contact within profile.x, between -0.002 and 0.0025 m"),

@@ -85,6 +85,14 @@ def test_units_of_the_scene(tmp_path):
     assert other.profile.measured.noise == pytest.approx(own.profile.measured.noise, rel=1e-12)
 
 
+def test_exponents_of_fortran(tmp_path):
+    x, values = points(2e-7)
+    plain = scene_of(tmp_path, x, values)
+    text = (tmp_path / "pad.csv").read_text("utf-8")
+    (tmp_path / "pad.csv").write_text("\n".join(line.replace(",", "D0,", 1) for line in text.splitlines()), "utf-8")
+    np.testing.assert_allclose(load_scene(tmp_path / "job.toml").profile.gap, plain.profile.gap, rtol=1e-12)
+
+
 def test_noise_carries_over(tmp_path):
     """Refitted noisy copies scatter as refitted noisy measurements do."""
 

@@ -112,7 +112,8 @@ def read_points(file: str, unit: tuple[float, float]) -> tuple[Array, Array]:
             continue
         if len(words) != 2 or not all(map(_NUMBER.fullmatch, words)):
             raise InputError(f"profile.file: {file}: line {number}: must have two numbers, x and gap")
-        rows.append((float(words[0].replace("d", "e")), float(words[1].replace("d", "e"))))
+        place, height = (float(re.sub("[dD]", "e", word)) for word in words)
+        rows.append((place, height))
     x, gap = np.array(sorted(rows)).reshape(-1, 2).T * np.array(unit)[:, None]
     if len(np.unique(x)) < _FEWEST:
         raise InputError(f"profile.file: {file}: must have at least {_FEWEST} different x, not {len(np.unique(x))}")

@@ -21,6 +21,9 @@ from partialslip.scene.table import Table
 from partialslip.shown import Notebook, short
 from partialslip.units import UNITS, System, Units
 
+# Largest distance of P's line of action from x = 0, in sqrt(A R P): the rounding of x^2 is below 1e-9.
+_FARTHEST = 1e3
+
 
 class Friction(Table, frozen=True, kw_only=True):
     """Coulomb friction with the coefficient ``f``: |q| <= f p. With f = 0 any shear force makes the contact slide."""
@@ -86,6 +89,10 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             raise InputError(f"profile.tilt = 'free': must be 'fixed' with {still}")
         if not self.profile.even and self.bodies.pad:
             raise InputError(f"{self.bodies.pad}.kind = 'pad': must be 'block' with a profile that is not even")
+
+        if key and not abs(self.origin) <= (most := _FARTHEST * self.length):
+            near = f"must keep the line of action of P within {most:g} m of x = 0"
+            raise InputError(f"load.{key} = {getattr(self.load, key)}: {near}")
 
     def require_even(self, purpose: str) -> None:
         """Raise InputError if the pressure of half-planes is not even, which the ``purpose`` (in words) needs."""

@@ -173,7 +173,8 @@ class Tabulated(Table, frozen=True, kw_only=True, tag_field="kind", tag="tabulat
             x = self.x[falls[0]]
             raise InputError(f"profile.gap: must be convex; its slope decreases at x = {x} m")
         if not slopes[-1] > 0:
-            raise InputError(f"profile.gap: must increase with x; {'the gap is constant' if self.even else 'it falls'}")
+            where = "with x; the gap is constant" if self.even else "at the last x, right of the lowest point"
+            raise InputError(f"profile.gap: must increase {where}")
         if not (self.even or slopes[0] < 0):
             raise InputError("profile.gap: must fall at the first x, left of the lowest point; it increases")
 
