@@ -22,8 +22,8 @@ def gaps():
     yield "uneven", uneven, uneven**2 / 0.02 * (1 + 0.3 * (uneven / 4e-4) ** 2)
 
 
-ON_DEMAND = "parabola and quartic"
-CASES = [pytest.param(*case, id=name, marks=[pytest.mark.slow] if name == ON_DEMAND else []) for name, *case in gaps()]
+ON_DEMAND = ("parabola and quartic", "flat and rounded")
+CASES = [pytest.param(*case, id=name, marks=[pytest.mark.slow] if name in ON_DEMAND else []) for name, *case in gaps()]
 
 
 @pytest.mark.parametrize(("x", "gap"), CASES)

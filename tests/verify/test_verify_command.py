@@ -102,8 +102,8 @@ def test_interrupted_it_goes_on(tmp_path, capsys, monkeypatch):
     ("change", "solved_again"),
     [
         ({}, False),
-        ({"count": 2}, False),
-        ({"method": "exact"}, True),
+        pytest.param({"count": 2}, False, marks=pytest.mark.slow),
+        pytest.param({"method": "exact"}, True, marks=pytest.mark.slow),
         ({"code": 1}, True),
     ],
     ids=str,
