@@ -43,7 +43,11 @@ def may_turn_round(scene: Scene) -> bool:
     load, f = scene.load, scene.friction.f
     if not (load.in_phase and scene.mirrored):
         return True
-    if f == 0 or scene.slides or load.dsigma == 0:
+    if f == 0 or scene.slides:
+        return False
+    if scene.presses_anew:
+        return True
+    if load.dsigma == 0:
         return False
     if scene.finite or not isinstance(scene.profile, Hertz):
         return True
@@ -56,6 +60,8 @@ def small_tension(scene: Scene) -> bool:
     """Whether both ends of a Hertz contact of half-planes slip the same way at all loads: dsigma a < 4 dQ/pi."""
     load, f = scene.load, scene.friction.f
     if not isinstance(scene.profile, Hertz) or scene.finite or not scene.mirrored or scene.slides or f == 0:
+        return False
+    if scene.presses_anew:
         return False
     a = math.sqrt(2 / math.pi) * scene.length
     return load.in_phase and 0 < abs(load.dsigma) * a < 4 / math.pi * abs(load.dQ)

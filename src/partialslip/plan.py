@@ -15,6 +15,7 @@ from partialslip.scene import WIDTHS, Bodies, Effects, Friction, Scene
 
 Effect = Literal[
     "normal",
+    "varying-pressure",
     "moment",
     "friction",
     "shear",
@@ -91,13 +92,16 @@ def plan(scene: Scene, *, subsurface: bool = False, start: bool = False) -> Plan
 def reduced(scene: Scene) -> Scene:
     """Scene that methods solve: ``scene`` without friction, loads and sizes that ``[effects]`` force off.
 
-    Without history the loads become fully reversed. Without the far field, blocks are clamped directly.
+    Without varying pressure P and M are those of the load point with the larger P. Without history the loads become
+    fully reversed. Without the far field, blocks are clamped directly.
     """
     effects, load, fem = scene.effects, scene.load, scene.fem
     if effects.shear is False:
         load = replace(load, Q=(0.0,) * len(load.Q))
     if effects.tension is False:
         load = replace(load, sigma=(0.0,) * len(load.sigma))
+    if effects.varying_pressure is False and scene.presses_anew:
+        load = replace(load, P=scene.P, a=None, p0=None, M=scene.M, e=None)
     if effects.moment is False:
         load = replace(load, M=None, e=None)
     if effects.history is False:
@@ -136,10 +140,16 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
     small = "tension is small: both ends of a Hertz contact slip the same way" if small_tension(scene) else ""
     opposing = "tension may turn the slip at one end of the contact"
     history = _why_history(scene, coupled, start)
+    units, anew = scene.units, scene.presses_anew
+    forces, moments = [P for P, _ in scene.pressing], [M or 0.0 for _, M in scene.pressing]
+    varies = [f"P goes between {units.span(forces, 'N/m')}"] if len(set(forces)) > 1 else []
+    varies += [f"M goes between {units.span(moments, 'N')}"] if len(set(moments)) > 1 else []
+    turned = f"{scene.M or 0.0:g} N" if len(set(moments)) == 1 else "M"
     return {
-        "normal": (True, "two bodies are pressed together by a constant P", ""),
+        "normal": (True, f"two bodies are pressed together by {'P' if anew else 'a constant P'}", ""),
+        "varying-pressure": (anew, ", ".join(varies), "P is constant" + ", and so is M" * any(moments)),
         "moment": (not scene.even and scene.M is not None,
-                   f"the bodies turn until the moment of the pressure is {scene.M or 0.0:g} N",
+                   f"the bodies turn until the moment of the pressure is {turned}",
                    "no moment acts, and the gap is even" if scene.even else "the bodies do not turn"),
         "friction": (friction, why, no_friction),
         "shear": (any(Q), f"Q goes between {scene.units.span(Q, 'N/m')}", "Q = 0 at every load point"),
@@ -176,7 +186,9 @@ def _why_history(scene: Scene, coupled: bool, start: bool) -> str:
     if coupled:
         return "pressure and shear move the surfaces together: what they lock in depends on the path"
     if not load.in_phase:
-        return "Q and sigma are out of phase: locked-in tractions depend on the path"
+        return f"{scene.varying} are out of phase: locked-in tractions depend on the path"
+    if scene.presses_anew:
+        return "the pressure varies: what it locks in where the contact grows depends on the path"
     if not load.fully_reversed:
         return "mean loads act: the tractions locked in by the first cycles depend on the path"
     if may_turn_round(scene):
@@ -197,9 +209,10 @@ def _refuse(scene: Scene, forced: dict[Effect, bool], own: _Decisions, start: bo
         ("normal", "normal" in off, "without pressure there is no contact"),
         *((each, each in on and unheld and not own[each][0], own["friction"][2]) for each in tangential),
         ("opposing-slip", "opposing-slip" in off and not scene.load.in_phase,
-         "Q and sigma are out of phase, and slip reverses"),
-        ("history", "history" in off and own["history"][0] and (coupled or not scene.load.in_phase),
-         own["history"][1]),
+         f"{scene.varying} are out of phase, and slip reverses"),
+        ("varying-pressure", "varying-pressure" in on and not scene.presses_anew, own["varying-pressure"][2]),
+        ("history", "history" in off and own["history"][0]
+         and (coupled or scene.presses_anew or not scene.load.in_phase), own["history"][1]),
         ("history", "history" in off and start, own["history"][1]),
         ("finite-size", "finite-size" in on and not scene.finite, "bodies.upper and bodies.lower have no size"),
         ("far-field", "far-field" in on and None not in (scene.bodies.upper, scene.bodies.lower),

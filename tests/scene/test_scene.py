@@ -265,6 +265,7 @@ def test_every_shipped_scene_has_a_whole_plan(name):
 # Conditions under which a reason, given by its beginning, is true.
 TRUE_IF = {
     "two bodies are pressed together": lambda s: s.P > 0,
+    "P is constant": lambda s: not s.presses_anew,
     "slip may reverse between": lambda s: s.friction.f > 0 and s.load.dsigma != 0 and not s.slides,
     "no tangential load acts": lambda s: not any(s.load.Q + s.load.sigma),
     "f = 0: ": lambda s: s.friction.f == 0 and (any(s.load.Q + s.load.sigma) or not s.mirrored),

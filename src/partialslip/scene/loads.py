@@ -1,33 +1,39 @@
-"""Loads: the normal force, and the cycle of shear force and bulk tension."""
+"""Loads: the normal force and its moment, and the cycle of shear force and bulk tension."""
 
+import itertools
 from typing import Annotated
 
 import msgspec
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.scene.limits import ROUGH
 from partialslip.scene.table import Positive, Table
 
-Turns = Annotated[tuple[float, ...], msgspec.Meta(min_length=2, max_length=1000)]
+_FEW, _MOST = 2, 1000
+Turns = Annotated[tuple[float, ...], msgspec.Meta(min_length=_FEW, max_length=_MOST)]
+Forces = Annotated[tuple[Positive, ...], msgspec.Meta(min_length=_FEW, max_length=_MOST)]
 
 
 class Load(Table, frozen=True, kw_only=True):
     """Loads per unit depth; they vary linearly from one load point of the cycle to the next.
 
-    ``P`` (N/m) is constant; for Hertz ``a`` (m) or ``p0`` (Pa) may be given instead. ``M`` (N) is the moment of the
-    pressure about x = 0, int x p dx; instead the eccentricity ``e`` = M/P (m) may be given. Without either M = 0.
-    ``Q`` (N/m) and ``sigma`` (Pa, bulk tension of the lower body less that of the upper body) are values at the load
-    points: usually points 1 and 2, between which the loads cycle in phase, or more points. The path begins at zero
-    load, goes to the last point, and then ``cycles`` times through all points. Methods that follow the path take at
-    least ``steps`` load steps between points.
+    ``P`` (N/m): a number if it is constant, otherwise its values at the load points; for Hertz a constant ``a`` (m) or
+    ``p0`` (Pa) may be given instead. ``M`` (N) is the moment of the pressure about x = 0, int x p dx, a number or its
+    values at the load points; instead the eccentricity ``e`` = M/P (m) may be given: P and M, not e, vary linearly
+    between the load points. Without either M = 0. ``Q`` (N/m) and ``sigma`` (Pa, bulk tension of the lower body less
+    that of the upper body) are values at the load points: usually points 1 and 2, between which the loads cycle in
+    phase, or more points. The path begins at P and M of the last load point with Q = sigma = 0, goes to the last point,
+    and then ``cycles`` times through all points. Methods that follow the path take at least ``steps`` load steps
+    between points.
     """
 
-    P: Positive | None = None
+    P: Positive | Forces | None = None
     a: Positive | None = None
     p0: Positive | None = None
-    M: float | None = None
-    e: float | None = None
+    M: float | Turns | None = None
+    e: float | Turns | None = None
     Q: Turns = (0.0, 0.0)
     sigma: Turns = (0.0, 0.0)
     cycles: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 1
@@ -36,33 +42,67 @@ class Load(Table, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         if self.M is not None and self.e is not None:
             raise InputError(f"load.e = {self.e}: must not be given together with load.M")
-        others = [values for values in (self.Q, self.sigma) if any(values) or len(values) > 2]
-        if len(self.Q) != len(self.sigma) and len(others) > 1:
-            raise InputError(f"load.sigma: must have as many numbers as load.Q, {len(self.Q)}, not {len(self.sigma)}")
+        lists = {key: len(getattr(self, key)) for key in ("Q", "sigma", "P", "M", "e") if self._matters(key)}
+        for key, length in list(lists.items())[1:]:
+            first, count = next(iter(lists.items()))
+            if length != count:
+                raise InputError(f"load.{key}: must have as many numbers as load.{first}, {count}, not {length}")
+
+    def _matters(self, key: str) -> bool:
+        """Whether ``key`` is a list whose length counts: two zeros stand for as many as there are load points."""
+        values = getattr(self, key)
+        return isinstance(values, tuple) and (any(values) or len(values) > _FEW)
 
     @property
     def points(self) -> tuple[tuple[float, float], ...]:
         """(Q, sigma) at the load points of the cycle."""
-        count = max(len(self.Q), len(self.sigma))
-        Q, sigma = (values if any(values) else (0.0,) * count for values in (self.Q, self.sigma))
-        return tuple(zip(Q, sigma, strict=True))
+        return tuple(zip(self._at_points("Q"), self._at_points("sigma"), strict=True))
+
+    def _at_points(self, key: str) -> tuple[float, ...]:
+        """Values of ``key`` at the load points; zeros where it is not given."""
+        values = getattr(self, key)
+        if isinstance(values, tuple) and self._matters(key):
+            return values
+        count = max((len(getattr(self, other)) for other in ("Q", "sigma", "P", "M", "e") if self._matters(other)),
+                    default=max(len(self.Q), len(self.sigma)))  # fmt: skip
+        return ((0.0 if isinstance(values, tuple) else values) or 0.0,) * count
+
+    def pressing(self, P: float) -> tuple[tuple[float, float], ...]:
+        """(P, M) at the load points, N/m and N; ``P`` (N/m) where the normal force is not given."""
+        forces = self._at_points("P") if self.P is not None else (P,) * len(self.points)
+        moments = self._at_points("M")
+        if self.e is not None:
+            moments = tuple(force * e for force, e in zip(forces, self._at_points("e"), strict=True))
+        return tuple(zip(forces, moments, strict=True))
+
+    @property
+    def presses_anew(self) -> bool:
+        """Whether P or M varies."""
+        return len(set(self.pressing(1.0))) > 1
+
+    @property
+    def _all(self) -> Array:
+        """Q, sigma, P and M at the load points, (points, 4)."""
+        return np.concatenate([self.points, self.pressing(1.0)], axis=1)
 
     @property
     def ends(self) -> tuple[int, int]:
-        """Indices of load points 1 and 2, the extremes of the cycle in the order of visits; out of phase the extremes
-        of Q."""
-        Q, sigma = np.array(self.points).T
-        values = Q if np.ptp(Q) > 0 else sigma
+        """Indices of load points 1 and 2, the extremes of the cycle in the order of visits: the extremes of Q, or of
+        sigma where Q is constant, or of P, or of M."""
+        loads = self._all.T
+        values = next((each for each in loads if np.ptp(each) > 0), loads[0])
         first, second = sorted((int(np.argmin(values)), int(np.argmax(values))))
         return (first, second) if first != second else (0, len(values) - 1)
 
     @property
     def in_phase(self) -> bool:
-        """Whether Q and sigma are in phase: all load points lie on one straight line."""
-        Q, sigma = np.array(self.points).T
+        """Whether all loads are in phase: all load points lie on one straight line."""
         first, second = self.ends
-        Q, sigma = Q - Q[first], sigma - sigma[first]
-        return bool((np.abs(Q * sigma[second] - sigma * Q[second]) <= ROUGH * np.ptp(Q) * np.ptp(sigma)).all())
+        loads = (self._all - self._all[first]).T
+        return all(
+            bool((np.abs(one * other[second] - other * one[second]) <= ROUGH * np.ptp(one) * np.ptp(other)).all())
+            for one, other in itertools.combinations(loads, 2)
+        )
 
     @property
     def dQ(self) -> float:
@@ -84,6 +124,7 @@ class Load(Table, frozen=True, kw_only=True):
 
     @property
     def fully_reversed(self) -> bool:
-        """Whether the loads are in phase with Q1 = -Q2 and sigma1 = -sigma2, without mean loads."""
+        """Whether P and M are constant and the other loads are in phase with Q1 = -Q2 and sigma1 = -sigma2, without
+        mean loads."""
         (Q1, sigma1), (Q2, sigma2) = (self.points[end] for end in self.ends)
-        return self.in_phase and Q1 == -Q2 and sigma1 == -sigma2
+        return self.in_phase and not self.presses_anew and Q1 == -Q2 and sigma1 == -sigma2

@@ -3,7 +3,7 @@ towards -a."""
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import msgspec
 import numpy as np
@@ -23,6 +23,13 @@ from partialslip.units import UNITS, System, Units
 
 # Largest distance of P's line of action from x = 0, in sqrt(A R P): the rounding of x^2 is below 1e-9.
 _FARTHEST = 1e3
+
+
+class Pressing(NamedTuple):
+    """Normal force ``P`` (N/m), and moment ``M`` (N) of the pressure about x = 0, None if the bodies do not turn."""
+
+    P: float
+    M: float | None
 
 
 class Friction(Table, frozen=True, kw_only=True):
@@ -90,7 +97,8 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         if not self.profile.even and self.bodies.pad:
             raise InputError(f"{self.bodies.pad}.kind = 'pad': must be 'block' with a profile that is not even")
 
-        if key and not abs(self.origin) <= (most := _FARTHEST * self.length):
+        lines = [abs((moment or 0.0) / force) for force, moment in self.pressing]
+        if key and not max(lines) <= (most := _FARTHEST * self.length):
             near = f"must keep the line of action of P within {most:g} m of x = 0"
             raise InputError(f"load.{key} = {getattr(self.load, key)}: {near}")
 
@@ -99,7 +107,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         if not self.profile.even:
             raise InputError(f"profile.x: must begin at 0 {purpose}; only even gaps")
         for key in ("M", "e"):
-            if getattr(self.load, key):
+            if np.any(getattr(self.load, key) or 0.0):
                 raise InputError(f"load.{key} = {getattr(self.load, key)}: must be 0 or left out {purpose}")
 
     def _check_pad(self, name: str, width: float, height: float) -> None:
@@ -157,7 +165,8 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     @property
     def slides(self) -> bool:
         """Whether the contact slides: friction cannot carry Q, |Q| >= f P at a load point."""
-        return not self.free and max(abs(Q) for Q, _ in self.load.points) >= self.friction.f * self.P
+        pairs = zip(self.load.points, self.pressing, strict=True)
+        return not self.free and any(abs(Q) >= self.friction.f * P for (Q, _), (P, _) in pairs)
 
     @property
     def free(self) -> bool:
@@ -175,31 +184,50 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         return self.profile.face_at(x) if self.bodies.pad else self.profile.gap_at(x)
 
     @property
+    def pressing(self) -> tuple[Pressing, ...]:
+        """P and M at the load points."""
+        load, A, R = self.load, self.material.A, self.profile.R
+        a = load.a if load.a is not None else (load.p0 or 0.0) * A * R
+        loads = load.pressing(math.pi * a**2 / (2 * A * R) if load.P is None else 0.0)
+        turns = self.profile.turns and self.effects.moment is not False
+        return tuple(Pressing(P, M if turns else None) for P, M in loads)
+
+    @property
+    def presses_anew(self) -> bool:
+        """Whether the pressure varies: P varies, or M of bodies that turn."""
+        return len(set(self.pressing)) > 1
+
+    @property
+    def largest(self) -> int:
+        """1 or 2, the load point with the larger P. Its a and p0 are those of the scene; 2 if both are equal."""
+        first, second = (self.pressing[end].P for end in self.load.ends)
+        return 1 if first > second else 2
+
+    @property
     def P(self) -> float:
-        """Normal force, N/m; for Hertz P = pi a^2/(2 A R) and p0 = a/(A R)."""
-        A, R = self.material.A, self.profile.R
-        if self.load.P is not None:
-            return self.load.P
-        a = self.load.a if self.load.a is not None else (self.load.p0 or 0.0) * A * R
-        return math.pi * a**2 / (2 * A * R)
+        """Normal force at the load point :attr:`largest`, N/m; for Hertz P = pi a^2/(2 A R) and p0 = a/(A R)."""
+        return self.pressing[self.load.ends[self.largest - 1]].P
 
     @property
     def M(self) -> float | None:
-        """Moment int x p dx of the pressure about x = 0, N; None if the bodies do not turn."""
-        if not self.profile.turns or self.effects.moment is False:
-            return None
-        if self.load.M is not None:
-            return self.load.M
-        return self.P * self.load.e if self.load.e is not None else 0.0
+        """Moment int x p dx of the pressure about x = 0 at the load point :attr:`largest`, N; None if the bodies do not
+        turn."""
+        return self.pressing[self.load.ends[self.largest - 1]].M
+
+    @property
+    def varying(self) -> str:
+        """The loads that vary, in words; Q and sigma always count."""
+        values = zip("PM", zip(*self.pressing, strict=True), strict=True)
+        return "".join(f"{key}, " for key, each in values if len(set(each)) > 1) + "Q and sigma"
 
     @property
     def even(self) -> bool:
-        """Whether the pressure of half-planes is even in x: an even gap, and no moment."""
-        return self.profile.even and not self.M
+        """Whether the pressure of half-planes is always even in x: an even gap, and no moment."""
+        return self.profile.even and not any(M for _, M in self.pressing)
 
     @property
     def origin(self) -> float:
-        """x of the line of action of P, M/P, m; zero if the bodies do not turn."""
+        """x of the line of action of P, M/P, at the load point :attr:`largest`, m; zero if the bodies do not turn."""
         return (self.M or 0.0) / self.P
 
     @property

@@ -313,8 +313,9 @@ def _allowed(what: str, kind: Any) -> str:
         return "one of " + ", ".join(map(repr, words))
     if length := re.fullmatch(r"Expected `array` of length (>=|<=) (\d+)", what):
         return f"an array of at {'least' if length[1] == '>=' else 'most'} {length[2]} numbers"
-    if wrong := re.fullmatch(r"Expected `([a-z]+)(?: \| null)?`, got `(?:datetime\.)?([a-z]+)`", what):
-        return f"{_KINDS.get(wrong[1], wrong[1])}, not {_KINDS.get(wrong[2], wrong[2])}"
+    if wrong := re.fullmatch(r"Expected `([a-z]+(?: \| [a-z]+)*)`, got `(?:datetime\.)?([a-z]+)`", what):
+        kinds = [_KINDS.get(kind, kind) for kind in wrong[1].split(" | ") if kind != "null"]
+        return f"{' or '.join(kinds)}, not {_KINDS.get(wrong[2], wrong[2])}"
     if bound := re.fullmatch(r"Expected `(?:float|int)(?: \| null)?` (.*)", what):
         return bound[1]
     if what == "Number out of range":

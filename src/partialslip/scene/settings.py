@@ -32,11 +32,12 @@ class Fem(Table, frozen=True, kw_only=True):
 class Effects(Table, frozen=True, kw_only=True, rename="kebab"):
     """Effects that are forced on (true) or off (false); None leaves the decision to :mod:`partialslip.plan`.
 
-    ``normal``, ``moment``, ``friction``, ``shear``, ``tension``, ``opposing_slip``, ``history``, ``coupling``,
-    ``finite_size``, ``far_field``, ``subsurface``; in a scene file with hyphens.
+    ``normal``, ``varying_pressure``, ``moment``, ``friction``, ``shear``, ``tension``, ``opposing_slip``, ``history``,
+    ``coupling``, ``finite_size``, ``far_field``, ``subsurface``; in a scene file with hyphens.
     """
 
     normal: bool | None = None
+    varying_pressure: bool | None = None
     moment: bool | None = None
     friction: bool | None = None
     shear: bool | None = None
