@@ -171,7 +171,7 @@ class _Refinement:
         self.expense.measure(solution.dofs, expected)
         self.meshes, self.factored = self.meshes + 1, self.factored + solution.factored
         self.iterations += solution.iterations
-        if not solution.enclosed and max(-solution.left, solution.right) >= self.limit:
+        if not solution.enclosed and max(-solution.reach[0], solution.reach[1]) >= self.limit:
             raise too_narrow(self.problem)
         at_ends, at_kinks = (
             sizes_at(points, grading.sizes, grading.growth) * coarsest / a
@@ -209,7 +209,8 @@ class _Refinement:
         """Grading to the zone ends of the present solution, to the profile's kinks, and to kinks of q1 and q2."""
         solution, a = self.solution, self.solution.half_width
         margin = (0.1 + 2 * self.finer * self.size) * a  # for safety, and for the error of the present ends
-        contact = (max(solution.left - margin, -self.limit), min(solution.right + margin, self.limit))
+        leftmost, rightmost = solution.reach
+        contact = (max(leftmost - margin, -self.limit), min(rightmost + margin, self.limit))
         kinks = [kink for kink in self.problem.kinks if contact[0] < kink < contact[1]]  # others are not in contact
         points = apart([*solution.zone_ends.tolist(), *kinks], self.size * a)
         sizes = dict.fromkeys(points, self.size * a / coarsest)
@@ -218,6 +219,13 @@ class _Refinement:
             if sizes_at(np.array([kink]), sizes, growth / coarsest)[0] > _KINK_SLACK * needed * a / coarsest:
                 sizes[kink] = needed * a / coarsest
         goal = self.goal
+        for low, high in solution.swept:
+            # where surfaces that stick come into contact, what is locked in depends on the distance of the nodes
+            size = (high - low) * goals.sweep(goal.accuracy) / coarsest
+            count = int(np.ceil((high - low) / (2 * size * coarsest)))
+            sizes |= {
+                point: size for point in np.linspace(low, high, count + 2)[1:-1].tolist() if size > sizes[points[0]]
+            }
         return Grading(contact, sizes, growth / coarsest, facet_error=goal.facet_error, corner_error=goal.corner_error)
 
     def _keep_steps(self) -> None:

@@ -1,26 +1,20 @@
-"""Two condensed bodies pressed together.
+"""Two condensed bodies and their relative displacements.
 
 Scaled as in :mod:`partialslip_fem.problem`. Nodal contact forces are the Lagrange multipliers of the relative
 displacements of the two surfaces.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg as la
 
 from partialslip.arrays import Array
-from partialslip.condensed.bounded import Solution, solve_bounded
 from partialslip.condensed.coupled import Relative
 from partialslip_fem.condensation import Condensation
 from partialslip_fem.elasticity import Body
 from partialslip_fem.mortar import transfer
 from partialslip_meshes import Mesh
-
-_TURNS = 100  # largest number of angles tried
-_LEVEL = 1e-14  # moment, relative to that of the forces without sign, that is rounding
-_START, _WIDER = 1e-3, 2.0  # angle, and factor of an angle, where the moment does not depend on it
 
 
 @dataclass(frozen=True)
@@ -97,32 +91,3 @@ def relative_compliances(bodies: Sequence[CondensedBody], coupled: bool = True) 
     xx = total(along_x, along_x)
     xy = (total(along_x, along_y) + total(along_y, along_x).T) / 2 if coupled else None
     return Relative((xx + xx.T) / 2, (yy + yy.T) / 2, xy)
-
-
-def press(normal: Array, gap: Array, P: float, arms: Array | None = None) -> Solution:
-    """Nodal normal forces (n,), none tensile, that close ``gap`` (n,) and sum to ``P``.
-
-    ``normal`` is the compliance along y, (n, n). With ``arms`` (n,), the abscissae of the nodes, the bodies turn until
-    the forces have no moment. The moment grows with the angle, and is linear in it while no node changes sides.
-    """
-    free = np.zeros(len(gap)), np.full(len(gap), np.inf), P
-    found = solve_bounded(normal, -gap, *free)
-    if arms is None:
-        return found
-    angle, low, high, iterations, changes = 0.0, -np.inf, np.inf, found.iterations, found.changes
-    for _ in range(_TURNS):
-        moment = float(arms @ found.x)
-        if abs(moment) <= _LEVEL * float(np.abs(arms) @ found.x):
-            break
-        low, high = (angle, high) if moment < 0 else (low, angle)
-        on = np.flatnonzero(found.x > 0)
-        factor = la.cho_factor(normal[np.ix_(on, on)], check_finite=False)
-        uniform, tilted = la.cho_solve(factor, np.stack([np.ones(len(on)), arms[on]], axis=1), check_finite=False).T
-        rate = float(arms[on] @ (tilted - uniform * tilted.sum() / uniform.sum()))
-        step = -moment / rate if rate > 0 else np.copysign(_WIDER * (abs(angle) + _START), -moment)
-        angle = angle + step if low < angle + step < high else (low + high) / 2
-        found = solve_bounded(normal, angle * arms - gap, *free, found.sides)
-        iterations, changes = iterations + found.iterations, changes + found.changes
-    lever = float(np.abs(arms) @ found.x)
-    off = max(found.imbalance, abs(float(arms @ found.x)) / lever * P)
-    return replace(found, imbalance=off, iterations=iterations, changes=changes)

@@ -44,7 +44,8 @@ def displace_bodies(solution: MeshSolution, problem: Problem) -> tuple[Displaced
     history, line = solution.history, solution.lower
     load_points = zip(history.at_ends, history.bounds, strict=True) if history else ()
     loads = [(solution.on_line(shear), solution.on_line(bound) / problem.f) for shear, bound in load_points]
-    loads = loads or [(0 * line.x, solution.pressing.x)] * 2
+    first = solution.pressing.x if solution.first is None else solution.first
+    loads = loads or [(0 * line.x, first), (0 * line.x, solution.pressing.x)]
     pressures = tuple(traction(line, normal) for _, normal in loads)
     strains = [history.path.cycle[end][1] for end in history.path.ends] if history else [0.0, 0.0]
     displaced = []

@@ -38,6 +38,8 @@ LOOSEST = 1e-2  # ... and absolute; also the loosest accuracy that an allowance 
 # Errors at the contact per change due to the corners of blocks.
 _TILTS = {"left": 1e-3, "right": 1e-3, "p": 5e-3, "q": 5e-3, "q1": 5e-3, "q2": 5e-3}
 
+_SWEPT = (0.2, 8e-3, 0.1)  # element size, and bar of q, for which it suffices; largest element size
+
 _REACHED = 1.01  # element sizes within this factor of the goal count as having reached it
 
 
@@ -97,6 +99,12 @@ class NextMesh(NamedTuple):
     size: float
     growth: float
     finer: float
+
+
+def sweep(accuracy: float) -> float:
+    """Element size for an ``accuracy``, as a part of the width over which sticking surfaces come into contact: the error
+    of q falls like size^1.5 (measured)."""
+    return min(_SWEPT[0] * (BARS["q"] * accuracy / _SWEPT[1]) ** (2 / 3), _SWEPT[2])
 
 
 def reached(size: float, goal: float) -> bool:

@@ -46,6 +46,11 @@ class MeshSolution:
         How coupled bodies were pressed together before the load path.
     step_errors : mapping of str to float
         Errors of the load steps (:mod:`partialslip.condensed.step_errors`), where they were asked for.
+    first, most : (n,) arrays or None
+        Where the pressure varies: normal forces on all nodes of the contact line at load point 1, and the largest ones
+        on the path.
+    largest : int
+        Load point with the larger P, 1 or 2, whose contact scales the results.
     """
 
     bodies: tuple[CondensedBody, ...]
@@ -61,6 +66,9 @@ class MeshSolution:
     coupled: bool = False
     pressed: Pressed | None = None
     step_errors: Mapping[str, float] = field(default_factory=dict)
+    first: Array | None = None
+    most: Array | None = None
+    largest: int = 2
 
     @property
     def slips_when_pressed(self) -> bool:
@@ -103,7 +111,16 @@ class MeshSolution:
     @property
     def enclosed(self) -> bool:
         """Whether the contact ends within the contact line."""
-        return bool(self.pressing.x[0] == 0 == self.pressing.x[-1])
+        pressed = self.pressing.x if self.most is None else self.most
+        return bool(pressed[0] == 0 == pressed[-1])
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Ends of the contact at load point 2; where the pressure varies, of all that is ever in contact."""
+        if self.most is None:
+            return self.left, self.right
+        ends, touched = np.array(self.contact_ends), self.lower.x[self.most > 0]
+        return min(float(ends.min()), float(touched[0])), max(float(ends.max()), float(touched[-1]))
 
     @property
     def pieces(self) -> int:
@@ -113,9 +130,22 @@ class MeshSolution:
         return int((np.diff(cells.astype(np.int8), prepend=0) == 1).sum())
 
     @property
+    def swept(self) -> list[tuple[float, float]]:
+        """Intervals between the ends of the contacts at load points 1 and 2 beside which the surfaces stick."""
+        if self.most is None or not self.stick:
+            return []
+        (left1, right1), (left2, right2) = self.contact_ends
+        sides = (
+            (min(left1, left2), max(left1, left2), self.stick.left <= max(left1, left2)),
+            (min(right1, right2), max(right1, right2), self.stick.right >= min(right1, right2)),
+        )
+        return [(low, high) for low, high, sticks in sides if sticks and low < high]
+
+    @property
     def half_width(self) -> float:
-        """Contact half-width at load point 2."""
-        return (self.right - self.left) / 2
+        """Contact half-width at load point 2, or at that with the larger P."""
+        left, right = self.contact_ends[self.largest - 1]
+        return (right - left) / 2
 
     @property
     def iterations(self) -> int:
@@ -128,6 +158,8 @@ class MeshSolution:
 
     def pressures(self, f: float) -> tuple[PPoly, PPoly] | None:
         """p at load points 1 and 2 for the coefficient of friction ``f``; None if p is the same at both."""
+        if self.first is not None:
+            return traction(self.lower, self.first), self.pressure()
         if not self.history or not self.coupled:
             return None
         first, second = (self.shear(bound / f) for bound in self.history.bounds)

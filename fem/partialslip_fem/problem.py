@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
-from partialslip.condensed.path import Path, load_path, lower_strain
+from partialslip.condensed.path import Path, load_path, lower_strain, scaled_pressing
 from partialslip.plan import Plan
 from partialslip.result.state import State
 from partialslip.scene import Hertz, Profile, Scene
@@ -129,8 +129,8 @@ class Part:
 
 @dataclass(frozen=True)
 class Problem:
-    """The scaled contact problem; P = 1. Where the bodies turn, x counts from the line of action of P, about which the
-    pressure then has no moment.
+    """The scaled contact problem; P = 1, at the load point with the larger P if P varies. Where the bodies turn, x
+    counts from the line of action of this P, about which the pressure then has no moment.
 
     Parameters
     ----------
@@ -166,6 +166,10 @@ class Problem:
         Whether the bodies turn until the pressure has no moment.
     origin : float
         Position of the origin of x in the scene.
+    pressing : two of (float, float), optional
+        P and M at load points 1 and 2, where the pressure varies.
+    largest : int
+        Load point with the larger P, 1 or 2.
     """
 
     gap: Callable[[Array], Array]
@@ -184,6 +188,8 @@ class Problem:
     accuracy: float = 1e-3
     turns: bool = False
     origin: float = 0.0
+    pressing: tuple[tuple[float, float], tuple[float, float]] | None = None
+    largest: int = 2
 
     @property
     def meshed(self) -> bool:
@@ -216,11 +222,20 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
         strain=lower_strain(scene, scene.load.points[scene.load.ends[1]][1]),
-        similar=isinstance(scene.profile, Hertz) and not scene.finite and scene.even,
+        similar=isinstance(scene.profile, Hertz) and not scene.finite and scene.even and not scene.presses_anew,
         accuracy=scene.fem.accuracy,
         turns=plan.needs("moment"),
         origin=origin / L,
+        pressing=_at_load_points(scene) if scene.presses_anew else None,
+        largest=scene.largest,
     )
+
+
+def _at_load_points(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Scaled P and M at load points 1 and 2."""
+    pressing = scaled_pressing(scene)
+    first, second = scene.load.ends
+    return pressing[first], pressing[second]
 
 
 def rescaled(polynomials: PPoly, value: float, length: float, origin: float = 0.0) -> PPoly:

@@ -34,7 +34,7 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
     weights = solution.lower.weights[solution.nodes]
     history, pressures = solution.history, solution.pressures(problem.f)
     change = last_cycle_change(history, weights, problem.f, p0) if history else None
-    found = steady_state(scene, history, solution.stick, solution.half_width, solution.slips_when_pressed)
+    found = steady_state(scene, history, solution.stick, solution.half_width, solution.slips_when_pressed, x)
 
     q1, q2, at1, at2, dq = np.zeros_like(x), np.zeros_like(x), None, None, None
     if history:
@@ -94,6 +94,7 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
         + _note_on_the_allowance(adapted, scene)
         + doubts(change, estimate, accuracy),
         bodies=tuple(deformed(body, L, unit, stress, origin) for body in displaced),
+        end_slips=found.slips,
         contact_ends=((left1 * L + origin, right1 * L + origin), (left2 * L + origin, right2 * L + origin)),
         state=_state(scene, problem, solution),
         surface=along_surfaces(displaced, solution.contact_ends, L, stress, origin) if displaced else None,
@@ -109,7 +110,10 @@ def _state(scene: Scene, problem: Problem, solution: MeshSolution) -> State | No
     p, q = (solution.shear(forces) for forces in (bound / scene.friction.f, shear))
     L, origin = scene.length, problem.origin * scene.length
     return State(
-        scene.P, scene.material.A, *scene.load.points[-1], *(rescaled(each, scene.P / L, L, origin) for each in (p, q))
+        scene.pressing[-1].P,
+        scene.material.A,
+        *scene.load.points[-1],
+        *(rescaled(each, scene.P / L, L, origin) for each in (p, q)),
     )
 
 
@@ -154,7 +158,7 @@ def _counts(solution: MeshSolution, adapted: Adapted, extra: dict[str, int]) -> 
     ``normal_iterations`` and ``friction_iterations`` are changes of the active set after the first linear solve.
     """
     history, pressing = solution.history, solution.pressing
-    both = history and solution.coupled
+    both, anew = history and solution.coupled, solution.most is not None
     return {
         "dofs": solution.dofs,
         "contact_nodes": len(solution.nodes),
@@ -168,7 +172,7 @@ def _counts(solution: MeshSolution, adapted: Adapted, extra: dict[str, int]) -> 
         "load_steps": history.load_steps if history else 0,
         "steps": history.path.most_steps if history else 0,
         "pressing_steps": _pressing_steps(solution.pressed),
-        "normal_solves": history.load_steps + _pressing_steps(solution.pressed) if history and both else 1,
+        "normal_solves": history.load_steps + _pressing_steps(solution.pressed) if history and (both or anew) else 1,
         "normal_iterations": 0 if both else pressing.changes,
         "friction_iterations": (pressing.changes if both else history.changes) if history else 0,
         "opposing_nodes": history.opposing if history else 0,

@@ -5,16 +5,19 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from partialslip.arrays import Indices
+from partialslip.arrays import Array, Indices
 from partialslip.bars import BARS
-from partialslip.condensed import coupled, step_errors
+from partialslip.condensed import coupled, step_errors, varying
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.coupled import Pressed
+from partialslip.condensed.ends import within
 from partialslip.condensed.history import History
-from partialslip.condensed.steps import march_refined
+from partialslip.condensed.normal import Presses, press
+from partialslip.condensed.path import Path
+from partialslip.condensed.steps import follow_refined, march_refined
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, condense, key_of, mesh_bodies
-from partialslip_fem.contact import CondensedBody, press, relative_compliances
+from partialslip_fem.contact import CondensedBody, relative_compliances
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import nodal_forces
 from partialslip_fem.problem import Problem
@@ -82,15 +85,20 @@ def solve_contact(
         history, nodes, errors = forces.history, forces.nodes, forces.step_errors
         left, right = contact_ends(line, forces.pressing.x)
         ends_at_1: tuple[float, float] | tuple[()] = ()
-        if history and both:
+        at_first = forces.first
+        if history and both and at_first is None:
             at_first = np.zeros(len(line.x))
             at_first[nodes] = history.bounds[0]
+        if at_first is not None:
             ends_at_1 = contact_ends(line, at_first)
         growth = growth_when_pressed(forces.pressed, nodes, problem)
         stick = stick_zone_of(line, nodes, history, growth) if history else None
         if stick:  # on a coarse mesh the ends of the stick zone may lie outside the contact
             left_at_1, right_at_1 = ends_at_1 or (left, right)
             stick = replace(stick, left=max(stick.left, left, left_at_1), right=min(stick.right, right, right_at_1))
+        if stick and problem.pressing:
+            left_at_1, right_at_1 = ends_at_1 or (left, right)
+            stick = within(stick, (max(left, left_at_1), min(right, right_at_1)), line.x[:: line.order])
         leftmost, rightmost = min([left, *ends_at_1[:1]]), max([right, *ends_at_1[1:]])
         kinks = shear_kinks(problem, line, nodes, history) if history else ()
         kinks = tuple(kink for kink in kinks if leftmost < kink < rightmost)
@@ -98,7 +106,7 @@ def solve_contact(
             errors = step_errors.pressed_together(history, forces.pressed, line.weights, nodes)
         return MeshSolution(
             bodies, factored, nodes, forces.pressing, history, left, right, stick, ends_at_1, kinks, both,
-            forces.pressed, errors,
+            forces.pressed, errors, forces.first, forces.most, problem.largest,
         )  # fmt: skip
 
 
@@ -111,6 +119,8 @@ class _ContactForces:
     nodes: Indices
     pressed: Pressed | None = None
     step_errors: Mapping[str, float] = field(default_factory=dict)
+    first: Array | None = None
+    most: Array | None = None
 
 
 def _contact_forces(problem: Problem, C: coupled.Relative, lower: CondensedBody, steps: int | None) -> _ContactForces:
@@ -125,9 +135,14 @@ def _contact_forces(problem: Problem, C: coupled.Relative, lower: CondensedBody,
         near = BARS["q"] * problem.accuracy
         history, pressing, first = coupled.march(C, gap, stretch, problem.f, path, pressed, along, near)
         nodes = np.flatnonzero(history.bound > 0)
-        return _ContactForces(pressing, history.of(nodes), nodes, first)
+        most = np.maximum(*history.bounds) / problem.f if problem.pressing else None
+        return _ContactForces(pressing, history.of(nodes), nodes, first, most=most)
     opened = gap if path else gap - problem.strain * stretch[1]
-    pressing = press(C.yy, opened, 1.0, line.x if problem.turns else None)
+    arms = line.x if problem.turns else None
+    if problem.pressing:
+        presses = Presses(C.yy, opened, arms)
+        return _under_varying_pressure(problem, C, lower, presses, problem.pressing, steps)
+    pressing, _ = press(C.yy, opened, 1.0, arms)
     nodes = np.flatnonzero(pressing.x > 0)
     if not path:
         return _ContactForces(pressing, None, nodes)
@@ -144,3 +159,46 @@ def _contact_forces(problem: Problem, C: coupled.Relative, lower: CondensedBody,
     tangential = inner, stretch[0][nodes], bound, path, problem.accuracy
     history, left = march_refined(*tangential, None if steps is None else errors, steps or 0)
     return _ContactForces(pressing, history, nodes, None, left)
+
+
+def _under_varying_pressure(
+    problem: Problem,
+    C: coupled.Relative,
+    lower: CondensedBody,
+    presses: Presses,
+    pressing: tuple[tuple[float, float], tuple[float, float]],
+    steps: int | None,
+) -> _ContactForces:
+    """Solve p anew at each step of the load path, and q of bodies that are not coupled; ``pressing`` are P and M at
+    load points 1 and 2."""
+    line, path, history = lower.body, problem.path, None
+    first, second = (presses(*loads) for loads in pressing)
+    left: step_errors.Errors = {}
+    if path:
+        assert C.xx is not None
+        if problem.start:
+            path = replace(path, before=nodal_forces(line, problem.start[1]))
+        at_largest = (first if problem.largest == 1 else second).x
+        half_width = float(np.subtract(*contact_ends(line, at_largest)[::-1])) / 2
+        every = np.arange(len(line.x))
+
+        def along(path: Path) -> History:
+            return varying.march(line.x, C.xx, lower.stretch[0], problem.f, presses, path)  # type: ignore[arg-type]
+
+        def errors(history: History, finer: History) -> step_errors.Errors:
+            zones = stick_zone_of(line, every, history), stick_zone_of(line, every, finer)
+            return step_errors.halved(history, finer, zones, line.weights, half_width)
+
+        refine = None if steps is None else errors
+        history, left = follow_refined(along, lambda path, _: path, path, problem.accuracy, refine, steps or 0)
+    done = presses.solutions
+    most = np.maximum.reduce([each.x for each in done])
+    together = replace(
+        second,
+        residual=np.maximum.reduce([each.residual for each in done]),
+        imbalance=max(each.imbalance for each in done),
+        iterations=sum(each.iterations for each in done),
+        changes=sum(each.changes for each in done),
+    )
+    nodes = np.flatnonzero((first.x > 0) | (second.x > 0))
+    return _ContactForces(together, history.of(nodes) if history else None, nodes, None, left, first.x, most)

@@ -43,7 +43,7 @@ def uniform(problem: Problem, size: float | None, width: float, clock: Clock, ke
     size = size or min(sizes) / solution.half_width
     growth = growth_for(size / 10, problem.order)  # the error below the contact line is to be smaller than along it
     a = float(f"{solution.half_width:.2g}")  # rounded, so that similar loads and profiles share a mesh
-    reach, limit = 1.25 * max(-solution.left, solution.right), contact_line_limit(problem)
+    reach, limit = 1.25 * max(-solution.reach[0], solution.reach[1]), contact_line_limit(problem)
     while True:
         reach = min(float(f"{reach:.2g}"), limit)
         grading = Grading((-reach, reach), {}, growth, size * a)

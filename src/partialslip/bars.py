@@ -4,7 +4,7 @@
 #: have no bar.
 BARS = {
     **dict.fromkeys(("a", "left", "right", "left_1", "right_1", "left_2", "right_2", "m", "n"), 1.0),
-    **dict.fromkeys(("P", "P_1", "M", "p", "p_1"), 10.0),
+    **dict.fromkeys(("P", "P_1", "M", "M_1", "p", "p_1"), 10.0),
     **dict.fromkeys(("dQ", "q", "q1", "q2"), 15.0),
 }
 

@@ -152,8 +152,10 @@ def default_methods(scene: Scene) -> tuple[str, ...]:
     if not scene.load.in_phase:
         return ("march", "fem")
     if not scene.finite and may_turn_round(scene):
-        from partialslip.halfplane.method import path_dependent
+        from partialslip.halfplane.method import has_closed_form, path_dependent
 
+        if not has_closed_form(scene):
+            return ("march", "fem")
         if path_dependent(scene):
             return ("exact", "march", "fem")
     return ("exact", "fem")
@@ -205,7 +207,7 @@ def run(
     tasks = {name: (name, reduced(scene), effects) for name in chosen}
     if effects.missing:
         whole = replace(scene, effects=Effects())
-        tasks[ALL_EFFECTS] = reference_for(whole), whole, plan(whole, subsurface=subsurface, start=start is not None)
+        tasks[ALL_EFFECTS] = _reference_for(whole), whole, plan(whole, subsurface=subsurface, start=start is not None)
     results = {
         name: _method(method, keep, allowance)(what, its, _told_by(name, progress), start)
         for name, (method, what, its) in tasks.items()
@@ -217,6 +219,16 @@ def run(
     judged = not scene.finite and scene.fem.size is None and not effects.missing
     reached = results["fem"].settings.get("accuracy") if allowance and "fem" in results else None
     return compared(scene, effects, results, float(reached or scene.fem.accuracy) if judged else None)
+
+
+def _reference_for(scene: Scene) -> str:
+    """Return the most accurate method for ``scene``; march where the exact method has no closed form."""
+    name = reference_for(scene)
+    if name == "exact" and scene.presses_anew:
+        from partialslip.halfplane.method import has_closed_form
+
+        return name if has_closed_form(scene) else "march"
+    return name
 
 
 def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: float | None) -> Run:

@@ -173,8 +173,8 @@ class Pressed:
         return bool((np.abs(q)[p > 0] >= (1 - _STICKS) * self.f * p[p > 0]).any())
 
 
-def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accuracy: float) -> Pressed:
-    """Press the bodies together under P from 0 to 1, with friction and without Q.
+def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accuracy: float, P: float = 1.0) -> Pressed:
+    """Press the bodies together under a force from 0 to ``P``, with friction and without Q.
 
     Nodes that stick keep their displacement. Half-planes under a parabolic gap are pressed in one small step from an
     earlier stage, known from the flat punch (:mod:`partialslip.condensed.pressing`). Other bodies are pressed in at
@@ -194,8 +194,8 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
 
     def steps(count: int) -> list[tuple[Solution, Solution]]:
         found = [apart]
-        for P in np.linspace(0, 1, count + 1)[1:].tolist():
-            found.append(step(P, gap, found[-1]))
+        for force in np.linspace(0, P, count + 1)[1:].tolist():
+            found.append(step(force, gap, found[-1]))
         return found
 
     norm = 1 / line.weights if line is not None else np.ones(len(gap))
@@ -291,23 +291,24 @@ def march(
     gap = gap - path.begin[1] * stretch[1]
     first: Pressed | None = None
     if pressed is None:
-        first = press(full, gap, f, line, path.substeps, accuracy)
+        first = press(full, gap, f, line, path.substeps, accuracy, path.begin[2] if path.presses_anew else 1.0)
         done = [(first.normal, first.tangential)]
     else:
         done = [(resting(pressed), resting(0 * gap if path.before is None else path.before))]
     cycle = sum(len(way) for way in path.fractions[1:])
-    load = path.begin[0] if pressed is not None else 0.0
 
-    def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
-        nonlocal gap, load
-        if strain == 0 and load == Q:  # no load changes
+    def advance(before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
+        nonlocal gap
+        Q, strain = float(load[0]), float(change[1])
+        if not change.any():
             normal = done[-1][0]
             done.append((replace(still(normal), rest=normal.rest), still(before)))
             return done[-1][1], f * normal.x
-        gap, load = gap - strain * stretch[1], Q
+        gap = gap - strain * stretch[1]
         kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0]
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the previous step, and this step of the previous cycle
-        normal, sheared = _solve(_Step(xx, C.yy, xy, full.opening, f, 1.0, gap, Q, kept), starts)
+        P = float(load[2]) if path.presses_anew else 1.0
+        normal, sheared = _solve(_Step(xx, C.yy, xy, full.opening, f, P, gap, Q, kept), starts)
         done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
         return sheared, f * normal.x
 

@@ -9,7 +9,7 @@ in the last elements.
 import itertools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -49,7 +49,8 @@ def stick_zone(
     """
     room = np.divide(2 * bound - np.abs(change), bound, out=np.zeros_like(bound), where=bound > 0)
     sticks = _around(int(np.argmax(room)), x, room > _STICKS, vertices)
-    signs = (1 if change[0] > 0 else -1), (1 if change[-1] > 0 else -1)
+    first, last = np.flatnonzero(bound > 0)[[0, -1]]
+    signs = (1 if change[first] > 0 else -1), (1 if change[last] > 0 else -1)
     if len(sticks) == 0:  # a stick zone smaller than a cell lies where slip changes sign
         turn = int(np.argmax(np.sign(change) != np.sign(change[0])))
         point = float(x[max(turn - 1, 0)] + x[turn]) / 2
@@ -74,6 +75,17 @@ def _around(most: int, x: Array, sticks: npt.NDArray[np.bool_], vertices: Array)
     last = np.searchsorted(ends, after[most])
     result: npt.NDArray[np.int64] = np.flatnonzero(sticks & (after > ends[last - 1]) & (before < ends[last]))
     return result
+
+
+def within(stick: StickInterval, common: tuple[float, float], vertices: Array) -> StickInterval:
+    """``stick`` limited to the ``common`` part of the contacts at both load points. An end within a cell of the end of
+    that part is the end of that part, where no slip is seen."""
+    low, high = common
+    cells = np.clip(np.searchsorted(vertices, [low, high]), 1, len(vertices) - 1)
+    near = np.diff(vertices)[cells - 1]
+    left = low if stick.left < low + near[0] else stick.left
+    right = high if stick.right > high - near[1] else stick.right
+    return replace(stick, left=min(left, right), right=right)
 
 
 def kinks(x: Array, bound: Array, q: Array, vertices: Array, cell_forces: Callable[[Array], Array]) -> list[float]:

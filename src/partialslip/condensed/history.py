@@ -34,6 +34,9 @@ class History:
         Equal to ``at_ends``; out of phase the smallest and the largest tangential forces of the last cycle.
     bounds : two (n,) arrays
         f times the normal forces at load points 1 and 2.
+    room : (n,) array or None
+        Where the pressure varies: the least room of q up to f p in the last cycle, plus that down to -f p; zero where a
+        node slips both ways, or is open at times. None under constant P, where it is 2 f p less the range of q.
     slip : (n,) array
         Slip from load point 1 to 2 of the last cycle.
     net_slip : (n,) array
@@ -44,6 +47,8 @@ class History:
         Tangential forces, and f times the normal forces, at the end of the path.
     load_steps : int
         Number of load steps solved.
+    slipped : (2, n) array or None
+        Where the pressure varies: slip of the last cycle along +x and along -x; None under constant P.
     """
 
     path: Path
@@ -57,6 +62,8 @@ class History:
     dissipated: float
     end: tuple[Array, Array]
     load_steps: int
+    room: Array | None = None
+    slipped: Array | None = None
 
     def of(self, nodes: npt.NDArray[np.int64]) -> "History":
         """History of some ``nodes`` only (indices)."""
@@ -66,6 +73,8 @@ class History:
         fields: dict[str, Any] = {key: getattr(self, key)[nodes] for key in ("q1", "q2", "slip", "net_slip")} | {
             key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "bounds", "end")
         }
+        if self.room is not None and self.slipped is not None:
+            fields |= {"room": self.room[nodes], "slipped": self.slipped[:, nodes]}
         return replace(self, points=points, **fields)
 
     @property
@@ -80,8 +89,9 @@ class History:
 
     @property
     def bound(self) -> Array:
-        """Mean of the bounds at load points 1 and 2: half of the admissible range of q."""
-        result: Array = (self.bounds[0] + self.bounds[1]) / 2
+        """Half of the admissible range of q: the mean of the bounds at load points 1 and 2."""
+        known = (self.bounds[0] + self.bounds[1]) / 2
+        result: Array = known if self.room is None else (self.room + np.abs(self.change)) / 2
         return result
 
     @property
@@ -100,6 +110,8 @@ class History:
     def ratchets(self) -> float:
         """Largest net slip of the last cycle, relative to the largest slip of half a cycle."""
         held = (self.bounds[0] > 0) & (self.bounds[1] > 0)  # nodes that open may close elsewhere
+        if self.room is not None and not held.any():
+            return 0.0
         half = float(np.abs(self.slip[held]).max())
         return float(np.abs(self.net_slip[held]).max()) / half if half > 0 else 0.0
 
@@ -143,17 +155,15 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
         f times the normal forces.
     path : Path
     """
-    load = path.begin[0]
     first, *ways = (len(way) for way in path.fractions)
     cycle = sum(ways)
     sides: list[Sides] = []
 
-    def advance(before: Solution, Q: float, strain: float) -> tuple[Solution, Array]:
-        nonlocal load
-        if strain == 0 and load == Q:  # no load changes
+    def advance(before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
+        Q, strain = float(load[0]), float(change[1])
+        if not change.any():
             sides.append(before.sides)
             return still(before), bound
-        load = Q
         free = tangential @ before.x + strain * stretch
         near = sides[-cycle] if len(sides) >= first + cycle else before.sides  # this step in the previous cycle
         found = solve_bounded(tangential, free, -bound, bound, Q, near)
@@ -163,7 +173,7 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
     return follow(path, advance, resting(0 * bound if path.before is None else path.before))
 
 
-Advance = Callable[[Solution, float, float], tuple[Solution, Array]]
+Advance = Callable[[Solution, Array, Array], tuple[Solution, Array]]
 
 
 def resting(forces: Array) -> Solution:
@@ -182,9 +192,9 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
     """Follow the path: to the last load point, then cycle after cycle, until a cycle repeats or all cycles are done. If
     the first loading determines the cycle (``path.half``), only the first loading is solved.
 
-    ``advance(before, Q, strain) -> (solution, bound)`` solves one step: from the solution before the step, Q after the
-    step and the increment of the free relative strain, to the solution after the step, whose ``rest`` is minus the
-    slip, and f times the normal forces.
+    ``advance(before, load, change) -> (solution, bound)`` solves one step: from the solution before the step, the loads
+    after the step and their change, to the solution after the step, whose ``rest`` is minus the slip, and f times the
+    normal forces.
     """
     first, *ways = path.fractions
     load = np.array(path.begin)
@@ -205,6 +215,18 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
     slips = np.cumsum([sum(-step.rest for step, _ in way) for way in went], axis=0)
     (q1, bound1), (q2, bound2) = ((ends[end][0].x, ends[end][1]) for end in path.ends)
     forces = np.array([step.x for step in steps])
+    dissipated = -sum(float(step.x @ step.rest) for step in steps)
+    anew: dict[str, Any] = {}
+    if path.presses_anew:
+        bounds = np.array([bound for way in went for _, bound in way])
+        slip = -np.array([step.rest for step in steps])
+        room = (bounds - forces).min(axis=0) + (bounds + forces).min(axis=0)
+        anew = {
+            "room": np.maximum(room, 0.0),
+            "slipped": np.array([slip.clip(0).sum(axis=0), -slip.clip(None, 0).sum(axis=0)]),
+        }
+        # while a node slips, q follows the bound
+        dissipated = float((np.abs(slip) * (bounds + np.roll(bounds, 1, axis=0)) / 2).sum())
     return History(
         path=path,
         points=points,
@@ -214,9 +236,10 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
         bounds=(bound1, bound2),
         slip=slips[path.ends[1]] - slips[path.ends[0]],
         net_slip=slips[-1],
-        dissipated=-sum(float(step.x @ step.rest) for step in steps),
+        dissipated=dissipated,
         end=(ends[-1][0].x, ends[-1][1]),
         load_steps=taken,
+        **anew,
     )
 
 
@@ -248,7 +271,7 @@ def _go(advance: Advance, before: Solution, start: Array, end: Array, fractions:
     load, way = start, list[tuple[Solution, Array]]()
     for fraction in fractions:
         next_load = start + fraction * (end - start) if fraction < 1 else end
-        before, bound = advance(before, float(next_load[0]), float(next_load[1] - load[1]))
+        before, bound = advance(before, next_load, next_load - load)
         way.append((before, bound))
         load = next_load
     return way

@@ -13,25 +13,28 @@ from partialslip.scene import Scene
 
 @dataclass(frozen=True)
 class Path:
-    """Loads (Q, relative strain of the surfaces due to bulk tension) at the points of a ``cycle``, scaled.
+    """Loads at the points of a ``cycle``, scaled: Q and the relative strain of the surfaces due to bulk tension; where
+    the pressure varies, then P and M, too.
 
     ``ends`` are the indices of load points 1 and 2, the extremes of the cycle; ``in_phase`` says whether the points lie
     on one line. The path begins at ``begin`` with the tangential forces ``before`` (n,) (None: zero), goes to the last
     point and then ``cycles`` times through all points. ``half``: whether the first loading determines the cycle (fully
-    reversed loads, no shear at the beginning, no reversal of slip).
+    reversed loads, no shear at the beginning, no reversal of slip). ``one_way``: whether the pressure is always even,
+    and |dQ| >= f |dP| from each load point to the next, so that Q drives all slip one way.
 
     ``substeps`` is the smallest number of steps between points. ``ways`` are the steps as ascending fractions up to 1:
     to the last point first, then to each point of the cycle; default: ``substeps`` equal steps.
     """
 
-    cycle: tuple[tuple[float, float], ...]
+    cycle: tuple[tuple[float, ...], ...]
     ends: tuple[int, int]
     in_phase: bool
     cycles: int
     substeps: int
-    begin: tuple[float, float] = (0.0, 0.0)
+    begin: tuple[float, ...] = (0.0, 0.0)
     before: Array | None = None
     half: bool = False
+    one_way: bool = False
     ways: tuple[tuple[float, ...], ...] = ()
 
     @property
@@ -55,6 +58,11 @@ class Path:
         return replace(self, ways=tuple(tuple(sorted(equal.union(way))) for way in self.fractions), half=False)
 
     @property
+    def presses_anew(self) -> bool:
+        """Whether the pressure varies."""
+        return len(self.begin) > 2
+
+    @property
     def moves(self) -> bool:
         """Whether any load changes."""
         return len({self.begin, *self.cycle}) > 1
@@ -76,9 +84,22 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | No
         return None
     P, load = scene.P, scene.load
     begins = (start.Q, start.sigma) if start else (0.0, 0.0)
-    begin, *cycle = ((Q / P, lower_strain(scene, sigma)) for Q, sigma in (begins, *load.points))
-    half = start is None and not plan.needs("history")
-    return Path(tuple(cycle), load.ends, load.in_phase, load.cycles, load.steps, begin, half=half)
+    along = [(Q / P, lower_strain(scene, sigma)) for Q, sigma in (begins, *load.points)]
+    half, one_way = start is None and not plan.needs("history"), False
+    loads: list[tuple[float, ...]] = [*along]
+    if scene.presses_anew:
+        presses = scaled_pressing(scene)
+        loads = [(*each, *down) for each, down in zip(along, (presses[-1], *presses), strict=True)]
+        changes = np.abs(np.diff([loads[0], loads[-1], *loads[1:]], axis=0))
+        one_way = scene.even and bool((changes[:, 0] >= scene.friction.f * changes[:, 2]).all())
+    begin, *cycle = loads
+    return Path(tuple(cycle), load.ends, load.in_phase, load.cycles, load.steps, begin, half=half, one_way=one_way)
+
+
+def scaled_pressing(scene: Scene) -> tuple[tuple[float, float], ...]:
+    """(P, M) at the load points, scaled; M about the line of action of P at the load point ``scene.largest``."""
+    P, origin, L = scene.P, scene.origin, scene.length
+    return tuple((force / P, ((moment or 0.0) - force * origin) / (P * L)) for force, moment in scene.pressing)
 
 
 def lower_strain(scene: Scene, sigma: float) -> float:

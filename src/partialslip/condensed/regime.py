@@ -3,34 +3,44 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from partialslip.arrays import Array
 from partialslip.bars import BARS
+from partialslip.condensed.end_slips import end_slips
 from partialslip.condensed.ends import StickInterval
 from partialslip.condensed.history import STEADY, History
-from partialslip.result import FRICTIONLESS, Regime
+from partialslip.result import FRICTIONLESS, EndSlip, Regime
 from partialslip.scene import Scene
 
 _RATCHETS = 1e-3  # net slip of a cycle, relative to the slip of half a cycle, above which a steady q ratchets
 
 
 class SteadyState(NamedTuple):
-    """``regime``, ``centre`` and ``half_width`` of the stick zone (None if nothing sticks), and ``notes``."""
+    """``regime``, ``centre`` and ``half_width`` of the stick zone (None if nothing sticks), ``notes``, and how the ends
+    of the contact slip, where the pressure varies."""
 
     regime: Regime
     centre: float | None
     half_width: float | None
     notes: tuple[str, ...]
+    slips: tuple[EndSlip, EndSlip] | None = None
 
 
 def steady_state(
-    scene: Scene, history: History | None, stick: StickInterval | None, half_width: float, pressed: bool = False
+    scene: Scene,
+    history: History | None,
+    stick: StickInterval | None,
+    half_width: float,
+    pressed: bool = False,
+    x: Array | None = None,
 ) -> SteadyState:
     """Regime and stick zone of ``scene``, from the computed stick zone ``stick`` (None if no friction was solved) in a
     contact of ``half_width``; lengths in any one unit.
 
     ``pressed``: whether coupled bodies slipped while they were pressed and no other load acts. The stick zone is then
-    where the surfaces have stuck since they touched.
+    where the surfaces have stuck since they touched. ``x`` are the nodes of the history; needed where the pressure
+    varies.
     """
-    load = scene.load
+    load, anew = scene.load, history is not None and history.path.presses_anew
     if scene.free:
         return SteadyState("frictionless", None, None, (FRICTIONLESS,))
     if scene.slides:
@@ -39,12 +49,17 @@ def steady_state(
     if pressed and stick:
         note = "no load but P acts: the stick zone is where the surfaces have stuck since they touched"
         return SteadyState("pressing", (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, (note,))
-    if history is None or stick is None or (load.dQ == 0 and load.dsigma == 0):  # the whole contact sticks
+    if (
+        history is None or stick is None or (load.dQ == 0 and load.dsigma == 0 and not anew)
+    ):  # all of the contact sticks
         return SteadyState("stuck", 0.0, half_width, ())
     notes: tuple[str, ...] = ()
     if stick.left == stick.right:
         notes = ("the stick zone is smaller than an element: m and n are where slip changes sign",)
     regime: Regime = "small tension" if stick.signs[0] == stick.signs[1] else "large tension"
+    slips = end_slips(x, history, stick) if anew and x is not None and load.in_phase else None
+    if slips and {"never", "part of the cycle"}.intersection(slips):
+        regime = "sticking ends"
     if not load.in_phase:
         regime = "out of phase"
     if history.repeats and history.ratchets > _RATCHETS:
@@ -53,7 +68,7 @@ def steady_state(
             "tractions repeat, slip does not: every cycle adds up to "
             f"{history.ratchets:.1g} times the slip of half a cycle",
         )
-    return SteadyState(regime, (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, notes)
+    return SteadyState(regime, (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, notes, slips)
 
 
 def doubts(change: float | None, errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:

@@ -21,6 +21,7 @@ _TRIED = (0, 1 / 32, 1 / 8, 1 / 2, 3 / 4, 7 / 8, 1)  # fractions of a step tried
 _MANY = 4  # steps per load point from which on each step is tried in halves only
 _PROBED = 16  # steps from load point to load point with which fewer steps are compared
 _FINER = 16.0  # factor by which the tolerance of steps is reduced if their errors are too large
+_FALLS = 0.7  # largest ratio of the errors of steps to those of steps twice as long that makes finer steps worthwhile
 MOST = 64  # mean number of steps between load points above which steps are not refined
 _CLOSES = 3  # fewest cycles if the first loading does not determine the cycle; most cycles on which steps are chosen
 
@@ -34,12 +35,30 @@ def march_refined(
     errors: Callable[[History, History], Errors] | None = None,
     most: int = MOST,
 ) -> tuple[History, Errors]:
-    """:func:`march` with refined load steps; returns the history and the estimated errors due to the steps.
+    """:func:`partialslip.condensed.history.march`, at constant pressure, with steps refined as by
+    :func:`follow_refined`."""
+    problem = tangential, stretch, bound
+    return follow_refined(partial(march, *problem), partial(refined, *problem), path, accuracy, errors, most)
+
+
+def follow_refined(
+    along: Callable[[Path], History],
+    chosen: Callable[[Path, float], Path],
+    path: Path,
+    accuracy: float,
+    errors: Callable[[History, History], Errors] | None = None,
+    most: int = MOST,
+) -> tuple[History, Errors]:
+    """Follow the path with refined load steps; return the history and the estimated errors due to the steps.
 
     Parameters
     ----------
-    tangential, stretch, bound, path
-        As for :func:`march`. A path with known ``ways`` is followed in these steps and once more in their halves.
+    along : callable
+        ``along(path)``: the history along a path, in the steps of the path.
+    chosen : callable
+        ``chosen(path, tolerance)``: the path with steps chosen for a tolerance (of a), for example by :func:`refined`.
+    path : Path
+        A path with known ``ways`` is followed in these steps and once more in their halves.
     accuracy : float
         Accuracy of ends, as a fraction of a.
     errors : callable, optional
@@ -54,15 +73,14 @@ def march_refined(
     moves while the loads change, a few steps all end with the same tractions, and only many steps follow the zone. The
     first cycles decide.
     """
-    along = partial(march, tangential, stretch, bound)
     known = bool(path.ways)
-    history = along(path if known else refined(tangential, stretch, bound, path, accuracy))
-    if errors is None or history.path.half or _tension_stays(path):
+    history = along(path if known else chosen(path, accuracy))
+    if errors is None or history.path.half or one_step_suffices(path):
         return history, {}
     if known:
         halved = along(path.halved)
         return halved, errors(history, halved)
-    tolerance, cycles = accuracy, min(path.cycles, _CLOSES)
+    tolerance, cycles, before = accuracy, min(path.cycles, _CLOSES), np.inf
     while True:
         own = history.path
         whole = own.cycles <= cycles
@@ -71,19 +89,27 @@ def march_refined(
         left = errors(first, finer)
         if all(error <= BARS[key] * accuracy / 2 for key, error in left.items()):
             return history, left
+        worst = max(error / BARS[key] for key, error in left.items())
+        if (
+            path.presses_anew and worst > _FALLS * before
+        ):  # what is left is due to the nodes that touch, not to the steps
+            return history, left
+        before = worst
         if finer.path.mean_steps > most:
             return (finer if whole else history), left
         tolerance /= _FINER
-        chosen = refined(tangential, stretch, bound, path, tolerance)
-        if chosen.most_steps > own.most_steps:
-            history = along(chosen.with_steps(_PROBED))
+        better = chosen(path, tolerance)
+        if better.most_steps > own.most_steps:
+            history = along(better.with_steps(_PROBED))
         else:
             history = finer if whole else along(replace(finer.path, cycles=own.cycles))
 
 
-def _tension_stays(path: Path) -> bool:
-    """Whether the bulk tension is constant: Q then drives all slip one way, and slip does not reverse."""
-    return len({strain for _, strain in (path.begin, *path.cycle)}) == 1
+def one_step_suffices(path: Path) -> bool:
+    """Whether the bulk tension is constant, so that Q drives all slip one way, and slip does not reverse; where the
+    pressure varies, whether this is known from the loads (:attr:`Path.one_way`)."""
+    constant = len({load[1] for load in (path.begin, *path.cycle)}) == 1
+    return constant and (path.one_way or not path.presses_anew)
 
 
 def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accuracy: float) -> Path:
@@ -93,7 +119,7 @@ def refined(tangential: Array, stretch: Array, bound: Array, path: Path, accurac
     Otherwise each of some steps, smaller towards the load points, is halved until halving does not change the result.
     Slip reverses at one instant, so that few steps are halved often.
     """
-    if _tension_stays(path):
+    if one_step_suffices(path):
         return path
     coarse = _Coarse(tangential, stretch, bound, accuracy)
     load = np.array(path.begin)

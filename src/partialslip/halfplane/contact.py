@@ -18,7 +18,7 @@ from partialslip.halfplane.uneven import press
 from partialslip.result import StickZone
 from partialslip.result.points import AtPoints
 from partialslip.scene import Hertz as HertzProfile
-from partialslip.scene import Scene
+from partialslip.scene import Pressing, Scene
 
 _HARDLY = 1e-13  # of the flat's half-width: rounding hides how far the contact extends beyond the flat by less
 
@@ -55,8 +55,8 @@ class Contact:
         return result
 
 
-def contact(scene: Scene) -> Contact:
-    """Contact of ``scene`` under P, as two half-planes of one material.
+def contact(scene: Scene, pressing: Pressing | None = None) -> Contact:
+    """Contact of ``scene`` as two half-planes of one material, under ``pressing``; default: P and M of the scene.
 
     Hertz: P = pi a^2/(2 A R). Profiles whose curvature steps by w at |x| = b (flat and rounded: by 1/R at b):
     P = a^2/(2 A) sum w (2 psi - sin 2 psi), b = a cos(psi) (Ciavarella, Hills and Monno, 1998). A moment moves a Hertz
@@ -72,12 +72,13 @@ def contact(scene: Scene) -> Contact:
         raise InputError(
             "material.upper, material.lower: the bodies differ; must be of one material for exact and march, use fem"
         )
-    A, P, profile = scene.material.A, scene.P, scene.profile
+    A, profile = scene.material.A, scene.profile
+    P, M = pressing or (scene.P, scene.M)
     if isinstance(profile, HertzProfile):
-        a = math.sqrt(2 * A * profile.R * P / math.pi)
-        return Contact(a, P, Hertz(), scene.origin, scene.origin / profile.R)
-    if not scene.even:
-        moment = None if scene.M is None else A * scene.M
+        a, origin = math.sqrt(2 * A * profile.R * P / math.pi), (M or 0.0) / P
+        return Contact(a, P, Hertz(), origin, origin / profile.R)
+    if not profile.even or M:
+        moment = None if M is None else A * M
         if not (pressed := press(profile.curvature, A * P, moment, scene.length)):
             shown, span = scene.units.plain(P, "N/m"), scene.units.span(profile.curvature.reach, "m")
             raise InputError(f"load.P = {shown}: must keep the contact within profile.x, between {span}")

@@ -1,4 +1,4 @@
-"""Marching in time: the exact pressure, and shear step by step through any load history at constant P.
+"""Marching in time: the exact pressure, and shear step by step through any load history.
 
 Unlike the closed form of the steady state, marching includes the tractions that the first cycles lock in. Shear is
 constant on cells, refined towards the ends of the contact and of the computed stick zone. Each step is a convex problem
@@ -6,8 +6,9 @@ with a certificate.
 """
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 from scipy.interpolate import PPoly
@@ -15,15 +16,16 @@ from scipy.interpolate import PPoly
 from partialslip.allowance import Allowance
 from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
-from partialslip.condensed.ends import StickInterval, apart, finest, kinks, stick_zone
+from partialslip.condensed import varying
+from partialslip.condensed.ends import StickInterval, apart, finest, kinks, stick_zone, within
 from partialslip.condensed.history import History, certificate, last_cycle_change
 from partialslip.condensed.path import Path, load_path
 from partialslip.condensed.regime import doubts, steady_state
 from partialslip.condensed.step_errors import halved, steps_matter
-from partialslip.condensed.steps import MOST, march_refined
+from partialslip.condensed.steps import MOST, follow_refined, march_refined
 from partialslip.condensed.threads import one_thread
-from partialslip.halfplane.cells import compliance, forces, graded
-from partialslip.halfplane.contact import Contact, contact
+from partialslip.halfplane.cells import compliance, graded
+from partialslip.halfplane.pressing import NormalLoads
 from partialslip.halfplane.tractions import CellTractions
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, Traction
@@ -50,7 +52,8 @@ _JUDGED = ("m", "n", "q", "q1", "q2")
 
 @dataclass(frozen=True)
 class _Level:
-    """Solution on one mesh of cells; lengths in contact half-widths from the middle of the contact, forces in P.
+    """Solution on one mesh of cells; lengths in half-widths of the frame (:class:`NormalLoads`) from its middle, forces
+    in P.
     ``kinks`` are the kinks of q at the load points; ``stepped`` are errors due to the load steps, if the steps were
     chosen on this mesh.
     """
@@ -92,10 +95,10 @@ def solve(
         remaining seconds. Load steps are compared with finer steps once.
     """
     clock = Clock(allowance)
-    pressed = contact(scene)
+    normal = NormalLoads.of(scene)
     path = load_path(scene, plan, start)
-    ends = [-1.0, 1.0, *_within(pressed, scene.profile.kinks)]
-    inner = _within(pressed, finest(start.q.x)) if start else []
+    ends = [*normal.ends, *normal.within(scene.profile.kinks)]
+    inner = normal.within(finest(start.q.x)) if start else []
     level: _Level | None = None
     errors: dict[str, float] = {}
     shares: dict[str, dict[str, float]] = {}
@@ -111,7 +114,7 @@ def solve(
         # steps are chosen on the second mesh and used on all later meshes. Finer cells see more of a moving stick zone:
         # where steps matter, each later mesh halves them once and estimates their errors anew
         choose = meshes == 1 or (steps_matter(stepped, _accuracy(scene)) and not clock.limited)
-        before, level = level, _solve_level(scene, pressed, path, start, cells, clock, choose)
+        before, level = level, _solve_level(normal, path, start, cells, clock, choose)
         spent = clock.cost().cpu_s - began
         meshes, iterations = meshes + 1, iterations + (level.history.iterations if level.history else 0)
         if level.stick is None:
@@ -120,7 +123,7 @@ def solve(
             if meshes == 2:
                 path = level.history.path if level.history else None
             stepped = level.stepped or stepped
-            meshed = _mesh_errors(level, before, growth, meshes == 2)
+            meshed = _mesh_errors(normal, level, before, growth, meshes == 2)
             shares = {"discretisation": meshed, "steps": stepped}
             errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
             ends_known = max(errors["m"], errors["n"])
@@ -130,14 +133,7 @@ def solve(
             if all(meshed[key] <= max(most - stepped.get(key, 0.0), most / 2) for key, most in allowed.items()):
                 break
     assert level is not None
-    return _result(scene, pressed, level, errors, shares, {"meshes": meshes, "iterations": iterations}, clock)
-
-
-def _within(pressed: Contact, points: Sequence[float]) -> list[float]:
-    """Those ``points`` (m) that lie in the contact, scaled."""
-    scaled = pressed.scaled(points)
-    inside: list[float] = scaled[np.abs(scaled) < 1].tolist()
-    return inside
+    return _result(normal, level, errors, shares, {"meshes": meshes, "iterations": iterations}, clock)
 
 
 def _accuracy(scene: Scene) -> float:
@@ -163,43 +159,50 @@ def _cells(ends: list[float], inner: list[float], level: _Level | None, size: fl
 
 
 def _solve_level(
-    scene: Scene,
-    pressed: Contact,
+    normal: NormalLoads,
     path: Path | None,
     start: State | None,
     vertices: Array,
     clock: Clock,
     choose: bool,
 ) -> _Level:
-    normal = forces(pressed.shape, vertices)
+    scene, frame = normal.scene, normal.frame
     if not path:
-        return _Level(vertices, normal, None, None)
+        return _Level(vertices, normal.forces(normal.second, vertices), None, None)
     x = (vertices[1:] + vertices[:-1]) / 2
-    bound = scene.friction.f * normal
     if start:
         resultant, known = start.q.antiderivative(), start.q.x
-        before = np.diff(resultant(np.clip(pressed.centre + vertices * pressed.a, known[0], known[-1]))) / scene.P
+        before = np.diff(resultant(np.clip(frame.centre + vertices * frame.a, known[0], known[-1]))) / scene.P
         path = replace(path, before=before)
     with clock.phase("compliance"):
         tangential = compliance(vertices / 2)  # scaling lengths adds a rigid shift only
     with clock.phase("contact"):
-        moved = x * pressed.a / scene.length
+        moved = x * frame.a / scene.length
 
         def zone(of: History) -> StickInterval:
-            return stick_zone(x, bound, of.change, vertices, lambda values: values)
+            stick = stick_zone(x, of.bound, of.change, vertices, lambda values: values)
+            return within(stick, normal.common, vertices) if of.path.presses_anew else stick
 
         def errors(of: History, finer: History) -> dict[str, float]:
-            return halved(of, finer, (zone(of), zone(finer)), np.diff(vertices), 1.0)
+            return halved(of, finer, (zone(of), zone(finer)), np.diff(vertices), normal.largest.a / frame.a)
 
-        problem = tangential, moved, bound, path, _accuracy(scene)
         most = 0 if clock.limited else MOST  # the cost of more steps is not predicted
-        history, stepped = march_refined(*problem, errors if choose else None, most)
+        wanted = errors if choose else None
+        if path.presses_anew:
+            presses = normal.presses(vertices, tangential)
+            along = partial(varying.march, x, tangential, moved, scene.friction.f, presses)
+            history, stepped = follow_refined(along, lambda path, _: path, path, _accuracy(scene), wanted, most)
+        else:
+            bound = scene.friction.f * normal.forces(frame, vertices)
+            history, stepped = march_refined(tangential, moved, bound, path, _accuracy(scene), wanted, most)
         inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in history.visited]
-        return _Level(vertices, normal, history, zone(history), tuple(itertools.chain.from_iterable(inner)), stepped)
+        forces = normal.forces(normal.second, vertices)
+        return _Level(vertices, forces, history, zone(history), tuple(itertools.chain.from_iterable(inner)), stepped)
 
 
-def _mesh_errors(level: _Level, before: _Level, growth: float, first: bool) -> dict[str, float]:
-    """Discretisation errors of m and n (in contact half-widths) and of q, q1 and q2 (relative L2 of cell averages).
+def _mesh_errors(normal: NormalLoads, level: _Level, before: _Level, growth: float, first: bool) -> dict[str, float]:
+    """Discretisation errors of m and n (in half-widths of the contact at the largest P) and of q, q1 and q2 (relative
+    L2 of cell averages).
 
     Errors of m and n are a part of the change from the mesh ``before``, or a multiple of ``growth``^3. Errors of q are
     a part of the change, for which ``first`` tells whether the mesh before is the first one. The factors are calibrated
@@ -209,14 +212,16 @@ def _mesh_errors(level: _Level, before: _Level, growth: float, first: bool) -> d
     assert before.stick
     assert level.history
     assert before.history
-    gaps = np.diff([-1.0, *level.zone, 1.0])
-    gap = np.minimum(gaps[:-1], gaps[1:])
+    left, right = normal.common
+    gaps = np.diff([left, *level.zone, right])
+    # an end of the stick zone at the end of the contacts is known
+    gap = np.minimum(np.where(gaps[:-1] > 0, gaps[:-1], np.inf), np.where(gaps[1:] > 0, gaps[1:], np.inf))
     cells = np.clip(np.searchsorted(level.vertices, level.zone) - 1, 0, len(level.pressed) - 1)
     size = np.diff(level.vertices)[cells]
     unseen = _SOMEWHERE * size * (gap < _CELLS * size)
     moved = max(abs(level.stick.left - before.stick.left), abs(level.stick.right - before.stick.right))
     between = _CUBIC * growth**3 * np.minimum(_NEAR * gap, 1.0)
-    known = np.maximum(unseen, np.maximum(_MOVED * moved, between))
+    known = np.maximum(unseen, np.maximum(_MOVED * moved, between)) * normal.frame.a / normal.largest.a
     return dict(zip("mn", known.tolist(), strict=True)) | {
         key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices) for key, of in _SHEARS.items()
     }
@@ -238,36 +243,39 @@ def _apart(level: _Level, of: Callable[[History], Array], other: History, cells:
 
 
 def _result(
-    scene: Scene,
-    pressed: Contact,
+    normal: NormalLoads,
     level: _Level,
     errors: dict[str, float],
     shares: dict[str, dict[str, float]],
     counts: dict[str, int],
     clock: Clock,
 ) -> Result:
-    P, a, p0, widths, history = scene.P, pressed.a, pressed.p0, np.diff(level.vertices), level.history
-    places = pressed.centre + a * level.vertices
-    certified = certificate(history, widths, scene.friction.f, 2 / np.pi) if history else {}
-    change = last_cycle_change(history, widths, scene.friction.f, 2 / np.pi) if history else None
-    found = steady_state(scene, history, level.stick, 1.0)
+    scene, frame, largest = normal.scene, normal.frame, normal.largest
+    P, a, widths, history = scene.P, frame.a, np.diff(level.vertices), level.history
+    places, p0 = frame.centre + a * level.vertices, 2 / np.pi * (a / largest.a)
+    certified = certificate(history, widths, scene.friction.f, p0) if history else {}
+    change = last_cycle_change(history, widths, scene.friction.f, p0) if history else None
+    middles = (level.vertices[1:] + level.vertices[:-1]) / 2
+    found = steady_state(scene, history, level.stick, 1.0, x=middles)
     x = (places[1:] + places[:-1]) / 2
     q1, q2 = (P / a * force / widths for force in (history.q1, history.q2)) if history else (0 * x, 0 * x)
     unit = scene.material.A * P  # of displacement
 
     known = found.centre is not None
-    tractions = CellTractions(pressed, level.vertices, q1, q2)
+    tractions = CellTractions(frame, normal.second, normal.first, level.vertices, q1, q2)
+    anew = scene.presses_anew
+    contact_ends = tuple((each.centre - each.a, each.centre + each.a) for each in (normal.first, normal.second))
 
     return Result(
         method="march",
-        a=a,
-        p0=p0,
+        a=largest.a,
+        p0=largest.p0,
         regime=found.regime,
-        stick_centre=None if found.centre is None else pressed.centre + found.centre * a,
+        stick_centre=None if found.centre is None else frame.centre + found.centre * a,
         stick_half_width=None if found.half_width is None else found.half_width * a,
         traction=Traction(
             x=x,
-            p=pressed.pressure(x),
+            p=normal.second.pressure(x),
             dq=q2 - q1,
             q1=q1 if known else None,
             q2=q2 if known else None,
@@ -275,9 +283,11 @@ def _result(
             breaks=places,
             cells=places,
             levels_at=tractions.at_load_points if known else None,
+            p1=normal.first.pressure(x) if anew else None,
+            pressures_at=tractions.pressures if anew else None,
         ),
         cost=clock.cost(),
-        state=_state(scene, level, places) if history else None,
+        state=_state(normal, level, places) if history else None,
         slip=Slip(x, history.slip * unit, history.dissipated * unit * P) if history else None,
         settings={"model": "two half-planes, exact pressure, cells of constant shear", "accuracy": _accuracy(scene)},
         counts={
@@ -295,14 +305,17 @@ def _result(
         estimate=errors,
         shares=shares,
         notes=found.notes + doubts(change, errors, _accuracy(scene)),
-        contact_ends=((float(places[0]), float(places[-1])),) * 2 if pressed.centre else None,
+        contact_ends=contact_ends if anew or frame.centre else None,  # type: ignore[arg-type]
+        end_slips=found.slips,
     )
 
 
-def _state(scene: Scene, level: _Level, places: Array) -> State:
+def _state(normal: NormalLoads, level: _Level, places: Array) -> State:
     """State at the end of the path of the loads; ``places`` are the ends of the cells, m."""
     assert level.history
+    scene = normal.scene
     shear, bound = level.history.end
+    pressed = normal.forces(normal.last, level.vertices) if scene.presses_anew else bound / scene.friction.f
     stress = scene.P / np.diff(places)
-    p, q = (PPoly((stress * forces)[None], places) for forces in (bound / scene.friction.f, shear))
-    return State(scene.P, scene.material.A, *scene.load.points[-1], p, q)
+    p, q = (PPoly((stress * forces)[None], places) for forces in (pressed, shear))
+    return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q)

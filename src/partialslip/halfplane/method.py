@@ -17,7 +17,9 @@ from partialslip.halfplane.stress import Stress
 from partialslip.halfplane.tables import table_error
 from partialslip.halfplane.traction import mean_load_bound
 from partialslip.halfplane.tractions import ExactTractions
-from partialslip.plan import Plan
+from partialslip.halfplane.varying import closed_form, require_closed_form, steady_cycle
+from partialslip.halfplane.varying_result import solve_varying
+from partialslip.plan import Plan, plan
 from partialslip.result import FRICTIONLESS, Clock, Regime, Result, Slip, SurfaceStress, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene
@@ -44,13 +46,17 @@ def solve(
     Raises
     ------
     InputError
-        If Q and sigma are out of phase: there is no closed form.
+        If there is no closed form: loads are out of phase, or P or M varies and an end of the contact does not slip.
     """
     del progress
     clock = Clock()
     f, load = scene.friction.f, scene.load
     if not load.in_phase:
         raise InputError("load.sigma: out of phase with load.Q; must be in phase for the exact method, use march")
+    if scene.presses_anew:
+        if plan.needs("friction"):
+            require_closed_form(scene)
+        return solve_varying(scene, plan, _POINTS_PER_ZONE, start is not None, clock)
     pressed, regime, cycle = _steady_state(scene, plan)
     a, p0 = pressed.a, pressed.p0
     found = _levels(scene, pressed, regime, cycle, start)
@@ -92,9 +98,17 @@ def solve(
     )
 
 
+def has_closed_form(scene: Scene) -> bool:
+    """Whether the steady state of ``scene``, two similar half-planes under loads in phase, has a closed form: always
+    under constant pressure."""
+    return not (scene.presses_anew and plan(scene).needs("friction") and closed_form(scene))
+
+
 def path_dependent(scene: Scene) -> bool:
     """Whether slip reverses between the load points of ``scene``, two similar half-planes under loads in phase. The
     closed form then differs from the result of gradual loading (:attr:`partialslip.Result.path_dependent`)."""
+    if scene.presses_anew:
+        return steady_cycle(scene).turns_round
     return may_turn_round(scene) and _change(scene)[1].turns_round
 
 

@@ -41,22 +41,29 @@ class ExactTractions:
 
 @dataclass(frozen=True)
 class CellTractions:
-    """Tractions of marching: the exact pressure of the contact ``pressed``, and shear tractions ``q1`` and ``q2`` (c,),
-    Pa, constant on the cells between ``vertices`` (c + 1,), fractions of a from the middle of the contact."""
+    """Tractions of marching: the exact pressures of the contacts ``second`` and ``first`` at load points 2 and 1, and
+    shear tractions ``q1`` and ``q2`` (c,), Pa, constant on the cells between ``vertices`` (c + 1,), which are scaled by
+    the ``frame``."""
 
-    pressed: Contact
+    frame: Contact
+    second: Contact
+    first: Contact
     vertices: Array
     q1: Array
     q2: Array
 
     def change(self, x: Array) -> tuple[Array, Array]:
-        """p and dq at ``x`` (m), Pa; zero outside the contact."""
+        """p at load point 2 and dq at ``x`` (m), Pa; zero outside the contact."""
         before, after = self.at_load_points(x)
-        return self.pressed.pressure(x), after - before
+        return self.second.pressure(x), after - before
+
+    def pressures(self, x: Array) -> tuple[Array, Array]:
+        """p at load points 1 and 2 at ``x`` (m), Pa."""
+        return self.first.pressure(x), self.second.pressure(x)
 
     def at_load_points(self, x: Array) -> tuple[Array, Array]:
         """q1 and q2 at ``x`` (m), Pa; zero outside the contact."""
-        scaled = self.pressed.scaled(x)
+        scaled = self.frame.scaled(x)
         cell = np.clip(np.searchsorted(self.vertices, scaled) - 1, 0, len(self.q1) - 1)
         inside = np.abs(scaled) <= 1
         return np.where(inside, self.q1[cell], 0.0), np.where(inside, self.q2[cell], 0.0)

@@ -49,7 +49,9 @@ class Comparison(Notebook):
       triangles within 3 a. All three only if stresses were asked for and both results have them.
     - ``regime``: the name.
 
-    ``P_1`` and ``p_1`` are present only where the pressure differs between the load points.
+    - ``M``, ``M_1``: int x p dx about x = 0, in P a, at load points 2 and 1, where the pressure is not even.
+
+    ``P_1``, ``M_1`` and ``p_1`` are present only where the pressure differs between the load points.
     """
 
     verdicts: tuple[Verdict, ...]
@@ -235,9 +237,9 @@ def _too_near(result: Result, reference: Result, width: float) -> str:
     names, zone = {result.regime, reference.regime}, reference if reference.m is not None else result
     if zone.m is None or zone.n is None or zone.stick_half_width is None:
         return ""
-    left, right = zone.ends[1]
+    left, right = (pick(ends) for pick, ends in zip((max, min), zip(*zone.ends, strict=True), strict=True))
     slips = (-zone.m - left, right - zone.n)  # widths of the slip zones
-    if names == _TENSIONS and min(slips) <= width:
+    if (names == _TENSIONS or "sticking ends" in names) and min(slips) <= width:
         return "a slip zone is narrower than the bar: the transition is nearer than the bar can tell"
     if "stuck" in names and not names & {"sliding", "ratchets"} and max(slips) <= width:
         return "both slip zones are narrower than the bar"

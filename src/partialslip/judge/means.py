@@ -58,10 +58,10 @@ def resultants(traction: Traction, keys: tuple[str, ...]) -> dict[str, float]:
     return dict(zip(keys, sums.tolist(), strict=True))
 
 
-def moment(traction: Traction) -> float:
-    """Return the moment int x p dx of the ``traction`` about x = 0, N."""
+def moment(traction: Traction, key: str = "p") -> float:
+    """Return the moment int x p dx of the ``traction`` about x = 0, N; ``key`` is p or p_1 (load points 2 and 1)."""
     cells = np.unique(np.concatenate([traction.breaks, [] if traction.cells is None else traction.cells]))
-    return float(means(lambda x: x * traction.at(x)[0], cells, cells) @ np.diff(cells))
+    return float(means(lambda x: x * fields(traction, x, (key,))[0], cells, cells) @ np.diff(cells))
 
 
 def fields(traction: Traction, x: Array, keys: tuple[str, ...]) -> Array:

@@ -93,12 +93,14 @@ def _measured(result: Result, reference: Result, scene: Scene) -> Iterator[_Valu
     levels = ("q1", "q2") if of.levels_at and to.levels_at else ()
     errors = norm_errors(of, to, f, (*pressures, "q", *levels))
     sums = resultants(of, (*pressures, "q"))
+    applied = dict(zip(("p_1", "p"), (scene.pressing[end] for end in scene.load.ends), strict=True))
     for key in pressures:
-        yield _apart(key.replace("p", "P"), "P", 1.0, sums[key] / scene.P)
+        yield _apart(key.replace("p", "P"), "P", applied[key].P / scene.P, sums[key] / scene.P)
         yield key, NORM, None, None, errors[key]
-    if not scene.even:
-        known = moment(to) if scene.M is None else scene.M
-        yield _apart("M", "P a", *(each / (scene.P * a) for each in (known, moment(of))))
+    for key in () if scene.even else pressures:
+        M = applied[key].M
+        known = moment(to, key) if M is None else M
+        yield _apart(key.replace("p", "M"), "P a", *(each / (scene.P * a) for each in (known, moment(of, key))))
     yield _apart("p_max", "p0", to.p_max / p0, of.p_max / p0)
     limit = f * scene.P
     yield _apart("dQ", "2 f P", *((half / limit if limit else math.nan) for half in (scene.load.dQ / 2, sums["q"])))

@@ -33,7 +33,7 @@ _MEANING = {
     "inside": "stresses inside",
 } | {
     f"{key}_{point}": f"{text}, point {point}"
-    for key, text in {"left": "left end", "right": "right end", "P": "P", "p": "p"}.items()
+    for key, text in {"left": "left end", "right": "right end", "P": "P", "M": "M", "p": "p"}.items()
     for point in (1, 2)
 }  # fmt: skip
 _IN_A = ("fem.accuracy", "fem.size", "fem.width")  # settings in contact half-widths
@@ -215,6 +215,8 @@ _LIMITS: dict[str, tuple[str, Dimension]] = {
     "Q_sliding": ("slides at |Q| = {}", "N/m"),
     "dsigma_transition": ("small tension ends at dsigma = {}", "Pa"),
     "Q_mean": ("the mean of Q can be {}", "N/m"),
+    "Q_mean_least": ("the mean of Q can be from {}", "N/m"),
+    "Q_mean_most": ("and up to {}", "N/m"),
 }
 
 
@@ -225,6 +227,14 @@ def limits(result: Result, units: Units = SI) -> str:
         for key, (text, of) in _LIMITS.items()
         if key in result.limits
     )
+
+
+def end_slips(result: Result) -> str:
+    """Return how the ends of the contact slip from load point 1 to 2, as text; empty under constant pressure."""
+    if result.end_slips is None:
+        return ""
+    slips = zip(("left", "right"), result.end_slips, strict=True)
+    return ", ".join(f"the {side} end slips {how}" for side, how in slips)
 
 
 def slip(result: Result, units: Units = SI) -> str:
@@ -254,6 +264,7 @@ def facts(result: Result, compared: bool = False, units: Units = SI) -> dict[str
         "found": "" if compared else found(result, units),
         "built": work(result),
         "certificate": certificate(result),
+        "ends": end_slips(result),
         "limits": limits(result, units),
         "slip": slip(result, units),
         "cost": cost(result),

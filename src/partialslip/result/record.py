@@ -7,7 +7,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.result.cost import Cost
-from partialslip.result.result import Regime, Result
+from partialslip.result.result import EndSlip, Regime, Result
 from partialslip.shown import Short
 
 Number = float | None  # None: NaN or infinite, which JSON cannot hold
@@ -50,9 +50,9 @@ class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaul
 
     Fields have the names, units and meaning of the result: ``a``, ``p0``, ``regime``, ``m``, ``n``,
     ``stick_half_width``, ``stick_centre``, ``p_max``, ``settings``, ``counts``, ``limits``, ``certificate``,
-    ``last_cycle_change``, ``estimate``, ``shares``, ``undetermined``, ``path_dependent``, ``notes``, ``cost``.
-    ``contact_ends`` are the left and right end (m) at load point 1 and at load point 2. ``slip``, ``surface`` and
-    ``traction`` are None if the result has none, and in ledgers, which keep no curves.
+    ``last_cycle_change``, ``estimate``, ``shares``, ``undetermined``, ``path_dependent``, ``end_slips``, ``notes``,
+    ``cost``. ``contact_ends`` are the left and right end (m) at load point 1 and at load point 2. ``slip``, ``surface``
+    and ``traction`` are None if the result has none, and in ledgers, which keep no curves.
     """
 
     a: Number
@@ -75,6 +75,7 @@ class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaul
     path_dependent: bool
     notes: tuple[str, ...]
     cost: Cost
+    end_slips: tuple[EndSlip, EndSlip] | None = None
     slip: SlipRecord | None = None
     surface: SurfaceRecord | None = None
     traction: TractionRecord | None = None
@@ -105,6 +106,7 @@ class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaul
             path_dependent=result.path_dependent,
             notes=result.notes,
             cost=result.cost,
+            end_slips=result.end_slips,
             slip=SlipRecord(numbers(slip.x), numbers(slip.slip), number(slip.dissipated)) if curves and slip else None,
             surface=SurfaceRecord(numbers(surface.x), _by_body(surface.sigma)) if curves and surface else None,
             traction=TractionRecord(

@@ -19,8 +19,17 @@ if TYPE_CHECKING:
 FRICTIONLESS = "f = 0 and Q = 0: nothing sticks, and without shear force the contact stays where it is"
 
 Regime = Literal[
-    "stuck", "small tension", "large tension", "out of phase", "sliding", "ratchets", "pressing", "frictionless"
+    "stuck",
+    "small tension",
+    "large tension",
+    "sticking ends",
+    "out of phase",
+    "sliding",
+    "ratchets",
+    "pressing",
+    "frictionless",
 ]
+EndSlip = Literal["forwards", "backwards", "never", "part of the cycle"]
 
 
 @dataclass(frozen=True, repr=False)
@@ -48,7 +57,8 @@ class Result(Drawn):
         Settings of the discretisation, and counts of work (unknowns, iterations, load steps).
     limits : mapping of str to float
         Loads at which the regime changes, where the method knows them: ``dsigma_transition`` (Pa, from small to large
-        tension at this dQ), ``Q_sliding`` (N/m, f P), ``Q_mean`` (N/m, the largest mean Q of a steady state).
+        tension at this dQ), ``Q_sliding`` (N/m, f P), ``Q_mean`` (N/m, the largest mean Q of a steady state), and
+        where the pressure varies ``Q_mean_least`` and ``Q_mean_most`` (N/m, the range of this mean).
     certificate : mapping of str to float
         Residuals in f p0 (p0 for the normal problem); equilibrium relative to the load.
     last_cycle_change : float or None
@@ -76,6 +86,9 @@ class Result(Drawn):
         By quantity (``m``, ``n``, ``q``, ``q1``, ``q2``), why the value cannot serve as a reference.
     path_dependent : bool
         Whether slip reverses between the load points; a method with one load step is then no reference.
+    end_slips : (EndSlip, EndSlip) or None
+        Where the pressure varies: whether the left and the right end of the contact slip from load point 1 to 2
+        "forwards" (the lower body along +x), "backwards", "never", or only during "part of the cycle".
     edges : (Array, Array) or ()
         Element edges of the lower and the upper body near the contact, (k, 2, 2) by edge, end and x, y, m, undeformed;
         only edges long enough to be seen. Empty for methods without elements.
@@ -105,6 +118,7 @@ class Result(Drawn):
     shares: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     undetermined: Mapping[str, str] = field(default_factory=dict)
     path_dependent: bool = False
+    end_slips: tuple[EndSlip, EndSlip] | None = None
     edges: tuple[Array, Array] | tuple[()] = ()
 
     def __post_init__(self) -> None:

@@ -27,7 +27,7 @@ _SAME = 1e-9  # relative difference of P and A allowed as rounding
 class State(Short):
     """Loads and tractions at one moment.
 
-    Under a constant normal force, the shear traction holds the whole effect of earlier loads.
+    At given P and M, the shear traction holds the whole effect of earlier loads.
 
     Parameters
     ----------
@@ -47,7 +47,8 @@ class State(Short):
     q: "PPoly"
 
     def check(self, scene: Scene) -> None:
-        """Raise InputError if ``scene`` cannot continue from this state: P or the materials differ."""
+        """Raise InputError if ``scene`` cannot continue from this state: P at the last load point, with which the path
+        begins, or the materials differ."""
 
         def check(name: str, mine: float, its: float, shown: Callable[[float], str]) -> None:
             if abs(mine - its) > _SAME * abs(its):
@@ -55,7 +56,7 @@ class State(Short):
                     f"state: is of {name} = {shown(mine)}; the scene has {shown(its)}; the two must be equal"
                 )
 
-        check("P", self.P, scene.P, lambda P: scene.units.labelled(P, "N/m", 10))
+        check("P", self.P, scene.pressing[-1].P, lambda P: scene.units.labelled(P, "N/m", 10))
         check("A", self.A, scene.material.A, lambda A: f"{A:.10g} 1/Pa")
 
     def save(self, path: Path) -> None:

@@ -12,6 +12,7 @@ from partialslip.scene.materials import Constants as Constants
 from partialslip.scene.materials import Elastic as Elastic
 from partialslip.scene.materials import Material as Material
 from partialslip.scene.model import Friction as Friction
+from partialslip.scene.model import Pressing as Pressing
 from partialslip.scene.model import Scene as Scene
 from partialslip.scene.profiles import FlatRounded as FlatRounded
 from partialslip.scene.profiles import Hertz as Hertz

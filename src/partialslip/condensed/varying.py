@@ -1,0 +1,152 @@
+"""Coulomb friction along a path on which the pressure varies: nodes come into contact and leave it.
+
+Scaled as in :mod:`partialslip.condensed.history`. Nodes that leave the contact lose their traction. Nodes that come
+back start with none, and stick with the relative displacement that they have when they touch, at some moment of a step.
+
+Where the surfaces stick beside a growing contact, the increments of q and of p are in a ratio L at the contact's end,
+and so are the displacements beyond the end: while the gap closes by dv, the surfaces move along x by L dv, relative to
+the bodies. The contact grows over x, and leaves q = L(x) p. A node at the distance d from the end at the beginning of
+the step moves, up to touching, by the closing of its gap times L at x - 2/5 d: for Hertz contacts under changes of Q
+and of tension this is exact up to relative errors of d^2. L is linear over the nodes that touch in a step, and
+consistent with the q to which it leads.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import scipy.linalg as la
+
+from partialslip.arrays import Array, Indices
+from partialslip.condensed.bounded import Sides, Solution, solve_bounded
+from partialslip.condensed.history import History, follow, resting
+from partialslip.condensed.path import Path
+
+_INSIDE = 0.4  # of the distance from the end at the beginning of a step: where the ratio L is taken
+_FEW = 3  # nodes that touch on one side from which on L is linear, and not constant
+_TIMES = 6  # most solutions of one step with new ratios
+
+
+def march(
+    x: Array,
+    tangential: Array,
+    stretch: Array,
+    f: float,
+    press: Callable[[float, float], Solution],
+    path: Path,
+) -> History:
+    """Follow the path with a new pressure at each step; every step has a certificate.
+
+    Parameters
+    ----------
+    x : (n,) array
+        Nodes of the contact line.
+    tangential, stretch
+        As for :func:`partialslip.condensed.history.march`, at all nodes.
+    f : float
+        Coefficient of friction.
+    press : callable
+        ``press(P, M)``: normal forces (n,) under these loads, in equilibrium on the same nodes.
+    path : Path
+    """
+    first, *ways = (len(way) for way in path.fractions)
+    cycle = sum(ways)
+    sides: list[Sides] = []
+    pressed = [press(*path.begin[2:])]
+
+    def advance(before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
+        Q, P, M = (float(load[i]) for i in (0, 2, 3))
+        normal = press(P, M)
+        near = sides[-cycle] if len(sides) >= first + cycle else before.sides
+        bound = f * normal.x
+        step = _Step(x, tangential, tangential @ before.x + float(change[1]) * stretch, bound, Q)
+        found = step.solve(pressed[-1].x, normal.x, near)
+        pressed.append(normal)
+        sides.append(found.sides)
+        return found, bound
+
+    return follow(path, advance, resting(0 * x if path.before is None else path.before))
+
+
+class _Step:
+    """One load step: nodes ``x`` (n,), compliance, ``free`` relative displacement, ``bound`` (n,), zero at nodes that
+    are open at the end of the step, and shear force ``Q``."""
+
+    def __init__(self, x: Array, tangential: Array, free: Array, bound: Array, Q: float) -> None:
+        self._x, self._C, self._free, self._bound, self._Q = x, tangential, free, bound, Q
+        self._on = np.flatnonzero(bound > 0)
+        self._inner = tangential[np.ix_(self._on, self._on)]
+
+    def solve(self, before: Array, after: Array, near: Sides) -> Solution:
+        """Solve the step in which the normal forces change from ``before`` to ``after``, (n,) each, beginning with the
+        sides ``near``."""
+        kept, ratios = self._touching(before, after)
+        if not kept.size:
+            return self._bounded(self._free, near)
+        sides = np.where(before > 0, near, 0).astype(np.int8)
+        spent: list[Solution] = []
+        while True:
+            found = self._bounded(self._free + self._ratio(sides, kept, ratios) @ kept, sides)
+            spent.append(found)
+            if np.array_equal(found.sides, sides) or len(spent) == _TIMES:
+                break
+            sides = found.sides
+        iterations, changes = (sum(getattr(each, key) for each in spent) for key in ("iterations", "changes"))
+        return replace(found, iterations=iterations, changes=changes)
+
+    def _ratio(self, sides: Sides, kept: Array, ratios: Array) -> Array:
+        """Coefficients (k,) of the ratio L that are consistent with the q to which they lead, if nodes are on the
+        ``sides``: q is then linear in the coefficients."""
+        free = np.flatnonzero((sides == 0) & (self._bound > 0))
+        q = sides * self._bound
+        if not ratios[:, free].any():
+            found: Array = ratios @ q
+            return found
+        factor = la.cho_factor(self._C[np.ix_(free, free)], check_finite=False)
+        moved = la.cho_solve(
+            factor,
+            np.column_stack([np.ones(len(free)), (self._free - self._C @ q)[free], kept.T[free]]),
+            check_finite=False,
+        )
+        uniform, by = moved[:, 0], moved[:, 1:]
+        missing = np.append(self._Q - q.sum(), np.zeros(len(kept))) - by.sum(axis=0)
+        by = by + np.outer(uniform, missing / uniform.sum())
+        q[free] = by[:, 0]
+        result: Array = np.linalg.solve(np.eye(len(kept)) - ratios[:, free] @ by[:, 1:], ratios @ q)
+        return result
+
+    def _bounded(self, free: Array, near: Sides) -> Solution:
+        on, bound = self._on, self._bound[self._on]
+        found = solve_bounded(self._inner, free[on], -bound, bound, self._Q, near[on])
+        x, rest, residual = (_spread(values, on, len(self._x)) for values in (found.x, found.rest, found.residual))
+        return replace(found, x=x, rest=rest, residual=residual)
+
+    def _touching(self, before: Array, after: Array) -> tuple[Array, Array]:
+        """Displacements (k, n) at nodes that touch in the step for unit coefficients of the ratio L, and rows (k, n)
+        that take q to these coefficients, (k,)."""
+        x, on = self._x, self._bound > 0
+        new, both = on & (before <= 0), np.flatnonzero(on & (before > 0))
+        if not new.any() or len(both) < 2:
+            return np.empty((0, len(x))), np.empty((0, len(x)))
+        approach = self._C @ (after - before)
+        rigid = np.polynomial.polynomial.polyfit(x[both], approach[both], 1)  # approach, and rotation by a moment
+        closing = approach - np.polynomial.polynomial.polyval(x, rigid)
+        kept, ratios = [], []
+        for side, last in ((-1, both[0]), (1, both[-1])):
+            touch = np.flatnonzero(new & (side * np.arange(len(x)) > side * last))
+            if not len(touch):
+                continue
+            end = (x[last] + x[last + side]) / 2
+            apart = (x[touch] - end) / (x[touch[-1]] - x[touch[0]] or 1.0)
+            powers = np.arange(2 if len(touch) >= _FEW else 1)[:, None]
+            fit = np.linalg.pinv((apart**powers * after[touch]).T)
+            for power, row in zip(powers, fit, strict=True):
+                kept.append(_spread(closing[touch] * ((1 - _INSIDE) * apart) ** power, touch, len(x)))
+                ratios.append(_spread(row, touch, len(x)))
+        return np.array(kept).reshape(-1, len(x)), np.array(ratios).reshape(-1, len(x))
+
+
+def _spread(values: Array, where: Indices, count: int) -> Array:
+    result = np.zeros(count)
+    result[where] = values
+    return result

@@ -1,0 +1,275 @@
+"""Steady cycles under varying normal load and moment, in closed form (docs/theory.md, section 11)."""
+
+import functools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.errors import InputError
+from partialslip.halfplane.contact import Contact
+from partialslip.halfplane.loading import Loading, loading
+from partialslip.halfplane.mean import Mean, Path
+from partialslip.halfplane.slip import dissipation
+from partialslip.result import EndSlip
+from partialslip.scene import Hertz, Scene
+
+_STAGES = 16  # of the way from load point to load point
+_ROUNDING = 1e-9  # lengths in a, tractions in f p0
+_EQUAL = 1e-12  # relative difference of rates that is rounding
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
+_FEW_NODES, _FEW_WEIGHTS = np.polynomial.legendre.leggauss(10)
+_PLACES = np.cos(np.linspace(np.pi, 0, 401))[1:-1]
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """A steady cycle between load points 1 and 2.
+
+    Parameters
+    ----------
+    scene : Scene
+    first, second : Contact
+        Contacts at load points 1 and 2.
+    mean : Contact
+        The union of both, under the mean pressure.
+    change : Loading or None
+        Change of shear from load point 1 to 2; None where no end slips.
+    slips : two EndSlip
+        How the left and the right end of the contact slip from load point 1 to 2.
+    turns_round : bool
+        Whether slip reverses on the way.
+    """
+
+    scene: Scene
+    first: Contact
+    second: Contact
+    mean: Contact
+    change: Loading | None
+    slips: tuple[EndSlip, EndSlip]
+    turns_round: bool
+
+    @property
+    def largest(self) -> Contact:
+        """Contact of the load point with the larger P, which scales the results."""
+        return self.first if self.scene.largest == 1 else self.second
+
+    @property
+    def stick(self) -> tuple[float, float]:
+        """Ends of the stick zone, m; those of the part that both contacts have in common where no end slips."""
+        if self.change:
+            left, right = (self.mean.centre + end * self.mean.a for end in self.change.ends)
+            return left, right
+        return common(self.first, self.second)
+
+    def dq(self, x: Array) -> Array:
+        """Change of shear traction at ``x`` (m), Pa."""
+        if self.change:
+            found: Array = self.scene.friction.f * self.mean.p0 * self.change.traction(self.mean.scaled(x))
+            return found
+        load, (one, other) = self.scene.load, (self.first, self.second)
+        if load.dQ == 0 and load.dsigma == 0:
+            return np.zeros(np.shape(x))
+        ratio = (load.dQ + math.pi / 4 * x * load.dsigma) / (other.P - one.P)
+        return ratio * (other.pressure(x) - one.pressure(x))
+
+    def bounds_of_Q1(self) -> tuple[float, float]:
+        """Least and largest Q at load point 1 of a steady state, N/m: some q1 must keep within the bounds at both load
+        points."""
+        f, (left, right) = self.scene.friction.f, self.stick
+        slipping = 0.0
+        if self.change:
+            ends = [*(self.first.centre + way * self.first.a for way in (-1, 1))]
+            for sign, low, high in zip(self.change.signs, (ends[0], right), (left, ends[1]), strict=True):
+                slipping -= sign * f * _integral(self.first.pressure, low, high, self._kinks)
+
+        def apart(sign: int) -> Callable[[Array], Array]:
+            return lambda x: self.dq(x) - sign * f * (self.second.pressure(x) - self.first.pressure(x))
+
+        def inner(sign: int) -> Callable[[Array], Array]:
+            """sign times the tighter of both bounds."""
+            return lambda x: (
+                sign * np.minimum(f * self.first.pressure(x), f * self.second.pressure(x) - sign * self.dq(x))
+            )
+
+        low, high = (
+            slipping + _integral(inner(sign), left, right, [*self._kinks, *_crossings(apart(sign), left, right)])
+            for sign in (-1, 1)
+        )
+        return low, high
+
+    @property
+    def _kinks(self) -> list[float]:
+        return [self.mean.centre + kink * self.mean.a for kink in self.mean.shape.kinks]
+
+    def slip(self) -> tuple[Array, Array, float]:
+        """Points (m) that both contacts have in common, their slip from load point 1 to 2 (m), and the work dissipated
+        in a cycle (J/m).
+
+        A part of the surfaces that slips under the pressure p does the work f p for each length of slip. On the way
+        from one load point to the other this is f p s at the end of the way, less the integral of s f dp.
+        """
+        assert self.change
+        f, A = self.scene.friction.f, self.scene.material.A
+        unit = A * f * self.mean.p0 * self.mean.a
+        x, slips, _ = dissipation(self.change.zone, self.change.seen)
+        mirror = self.change.mirror
+        x, slips = self.mean.centre + mirror * self.mean.a * x[::mirror], self.change.turn * unit * slips[::mirror]
+        left, right = common(self.first, self.second)
+        inside = (x > left) & (x < right)
+        x, slips = np.append(np.append(left, x[inside]), right), slips[inside]
+        ends = np.array([left, right])
+        at_ends = unit * self.change.slip(self.mean.scaled(ends))
+        return (
+            x,
+            np.concatenate([at_ends[:1], slips, at_ends[1:]]),
+            sum(self._dissipated(back) for back in (False, True)),
+        )
+
+    def _dissipated(self, back: bool) -> float:
+        path, f, A = Path(self.scene, back), self.scene.friction.f, self.scene.material.A
+
+        def slipped(share: float, now: Contact, weight: Callable[[Array, Array], Array]) -> float:
+            """Integral over the contact ``now`` of |slip| since the beginning of the way, times the ``weight``."""
+            mean = Mean(path.begin, now).contact
+            change = loading(mean, f, share * path.dQ, share * path.dsigma, bound=2)
+            unit, total = A * f * mean.p0 * mean.a, 0.0
+            stick = now.scaled(mean.centre + np.array(change.ends) * mean.a)
+            kinks = [now.scaled(mean.centre + kink * mean.a) for kink in mean.shape.strong_kinks]
+            for low, high in ((-1.0, stick[0]), (stick[1], 1.0)):
+                inner = [kink for kink in kinks if low < kink < high]
+                angles = np.arccos(np.clip(np.unique([low, *inner, high]), -1, 1))[::-1]
+                half = np.diff(angles)[:, None] / 2
+                angle = (angles[:-1, None] + half * (1 + _FEW_NODES)).ravel()
+                y = np.cos(angle)
+                amount = np.abs(unit * change.slip(mean.scaled(now.centre + now.a * y)))
+                total += float((half * _FEW_WEIGHTS).ravel() @ (amount * weight(y, np.sin(angle))))
+            return total
+
+        end = path.at(1.0)
+        work = slipped(1.0, end, lambda y, sine: end.a * sine * end.p0 * end.shape.pressure(y))
+        for share, weight in zip((1 + _FEW_NODES) / 2, _FEW_WEIGHTS / 2, strict=True):
+            now = path.at(float(share))
+            uniform, turned = path.pressed(now)
+            work -= weight * slipped(float(share), now, lambda y, _, u=uniform, t=turned: u + t * y)  # type: ignore[misc]
+        return f * work
+
+
+def common(first: Contact, second: Contact) -> tuple[float, float]:
+    """Left and right end, m, of the part that two contacts have in common."""
+    return (
+        max(first.centre - first.a, second.centre - second.a),
+        min(first.centre + first.a, second.centre + second.a),
+    )
+
+
+@functools.lru_cache(maxsize=1)
+def steady_cycle(scene: Scene) -> Cycle:
+    """The steady cycle of ``scene``, whose pressure varies, with friction and without sliding, under loads in phase."""
+    path, f = Path(scene), scene.friction.f
+    first, second = path.begin, path.at(1.0)
+    mean = Mean(first, second).contact
+    left, right = common(first, second)
+    rates = _exceeds(path, f)
+    change = loading(mean, f, path.dQ, path.dsigma, bound=2) if left < right and rates.any() else None
+    ends = [mean.centre + end * mean.a for end in change.ends] if change else [left, right]
+    room = _ROUNDING * mean.a
+    inside = [left - room <= ends[0], ends[1] <= right + room]
+    signs = change.signs if change else (1, 1)
+    slips = tuple(_class(*each) for each in zip(inside, signs, rates.T, strict=True))
+    assert len(slips) == 2
+    if not change or not all(inside):
+        return Cycle(scene, first, second, mean, None, slips, False)
+    turns = any(_turns(Path(scene, back), f, change) for back in (False, True))
+    return Cycle(scene, first, second, mean, change, slips, turns)
+
+
+def closed_form(scene: Scene) -> str:
+    """Why there is no closed form of the steady cycle of ``scene``, whose pressure varies; empty if there is one."""
+    cycle = steady_cycle(scene)
+    if cycle.change:
+        return ""
+    if set(cycle.slips) == {"never"}:
+        if scene.load.dQ == 0 and scene.load.dsigma == 0:
+            return ""
+        if isinstance(scene.profile, Hertz) and scene.even:
+            return ""
+        return "neither end of the contact slips, and only for hertz without a moment there is a closed form"
+    which = [name for name, slips in zip(("left", "right"), cycle.slips, strict=True) if slips == "never"]
+    part = [name for name, slips in zip(("left", "right"), cycle.slips, strict=True) if slips == "part of the cycle"]
+    told = [f"the {name} end of the contact never slips" for name in which]
+    told += [f"the {name} end of the contact slips during part of the cycle" for name in part]
+    return ", and ".join(told) + ": there is no closed form"
+
+
+def require_closed_form(scene: Scene) -> None:
+    """Raise InputError if the steady cycle of ``scene`` has no closed form."""
+    if why := closed_form(scene):
+        raise InputError(f"load.P, load.M: {why}; must be solved by march")
+
+
+def _class(inside: bool, sign: int, exceeds: Array) -> EndSlip:
+    """How an end slips: ``inside``, whether the stick zone's end by the closed form lies inside both contacts; the
+    ``sign`` of slip there; and at which stages shear at the adhered end exceeds what the pressure holds."""
+    if not exceeds.any():
+        return "never"
+    if not inside:
+        return "part of the cycle"
+    return "forwards" if sign > 0 else "backwards"
+
+
+def _exceeds(path: Path, f: float) -> Array:
+    """Whether the increments of q at the ends of the adhered contact are larger than f times those of p: at stages of
+    the way and the left and right end, (stages, 2)."""
+    found = []
+    for share in np.linspace(0, 1, _STAGES + 1).tolist():
+        rates = path.rates(path.at(share))
+        found.append(np.abs(rates.shear) > f * np.abs(rates.pressure) * (1 + _EQUAL))
+    return np.array(found)
+
+
+def _turns(path: Path, f: float, change: Loading) -> bool:
+    """Whether slip turns round on the way: the stick zones of the stages do not shrink, or not always with the slip of
+    the whole ``change``."""
+    before = path.begin.centre - path.begin.a, path.begin.centre + path.begin.a
+    for share in (np.arange(1, _STAGES + 1) / _STAGES).tolist():
+        now = path.at(share)
+        mean = Mean(path.begin, now).contact
+        part = loading(mean, f, share * path.dQ, share * path.dsigma, bound=2)
+        left, right = (mean.centre + end * mean.a for end in part.ends)
+        room = _ROUNDING * mean.a
+        inner = common(path.begin, now)
+        if part.zone.s != change.zone.s or left < max(before[0], inner[0]) - room:
+            return True
+        if right > min(before[1], inner[1]) + room:
+            return True
+        before = left, right
+    return False
+
+
+def _integral(function: Callable[[Array], Array], low: float, high: float, kinks: list[float]) -> float:
+    """Integral from ``low`` to ``high``; the function has square roots at both and at the ``kinks``."""
+    if high <= low:
+        return 0.0
+    ends = np.unique([low, *(kink for kink in kinks if low < kink < high), high])
+    half = np.diff(ends)[:, None] / 2
+    angle = np.pi / 2 * (1 + _NODES)
+    x = ends[:-1, None] + half * (1 - np.cos(angle))
+    return float((half * np.pi / 2 * _WEIGHTS * np.sin(angle)).ravel() @ function(x.ravel()))
+
+
+def _crossings(function: Callable[[Array], Array], low: float, high: float) -> list[float]:
+    """Zeros of ``function`` between ``low`` and ``high``."""
+    from scipy.optimize import brentq  # takes long to import
+
+    x = (low + high) / 2 + (high - low) / 2 * _PLACES
+    signs = np.sign(function(x))
+    where = np.flatnonzero(signs[:-1] * signs[1:] < 0)
+    return [
+        float(
+            brentq(lambda at: float(function(np.array([at]))[0]), x[i], x[i + 1], xtol=1e-15 * abs(high - low) + 1e-300)
+        )
+        for i in where
+    ]
