@@ -96,7 +96,7 @@ def test_every_field_has_a_label(text):
     tags = Outline(text).tags
     labels = {attributes["for"] for tag, attributes in tags if tag == "label" and "for" in attributes}
     fields = [attributes for tag, attributes in tags if tag == "input" and attributes["type"] != "checkbox"]
-    assert [field["type"] for field in fields].count("range") == len(labels) == 4
+    assert [field["type"] for field in fields].count("range") == len(labels) == 8
     assert all({"aria-label", "aria-labelledby"} & field.keys() or field["id"] in labels for field in fields)
 
 
@@ -112,7 +112,12 @@ def test_a_title_is_text():
     ("scene", "overrides", "says"),
     [
         ("flat-rounded", [], 'profile.kind = "flat-rounded": must be "hertz"'),
-        ("hertz-shear", ["load.Q=[0, 1e5, 0, -1e5]", "load.sigma=[1e8, 0, -1e8, 0]"], "load.sigma: out of phase"),
+        ("hertz-shear", ["load.Q=[0, 1e5, 0, -1e5]", "load.sigma=[1e8, 0, -1e8, 0]"], "load: Q and sigma are out of"),
+        (
+            "fretting-aluminium",
+            ["load.P=[2e5, 3e5, 2e5]", "load.Q=[0, 1e4, 2e4]", "load.sigma=[0, 0]"],
+            "load: P, Q and sigma are out of phase",
+        ),
         ("hertz-shear", ["friction.f=0"], "friction.f = 0: must be > 0"),
         ("hertz-shear", ["bodies.upper={width=1, height=1}"], "bodies.upper: must not be given for a live page"),
         ("hertz-shear", ['bodies.lower={mesh="a.msh", unit=1e-3}'], "bodies.lower: must not be given for a live page"),

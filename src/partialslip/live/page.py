@@ -1,4 +1,5 @@
-"""The live page: one self-contained HTML file. The mechanics are in ``hertz.js``, in the folder of this module."""
+"""The live page: one self-contained HTML file. The mechanics are in the folder of this module, in ``hertz.js`` for
+constant P without a moment, and in ``varying.js``."""
 
 from importlib.metadata import version
 from typing import Any
@@ -18,7 +19,7 @@ _SHAPE = 1.5  # width over height of the map on the page
 _NAMES = np.array([(0.05, 0.94), (0.12, 0.94), (0.19, 0.94), (0.8, 0.03), (0.88, 0.03), (0.96, 0.03)])  # regime names
 _SOLVED = {  # fields that the page takes into account; any other that is given is refused
     "profile": ("R",),
-    "load": ("P", "a", "p0", "Q", "sigma", "cycles", "steps"),
+    "load": ("P", "a", "p0", "M", "e", "Q", "sigma", "cycles", "steps"),
     "bodies": (),
     "effects": (),
 }
@@ -28,13 +29,13 @@ _ROUNDED = 5  # decimals of the map's lines
 def live_page(scene: Scene) -> str:
     """Return the live page of ``scene`` as HTML: sliders for the loads, tractions and stick zone.
 
-    The sliders start at the loads of the scene.
+    The sliders start at the loads of the scene. P and its line of action may differ between the load points.
 
     Raises
     ------
     InputError
         If the profile is not ``hertz``, a body is finite, the bodies' materials differ, an effect is forced on or off,
-        there is no friction, or Q and sigma are out of phase.
+        there is no friction, or the loads are out of phase.
     """
     _check(scene)
     return (
@@ -61,7 +62,7 @@ def _check(scene: Scene) -> None:
     if not scene.material.alike:
         raise InputError("material.upper, material.lower: the bodies differ; must be of one material for a live page")
     if not scene.load.in_phase:
-        raise InputError("load.sigma: out of phase with load.Q; must be in phase for a live page")
+        raise InputError(f"load: {scene.varying} are out of phase; must be in phase for a live page")
 
 
 def _data(scene: Scene) -> dict[str, Any]:
@@ -69,15 +70,20 @@ def _data(scene: Scene) -> dict[str, Any]:
 
     ``units`` has labels and sizes of the units in which the page shows numbers; none for SI with prefixes.
     """
-    found = stick_map(scene)
+    constant = scene.replace(load={"M": None, "e": None, "P": None if scene.load.P is None else scene.P})
+    found = stick_map(constant)
     assert found.pressed
     pressed, load, f, units = found.pressed, scene.load, scene.friction.f, scene.units
+    one, two = (scene.pressing[end] for end in load.ends)
     return {
         "name": scene.name,
         "title": scene.title,
         "a": pressed.a,
         "p0": pressed.p0,
         "P": pressed.P,
+        "pressed": {"P1": one.P, "P2": two.P, "e1": (one.M or 0.0) / one.P, "e2": (two.M or 0.0) / two.P},
+        "varies": scene.presses_anew or bool(scene.M),
+        "largest": scene.largest,
         "f": f,
         "most_friction": max(1.5, 2 * f),
         "dQ": load.dQ,
