@@ -260,7 +260,9 @@ def test_a_link_holds_the_settings(browser, folder):
 
 @pytest.mark.parametrize(
     "link",
-    ["#", "#nonsense", "#P1=0&P2=-1&e1=1e9&e2=NaN", "#P=&f=&dQ=&dsigma=", "#P=-1&f=0&dQ=1e400&dsigma=NaN", "#P=0&f=1e-9&dQ=0x10&dsigma=Infinity",
+    ["#", "#nonsense", "#P1=0&P2=-1&e1=1e9&e2=NaN",
+     "#P=&f=&dQ=&dsigma=", "#P=-1&f=0&dQ=1e400&dsigma=NaN",
+     "#P=0&f=1e-9&dQ=0x10&dsigma=Infinity",
      "#P=1e99&f=%ff&dQ=%3Cscript%3E&other=1", "#__proto__=1&P=1,2&f=0.3a", "#f=0.25&P=none"],
 )  # fmt: skip
 def test_what_is_no_setting_in_a_link_is_left_out(browser, folder, link):

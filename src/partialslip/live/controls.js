@@ -323,5 +323,5 @@ const page = (() => {
   });
   for (const frame of frames) observer.observe(frame);
 
-  return { answer: () => answer(loads), loads: () => loads };
+  return { answer: (changes = {}) => answer({ ...loads, ...changes }), loads: () => loads };
 })();
