@@ -80,6 +80,17 @@ def test_what_it_knows_of_the_scene(text):
         np.testing.assert_allclose(half_width + way * centre, value, rtol=0, atol=1e-3)
 
 
+@pytest.mark.parametrize(
+    "load", [{"M": 50.0}, {"e": [1e-4, -1e-4]}, {"p0": None, "P": [5e5, 6e5]}], ids=["M", "e at two points", "P"]
+)
+def test_P_and_e_at_the_load_points(load):
+    scene = load_scene("hertz-large-tension").replace(load=load)
+    known = Outline(live_page(scene)).scene
+    (P1, M1), (P2, M2) = (scene.pressing[end] for end in scene.load.ends)
+    assert known["pressed"] == {"P1": P1, "P2": P2, "e1": M1 / P1, "e2": M2 / P2}
+    assert (known["varies"], known["P"]) == (True, max(P1, P2))
+
+
 def test_the_map_reaches_as_far_as_the_loads():
     assert Outline(live_page(load_scene("hertz-shear", ["load.sigma=[-2e9, 2e9]"]))).scene["map"]["top"] > 20
 

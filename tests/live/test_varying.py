@@ -89,36 +89,37 @@ def quadrature(a1, e1, a2, e2, m, n, s):
     return dQ, dsigma, dq
 
 
-@pytest.mark.parametrize(("turn", "mirror"), SIGNS)
 @pytest.mark.parametrize("spot", SPOTS)
-def test_spot_values(page, spot, turn, mirror):
+def test_spot_values(page, spot):
     *loads, m, n = spot
-    found = solved(page, *loads, turn=turn, mirror=mirror)
-    assert (found.m, found.n)[::mirror] == pytest.approx((m, n), abs=1e-11)
-    assert not found.reverses
-    assert [turn * end for end in found.ends][::mirror] == [turn * found.zone["s"], turn]
-    dq = 2 * turn * found.half
-    assert np.trapezoid(dq, found.x) == pytest.approx(mirror * loads[4], rel=2e-3)  # x descends where mirrored
-    x, dq = found.x[found.smooth], dq[found.smooth]
-    slips = (x > found.n) | (x < -found.m)
-    bound = sum(pressure(x, a, mirror * e) for a, e in (loads[:2], loads[2:4]))
-    np.testing.assert_allclose(np.abs(dq[slips]), bound[slips], atol=1e-12)
-    assert (np.abs(dq) <= bound + 1e-12).all()
+    for turn, mirror in SIGNS:
+        found = solved(page, *loads, turn=turn, mirror=mirror)
+        assert (found.m, found.n)[::mirror] == pytest.approx((m, n), abs=1e-11)
+        assert not found.reverses
+        assert found.ends[::mirror] == [found.zone["s"], 1]
+        dq = 2 * turn * found.half
+        assert np.trapezoid(dq, found.x) == pytest.approx(mirror * loads[4], rel=2e-3)  # x descends where mirrored
+        x, dq = found.x[found.smooth], dq[found.smooth]
+        slips = (x > found.n) | (x < -found.m)
+        bound = sum(pressure(x, a, mirror * e) for a, e in (loads[:2], loads[2:4]))
+        np.testing.assert_allclose(np.abs(dq[slips]), bound[slips], atol=1e-12)
+        assert (np.abs(dq) <= bound + 1e-12).all()
 
 
-@pytest.mark.parametrize(
-    ("contacts", "m", "n", "s"),
-    [((0.8, 0, 1, 0), 0.6, 0.3, -1), ((1, 0.1, 0.7, 0.3), 0.1, 0.15, -1), ((0.9, -0.2, 0.95, 0.1), 0.8, -0.6, -1),
-     ((0.8, 0, 1, 0.1), 0.6, 0.5, 1)],
-)  # fmt: skip
-def test_loads_and_tractions_by_quadrature(page, contacts, m, n, s):
+def test_loads_and_tractions_by_quadrature(page):
     """Against the conditions themselves, which take the mean pressure and not the mean of two solutions."""
-    dQ, dsigma, dq = quadrature(*contacts, m, n, s)
-    found = solved(page, *contacts, abs(dQ), abs(dsigma), turn=1 if dQ > 0 else -1, mirror=1)
-    assert (found.m, found.n) == pytest.approx((m, n), abs=1e-10)
-    inside = np.flatnonzero((found.x > -m) & (found.x < n))[5:-5:12]
-    assert len(inside) >= 4
-    assert 2 * found.half[inside] == pytest.approx([dq(x) for x in found.x[inside]], abs=1e-9)
+    for contacts, m, n, s in (
+        ((0.8, 0, 1, 0), 0.6, 0.3, -1),
+        ((1, 0.1, 0.7, 0.3), 0.1, 0.15, -1),
+        ((0.9, -0.2, 0.95, 0.1), 0.8, -0.6, -1),
+        ((0.8, 0, 1, 0.1), 0.6, 0.5, 1),
+    ):
+        dQ, dsigma, dq = quadrature(*contacts, m, n, s)
+        found = solved(page, *contacts, abs(dQ), abs(dsigma), turn=1 if dQ > 0 else -1, mirror=1)
+        assert (found.m, found.n) == pytest.approx((m, n), abs=1e-10)
+        inside = np.flatnonzero((found.x > -m) & (found.x < n))[5:-5:12]
+        assert len(inside) >= 4
+        assert 2 * found.half[inside] == pytest.approx([dq(x) for x in found.x[inside]], abs=1e-9)
 
 
 ZONES = """(() => {
@@ -201,8 +202,7 @@ def test_mean_loads_that_settle(page):
         assert (forth.m, forth.n) == pytest.approx((back.m, back.n), abs=1e-12)
 
 
-@pytest.mark.parametrize(("turn", "mirror"), SIGNS[::3])
-@pytest.mark.parametrize("case", ONE_END)
+@pytest.mark.parametrize(("case", "turn", "mirror"), [(ONE_END[0], -1, -1), (ONE_END[1], 1, 1)])
 def test_an_end_that_does_not_slip(browser, folder, case, turn, mirror):
     *loads, words = case
     if mirror < 0:
@@ -215,19 +215,16 @@ def test_an_end_that_does_not_slip(browser, folder, case, turn, mirror):
     assert "march" in page.run("document.getElementById('note').textContent")
 
 
-def test_slip_that_reverses_is_noted(page):
+def test_slip_that_reverses_is_noted_and_other_regimes(page):
     """The formula's left end is just inside contact 1, and yet the left end sticks at first."""
     assert solved(page, 0.8, 0, 1, 0, 0.32 * PI, 0.74).reverses
     assert solved(page, *RATCHET[:6]).reverses
-
-
-@pytest.mark.parametrize(
-    ("loads", "regime"),
-    [((0.5, 0, 1, 0, 0.3 * PI, 0), "sliding"), ((0.5, -1, 0.5, 1, 0.1, 0), "no stick zone"),
-     ((0.9, 0, 1, 0, 0, 0), "stuck")],
-)  # fmt: skip
-def test_other_regimes(page, loads, regime):
-    assert solved(page, *loads).regime == regime
+    for loads, regime in (
+        ((0.5, 0, 1, 0, 0.3 * PI, 0), "sliding"),
+        ((0.5, -1, 0.5, 1, 0.1, 0), "no stick zone"),
+        ((0.9, 0, 1, 0, 0, 0), "stuck"),
+    ):
+        assert solved(page, *loads).regime == regime
 
 
 @pytest.mark.fault
@@ -271,16 +268,6 @@ def test_it_starts_with_P_and_e_of_the_scene(browser, folder):
     assert page.errors == []
 
 
-@pytest.mark.parametrize("load", [{"e": 1e-4}, {"e": None, "M": 50.0}, {"e": [1e-4, -1e-4], "P": 5e5}])
-def test_other_ways_to_give_them(browser, folder, load):
-    scene = scene_of(SPOTS[1], **load)
-    page = opened(browser, folder, scene)
-    loads = page.run("page.loads()")
-    pressing = [scene.pressing[end] for end in scene.load.ends]
-    assert [loads["P1"], loads["P2"]] == pytest.approx([P for P, _ in pressing])
-    assert [loads["e1"], loads["e2"]] == pytest.approx([M / P for P, M in pressing])
-
-
 def test_P_and_e_by_the_controls(browser, folder):
     page = opened(browser, folder)
     before = answer(page)
@@ -311,7 +298,7 @@ def test_P_and_e_by_the_controls(browser, folder):
     assert page.run("document.querySelector('#map').getBoundingClientRect().width") > 280
 
 
-@pytest.mark.parametrize(("width", "mobile"), [(320, True), (390, True), (1000, False), (1440, False)])
+@pytest.mark.parametrize(("width", "mobile"), [(320, True), (1000, False)])
 def test_it_fits_the_window(browser, folder, width, mobile):
     page = opened(browser, folder, scene_of(SPOTS[2]), width=width, height=900, mobile=mobile)
     shown = page.run("document.documentElement.clientWidth")
