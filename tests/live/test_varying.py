@@ -147,6 +147,35 @@ def test_any_two_contacts(page):
     assert steps.max() <= 12
 
 
+EXTREME = """(() => {
+  let state = 7;
+  const random = () => (state = state * 48271 % 2147483647) / 2147483647;
+  const size = (low, high) => 10 ** (low + (high - low) * random()), way = () => Math.sign(random() - 0.5);
+  const found = [];
+  for (let i = 0; i < 150; i++) {
+    const contacts = [{ a: i % 3 ? random() : size(-6, 0), e: way() * size(-6, 1) }, { a: 1, e: way() * size(-6, 0) }];
+    if (i % 4 === 0) contacts[0].e = contacts[1].e;
+    if (i % 2) contacts.reverse();
+    const Qf = (i % 5 && (i % 3 ? random() : size(-9, 0))) * (contacts[0].a ** 2 + contacts[1].a ** 2) / 2;
+    const sf = i % 7 && (i % 2 ? 20 * random() : size(-9, 7));
+    const { zone, q, means } = varying.solve(contacts, Qf, sf), start = varying.beginning(contacts, Qf);
+    if (zone) varying.reverses(contacts, Qf, sf, zone.s);
+    if (!q) continue;
+    const over = varying.grid(contacts, zone).map((x) => Math.abs(q(x)) - varying.pressure(contacts, x));
+    found.push([...means, start ? start.sf : 0, zone && zone.c < 1e-6 ? 0 : Math.max(...over)]);
+  }
+  return found;
+})()"""
+
+
+def test_extreme_loads(page):
+    """Far lines of action, P nearly to zero, loads of many magnitudes: finite, ordered and within the bound."""
+    least, most, _, over = np.array(page.run(EXTREME), float).T  # NaN would be None
+    assert len(least) > 60
+    assert (least <= most + 1e-9).all()
+    assert over.max() < 1e-7
+
+
 CONSTANT = """(() => {
   const contacts = [{ a: 1, e: 0 }, { a: 1, e: 0 }], found = [];
   for (const Qf of [0, 1e-6, 0.1, 0.3, 0.5, 0.77, 0.98]) for (const sf of [0, 0.01, 0.3, 1, 3, 4.03, 7, 12, 40]) {

@@ -101,7 +101,7 @@ const page = (() => {
     "no stick zone": "the contacts at load points 1 and 2 do not overlap",
     frictionless: "neither friction nor shear force: no stick zone, no sliding",
     sliding: "the whole contact slides: there is no stick zone",
-    ratchets: "every cycle adds slip: the mean of Q exceeds the limit of a steady state; m and n are not reached",
+    ratchets: "every cycle adds slip: the mean of Q is beyond the limits of a steady state; m and n are not reached",
   };
   const STICKING = { always: "does not slip", partly: "slips during part of the cycle", never: "slips" };
   const arrow = (sign) => (sign > 0 ? "\u2192" : "\u2190");
@@ -153,9 +153,9 @@ const page = (() => {
     const table = {
       slides: [share === 1 ? "2 f P" : `${share} \u00b7 2 f P`, engineering(slides, "N/m", 6)], turns: ["none", ""],
     };
-    const start = varies && varying.beginning(contacts.map((at) => ({ ...at, e: mirror * at.e })), Qf);
-    const turns = varies ? start.exists && start.sf : Qf < 1 && hertz.transition(Qf);
-    if (turns !== false) table.turns = [`${turns.toFixed(5)} f p0`, engineering(turns * f * p0, "Pa", 6)];
+    const start = varies ? varying.beginning(contacts.map((at) => ({ ...at, e: mirror * at.e })), Qf) : null;
+    const turns = varies ? start?.sf : Qf < 1 ? hertz.transition(Qf) : undefined;
+    if (turns !== undefined) table.turns = [`${turns.toFixed(5)} f p0`, engineering(turns * f * p0, "Pa", 6)];
     return table;
   }
 

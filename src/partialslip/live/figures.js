@@ -84,13 +84,12 @@ const figures = (() => {
       });
       element(plot.back, "path", { class: "shear", d: path(points.map(({ x, q }) => [toX(x), toY(q)])) });
 
-      if (regime === "sliding") return word(left, right, "slides");
-      if (!stick) return undefined;
       const slip = (sign) => (sign > 0 ? "slip \u2192" : sign < 0 ? "\u2190 slip" : "");
+      if (regime === "sliding") word(left, right, "slides");
+      if (!stick) return;
       word(left, stick[0], slip(turn * ends[0]));
       word(stick[0], stick[1], "stick");
       word(stick[1], right, slip(turn * ends[1]));
-      return undefined;
     };
   }
 

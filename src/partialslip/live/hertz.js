@@ -32,7 +32,7 @@ const hertz = (() => {
       b = 2 * (b + before * ratio);
       root += ratio;
       mean += k;
-      if (Math.abs(last - k) <= 1e-9 * last) return Math.PI / 2 * (b + a * mean) / (mean * (mean + root));
+      if (!(Math.abs(last - k) > 1e-9 * last)) return Math.PI / 2 * (b + a * mean) / (mean * (mean + root));
       k = 2 * Math.sqrt(product);
       product = k * mean;
     }

@@ -7,6 +7,7 @@
 const varying = (() => {
   const STEPS = 60, HALVINGS = 50, SAMPLES = 64;
   const NARROWEST = 1e-100, ROUNDING = 1e-12;
+  const CLOSE = 1e-15;  // smallest distance of a narrow stick zone from the right end of a contact
 
   const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
   const mean = (contacts, of) => (of(contacts[0]) + of(contacts[1])) / 2;
@@ -19,19 +20,24 @@ const varying = (() => {
 
   // Loads of a stick zone for large tension, and the stiffness of its ends.
   function conditions(contacts, left, c) {
-    const found = contacts.map(({ a, e }) => hertz.conditions(Math.max((left - e) / a + 1, 0), c / a, -1));
+    const found = contacts.map(({ a, e }) => {
+      const width = Math.min(c / a, 1), edge = clamp((left - e) / a + 1, 0, 2 - 2 * width - (width < CLOSE ? CLOSE : 0));
+      return hertz.conditions(edge, width, -1);
+    });
     const sum = (key, power) => contacts.reduce((total, { a }, i) => total + found[i][key] * a ** power / 2, 0);
     return { Qf: sum("Qf", 2), sf: sum("sf", 1), right: sum("right", 1), left: sum("left", 1), skew: sum("skew", 0) };
   }
 
-  // The stick zone at which large tension begins for this Qf. One of its ends is an end of the common contact: of all
-  // these zones, from nothing at the left end over the common contact to nothing at the right end, Qf decreases.
+  // The stick zone at which large tension begins for this Qf, and its sf; null if no stick zone has this Qf. One of its
+  // ends is an end of the common contact: of all these zones, from nothing at the left end over the common contact to
+  // nothing at the right end, Qf decreases.
   function beginning(contacts, Qf) {
     const [low, high] = common(contacts), width = high - low;
+    if (!(width > 0)) return null;
     const zone = (way) => ({ left: low + Math.max(way - 1, 0) * width, c: Math.min(way, 2 - way) * width / 2 });
-    const way = halved(0, 2, HALVINGS, (at) => conditions(contacts, zone(at).left, zone(at).c).Qf > Qf)[1];
-    const start = zone(way), at = conditions(contacts, start.left, start.c);
-    return { ...start, sf: at.sf, exists: width > 0 && Math.abs(at.Qf - Qf) < 1e-9 };
+    const [from, to] = halved(0, 2, HALVINGS, (way) => conditions(contacts, zone(way).left, zone(way).c).Qf > Qf);
+    const start = zone((from + to) / 2), at = conditions(contacts, start.left, start.c);
+    return Math.abs(at.Qf - Qf) < 1e-9 ? { ...start, sf: at.sf } : null;
   }
 
   // The stick zone for Qf >= 0 and sf >= 0 if both ends slip, else null: in closed form for small tension, else by
@@ -42,7 +48,7 @@ const varying = (() => {
     const zone = alike(contacts, Qf, sf), [left, right] = ends(zone);
     if (zone.c > 0 && left >= low - ROUNDING && right <= high + ROUNDING) return zone;
     const start = beginning(contacts, Qf);
-    return start.exists && sf >= start.sf - ROUNDING ? opposite(contacts, Qf, Math.min(sf, 1e5), start) : null;
+    return start && sf >= start.sf - ROUNDING ? opposite(contacts, Qf, Math.min(sf, 1e5), start) : null;
   }
 
   // Small tension in closed form; the half-width is NaN if there is no stick zone.
@@ -51,6 +57,7 @@ const varying = (() => {
     return { centre: mean(contacts, ({ e }) => e) - sf / 8, c, s: 1, steps: 0 };
   }
 
+  // Large tension by Newton's method; `start` is the stick zone at which it begins.
   function opposite(contacts, Qf, sf, start) {
     const [low, high] = common(contacts), widest = (high - low) / 2;
     let { left, c } = guess(contacts, Qf, sf, start), steps = 0, last = Infinity;
@@ -115,7 +122,7 @@ const varying = (() => {
   function adhered(contacts, Qf, sf) {
     const [one, two] = contacts, force = two.a ** 2 - one.a ** 2;
     if (Qf === 0 && sf === 0) return () => 0;
-    if (force === 0 || one.e !== two.e) return null;
+    if (force === 0 || Math.abs(two.e - one.e) > ROUNDING) return null;
     return (x) => (Qf + (x - one.e) * sf / 4) / force * (pressureOf(two, x) - pressureOf(one, x));
   }
 
