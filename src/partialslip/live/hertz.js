@@ -169,5 +169,5 @@ const hertz = (() => {
     return 2 / Math.PI * zone.c * room;
   }
 
-  return { conditions, insideOf, largest, meanLoadBound, pressure, rule: RULE, stickZone, tractions, transition };
+  return { conditions, insideOf, largest, meanLoadBound, rule: RULE, stickZone, tractions, transition };
 })();
