@@ -10,6 +10,7 @@ import subprocess
 import sys
 
 import pytest
+from opening import opened
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 # the protocol's pipes are file descriptors 3 and 4
@@ -129,3 +130,13 @@ def browser(tmp_path_factory):
     with contextlib.closing(Browser(program, tmp_path_factory.mktemp("browser") / "profile")) as browser:
         browser.attach()
         yield browser
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("page")
+
+
+@pytest.fixture
+def page(browser, folder):
+    return opened(browser, folder)

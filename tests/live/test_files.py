@@ -80,6 +80,17 @@ def test_what_it_knows_of_the_scene(text):
         np.testing.assert_allclose(half_width + way * centre, value, rtol=0, atol=1e-3)
 
 
+@pytest.mark.parametrize(
+    "load", [{"M": 50.0}, {"e": [1e-4, -1e-4]}, {"p0": None, "P": [5e5, 6e5]}], ids=["M", "e at two points", "P"]
+)
+def test_P_and_e_at_the_load_points(load):
+    scene = load_scene("hertz-large-tension").replace(load=load)
+    known = Outline(live_page(scene)).scene
+    (P1, M1), (P2, M2) = (scene.pressing[end] for end in scene.load.ends)
+    assert known["pressed"] == {"P1": P1, "P2": P2, "e1": M1 / P1, "e2": M2 / P2}
+    assert (known["varies"], known["P"]) == (True, max(P1, P2))
+
+
 def test_the_map_reaches_as_far_as_the_loads():
     assert Outline(live_page(load_scene("hertz-shear", ["load.sigma=[-2e9, 2e9]"]))).scene["map"]["top"] > 20
 
@@ -96,7 +107,7 @@ def test_every_field_has_a_label(text):
     tags = Outline(text).tags
     labels = {attributes["for"] for tag, attributes in tags if tag == "label" and "for" in attributes}
     fields = [attributes for tag, attributes in tags if tag == "input" and attributes["type"] != "checkbox"]
-    assert [field["type"] for field in fields].count("range") == len(labels) == 4
+    assert [field["type"] for field in fields].count("range") == len(labels) == 8
     assert all({"aria-label", "aria-labelledby"} & field.keys() or field["id"] in labels for field in fields)
 
 
@@ -112,7 +123,12 @@ def test_a_title_is_text():
     ("scene", "overrides", "says"),
     [
         ("flat-rounded", [], 'profile.kind = "flat-rounded": must be "hertz"'),
-        ("hertz-shear", ["load.Q=[0, 1e5, 0, -1e5]", "load.sigma=[1e8, 0, -1e8, 0]"], "load.sigma: out of phase"),
+        ("hertz-shear", ["load.Q=[0, 1e5, 0, -1e5]", "load.sigma=[1e8, 0, -1e8, 0]"], "load: Q and sigma are out of"),
+        (
+            "fretting-aluminium",
+            ["load.P=[2e5, 3e5, 2e5]", "load.Q=[0, 1e4, 2e4]", "load.sigma=[0, 0]"],
+            "load: P, Q and sigma are out of phase",
+        ),
         ("hertz-shear", ["friction.f=0"], "friction.f = 0: must be > 0"),
         ("hertz-shear", ["bodies.upper={width=1, height=1}"], "bodies.upper: must not be given for a live page"),
         ("hertz-shear", ['bodies.lower={mesh="a.msh", unit=1e-3}'], "bodies.lower: must not be given for a live page"),

@@ -1,24 +1,20 @@
 """The live page in a browser: mechanics compared with Python, controls moved by mouse and keyboard."""
 
-import functools
 import json
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from msgspec.structs import replace
+from opening import LARGE, answer, opened
 
 import partialslip
 from partialslip import halfplane
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.steady import stick_zone, stick_zones, transition
 from partialslip.halfplane.traction import half_range, mean_load_bound
-from partialslip.live import live_page
 from partialslip.scene.reading import load_scene
 from partialslip.units import engineering
 
-LARGE = "hertz-large-tension"
-made = functools.cache(live_page)
 SIGNS = [
     (["load.Q=[-1e5, 1e5]", "load.sigma=[-3e8, 3e8]"], "large tension"),
     (["load.Q=[1e5, -1e5]", "load.sigma=[-3e8, 3e8]"], "large tension"),
@@ -31,28 +27,6 @@ SIGNS = [
     (["load.Q=[5e4, 3.01e5]", "load.sigma=[0, 8.06e8]"], "ratchets"),
     (["load.Q=[2.8e5, 3.2e5]", "load.sigma=[0, 0]"], "sliding"),
 ]
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("page")
-
-
-def opened(browser, folder, scene=None, change=lambda text: text, **window):
-    """Load the page of a scene in the browser."""
-    path = folder / "page.html"
-    path.write_text(change(made(scene or load_scene(LARGE))), "utf-8")
-    browser.open(path, **window)
-    return browser
-
-
-@pytest.fixture
-def page(browser, folder):
-    return opened(browser, folder)
-
-
-def answer(page):
-    return SimpleNamespace(**page.run("page.answer()"))
 
 
 def zones(page, Qf, sf):
@@ -159,7 +133,7 @@ def test_it_starts_with_the_loads_of_the_scene(browser, folder, overrides, regim
     limit = scene.friction.f * exact.p0
     assert found.q * limit == pytest.approx(np.abs(exact.traction.dq).max() / 2, abs=1e-9 * limit)
     if regime != "stuck":
-        assert found.bound * scene.friction.f * scene.P == pytest.approx(exact.limits["Q_mean"], rel=1e-9)
+        assert found.means[1] * scene.friction.f * scene.P == pytest.approx(exact.limits["Q_mean"], rel=1e-9)
         near_ends = exact.traction.at(np.array([-1, 1]) * exact.a * (1 - 1e-3))[1]
         assert [np.sign(height) for height in drawn_ends(page)] == np.sign(near_ends).tolist()
 
@@ -183,7 +157,7 @@ def pressed_by(P, scene):
 def python_zone(page, scene):
     """Return m and n by Python for the loads shown on the page, in SI units."""
     loads = page.run("page.loads()")
-    pressed = pressed_by(loads["P"], scene)
+    pressed = pressed_by(loads["P1"], scene)
     signs = loads["turn"], loads["turn"] * loads["mirror"]
     found = halfplane.stick_zone(pressed, loads["f"], signs[0] * loads["dQ"], signs[1] * loads["dsigma"])
     return float(found.m) / pressed.a, float(found.n) / pressed.a
@@ -239,7 +213,7 @@ def test_a_normal_force_is_typed(page):
     page.run("const force = document.querySelector('[type=number][data-sets=P]'); force.focus(); force.select()")
     page.send("Input.insertText", text="700")
     found, pressed = answer(page), pressed_by(7e5, scene)
-    assert page.run("page.loads()") == {**before, "P": 7e5}
+    assert page.run("page.loads()") == {**before, "P1": 7e5, "P2": 7e5}
     assert (found.a, found.p0) == pytest.approx((pressed.a, pressed.p0), rel=1e-12)
     assert found.Qf == pytest.approx(scene.load.dQ / (2 * scene.friction.f * 7e5), rel=1e-12)
     assert found.sf == pytest.approx(scene.load.dsigma / (scene.friction.f * pressed.p0), rel=1e-12)
@@ -257,7 +231,7 @@ def test_the_slider_of_P_by_keyboard(page):
     assert abs(value * 1e3 - load_scene(LARGE).P) <= step * 1e3 / 2
     page.run("document.getElementById('P').focus()")
     page.press("ArrowRight", times=3)
-    assert page.run("page.loads().P") == pytest.approx((value + 3 * step) * 1e3, rel=1e-12)
+    assert page.run("page.loads().P1") == pytest.approx((value + 3 * step) * 1e3, rel=1e-12)
 
 
 SETTINGS = "document.getElementById('opposite').click();" + "".join(
@@ -286,7 +260,9 @@ def test_a_link_holds_the_settings(browser, folder):
 
 @pytest.mark.parametrize(
     "link",
-    ["#", "#nonsense", "#P=&f=&dQ=&dsigma=", "#P=-1&f=0&dQ=1e400&dsigma=NaN", "#P=0&f=1e-9&dQ=0x10&dsigma=Infinity",
+    ["#", "#nonsense", "#P1=0&P2=-1&e1=1e9&e2=NaN",
+     "#P=&f=&dQ=&dsigma=", "#P=-1&f=0&dQ=1e400&dsigma=NaN",
+     "#P=0&f=1e-9&dQ=0x10&dsigma=Infinity",
      "#P=1e99&f=%ff&dQ=%3Cscript%3E&other=1", "#__proto__=1&P=1,2&f=0.3a", "#f=0.25&P=none"],
 )  # fmt: skip
 def test_what_is_no_setting_in_a_link_is_left_out(browser, folder, link):
@@ -294,7 +270,8 @@ def test_what_is_no_setting_in_a_link_is_left_out(browser, folder, link):
     loads = page.run("page.loads()")
     scene = load_scene(LARGE)
     f = 0.25 if "0.25" in link else scene.friction.f
-    assert loads == {"P": scene.P, "f": f, "dQ": scene.load.dQ, "dsigma": scene.load.dsigma, "turn": 1, "mirror": 1}
+    pressing = {"varies": False, "P1": scene.P, "P2": scene.P, "e1": 0, "e2": 0}
+    assert loads == {**pressing, "f": f, "dQ": scene.load.dQ, "dsigma": scene.load.dsigma, "turn": 1, "mirror": 1}
     assert page.errors == []
 
 

@@ -18,7 +18,8 @@ def add(commands: "Commands") -> None:
         "page",
         help="make a live page: sliders for loads and friction",
         description="Make one HTML file with sliders for the loads and the friction. The page shows tractions, stick "
-        "zone and the point on the stick-zone map. It calculates in the browser, without network.",
+        "zone and the point on the stick-zone map. P and its line of action may differ between the load points. The "
+        "page calculates in the browser, without network.",
         examples=["partialslip page", "partialslip page hertz-large-tension --out live"],
     )
     page.add_argument("scene", nargs="?", default=_SCENE, metavar="SCENE",

@@ -7,9 +7,11 @@ const page = (() => {
   const by = (id) => document.getElementById(id);
   const DIGITS = 5, LARGEST = 1e9;  // digits shown of a setting, and largest setting accepted
 
-  // P and |dQ| (N/m), |dsigma| (Pa); `turn` is the sign of dQ, `mirror` the sign of dQ dsigma.
+  // P and |dQ| (N/m), |dsigma| (Pa), and e (m) at load points 1 and 2; `turn` is the sign of dQ, `mirror` the sign of
+  // dQ dsigma. Unless `varies`, P1 = P2 and e1 = e2 = 0.
+  const constant = (P) => ({ varies: false, P1: P, P2: P, e1: 0, e2: 0 });
   const start = {
-    P: scene.P, dQ: Math.abs(scene.dQ), dsigma: Math.abs(scene.dsigma), f: scene.f,
+    varies: scene.varies, ...scene.pressed, f: scene.f, dQ: Math.abs(scene.dQ), dsigma: Math.abs(scene.dsigma),
     turn: scene.dQ < 0 ? -1 : 1, mirror: scene.dQ * scene.dsigma < 0 ? -1 : 1,
   };
   if (scene.dQ === 0 && scene.dsigma < 0) start.turn = -1;
@@ -31,49 +33,109 @@ const page = (() => {
     const { factor, label } = shownIn(number, unit);
     return `${+(number / factor).toPrecision(digits)} ${label}`;
   }
-  const minus = (text) => text.replace(/-(?=[\d.])/, "\u2212");
+  const minus = (text) => text.replace(/-(?=[\d.])/g, "\u2212");
 
-  // Solution for the loads, by the exact method.
-  function answer({ P, dQ, dsigma, f, turn, mirror }) {
-    const { a, p0 } = pressed(P);
-    const Qf = dQ / (2 * f * P), sf = dsigma / (f * p0), mean = Math.abs(scene.Q_mean) / (f * P);
-    const found = { P, a, p0, Qf, sf, turn, mirror, f, zone: null, m: null, n: null, q: null, bound: null };
+  // Solution for the loads, by the exact method. Lengths are scaled by a, pressures by p0, both of the larger P.
+  // hertz.js and varying.js solve for dQ, dsigma >= 0; `mirror` and `turn` give the solution for other signs.
+  function answer(loads) {
+    const { P1, P2, e1, e2, dQ, dsigma, f, turn, mirror, varies } = loads;
+    const P = Math.max(P1, P2), { a, p0 } = pressed(P), Qf = dQ / (2 * f * P), sf = dsigma / (f * p0);
+    const contacts = [[P1, e1], [P2, e2]].map(([force, e]) => ({ a: Math.sqrt(force / P), e: e / a }));
+    const found = {
+      varies, P, P1, P2, e1, e2, a, p0, Qf, sf, f, turn, mirror, contacts, zone: null, stick: null, ends: null,
+      points: [], means: null, m: null, n: null, q: null, reverses: false,
+    };
     if (f === 0 && dQ === 0 && !scene.Q_mean) return { ...found, Qf: 0, sf: 0, regime: "frictionless" };
-    if (!(Qf < 1) || Qf + mean >= 1) return { ...found, regime: "sliding" };
+    const [Q1, Q2] = [-1, 1].map((way) => Math.abs(scene.Q_mean + way * turn * dQ / 2));
+    if (!(Q1 < f * P1 && Q2 < f * P2)) return { ...found, regime: "sliding" };
+
+    const solved = varies ? uneven(contacts.map((at) => ({ ...at, e: mirror * at.e })), Qf, sf) : even(Qf, sf);
+    const { zone, stick, ends, points, means } = solved, ascending = (one, two) => one - two;
+    const placed = stick && stick.map((x) => mirror * x).sort(ascending);
+    const limits = means && means.map((limit) => turn * limit).sort(ascending), mean = scene.Q_mean / (f * P);
+    const ratchets = limits && !(limits[0] <= mean && mean <= limits[1]);
+    return {
+      ...found,
+      ...solved,
+      stick: placed,
+      ends: ends && (mirror > 0 ? ends : [ends[1], ends[0]]),
+      points: points.map(({ x, q }) => ({ x: mirror * x, q: turn * q })),
+      means: limits,
+      m: zone && -placed[0],
+      n: zone && placed[1],
+      regime: ratchets ? "ratchets" : solved.regime,
+    };
+  }
+
+  const tensile = ({ s }) => (s > 0 ? "small tension" : "large tension");
+
+  // The solution for constant P and e = 0. `ends`: direction of slip at the left and the right end, times `turn`.
+  function even(Qf, sf) {
     const zone = hertz.stickZone(Qf, sf), bound = hertz.meanLoadBound(zone, Qf);
-    const stuck = Qf === 0 && sf === 0;
-    let regime = zone.s > 0 ? "small tension" : "large tension";
-    if (stuck) regime = "stuck";
-    else if (mean > bound) regime = "ratchets";
-    const centre = mirror * zone.centre, q = stuck ? 0 : hertz.largest(zone);
-    return { ...found, zone, regime, bound, m: zone.c - centre, n: zone.c + centre, q };
+    const found = { zone, stick: varying.ends(zone), ends: [zone.s, 1], means: [-bound, bound] };
+    if (Qf === 0 && sf === 0) return { ...found, points: [{ x: -1, q: 0 }, { x: 1, q: 0 }], q: 0, regime: "stuck" };
+    const reverses = sf > 0 && (zone.s > 0 ? sf > 4 * Qf : zone.c * sf < 4 * Qf);
+    return { ...found, points: hertz.tractions(zone), q: hertz.largest(zone), reverses, regime: tensile(zone) };
+  }
+
+  // The solution for any P and e. `ends` has words of varying.js where no closed form exists.
+  function uneven(contacts, Qf, sf) {
+    const { zone, sticking, q, means } = varying.solve(contacts, Qf, sf), shared = varying.common(contacts);
+    const xs = q ? varying.grid(contacts, zone) : [], points = xs.map((x) => ({ x, q: q(x) }));
+    const found = { zone, points, means, q: q && varying.largest(xs, q) };
+    if (zone) {
+      const reverses = varying.reverses(contacts, Qf, sf, zone.s);
+      return { ...found, stick: varying.ends(zone), ends: [zone.s, 1], reverses, regime: tensile(zone) };
+    }
+    if (!(shared[0] < shared[1])) return { ...found, regime: "no stick zone" };
+    const whole = sticking.every((end) => end === "always");
+    const regime = !whole ? "no closed form" : Qf === 0 && sf === 0 ? "stuck" : "no slip";
+    return { ...found, stick: whole ? shared : null, ends: sticking, regime };
   }
 
   const REGIMES = {
-    stuck: "the loads do not change",
+    stuck: "Q and \u03c3 do not change",
+    "no slip": "neither end slips, the whole contact sticks",
     "small tension": "both ends slip in the same direction",
     "large tension": "the ends slip in opposite directions",
+    "no stick zone": "the contacts at load points 1 and 2 do not overlap",
     frictionless: "neither friction nor shear force: no stick zone, no sliding",
     sliding: "the whole contact slides: there is no stick zone",
-    ratchets: "every cycle adds slip: the mean of Q exceeds the limit of a steady state; m and n are not reached",
+    ratchets: "every cycle adds slip: the mean of Q is beyond the limits of a steady state; m and n are not reached",
   };
+  const STICKING = { always: "does not slip", partly: "slips during part of the cycle", never: "slips" };
+  const arrow = (sign) => (sign > 0 ? "\u2192" : "\u2190");
 
-  function note({ zone, Qf, sf }) {
-    if (!zone || sf === 0) return "";
-    const turns = zone.s > 0 ? sf > 4 * Qf : zone.c * sf < 4 * Qf;
-    return turns ? "Under a gradual load path between these load points, slip at one end reverses. q then differs " +
+  // The regime in words; for varying P or e also what either end does.
+  function meaning({ regime, varies, zone, ends, turn }) {
+    if (!varies || !(zone || regime === "no closed form") || regime === "ratchets") return REGIMES[regime];
+    const [left, right] = ends.map((end) => STICKING[end] ?? `slips ${arrow(turn * end)}`);
+    return `${zone ? "from load point 1 to 2 " : ""}the left end ${left}, the right end ${right}`;
+  }
+
+  function note({ regime, reverses, points, varies }) {
+    if (varies && regime !== "sliding" && !points.length) {
+      return "q has no closed form for these loads and is not drawn; the method march calculates it.";
+    }
+    return reverses ? "Under a gradual load path between these load points, slip at one end reverses. q then differs " +
       "from the closed form; march with load.steps gives the difference." : "";
   }
 
   // [scaled, dimensional] values of the table.
-  function numbers({ P, a, p0, zone, f, m, n, q, Qf, bound }) {
-    const none = ["none", ""], length = (at) => engineering(at * a, "m", 6), turns = hertz.transition(Qf);
-    const table = { m: none, n: none, width: none, q: none, turns: none, mean: none };
-    table.a = ["", length(1)];
-    table.p0 = ["", engineering(p0, "Pa", 6)];
-    const mean = Math.min(Math.abs(scene.Q_mean) / (f * P) || 0, 1);  // 0/0 without friction
-    table.slides = [mean ? `${+(1 - mean).toFixed(5)} \u00b7 2 f P` : "2 f P", engineering((1 - mean) * 2 * f * P, "N/m", 6)];
-    if (Qf < 1) table.turns = [`${turns.toFixed(5)} f p0`, engineering(turns * f * p0, "Pa", 6)];
+  function numbers(found) {
+    const { P, a, p0, f, zone, contacts, m, n, q, means } = found, none = ["none", ""];
+    const length = (at) => engineering(at * a, "m", 6);
+    const force = (scaled) => [`${scaled.toFixed(5)} f P`, engineering(scaled * f * P, "N/m", 6)];
+    const [contact1, contact2] = contacts.map((at) => {
+      const ends = [at.e - at.a, at.e + at.a], sized = ends.map((x) => engineering(x * a, "m", 5));
+      return [`${ends.map((x) => x.toFixed(4)).join(" to ")} a`, sized.join(" to ")];
+    });
+    const table = {
+      m: none, n: none, width: none, q: none, least: none, most: none, contact1, contact2, a: ["", length(1)],
+      p0: ["", engineering(p0, "Pa", 6)], ...limits(found),
+    };
+    if (means) [table.least, table.most] = means.map(force);
+    if (q !== null) table.q = [`${q.toFixed(7)} f p0`, engineering(q * f * p0, "Pa", 6)];
     if (!zone) return table;
     const width = 2 * zone.c;
     return {
@@ -81,12 +143,24 @@ const page = (() => {
       m: [`${m.toFixed(7)} a`, length(m)],
       n: [`${n.toFixed(7)} a`, length(n)],
       width: [`${width < 1e-4 ? width.toExponential(4) : width.toFixed(7)} a`, length(width)],
-      q: [`${q.toFixed(7)} f p0`, engineering(q * f * p0, "Pa", 6)],
-      mean: [`${bound.toFixed(5)} f P`, engineering(bound * f * P, "N/m", 6)],
     };
   }
 
+  // dsigma at which large tension begins, and dQ at which the contact slides.
+  function limits({ varies, P, P1, P2, p0, f, turn, mirror, Qf, contacts }) {
+    const mean = turn * scene.Q_mean, slides = Math.max(2 * Math.min(f * P2 - mean, f * P1 + mean), 0);
+    const share = +(slides / (2 * f * P)).toFixed(5) || 0;  // 0/0 without friction
+    const table = {
+      slides: [share === 1 ? "2 f P" : `${share} \u00b7 2 f P`, engineering(slides, "N/m", 6)], turns: ["none", ""],
+    };
+    const start = varies ? varying.beginning(contacts.map((at) => ({ ...at, e: mirror * at.e })), Qf) : null;
+    const turns = varies ? start?.sf : Qf < 1 ? hertz.transition(Qf) : undefined;
+    if (turns !== undefined) table.turns = [`${turns.toFixed(5)} f p0`, engineering(turns * f * p0, "Pa", 6)];
+    return table;
+  }
+
   // Controls of loads and friction: how to read and set each value, and the values allowed.
+  const larger = () => Math.max(loads.P1, loads.P2);
   const shear = () => loads.turn * loads.dQ, tension = () => loads.turn * loads.mirror * loads.dsigma;
   function sized(dQ, dsigma) {
     const turn = Math.sign(dQ) || Math.sign(dsigma) * loads.mirror || loads.turn;
@@ -95,35 +169,54 @@ const page = (() => {
   }
   const normal = shownIn(scene.P, "N/m"), force = shownIn(2 * scene.f * scene.P, "N/m");
   const stress = shownIn(scene.f * scene.p0, "Pa");
-  const step = 10 ** Math.floor(Math.log10(scene.P / normal.factor / 50));  // of the slider of P
+  const distance = shownIn(scene.a, "m"), FARTHEST = 1e3 * scene.a / distance.factor;  // of e
+  const nice = (value) => 10 ** Math.floor(Math.log10(value / 50));  // step of a slider that goes to 4 times the value
+  const step = nice(scene.P / normal.factor);
+  const pressing = (key) => ({
+    get: (found) => found[key] / normal.factor, set: (value) => ({ [key]: value * normal.factor }), least: step / 1e6,
+  });
+  const line = (key) => ({
+    get: (found) => found[key] / distance.factor, set: (value) => ({ [key]: value * distance.factor }),
+    least: -FARTHEST, most: FARTHEST,
+  });
   const controls = {
-    P: { get: ({ P }) => P / normal.factor, set: (value) => ({ P: value * normal.factor }), least: step / 1e6 },
-    Qf: { get: ({ Qf }) => Qf, set: (value) => ({ dQ: value * 2 * loads.f * loads.P }) },
-    sf: { get: ({ sf }) => sf, set: (value) => ({ dsigma: value * loads.f * pressed(loads.P).p0 }) },
+    P: { ...pressing("P"), set: (value) => constant(value * normal.factor) },
+    P1: pressing("P1"),
+    P2: pressing("P2"),
+    e1: line("e1"),
+    e2: line("e2"),
+    Qf: { get: ({ Qf }) => Qf, set: (value) => ({ dQ: value * 2 * loads.f * larger() }) },
+    sf: { get: ({ sf }) => sf, set: (value) => ({ dsigma: value * loads.f * pressed(larger()).p0 }) },
     f: { get: ({ f }) => f, set: (value) => ({ f: value }), least: 1e-6 },
     dQ: { get: () => shear() / force.factor, set: (value) => sized(value * force.factor, tension()), least: -LARGEST },
     dsigma: {
       get: () => tension() / stress.factor, set: (value) => sized(shear(), value * stress.factor), least: -LARGEST,
     },
   };
-  const allowed = (name, value) => value >= (controls[name].least ?? 0) && value <= LARGEST;
+  const allowed = (name, value) => value >= (controls[name].least ?? 0) && value <= (controls[name].most ?? LARGEST);
 
-  // The link: P, f, dQ and dsigma in SI units. A zero keeps its sign, which tells how the loads turn and are mirrored.
-  const UNITS = { P: normal.factor, f: 1, dQ: force.factor, dsigma: stress.factor };
+  // The link: P, or P1, P2, e1 and e2 if they vary, and f, dQ and dsigma, in SI units. A zero keeps its sign, which
+  // tells how the loads turn and are mirrored.
+  const SHOWN = {
+    P: normal, P1: normal, P2: normal, e1: distance, e2: distance, f: { factor: 1 }, dQ: force, dsigma: stress,
+  };
   const NUMBER = /^-?\d{1,20}(\.\d{1,20})?(e-?\d{1,3})?$/i;
   const sign = (value) => (value < 0 || Object.is(value, -0) ? -1 : 1);
   function link() {
-    const known = { P: loads.P, f: loads.f, dQ: shear(), dsigma: tension() };
+    const { varies, P1, P2, e1, e2, f } = loads;
+    const known = { ...(varies ? { P1, P2, e1, e2 } : { P: P1 }), f, dQ: shear(), dsigma: tension() };
     const text = (value) => (Object.is(value, -0) ? "-0" : String(+value.toPrecision(12)));
     return `#${Object.entries(known).map(([key, value]) => `${key}=${text(value)}`).join("&")}`;
   }
   function linked() {
-    const found = new URLSearchParams(location.hash.slice(1)), settings = { ...start };
-    const signed = { dQ: start.turn * start.dQ, dsigma: start.turn * start.mirror * start.dsigma };
-    for (const [key, unit] of Object.entries(UNITS)) {
+    const found = new URLSearchParams(location.hash.slice(1)), given = {};
+    for (const [key, { factor }] of Object.entries(SHOWN)) {
       const text = found.get(key) ?? "", value = Number(text);
-      if (NUMBER.test(text) && allowed(key, value / unit)) (key in signed ? signed : settings)[key] = value;
+      if (NUMBER.test(text) && allowed(key, value / factor)) given[key] = value;
     }
+    const { P, dQ, dsigma, ...others } = given, settings = { ...start, ...(P && constant(P)), ...others };
+    settings.varies ||= ["P1", "P2", "e1", "e2"].some((key) => key in given);
+    const signed = { dQ: dQ ?? start.turn * start.dQ, dsigma: dsigma ?? start.turn * start.mirror * start.dsigma };
     const turn = sign(signed.dQ), mirror = turn * sign(signed.dsigma);
     return { ...settings, dQ: Math.abs(signed.dQ), dsigma: Math.abs(signed.dsigma), turn, mirror };
   }
@@ -159,8 +252,13 @@ const page = (() => {
       }
     }
     by("opposite").checked = loads.mirror < 0;
+    by("varies").checked = loads.varies;
+    for (const part of document.querySelectorAll("[data-varies]")) {
+      part.hidden = (part.dataset.varies === "true") !== loads.varies;
+    }
+    document.querySelector("main").classList.toggle("varies", loads.varies);
     by("regime").textContent = `${found.regime}:`;
-    by("meaning").textContent = REGIMES[found.regime];
+    by("meaning").textContent = meaning(found);
     for (const [key, cells] of Object.entries(numbers(found))) {
       cells.forEach((text, column) => { by(`${key}-${column}`).textContent = minus(text); });
     }
@@ -186,6 +284,9 @@ const page = (() => {
       input.addEventListener("blur", show);
     }
     by("opposite").addEventListener("change", (event) => change({ mirror: event.target.checked ? -1 : 1 }));
+    by("varies").addEventListener("change", (event) => {
+      change(event.target.checked ? { varies: true } : constant(larger()));
+    });
     by("reset").addEventListener("click", () => change(start));
     addEventListener("hashchange", () => change(linked()));
   }
@@ -199,23 +300,28 @@ const page = (() => {
     show();
   }
 
-  by("P-unit").textContent = normal.label;
-  const most = Math.ceil(4 * scene.P / normal.factor / step) * step;
-  for (const [key, value] of Object.entries({ min: step, max: most, step })) {
-    by("P").setAttribute(key, +value.toPrecision(12));
+  const multiple = (value, of) => Math.ceil(value / of) * of, fine = nice(scene.a / distance.factor);
+  const reach = Math.max(0.5 * scene.a, 1.2 * Math.abs(start.e1), 1.2 * Math.abs(start.e2)) / distance.factor;
+  const far = multiple(reach, fine), most = multiple(4 * scene.P / normal.factor, step);
+  const ranges = { P: [step, most, step], e: [-far, far, fine] };
+  for (const key of ["P", "P1", "P2", "e1", "e2"]) {
+    const values = ranges[key[0]];
+    ["min", "max", "step"].forEach((name, i) => by(key).setAttribute(name, +values[i].toPrecision(12)));
   }
-  by("dQ-unit").textContent = force.label;
-  by("dsigma-unit").textContent = stress.label;
+  for (const [key, { label }] of Object.entries(SHOWN)) if (label) by(`${key}-unit`).textContent = label;
   loads = linked();
   by("link").href = link();
   listen();
   layOut();
-  let width = by("map").parentNode.clientWidth;
-  new ResizeObserver(() => {
-    if (by("map").parentNode.clientWidth === width) return;
-    width = by("map").parentNode.clientWidth;
+  const frames = ["tractions", "map"].map((id) => by(id).parentNode);  // the map is hidden while P or e vary
+  const sizes = () => frames.map((frame) => frame.clientWidth).join();
+  let shown = sizes();
+  const observer = new ResizeObserver(() => {
+    if (sizes() === shown) return;
+    shown = sizes();
     layOut();
-  }).observe(by("map").parentNode);
+  });
+  for (const frame of frames) observer.observe(frame);
 
-  return { answer: () => answer(loads), loads: () => loads };
+  return { answer: (changes = {}) => answer({ ...loads, ...changes }), loads: () => loads };
 })();

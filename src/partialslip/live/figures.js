@@ -52,45 +52,56 @@ const figures = (() => {
 
   // Returns draw(answer): tractions and stick zone of the loads. `xLabel` gives the label of the axis for an answer.
   function tractions(svg, xLabel) {
-    const plot = axes(svg, {
-      x: [-1.04, 1.04], y: [-1.1, 1.3], xTicks: [-1, -0.5, 0, 0.5, 1], yTicks: [-1, -0.5, 0, 0.5, 1],
-      xLabel: "", yLabel: "p/p0 and q/(f p0)",
-    });
-    const { toX, toY, box } = plot;
-    const bound = Array.from({ length: 201 }, (_, i) => -Math.cos(Math.PI * i / 200));
-    const zone = element(plot.back, "rect", { class: "stick", y: box.top, height: box.bottom - box.top });
-    element(plot.back, "path", { class: "zero", d: path([[box.left, toY(0)], [box.right, toY(0)]]) });
-    for (const way of [1, -1]) {
-      const curve = bound.map((x) => [toX(x), toY(way * hertz.pressure(x))]);
-      element(plot.back, "path", { class: "pressure", d: path(curve) });
-    }
-    const ends = element(plot.back, "path", { class: "ends" }), shear = element(plot.back, "path", { class: "shear" });
-    const words = element(plot.front, "g", { class: "words" });
-    const word = (low, high, text) => {
-      if (toX(high) - toX(low) < ROOM) return;
-      element(words, "text", { x: (toX(low) + toX(high)) / 2, y: box.top + 15, "text-anchor": "middle" }, text);
-    };
+    let drawn = "", plot = null;
     return (answer) => {
-      const { zone: found, mirror, turn, regime } = answer;
+      const { contacts, stick, points, ends, turn, regime, varies } = answer, [left, right] = varying.union(contacts);
+      const range = [Math.floor(10 * Math.min(left, -1)) / 10, Math.ceil(10 * Math.max(right, 1)) / 10];
+      if (range.join() !== drawn) [drawn, plot] = [range.join(), tractionAxes(svg, range)];
+      const { toX, toY, box } = plot;
       plot.across.textContent = xLabel(answer);
-      words.replaceChildren();
-      zone.setAttribute("width", 0);
-      ends.setAttribute("d", "");
-      shear.setAttribute("d", "");
-      if (!found) return word(-1, 1, "slides");
-      const [low, high] = [found.centre - found.c, found.centre + found.c].map((x) => mirror * x).sort((a, b) => a - b);
-      zone.setAttribute("x", toX(low));
-      zone.setAttribute("width", Math.max(toX(high) - toX(low), 1));  // show the narrowest zone
-      ends.setAttribute("d", [low, high].map((x) => path([[toX(x), box.top], [toX(x), box.bottom]])).join(""));
-      const points = regime === "stuck" ? [{ x: -1, q: 0 }, { x: 1, q: 0 }] : hertz.tractions(found);
-      shear.setAttribute("d", path(points.map(({ x, q }) => [toX(mirror * x), toY(turn * q)])));
-      const arrow = (sign) => (sign > 0 ? "slip \u2192" : "\u2190 slip");
-      const [left, right] = mirror > 0 ? [found.s, 1] : [1, found.s];
-      word(-1, low, arrow(turn * left));
-      word(low, high, "stick");
-      word(high, 1, arrow(turn * right));
-      return undefined;
+      plot.back.replaceChildren();
+      plot.front.replaceChildren();
+      const word = (low, high, text) => {
+        if (toX(high) - toX(low) < ROOM || !text) return;
+        element(plot.front, "text", { x: (toX(low) + toX(high)) / 2, y: box.top + 15, "text-anchor": "middle" }, text);
+      };
+      const curve = (kind, xs, of) => {
+        element(plot.back, "path", { class: kind, d: path(xs.map((x) => [toX(x), toY(of(x))])) });
+      };
+
+      if (stick) {
+        const width = Math.max(toX(stick[1]) - toX(stick[0]), 1);  // show the narrowest zone
+        const size = { y: box.top, width, height: box.bottom - box.top };
+        element(plot.back, "rect", { class: "stick", x: toX(stick[0]), ...size });
+        const sides = stick.map((x) => path([[toX(x), box.top], [toX(x), box.bottom]]));
+        element(plot.back, "path", { class: "ends", d: sides.join("") });
+      }
+      element(plot.back, "path", { class: "zero", d: path([[box.left, toY(0)], [box.right, toY(0)]]) });
+      const grid = varying.grid(contacts);
+      for (const way of [1, -1]) curve("pressure", grid, (x) => way * varying.pressure(contacts, x));
+      contacts.forEach((contact, i) => {
+        if (varies) curve(`pressure-${i + 1}`, varying.grid([contact, contact]), (x) => varying.pressureOf(contact, x));
+      });
+      element(plot.back, "path", { class: "shear", d: path(points.map(({ x, q }) => [toX(x), toY(q)])) });
+
+      const slip = (sign) => (sign > 0 ? "slip \u2192" : sign < 0 ? "\u2190 slip" : "");
+      if (regime === "sliding") word(left, right, "slides");
+      if (!stick) return;
+      word(left, stick[0], slip(turn * ends[0]));
+      word(stick[0], stick[1], "stick");
+      word(stick[1], right, slip(turn * ends[1]));
     };
+  }
+
+  function tractionAxes(svg, [low, high]) {
+    const span = high - low, margin = 0.02 * span;
+    const step = span < 4 ? 0.5 : [1, 2, 5].map((one) => one * 10 ** Math.floor(Math.log10(span / 4)))
+      .findLast((one) => one <= span / 4);
+    const first = Math.ceil(low / step), count = Math.floor(high / step) - first + 1;
+    return axes(svg, {
+      x: [low - margin, high + margin], y: [-1.1, 1.3], yTicks: [-1, -0.5, 0, 0.5, 1],
+      xTicks: Array.from({ length: count }, (_, i) => step * (first + i)), xLabel: "", yLabel: "p/p0 and q/(f p0)",
+    });
   }
 
   // Returns draw(answer). Calls `move` with the loads (Qf, sf) to which the point is dragged or stepped.

@@ -32,7 +32,7 @@ const hertz = (() => {
       b = 2 * (b + before * ratio);
       root += ratio;
       mean += k;
-      if (Math.abs(last - k) <= 1e-9 * last) return Math.PI / 2 * (b + a * mean) / (mean * (mean + root));
+      if (!(Math.abs(last - k) > 1e-9 * last)) return Math.PI / 2 * (b + a * mean) / (mean * (mean + root));
       k = 2 * Math.sqrt(product);
       product = k * mean;
     }
@@ -169,5 +169,5 @@ const hertz = (() => {
     return 2 / Math.PI * zone.c * room;
   }
 
-  return { conditions, largest, meanLoadBound, pressure, stickZone, tractions, transition };
+  return { conditions, insideOf, largest, meanLoadBound, rule: RULE, stickZone, tractions, transition };
 })();

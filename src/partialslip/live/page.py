@@ -1,5 +1,8 @@
-"""The live page: one self-contained HTML file. The mechanics are in ``hertz.js``, in the folder of this module."""
+"""The live page: one self-contained HTML file. The mechanics are in the folder of this module, in ``hertz.js`` for
+constant P without a moment, and in ``varying.js``."""
 
+import functools
+import math
 from importlib.metadata import version
 from typing import Any
 
@@ -8,7 +11,8 @@ from msgspec.structs import fields
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.map.grid import Line, StickMap, stick_map
+from partialslip.halfplane import contact
+from partialslip.map.grid import Line, stick_map
 from partialslip.output.labels import label_places
 from partialslip.output.template import template
 from partialslip.scene import Hertz, Scene
@@ -18,23 +22,24 @@ _SHAPE = 1.5  # width over height of the map on the page
 _NAMES = np.array([(0.05, 0.94), (0.12, 0.94), (0.19, 0.94), (0.8, 0.03), (0.88, 0.03), (0.96, 0.03)])  # regime names
 _SOLVED = {  # fields that the page takes into account; any other that is given is refused
     "profile": ("R",),
-    "load": ("P", "a", "p0", "Q", "sigma", "cycles", "steps"),
+    "load": ("P", "a", "p0", "M", "e", "Q", "sigma", "cycles", "steps"),
     "bodies": (),
     "effects": (),
 }
 _ROUNDED = 5  # decimals of the map's lines
+_TOP, _HIGHEST = 10.0, 40.0  # dsigma/(f p0) at the map's top, more for scenes with more, up to the second number
 
 
 def live_page(scene: Scene) -> str:
     """Return the live page of ``scene`` as HTML: sliders for the loads, tractions and stick zone.
 
-    The sliders start at the loads of the scene.
+    The sliders start at the loads of the scene. P and its line of action may differ between the load points.
 
     Raises
     ------
     InputError
         If the profile is not ``hertz``, a body is finite, the bodies' materials differ, an effect is forced on or off,
-        there is no friction, or Q and sigma are out of phase.
+        there is no friction, or the loads are out of phase.
     """
     _check(scene)
     return (
@@ -60,8 +65,10 @@ def _check(scene: Scene) -> None:
                 )
     if not scene.material.alike:
         raise InputError("material.upper, material.lower: the bodies differ; must be of one material for a live page")
+    if scene.friction.f == 0:
+        raise InputError("friction.f = 0: must be > 0 for a live page: without friction there is no stick zone")
     if not scene.load.in_phase:
-        raise InputError("load.sigma: out of phase with load.Q; must be in phase for a live page")
+        raise InputError(f"load: {scene.varying} are out of phase; must be in phase for a live page")
 
 
 def _data(scene: Scene) -> dict[str, Any]:
@@ -69,28 +76,33 @@ def _data(scene: Scene) -> dict[str, Any]:
 
     ``units`` has labels and sizes of the units in which the page shows numbers; none for SI with prefixes.
     """
-    found = stick_map(scene)
-    assert found.pressed
-    pressed, load, f, units = found.pressed, scene.load, scene.friction.f, scene.units
+    pressed, load, f, units = contact(scene), scene.load, scene.friction.f, scene.units
+    sf = abs(load.dsigma) / (f * pressed.p0)
+    one, two = (scene.pressing[end] for end in load.ends)
     return {
         "name": scene.name,
         "title": scene.title,
         "a": pressed.a,
         "p0": pressed.p0,
         "P": pressed.P,
+        "pressed": {"P1": one.P, "P2": two.P, "e1": (one.M or 0.0) / one.P, "e2": (two.M or 0.0) / two.P},
+        "varies": scene.presses_anew or bool(scene.M),
+        "largest": scene.largest,
         "f": f,
         "most_friction": max(1.5, 2 * f),
         "dQ": load.dQ,
         "dsigma": load.dsigma,
         "Q_mean": load.Q_mean,
         "units": {of: [units.label(of), units.size(of)] for of in ("m", "Pa", "N/m")} if units != SI else {},
-        "map": _lines(found),
+        "map": _lines(max(_TOP, math.ceil(1.2 * sf)) if sf <= _HIGHEST else _TOP),
     }
 
 
-def _lines(found: StickMap) -> dict[str, Any]:
-    """Return lines of equal m and n, with places of the labels, and the border between the regimes; in (Qf, sf)."""
-    top = float(found.grid.sf.max())
+@functools.cache
+def _lines(top: float) -> dict[str, Any]:
+    """Return lines of equal m and n up to sf = ``top``, with places of the labels, and the border between the regimes;
+    in (Qf, sf)."""
+    found = stick_map()
     border, lines = _points(found.border, top), [_points(line, top) for line in (*found.m_lines, *found.n_lines)]
     paper = np.array([_SHAPE, 1 / top])
     avoided = np.vstack([border, _NAMES * (1, top)])
@@ -104,7 +116,7 @@ def _lines(found: StickMap) -> dict[str, Any]:
         )
     ]
     count = len(found.m_lines)
-    return {"m": labelled[:count], "n": labelled[count:], "border": _listed(border), "top": top}
+    return {"m": labelled[:count], "n": labelled[count:], "border": _listed(border), "top": float(top)}
 
 
 def _points(line: Line, top: float) -> Array:
