@@ -141,7 +141,7 @@ def test_gap_is_the_profile(deck, scene):
 def test_fault_gap_not_flattened_with_the_bodies(scene, monkeypatch):
     """Bodies stiffer but not the gap flatter, which would be another contact: the check sees it."""
     true = models._upper
-    monkeypatch.setattr(models, "_upper", lambda mesh, scene, a, _: true(mesh, scene, a, 1.0))
+    monkeypatch.setattr(models, "_upper", lambda *given: true(*given[:-1], 1.0))
     upper = modelled(scene, SIZE, growth=GROWTH, stiffer=STIFFER).parts[1]
     assert gap_error(*upper.mesh.points[upper.contact].T, scene) > 1
 

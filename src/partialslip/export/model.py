@@ -182,13 +182,12 @@ def modelled(
         scaled = quad_block(wide, (-reach, reach), sizes, growth * fineness, size * fineness)
         return replace(scaled, points=scaled.points * a)
 
-    overlap = _OVERLAP * float(scene.profile.gap_at(least))
+    overlap = _OVERLAP * float(scene.profile.gap_at(np.array(least)))
+    meshes = mesh(scene.fem.lower_size), _upper(mesh(1.0), scene, reach * a, overlap, stiffer)
+    constants = map(_in_plane_strain, scene.material.bodies)
     lower, upper = (
         Part(name, each, stiffer * E, nu)
-        for name, each, (E, nu) in (
-            ("lower", mesh(scene.fem.lower_size), _in_plane_strain(scene.material.bodies[0])),
-            ("upper", _upper(mesh(1.0), scene, reach * a, overlap, stiffer), _in_plane_strain(scene.material.bodies[1])),
-        )
+        for name, each, (E, nu) in zip(("lower", "upper"), meshes, constants, strict=True)
     )
     return Model(scene.name, (lower, upper), f, _steps(scene), scene.load.steps, a, size * a, wide, stiffer)
 
@@ -205,9 +204,7 @@ def _bound(scene: Scene) -> str:
 def _half_widths(scene: Scene) -> tuple[float, float, float]:
     """Contact half-width a of ``scene``, and those of the smallest and the largest contact of the cycle, m."""
     a, forces = contact(scene).a, [P for P, _ in scene.pressing]
-    least, most = (
-        a if P == scene.P else contact(scene.replace(load={"P": P})).a for P in (min(forces), max(forces))
-    )
+    least, most = (a if P == scene.P else contact(scene.replace(load={"P": P})).a for P in (min(forces), max(forces)))
     return a, least, most
 
 
