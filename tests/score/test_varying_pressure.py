@@ -90,6 +90,14 @@ def test_what_is_missing_or_too_much_is_named(tmp_path):
     assert read(path, constant).p1 is None
 
 
+def test_half_of_the_change_is_not_the_shear_at_a_load_point(tmp_path):
+    """Unless the loads are fully reversed, as those of the same scene with constant P are."""
+    np.savetxt(tmp_path / "t.csv", table() * [1, 1, 1, 0.5], delimiter=",", header="x,p,p1,q", comments="")
+    found, reversed_ = (read(tmp_path / "t.csv", scene) for scene in (SCENE, SCENE.replace(load={"P": SCENE.P})))
+    assert found.q2 is None
+    assert np.array_equal(reversed_.q2, found.dq / 2)
+
+
 def test_the_template_has_a_column_for_each_pressure(capsys, tmp_path):
     (tmp_path / "mine.toml").write_text(
         'name = "mine"\n[material]\nE = 72.8e9\nnu = 0.3\n[profile]\nkind = "hertz"\nR = 0.05\n'

@@ -84,6 +84,8 @@ def read(
             )
         notes += (f"{columns.made_of}: shear at load point 2, taken as half of its change",)
     made = samples(columns.values, origin, factors, order)
+    if not load.fully_reversed and {"q", "Ft"} & set(columns.values):  # half of the change, but not q at load point 2
+        made = replace(made, q1=None, q2=None)
     return replace(made, made_of=columns.made_of, notes=notes)
 
 
