@@ -10,6 +10,7 @@ import meshio
 import msgspec
 import numpy as np
 import pytest
+import varying as closed_form
 
 from partialslip import load_scene
 from partialslip.cli import main
@@ -18,6 +19,7 @@ from partialslip.export import FORMATS, export
 from partialslip.export import model as models
 from partialslip.export.calculix import deck_units
 from partialslip.export.model import modelled
+from partialslip.judge import compare
 from partialslip.score import score
 from partialslip.units import N_MM, N_UM, SI
 
@@ -385,11 +387,16 @@ def test_command(tmp_path, monkeypatch, capsys):
     assert decks == [f"{SCENE}-{end}.inp" for end in ("abaqus", "calculix-2", "calculix")]
 
 
-def computed(scene, folder, **how):
-    """What CalculiX makes of the exported deck, scored."""
+def ran(scene, folder, **how):
+    """File of what CalculiX makes of the exported deck."""
     export(scene, "calculix", **how)(folder / "job.inp")
     subprocess.run(["ccx", "job"], cwd=folder, check=True, capture_output=True, timeout=600)
-    file = folder / "job.frd"
+    return folder / "job.frd"
+
+
+def computed(scene, folder, **how):
+    """What CalculiX makes of the exported deck, scored."""
+    file = ran(scene, folder, **how)
     return score(scene, file).comparisons[file.name]
 
 
@@ -413,6 +420,17 @@ def test_calculix_runs_it(name, ends, tmp_path):
     assert max(found.a, found.m, found.n) < 0.02
     assert found.p < 0.02
     assert found.q < 0.05
+
+
+@pytest.mark.slow
+@needs_ccx
+def test_calculix_runs_varying_p(tmp_path):
+    """Contacts of 0.8 and 1 mm, elements of 0.04 mm, scored against the closed form at both load points."""
+    scene, file = closed_form.SCENE, ran(closed_form.SCENE, tmp_path, **HOW)
+    found = score(scene, file).results[file.name]
+    errors = compare(found, closed_form.solved(scene), scene, None).errors
+    assert max(errors[key] for key in ("a", "left_1", "right_1", "left_2", "right_2", "m", "n", "p", "p_1")) < 0.02
+    assert errors["q"] < 0.05
 
 
 @pytest.mark.slow
