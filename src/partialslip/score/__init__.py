@@ -59,7 +59,7 @@ def score(
         For tables: x, p (or Fn), p1 (or Fn1) and the shear by name or number (from 1) of a column, or sums and
         differences: ``{"x": "X", "p": "CPRESS", "dq": "S2-S1"}``.
     centre : "given" or "auto"
-        "auto" moves x = 0 to the middle of the contact.
+        "auto" moves x = 0 to the middle of the contact; not with a moment or an uneven gap.
     progress : callable
         Called with one line of text at a time.
 
@@ -75,6 +75,8 @@ def score(
         raise InputError(f"reference {reference!r}: must be one of {', '.join(METHODS)}")
     if centre not in ("given", "auto"):
         raise InputError(f"centre {centre!r}: must be 'given' or 'auto'")
+    if centre == "auto" and not scene.even:
+        raise InputError("centre 'auto': must be 'given' with a moment or an uneven gap: the middle is not at x = 0")
     found = read(file, scene, factors, order, at, columns)
     if centre == "auto":
         found = centred(found, str(file), scene.units)

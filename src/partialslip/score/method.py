@@ -68,7 +68,8 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     x, p, dq, f = samples.x, samples.p_mean, samples.dq, scene.friction.f
     contacts = _contacts(samples, origin)
     larger = contacts[scene.largest - 1]
-    cells, a, middle = samples.cells is not None, (larger.right.x - larger.left.x) / 2, larger.middle
+    cells, a = samples.cells is not None, (larger.right.x - larger.left.x) / 2
+    middle = larger.middle if scene.even else 0.0  # where else it should be takes the solution
     pressure = samples.p1 if samples.p1 is not None and scene.largest == 1 else samples.p
     p0 = 2 * float(pressure @ _widths(samples)) / (np.pi * a)
     first, last = min(contact.first for contact in contacts), max(contact.last for contact in contacts)

@@ -90,15 +90,18 @@ def _shear(dQ: float, share: float, seen: bool, scene: Scene, stresses: dict[str
 
 def _places(scene: Scene, result: Result, reference: Result, factor: float) -> list[str]:
     """Notes on the position of the contact and of the stick zone; ``factor`` corrects x."""
-    notes, a = [], result.a
-    left, right = result.ends[1]
-    middle, known = (left + right) / 2 / a, max(result.estimate.get(key, 0.0) for key in ("a", "left", "right"))
-    if abs(middle) > max(2 * known, 1e-9):
-        notes.append(f"the contact's middle is at x = {middle:.2g} a (--centre auto puts x = 0 there)")
+    notes = []
+    middle, expected = (sum(each.ends[1]) / 2 for each in (result, reference))
+    off = middle / result.a - expected / reference.a
+    known = max(result.estimate.get(key, 0.0) for key in ("a", "left", "right"))
+    if abs(off) > max(2 * known, 1e-9):
+        place = f"the contact's middle is at x = {middle / result.a:.2g} a"
+        advice = " (--centre auto puts x = 0 there)" if scene.even else f", not at {expected / reference.a:.2g} a"
+        notes.append(place + advice)
     centre, true = result.stick_centre, reference.stick_centre
     if centre is None or true is None or not scene.load.dsigma or not scene.load.dQ:
         return notes
-    centre, true = (centre - (left + right) / 2) * factor / reference.a, true / reference.a
+    centre, true = (centre - middle) * factor / reference.a, (true - expected) / reference.a
     little = max(_SIGMAS * max(result.estimate["m"], result.estimate["n"]), _LITTLE)
     if abs(true) > 10 * little and abs(centre) <= little:
         notes.append("the stick zone is in the middle of the contact: was the tension left out?")
