@@ -256,21 +256,17 @@ class _PiecewiseConstant:
 def _traction(samples: Samples, ends: list[float]) -> Traction:
     """Tractions as functions of x: constant on cells, or linear between points and zero at the outermost ``ends`` (m)
     of the contacts."""
-    x, p, dq, p1, breaks = samples.x, samples.p, samples.dq, samples.p1, samples.cells
-    if breaks is None:
-        beyond = np.array([end for end in (min(ends), max(ends)) if not x[0] <= end <= x[-1]])
-        breaks, order = np.unique(np.concatenate([x, beyond]), return_index=True)
+    x, p, dq, p1, cells = samples.x, samples.p, samples.dq, samples.p1, samples.cells
+    beyond = [end for end in (min(ends), max(ends)) if not x[0] <= end <= x[-1]]
+    breaks = np.union1d(x, beyond) if cells is None else cells
 
     def between(*columns: Array) -> _PiecewiseLinear | _PiecewiseConstant:
-        if samples.cells is not None:
-            return _PiecewiseConstant(samples.cells, np.array(columns))
-        padded = np.pad(np.array(columns), ((0, 0), (0, len(beyond))))
-        return _PiecewiseLinear(breaks, padded[:, order])
+        if cells is not None:
+            return _PiecewiseConstant(cells, np.array(columns))
+        return _PiecewiseLinear(breaks, np.array([np.interp(breaks, x, each, left=0.0, right=0.0) for each in columns]))
 
-    pressures_at = None if p1 is None else between(p1, p).at
-    return Traction(
-        x, p, dq, samples.q1, samples.q2, between(p, dq).at, breaks, breaks, p1=p1, pressures_at=pressures_at
-    )
+    at, pressures_at = between(p, dq).at, None if p1 is None else between(p1, p).at
+    return Traction(x, p, dq, samples.q1, samples.q2, at, breaks, breaks, p1=p1, pressures_at=pressures_at)
 
 
 def _rounded(number: float) -> float:
