@@ -10,6 +10,7 @@ import meshio
 import msgspec
 import numpy as np
 import pytest
+import varying as closed_form
 
 from partialslip import load_scene
 from partialslip.cli import main
@@ -18,6 +19,7 @@ from partialslip.export import FORMATS, export
 from partialslip.export import model as models
 from partialslip.export.calculix import deck_units
 from partialslip.export.model import modelled
+from partialslip.judge import compare
 from partialslip.score import score
 from partialslip.units import N_MM, N_UM, SI
 
@@ -141,7 +143,7 @@ def test_gap_is_the_profile(deck, scene):
 def test_fault_gap_not_flattened_with_the_bodies(scene, monkeypatch):
     """Bodies stiffer but not the gap flatter, which would be another contact: the check sees it."""
     true = models._upper
-    monkeypatch.setattr(models, "_upper", lambda mesh, scene, a, _: true(mesh, scene, a, 1.0))
+    monkeypatch.setattr(models, "_upper", lambda *given: true(*given[:-1], 1.0))
     upper = modelled(scene, SIZE, growth=GROWTH, stiffer=STIFFER).parts[1]
     assert gap_error(*upper.mesh.points[upper.contact].T, scene) > 1
 
@@ -195,6 +197,61 @@ def test_steps_of_cycles_and_of_plane_stress():
 def test_without_shear_it_is_pressed_only():
     scene = load_scene("hertz-shear", ["load.Q=[0, 0]"])
     assert [step.name for step in modelled(scene, 0.5, growth=1.0).steps] == ["press"]
+
+
+COARSE = {"size": 0.5, "growth": 1.0}
+
+
+@pytest.fixture(scope="module")
+def varying(scene):
+    """Loads out of phase at three load points, in two cycles; P is largest at the second point."""
+    loads = {"P": (4e5, 8e5, 6e5), "Q": (-1e5, 0.0, 1e5), "sigma": (0.0, 4e7, 8e7), "cycles": 2, "p0": None}
+    return scene.replace(load=loads)
+
+
+def pressed_with(scene, to, path):
+    """P of each step of the deck, N/m."""
+    export(scene, to, **COARSE)(path)
+    deck = Deck(path)
+    thickness = np.nanmax(places(deck)[:, 2]) * UNIT if to == "calculix" else 1.0
+    frame = int(deck.members("UPPER_OUTER")[0])
+    return [-forces[frame, 2] / thickness for _, forces in deck.steps()]
+
+
+@pytest.mark.parametrize("to", ["calculix", "abaqus"])
+def test_each_step_presses_with_p_of_its_load_point(varying, to, tmp_path):
+    """And the first one with that of the last load point, where the path begins."""
+    P = varying.load.P
+    assert pressed_with(varying, to, tmp_path / "deck") == pytest.approx([P[-1], P[-1], *P, *P], rel=1e-9)
+    head = (tmp_path / "deck").read_text("ascii").split("*NODE")[0]
+    assert "cycle 2, load point 2: P = 800000 N/m, Q = 0 N/m, sigma = 40000000 Pa\n" in head
+    assert "P = 600000 N/m at load point 3\n" in head  # of load points 1 and 2, the extremes of Q
+
+
+@pytest.mark.fault
+def test_p_that_stays_is_seen(varying, monkeypatch, tmp_path):
+    """P of one load point in all steps."""
+    true = models._steps
+    monkeypatch.setattr(models, "_steps", lambda scene: tuple(s._replace(P=scene.P) for s in true(scene)))
+    assert pressed_with(varying, "abaqus", tmp_path / "deck")[2] == pytest.approx(1.5 * varying.load.P[0])
+
+
+def test_the_mesh_resolves_the_smallest_contact_and_reaches_beyond_the_largest(scene, varying):
+    made = modelled(varying, SIZE, growth=GROWTH)
+    least, most, a = (1e-3 * np.sqrt(P / scene.P) for P in varying.load.P)
+    assert made.a == pytest.approx(a, rel=1e-9)
+    for part in made.parts:
+        x = np.unique(part.mesh.points[part.contact, 0])
+        assert np.diff(x).max() < 1.05 * SIZE * least
+        assert x[-1] == -x[0] == pytest.approx(1.2 * most, rel=1e-9)
+
+
+def test_without_friction_the_upper_body_is_held_in_every_step(varying, tmp_path):
+    scene = varying.replace(friction={"f": 0.0}, load={"Q": (0.0, 0.0, 0.0), "sigma": (0.0, 0.0, 0.0)})
+    export(scene, "abaqus", **COARSE)(tmp_path / "deck")
+    deck = Deck(tmp_path / "deck")
+    frame = int(deck.members("UPPER_OUTER")[0])
+    assert [moved.get((frame, 1)) for moved, _ in deck.steps()] == [0.0] * 8
 
 
 def test_frame_is_rigid(deck):
@@ -288,6 +345,8 @@ def test_gmsh_file(files, made):
     [
         ("bodies.upper={width=0.01, height=0.01}", "bodies"),
         ("load.Q=[-400e3, 400e3]", "load.Q"),
+        ("load={P=[2e5, 6e5], Q=[-11e4, 20e4]}", "load.Q: must be within f P = 100000 N/m at load point 1;"),
+        ("load={P=[2e5, 6e5], M=[0, 1], Q=[-1e4, 1e4]}", "load.M"),
         ("material.upper={E=1e9, nu=0.3}", "material.upper"),
     ],
 )
@@ -328,11 +387,16 @@ def test_command(tmp_path, monkeypatch, capsys):
     assert decks == [f"{SCENE}-{end}.inp" for end in ("abaqus", "calculix-2", "calculix")]
 
 
-def computed(scene, folder, **how):
-    """What CalculiX makes of the exported deck, scored."""
+def ran(scene, folder, **how):
+    """File of what CalculiX makes of the exported deck."""
     export(scene, "calculix", **how)(folder / "job.inp")
     subprocess.run(["ccx", "job"], cwd=folder, check=True, capture_output=True, timeout=600)
-    file = folder / "job.frd"
+    return folder / "job.frd"
+
+
+def computed(scene, folder, **how):
+    """What CalculiX makes of the exported deck, scored."""
+    file = ran(scene, folder, **how)
     return score(scene, file).comparisons[file.name]
 
 
@@ -356,6 +420,17 @@ def test_calculix_runs_it(name, ends, tmp_path):
     assert max(found.a, found.m, found.n) < 0.02
     assert found.p < 0.02
     assert found.q < 0.05
+
+
+@pytest.mark.slow
+@needs_ccx
+def test_calculix_runs_varying_p(tmp_path):
+    """Contacts of 0.8 and 1 mm, elements of 0.04 mm, scored against the closed form at both load points."""
+    scene, file = closed_form.SCENE, ran(closed_form.SCENE, tmp_path, **HOW)
+    found = score(scene, file).results[file.name]
+    errors = compare(found, closed_form.solved(scene), scene, None).errors
+    assert max(errors[key] for key in ("a", "left_1", "right_1", "left_2", "right_2", "m", "n", "p", "p_1")) < 0.02
+    assert errors["q"] < 0.05
 
 
 @pytest.mark.slow

@@ -46,7 +46,7 @@ def test_a_node_that_touches_at_one_load_point_is_in_contact(monkeypatch, point)
     monkeypatch.setattr(calculix, "_pair", pair)
     found = calculix.read_frd(FRD, "a.frd", None, (0, 1, 2))
     assert np.array_equal(found["x"], whole["x"])
-    lost = ["q1"] if point == 0 else ["p", "q2"]
+    lost = ["p1", "q1"] if point == 0 else ["p", "q2"]
     for key in whole:
         assert (found[key] != whole[key]).sum() == (key in lost)
 

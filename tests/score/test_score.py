@@ -230,6 +230,20 @@ def test_tension_left_out_is_named(exact, tmp_path):
     assert any("was the tension left out?" in note for note in found.notes)
 
 
+def test_a_moment_moves_the_contact(tmp_path):
+    """Its middle is not at x = 0, and is no mistake; elsewhere than in the solution it is one."""
+    scene = load_scene("hertz-small-tension", ["load.e=2e-4"])
+    result = run(scene, ["exact"]).results["exact"]
+    table = sampled(result, 141, reach=1.3)
+    found, comparison = errors(scene, written(tmp_path / "t.csv", table))
+    assert not found.notes
+    assert max(comparison.a, comparison.m, comparison.n) < 0.1 * 2.6 / 140
+    found, _ = errors(scene, written(tmp_path / "t.csv", table + np.array([5e-5, 0, 0])))
+    assert found.notes == ("the contact's middle is at x = 0.25 a, not at 0.2 a",)
+    with pytest.raises(partialslip.InputError, match="centre 'auto': must be 'given' with a moment"):
+        score(scene, tmp_path / "t.csv", centre="auto")
+
+
 def test_other_references(tmp_path):
     """March where loads are out of phase; the finite elements where bodies are of a size."""
     scene = load_scene("hertz-shear", ["load.Q=[0, 1e5, 0, -1e5]", "load.sigma=[1e8, 0, -1e8, 0]", "load.cycles=2"])

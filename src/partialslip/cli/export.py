@@ -32,7 +32,8 @@ def add(commands: "Commands") -> None:
                          help="calculix, abaqus: an input deck, ready to run; gmsh: the meshes of both "
                          "bodies")  # fmt: skip
     exports.add_argument("--size", metavar="H", default="0.05",
-                         help="element size along the contact, in contact half-widths (default: 0.05)")  # fmt: skip
+                         help="element size along the contact, in contact half-widths, if P varies in those of the "
+                         "smallest contact (default: 0.05)")  # fmt: skip
     exports.add_argument("--growth", metavar="G", default="0.1",
                          help="growth of the element size per unit of distance from the contact (default: "
                          "0.1)")  # fmt: skip
@@ -46,7 +47,7 @@ def add(commands: "Commands") -> None:
                          help="points on the contact, in contact half-widths, at which the mesh is refined: "
                          "--ends=-1,-0.8,0.2,1")  # fmt: skip
     exports.add_argument("--fine", metavar="H",
-                         help="element size at --ends, in contact half-widths (default: a tenth of "
+                         help="element size at --ends, in the half-widths of --size (default: a tenth of "
                          "--size)")  # fmt: skip
     exports.add_argument("--penalty", action="store_true",
                          help="calculix: penalty contact instead of mortar contact")  # fmt: skip

@@ -3,7 +3,7 @@
 import numpy as np
 
 from partialslip.arrays import Array, Indices
-from partialslip.export.model import Model
+from partialslip.export.model import Model, Step
 from partialslip.scene import Scene
 
 
@@ -13,9 +13,16 @@ def heading(scene: Scene, model: Model, what: str) -> list[str]:
     ``scene`` and ``model``, in SI units, are exported; ``what`` names the format.
     """
     a, shown = model.a, scene.units.labelled
+    varies = model.presses_anew
+    where = f" at load point {scene.load.ends[scene.largest - 1] + 1}" if varies else ""
+
+    def loads(step: Step) -> str:
+        pressed = f"P = {shown(step.P, 'N/m', 10)}, " if varies else ""
+        return f"{pressed}Q = {shown(step.Q, 'N/m', 10)}, sigma = {shown(step.sigma, 'Pa', 10)}"
+
     lines = [
         f"** {scene.name}: {what}, written by partialslip export",
-        f"** expected a = {shown(a, 'm')}; f = {model.f:g}, P = {shown(scene.P, 'N/m', 10)}",
+        f"** expected a = {shown(a, 'm')}; f = {model.f:g}, P = {shown(scene.P, 'N/m', 10)}{where}",
         f"** elements of {model.size / a:g} a along the contact, blocks {model.width:g} a wide on either side",
     ]
     if model.stiffer != 1:
@@ -24,10 +31,7 @@ def heading(scene: Scene, model: Model, what: str) -> list[str]:
             "** the same tractions, without the geometric effects of sloping surfaces",
         ]
     lines += ["** q acts along x from the lower on the upper body: positive Q and sigma add up at x = a"]
-    return lines + [
-        f"** step {number}: {step.name}: Q = {shown(step.Q, 'N/m', 10)}, sigma = {shown(step.sigma, 'Pa', 10)}"
-        for number, step in enumerate(model.steps, start=1)
-    ]
+    return lines + [f"** step {number}: {step.name}: {loads(step)}" for number, step in enumerate(model.steps, start=1)]
 
 
 def bodies(
@@ -132,7 +136,7 @@ def load_step(model: Model, number: int, frame: int, held: Indices, depth: float
     lines += ["*BOUNDARY, OP=NEW"] + [also] * bool(also)
     for node, (along, across) in zip(held.tolist(), np.tile(bulk, (len(held) // len(bulk), 1)).tolist(), strict=True):
         lines += [f"{node}, 1, 1, {along:.12e}", f"{node}, 2, 2, {across:.12e}"]
-    if number == 0:  # before contact nothing else holds the upper body along x
+    if number == 0 or not model.f:  # without contact or friction nothing else holds the upper body along x
         lines += [f"{frame}, 1, 1"]
     lines += ["*CLOAD, OP=NEW", f"{frame}, 2, {-step.P * depth:.12e}"]
     return lines + [f"{frame}, 1, {-step.Q * depth:.12e}"] * (number > 0)

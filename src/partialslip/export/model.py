@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 SIZE, GROWTH = 0.05, 0.1
 Indices = npt.NDArray[np.int64]
 
-_REACH = 1.2  # half-width of the contact line, in a
-_OVERLAP = 0.25  # initial overlap of the bodies, in the gap at the contact's end
+_REACH = 1.2  # half-width of the contact line, in the half-width of the largest contact
+_OVERLAP = 0.25  # initial overlap of the bodies, in the gap at the end of the smallest contact
 _WIDE = 50.0  # half-width of the blocks in a, times the square root of the smallest element in a
 
 
@@ -83,7 +83,7 @@ class Model:
     substeps : int
         Increments of each step except the first.
     a : float
-        Expected contact half-width, m.
+        Expected contact half-width at the load point with the larger P, m.
     size : float
         Element size along the contact line, m.
     width : float
@@ -101,6 +101,11 @@ class Model:
     size: float
     width: float
     stiffer: float
+
+    @property
+    def presses_anew(self) -> bool:
+        """Whether P varies."""
+        return len({step.P for step in self.steps}) > 1
 
     def bulk(self, step: Step) -> Array:
         """Displacements of the lower body's outer nodes under the bulk tension of ``step``, (k, 2), m."""
@@ -138,7 +143,7 @@ def modelled(
     scene : Scene
         Of half-planes.
     size : float
-        Element size along the contact line, in the contact half-width a.
+        Element size along the contact line, in the contact half-width; if P varies, in that of the smallest contact.
     width : float, optional
         Half-width and height of the blocks, in a. The error of q due to the blocks is about 10 (a/width)^2, relative.
         The default makes this error small beside the error of the elements.
@@ -150,7 +155,7 @@ def modelled(
     ends : sequence of float
         Points on the contact line, in a, to refine at, besides the kinks of the gap.
     fine : float, optional
-        Element size at these points, in a; by default a tenth of ``size``.
+        Element size at these points, in the same half-width as ``size``; by default a tenth of ``size``.
 
     Raises
     ------
@@ -160,31 +165,47 @@ def modelled(
     if scene.finite:
         raise InputError("bodies: must be left out to export; only half-planes can be exported")
     scene.require_even("to export")
-    f, P = scene.friction.f, scene.P
-    if any(abs(Q) >= f * P for Q, _ in scene.load.points if Q) or (f == 0 and scene.load.dsigma):
-        bound = scene.units.labelled(f * P, "N/m")
-        raise InputError(f"load.Q: must be within f P = {bound}; beyond it the contact slides and has no equilibrium")
-    pressed = contact(scene)
-    a = pressed.a
-    kinks = [kink / a for kink in scene.profile.kinks if abs(kink) < _REACH * a]
-    points = dict.fromkeys([*ends, *kinks], fine if fine is not None else size / 10)
+    f = scene.friction.f
+    if scene.slides or (f == 0 and scene.load.dsigma):
+        raise InputError(f"load.Q: must be within {_bound(scene)}; beyond it the contact slides and has no equilibrium")
+    a, least, most = _half_widths(scene)
+    size, fine = size * (least / a), (size / 10 if fine is None else fine) * (least / a)
+    reach = _REACH * (most / a)
+    kinks = [kink / a for kink in scene.profile.kinks if abs(kink) < reach * a]
+    points = dict.fromkeys([*ends, *kinks], fine)
     wide = width if width is not None else _WIDE / min([size, *points.values()]) ** 0.5
 
     from partialslip_meshes import quad_block
 
     def mesh(fineness: float) -> "QuadMesh":
         sizes = {x: least * fineness for x, least in points.items()}
-        scaled = quad_block(wide, (-_REACH, _REACH), sizes, growth * fineness, size * fineness)
+        scaled = quad_block(wide, (-reach, reach), sizes, growth * fineness, size * fineness)
         return replace(scaled, points=scaled.points * a)
 
+    overlap = _OVERLAP * float(scene.profile.gap_at(np.array(least)))
+    meshes = mesh(scene.fem.lower_size), _upper(mesh(1.0), scene, reach * a, overlap, stiffer)
+    constants = map(_in_plane_strain, scene.material.bodies)
     lower, upper = (
         Part(name, each, stiffer * E, nu)
-        for name, each, (E, nu) in (
-            ("lower", mesh(scene.fem.lower_size), _in_plane_strain(scene.material.bodies[0])),
-            ("upper", _upper(mesh(1.0), scene, a, stiffer), _in_plane_strain(scene.material.bodies[1])),
-        )
+        for name, each, (E, nu) in zip(("lower", "upper"), meshes, constants, strict=True)
     )
     return Model(scene.name, (lower, upper), f, _steps(scene), scene.load.steps, a, size * a, wide, stiffer)
+
+
+def _bound(scene: Scene) -> str:
+    """Bound f P on |Q| in words, at the load point where Q exceeds it most."""
+    f, pairs = scene.friction.f, zip(scene.load.points, scene.pressing, strict=True)
+    excess = [abs(Q) - f * P for (Q, _), (P, _) in pairs]
+    worst = int(np.argmax(excess))
+    where = f" at load point {worst + 1}" if scene.presses_anew else ""
+    return f"f P = {scene.units.labelled(f * scene.pressing[worst].P, 'N/m')}{where}"
+
+
+def _half_widths(scene: Scene) -> tuple[float, float, float]:
+    """Contact half-width a of ``scene``, and those of the smallest and the largest contact of the cycle, m."""
+    a, forces = contact(scene).a, [P for P, _ in scene.pressing]
+    least, most = (a if P == scene.P else contact(scene.replace(load={"P": P})).a for P in (min(forces), max(forces)))
+    return a, least, most
 
 
 def _in_plane_strain(body: Constants) -> tuple[float, float]:
@@ -193,13 +214,14 @@ def _in_plane_strain(body: Constants) -> tuple[float, float]:
     return 2 * body.mu * (1 + nu), nu
 
 
-def _upper(mesh: "QuadMesh", scene: Scene, a: float, stiffer: float) -> "QuadMesh":
+def _upper(mesh: "QuadMesh", scene: Scene, reach: float, overlap: float, stiffer: float) -> "QuadMesh":
     """Mirror ``mesh`` and shape its face by the profile, less and less upwards.
 
-    Beyond the contact line the gap is constant. The bodies overlap a little at the start, so that neither is loose.
+    Beyond the contact line, |x| > ``reach`` (m), the gap is constant. The bodies overlap a little at the start, by
+    ``overlap`` (m), so that neither is loose.
     """
     x, y = mesh.points[:, 0], -mesh.points[:, 1]
-    gap = scene.profile.gap_at(np.clip(x, -_REACH * a, _REACH * a)) - _OVERLAP * scene.profile.gap_at(np.array(a))
+    gap = scene.profile.gap_at(np.clip(x, -reach, reach)) - overlap
     shaped = np.column_stack([x, y + gap / stiffer * (1 - y / y.max())])
     lines = {name: line[:, ::-1] for name, line in mesh.lines.items()}
     return replace(mesh, points=shaped, quads=mesh.quads[:, ::-1], lines=lines)
@@ -207,14 +229,15 @@ def _upper(mesh: "QuadMesh", scene: Scene, a: float, stiffer: float) -> "QuadMes
 
 def _steps(scene: Scene) -> tuple[Step, ...]:
     """Load steps: press, go to the last load point, then through all load points in every cycle."""
-    load, P = scene.load, scene.P
-    if not (load.dQ or load.dsigma or any(map(any, load.points))):
-        return (Step("press", P, 0.0, 0.0),)
-    count = len(load.points)
-    visits = [(f"load point {count}, first time", load.points[-1])]
+    load = scene.load
+    points = [(P, Q, sigma) for (P, _), (Q, sigma) in zip(scene.pressing, load.points, strict=True)]
+    press = Step("press", points[-1][0], 0.0, 0.0)
+    if not scene.presses_anew and not any(map(any, load.points)):
+        return (press,)
+    visits = [(f"load point {len(points)}, first time", points[-1])]
     visits += [
         (f"cycle {cycle}, load point {number}", point)
         for cycle in range(1, load.cycles + 1)
-        for number, point in enumerate(load.points, start=1)
+        for number, point in enumerate(points, start=1)
     ]
-    return (Step("press", P, 0.0, 0.0), *(Step(name, P, Q, sigma) for name, (Q, sigma) in visits))
+    return (press, *(Step(name, *point) for name, point in visits))

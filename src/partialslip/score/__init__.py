@@ -37,9 +37,10 @@ def score(
         One of:
 
         - a table (.csv, .txt, .tsv, .rpt) with a header line: x (m); p (Pa) or nodal forces Fn (N/m); and dq = q2 - q1,
-          q = dq/2, or q1 and q2 (Pa), or dFt, Ft, or Ft1 and Ft2 (N/m). Names of other codes are known, too.
+          q = dq/2, or q1 and q2 (Pa), or dFt, Ft, or Ft1 and Ft2 (N/m). Names of other codes are known, too. If P or M
+          varies, p (Fn) is of load point 2, and p1 (Fn1) of load point 1 must be there, too.
         - CalculiX's .frd, or .dat with the .frd of the same name;
-        - a format of meshio with point data p and dq, q, or q1 and q2.
+        - a format of meshio with point data p (and p1), and dq, q, or q1 and q2.
 
         Numbers are in the units in which the scene is shown (:attr:`Scene.shown_in`), in other units if the table's
         header states them, and in those of the deck if CalculiX ran a deck of :func:`partialslip.export.export`.
@@ -49,16 +50,16 @@ def score(
         Method to compare with. By default exact; march if Q and sigma are out of phase; fem for bodies of different
         materials or of finite size.
     factors : (float, float, float)
-        Further factors of x, p (Fn) and q (Ft), for other units and signs.
+        Further factors of x, p and p1 (Fn) and q (Ft), for other units and signs.
     order : int
         Order of the elements of nodal forces, 1 or 2.
     at : (int, int), optional
         Numbers of CalculiX's contact results, from 1, of load points 1 and 2; by default the ends of the last steps.
     columns : mapping of str to str, optional
-        For tables: x, p (or Fn) and the shear by name or number (from 1) of a column, or sums and differences:
-        ``{"x": "X", "p": "CPRESS", "dq": "S2-S1"}``.
+        For tables: x, p (or Fn), p1 (or Fn1) and the shear by name or number (from 1) of a column, or sums and
+        differences: ``{"x": "X", "p": "CPRESS", "dq": "S2-S1"}``.
     centre : "given" or "auto"
-        "auto" moves x = 0 to the middle of the contact.
+        "auto" moves x = 0 to the middle of the contact; not with a moment or an uneven gap.
     progress : callable
         Called with one line of text at a time.
 
@@ -74,6 +75,8 @@ def score(
         raise InputError(f"reference {reference!r}: must be one of {', '.join(METHODS)}")
     if centre not in ("given", "auto"):
         raise InputError(f"centre {centre!r}: must be 'given' or 'auto'")
+    if centre == "auto" and not scene.even:
+        raise InputError("centre 'auto': must be 'given' with a moment or an uneven gap: the middle is not at x = 0")
     found = read(file, scene, factors, order, at, columns)
     if centre == "auto":
         found = centred(found, str(file), scene.units)

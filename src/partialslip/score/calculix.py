@@ -44,7 +44,7 @@ class ContactStress:
 def read_frd(
     text: str, origin: str, chosen: tuple[int, int] | None, load_points: tuple[int, int, int]
 ) -> dict[str, Array]:
-    """Columns x, p, q1 and q2 of an ASCII .frd file, at the nodes in contact at load point 1 or 2.
+    """Columns x, p, p1, q1 and q2 of an ASCII .frd file, at the nodes in contact at load point 1 or 2.
 
     Parameters
     ----------
@@ -68,13 +68,13 @@ def read_frd(
         raise InputError(f"{origin}: contact results at load points 1 and 2: must be at the same nodes")
     touched = (first.stress != 0).any(axis=1) | (second.stress != 0).any(axis=1)
     x = _x_of_nodes(numbers, points[:, 0], second.keys[touched, 0], origin)
-    return {"x": x, "p": second.stress[touched, 0], "q1": first.stress[touched, 1], "q2": second.stress[touched, 1]}
+    return _columns(x, first.stress[touched], second.stress[touched])
 
 
 def read_dat(
     text: str, mesh: str, origin: str, chosen: tuple[int, int] | None, load_points: tuple[int, int, int]
 ) -> dict[str, Array]:
-    """Columns x, p, q1 and q2 of a .dat file, at slave nodes, or as means over slave faces.
+    """Columns x, p, p1, q1 and q2 of a .dat file, at slave nodes, or as means over slave faces.
 
     ``mesh`` is the content of the .frd file, which has the coordinates. The rest as for :func:`read_frd`.
     """
@@ -87,7 +87,12 @@ def read_dat(
         x = _middles(lines, keys, numbers, points[:, 0], origin)
     else:
         x = _x_of_nodes(numbers, points[:, 0], keys[:, 0], origin)
-    return {"x": x, "p": two[:, 0], "q1": one[:, 1], "q2": two[:, 1]}
+    return _columns(x, one, two)
+
+
+def _columns(x: Array, first: Array, second: Array) -> dict[str, Array]:
+    """Columns by name, from stresses (n, 2) at load points 1 and 2; p is the pressure at load point 2."""
+    return {"x": x, "p": second[:, 0], "p1": first[:, 0], "q1": first[:, 1], "q2": second[:, 1]}
 
 
 def stated_units(mesh: str) -> Units | None:

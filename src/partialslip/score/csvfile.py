@@ -37,11 +37,13 @@ class Columns(NamedTuple):
     moment: bool = False
 
 
-def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None, units: Units = SI) -> Columns:
+def read_csv(
+    text: str, origin: str, chosen: Mapping[str, str] | None = None, units: Units = SI, anew: bool = False
+) -> Columns:
     """Read columns x, p (or Fn) and shear from a table with a header line, in SI units.
 
     ``#`` begins a comment. Separators are commas, semicolons, tabs or blanks. Decimal commas are allowed where commas
-    do not separate. Column names are x, p, Fn, dq, q, q1, q2, dFt, Ft, Ft1, Ft2 or those of other codes
+    do not separate. Column names are x, p, Fn, p1, Fn1, dq, q, q1, q2, dFt, Ft, Ft1, Ft2 or those of other codes
     (:data:`partialslip.score.headers.NAMES`), with a unit in brackets if not in ``units``. Rows without values
     are skipped.
 
@@ -53,6 +55,8 @@ def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None, un
         Expression for each column: a name or number (from 1) of a column of the table, or sums and differences.
     units : Units
         Units of the columns without a unit in brackets.
+    anew : bool
+        Whether the pressure varies: then p1 (or Fn1) is read, too.
 
     Raises
     ------
@@ -79,7 +83,7 @@ def read_csv(text: str, origin: str, chosen: Mapping[str, str] | None = None, un
         rows, numbers = rows[1:], numbers[1:]
     if short := next((n for n, row in zip(numbers, rows, strict=True) if len(row) != len(names)), None):
         raise InputError(f"{origin}: line {short}: must have {len(names)} fields, like the header line")
-    wanted = selected(names, chosen, origin) if chosen else known(names, origin)
+    wanted = selected(names, chosen, origin, anew) if chosen else known(names, origin, anew)
     used = sorted({column for each in wanted.values() for column in each.parts})
     full = [all(row[column].lower() not in _NO_VALUE for column in used) for row in rows]
     kept = [row for row, whole in zip(rows, full, strict=True) if whole]
@@ -114,17 +118,22 @@ def template(scene: Scene, a: float) -> str:
     units, load = scene.units, scene.load
     x = units.from_si(_TEMPLATE_REACH * a * np.linspace(-1, 1, _TEMPLATE_ROWS), "m")
     m, Pa, forces = (units.label(of) for of in ("m", "Pa", "N/m"))
-    P, dQ = (units.labelled(force, "N/m", 10) for force in (scene.P, load.dQ))
+    names = ("x", "p", "p1", "dq") if scene.presses_anew else ("x", "p", "dq")
+    of_p, of_Fn, P = "pressure", "Fn", f"P = {units.labelled(scene.P, 'N/m', 10)}"
+    if scene.presses_anew:
+        P1, P2 = (units.labelled(scene.pressing[end].P, "N/m", 10) for end in load.ends)
+        of_p, of_Fn, P = "pressure at load point 2, p1 at load point 1", "Fn and Fn1", f"P1 = {P1}, P2 = {P2}"
     head = (
         f"# {scene.name}: put your tractions here and run: partialslip score {scene.name} THIS-FILE\n"
-        f"# x: along the contact, {m}, its middle at 0 (any points will do); p: pressure, {Pa};\n"
+        f"# x: along the contact, {m}, its middle at 0 (any points will do); p: {of_p}, {Pa};\n"
         f"# dq: change q2 - q1 of the shear traction between load points 1 and 2, {Pa}, positive where Q is.\n"
-        f"# Instead of dq: q (half of it), or q1 and q2. Nodal forces per depth, {forces}: Fn, and dFt or Ft1, Ft2.\n"
-        f"# The scene: P = {P}, dQ = {dQ}, dsigma = {units.labelled(load.dsigma, 'Pa', 10)}, "
-        f"f = {scene.friction.f:.10g}\n"
-        f"{','.join(units.heading(name, DIMENSIONS[name]) for name in ('x', 'p', 'dq'))}\n"
+        "# Instead of dq: q (half of it), or q1 and q2. "
+        f"Nodal forces per depth, {forces}: {of_Fn}, and dFt or Ft1, Ft2.\n"
+        f"# The scene: {P}, dQ = {units.labelled(load.dQ, 'N/m', 10)}, "
+        f"dsigma = {units.labelled(load.dsigma, 'Pa', 10)}, f = {scene.friction.f:.10g}\n"
+        f"{','.join(units.heading(name, DIMENSIONS[name]) for name in names)}\n"
     )
-    return head + "".join(f"{point:.9e},0,0\n" for point in x)
+    return head + "".join(f"{point:.9e}{',0' * (len(names) - 1)}\n" for point in x)
 
 
 def _numbers(values: list[str], lines: list[int], name: str, origin: str) -> Array:

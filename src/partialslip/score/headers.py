@@ -8,14 +8,17 @@ from partialslip.errors import InputError
 from partialslip.units import Dimension
 
 NORMAL = ("p", "Fn")
+FIRST = {"p": "p1", "Fn": "Fn1"}  # the same at load point 1, where the pressure varies
 SHEARS = (("dq",), ("q",), ("q1", "q2"), ("dFt",), ("Ft",), ("Ft1", "Ft2"))
 
 #: Dimensions of the columns.
 DIMENSIONS: dict[str, Dimension] = {
     "x": "m", "p": "Pa", "Fn": "N/m",
     "dq": "Pa", "q": "Pa", "q1": "Pa", "q2": "Pa", "dFt": "N/m", "Ft": "N/m", "Ft1": "N/m", "Ft2": "N/m",
+    "p1": "Pa", "Fn1": "N/m",
 }  # fmt: skip
 _OWN = tuple(DIMENSIONS)
+_SHEAR = tuple(name for names in SHEARS for name in names)
 
 #: Other names of x, p and the shear traction at one load point, in lower case, with the sign that makes p positive.
 NAMES = {
@@ -81,8 +84,9 @@ def headings(line: str) -> list[str]:
     return names
 
 
-def known(names: list[str], origin: str) -> dict[str, Wanted]:
-    """Find x, p or Fn, and the shear among the ``names`` of a header line, in this order.
+def known(names: list[str], origin: str, anew: bool = False) -> dict[str, Wanted]:
+    """Find x, p or Fn, p1 or Fn1 if the pressure varies (``anew``), and the shear among the ``names`` of a header line,
+    in this order.
 
     Raises
     ------
@@ -93,7 +97,7 @@ def known(names: list[str], origin: str) -> dict[str, Wanted]:
     found = {
         name: [Wanted({k: 1.0}, unit, names[k]) for k, (own, unit) in enumerate(plain) if own == name] for name in _OWN
     }
-    for name, group in (("x", ("x",)), ("p", NORMAL), ("q", _OWN[3:])):
+    for name, group in (("x", ("x",)), ("p", NORMAL), ("q", _SHEAR)):
         if not any(found[each] for each in group):
             signs, others = NAMES[name], [(k, own.lower(), unit) for k, (own, unit) in enumerate(plain)]
             found[name] = [
@@ -105,11 +109,12 @@ def known(names: list[str], origin: str) -> dict[str, Wanted]:
             raise InputError(
                 f"{origin}: column {name!r}: must be there once, not {len(places)} times ({told}); use --columns"
             )
-    return _complete({name: each[0] for name, each in found.items() if each}, names, origin)
+    return _complete({name: each[0] for name, each in found.items() if each}, names, origin, anew)
 
 
-def selected(names: list[str], chosen: Mapping[str, str], origin: str) -> dict[str, Wanted]:
-    """Parse the expressions ``chosen`` for x, p or Fn, and the shear: names or numbers of columns, sums, differences.
+def selected(names: list[str], chosen: Mapping[str, str], origin: str, anew: bool = False) -> dict[str, Wanted]:
+    """Parse the expressions ``chosen`` for the columns of :func:`known`: names or numbers of columns, sums and
+    differences.
 
     Raises
     ------
@@ -118,12 +123,15 @@ def selected(names: list[str], chosen: Mapping[str, str], origin: str) -> dict[s
     """
     if unknown := [name for name in chosen if name not in _OWN]:
         raise InputError(f"--columns {unknown[0]}: must be one of {', '.join(_OWN)}")
+    if not anew and (first := next((name for name in FIRST.values() if name in chosen), None)):
+        raise InputError(f"--columns {first}: must be left out, as the scene's pressure does not vary")
     wanted = {name: _made_of(chosen[name], names, origin) for name in _OWN if name in chosen}
-    return _complete(wanted, names, origin)
+    return _complete(wanted, names, origin, anew)
 
 
-def _complete(wanted: dict[str, Wanted], names: list[str], origin: str) -> dict[str, Wanted]:
-    """Check for x, one of p and Fn, and the matching shear, and put them in this order."""
+def _complete(wanted: dict[str, Wanted], names: list[str], origin: str, anew: bool) -> dict[str, Wanted]:
+    """Check for x, one of p and Fn, its value at load point 1 if the pressure varies (``anew``), and the matching
+    shear, and put them in this order."""
     normal = [name for name in NORMAL if name in wanted]
     shears = [shear for shear in SHEARS if set(shear) <= set(wanted)]
     if "x" not in wanted or len(normal) != 1 or len(shears) != 1:
@@ -134,7 +142,11 @@ def _complete(wanted: dict[str, Wanted], names: list[str], origin: str) -> dict[
         )
     if (normal[0] == "Fn") != shears[0][0].endswith(("Ft", "Ft1")):
         raise InputError(f"{origin}: columns {normal[0]} and {shears[0][0]}: must be both tractions or both forces")
-    return {name: wanted[name] for name in ("x", *normal, *shears[0])}
+    first = FIRST[normal[0]]
+    if anew and first not in wanted:
+        at = f"{first}, {normal[0]} at load point 1, as the scene's pressure varies"
+        raise InputError(f"{origin}: columns: must include {at}; name it with --columns {first}=...")
+    return {name: wanted[name] for name in ("x", *normal, *[first] * anew, *shears[0])}
 
 
 def _made_of(text: str, names: list[str], origin: str) -> Wanted:

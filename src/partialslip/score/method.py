@@ -21,6 +21,25 @@ _CERTAIN = 0.05  # of a: largest uncertainty of ends of the stick zone that are 
 _SPACINGS = 2.0  # ... or this many spacings of the points
 
 
+class SeenContact(NamedTuple):
+    """Contact at a load point: indices of its ``first`` and ``last`` point, and its ends."""
+
+    first: int
+    last: int
+    left: ZoneEnd
+    right: ZoneEnd
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Left and right end, m."""
+        return self.left.x, self.right.x
+
+    @property
+    def middle(self) -> float:
+        """Middle between the ends, m."""
+        return (self.left.x + self.right.x) / 2
+
+
 class SeenStickZone(NamedTuple):
     """Ends of the stick zone, ``left`` and ``right``, and friction in the slip zones on either side (``sides``)."""
 
@@ -32,7 +51,8 @@ class SeenStickZone(NamedTuple):
 def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     """Find contact, stick zone and regime of ``scene`` from the tractions in ``samples`` alone.
 
-    The coefficient of friction is the one in the slip zones. Uncertain ends of the stick zone are left out.
+    The coefficient of friction is the one in the slip zones. Uncertain ends of the stick zone are left out. Where the
+    pressure varies, a and p0 are those of the load point with the larger P.
 
     Parameters
     ----------
@@ -45,17 +65,28 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
         If the pressure does not exceed its noise.
     """
     clock = Clock()
-    x, p, dq, f = samples.x, samples.p, samples.dq, scene.friction.f
-    first, last, left, right = _contact(samples, origin)
-    cells, a, middle = samples.cells is not None, (right.x - left.x) / 2, (left.x + right.x) / 2
-    p0 = 2 * float(p @ _widths(samples)) / (np.pi * a)
+    x, p, dq, f = samples.x, samples.p_mean, samples.dq, scene.friction.f
+    contacts = _contacts(samples, origin)
+    larger = contacts[scene.largest - 1]
+    cells, a = samples.cells is not None, (larger.right.x - larger.left.x) / 2
+    middle = larger.middle if scene.even else 0.0  # where else it should be takes the solution
+    pressure = samples.p1 if samples.p1 is not None and scene.largest == 1 else samples.p
+    p0 = 2 * float(pressure @ _widths(samples)) / (np.pi * a)
+    first, last = min(contact.first for contact in contacts), max(contact.last for contact in contacts)
     inside = slice(first, last + 1)
     slips = f > 0 and bool(np.abs(dq).max() > max(ZERO_LEVEL * p0, NOISE_FACTOR * noise(dq, x)))
     stick = _stick_zone(x[inside], p[inside], dq[inside], f, p0, cells) if slips else None
-    regime, ends = _regime(scene, stick, left, right, slips)
+    # a point that is out of contact at a load point does not stick
+    both = max(contact.left for contact in contacts), min(contact.right for contact in contacts)
+    regime, ends = _regime(scene, stick, *both, slips)
+    left, right = larger.left, larger.right
     # smoothing spreads the ends of the stick zone by as much as the ends of the contact
     either = float(np.linalg.norm((left.uncertainty, right.uncertainty, _X_SIGMAS * samples.resolution)))
-    uncertainty = {"a": either / 2 / a, "left": left.uncertainty / a, "right": right.uncertainty / a}
+    uncertainty = {
+        "a": either / 2 / a,
+        "left": max(contact.left.uncertainty for contact in contacts) / a,
+        "right": max(contact.right.uncertainty for contact in contacts) / a,
+    }
     if ends:
         shared = (
             left.spread,
@@ -82,7 +113,7 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
         regime=regime,
         stick_centre=(known[0].x + known[1].x) / 2 if known else None,
         stick_half_width=(known[1].x - known[0].x) / 2 if known else None,
-        traction=_traction(samples, left.x, right.x),
+        traction=_traction(samples, [end for contact in contacts for end in contact.ends]),
         cost=clock.cost(),
         settings={
             "read": "means over cells" if cells else "values at points",
@@ -94,36 +125,42 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
         counts={"points": len(x), "contact_nodes": last - first + 1},
         estimate=uncertainty,
         notes=notes,
-        contact_ends=((left.x, right.x),) * 2,
+        contact_ends=(contacts[0].ends, contacts[1].ends),
         undetermined=dict.fromkeys("mn", why) if why else {},
     )
 
 
 def centred(samples: Samples, origin: str, units: Units) -> Samples:
-    """Move ``samples`` so that x = 0 is in the middle of the contact, with a note in ``units``.
+    """Move ``samples`` so that x = 0 is in the middle of the contact at load point 2, with a note in ``units``.
 
     Raises InputError like :func:`scored`.
     """
-    _, _, left, right = _contact(samples, origin)
-    middle = (left.x + right.x) / 2
+    middle = _contacts(samples, origin)[1].middle
     note = f"x = 0 was put in the middle of the contact, at x = {units.labelled(middle, 'm')}"
     return replace(samples.moved(-middle), notes=(*samples.notes, note))
 
 
-def _contact(samples: Samples, origin: str) -> tuple[int, int, ZoneEnd, ZoneEnd]:
-    """First and last point in contact, and the ends of the contact."""
-    x, p, cells = samples.x, samples.p, samples.cells is not None
+def _contacts(samples: Samples, origin: str) -> tuple[SeenContact, SeenContact]:
+    """Contacts at load points 1 and 2."""
+    x, cells = samples.x, samples.cells is not None
+    second = _contact(x, samples.p, cells, "p", origin)
+    return second if samples.p1 is None else _contact(x, samples.p1, cells, "p1", origin), second
+
+
+def _contact(x: Array, p: Array, cells: bool, name: str, origin: str) -> SeenContact:
+    """Contact under the pressure ``p`` at the points ``x``, (n,); ``name`` is the column's for messages."""
     least = NOISE_FACTOR * noise(p, x)
     touching = zone_around_peak(p, least)
     if touching is None or touching[1] - touching[0] + 1 < FEWEST:
         hint = "; or are the elements of another order (--order)?" if cells else ""
-        raise InputError(f"{origin}: p: must exceed its noise at {FEWEST} or more neighbouring points{hint}")
+        raise InputError(f"{origin}: {name}: must exceed its noise at {FEWEST} or more neighbouring points{hint}")
     first, last = touching
     left = left_end(x, p, first, last, cells=cells, least=least)
     right = right_end(x, p, last, first, cells=cells, least=least)
     if not right.x > left.x:
-        raise InputError(f"{origin}: p: must have a contact of positive width; the ends found are in the wrong order")
-    return first, last, left, right
+        wrong = "must have a contact of positive width; the ends found are in the wrong order"
+        raise InputError(f"{origin}: {name}: {wrong}")
+    return SeenContact(first, last, left, right)
 
 
 def _why(stick: SeenStickZone | None, uncertainty: dict[str, float]) -> str:
@@ -153,7 +190,7 @@ def _widths(samples: Samples) -> Array:
 
 
 def _stick_zone(x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool) -> SeenStickZone | None:
-    """Stick zone from 2 f p - |dq| at the points in contact; None if nothing sticks."""
+    """Stick zone from 2 f p - |dq| at the points in contact, ``p`` being the mean pressure; None if nothing sticks."""
     sides = frictions(p, dq, asked)
     slacks = [2 * side.uncertainty * p for side in sides]
     room = 2 * min(side.f for side in sides) * p - np.abs(dq)
@@ -177,7 +214,7 @@ def _stick_zone(x: Array, p: Array, dq: Array, asked: float, p0: float, cells: b
 def _regime(
     scene: Scene, stick: SeenStickZone | None, left: ZoneEnd, right: ZoneEnd, slips: bool
 ) -> tuple[Regime, tuple[ZoneEnd, ZoneEnd] | None]:
-    """Regime, and the ends of the stick zone limited to the contact."""
+    """Regime, and the ends of the stick zone limited to the points in contact at both load points."""
     if scene.free:
         return "frictionless", None
     if not slips:
@@ -192,19 +229,19 @@ def _regime(
 
 @dataclass(frozen=True)
 class _PiecewiseLinear:
-    """p and dq, linear between the points ``x`` (n,), m, and zero outside; ``values`` (2, n), Pa."""
+    """Two tractions, linear between the points ``x`` (n,), m, and zero outside; ``values`` (2, n), Pa."""
 
     x: Array
     values: Array
 
     def at(self, x: Array) -> tuple[Array, Array]:
-        p, dq = (np.interp(x, self.x, column, left=0.0, right=0.0) for column in self.values)
-        return p, dq
+        one, other = (np.interp(x, self.x, column, left=0.0, right=0.0) for column in self.values)
+        return one, other
 
 
 @dataclass(frozen=True)
 class _PiecewiseConstant:
-    """p and dq, constant on each of the ``cells`` (n + 1,), m, and zero outside; ``values`` (2, n), Pa."""
+    """Two tractions, constant on each of the ``cells`` (n + 1,), m, and zero outside; ``values`` (2, n), Pa."""
 
     cells: Array
     values: Array
@@ -212,19 +249,24 @@ class _PiecewiseConstant:
     def at(self, x: Array) -> tuple[Array, Array]:
         cell = np.clip(np.searchsorted(self.cells, x) - 1, 0, self.values.shape[1] - 1)
         within = (x >= self.cells[0]) & (x <= self.cells[-1])
-        p, dq = np.where(within, self.values[:, cell], 0.0)
-        return p, dq
+        one, other = np.where(within, self.values[:, cell], 0.0)
+        return one, other
 
 
-def _traction(samples: Samples, left: float, right: float) -> Traction:
-    """Tractions as functions of x: constant on cells, or linear between points and zero at the contact's ends."""
-    x, p, dq, cells = samples.x, samples.p, samples.dq, samples.cells
-    if cells is None:
-        ends = np.array([end for end in (left, right) if not x[0] <= end <= x[-1]])
-        breaks, order = np.unique(np.concatenate([x, ends]), return_index=True)
-        values = np.array([np.concatenate([column, np.zeros(len(ends))])[order] for column in (p, dq)])
-        return Traction(x, p, dq, samples.q1, samples.q2, _PiecewiseLinear(breaks, values).at, breaks, breaks)
-    return Traction(x, p, dq, samples.q1, samples.q2, _PiecewiseConstant(cells, np.array([p, dq])).at, cells, cells)
+def _traction(samples: Samples, ends: list[float]) -> Traction:
+    """Tractions as functions of x: constant on cells, or linear between points and zero at the outermost ``ends`` (m)
+    of the contacts."""
+    x, p, dq, p1, cells = samples.x, samples.p, samples.dq, samples.p1, samples.cells
+    beyond = [end for end in (min(ends), max(ends)) if not x[0] <= end <= x[-1]]
+    breaks = np.union1d(x, beyond) if cells is None else cells
+
+    def between(*columns: Array) -> _PiecewiseLinear | _PiecewiseConstant:
+        if cells is not None:
+            return _PiecewiseConstant(cells, np.array(columns))
+        return _PiecewiseLinear(breaks, np.array([np.interp(breaks, x, each, left=0.0, right=0.0) for each in columns]))
+
+    at, pressures_at = between(p, dq).at, None if p1 is None else between(p1, p).at
+    return Traction(x, p, dq, samples.q1, samples.q2, at, breaks, breaks, p1=p1, pressures_at=pressures_at)
 
 
 def _rounded(number: float) -> float:

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.result import Result
 from partialslip.scene import Scene
 from partialslip.units import UNITS, Dimension
@@ -39,12 +40,12 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
     """
     f_seen, f_known = (result.settings.get(key) for key in ("f_seen", "f_seen_to"))
     seen = float(f_seen) if isinstance(f_seen, float) and scene.friction.f > 0 else None
-    (P, P_off), (dQ, dQ_off) = _sums(result)
+    (P, P_off), (dQ, dQ_off), *sums_1 = _sums(result)
+    P1, P2 = (scene.pressing[end].P for end in scene.load.ends)
     stresses = _others(_STRESSES, scene.units.size("Pa"))
     x = _guess(result.a / reference.a, _others(_LENGTHS, scene.units.size("m"))) or _Guess("", 1.0)
     P, dQ = P * x.factor, dQ * x.factor
-    p = _guess(P / scene.P, stresses) or _Guess("", 1.0)
-    P *= p.factor
+    p = _guess(P / P2, stresses) or _Guess("", 1.0)
     share = 1.0 if seen is None else seen / scene.friction.f / p.factor  # of dq, in the dq that friction requires
     q = _shear(dQ, share, seen is not None, scene, stresses)
     dQ, share = dQ * q.factor, abs(share * q.factor)
@@ -53,9 +54,12 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
     if found := [f"{column} may be {guess.name}" for column, guess in columns if guess.name]:
         factors = ",".join(f"{guess.factor:g}" for guess in (x, p, q))
         notes.append(f"{', '.join(found)}: correct with --factors {factors}{_or_shown_in(scene, x, p, q)}")
-    if abs(P / scene.P - 1) > max(_OFF, _SIGMAS * P_off):
-        notes.append(f"p adds up to {P / scene.P:.3g} of the scene's P")
-    slides, load = 2 * scene.friction.f * scene.P, scene.load.dQ
+    pressed = [("p", P / P2, P_off, " at load point 2" if sums_1 else "")]
+    pressed += [("p1", sum_1 * x.factor / P1, off, " at load point 1") for sum_1, off in sums_1]
+    for column, share_of_P, off, where in pressed:
+        if abs(share_of_P * p.factor - 1) > max(_OFF, _SIGMAS * off):
+            notes.append(f"{column} adds up to {share_of_P * p.factor:.3g} of the scene's P{where}")
+    slides, load = scene.friction.f * (P1 + P2), scene.load.dQ
     if abs(dQ - load) > max(_OFF, _SIGMAS * dQ_off) * max(abs(load), 0.1 * slides):
         notes.append(
             f"dq adds up to {dQ / load:.3g} of the scene's dQ"
@@ -86,15 +90,18 @@ def _shear(dQ: float, share: float, seen: bool, scene: Scene, stresses: dict[str
 
 def _places(scene: Scene, result: Result, reference: Result, factor: float) -> list[str]:
     """Notes on the position of the contact and of the stick zone; ``factor`` corrects x."""
-    notes, a = [], result.a
-    left, right = result.ends[1]
-    middle, known = (left + right) / 2 / a, max(result.estimate.get(key, 0.0) for key in ("a", "left", "right"))
-    if abs(middle) > max(2 * known, 1e-9):
-        notes.append(f"the contact's middle is at x = {middle:.2g} a (--centre auto puts x = 0 there)")
+    notes = []
+    middle, expected = (sum(each.ends[1]) / 2 for each in (result, reference))
+    off = middle / result.a - expected / reference.a
+    known = max(result.estimate.get(key, 0.0) for key in ("a", "left", "right"))
+    if abs(off) > max(2 * known, 1e-9):
+        place = f"the contact's middle is at x = {middle / result.a:.2g} a"
+        advice = " (--centre auto puts x = 0 there)" if scene.even else f", not at {expected / reference.a:.2g} a"
+        notes.append(place + advice)
     centre, true = result.stick_centre, reference.stick_centre
     if centre is None or true is None or not scene.load.dsigma or not scene.load.dQ:
         return notes
-    centre, true = (centre - (left + right) / 2) * factor / reference.a, true / reference.a
+    centre, true = (centre - middle) * factor / reference.a, (true - expected) / reference.a
     little = max(_SIGMAS * max(result.estimate["m"], result.estimate["n"]), _LITTLE)
     if abs(true) > 10 * little and abs(centre) <= little:
         notes.append("the stick zone is in the middle of the contact: was the tension left out?")
@@ -123,17 +130,20 @@ def _guess(ratio: float, units: dict[str, float]) -> _Guess | None:
     return next((_Guess(name, size) for name, size in units.items() if abs(ratio * size - 1) < _LIKE), None)
 
 
-def _sums(result: Result) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Resultants of p and dq, N/m, each with its error relative to the resultant of p.
+def _sums(result: Result) -> list[tuple[float, float]]:
+    """Resultants of p and dq, and of p1 if the pressure varies, N/m, each with its error.
 
-    The error is the change on every second point.
+    The error is the change on every second point, relative to the resultant of p.
     """
-    traction = result.traction
-    breaks = traction.breaks
+    traction, breaks = result.traction, result.traction.breaks
+
+    def values(x: Array) -> Array:
+        first = traction.pressures_at(x)[:1] if traction.pressures_at else ()
+        return np.stack([*traction.at(x), *first])
+
     centres, widths = (breaks[1:] + breaks[:-1]) / 2, np.diff(breaks)
-    fine = np.stack(traction.at(centres)) @ widths
-    values = np.stack(traction.at(breaks))[:, ::2]
-    coarse = np.trapezoid(values, breaks[::2], axis=1)
+    fine = values(centres) @ widths
+    coarse = np.trapezoid(values(breaks)[:, ::2], breaks[::2], axis=1)
     means = result.settings["read"] == "means over cells"
     off = 0.0 * fine if means else np.abs(fine - coarse) / max(abs(float(fine[0])), 1e-300)
-    return (float(fine[0]), float(off[0])), (float(fine[1]), float(off[1]))
+    return list(zip(fine.tolist(), off.tolist(), strict=True))

@@ -13,7 +13,7 @@ from partialslip.inputfile import check_regular, read_bytes
 from partialslip.scene import Scene
 from partialslip.score.calculix import read_dat, read_frd, stated_units
 from partialslip.score.csvfile import Columns, read_csv
-from partialslip.score.headers import DIMENSIONS, NORMAL, SHEARS
+from partialslip.score.headers import DIMENSIONS, SHEARS
 from partialslip.score.samples import Samples, samples
 from partialslip.units import Units
 
@@ -42,8 +42,9 @@ def read(
     """Read tractions from ``file``.
 
     Formats: .csv, .txt, .tsv and .rpt tables; .frd and .dat of CalculiX; formats of meshio with point data p and dq, q,
-    or q1 and q2. Parameters as for :func:`partialslip.score`; ``chosen`` are its ``columns``. Numbers are in the
-    scene's units unless the file states others.
+    or q1 and q2. The pressure at load point 1, p1, is read where the scene's pressure varies. Parameters as for
+    :func:`partialslip.score`; ``chosen`` are its ``columns``. Numbers are in the scene's units unless the file states
+    others.
 
     Raises
     ------
@@ -51,14 +52,14 @@ def read(
         If the file cannot be read or its content is not valid.
     """
     origin, suffix = str(file), file.suffix.lower()
-    load = scene.load
+    load, anew = scene.load, scene.presses_anew
     load_points = (*load.ends, len(load.points))
     if at is not None and suffix not in (".frd", ".dat"):
         raise InputError(f"--at {at[0]},{at[1]}: must be left out except for .frd and .dat files")
     if chosen and suffix not in TABLES:
         raise InputError(f"--columns: must be left out except for tables ({', '.join(TABLES)})")
     if suffix in TABLES:
-        columns = read_csv(text(file), origin, chosen, scene.units)
+        columns = read_csv(text(file), origin, chosen, scene.units, anew)
     elif suffix in (".frd", ".dat"):
         content = text(file)
         mesh = content if suffix == ".frd" else text(file.with_suffix(".frd"))
@@ -66,12 +67,14 @@ def read(
             found = read_frd(mesh, origin, at, load_points)
         else:
             found = read_dat(content, mesh, origin, at, load_points)
+        if not anew:
+            del found["p1"]
         units = stated_units(mesh) or scene.units
         columns = _in_si(found, units)
         if units != scene.units:
             columns = columns._replace(notes=(f"read in {units.words}, the units of the deck",))
     else:
-        columns = _in_si(_point_data(file), scene.units)
+        columns = _in_si(_point_data(file, ("p", "p1") if anew else ("p",)), scene.units)
     notes = columns.notes
     if columns.moment:
         if not load.fully_reversed:
@@ -81,6 +84,8 @@ def read(
             )
         notes += (f"{columns.made_of}: shear at load point 2, taken as half of its change",)
     made = samples(columns.values, origin, factors, order)
+    if not load.fully_reversed and {"q", "Ft"} & set(columns.values):  # half of the change, but not q at load point 2
+        made = replace(made, q1=None, q2=None)
     return replace(made, made_of=columns.made_of, notes=notes)
 
 
@@ -98,18 +103,21 @@ def text(file: Path) -> str:
         raise InputError(f"{file}: must be UTF-8 text; byte {error.start} is not") from None
 
 
-def _point_data(file: Path) -> dict[str, Array]:
+def _point_data(file: Path, pressures: tuple[str, ...]) -> dict[str, Array]:
+    """Columns x, ``pressures`` and shear of a file of meshio with point data."""
     from partialslip_meshes.pointdata import read_point_data
 
     check(file)
     points, data = read_point_data(file)
     shears = [shear for shear in SHEARS if set(shear) <= set(data) and shear[0].startswith(("q", "dq"))]
-    if NORMAL[0] not in data or len(shears) != 1:
+    if not set(pressures) <= set(data) or len(shears) != 1:
         shown = ", ".join(map(repr, data))[:100] or "none"
-        raise InputError(f"{file}: point data {shown}: must have p, and one of dq, q, or q1 and q2")
-    columns = [points[:, 0], *(data[name] for name in ("p", *shears[0]))]
+        asked = " and ".join(pressures)
+        raise InputError(f"{file}: point data {shown}: must have {asked}, and one of dq, q, or q1 and q2")
+    names = (*pressures, *shears[0])
+    columns = [points[:, 0], *(data[name] for name in names)]
     known = np.isfinite(np.stack(columns[1:])).all(axis=0)
     x, across = points[known, 0], points[known, 1:]
     if len(x) and np.ptp(across[:, 0]) > _FLAT * np.ptp(x):
         raise InputError(f"{file}: points with p lie {np.ptp(across[:, 0]):.3g} m apart across x: must be on one line")
-    return dict(zip(("x", "p", *shears[0]), (column[known] for column in columns), strict=True))
+    return dict(zip(("x", *names), (column[known] for column in columns), strict=True))

@@ -7,6 +7,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.scene import LARGEST, SMALLEST
+from partialslip.score.headers import FIRST
 
 _DIGITS = 8  # digits of x: numbers with fewer count as rounded
 _WHOLE = 1e-5  # of a unit in the last place: deviation from a whole number of units
@@ -22,7 +23,7 @@ class Samples:
     x : (n,) array
         Points, ascending, m.
     p, dq : (n,) arrays
-        Pressure, and the change q2 - q1 of shear traction between load points 1 and 2, Pa.
+        Pressure at load point 2, and the change q2 - q1 of shear traction between load points 1 and 2, Pa.
     q1, q2 : (n,) arrays or None
         Shear traction at the load points, Pa, if known.
     cells : (n + 1,) array or None
@@ -33,6 +34,8 @@ class Samples:
         Expressions for the columns, if they differ from the columns' names.
     notes : tuple of str
         Notes for the author of the file.
+    p1 : (n,) array or None
+        Pressure at load point 1, Pa; None where the pressure does not vary.
     """
 
     x: Array
@@ -44,6 +47,12 @@ class Samples:
     resolution: float = 0.0
     made_of: str = ""
     notes: tuple[str, ...] = ()
+    p1: Array | None = None
+
+    @property
+    def p_mean(self) -> Array:
+        """Mean pressure of load points 1 and 2, (n,), Pa: in slip |dq| is 2 f times as large."""
+        return self.p if self.p1 is None else (self.p + self.p1) / 2
 
     def moved(self, shift: float) -> "Samples":
         """Return the samples moved along x by ``shift``, m."""
@@ -56,12 +65,13 @@ def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float,
     Parameters
     ----------
     columns : dict of (n,) arrays
-        x (m); p (Pa), or nodal normal forces Fn (N/m); and one of: dq; q = dq/2; q1 and q2; dFt; Ft; Ft1 and Ft2.
-        Points in any order. Points with the same x, as in a mesh with a depth, are averaged.
+        In this order: x (m); p (Pa), or nodal normal forces Fn (N/m); p1 or Fn1 where the pressure varies; and one of:
+        dq; q = dq/2; q1 and q2; dFt; Ft; Ft1 and Ft2. Points in any order. Points with the same x, as in a mesh with a
+        depth, are averaged.
     origin : str
         Name of the file, for messages.
     factors : (float, float, float)
-        Factors of x, of p (Fn) and of the shear, for other units and signs.
+        Factors of x, of the pressures (forces Fn) and of the shear, for other units and signs.
     order : int
         Order of the elements of nodal forces: 1, or 2 with every second node in the middle of an edge.
 
@@ -70,27 +80,29 @@ def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float,
     InputError
         If too few points are in contact, or a value is not a number of a plausible size.
     """
-    x, *rest = (columns[name] for name in columns)
-    normal, tangential = next(iter([name for name in columns if name != "x"])), [*columns][2:]
-    values = np.stack([x * factors[0], rest[0] * factors[1], *(column * factors[2] for column in rest[1:])])
-    _check(values, [*columns], origin)
+    names = [*columns]
+    normal, pressed = names[1], 2 + (names[2] in FIRST.values())  # the pressures end before column ``pressed``
+    sizes = [factors[0], *[factors[1]] * (pressed - 1), *[factors[2]] * (len(names) - pressed)]
+    values = np.stack([column * size for column, size in zip(columns.values(), sizes, strict=True)])
+    _check(values, names, origin)
     values = _merged(values)
-    x, p, shears = values[0], values[1], values[2:]
-    cells, resolution = None, abs(factors[0]) * _resolution(columns["x"])
+    x, cells, resolution = values[0], None, abs(factors[0]) * _resolution(columns["x"])
     if normal == "Fn":
         if order == 2 and len(x) % 2 == 0:
             raise InputError(f"{origin}: {len(x)} nodes: must be an odd number for elements of order 2")
         cells = _cells(x, order)
-        p, shears = p / np.diff(cells), shears / np.diff(cells)
-    touching = np.count_nonzero(p > 0)
-    if touching < FEWEST:
-        hint = "; pressure must be positive" if p.min(initial=0) < 0 else ""
-        raise InputError(f"{origin}: {normal} > 0 at {touching} points: must be at least {FEWEST}{hint}")
-    if len(tangential) == 2:
-        return Samples(x, p, shears[1] - shears[0], shears[0], shears[1], cells, resolution)
-    half = tangential[0] in ("q", "Ft")
+        values[1:] /= np.diff(cells)
+    for name, p in zip(names[1:pressed], values[1:pressed], strict=True):
+        touching = np.count_nonzero(p > 0)
+        if touching < FEWEST:
+            hint = "; pressure must be positive" if p.min(initial=0) < 0 else ""
+            raise InputError(f"{origin}: {name} > 0 at {touching} points: must be at least {FEWEST}{hint}")
+    p, p1, shears = values[1], (values[2] if pressed > 2 else None), values[pressed:]
+    if len(shears) == 2:
+        return Samples(x, p, shears[1] - shears[0], shears[0], shears[1], cells, resolution, p1=p1)
+    half = names[pressed] in ("q", "Ft")
     dq = 2 * shears[0] if half else shears[0]
-    return Samples(x, p, dq, -dq / 2 if half else None, dq / 2 if half else None, cells, resolution)
+    return Samples(x, p, dq, -dq / 2 if half else None, dq / 2 if half else None, cells, resolution, p1=p1)
 
 
 def _check(values: Array, names: list[str], origin: str) -> None:
