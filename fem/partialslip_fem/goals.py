@@ -102,9 +102,9 @@ class NextMesh(NamedTuple):
 
 
 def sweep(accuracy: float) -> float:
-    """Element size for an ``accuracy``, as a part of the width over which sticking surfaces come into contact: the error
-    of q falls like size^1.5 (measured)."""
-    return min(_SWEPT[0] * (BARS["q"] * accuracy / _SWEPT[1]) ** (2 / 3), _SWEPT[2])
+    """Element size for an ``accuracy``, as a part of the width over which sticking surfaces come into contact; the
+    error of q falls like size^1.5."""
+    return float(min(_SWEPT[0] * (BARS["q"] * accuracy / _SWEPT[1]) ** (2 / 3), _SWEPT[2]))
 
 
 def reached(size: float, goal: float) -> bool:

@@ -171,7 +171,7 @@ def _under_varying_pressure(
 ) -> _ContactForces:
     """Solve p anew at each step of the load path, and q of bodies that are not coupled; ``pressing`` are P and M at
     load points 1 and 2."""
-    line, path, history = lower.body, problem.path, None
+    line, path, history, holding = lower.body, problem.path, None, presses
     first, second = (presses(*loads) for loads in pressing)
     left: step_errors.Errors = {}
     if path:
@@ -181,9 +181,11 @@ def _under_varying_pressure(
         at_largest = (first if problem.largest == 1 else second).x
         half_width = float(np.subtract(*contact_ends(line, at_largest)[::-1])) / 2
         every = np.arange(len(line.x))
+        if not any(part.finite for part in problem.parts):  # see partialslip.condensed.varying.march
+            holding = Presses(C.xx, problem.gap(line.x), line.x if problem.turns else None)
 
         def along(path: Path) -> History:
-            return varying.march(line.x, C.xx, lower.stretch[0], problem.f, presses, path)  # type: ignore[arg-type]
+            return varying.march(line.x, C.xx, lower.stretch[0], problem.f, holding, path)  # type: ignore[arg-type]
 
         def errors(history: History, finer: History) -> step_errors.Errors:
             zones = stick_zone_of(line, every, history), stick_zone_of(line, every, finer)
@@ -191,7 +193,7 @@ def _under_varying_pressure(
 
         refine = None if steps is None else errors
         history, left = follow_refined(along, lambda path, _: path, path, problem.accuracy, refine, steps or 0)
-    done = presses.solutions
+    done = [*presses.solutions, *(holding.solutions if holding is not presses else [])]
     most = np.maximum.reduce([each.x for each in done])
     together = replace(
         second,

@@ -59,7 +59,7 @@ def steady_state(
     regime: Regime = "small tension" if stick.signs[0] == stick.signs[1] else "large tension"
     slips = end_slips(x, history, stick) if anew and x is not None and load.in_phase else None
     if slips and {"never", "part of the cycle"}.intersection(slips):
-        regime = "sticking ends"
+        regime = "no slip" if set(slips) == {"never"} else "sticking ends"
     if not load.in_phase:
         regime = "out of phase"
     if history.repeats and history.ratchets > _RATCHETS:

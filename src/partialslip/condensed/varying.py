@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Indices
+from partialslip.arrays import Array, Indices, Mask
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
 from partialslip.condensed.history import History, follow, resting
 from partialslip.condensed.path import Path
@@ -46,34 +46,51 @@ def march(
     f : float
         Coefficient of friction.
     press : callable
-        ``press(P, M)``: normal forces (n,) under these loads, in equilibrium on the same nodes.
+        ``press(P, M)``: normal forces (n,) under these loads. Where surfaces stick while the contact grows, they must
+        come from the compliance ``tangential``, which is also the one along y of half-planes: a difference between the
+        discretisations of both would be locked in.
     path : Path
     """
     first, *ways = (len(way) for way in path.fractions)
     cycle = sum(ways)
     sides: list[Sides] = []
     pressed = [press(*path.begin[2:])]
+    attached = _spanned(pressed[0].x)  # nodes that remember where they stuck: those between the ends of the contact
+    drift = 0 * x  # displacement of attached nodes that are open, since they opened
 
     def advance(before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
+        nonlocal attached, drift
         Q, P, M = (float(load[i]) for i in (0, 2, 3))
         normal = press(P, M)
         near = sides[-cycle] if len(sides) >= first + cycle else before.sides
-        bound = f * normal.x
-        step = _Step(x, tangential, tangential @ before.x + float(change[1]) * stretch, bound, Q)
+        free = tangential @ before.x + float(change[1]) * stretch - drift
+        step = _Step(x, tangential, free, f * normal.x, Q, attached)
         found = step.solve(pressed[-1].x, normal.x, near)
+        moved = tangential @ found.x - free
+        sticks = (normal.x > 0) & (found.sides == 0)
+        attached = _spanned(normal.x)
+        drift = np.where(attached & (normal.x <= 0), moved - moved[sticks].mean(), 0.0) if sticks.any() else 0 * x
         pressed.append(normal)
         sides.append(found.sides)
-        return found, bound
+        return found, f * normal.x
 
     return follow(path, advance, resting(0 * x if path.before is None else path.before))
 
 
+def _spanned(forces: Array) -> Mask:
+    """Nodes between the first and the last node with a force; single ones among them may be open."""
+    on, numbers = np.flatnonzero(forces > 0), np.arange(len(forces))
+    result: Mask = (numbers >= on[0]) & (numbers <= on[-1])
+    return result
+
+
 class _Step:
     """One load step: nodes ``x`` (n,), compliance, ``free`` relative displacement, ``bound`` (n,), zero at nodes that
-    are open at the end of the step, and shear force ``Q``."""
+    are open at the end of the step, shear force ``Q``, and the nodes that are ``attached`` before the step (n,)."""
 
-    def __init__(self, x: Array, tangential: Array, free: Array, bound: Array, Q: float) -> None:
+    def __init__(self, x: Array, tangential: Array, free: Array, bound: Array, Q: float, attached: Mask) -> None:
         self._x, self._C, self._free, self._bound, self._Q = x, tangential, free, bound, Q
+        self._attached = attached
         self._on = np.flatnonzero(bound > 0)
         self._inner = tangential[np.ix_(self._on, self._on)]
 
@@ -125,7 +142,7 @@ class _Step:
         """Displacements (k, n) at nodes that touch in the step for unit coefficients of the ratio L, and rows (k, n)
         that take q to these coefficients, (k,)."""
         x, on = self._x, self._bound > 0
-        new, both = on & (before <= 0), np.flatnonzero(on & (before > 0))
+        new, both = on & ~self._attached, np.flatnonzero(on & (before > 0))
         if not new.any() or len(both) < 2:
             return np.empty((0, len(x))), np.empty((0, len(x)))
         approach = self._C @ (after - before)
@@ -136,7 +153,7 @@ class _Step:
             touch = np.flatnonzero(new & (side * np.arange(len(x)) > side * last))
             if not len(touch):
                 continue
-            end = (x[last] + x[last + side]) / 2
+            end = (x[touch[0 if side > 0 else -1]] + x[touch[0 if side > 0 else -1] - side]) / 2
             apart = (x[touch] - end) / (x[touch[-1]] - x[touch[0]] or 1.0)
             powers = np.arange(2 if len(touch) >= _FEW else 1)[:, None]
             fit = np.linalg.pinv((apart**powers * after[touch]).T)

@@ -38,7 +38,8 @@ class Cycle:
     change : Loading or None
         Change of shear from load point 1 to 2; None where no end slips.
     slips : two EndSlip
-        How the left and the right end of the contact slip from load point 1 to 2.
+        How the left and the right end of the contact slip from load point 1 to 2; "part of the cycle" where the stick
+        zone of the closed form does not lie inside both contacts: the end then slips at most during part of the cycle.
     turns_round : bool
         Whether slip reverses on the way.
     """
@@ -174,13 +175,14 @@ def steady_cycle(scene: Scene) -> Cycle:
     left, right = common(first, second)
     rates = _exceeds(path, f)
     change = loading(mean, f, path.dQ, path.dsigma, bound=2) if left < right and rates.any() else None
-    ends = [mean.centre + end * mean.a for end in change.ends] if change else [left, right]
-    room = _ROUNDING * mean.a
-    inside = [left - room <= ends[0], ends[1] <= right + room]
-    signs = change.signs if change else (1, 1)
-    slips = tuple(_class(*each) for each in zip(inside, signs, rates.T, strict=True))
-    assert len(slips) == 2
-    if not change or not all(inside):
+    if not change:
+        slips: tuple[EndSlip, EndSlip] = ("never", "never") if left < right else ("part of the cycle",) * 2
+        return Cycle(scene, first, second, mean, None, slips, False)
+    ends, room = [mean.centre + end * mean.a for end in change.ends], _ROUNDING * mean.a
+    ways: list[EndSlip] = ["forwards" if sign > 0 else "backwards" for sign in change.signs]
+    inside = left - room <= ends[0], ends[1] <= right + room
+    slips = (ways[0] if inside[0] else "part of the cycle", ways[1] if inside[1] else "part of the cycle")
+    if not all(inside):
         return Cycle(scene, first, second, mean, None, slips, False)
     turns = any(_turns(Path(scene, back), f, change) for back in (False, True))
     return Cycle(scene, first, second, mean, change, slips, turns)
@@ -197,11 +199,9 @@ def closed_form(scene: Scene) -> str:
         if isinstance(scene.profile, Hertz) and scene.even:
             return ""
         return "neither end of the contact slips, and only for hertz without a moment there is a closed form"
-    which = [name for name, slips in zip(("left", "right"), cycle.slips, strict=True) if slips == "never"]
-    part = [name for name, slips in zip(("left", "right"), cycle.slips, strict=True) if slips == "part of the cycle"]
-    told = [f"the {name} end of the contact never slips" for name in which]
-    told += [f"the {name} end of the contact slips during part of the cycle" for name in part]
-    return ", and ".join(told) + ": there is no closed form"
+    sides = zip(("left", "right"), cycle.slips, strict=True)
+    told = " and ".join(f"the {side} end" for side, how in sides if how == "part of the cycle")
+    return f"{told} of the contact slips at most during part of the cycle: there is no closed form"
 
 
 def require_closed_form(scene: Scene) -> None:
@@ -210,19 +210,9 @@ def require_closed_form(scene: Scene) -> None:
         raise InputError(f"load.P, load.M: {why}; must be solved by march")
 
 
-def _class(inside: bool, sign: int, exceeds: Array) -> EndSlip:
-    """How an end slips: ``inside``, whether the stick zone's end by the closed form lies inside both contacts; the
-    ``sign`` of slip there; and at which stages shear at the adhered end exceeds what the pressure holds."""
-    if not exceeds.any():
-        return "never"
-    if not inside:
-        return "part of the cycle"
-    return "forwards" if sign > 0 else "backwards"
-
-
 def _exceeds(path: Path, f: float) -> Array:
     """Whether the increments of q at the ends of the adhered contact are larger than f times those of p: at stages of
-    the way and the left and right end, (stages, 2)."""
+    the way and the left and right end, (stages, 2). If they never are, no end slips."""
     found = []
     for share in np.linspace(0, 1, _STAGES + 1).tolist():
         rates = path.rates(path.at(share))

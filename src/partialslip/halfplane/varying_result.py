@@ -119,7 +119,7 @@ def _regime(scene: Scene, cycle: Cycle | None) -> Regime:
     if not low - room <= scene.load.points[first][0] <= high + room:
         return "ratchets"
     if cycle.change is None:
-        return "sticking ends"
+        return "no slip"
     return "small tension" if cycle.change.zone.s > 0 else "large tension"
 
 

@@ -15,6 +15,7 @@ from partialslip.scene import Scene
 from partialslip.shown import Notebook
 
 _TENSIONS = {"small tension", "large tension"}
+_STICKING = {"sticking ends", "no slip"}  # regimes of varying pressure in which an end does not slip throughout
 
 
 @dataclass(frozen=True, repr=False)
@@ -239,7 +240,7 @@ def _too_near(result: Result, reference: Result, width: float) -> str:
         return ""
     left, right = (pick(ends) for pick, ends in zip((max, min), zip(*zone.ends, strict=True), strict=True))
     slips = (-zone.m - left, right - zone.n)  # widths of the slip zones
-    if (names == _TENSIONS or "sticking ends" in names) and min(slips) <= width:
+    if (names == _TENSIONS or names & _STICKING) and min(slips) <= width:
         return "a slip zone is narrower than the bar: the transition is nearer than the bar can tell"
     if "stuck" in names and not names & {"sliding", "ratchets"} and max(slips) <= width:
         return "both slip zones are narrower than the bar"

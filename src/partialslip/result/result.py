@@ -22,6 +22,7 @@ Regime = Literal[
     "stuck",
     "small tension",
     "large tension",
+    "no slip",
     "sticking ends",
     "out of phase",
     "sliding",
