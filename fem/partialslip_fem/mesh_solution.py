@@ -130,6 +130,14 @@ class MeshSolution:
         return int((np.diff(cells.astype(np.int8), prepend=0) == 1).sum())
 
     @property
+    def common(self) -> tuple[float, float] | None:
+        """Ends of what is in contact at both load points; None where the pressure is constant."""
+        if self.most is None:
+            return None
+        (left1, right1), (left2, right2) = self.contact_ends
+        return max(left1, left2), min(right1, right2)
+
+    @property
     def swept(self) -> list[tuple[float, float]]:
         """Intervals between the ends of the contacts at load points 1 and 2 beside which the surfaces stick."""
         if self.most is None or not self.stick:

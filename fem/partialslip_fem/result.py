@@ -34,7 +34,8 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
     weights = solution.lower.weights[solution.nodes]
     history, pressures = solution.history, solution.pressures(problem.f)
     change = last_cycle_change(history, weights, problem.f, p0) if history else None
-    found = steady_state(scene, history, solution.stick, solution.half_width, solution.slips_when_pressed, x)
+    pushed = solution.slips_when_pressed
+    found = steady_state(scene, history, solution.stick, solution.half_width, pushed, x, solution.common)
 
     q1, q2, at1, at2, dq = np.zeros_like(x), np.zeros_like(x), None, None, None
     if history:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Mask
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
 from partialslip.condensed.path import Path
 
@@ -49,6 +49,8 @@ class History:
         Number of load steps solved.
     slipped : (2, n) array or None
         Where the pressure varies: slip of the last cycle along +x and along -x; None under constant P.
+    held : (n,) bool array or None
+        Where the pressure varies: nodes that are in contact throughout the last cycle.
     """
 
     path: Path
@@ -64,6 +66,7 @@ class History:
     load_steps: int
     room: Array | None = None
     slipped: Array | None = None
+    held: Mask | None = None
 
     def of(self, nodes: npt.NDArray[np.int64]) -> "History":
         """History of some ``nodes`` only (indices)."""
@@ -73,8 +76,8 @@ class History:
         fields: dict[str, Any] = {key: getattr(self, key)[nodes] for key in ("q1", "q2", "slip", "net_slip")} | {
             key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "bounds", "end")
         }
-        if self.room is not None and self.slipped is not None:
-            fields |= {"room": self.room[nodes], "slipped": self.slipped[:, nodes]}
+        if self.room is not None and self.slipped is not None and self.held is not None:
+            fields |= {"room": self.room[nodes], "slipped": self.slipped[:, nodes], "held": self.held[nodes]}
         return replace(self, points=points, **fields)
 
     @property
@@ -110,7 +113,9 @@ class History:
     def ratchets(self) -> float:
         """Largest net slip of the last cycle, relative to the largest slip of half a cycle."""
         held = (self.bounds[0] > 0) & (self.bounds[1] > 0)  # nodes that open may close elsewhere
-        if self.room is not None and not held.any():
+        if self.held is not None:
+            held = self.held
+        if not held.any():
             return 0.0
         half = float(np.abs(self.slip[held]).max())
         return float(np.abs(self.net_slip[held]).max()) / half if half > 0 else 0.0
@@ -223,6 +228,7 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
         room = (bounds - forces).min(axis=0) + (bounds + forces).min(axis=0)
         anew = {
             "room": np.maximum(room, 0.0),
+            "held": (bounds > 0).all(axis=0),
             "slipped": np.array([slip.clip(0).sum(axis=0), -slip.clip(None, 0).sum(axis=0)]),
         }
         # while a node slips, q follows the bound

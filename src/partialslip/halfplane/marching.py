@@ -256,7 +256,8 @@ def _result(
     certified = certificate(history, widths, scene.friction.f, p0) if history else {}
     change = last_cycle_change(history, widths, scene.friction.f, p0) if history else None
     middles = (level.vertices[1:] + level.vertices[:-1]) / 2
-    found = steady_state(scene, history, level.stick, 1.0, x=middles)
+    common = normal.common if scene.presses_anew else None
+    found = steady_state(scene, history, level.stick, 1.0, x=middles, common=common)
     x = (places[1:] + places[:-1]) / 2
     q1, q2 = (P / a * force / widths for force in (history.q1, history.q2)) if history else (0 * x, 0 * x)
     unit = scene.material.A * P  # of displacement

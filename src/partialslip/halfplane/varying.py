@@ -201,7 +201,8 @@ def closed_form(scene: Scene) -> str:
         return "neither end of the contact slips, and only for hertz without a moment there is a closed form"
     sides = zip(("left", "right"), cycle.slips, strict=True)
     told = " and ".join(f"the {side} end" for side, how in sides if how == "part of the cycle")
-    return f"{told} of the contact slips at most during part of the cycle: there is no closed form"
+    slips = "slips" if told.count("end") == 1 else "slip"
+    return f"{told} of the contact {slips} at most during part of the cycle: there is no closed form"
 
 
 def require_closed_form(scene: Scene) -> None:
