@@ -20,7 +20,7 @@ _STAGES = 16  # of the way from load point to load point
 _ROUNDING = 1e-9  # lengths in a, tractions in f p0
 _EQUAL = 1e-12  # relative difference of rates that is rounding
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
-_FEW_NODES, _FEW_WEIGHTS = np.polynomial.legendre.leggauss(10)
+_FEWER_NODES, _FEWER_WEIGHTS = np.polynomial.legendre.leggauss(20)
 _PLACES = np.cos(np.linspace(np.pi, 0, 401))[1:-1]
 
 
@@ -143,15 +143,15 @@ class Cycle:
                 inner = [kink for kink in kinks if low < kink < high]
                 angles = np.arccos(np.clip(np.unique([low, *inner, high]), -1, 1))[::-1]
                 half = np.diff(angles)[:, None] / 2
-                angle = (angles[:-1, None] + half * (1 + _FEW_NODES)).ravel()
+                angle = (angles[:-1, None] + half * (1 + _FEWER_NODES)).ravel()
                 y = np.cos(angle)
                 amount = np.abs(unit * change.slip(mean.scaled(now.centre + now.a * y)))
-                total += float((half * _FEW_WEIGHTS).ravel() @ (amount * weight(y, np.sin(angle))))
+                total += float((half * _FEWER_WEIGHTS).ravel() @ (amount * weight(y, np.sin(angle))))
             return total
 
         end = path.at(1.0)
         work = slipped(1.0, end, lambda y, sine: end.a * sine * end.p0 * end.shape.pressure(y))
-        for share, weight in zip((1 + _FEW_NODES) / 2, _FEW_WEIGHTS / 2, strict=True):
+        for share, weight in zip((1 + _FEWER_NODES) / 2, _FEWER_WEIGHTS / 2, strict=True):
             now = path.at(float(share))
             uniform, turned = path.pressed(now)
             work -= weight * slipped(float(share), now, lambda y, _, u=uniform, t=turned: u + t * y)  # type: ignore[misc]

@@ -1,0 +1,57 @@
+"""Finite elements under varying P and M: against the closed form, and what bodies of other kinds do."""
+
+import math
+import sys
+from pathlib import Path
+
+import pytest
+
+from partialslip import run
+
+sys.path.append(str(Path(__file__).parent.parent / "halfplane"))
+from varying import varying
+
+
+@pytest.mark.parametrize(
+    ("scene", "slips"),
+    [
+        (varying((1, 0.8), -0.32 * math.pi, -0.4, (0.05, 0), cycles=2, accuracy=1e-3), ("backwards", "backwards")),
+        (varying((math.sqrt(0.6), math.sqrt(0.9)), 0.1 * math.pi, 0, cycles=2, accuracy=1e-3), ("never", "never")),
+    ],
+    ids=["both ends slip", "no slip"],
+)
+def test_finite_elements_agree_with_the_closed_form(scene, slips):
+    result = run(scene, ["exact", "fem"])
+    assert result.passed
+    assert result["fem"].end_slips == slips
+    errors = result.comparisons["fem"].errors
+    assert max(errors[key] for key in ("left_1", "right_1", "left_2", "right_2")) < 1e-4
+    assert max(errors["p"], errors["p_1"]) < 1e-3
+    assert result["fem"].p0 == pytest.approx(result["exact"].p0, rel=1e-4)
+    assert result["fem"].certificate["equilibrium"] < 1e-9
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"material": {"upper": {"E": 3.64, "nu": 0.3}, "lower": {"E": 10.92, "nu": 0.3}, "E": None, "nu": None}},
+        {"bodies": {"upper": {"kind": "block", "width": 20.0, "height": 20.0}}},
+    ],
+    ids=["unlike", "finite"],
+)
+def test_bodies_of_other_kinds(change):
+    """P at both load points is held, and the larger P has the larger contact."""
+    scene = varying((1, 0.9), 0.4, 0.0, f=0.5, cycles=1, accuracy=1e-2).replace(change).replace(fem={"size": 0.1})
+    result = run(scene, ["fem"])["fem"]
+    (left1, right1), (left2, right2) = result.ends
+    assert right1 - left1 > right2 - left2
+    assert result.a == pytest.approx((right1 - left1) / 2)
+    sums = result.traction.pressures_at
+    assert sums is not None
+    assert result.certificate["equilibrium"] < 1e-9
+
+
+def test_without_tangential_loads_both_contacts_are_found():
+    result = run(varying((0.8, 1), 0.0, 0.0, accuracy=1e-3), ["exact", "fem"])
+    assert result.passed
+    assert result["fem"].regime == result["exact"].regime == "stuck"
