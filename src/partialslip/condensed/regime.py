@@ -12,6 +12,7 @@ from partialslip.result import FRICTIONLESS, EndSlip, Regime
 from partialslip.scene import Scene
 
 _FEW_STEPS = 8  # from load point to load point: with fewer, p while a node slips is known roughly where it varies
+_WORK = 1e-9  # dissipated energy, in f P times a displacement of A P, above rounding
 _RATCHETS = 1e-3  # net slip of a cycle, relative to the slip of half a cycle, above which a steady q ratchets
 
 
@@ -71,7 +72,7 @@ def steady_state(
             "tractions repeat, slip does not: every cycle adds up to "
             f"{history.ratchets:.1g} times the slip of half a cycle",
         )
-    if history.path.presses_anew and history.dissipated > 0 and history.path.most_steps < _FEW_STEPS:
+    if anew and history.dissipated > _WORK * history.bound.sum() and history.path.most_steps < _FEW_STEPS:
         steps = "a step" if history.path.most_steps == 1 else f"{history.path.most_steps} steps"
         notes += (f"the dissipated energy is a few percent off: {steps} from load point to load point (load.steps)",)
     return SteadyState(regime, (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, notes, slips)

@@ -25,6 +25,7 @@ from partialslip.verify.hard_cases import (
     poisson,
     sharp,
     transition,
+    varying_pressure,
 )
 
 _HEAD = """# Hard cases
@@ -55,6 +56,7 @@ _FAMILIES = {
     "sharp": sharp,
     "mean-loads": mean_loads,
     "cycles": cycles,
+    "varying-pressure": varying_pressure,
     "few-nodes": few_nodes,
     "meshes": meshes,
     "mirrored": mirrored,
