@@ -10,9 +10,9 @@ HARD = """
 Where surfaces stick while the contact grows, each part of the surfaces sticks from the moment at which it touches. A
 code that lets slip count from the beginning of the step errs by tens of percent in one step, and by a percent in
 sixty-four. If P falls to a thousandth, nearly all of the contact is made anew in every cycle. At dQ = f dP the ends are
-just about to slip: rounding decides on stick or slip in every step. With a moment at which the stick zone reaches the
-end of one contact, the end of the contact and the end of the stick zone move through the same element. Codes that keep
-the traction of nodes that open, or the place at which they stuck, never reach a steady cycle. The accuracy is 1e-3: the
+just about to slip: rounding decides on stick or slip in every step. A moment moves the contact to and fro: at one end
+it leaves while it comes at the other, and just below |dQ| = 2 f dM/a both ends slip, each by a hair. Codes that keep the
+traction of nodes that open, or the place at which they stuck, never reach a steady cycle. The accuracy is 1e-3: the
 pressure is solved anew in every step.
 """
 _SHARE = 0.64  # smaller over larger P
@@ -30,7 +30,7 @@ def cases() -> Iterator[Case]:
     still = [0.0, 0.0]
     yield case("varying-near-zero", P=[1e-3 * P, P], Q=[0.0, 0.4 * limit], sigma=still)
     yield case("varying-limit", P=[_SHARE * P, P], Q=[0.0, (1 - _SHARE) * limit], sigma=still)
-    # at |dQ| = 2 f dM/a the increments of q at both ends are f times those of p
+    # at |dQ| = 2 f dM/a, dM = 2 e P, the increments of q at both ends are f times those of p
     Qf = 0.2
     e = _INSIDE * a * Qf / 2
     yield case("varying-moment", P=P, e=[-e, e], Q=[-Qf * limit, Qf * limit], sigma=still)
