@@ -10,8 +10,8 @@ HARD = """
 Where surfaces stick while the contact grows, each part of the surfaces sticks from the moment at which it touches. A
 code that lets slip count from the beginning of the step errs by tens of percent in one step, and by a percent in
 sixty-four. If P falls to a thousandth, nearly all of the contact is made anew in every cycle. At dQ = f dP the ends are
-just about to slip: rounding decides on stick or slip in every step. A moment moves the contact to and fro: at one end
-it leaves while it comes at the other, and just below |dQ| = 2 f dM/a both ends slip, each by a hair. Codes that keep the
+just about to slip: rounding decides on stick or slip in every step. A moment moves the contact to and fro: it leaves at
+one end while it comes at the other, and just below |dQ| = 2 f dM/a both ends slip by a hair. Codes that keep the
 traction of nodes that open, or the place at which they stuck, never reach a steady cycle. The accuracy is 1e-3: the
 pressure is solved anew in every step.
 """
