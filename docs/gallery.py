@@ -11,12 +11,12 @@ from partialslip.result import Result
 from partialslip.run import Run
 
 DOCS = Path(__file__).parent
-OWN = ("mean-loads", "out-of-phase", "finite-pad")  # in docs/scenes
+OWN = ("mean-loads", "out-of-phase", "dovetail", "finite-pad")  # in docs/scenes
 
 _HEAD = """\
 # Gallery
 
-The gallery has the shipped scenes, and three other scenes from `docs/scenes`. Each scene is solved at its own settings.
+The gallery has the shipped scenes, and four other scenes from `docs/scenes`. Each scene is solved at its own settings.
 
 - Lines are the reference, and markers are the finite elements.
 - The figures show p in units of p0, and half the change of shear between the load points, q = (q2 - q1)/2, in units of
