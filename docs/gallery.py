@@ -11,17 +11,18 @@ from partialslip.result import Result
 from partialslip.run import Run
 
 DOCS = Path(__file__).parent
-OWN = ("mean-loads", "out-of-phase", "finite-pad")  # in docs/scenes
+OWN = ("mean-loads", "out-of-phase", "dovetail", "finite-pad")  # in docs/scenes
 
 _HEAD = """\
 # Gallery
 
-The gallery has the shipped scenes, and three other scenes from `docs/scenes`. Each scene is solved at its own settings.
+The gallery has the shipped scenes, and four other scenes from `docs/scenes`. Each scene is solved at its own settings.
 
 - Lines are the reference, and markers are the finite elements.
 - The figures show p in units of p0, and half the change of shear between the load points, q = (q2 - q1)/2, in units of
   f p0.
 - Below them are the errors of p and q along the contact, in p0 and f p0.
+- Where P varies, p is the pressure at load point 2, and q covers the contacts at both load points.
 - Errors in the tables are those of `partialslip run`: a, m and n as fractions of a, p and q in the relative L2 norm of
   cell averages.
 """
