@@ -74,7 +74,7 @@ def steady_state(
         )
     if anew and history.dissipated > _WORK * history.bound.sum() and history.path.most_steps < _FEW_STEPS:
         steps = "a step" if history.path.most_steps == 1 else f"{history.path.most_steps} steps"
-        notes += (f"the dissipated energy is a few percent off: {steps} from load point to load point (load.steps)",)
+        notes += (f"slip and dissipated energy are rough: {steps} from load point to load point (load.steps)",)
     return SteadyState(regime, (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, notes, slips)
 
 

@@ -21,6 +21,7 @@ _ROUNDING = 1e-9  # lengths in a, tractions in f p0
 _EQUAL = 1e-12  # relative difference of rates that is rounding
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
 _FEWER_NODES, _FEWER_WEIGHTS = np.polynomial.legendre.leggauss(20)
+_SHARES = (1 - np.cos(np.linspace(0, np.pi, 14)))[1:-1] / 2  # of the way, at which points touch or open
 _PLACES = np.cos(np.linspace(np.pi, 0, 401))[1:-1]
 
 
@@ -106,37 +107,49 @@ class Cycle:
         return [self.mean.centre + kink * self.mean.a for kink in self.mean.shape.kinks]
 
     def slip(self) -> tuple[Array, Array, float]:
-        """Points (m) that both contacts have in common, their slip from load point 1 to 2 (m), and the work dissipated
-        in a cycle (J/m).
+        """Points (m), their slip from load point 1 to 2 (m) while they are in contact, and the work dissipated in a
+        cycle (J/m).
 
         A part of the surfaces that slips under the pressure p does the work f p for each length of slip. On the way
         from one load point to the other this is f p s at the end of the way, less the integral of s f dp.
         """
         assert self.change
-        f, A = self.scene.friction.f, self.scene.material.A
-        unit = A * f * self.mean.p0 * self.mean.a
+        unit = self._unit(self.mean)
         x, slips, _ = dissipation(self.change.zone, self.change.seen)
         mirror = self.change.mirror
         x, slips = self.mean.centre + mirror * self.mean.a * x[::mirror], self.change.turn * unit * slips[::mirror]
-        left, right = common(self.first, self.second)
-        inside = (x > left) & (x < right)
-        x, slips = np.append(np.append(left, x[inside]), right), slips[inside]
-        ends = np.array([left, right])
-        at_ends = unit * self.change.slip(self.mean.scaled(ends))
-        return (
-            x,
-            np.concatenate([at_ends[:1], slips, at_ends[1:]]),
-            sum(self._dissipated(back) for back in (False, True)),
-        )
+        low, high = common(self.first, self.second)
+        inside = (x > low) & (x < high)
+        ends = np.array([low, high])
+        x, slips = np.append(x[inside], ends), np.append(slips[inside], unit * self.change.slip(self.mean.scaled(ends)))
+        path = Path(self.scene)
+        for share in _SHARES.tolist():  # points that touch or open on the way
+            now = path.at(share)
+            mean = Mean(path.begin, now).contact
+            part = loading(mean, self.scene.friction.f, share * path.dQ, share * path.dsigma, bound=2)
+            places = np.array([now.centre - now.a, now.centre + now.a])
+            places = places[(places < low) | (places > high)]
+            so_far = self._unit(mean) * part.slip(mean.scaled(places))
+            opens = self.first.pressure(places) > 0
+            x = np.append(x, places)
+            slips = np.append(
+                slips, np.where(opens, so_far, unit * self.change.slip(self.mean.scaled(places)) - so_far)
+            )
+        order = np.argsort(x)
+        return x[order], slips[order], sum(self._dissipated(back) for back in (False, True))
+
+    def _unit(self, mean: Contact) -> float:
+        """Unit of slip under the pressure of ``mean``, m."""
+        return self.scene.material.A * self.scene.friction.f * mean.p0 * mean.a
 
     def _dissipated(self, back: bool) -> float:
-        path, f, A = Path(self.scene, back), self.scene.friction.f, self.scene.material.A
+        path, f = Path(self.scene, back), self.scene.friction.f
 
         def slipped(share: float, now: Contact, weight: Callable[[Array, Array], Array]) -> float:
             """Integral over the contact ``now`` of |slip| since the beginning of the way, times the ``weight``."""
             mean = Mean(path.begin, now).contact
             change = loading(mean, f, share * path.dQ, share * path.dsigma, bound=2)
-            unit, total = A * f * mean.p0 * mean.a, 0.0
+            unit, total = self._unit(mean), 0.0
             stick = now.scaled(mean.centre + np.array(change.ends) * mean.a)
             kinks = [now.scaled(mean.centre + kink * mean.a) for kink in mean.shape.strong_kinks]
             for low, high in ((-1.0, stick[0]), (stick[1], 1.0)):

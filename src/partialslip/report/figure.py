@@ -93,9 +93,15 @@ def draw_tractions(axes: "Axes", results: Mapping[str, Result], f: float | None 
         if traction.cells is None:
             x, p, q = traction.x, traction.p, traction.dq / 2
             axes.plot(x / a, p / p0, color="0.45", lw=1, ls="--", label=f"p/p0, {name}")
+            bound, line = p, "--"
+            if traction.pressures_at:
+                first, second = traction.pressures_at(x)
+                bound, line = (first + second) / 2, "-."
+                axes.plot(x / a, first / p0, color="0.45", lw=1, ls=":", label=f"p/p0 at load point 1, {name}")
+                axes.plot(x / a, bound / p0, color="0.45", lw=0.8, ls=line, label="mean of both, bounds q/f")
             if shears:
                 if f is not None:
-                    axes.plot(x / a, -p / p0, color="0.45", lw=1, ls="--")
+                    axes.plot(x / a, -bound / p0, color="0.45", lw=1 if line == "--" else 0.8, ls=line)
                 axes.plot(x / a, q / unit, color="black", lw=1.4, label=f"{shear}, {name}")
         else:
             x = _spread(result)

@@ -215,26 +215,29 @@ _LIMITS: dict[str, tuple[str, Dimension]] = {
     "Q_sliding": ("slides at |Q| = {}", "N/m"),
     "dsigma_transition": ("small tension ends at dsigma = {}", "Pa"),
     "Q_mean": ("the mean of Q can be {}", "N/m"),
-    "Q_mean_least": ("the mean of Q can be from {}", "N/m"),
-    "Q_mean_most": ("and up to {}", "N/m"),
 }
 
 
 def limits(result: Result, units: Units = SI) -> str:
     """Return the loads at which the regime changes, in ``units``, as text."""
-    return ", ".join(
+    texts = [
         text.format(units.text(result.limits[key], of, 4))
         for key, (text, of) in _LIMITS.items()
         if key in result.limits
-    )
+    ]
+    if "Q_mean_least" in result.limits:
+        least, most = (units.text(result.limits[f"Q_mean_{key}"], "N/m", 4) for key in ("least", "most"))
+        texts.append(f"the mean of Q can be from {least} to {most}")
+    return ", ".join(texts)
 
 
 def end_slips(result: Result) -> str:
     """Return how the ends of the contact slip from load point 1 to 2, as text; empty under constant pressure."""
     if result.end_slips is None:
         return ""
+    words = {"never": "never slips", "part of the cycle": "slips during part of the cycle"}
     slips = zip(("left", "right"), result.end_slips, strict=True)
-    return ", ".join(f"the {side} end slips {how}" for side, how in slips)
+    return ", ".join(f"the {side} end {words.get(how, f'slips {how}')}" for side, how in slips)
 
 
 def slip(result: Result, units: Units = SI) -> str:
