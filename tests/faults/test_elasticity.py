@@ -103,11 +103,11 @@ def test_contact_points_beyond_a_hidden_gap_dropped(monkeypatch, sound, red):
 
     def cut_off(normal, gap, P, _arms):
         candidates = np.flatnonzero(gap < limit)
-        solution = true(normal[np.ix_(candidates, candidates)], gap[candidates], P)
+        solution, angle = true(normal[np.ix_(candidates, candidates)], gap[candidates], P)
         x = np.zeros(len(gap))
         x[candidates] = solution.x
         missing = (0, len(gap) - len(candidates))
-        return replace(solution, x=x, residual=np.pad(solution.residual, missing))
+        return replace(solution, x=x, residual=np.pad(solution.residual, missing)), angle
 
     monkeypatch.setattr(solving, "press", cut_off)
     monkeypatch.setattr(goals, "FINEST", 1e-2)
