@@ -15,8 +15,8 @@ def add(commands: "Commands") -> None:
     maps = commands.add_parser(
         "map",
         help="draw the stick zones over all loads",
-        description="Draw the stick zones of a profile over all loads: map.svg, ends.svg and map.csv. Mark the loads "
-        "of the scene, and print the scene's regime and stick zone.",
+        description="Draw the stick zones of a profile over all loads: map.svg, ends.svg and map.csv; over dP and dQ "
+        "if P varies: map.svg and map.csv. Mark the loads of the scene, and print the scene's regime and stick zone.",
         examples=["partialslip map", "partialslip map flat-rounded", "partialslip map my-scene.toml --out maps"],
     )
     maps.add_argument("scene", nargs="?", metavar="SCENE",
@@ -33,10 +33,10 @@ def _map(options: argparse.Namespace) -> int:
     name = "map" if scene is None else f"{scene.name}-map"
 
     from partialslip.cli.consoles import output, working
-    from partialslip.map import place, stick_map, write_map
+    from partialslip.map import place, stick_map, varying_map, write_map
 
     with results_folder(options, "map", name, scene) as (folder, passed), working(name) as tell:
-        data = stick_map(scene, progress=tell)
+        data = varying_map(scene, tell) if scene and scene.presses_anew else stick_map(scene, tell)
         files = write_map(data, folder)
     console = output()
     for line in place(data):

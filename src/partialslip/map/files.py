@@ -6,19 +6,23 @@ import numpy as np
 
 from partialslip.map.figure import ends_svg, map_svg
 from partialslip.map.grid import StickMap
+from partialslip.map.varying import VaryingMap, VaryingPoint
+from partialslip.map.varying_figure import varying_svg
 from partialslip.output.csv import csv_text
 from partialslip.output.files import write_texts
 from partialslip.report import rows
 
 
-def write_map(data: StickMap, folder: Path) -> list[Path]:
-    """Write map.svg, ends.svg and map.csv of the map ``data`` into ``folder``. Returns the paths.
+def write_map(data: StickMap | VaryingMap, folder: Path) -> list[Path]:
+    """Write the map ``data`` into ``folder``: map.svg, map.csv and, under constant P, ends.svg. Returns the paths.
 
     Raises
     ------
     InputError
         If the folder cannot be written.
     """
+    if isinstance(data, VaryingMap):
+        return write_texts(folder, {"map.svg": varying_svg(data), "map.csv": varying_csv(data)})
     texts = {"map.svg": map_svg(data), "ends.svg": ends_svg(data), "map.csv": map_csv(data)}
     return write_texts(folder, texts)
 
@@ -40,17 +44,40 @@ def map_csv(data: StickMap) -> str:
     return csv_text([*columns, "regime"], zip(*values, strict=True))
 
 
-def place(data: StickMap) -> list[str]:
+def varying_csv(data: VaryingMap) -> str:
+    """Return the grid of ``data`` as CSV, one row per point; m and n only where both ends slip."""
+    scene, units = data.scene, data.scene.units
+    dQ, both = scene.friction.f * scene.P * data.Q_change, data.both
+    columns = {
+        "dP_over_P": data.P_change,
+        "dQ_over_fP": data.Q_change,
+        units.heading("dP", "N/m"): units.from_si(scene.P * data.P_change, "N/m"),
+        units.heading("dQ", "N/m"): units.from_si(dQ, "N/m"),
+        units.heading("dsigma", "Pa"): units.from_si(data.ratio / data.pressed.a * dQ, "Pa"),
+        "m_over_a": np.where(both, data.m.astype(object), ""),
+        "n_over_a": np.where(both, data.n.astype(object), ""),
+        "regime": data.regime,
+    }
+    return csv_text(list(columns), zip(*(column.ravel().tolist() for column in columns.values()), strict=True))
+
+
+def place(data: StickMap | VaryingMap) -> list[str]:
     """Return regime, stick zone and limits of the scene of the map ``data`` as lines of text; empty without a scene."""
     if data.scene is None:
         return []
     name, point = data.scene.name, data.point
     if point is None:
-        return [f"{name}: not on the map: {data.missing}"]
-    exact, ends = point.exact, ", ".join(f"{key} = {rows.value(point.exact, key)}" for key in ("m", "n"))
+        missing = data.missing if isinstance(data, StickMap) else "the contact slides: |Q| >= f P at a load point"
+        return [f"{name}: not on the map: {missing}"]
+    finite = ", ".join(key for key, _ in data.scene.bodies)
+    left_out = [f"the map shows half-planes: {finite} left out"] if finite else []
+    exact = point.exact
+    if isinstance(point, VaryingPoint) and point.missing:
+        return [f"{name}: {point.missing}; must be solved by march", *left_out]
+    assert exact
+    ends = ", ".join(f"{key} = {rows.value(exact, key)}" for key in ("m", "n"))
     reached = ", which are not reached" if exact.regime == "ratchets" else ""
     mirrored = " (dQ and dsigma differ in sign: on the map m and n change places)" if point.mirrored else ""
     limits = rows.limits(exact, data.scene.units)
-    finite = ", ".join(key for key, _ in data.scene.bodies)
-    left_out = f"the map shows half-planes: {finite} left out" if finite else ""
-    return [f"{name}: {exact.regime}, {ends}{reached}{mirrored}", *filter(None, (limits, left_out))]
+    turns = [exact.undetermined["m"]] if "m" in exact.undetermined else []
+    return [f"{name}: {exact.regime}, {ends}{reached}{mirrored}", *filter(None, [limits]), *turns, *left_out]

@@ -118,18 +118,26 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
     Raises
     ------
     InputError
-        If there is no friction, or the pressure is not even; and as :func:`partialslip.halfplane.contact`.
+        If there is no friction, P varies (see :func:`varying_map`), or the pressure is not even; and as
+        :func:`partialslip.halfplane.contact`.
     """
     if scene is None:
         return _mapped(Hertz(), _TOP, progress)
-    if scene.friction.f == 0:
-        raise InputError("friction.f = 0: must be > 0 for a map: without friction there is no stick zone")
+    require_friction(scene)
     scene.require_even("for a map")
+    if scene.presses_anew:
+        raise InputError(f"load.P = {scene.load.P}: must be one number for a map over dQ and dsigma")
     pressed = contact(scene)
     point, missing = _point(scene, pressed)
     top = max(_TOP, math.ceil(1.2 * point.sf)) if point else _TOP
     data = _mapped(pressed.shape, top, progress)
     return replace(data, scene=scene, pressed=pressed, point=point, missing=missing)
+
+
+def require_friction(scene: Scene) -> None:
+    """Raise InputError if ``scene`` has no friction."""
+    if scene.friction.f == 0:
+        raise InputError("friction.f = 0: must be > 0 for a map: without friction there is no stick zone")
 
 
 def _mapped(shape: Shape, top: float, progress: Callable[[str], None]) -> StickMap:

@@ -15,10 +15,12 @@ _MARGIN = 0.055  # to the border
 _PACE = 0.01  # between candidate places
 _ROOM = 0.05  # to other lines and labels
 _CLEAR = 0.07  # to avoided points
-_CROSSING = 2.0  # ratio of the distance to a label to the distance to a line
+_CROSSING = 2.0
 
 
-def label_lines(axes: "Axes", lines: Sequence[Array], texts: Sequence[str], avoided: Array) -> None:
+def label_lines(
+    axes: "Axes", lines: Sequence[Array], texts: Sequence[str], avoided: Array, crossing: float = _CROSSING
+) -> None:
     """Label ``lines`` on ``axes`` with ``texts``, each label at the place farthest from other lines and labels.
 
     Parameters
@@ -30,12 +32,14 @@ def label_lines(axes: "Axes", lines: Sequence[Array], texts: Sequence[str], avoi
         One per line. A line without room gets no label.
     avoided : (k, 2) array
         Points to keep clear.
+    crossing : float
+        Ratio of the distance to a label to the distance to a line.
     """
     to_paper = axes.transData - axes.transAxes
     width = axes.bbox.width / axes.bbox.height
     scale = np.array([width, 1.0])
     places = label_places(
-        [to_paper.transform(line) * scale for line in lines], to_paper.transform(avoided) * scale, width
+        [to_paper.transform(line) * scale for line in lines], to_paper.transform(avoided) * scale, width, crossing
     )
     for place, text in zip(places, texts, strict=True):
         if place is None:
@@ -54,7 +58,9 @@ def label_lines(axes: "Axes", lines: Sequence[Array], texts: Sequence[str], avoi
         )
 
 
-def label_places(lines: Sequence[Array], avoided: Array, width: float) -> list[tuple[Array, Array] | None]:
+def label_places(
+    lines: Sequence[Array], avoided: Array, width: float, crossing: float = _CROSSING
+) -> list[tuple[Array, Array] | None]:
     """Return place (2,) and direction (2,) of the label of each line; None where there is no room.
 
     All lengths are in heights of the axes: ``lines`` (n, 2), ``avoided`` points (k, 2), and ``width`` of the axes.
@@ -65,8 +71,8 @@ def label_places(lines: Sequence[Array], avoided: Array, width: float) -> list[t
     places: list[tuple[Array, Array] | None] = []
     labels = np.empty((0, 2))
     for number, line in enumerate(paced):
-        others = np.concatenate([*paced[:number], *paced[number + 1 :]])
-        room = np.minimum(_CROSSING * _distance(line, others), _distance(line, labels))
+        others = np.concatenate([labels[:0], *paced[:number], *paced[number + 1 :]])
+        room = np.minimum(crossing * _distance(line, others), _distance(line, labels))
         room[((line < _MARGIN) | (line > shape - _MARGIN)).any(axis=1) | (_distance(line, avoided) < _CLEAR)] = 0
         if room.max(initial=0) < _ROOM:
             places.append(None)
