@@ -77,7 +77,7 @@ def test_steps_converge_faster_than_first_order(limit):
 
 
 @pytest.mark.fault
-def test_fault_slip_that_counts_from_the_start_of_a_step(monkeypatch, limit):
+def test_slip_that_counts_from_the_start_of_a_step_is_seen(monkeypatch, limit):
     touching = stepping._Step._touching
     monkeypatch.setattr(stepping._Step, "_touching", lambda *args: tuple(each[:0] for each in touching(*args)))
     one, two = errors_in_steps((1, 2), limit)
