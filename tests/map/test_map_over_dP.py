@@ -121,12 +121,14 @@ def test_words_where_there_is_no_closed_form():
     assert "not on the map: the contact slides" in place(slides)[0]
 
 
+@pytest.mark.slow
 def test_pictures(data):
     words = set(texts(varying_svg(data)))
     assert {"ΔP/P", "ΔQ/(f P)", "m 0.8", "n 0.6", "no end slips", "sliding at a load point"} < words
     assert {"an end slips in part of the cycle", "the scene's loads", "n/a, stick to n"} < words
 
 
+@pytest.mark.slow
 def test_one_line_for_both_ends_without_tension(monkeypatch):
     monkeypatch.setattr(varying, "_COUNT", 4)
     words = set(texts(varying_svg(varying_map(scene(dsigma=0.0)))))
