@@ -161,10 +161,13 @@ def _rollers(start: Point, end: Point, out: Point) -> list[str]:
 def _loads(scene: Scene) -> list[str]:
     """Return arrows and texts of P, Q and sigma."""
     points = scene.load.points
-    P, Q, sigma = scene.units.text(scene.P, "N/m", 4), [each for each, _ in points], [each for _, each in points]
+    Q, sigma = [each for each, _ in points], [each for _, each in points]
     top = 26.0
-    moment = f", M = {scene.units.text(scene.M, 'N', 4)}" if scene.M else ""
-    shapes = [_arrow((_MIDDLE, top), (_MIDDLE, top + _ARROW)), _text(_MIDDLE + 8, top + 10, f"P = {P}{moment}")]
+    pressing = [(P, M or 0.0) for P, M in scene.pressing]
+    P, moment = ([each[i] for each in pressing] for i in (0, 1))
+    shown = f"P = {_normal(P, 'N/m', scene.units)}"
+    shown += f", M = {_normal(moment, 'N', scene.units)}" if any(moment) else ""
+    shapes = [_arrow((_MIDDLE, top), (_MIDDLE, top + _ARROW)), _text(_MIDDLE + 8, top + 10, shown)]
     if any(Q):
         shapes += [_arrow((_MIDDLE - 10 - _ARROW, top + 20), (_MIDDLE - 10, top + 20))]
         shapes += [_text(_MIDDLE - 18 - _ARROW, top + 24, f"Q = {_values(Q, 'N/m', scene.units)}", "end")]
@@ -206,6 +209,11 @@ def _values(values: Sequence[float], of: Dimension, units: Units) -> str:
     texts = [f"{each / 10.0**exponent:.4g}" for each in values]
     low, high = (texts[values.index(each)] for each in (min(values), max(values)))
     return f"{f'{low} to {high}' if len(values) > 3 else ', '.join(texts)} {unit}"
+
+
+def _normal(values: Sequence[float], of: Dimension, units: Units) -> str:
+    """Return a normal load as text, at the load points if it varies."""
+    return _values(values, of, units) if len(set(values)) > 1 else units.text(values[0], of, 4)
 
 
 def _column(texts: Sequence[str], way: float) -> list[str]:
