@@ -180,7 +180,6 @@ def _under_varying_pressure(
             path = replace(path, before=nodal_forces(line, problem.start[1]))
         at_largest = (first if problem.largest == 1 else second).x
         half_width = float(np.subtract(*contact_ends(line, at_largest)[::-1])) / 2
-        every = np.arange(len(line.x))
         if not any(part.finite for part in problem.parts):  # see partialslip.condensed.varying.march
             holding = Presses(C.xx, problem.gap(line.x), line.x if problem.turns else None)
 
@@ -188,7 +187,8 @@ def _under_varying_pressure(
             return varying.march(line.x, C.xx, lower.stretch[0], problem.f, holding, path)  # type: ignore[arg-type]
 
         def errors(history: History, finer: History) -> step_errors.Errors:
-            zones = stick_zone_of(line, every, history), stick_zone_of(line, every, finer)
+            on = [np.flatnonzero(each.bound > 0) for each in (history, finer)]
+            zones = stick_zone_of(line, on[0], history.of(on[0])), stick_zone_of(line, on[1], finer.of(on[1]))
             return step_errors.halved(history, finer, zones, line.weights, half_width)
 
         refine = None if steps is None else errors

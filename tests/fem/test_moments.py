@@ -8,7 +8,8 @@ from msgspec import to_builtins
 
 import partialslip
 from partialslip import parse_scene, run
-from partialslip_fem import contact, model
+from partialslip.condensed import normal
+from partialslip_fem import model
 
 TABLE = np.linspace(-2e-3, 2.5e-3, 91)
 SIDES = np.where(TABLE < 0, TABLE**2 / 0.02, TABLE**2 / 0.04 + np.maximum(TABLE, 0) ** 4 * 3e4)
@@ -63,8 +64,8 @@ def test_mirrored_bodies_have_mirrored_results():
 def test_constant_contacts_do_no_work_for_a_moment(monkeypatch):
     """An even contact is pressed by one quadratic programme; a turned one needs a few."""
     solved = []
-    true = contact.solve_bounded
-    monkeypatch.setattr(contact, "solve_bounded", lambda *args: (solved.append(1), true(*args))[1])
+    true = normal.solve_bounded
+    monkeypatch.setattr(normal, "solve_bounded", lambda *args: (solved.append(1), true(*args))[1])
     fixed = partialslip.load_scene("hertz-shear", ["fem.size=0.1"])
     run(fixed, ["fem"])
     even, solved[:] = len(solved), []

@@ -9,7 +9,7 @@ import pytest
 from partialslip import run
 
 sys.path.append(str(Path(__file__).parent.parent / "halfplane"))
-from varying import varying
+from varying_scenes import varying
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from varying import varying
+from varying_scenes import varying
 
 from partialslip import load_scene, plan, run
 from partialslip.errors import InputError

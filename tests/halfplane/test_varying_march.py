@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from varying import varying
+from varying_scenes import varying
 
 from partialslip import run
 from partialslip.condensed import varying as stepping
@@ -123,9 +123,10 @@ def test_dissipated_energy_is_the_work_of_the_loads():
     ("scene", "slips"),
     [
         (varying((0.8, 1), 0.32 * math.pi, 0.4, mean=-0.1, cycles=3), ("forwards", "forwards")),
-        (
+        pytest.param(
             varying((math.sqrt(0.6), math.sqrt(0.8)), 0.2 * math.pi, 4, (0.05, -0.075), mean=-0.1, cycles=4),
             ("backwards", "forwards"),
+            marks=pytest.mark.slow,
         ),
         (varying((math.sqrt(0.6), math.sqrt(0.9)), 0.1 * math.pi, 0.1, cycles=3), ("never", "never")),
     ],

@@ -23,7 +23,7 @@ SCENES = [
     ("flat-rounded", [], ("exact", "march", "fem")),
     ("fretting-aluminium", ["load.Q=[5e3,3e4]", "load.sigma=[0,1e8]"], ("exact", "march", "fem")),
     ("flat-rounded", ["profile={kind='tabulated',x=[0,1e-3,2e-3,4e-3],gap=[0,1e-5,4e-5,2e-4]}"], ("exact", "fem")),
-    ("hertz-shear", ["material.upper={E=210e9,nu=0.3}"], ("fem",)),
+    pytest.param(("hertz-shear", ["material.upper={E=210e9,nu=0.3}"], ("fem",)), marks=pytest.mark.slow),
 ]
 
 

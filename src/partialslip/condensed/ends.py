@@ -49,8 +49,7 @@ def stick_zone(
     """
     room = np.divide(2 * bound - np.abs(change), bound, out=np.zeros_like(bound), where=bound > 0)
     sticks = _around(int(np.argmax(room)), x, room > _STICKS, vertices)
-    first, last = np.flatnonzero(bound > 0)[[0, -1]]
-    signs = (1 if change[first] > 0 else -1), (1 if change[last] > 0 else -1)
+    signs = (1 if change[0] > 0 else -1), (1 if change[-1] > 0 else -1)
     if len(sticks) == 0:  # a stick zone smaller than a cell lies where slip changes sign
         turn = int(np.argmax(np.sign(change) != np.sign(change[0])))
         point = float(x[max(turn - 1, 0)] + x[turn]) / 2

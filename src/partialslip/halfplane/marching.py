@@ -180,8 +180,16 @@ def _solve_level(
         moved = x * frame.a / scene.length
 
         def zone(of: History) -> StickInterval:
-            stick = stick_zone(x, of.bound, of.change, vertices, lambda values: values)
-            return within(stick, normal.common, vertices) if of.path.presses_anew else stick
+            if not of.path.presses_anew:
+                return stick_zone(x, of.bound, of.change, vertices, lambda values: values)
+            on = np.flatnonzero(of.bound > 0)
+
+            def on_cells(values: Array) -> Array:
+                every = np.zeros(len(x))
+                every[on] = values
+                return every
+
+            return within(stick_zone(x[on], of.bound[on], of.change[on], vertices, on_cells), normal.common, vertices)
 
         def errors(of: History, finer: History) -> dict[str, float]:
             return halved(of, finer, (zone(of), zone(finer)), np.diff(vertices), normal.largest.a / frame.a)
