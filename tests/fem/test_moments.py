@@ -33,7 +33,7 @@ def scene(kind="table", tilt="free", **load):
 
 @pytest.mark.parametrize("given", [
     pytest.param(scene(), id="uneven gap"),
-    pytest.param(scene("flat", e=6e-4), id="flat on one corner"),
+    pytest.param(scene("flat", e=6e-4), id="flat on one corner", marks=pytest.mark.slow),
     pytest.param(scene(tilt="fixed", sigma=[-1e8, 1e8]), id="fixed tilt", marks=pytest.mark.slow),
     pytest.param(scene("hertz", M=-30.0), id="far from x = 0", marks=pytest.mark.slow),
 ])  # fmt: skip

@@ -63,7 +63,9 @@ def test_stick_zones_against_the_closed_form(data):
     np.testing.assert_allclose(((data.n - data.m) / 2)[small], -tension[small] / 8, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("dsigma", [0.4, 3.0], ids=["small", "large"])
+@pytest.mark.parametrize(
+    "dsigma", [pytest.param(0.4, id="small", marks=pytest.mark.slow), pytest.param(3.0, id="large")]
+)
 def test_regimes_against_single_steady_cycles(dsigma):
     data = varying_map(scene(dsigma=dsigma))
     seen = set()

@@ -20,8 +20,11 @@ DOCS = Path(__file__).parents[2] / "docs"
 FAST = ["fem.accuracy=1e-2"]
 SCENES = [
     ("hertz-large-tension", [], ("exact", "march", "fem")),
-    ("flat-rounded", [], ("exact", "march", "fem")),
-    ("fretting-aluminium", ["load.Q=[5e3,3e4]", "load.sigma=[0,1e8]"], ("exact", "march", "fem")),
+    pytest.param(("flat-rounded", [], ("exact", "march", "fem")), marks=pytest.mark.slow),
+    pytest.param(
+        ("fretting-aluminium", ["load.Q=[5e3,3e4]", "load.sigma=[0,1e8]"], ("exact", "march", "fem")),
+        marks=pytest.mark.slow,
+    ),
     ("flat-rounded", ["profile={kind='tabulated',x=[0,1e-3,2e-3,4e-3],gap=[0,1e-5,4e-5,2e-4]}"], ("exact", "fem")),
     pytest.param(("hertz-shear", ["material.upper={E=210e9,nu=0.3}"], ("fem",)), marks=pytest.mark.slow),
 ]
