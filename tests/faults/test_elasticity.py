@@ -94,6 +94,7 @@ def test_stiffness_of_plane_strain_in_plane_stress(monkeypatch, sound, red):
     red.comparison("a", scene)
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_contact_points_beyond_a_hidden_gap_dropped(monkeypatch, sound, red):
     """A cut-off on the initial gap: points that would have touched, beyond 0.95 a, are never asked."""

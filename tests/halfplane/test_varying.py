@@ -143,6 +143,7 @@ def test_mirror_images(scene):
     assert other.slip.dissipated == pytest.approx(one.slip.dissipated, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_the_levels_are_those_of_the_first_loading():
     """Without mean loads at load point 1, q2 is that of the first loading, and q1 is within its bound."""
     scene = varying((0.8, 1), 0.32 * math.pi, 0.0, mean=0.5)

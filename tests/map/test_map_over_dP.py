@@ -139,6 +139,7 @@ def test_one_line_for_both_ends_without_tension(monkeypatch):
     assert "an end slips in part of the cycle" not in words
 
 
+@pytest.mark.slow
 def test_files(tmp_path, capsys):
     (tmp_path / "mine.toml").write_text(
         scene_toml(scene(profile={"kind": "flat-rounded", "b": 5e-4, "R": 0.05})), "utf-8"
