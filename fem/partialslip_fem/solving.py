@@ -11,7 +11,7 @@ from partialslip.condensed import coupled, step_errors, varying
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.ends import within
-from partialslip.condensed.history import History
+from partialslip.condensed.history import History, certified
 from partialslip.condensed.normal import Presses, press
 from partialslip.condensed.path import Path
 from partialslip.condensed.steps import follow_refined, march_refined
@@ -195,12 +195,6 @@ def _under_varying_pressure(
         history, left = follow_refined(along, lambda path, _: path, path, problem.accuracy, refine, steps or 0)
     done = [*presses.solutions, *(holding.solutions if holding is not presses else [])]
     most = np.maximum.reduce([each.x for each in done])
-    together = replace(
-        second,
-        residual=np.maximum.reduce([each.residual for each in done]),
-        imbalance=max(each.imbalance for each in done),
-        iterations=sum(each.iterations for each in done),
-        changes=sum(each.changes for each in done),
-    )
+    together = replace(certified(done), x=second.x, rest=second.rest)
     nodes = np.flatnonzero((first.x > 0) | (second.x > 0))
     return _ContactForces(together, history.of(nodes) if history else None, nodes, None, left, first.x, most)

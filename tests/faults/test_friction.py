@@ -73,8 +73,7 @@ def test_bound_of_the_pressure_before(monkeypatch, red):
             return p, q
         bound, free = step.f * before[on], (step.kept - step.xy @ p.x)[on]
         held = solve_bounded(step.xx[np.ix_(on, on)], free, -bound, bound, step.Q)
-        spread = {key: coupled._spread(getattr(held, key), on, len(before)) for key in ("x", "rest", "residual")}
-        return p, replace(held, **spread)
+        return p, held.spread(on, len(before))
 
     def beyond():
         """How far nodal forces at load point 2, made again from the tractions, are beyond f times normal ones."""

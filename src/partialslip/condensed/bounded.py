@@ -1,12 +1,12 @@
 """Convex quadratic programme with bounds and a prescribed sum: the problem of both normal contact and friction."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 import scipy.linalg as la
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Indices
 
 Sides = npt.NDArray[np.int8]
 
@@ -32,10 +32,23 @@ class Solution:
     iterations: int
     changes: int = 0
 
+    def spread(self, where: Indices, count: int) -> "Solution":
+        """The solution at ``count`` members, of which those with the indices ``where`` have been solved; the others
+        have no forces."""
+        x, rest, residual = (spread(values, where, count) for values in (self.x, self.rest, self.residual))
+        return replace(self, x=x, rest=rest, residual=residual)
+
     @property
     def sides(self) -> Sides:
         """Active bound of each member, (n,): -1 the lower, 0 none, 1 the upper."""
         return (-np.sign(self.rest)).astype(np.int8)
+
+
+def spread(values: Array, where: Indices, count: int) -> Array:
+    """``values`` (k,) at the indices ``where`` of an array (``count``,) of zeros."""
+    result = np.zeros(count)
+    result[where] = values
+    return result
 
 
 def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, start: Sides | None = None) -> Solution:

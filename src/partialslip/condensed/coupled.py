@@ -73,8 +73,7 @@ class _Step:
         bound = self.f * pressed.x[on]
         free = (self.kept - self.xy @ pressed.x)[on]
         held = solve_bounded(self.xx[np.ix_(on, on)], free, -bound, bound, self.Q, q.sides[on])
-        x, rest, residual = (_spread(values, on, n) for values in (held.x, held.rest, held.residual))
-        sheared = replace(held, x=x, rest=rest, residual=residual)
+        sheared = held.spread(on, n)
         moved = self.yx @ (sheared.x - q.x)  # opening due to the change of q, which p does not include yet
         return replace(pressed, residual=np.abs(moved - moved[on].mean()) / np.diag(self.yy)), sheared
 
@@ -344,9 +343,3 @@ def _solve(step: _Step, starts: Sequence[tuple[Solution, Solution]]) -> tuple[So
         chances = _PATIENCE if left < least else chances - 1
         least = min(left, least)
     return replace(p, iterations=0, changes=0), replace(q, iterations=iterations, changes=changes)
-
-
-def _spread(values: Array, where: npt.NDArray[np.int64], count: int) -> Array:
-    result = np.zeros(count)
-    result[where] = values
-    return result

@@ -29,12 +29,12 @@ def press(
     """
     free = np.zeros(len(gap)), np.full(len(gap), np.inf), P
     sides, angle = near or (None, 0.0)
-    found = solve_bounded(normal, angle * arms - gap if arms is not None and near else -gap, *free, sides)
+    found = solve_bounded(normal, (0.0 if arms is None else angle * arms) - gap, *free, sides)
     if arms is None:
         return found, 0.0
     low, high, iterations, changes = -np.inf, np.inf, found.iterations, found.changes
     for _ in range(_TURNS):
-        off = float(arms @ found.x) - moment if moment else float(arms @ found.x)
+        off = float(arms @ found.x) - moment
         if abs(off) <= _LEVEL * float(np.abs(arms) @ found.x):
             break
         low, high = (angle, high) if off < 0 else (low, angle)

@@ -17,8 +17,8 @@ from dataclasses import replace
 import numpy as np
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Indices, Mask
-from partialslip.condensed.bounded import Sides, Solution, solve_bounded
+from partialslip.arrays import Array, Mask
+from partialslip.condensed.bounded import Sides, Solution, solve_bounded, spread
 from partialslip.condensed.history import History, follow, resting
 from partialslip.condensed.path import Path
 
@@ -134,9 +134,7 @@ class _Step:
 
     def _bounded(self, free: Array, near: Sides) -> Solution:
         on, bound = self._on, self._bound[self._on]
-        found = solve_bounded(self._inner, free[on], -bound, bound, self._Q, near[on])
-        x, rest, residual = (_spread(values, on, len(self._x)) for values in (found.x, found.rest, found.residual))
-        return replace(found, x=x, rest=rest, residual=residual)
+        return solve_bounded(self._inner, free[on], -bound, bound, self._Q, near[on]).spread(on, len(self._x))
 
     def _touching(self, before: Array, after: Array) -> tuple[Array, Array]:
         """Displacements (k, n) at nodes that touch in the step for unit coefficients of the ratio L, and rows (k, n)
@@ -158,12 +156,6 @@ class _Step:
             powers = np.arange(2 if len(touch) >= _FEW else 1)[:, None]
             fit = np.linalg.pinv((apart**powers * after[touch]).T)
             for power, row in zip(powers, fit, strict=True):
-                kept.append(_spread(closing[touch] * ((1 - _INSIDE) * apart) ** power, touch, len(x)))
-                ratios.append(_spread(row, touch, len(x)))
+                kept.append(spread(closing[touch] * ((1 - _INSIDE) * apart) ** power, touch, len(x)))
+                ratios.append(spread(row, touch, len(x)))
         return np.array(kept).reshape(-1, len(x)), np.array(ratios).reshape(-1, len(x))
-
-
-def _spread(values: Array, where: Indices, count: int) -> Array:
-    result = np.zeros(count)
-    result[where] = values
-    return result

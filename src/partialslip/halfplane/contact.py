@@ -44,6 +44,16 @@ class Contact:
         """2 P/(pi a), Pa; for Hertz the largest pressure."""
         return 2 * self.P / (math.pi * self.a)
 
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Left and right end, m."""
+        return self.centre - self.a, self.centre + self.a
+
+    def places(self, scaled: npt.ArrayLike) -> Array:
+        """Places, m, at the ``scaled`` distances (any shape) from the middle of the contact, fractions of a."""
+        result: Array = self.centre + self.a * np.asarray(scaled, float)
+        return result
+
     def pressure(self, x: npt.ArrayLike) -> Array:
         """Pressure, Pa, at ``x``, m: a number, a list or an array of any shape."""
         found: Array = AtPoints(lambda points: self.p0 * self.shape.pressure(self.scaled(points)))(x)

@@ -10,7 +10,7 @@ from partialslip.gradual import left_end_turns, turns_round
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.slip import slip
-from partialslip.halfplane.steady import stick_zone
+from partialslip.halfplane.steady import NARROWEST, stick_zone
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
 
@@ -83,6 +83,19 @@ class Loading:
         (default: the final one); see :func:`partialslip.gradual.left_end_turns`."""
         half_width = self.zone.half_width if half_width is None else half_width
         return left_end_turns(self.Qf, self.sf, self.zone.s, half_width)
+
+    @property
+    def certificate(self) -> dict[str, float]:
+        """Residuals of the loads of the stick zone: ``tension`` in f p0, or relative if sf > 1, and ``shear`` in 2 f P.
+
+        The narrowest stick zone stands for all larger tensions. Near sliding, 1 - Qf is known only to the rounding of
+        dQ, which the tension residual therefore leaves out.
+        """
+        c, sf, Qf = self.zone.half_width, self.sf, self.Qf
+        found = self.seen.conditions(*map(np.array, (1 + self.zone.centre - c, c, self.zone.s)))
+        tension = 0.0 if c <= NARROWEST and sf > found.sf else abs(float(found.sf) - sf) / max(sf, 1.0)
+        rounding = np.finfo(float).eps / max(1 - Qf, np.finfo(float).eps)
+        return {"tension": max(tension - float(rounding), 0.0), "shear": abs(float(found.Qf) - Qf)}
 
     @property
     def turns_round(self) -> bool:

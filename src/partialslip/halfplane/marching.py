@@ -229,7 +229,7 @@ def _mesh_errors(normal: NormalLoads, level: _Level, before: _Level, growth: flo
     unseen = _SOMEWHERE * size * (gap < _CELLS * size)
     moved = max(abs(level.stick.left - before.stick.left), abs(level.stick.right - before.stick.right))
     between = _CUBIC * growth**3 * np.minimum(_NEAR * gap, 1.0)
-    known = np.maximum(unseen, np.maximum(_MOVED * moved, between)) * normal.frame.a / normal.largest.a
+    known = np.maximum(unseen, np.maximum(_MOVED * moved, between)) * (normal.frame.a / normal.largest.a)
     return dict(zip("mn", known.tolist(), strict=True)) | {
         key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices) for key, of in _SHEARS.items()
     }
@@ -273,7 +273,6 @@ def _result(
     known = found.centre is not None
     tractions = CellTractions(frame, normal.second, normal.first, level.vertices, q1, q2)
     anew = scene.presses_anew
-    contact_ends = tuple((each.centre - each.a, each.centre + each.a) for each in (normal.first, normal.second))
 
     return Result(
         method="march",
@@ -314,7 +313,7 @@ def _result(
         estimate=errors,
         shares=shares,
         notes=found.notes + doubts(change, errors, _accuracy(scene)),
-        contact_ends=contact_ends if anew or frame.centre else None,  # type: ignore[arg-type]
+        contact_ends=(normal.first.ends, normal.second.ends) if anew or frame.centre else None,
         end_slips=found.slips,
     )
 

@@ -9,8 +9,9 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact, contact
+from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.shape import Shape
-from partialslip.scene import Pressing, Scene
+from partialslip.scene import Scene
 
 
 class Mean(Shape):
@@ -19,8 +20,8 @@ class Mean(Shape):
 
     def __init__(self, first: Contact, second: Contact) -> None:
         self._both = first, second
-        self.left = min(each.centre - each.a for each in self._both)
-        self.right = max(each.centre + each.a for each in self._both)
+        self.left = min(first.ends[0], second.ends[0])
+        self.right = max(first.ends[1], second.ends[1])
         a, self.even = (self.right - self.left) / 2, first.centre == second.centre and first.shape.even
         self.even = self.even and second.shape.even
         p0 = 2 * self.force / (math.pi * a)
@@ -85,28 +86,45 @@ class Rates(NamedTuple):
     shear: Array
 
 
+class Stage(NamedTuple):
+    """A stage of the way from load point to load point: the contact ``now``, the union ``mean`` of this and of the
+    contact at the beginning under their mean pressure, and the ``change`` of shear so far if slip does not reverse."""
+
+    now: Contact
+    mean: Contact
+    change: Loading
+
+    @property
+    def stick(self) -> tuple[float, float]:
+        """Ends of the stick zone, m."""
+        left, right = self.mean.places(self.change.ends).tolist()
+        return left, right
+
+
 class Path:
     """The contacts of ``scene`` on the straight way between load points 1 and 2 (``back``: from 2 to 1)."""
 
     def __init__(self, scene: Scene, back: bool = False) -> None:
-        ends = scene.load.ends[::-1] if back else scene.load.ends
-        self._scene = scene
-        self._first, self._second = (scene.pressing[end] for end in ends)
         way = -1 if back else 1
+        self._scene = scene
+        self._first, self._second = scene.end_pressing[::way]
         self.dQ, self.dsigma = way * scene.load.dQ, way * scene.load.dsigma
 
     def at(self, share: float) -> Contact:
         """Contact at the ``share`` of the way, from 0 to 1."""
-        (P1, M1), (P2, M2) = self._first, self._second
-        if share in (0.0, 1.0):
-            return contact(self._scene, self._second if share else self._first)
-        M = None if M1 is None or M2 is None else M1 + share * (M2 - M1)
-        return contact(self._scene, Pressing(P1 + share * (P2 - P1), M))
+        return contact(self._scene, self._first.towards(self._second, share))
 
     @cached_property
     def begin(self) -> Contact:
         """Contact at the beginning of the way."""
         return self.at(0.0)
+
+    def stage(self, share: float) -> Stage:
+        """Stage at the ``share`` of the way, from 0 to 1."""
+        now = self.at(share)
+        mean = Mean(self.begin, now).contact
+        change = loading(mean, self._scene.friction.f, share * self.dQ, share * self.dsigma, bound=2)
+        return Stage(now, mean, change)
 
     def pressed(self, now: Contact) -> tuple[float, float]:
         """Rates of the increment of p over the way in the contact ``now``, dp = (first + second y/a)/sqrt(a^2 - y^2),
@@ -123,3 +141,8 @@ class Path:
         uniform, turned = self.pressed(now)
         pressure = uniform + ways * turned
         return Rates(math.pi * pressure, self.dQ + ways * math.pi / 4 * now.a * self.dsigma)
+
+
+def common(first: Contact, second: Contact) -> tuple[float, float]:
+    """Left and right end, m, of the part that two contacts have in common."""
+    return max(first.ends[0], second.ends[0]), min(first.ends[1], second.ends[1])

@@ -9,22 +9,24 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.gradual import may_turn_round
 from partialslip.halfplane.contact import Contact, contact
-from partialslip.halfplane.levels import PATH_DEPENDENT, Levels, levels
+from partialslip.halfplane.levels import Levels, levels
 from partialslip.halfplane.loading import Loading, loading
+from partialslip.halfplane.remarks import remarks, undetermined
 from partialslip.halfplane.slip import dissipation
-from partialslip.halfplane.steady import NARROWEST, transition
+from partialslip.halfplane.steady import transition
 from partialslip.halfplane.stress import Stress
 from partialslip.halfplane.tables import table_error
 from partialslip.halfplane.traction import mean_load_bound
-from partialslip.halfplane.tractions import ExactTractions
+from partialslip.halfplane.tractions import ExactTractions, sample
 from partialslip.halfplane.varying import closed_form, require_closed_form, steady_cycle
 from partialslip.halfplane.varying_result import solve_varying
 from partialslip.plan import Plan, plan
-from partialslip.result import FRICTIONLESS, Clock, Regime, Result, Slip, SurfaceStress, Traction
+from partialslip.result import Clock, Regime, Result, Slip, SurfaceStress, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene
 
-_POINTS_PER_ZONE = 101  # between neighbouring breaks
+_SLIDES = "the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip"
+_RATCHETS = "the mean of Q is above the bound for a steady state: the contact ratchets, m and n are not reached"
 _BEYOND = 4.0  # half-widths up to which surface stresses are reported
 
 
@@ -56,14 +58,14 @@ def solve(
     if scene.presses_anew:
         if plan.needs("friction"):
             require_closed_form(scene)
-        return solve_varying(scene, plan, _POINTS_PER_ZONE, start is not None, clock)
+        return solve_varying(scene, plan, start is not None, clock)
     pressed, regime, cycle = _steady_state(scene, plan)
     a, p0 = pressed.a, pressed.p0
     found = _levels(scene, pressed, regime, cycle, start)
     turns = cycle is not None and cycle.turns_round
     tractions = ExactTractions(pressed, f, cycle, found if isinstance(found, Levels) else None)
     breaks = _breaks(scene, pressed, cycle, found)
-    x = _sample(np.union1d(breaks, [pressed.centre]))
+    x = sample(np.union1d(breaks, [pressed.centre]))
     p, dq = tractions.change(x)
     levels_at = tractions.at_load_points if tractions.levels else None
     q1, q2 = levels_at(x) if levels_at else (None, None)
@@ -72,7 +74,7 @@ def solve(
     stress = Stress(pressed, f, load.dQ, load.dsigma) if plan.needs("subsurface") and reversed_ else None
     surface = _surface(stress, np.concatenate([[-far], breaks, [far]])) if stress else None
     slips = cycle and not cycle.nothing
-    undetermined = _undetermined(regime, turns, found)
+    why = undetermined(regime, turns, found)
     table = table_error(scene, pressed, cycle)
     return Result(
         method="exact",
@@ -86,15 +88,15 @@ def solve(
         slip=_slip(scene, pressed, cycle) if cycle and slips and regime != "ratchets" else None,
         settings={"model": "two half-planes, steady state"},
         limits=_limits(scene, pressed, cycle) if plan.needs("friction") or (scene.slides and f > 0) else {},
-        certificate=_certificate(cycle) if cycle and slips else {},
+        certificate=cycle.certificate if cycle and slips else {},
         estimate=table,
         shares={"table": table} if table else {},
-        notes=_notes(regime, turns, undetermined) + _coarse(table, scene.fem.accuracy),
+        notes=remarks(regime, turns, why, _SLIDES, _RATCHETS) + _coarse(table, scene.fem.accuracy),
         surface=surface,
         stress_at=stress.inside if stress else None,
-        undetermined=undetermined,
+        undetermined=why,
         path_dependent=turns,
-        contact_ends=((pressed.centre - a, pressed.centre + a),) * 2 if pressed.centre else None,
+        contact_ends=(pressed.ends,) * 2 if pressed.centre else None,
     )
 
 
@@ -173,19 +175,6 @@ def _limits(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[str, 
     return limits
 
 
-def _certificate(cycle: Loading) -> dict[str, float]:
-    """Residuals of the loads of the stick zone: ``tension`` in f p0, or relative if sf > 1, and ``shear`` in 2 f P.
-
-    The narrowest stick zone stands for all larger tensions. Near sliding, 1 - Qf is known only to the rounding of dQ,
-    which the tension residual therefore leaves out.
-    """
-    c, sf, Qf = cycle.zone.half_width, cycle.sf, cycle.Qf
-    found = cycle.seen.conditions(*map(np.array, (1 + cycle.zone.centre - c, c, cycle.zone.s)))
-    tension = 0.0 if c <= NARROWEST and sf > found.sf else abs(float(found.sf) - sf) / max(sf, 1.0)
-    rounding = np.finfo(float).eps / max(1 - Qf, np.finfo(float).eps)
-    return {"tension": max(tension - float(rounding), 0.0), "shear": abs(float(found.Qf) - Qf)}
-
-
 def _slip(scene: Scene, pressed: Contact, cycle: Loading) -> Slip:
     x, slips, dissipated = dissipation(cycle.zone, cycle.seen)
     stress, unit = scene.friction.f * pressed.p0, scene.material.A * scene.friction.f * pressed.p0 * pressed.a
@@ -197,40 +186,8 @@ def _slip(scene: Scene, pressed: Contact, cycle: Loading) -> Slip:
 
 
 def _surface(stress: Stress, breaks: Array) -> SurfaceStress:
-    x = _sample(breaks)
+    x = sample(breaks)
     return SurfaceStress(x, stress.surface(x), stress.surface)
-
-
-def _sample(breaks: Array) -> Array:
-    """Points between ``breaks``, closer towards the breaks, where tractions have square roots."""
-    crowd = (1 - np.cos(np.linspace(0, np.pi, _POINTS_PER_ZONE))) / 2
-    return np.unique(breaks[:-1, None] + np.diff(breaks)[:, None] * crowd)
-
-
-def _undetermined(regime: Regime, turns: bool, found: Levels | str) -> dict[str, str]:
-    reason = f"{PATH_DEPENDENT}between the load points; the reference is march with refined steps"
-    if regime in ("sliding", "frictionless"):
-        return {}
-    if turns:
-        return dict.fromkeys(("m", "n", "q", "q1", "q2"), reason)
-    return dict.fromkeys(("q1", "q2"), found) if isinstance(found, str) else {}
-
-
-def _notes(regime: Regime, turns: bool, undetermined: dict[str, str]) -> tuple[str, ...]:
-    if regime == "frictionless":
-        return (FRICTIONLESS,)
-    if regime == "sliding":
-        return ("the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip",)
-    notes: list[str] = []
-    if regime == "ratchets":
-        notes.append(
-            "the mean of Q is above the bound for a steady state: the contact ratchets, m and n are not reached"
-        )
-    elif not turns and "q2" in undetermined:
-        notes.append(f"q1 and q2: {undetermined['q2']}")
-    if turns:
-        notes.append(f"m, n, q: {undetermined['m']}")
-    return tuple(notes)
 
 
 def _coarse(table: dict[str, float], accuracy: float) -> tuple[str, ...]:

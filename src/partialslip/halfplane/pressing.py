@@ -10,8 +10,8 @@ from partialslip.arrays import Array
 from partialslip.condensed.normal import Presses
 from partialslip.halfplane.cells import forces
 from partialslip.halfplane.contact import Contact, contact
-from partialslip.halfplane.mean import Mean
-from partialslip.scene import Pressing, Scene
+from partialslip.halfplane.mean import Mean, common
+from partialslip.scene import Scene
 
 _STAGES = (0.25, 0.5, 0.75)  # of the way between load points, at which the contact is looked up
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
@@ -43,21 +43,21 @@ class NormalLoads:
             pressed = contact(scene)
             return cls(scene, pressed, pressed, pressed)
         points = scene.pressing
-        first, second = (contact(scene, points[end]) for end in scene.load.ends)
+        first, second = (contact(scene, pressing) for pressing in scene.end_pressing)
         between = [
-            Pressing(P1 + share * (P2 - P1), None if M1 is None or M2 is None else M1 + share * (M2 - M1))
-            for (P1, M1), (P2, M2) in itertools.pairwise((points[-1], *points))
+            one.towards(other, share)
+            for one, other in itertools.pairwise((points[-1], *points))
             for share in (*_STAGES, 1.0)
         ]
-        all_ = [contact(scene, pressing) for pressing in dict.fromkeys(between)]
-        left, right = min(each.centre - each.a for each in all_), max(each.centre + each.a for each in all_)
+        ends = np.array([contact(scene, pressing).ends for pressing in dict.fromkeys(between)])
+        left, right = float(ends[:, 0].min()), float(ends[:, 1].max())
         centre = first.centre if scene.even else (left + right) / 2
         return cls(scene, Contact((right - left) / 2, scene.P, Mean(first, second), centre), first, second)
 
     @property
     def largest(self) -> Contact:
         """Contact of the load point with the larger P, whose a and p0 scale the results."""
-        return self.first if self.scene.largest == 1 else self.second
+        return (self.first, self.second)[self.scene.largest - 1]
 
     @property
     def last(self) -> Contact:
@@ -69,8 +69,7 @@ class NormalLoads:
         """Ends of the contacts at the load points, scaled, ascending."""
         if not self.scene.presses_anew:
             return [-1.0, 1.0]
-        places = [each.centre + way * each.a for each in (self.first, self.second, self.last) for way in (-1, 1)]
-        scaled = np.clip(self.frame.scaled(places), -1.0, 1.0)
+        scaled = np.clip(self.frame.scaled([*self.first.ends, *self.second.ends, *self.last.ends]), -1.0, 1.0)
         return np.union1d(scaled, [-1.0, 1.0]).tolist()  # type: ignore[no-any-return]
 
     @property
@@ -78,9 +77,7 @@ class NormalLoads:
         """Ends, scaled, of what is in contact at both load points."""
         if not self.scene.presses_anew:
             return -1.0, 1.0
-        low = max(each.centre - each.a for each in (self.first, self.second))
-        high = min(each.centre + each.a for each in (self.first, self.second))
-        left, right = self.frame.scaled([low, high]).tolist()
+        left, right = self.frame.scaled(common(self.first, self.second)).tolist()
         return left, right
 
     def within(self, points: Sequence[float]) -> list[float]:
@@ -93,13 +90,12 @@ class NormalLoads:
         """Normal forces (c,) of the contact ``of`` on the cells between ``vertices`` (c + 1,), in P of the scene."""
         if of is self.frame:
             return forces(of.shape, vertices)
-        places = of.scaled(self.frame.centre + self.frame.a * vertices)
-        return of.P / self.scene.P * forces(of.shape, places)
+        return of.P / self.scene.P * forces(of.shape, of.scaled(self.frame.places(vertices)))
 
     def presses(self, vertices: Array, compliance: Array) -> Presses:
         """The contact problem of the cells: pressure and shear must be in equilibrium on the same cells, as the
         displacements with which cells touch are those of the pressure times a factor."""
-        scene, places = self.scene, self.frame.centre + self.frame.a * vertices
+        scene, places = self.scene, self.frame.places(vertices)
         middle, half = (places[1:] + places[:-1]) / 2, np.diff(places)[:, None] / 2
         gap = scene.profile.gap_at(middle[:, None] + half * _NODES) @ (_WEIGHTS / 2)
         arms = None if scene.M is None else (middle - scene.origin) / scene.length

@@ -11,7 +11,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.halfplane.mean import Mean, Path
+from partialslip.halfplane.mean import Mean, Path, Stage, common
 from partialslip.halfplane.slip import dissipation
 from partialslip.result import EndSlip
 from partialslip.scene import Hertz, Scene
@@ -54,16 +54,10 @@ class Cycle:
     turns_round: bool
 
     @property
-    def largest(self) -> Contact:
-        """Contact of the load point with the larger P, which scales the results."""
-        return self.first if self.scene.largest == 1 else self.second
-
-    @property
     def stick(self) -> tuple[float, float]:
         """Ends of the stick zone, m; those of the part that both contacts have in common where no end slips."""
         if self.change:
-            left, right = (self.mean.centre + end * self.mean.a for end in self.change.ends)
-            return left, right
+            return Stage(self.second, self.mean, self.change).stick
         return common(self.first, self.second)
 
     def dq(self, x: Array) -> Array:
@@ -77,14 +71,15 @@ class Cycle:
         ratio = (load.dQ + math.pi / 4 * x * load.dsigma) / (other.P - one.P)
         return ratio * (other.pressure(x) - one.pressure(x))
 
+    @functools.cached_property
     def bounds_of_Q1(self) -> tuple[float, float]:
         """Least and largest Q at load point 1 of a steady state, N/m: some q1 must keep within the bounds at both load
         points."""
         f, (left, right) = self.scene.friction.f, self.stick
         slipping = 0.0
         if self.change:
-            ends = [*(self.first.centre + way * self.first.a for way in (-1, 1))]
-            for sign, low, high in zip(self.change.signs, (ends[0], right), (left, ends[1]), strict=True):
+            outer = self.first.ends
+            for sign, low, high in zip(self.change.signs, (outer[0], right), (left, outer[1]), strict=True):
                 slipping -= sign * f * _integral(self.first.pressure, low, high, self._kinks)
 
         def apart(sign: int) -> Callable[[Array], Array]:
@@ -104,7 +99,8 @@ class Cycle:
 
     @property
     def _kinks(self) -> list[float]:
-        return [self.mean.centre + kink * self.mean.a for kink in self.mean.shape.kinks]
+        kinks: list[float] = self.mean.places(self.mean.shape.kinks).tolist()
+        return kinks
 
     def slip(self) -> tuple[Array, Array, float]:
         """Points (m), their slip from load point 1 to 2 (m) while they are in contact, and the work dissipated in a
@@ -117,17 +113,15 @@ class Cycle:
         unit = self._unit(self.mean)
         x, slips, _ = dissipation(self.change.zone, self.change.seen)
         mirror = self.change.mirror
-        x, slips = self.mean.centre + mirror * self.mean.a * x[::mirror], self.change.turn * unit * slips[::mirror]
+        x, slips = self.mean.places(mirror * x[::mirror]), self.change.turn * unit * slips[::mirror]
         low, high = common(self.first, self.second)
         inside = (x > low) & (x < high)
         ends = np.array([low, high])
         x, slips = np.append(x[inside], ends), np.append(slips[inside], unit * self.change.slip(self.mean.scaled(ends)))
         path = Path(self.scene)
         for share in _SHARES.tolist():  # points that touch or open on the way
-            now = path.at(share)
-            mean = Mean(path.begin, now).contact
-            part = loading(mean, self.scene.friction.f, share * path.dQ, share * path.dsigma, bound=2)
-            places = np.array([now.centre - now.a, now.centre + now.a])
+            now, mean, part = path.stage(share)
+            places = np.array(now.ends)
             places = places[(places < low) | (places > high)]
             so_far = self._unit(mean) * part.slip(mean.scaled(places))
             opens = self.first.pressure(places) > 0
@@ -145,38 +139,29 @@ class Cycle:
     def _dissipated(self, back: bool) -> float:
         path, f = Path(self.scene, back), self.scene.friction.f
 
-        def slipped(share: float, now: Contact, weight: Callable[[Array, Array], Array]) -> float:
-            """Integral over the contact ``now`` of |slip| since the beginning of the way, times the ``weight``."""
-            mean = Mean(path.begin, now).contact
-            change = loading(mean, f, share * path.dQ, share * path.dsigma, bound=2)
+        def slipped(stage: Stage, weight: Callable[[Array, Array], Array]) -> float:
+            """Integral over the contact of |slip| since the beginning of the way, times the ``weight``."""
+            now, mean, change = stage
             unit, total = self._unit(mean), 0.0
-            stick = now.scaled(mean.centre + np.array(change.ends) * mean.a)
-            kinks = [now.scaled(mean.centre + kink * mean.a) for kink in mean.shape.strong_kinks]
+            stick, kinks = now.scaled(stage.stick), now.scaled(mean.places(mean.shape.strong_kinks))
             for low, high in ((-1.0, stick[0]), (stick[1], 1.0)):
                 inner = [kink for kink in kinks if low < kink < high]
                 angles = np.arccos(np.clip(np.unique([low, *inner, high]), -1, 1))[::-1]
                 half = np.diff(angles)[:, None] / 2
                 angle = (angles[:-1, None] + half * (1 + _FEWER_NODES)).ravel()
                 y = np.cos(angle)
-                amount = np.abs(unit * change.slip(mean.scaled(now.centre + now.a * y)))
+                amount = np.abs(unit * change.slip(mean.scaled(now.places(y))))
                 total += float((half * _FEWER_WEIGHTS).ravel() @ (amount * weight(y, np.sin(angle))))
             return total
 
-        end = path.at(1.0)
-        work = slipped(1.0, end, lambda y, sine: end.a * sine * end.p0 * end.shape.pressure(y))
+        last = path.stage(1.0)
+        end = last.now
+        work = slipped(last, lambda y, sine: end.a * sine * end.p0 * end.shape.pressure(y))
         for share, weight in zip((1 + _FEWER_NODES) / 2, _FEWER_WEIGHTS / 2, strict=True):
-            now = path.at(float(share))
-            uniform, turned = path.pressed(now)
-            work -= weight * slipped(float(share), now, lambda y, _, u=uniform, t=turned: u + t * y)  # type: ignore[misc]
+            stage = path.stage(float(share))
+            uniform, turned = path.pressed(stage.now)
+            work -= weight * slipped(stage, lambda y, _, u=uniform, t=turned: u + t * y)  # type: ignore[misc]
         return f * work
-
-
-def common(first: Contact, second: Contact) -> tuple[float, float]:
-    """Left and right end, m, of the part that two contacts have in common."""
-    return (
-        max(first.centre - first.a, second.centre - second.a),
-        min(first.centre + first.a, second.centre + second.a),
-    )
 
 
 @functools.lru_cache(maxsize=1)
@@ -191,13 +176,13 @@ def steady_cycle(scene: Scene) -> Cycle:
     if not change:
         slips: tuple[EndSlip, EndSlip] = ("never", "never") if left < right else ("part of the cycle",) * 2
         return Cycle(scene, first, second, mean, None, slips, False)
-    ends, room = [mean.centre + end * mean.a for end in change.ends], _ROUNDING * mean.a
+    ends, room = Stage(second, mean, change).stick, _ROUNDING * mean.a
     ways: list[EndSlip] = ["forwards" if sign > 0 else "backwards" for sign in change.signs]
     inside = left - room <= ends[0], ends[1] <= right + room
     slips = (ways[0] if inside[0] else "part of the cycle", ways[1] if inside[1] else "part of the cycle")
     if not all(inside):
         return Cycle(scene, first, second, mean, None, slips, False)
-    turns = any(_turns(Path(scene, back), f, change) for back in (False, True))
+    turns = any(_turns(Path(scene, back), change) for back in (False, True))
     return Cycle(scene, first, second, mean, change, slips, turns)
 
 
@@ -234,18 +219,15 @@ def _exceeds(path: Path, f: float) -> Array:
     return np.array(found)
 
 
-def _turns(path: Path, f: float, change: Loading) -> bool:
+def _turns(path: Path, change: Loading) -> bool:
     """Whether slip turns round on the way: the stick zones of the stages do not shrink, or not always with the slip of
     the whole ``change``."""
-    before = path.begin.centre - path.begin.a, path.begin.centre + path.begin.a
+    before = path.begin.ends
     for share in (np.arange(1, _STAGES + 1) / _STAGES).tolist():
-        now = path.at(share)
-        mean = Mean(path.begin, now).contact
-        part = loading(mean, f, share * path.dQ, share * path.dsigma, bound=2)
-        left, right = (mean.centre + end * mean.a for end in part.ends)
-        room = _ROUNDING * mean.a
-        inner = common(path.begin, now)
-        if part.zone.s != change.zone.s or left < max(before[0], inner[0]) - room:
+        stage = path.stage(share)
+        (left, right), room = stage.stick, _ROUNDING * stage.mean.a
+        inner = common(path.begin, stage.now)
+        if stage.change.zone.s != change.zone.s or left < max(before[0], inner[0]) - room:
             return True
         if right > min(before[1], inner[1]) + room:
             return True

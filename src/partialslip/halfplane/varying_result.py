@@ -9,16 +9,20 @@ from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.levels import PATH_DEPENDENT
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.halfplane.mean import Mean, Path
-from partialslip.halfplane.varying import Cycle, common, steady_cycle
+from partialslip.halfplane.mean import Path, common
+from partialslip.halfplane.remarks import remarks, undetermined
+from partialslip.halfplane.tractions import sample
+from partialslip.halfplane.varying import Cycle, steady_cycle
 from partialslip.plan import Plan
-from partialslip.result import FRICTIONLESS, Clock, Regime, Result, Slip, Traction
+from partialslip.result import Clock, Regime, Result, Slip, Traction
 from partialslip.scene import Scene
 
 _ROUNDING = 1e-9  # lengths in a, tractions in f p0
 _STAGES = np.linspace(0, 1, 9)
 _PLACES = np.cos(np.linspace(np.pi, 0, 81))[1:-1]
-_RATCHETS = 1e-12  # room of Q, in f P, that is rounding
+_ROOM = 1e-12  # of Q, in f P, beyond the bounds that is rounding
+_SLIDES = "the contact slides: |Q| >= f P at a load point; there is no steady partial slip"
+_RATCHETS = "the mean of Q is outside the bounds for a steady state: the contact ratchets"
 
 
 @dataclass(frozen=True)
@@ -49,7 +53,7 @@ class VaryingTractions:
         return q2 - self.change(x)[1], q2
 
 
-def solve_varying(scene: Scene, plan: Plan, points: int, started: bool, clock: Clock) -> Result:
+def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Result:
     """Solve ``scene`` exactly, in the steady state.
 
     Parameters
@@ -57,8 +61,6 @@ def solve_varying(scene: Scene, plan: Plan, points: int, started: bool, clock: C
     scene : Scene
         Loads in phase; P or M varies.
     plan : Plan
-    points : int
-        Points at which tractions are listed, between neighbouring breaks.
     started : bool
         Whether the path begins in a state, on which q1 and q2 then depend.
     clock : Clock
@@ -68,7 +70,7 @@ def solve_varying(scene: Scene, plan: Plan, points: int, started: bool, clock: C
     cycle = steady_cycle(scene) if slipping else None
     way = Path(scene)
     first, second = (cycle.first, cycle.second) if cycle else (way.begin, way.at(1.0))
-    largest = first if scene.largest == 1 else second
+    largest = (first, second)[scene.largest - 1]
     regime = _regime(scene, cycle)
     loaded = _first_loading(scene, cycle, started) if cycle and regime != "ratchets" else _no_levels(regime)
     tractions = VaryingTractions(first, second, cycle, f, None if isinstance(loaded, str) else loaded)
@@ -76,12 +78,12 @@ def solve_varying(scene: Scene, plan: Plan, points: int, started: bool, clock: C
     left, right = cycle.stick if cycle else common(first, second) if still else (math.nan, math.nan)
     known = math.isfinite(left)
     breaks = _breaks(scene, first, second, (left, right) if known else (), tractions)
-    x = _sample(breaks, points)
+    x = sample(breaks)
     p, dq = tractions.change(x)
     levels_at = tractions.at_load_points if tractions.loaded else None
     q1, q2 = levels_at(x) if levels_at else (np.zeros_like(x), np.zeros_like(x)) if still else (None, None)
     turns = cycle is not None and cycle.turns_round
-    undetermined = _undetermined(turns, regime, loaded)
+    why = {} if still else undetermined(regime, turns, loaded)
     return Result(
         method="exact",
         a=largest.a,
@@ -97,12 +99,12 @@ def solve_varying(scene: Scene, plan: Plan, points: int, started: bool, clock: C
         slip=Slip(*cycle.slip()) if cycle and cycle.change and regime != "ratchets" else None,
         settings={"model": "two half-planes, steady state under varying pressure"},
         limits=_limits(scene, cycle) if cycle else {},
-        certificate=_certificate(cycle) if cycle and cycle.change else {},
-        notes=_notes(regime, turns, undetermined),
-        undetermined=undetermined,
+        certificate=cycle.change.certificate if cycle and cycle.change else {},
+        notes=remarks(regime, turns, why, _SLIDES, _RATCHETS),
+        undetermined=why,
         path_dependent=turns,
         end_slips=cycle.slips if cycle else None,
-        contact_ends=tuple((each.centre - each.a, each.centre + each.a) for each in (first, second)),  # type: ignore[arg-type]
+        contact_ends=(first.ends, second.ends),
     )  # fmt: skip
 
 
@@ -114,8 +116,8 @@ def _regime(scene: Scene, cycle: Cycle | None) -> Regime:
     if cycle is None:
         return "stuck"
     first, _ = scene.load.ends
-    low, high = cycle.bounds_of_Q1()
-    room = _RATCHETS * scene.friction.f * scene.P
+    low, high = cycle.bounds_of_Q1
+    room = _ROOM * scene.friction.f * scene.P
     if not low - room <= scene.load.points[first][0] <= high + room:
         return "ratchets"
     if cycle.change is None:
@@ -147,16 +149,14 @@ def _first_loading(scene: Scene, cycle: Cycle, started: bool) -> Loading | str:
     first = loading(end, f, Q, sigma, bound=1)
     if first.left_end_turns():
         return f"{PATH_DEPENDENT}during the first loading; the reference is march with refined steps"
-    left, right = (end.centre + each * end.a for each in first.ends)
+    left, right = end.places(first.ends)
     room = _ROUNDING * end.a
     if not (cycle.stick[0] - room <= left and right <= cycle.stick[1] + room) or first.signs != cycle.change.signs:
         return "mean loads act, and the cycle slips where the first loading sticks; use march"
     back = Path(scene, back=True)
     for share in _STAGES[1:].tolist():
-        now = back.at(share)
-        mean = Mean(end, now).contact
-        part = loading(mean, f, share * back.dQ, share * back.dsigma, bound=2)
-        x = mean.centre + mean.a * _PLACES
+        now, mean, part = back.stage(share)
+        x = mean.places(_PLACES)
         q = f * end.p0 * first.traction(end.scaled(x)) + f * mean.p0 * part.traction(mean.scaled(x))
         if (np.abs(q) > f * (now.pressure(x) + _ROUNDING * mean.p0)).any():
             return "mean loads act, and the first loading less the change exceeds f p; use march"
@@ -167,53 +167,13 @@ def _breaks(
     scene: Scene, first: Contact, second: Contact, stick: tuple[float, ...], tractions: VaryingTractions
 ) -> Array:
     """Points where tractions are not smooth, m, ascending: ends of contacts and of stick zones, and kinks of p."""
-    ends = [each.centre + sign * each.a for each in (first, second) for sign in (-1, 1)]
+    ends = [*first.ends, *second.ends]
     inner = [*stick, *scene.profile.kinks]
     if tractions.loaded:
-        inner += [second.centre + end * second.a for end in tractions.loaded.ends]
+        inner += second.places(tractions.loaded.ends).tolist()
     return np.unique([*ends, *(point for point in inner if min(ends) < point < max(ends))])
 
 
-def _sample(breaks: Array, points: int) -> Array:
-    """Points between ``breaks``, closer towards the breaks, where tractions have square roots."""
-    crowd = (1 - np.cos(np.linspace(0, np.pi, points))) / 2
-    return np.unique(breaks[:-1, None] + np.diff(breaks)[:, None] * crowd)
-
-
 def _limits(scene: Scene, cycle: Cycle) -> dict[str, float]:
-    low, high = cycle.bounds_of_Q1()
+    low, high = cycle.bounds_of_Q1
     return {"Q_mean_least": low + scene.load.dQ / 2, "Q_mean_most": high + scene.load.dQ / 2}
-
-
-def _certificate(cycle: Cycle) -> dict[str, float]:
-    """Residuals of the loads of the stick zone: ``tension`` in f p0, or relative if sf > 1, and ``shear`` in 2 f P, for
-    the mean pressure."""
-    assert cycle.change
-    zone, sf, Qf = cycle.change.zone, cycle.change.sf, cycle.change.Qf
-    edge = np.array(1 + zone.centre - zone.half_width)
-    found = cycle.change.seen.conditions(edge, np.array(zone.half_width), np.array(zone.s))
-    return {"tension": abs(float(found.sf) - sf) / max(sf, 1.0), "shear": abs(float(found.Qf) - Qf)}
-
-
-def _undetermined(turns: bool, regime: Regime, loaded: Loading | str) -> dict[str, str]:
-    if regime in ("sliding", "frictionless", "stuck"):
-        return {}
-    if turns:
-        reason = f"{PATH_DEPENDENT}between the load points; the reference is march with refined steps"
-        return dict.fromkeys(("m", "n", "q", "q1", "q2"), reason)
-    return dict.fromkeys(("q1", "q2"), loaded) if isinstance(loaded, str) else {}
-
-
-def _notes(regime: Regime, turns: bool, undetermined: dict[str, str]) -> tuple[str, ...]:
-    if regime == "frictionless":
-        return (FRICTIONLESS,)
-    if regime == "sliding":
-        return ("the contact slides: |Q| >= f P at a load point; there is no steady partial slip",)
-    notes: list[str] = []
-    if regime == "ratchets":
-        notes.append("the mean of Q is outside the bounds for a steady state: the contact ratchets")
-    elif not turns and "q2" in undetermined:
-        notes.append(f"q1 and q2: {undetermined['q2']}")
-    if turns:
-        notes.append(f"m, n, q: {undetermined['m']}")
-    return tuple(notes)

@@ -238,8 +238,8 @@ def _too_near(result: Result, reference: Result, width: float) -> str:
     names, zone = {result.regime, reference.regime}, reference if reference.m is not None else result
     if zone.m is None or zone.n is None or zone.stick_half_width is None:
         return ""
-    left, right = (pick(ends) for pick, ends in zip((max, min), zip(*zone.ends, strict=True), strict=True))
-    slips = (-zone.m - left, right - zone.n)  # widths of the slip zones
+    lefts, rights = zip(*zone.ends, strict=True)
+    slips = (-zone.m - max(lefts), min(rights) - zone.n)  # widths of the slip zones
     if (names == _TENSIONS or names & _STICKING) and min(slips) <= width:
         return "a slip zone is narrower than the bar: the transition is nearer than the bar can tell"
     if "stuck" in names and not names & {"sliding", "ratchets"} and max(slips) <= width:

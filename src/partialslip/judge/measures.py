@@ -93,7 +93,7 @@ def _measured(result: Result, reference: Result, scene: Scene) -> Iterator[_Valu
     levels = ("q1", "q2") if of.levels_at and to.levels_at else ()
     errors = norm_errors(of, to, f, (*pressures, "q", *levels))
     sums = resultants(of, (*pressures, "q"))
-    applied = dict(zip(("p_1", "p"), (scene.pressing[end] for end in scene.load.ends), strict=True))
+    applied = dict(zip(("p_1", "p"), scene.end_pressing, strict=True))
     for key in pressures:
         yield _apart(key.replace("p", "P"), "P", applied[key].P / scene.P, sums[key] / scene.P)
         yield key, NORM, None, None, errors[key]

@@ -78,7 +78,7 @@ def _data(scene: Scene) -> dict[str, Any]:
     """
     pressed, load, f, units = contact(scene), scene.load, scene.friction.f, scene.units
     sf = abs(load.dsigma) / (f * pressed.p0)
-    one, two = (scene.pressing[end] for end in load.ends)
+    one, two = scene.end_pressing
     return {
         "name": scene.name,
         "title": scene.title,

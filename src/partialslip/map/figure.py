@@ -1,12 +1,13 @@
 """Figures of the stick-zone map, legible in black and white: m/a solid, n/a dashed."""
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.map.grid import StickMap
-from partialslip.output.labels import label_lines
+from partialslip.output.labels import CROSSING, label_lines
 from partialslip.output.svg import svg
 
 if TYPE_CHECKING:
@@ -36,20 +37,23 @@ def map_svg(data: StickMap) -> str:
         axes.set_title(data.scene.name if data.scene else "hertz", loc="left", fontsize=10)
         figure.legend(loc="outside lower left", ncols=2, frameon=False, fontsize=9)
         figure.draw_without_rendering()  # label_lines needs the final size of the axes
-        _draw_lines(axes, data, avoided)
+        found = (("m", data.m_lines), ("n", data.n_lines))
+        draw_lines(axes, ((of, at, np.column_stack([Qf, sf])) for of, lines in found for at, Qf, sf in lines), avoided)
 
     return svg(draw, _SIZE)
 
 
-def _draw_lines(axes: "Axes", data: StickMap, avoided: Array) -> None:
-    """Draw labelled lines of equal m and n."""
+def draw_lines(
+    axes: "Axes", found: Iterable[tuple[str, float, Array]], avoided: Array, crossing: float = CROSSING
+) -> None:
+    """Draw labelled lines of equal m, solid, and n, dashed: ``found`` are m or n, its value, and points (k, 2). Labels
+    keep off the ``avoided`` points; ``crossing`` as for :func:`partialslip.output.labels.label_lines`."""
     lines, texts = [], []
-    for of, style, found in (("m", "-", data.m_lines), ("n", "--", data.n_lines)):
-        for at, Qf, sf in found:
-            axes.plot(Qf, sf, color="black", lw=1, ls=style)
-            lines.append(np.column_stack([Qf, sf]))
-            texts.append(f"{of} {at:.1f}".replace("-", "−"))
-    label_lines(axes, lines, texts, avoided)
+    for of, at, points in found:
+        axes.plot(*points.T, color="black", lw=1, ls={"m": "-", "n": "--"}[of])
+        lines.append(points)
+        texts.append(f"{of} {at:.1f}".replace("-", "−"))
+    label_lines(axes, lines, texts, avoided, crossing=crossing)
 
 
 def ends_svg(data: StickMap) -> str:

@@ -174,7 +174,7 @@ def _slides(scene: Scene, dP: Array) -> Array:
 def _point(scene: Scene) -> VaryingPoint | None:
     if scene.slides:
         return None
-    load, (one, other) = scene.load, (scene.pressing[end].P for end in scene.load.ends)
+    load, (one, other) = scene.load, (P for P, _ in scene.end_pressing)
     missing = closed_form(scene)
     exact = None if missing else run(scene, ["exact"]).results["exact"]
     dP, dQ = abs(other - one) / scene.P, abs(load.dQ) / (scene.friction.f * scene.P)

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from partialslip.arrays import Array
+from partialslip.map.figure import draw_lines
 from partialslip.map.grid import M_LEVELS, N_LEVELS
 from partialslip.map.varying import VaryingMap
-from partialslip.output.labels import label_lines
 from partialslip.output.svg import svg
 
 if TYPE_CHECKING:
@@ -40,11 +40,7 @@ def varying_svg(data: VaryingMap) -> str:
         axes.contourf(
             data.P_change, data.Q_change, data.beyond, [0, np.inf], colors=["white"], hatches=["////"], zorder=2
         )
-        if (
-            (data.beyond > 0)
-            & (data.Q_change > data.sticks(data.P_change))
-            & (data.Q_change < data.slides(data.P_change))
-        ).any():
+        if (data.regime == "part of the cycle").any():
             axes.fill([], [], hatch="////", lw=0, facecolor="white", label="an end slips in part of the cycle")
         axes.fill_between(dP, np.minimum(sticks, slides), color="0.9", lw=0, zorder=3, label="no end slips")
         axes.fill_between(dP, slides, top, color="0.7", lw=0, zorder=3, label="sliding at a load point")
@@ -60,24 +56,20 @@ def varying_svg(data: VaryingMap) -> str:
             avoided = np.vstack([avoided, place])
         figure.legend(loc="outside lower left", ncols=2, frameon=False, fontsize=9)
         figure.draw_without_rendering()  # label_lines needs the final size of the axes
-        _draw_lines(axes, data, avoided)
+        draw_lines(axes, _all_lines(axes, data), avoided, _CROSSING)
 
     return svg(draw, _SIZE)
 
 
-def _draw_lines(axes: "Axes", data: VaryingMap, avoided: Array) -> None:
-    """Draw labelled lines of equal m and n where both ends slip."""
-    lines, texts = [], []
-    ends: list[tuple[str, str, Array, tuple[float, ...]]] = [("m", "-", data.m, M_LEVELS)]
+def _all_lines(axes: "Axes", data: VaryingMap) -> Iterator[tuple[str, float, Array]]:
+    """Lines of equal m and n where both ends slip: m or n, its value, and points (k, 2)."""
+    ends: list[tuple[str, Array, tuple[float, ...]]] = [("m", data.m, M_LEVELS)]
     if data.ratio > 0:
-        ends.append(("n", "--", data.n, N_LEVELS))
-    for of, style, values, levels in ends:
+        ends.append(("n", data.n, N_LEVELS))
+    for of, values, levels in ends:
         for at in levels:
             for line in _lines(axes, data, values, at):
-                axes.plot(*line.T, color="black", lw=1, ls=style)
-                lines.append(line)
-                texts.append(f"{of} {at:.1f}".replace("-", "−"))
-    label_lines(axes, lines, texts, avoided, crossing=_CROSSING)
+                yield of, at, line
 
 
 def _lines(axes: "Axes", data: VaryingMap, values: Array, at: float) -> Iterator[Array]:

@@ -15,11 +15,11 @@ _MARGIN = 0.055  # to the border
 _PACE = 0.01  # between candidate places
 _ROOM = 0.05  # to other lines and labels
 _CLEAR = 0.07  # to avoided points
-_CROSSING = 2.0
+CROSSING = 2.0
 
 
 def label_lines(
-    axes: "Axes", lines: Sequence[Array], texts: Sequence[str], avoided: Array, crossing: float = _CROSSING
+    axes: "Axes", lines: Sequence[Array], texts: Sequence[str], avoided: Array, crossing: float = CROSSING
 ) -> None:
     """Label ``lines`` on ``axes`` with ``texts``, each label at the place farthest from other lines and labels.
 
@@ -59,7 +59,7 @@ def label_lines(
 
 
 def label_places(
-    lines: Sequence[Array], avoided: Array, width: float, crossing: float = _CROSSING
+    lines: Sequence[Array], avoided: Array, width: float, crossing: float = CROSSING
 ) -> list[tuple[Array, Array] | None]:
     """Return place (2,) and direction (2,) of the label of each line; None where there is no room.
 

@@ -31,6 +31,13 @@ class Pressing(NamedTuple):
     P: float
     M: float | None
 
+    def towards(self, other: "Pressing", share: float) -> "Pressing":
+        """P and M at the ``share``, from 0 to 1, of the straight way to the ``other``."""
+        if share in (0.0, 1.0):
+            return other if share else self
+        M = None if self.M is None or other.M is None else self.M + share * (other.M - self.M)
+        return Pressing(self.P + share * (other.P - self.P), M)
+
 
 class Friction(Table, frozen=True, kw_only=True):
     """Coulomb friction with the coefficient ``f``: |q| <= f p. With f = 0 any shear force makes the contact slide."""
@@ -193,6 +200,12 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         return tuple(Pressing(P, M if turns else None) for P, M in loads)
 
     @property
+    def end_pressing(self) -> tuple[Pressing, Pressing]:
+        """P and M at load points 1 and 2."""
+        first, second = self.load.ends
+        return self.pressing[first], self.pressing[second]
+
+    @property
     def presses_anew(self) -> bool:
         """Whether the pressure varies: P varies, or M of bodies that turn."""
         return len(set(self.pressing)) > 1
@@ -200,19 +213,19 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     @property
     def largest(self) -> int:
         """1 or 2, the load point with the larger P. Its a and p0 are those of the scene; 2 if both are equal."""
-        first, second = (self.pressing[end].P for end in self.load.ends)
-        return 1 if first > second else 2
+        first, second = self.end_pressing
+        return 1 if first.P > second.P else 2
 
     @property
     def P(self) -> float:
         """Normal force at the load point :attr:`largest`, N/m; for Hertz P = pi a^2/(2 A R) and p0 = a/(A R)."""
-        return self.pressing[self.load.ends[self.largest - 1]].P
+        return self.end_pressing[self.largest - 1].P
 
     @property
     def M(self) -> float | None:
         """Moment int x p dx of the pressure about x = 0 at the load point :attr:`largest`, N; None if the bodies do not
         turn."""
-        return self.pressing[self.load.ends[self.largest - 1]].M
+        return self.end_pressing[self.largest - 1].M
 
     @property
     def varying(self) -> str:

@@ -121,7 +121,7 @@ def template(scene: Scene, a: float) -> str:
     names = ("x", "p", "p1", "dq") if scene.presses_anew else ("x", "p", "dq")
     of_p, of_Fn, P = "pressure", "Fn", f"P = {units.labelled(scene.P, 'N/m', 10)}"
     if scene.presses_anew:
-        P1, P2 = (units.labelled(scene.pressing[end].P, "N/m", 10) for end in load.ends)
+        P1, P2 = (units.labelled(P, "N/m", 10) for P, _ in scene.end_pressing)
         of_p, of_Fn, P = "pressure at load point 2, p1 at load point 1", "Fn and Fn1", f"P1 = {P1}, P2 = {P2}"
     head = (
         f"# {scene.name}: put your tractions here and run: partialslip score {scene.name} THIS-FILE\n"

@@ -41,7 +41,7 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
     f_seen, f_known = (result.settings.get(key) for key in ("f_seen", "f_seen_to"))
     seen = float(f_seen) if isinstance(f_seen, float) and scene.friction.f > 0 else None
     (P, P_off), (dQ, dQ_off), *sums_1 = _sums(result)
-    P1, P2 = (scene.pressing[end].P for end in scene.load.ends)
+    P1, P2 = (P for P, _ in scene.end_pressing)
     stresses = _others(_STRESSES, scene.units.size("Pa"))
     x = _guess(result.a / reference.a, _others(_LENGTHS, scene.units.size("m"))) or _Guess("", 1.0)
     P, dQ = P * x.factor, dQ * x.factor

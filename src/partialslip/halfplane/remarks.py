@@ -1,0 +1,31 @@
+"""What a result of the exact method leaves undetermined, and its notes."""
+
+from partialslip.halfplane.levels import PATH_DEPENDENT
+from partialslip.result import FRICTIONLESS, Regime
+
+
+def undetermined(regime: Regime, turns: bool, found: object) -> dict[str, str]:
+    """Why quantities cannot serve as a reference, by quantity: slip ``turns`` round between the load points, or
+    ``found``, q1 and q2, is a reason instead."""
+    if regime in ("sliding", "frictionless"):
+        return {}
+    if turns:
+        reason = f"{PATH_DEPENDENT}between the load points; the reference is march with refined steps"
+        return dict.fromkeys(("m", "n", "q", "q1", "q2"), reason)
+    return dict.fromkeys(("q1", "q2"), found) if isinstance(found, str) else {}
+
+
+def remarks(regime: Regime, turns: bool, undetermined: dict[str, str], slides: str, ratchets: str) -> tuple[str, ...]:
+    """Notes on the result; ``slides`` and ``ratchets`` are those of contacts that slide and ratchet."""
+    if regime == "frictionless":
+        return (FRICTIONLESS,)
+    if regime == "sliding":
+        return (slides,)
+    notes: list[str] = []
+    if regime == "ratchets":
+        notes.append(ratchets)
+    elif not turns and "q2" in undetermined:
+        notes.append(f"q1 and q2: {undetermined['q2']}")
+    if turns:
+        notes.append(f"m, n, q: {undetermined['m']}")
+    return tuple(notes)
