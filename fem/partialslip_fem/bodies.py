@@ -73,7 +73,7 @@ def mesh_bodies(problem: Problem, width: float, grading: Grading, clock: Clock) 
     meshes = []
     for part in problem.parts:
         with clock.phase("mesh"):
-            mesh = part.mesh or _block(part, width, grading)
+            mesh = part.mesh or block_of(part, width, grading)
         clock.add_meshing(mesh.cpu_s)
         meshes.append(mesh)
     return meshes
@@ -104,7 +104,8 @@ def _condensed(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Cl
         return CondensedBody(mesh, assembled, Condensation(assembled, far, problem.backend, shear, problem.inside))
 
 
-def _block(part: Part, width: float, grading: Grading) -> Mesh:
+def block_of(part: Part, width: float, grading: Grading) -> Mesh:
+    """Mesh a block: ``part``, or a block of the half-width ``width`` that stands for a half-plane."""
     half_width, height = part.extent or (width, width)
     contact, sizes, growth, along, facet_error, corner_error = grading
     finer = {x: size * part.fineness for x, size in sizes.items()}

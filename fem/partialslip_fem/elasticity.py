@@ -11,7 +11,7 @@ import skfem
 from partialslip.arrays import Array
 from partialslip_meshes import Mesh
 
-_ELEMENTS = {1: skfem.ElementTriP1, 2: skfem.ElementTriP2, 3: skfem.ElementTriP3, 4: skfem.ElementTriP4}
+ELEMENTS = {1: skfem.ElementTriP1, 2: skfem.ElementTriP2, 3: skfem.ElementTriP3, 4: skfem.ElementTriP4}
 Indices = npt.NDArray[np.int64]
 
 
@@ -125,23 +125,23 @@ def body(
     pulled : bool
         Whether to assemble the nodal forces of a tension on the right side.
     """
-    triangles, element = _triangles(mesh), _ELEMENTS[order]()
+    triangles, element = triangles_of(mesh), ELEMENTS[order]()
     # gradients are of order - 1, and straight triangles have constant Jacobians: this quadrature is exact
     basis = skfem.Basis(triangles, element, intorder=2 * (order - 1))
     both = np.array([[0], [basis.N]])
 
     def on(lines: Indices) -> Indices:
-        nodes = basis.get_dofs(_facets(triangles, lines)).flatten()
+        nodes = basis.get_dofs(facets_of(triangles, lines)).flatten()
         in_order: Indices = nodes[np.argsort(basis.doflocs[0, nodes], kind="stable")]
         return in_order
 
     line = mesh.lines["contact"]
     contact, face = on(line), on(np.concatenate([line, mesh.lines.get("face", line)]))
     along_x, along_y = (on(np.concatenate([mesh.lines[name] for name in names])) for names in held)
-    along = skfem.FacetBasis(triangles, element, facets=_facets(triangles, line))
+    along = skfem.FacetBasis(triangles, element, facets=facets_of(triangles, line))
     pull = None
     if pulled:
-        end = skfem.FacetBasis(triangles, element, facets=_facets(triangles, mesh.lines["right"]))
+        end = skfem.FacetBasis(triangles, element, facets=facets_of(triangles, mesh.lines["right"]))
         pull = np.concatenate([_tension.assemble(end), np.zeros(basis.N)])
     return Body(
         order=order,
@@ -162,11 +162,12 @@ def body(
 def gradients(mesh: Mesh, order: int, u: Array) -> Array:
     """Gradients of ``u`` (c, N) in the middle of the triangles of ``mesh``, (c, 2, t); elements of ``order``."""
     middle = np.full((2, 1), 1 / 3), np.full(1, 1 / 2)
-    basis = skfem.Basis(_triangles(mesh), _ELEMENTS[order](), quadrature=middle)
+    basis = skfem.Basis(triangles_of(mesh), ELEMENTS[order](), quadrature=middle)
     return np.stack([basis.interpolate(component).grad[..., 0] for component in u])
 
 
-def _triangles(mesh: Mesh) -> skfem.MeshTri:
+def triangles_of(mesh: Mesh) -> skfem.MeshTri:
+    """The triangles of ``mesh``."""
     return skfem.MeshTri(mesh.points.T.copy(), mesh.triangles.T.copy())
 
 
@@ -181,7 +182,7 @@ def _stiffness(basis: skfem.Basis, kappa: float, compliance: float) -> sp.csr_ma
     )
 
 
-def _facets(triangles: skfem.MeshTri, lines: Indices) -> Indices:
+def facets_of(triangles: skfem.MeshTri, lines: Indices) -> Indices:
     """Indices of the facets with the end points ``lines`` (k, 2)."""
     count = triangles.p.shape[1]
     ends = np.sort(lines, axis=1)

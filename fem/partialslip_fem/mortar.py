@@ -25,7 +25,7 @@ def nodal_forces(body: Body, traction: PPoly) -> Array:
     """Nodal forces on the contact line of ``body``, (n,), of a piecewise ``traction`` that is zero off its cells."""
     order = (body.order + len(traction.c)) // 2 + 1
     x, weights = _rule(np.clip(np.union1d(body.x[:: body.order], traction.x), body.x[0], body.x[-1]), order)
-    nodes, values = _shape_functions(body, x)
+    nodes, values = shape_functions(body, x)
     products = (weights * inside(traction, x))[:, None] * values
     return np.bincount(nodes.ravel(), products.ravel(), len(body.x)).astype(float)
 
@@ -35,8 +35,8 @@ def _products(onto: Body, other: Body) -> sp.csr_matrix:
     vertices = np.union1d(onto.x[:: onto.order], other.x[:: other.order])
     vertices = vertices[(vertices >= max(onto.x[0], other.x[0])) & (vertices <= min(onto.x[-1], other.x[-1]))]
     x, weights = _rule(vertices, (onto.order + other.order) // 2 + 1)
-    rows, left = _shape_functions(onto, x)
-    columns, right = _shape_functions(other, x)
+    rows, left = shape_functions(onto, x)
+    columns, right = shape_functions(other, x)
     values = weights[:, None, None] * left[:, :, None] * right[:, None, :]
     where = (np.broadcast_to(index, values.shape).ravel() for index in (rows[:, :, None], columns[:, None, :]))
     return sp.coo_array((values.ravel(), tuple(where)), (len(onto.x), len(other.x))).tocsr()
@@ -49,7 +49,7 @@ def _rule(vertices: Array, count: int) -> tuple[Array, Array]:
     return (vertices[:-1, None] + half * (1 + points)).ravel(), (half * weights).ravel()
 
 
-def _shape_functions(body: Body, x: Array) -> tuple[Indices, Array]:
+def shape_functions(body: Body, x: Array) -> tuple[Indices, Array]:
     """Nodes whose shape functions do not vanish at ``x`` (k,), and the values there, (k, order + 1) each."""
     k, vertices = body.order, body.x[:: body.order]
     cell = np.clip(np.searchsorted(vertices, x, "right") - 1, 0, len(vertices) - 2)

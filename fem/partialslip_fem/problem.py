@@ -206,9 +206,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         If a mesh file cannot be read.
     """
     P, A, L, origin = scene.P, scene.material.A, scene.length, scene.origin
-    sides = (("lower", scene.bodies.lower, scene.fem.lower_size), ("upper", scene.bodies.upper, 1.0))
-    kinds = zip(sides, scene.material.bodies, strict=True)
-    parts = tuple(_finite(Part(name, own.kappa, own.A / A, size), body, scene) for (name, body, size), own in kinds)
+    parts = parts_of(scene, L)
     return Problem(
         gap=lambda x: scene.gap_at(x * L + origin) / (A * P),
         kinks=tuple((kink - origin) / L for kink in scene.profile.kinks),
@@ -231,6 +229,24 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
     )
 
 
+def parts_of(scene: Scene, length: float) -> tuple[Part, Part]:
+    """The lower and the upper body of ``scene``; lengths in units of ``length`` (m).
+
+    Raises
+    ------
+    InputError
+        If a mesh file cannot be read.
+    """
+    bodies, A, sizes = scene.bodies, scene.material.A, (scene.fem.lower_size, 1.0)
+    lower, upper = (
+        _finite(Part(name, own.kappa, own.A / A, size), body, scene, length)
+        for name, body, size, own in zip(
+            ("lower", "upper"), (bodies.lower, bodies.upper), sizes, scene.material.bodies, strict=True
+        )
+    )
+    return lower, upper
+
+
 def _at_load_points(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:
     """Scaled P and M at load points 1 and 2."""
     pressing = scaled_pressing(scene)
@@ -244,11 +260,11 @@ def rescaled(polynomials: PPoly, value: float, length: float, origin: float = 0.
     return PPoly(polynomials.c * value / length**powers, polynomials.x * length + origin)
 
 
-def _finite(plain: Part, body: Body | None, scene: Scene) -> Part:
+def _finite(plain: Part, body: Body | None, scene: Scene, L: float) -> Part:
     """Replace the half-plane ``plain`` by the finite ``body``, if there is one."""
     if not body:
         return plain
-    L, holder = scene.length, body.holder
+    holder = body.holder
     face = PadFace(scene.profile, L) if body.kind == "pad" else None
     part = replace(plain, face=face, support=body.support, pulled=body.pulled)
     if body.mesh is not None:

@@ -18,6 +18,7 @@ from partialslip.judge.reference import ALL_EFFECTS, METHODS, reference_for, ref
 from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
 from partialslip.result.state import State
+from partialslip.rig import Rig, key_of, load_rig
 from partialslip.scene import Effects, Scene
 from partialslip.shown import Drawn
 
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from partialslip_fem import Kept
 
 Progress = Callable[[str], None]
+_KEPT = 8  # rigs kept in a process
+_rigs: dict[str, Rig] = {}
 
 
 @dataclass(frozen=True, repr=False)
@@ -143,12 +146,15 @@ class Run(Drawn):
 
 
 def default_methods(scene: Scene) -> tuple[str, ...]:
-    """Return the default methods for ``scene``: fem, and for half-planes the reference method.
+    """Return the default methods for ``scene``: fem, and for half-planes the reference method; for a scene with a rig,
+    exact and equivalent.
 
     Half-planes in which slip reverses between the load points are solved by exact, march and fem.
     """
     if not scene.material.alike:
         return ("fem",)
+    if scene.bodies.equivalent is not None:
+        return ("exact", "equivalent")
     if not scene.load.in_phase:
         return ("march", "fem")
     if not scene.finite and may_turn_round(scene):
@@ -177,7 +183,7 @@ def run(
     ----------
     scene : Scene
     methods : str or iterable of str, optional
-        Of "exact", "march" and "fem", one or several; default: :func:`default_methods`.
+        Of "exact", "march", "fem" and "equivalent", one or several; default: :func:`default_methods`.
     subsurface : bool
         Whether to compute fields inside the bodies: displacements (fem) and stresses (exact).
     progress : callable
@@ -251,6 +257,39 @@ def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: flo
     return Run(scene, plan, results, comparisons, accuracy)
 
 
+def characterise(scene: Scene) -> Rig:
+    """Find by finite elements what the bodies of ``scene`` add to half-planes: its rig.
+
+    The rig depends on the bodies, their supports and materials, and on the profile only if a body is a pad. It is kept
+    for further calls with the same bodies. :meth:`Rig.write` writes it to a file, which a scene may refer to.
+
+    Raises
+    ------
+    InputError
+        If no body is finite, or a mesh file cannot be read.
+    """
+    key = key_of(scene)
+    if key not in _rigs:
+        from partialslip_fem.characterise import characterise as characterised
+
+        while len(_rigs) >= _KEPT:
+            _rigs.pop(next(iter(_rigs)))
+        _rigs[key] = characterised(scene)
+    return _rigs[key]
+
+
+def rig_of(scene: Scene) -> Rig:
+    """The rig of ``scene``: from the file ``bodies.equivalent`` if given, otherwise :func:`characterise`.
+
+    Raises
+    ------
+    InputError
+        If the file is not a rig, or is one of other bodies; and as :func:`characterise`.
+    """
+    path = scene.bodies.equivalent
+    return characterise(scene) if path is None else load_rig(path, scene)
+
+
 def _told_by(name: str, progress: Progress) -> Progress:
     return lambda line: progress(f"{name}: {line}")
 
@@ -271,4 +310,8 @@ def _method(
         from partialslip_fem.model import solve as solve_by_elements
 
         return partial(solve_by_elements, keep=keep, allowance=allowance)
+    if name == "equivalent":
+        from partialslip.equivalent import solve as solve_as_half_planes
+
+        return partial(solve_as_half_planes, rig_of)
     raise InputError(f"method {name!r}: must be one of {', '.join(METHODS)}")

@@ -5,7 +5,8 @@ from collections.abc import Mapping
 from partialslip.result import Result
 from partialslip.scene import Scene
 
-METHODS = ("exact", "march", "fem")  # by preference as the reference
+REFERENCES = ("exact", "march", "fem")  # by preference
+METHODS = (*REFERENCES, "equivalent")
 ALL_EFFECTS = "all effects"  # name of the result in which no effect is forced off
 
 
@@ -22,7 +23,7 @@ def reference_for(scene: Scene) -> str:
 def reference_of(results: Mapping[str, Result]) -> str | None:
     """Return the name of the reference among ``results``; None without results.
 
-    The reference is the result with all effects, else the first of exact, march and fem. March precedes exact if slip
+    The reference is the result with all effects, else the first of exact, march, fem and equivalent. March precedes exact if slip
     reverses between the load points.
     """
     known = [name for name in (ALL_EFFECTS, *METHODS) if name in results]

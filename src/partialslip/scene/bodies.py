@@ -65,14 +65,18 @@ class Body(Table, frozen=True, kw_only=True):
 
 
 class Bodies(Table, frozen=True, kw_only=True):
-    """Finite bodies ``upper`` and ``lower``; None stands for a half-plane."""
+    """Finite bodies ``upper`` and ``lower``; None stands for a half-plane. ``equivalent`` is the path of a file with
+    the rig of these bodies (:func:`partialslip.run.characterise`), for the method ``equivalent``."""
 
     upper: Body | None = None
     lower: Body | None = None
+    equivalent: Annotated[str, msgspec.Meta(min_length=1)] | None = None
 
     def __post_init__(self) -> None:
         for name, body in self:
             body.check(name)
+        if self.equivalent is not None and not (self.upper or self.lower):
+            raise InputError(f"bodies.equivalent = {self.equivalent!r}: must be given only with bodies.upper or lower")
         if self.upper and self.upper.pulled:
             raise InputError("bodies.upper.pulled = true: must be false; sigma acts on the lower body")
         if self.upper and self.lower and self.upper.kind == self.lower.kind == "pad":

@@ -243,6 +243,8 @@ def _find_files(data: dict[str, Any], scene: str | Path) -> None:
     for body in bodies.values() if isinstance(bodies, dict) else ():
         if isinstance(body, dict) and isinstance(mesh := body.get("mesh"), str) and mesh:
             body["mesh"] = str(Path(scene).parent / mesh)
+    if isinstance(bodies, dict) and isinstance(rig := bodies.get("equivalent"), str) and rig:
+        bodies["equivalent"] = str(Path(scene).parent / rig)
 
 
 def _plain(value: Any, path: str = "", depth: int = 0) -> Any:

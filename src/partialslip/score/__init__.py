@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 from partialslip.errors import InputError
-from partialslip.judge.reference import METHODS, reference_for
+from partialslip.judge.reference import REFERENCES, reference_for
 from partialslip.result import Result
 from partialslip.run import Run, compared, run
 from partialslip.scene import Scene
@@ -71,8 +71,8 @@ def score(
     file = Path(file)
     name = "".join(c if c.isprintable() else "?" for c in file.name)
     reference = reference_for(scene) if reference is None else reference
-    if reference not in METHODS:
-        raise InputError(f"reference {reference!r}: must be one of {', '.join(METHODS)}")
+    if reference not in REFERENCES:
+        raise InputError(f"reference {reference!r}: must be one of {', '.join(REFERENCES)}")
     if centre not in ("given", "auto"):
         raise InputError(f"centre {centre!r}: must be 'given' or 'auto'")
     if centre == "auto" and not scene.even:

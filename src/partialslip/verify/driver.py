@@ -14,7 +14,7 @@ from partialslip.batch.ledger import Ledger, key_of, scene_content
 from partialslip.batch.sweep import Progress, Task, sweep, workers
 from partialslip.errors import InputError, MissingLibraryError
 from partialslip.judge import Outcome, overall
-from partialslip.judge.reference import METHODS
+from partialslip.judge.reference import REFERENCES
 from partialslip.output.files import write_texts
 from partialslip.output.pdf import write_pdf
 from partialslip.output.place import placed
@@ -226,8 +226,8 @@ def _cases(
     if ladder:
         raise InputError("--ladder: not with --suite stress: random scenes have no exact solution on each mesh")
     method = "exact" if method is None else method
-    if method not in METHODS:
-        raise InputError(f"--method {method!r}: must be one of {', '.join(METHODS)}")
+    if method not in REFERENCES:
+        raise InputError(f"--method {method!r}: must be one of {', '.join(REFERENCES)}")
     seed, count = _within("seed", seed, 0, 0), _within("count", count, 100, 1)
     makers = stress_suite(method, seed, count, only)
     # the name holds seed and number, which determine a random scene

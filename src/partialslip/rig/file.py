@@ -1,0 +1,82 @@
+"""Rigs as JSON files."""
+
+import os
+from pathlib import Path
+from typing import Annotated, Any
+
+import msgspec
+import numpy as np
+
+from partialslip.errors import InputError
+from partialslip.inputfile import read_bytes
+from partialslip.output.files import write_texts
+from partialslip.output.json import json_text
+from partialslip.rig.key import key_of
+from partialslip.rig.rig import Rig
+from partialslip.scene import Scene
+
+SCHEMA = "partialslip/rig/1"
+_LARGEST = 2**20  # bytes
+_MOST = 64  # terms
+_Row = Annotated[list[float], msgspec.Meta(min_length=2, max_length=_MOST)]
+_Rows = Annotated[list[_Row], msgspec.Meta(min_length=2, max_length=_MOST)]
+
+
+class _File(msgspec.Struct, forbid_unknown_fields=True):
+    schema: str
+    key: str
+    reach: Annotated[float, msgspec.Meta(gt=0)]
+    xx: _Rows
+    yy: _Rows
+    xy: _Rows
+    pulled: _Rows
+    errors: dict[str, float]
+
+
+def write_rig(rig: Rig, path: str | os.PathLike[str]) -> None:
+    """Write ``rig`` to a file at ``path``; a file that is there is replaced.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    arrays = {key: getattr(rig, key).tolist() for key in ("xx", "yy", "xy", "pulled")}
+    data = _File(SCHEMA, rig.key, rig.reach, **arrays, errors=rig.errors)
+    write_texts(Path(path).parent, {Path(path).name: json_text(data)})
+
+
+def load_rig(path: str | os.PathLike[str], scene: Scene | None = None) -> Rig:
+    """Read a rig from ``path``.
+
+    Parameters
+    ----------
+    path : str or path
+    scene : Scene, optional
+        A scene whose bodies the rig must have.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or is not a rig, or is that of other bodies than those of ``scene``.
+    """
+    try:
+        found = msgspec.json.decode(read_bytes(path, _LARGEST), type=_File)
+    except (msgspec.MsgspecError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: not a rig: {error}") from None
+    if found.schema != SCHEMA:
+        raise InputError(f"{path}: schema = {found.schema!r}: must be {SCHEMA!r}")
+    count = len(found.xx)
+    shapes = {"xx": (count, count), "yy": (count, count), "xy": (count, count), "pulled": (2, count)}
+    arrays: dict[str, Any] = {}
+    for key, shape in shapes.items():
+        rows = getattr(found, key)
+        if len(rows) != shape[0] or any(len(row) != shape[1] for row in rows):
+            raise InputError(f"{path}: {key}: must have {shape[0]} rows of {shape[1]} numbers")
+        arrays[key] = np.array(rows)
+    if scene and found.key != key_of(scene):
+        raise InputError(
+            f"{path}: this rig has other bodies, supports or materials than {scene.name}; "
+            "must be made from them: partialslip equivalent"
+        )
+    return Rig(found.key, found.reach, **arrays, errors=found.errors)
