@@ -41,6 +41,13 @@ class CondensedBody:
         return result
 
     @property
+    def bent(self) -> Array:
+        """Displacements of all nodes of a half-plane, (2, N), under the tension that strains its surface by x: the
+        stresses sigma_xx = s x and sigma_xy = -s y, without sigma_yy."""
+        (x, y), kappa = self.body.points, self.body.kappa
+        return np.array([x**2 / 2 - (5 + kappa) / (1 + kappa) * y**2 / 2, -(3 - kappa) / (1 + kappa) * x * y])
+
+    @property
     def stretch(self) -> Array:
         """Displacements of the contact line's nodes under the same tension, (2, n); zero along y if uniform."""
         if self.condensation.pulled is None:

@@ -47,7 +47,7 @@ def displace_bodies(solution: MeshSolution, problem: Problem) -> tuple[Displaced
     first = solution.pressing.x if solution.first is None else solution.first
     loads = loads or [(0 * line.x, first), (0 * line.x, solution.pressing.x)]
     pressures = tuple(traction(line, normal) for _, normal in loads)
-    strains = [history.path.cycle[end][1] for end in history.path.ends] if history else [0.0, 0.0]
+    strains = np.array([history.path.cycle[end][1:3] for end in history.path.ends] if history else np.zeros((2, 2)))
     displaced = []
     for condensed, part, way in zip((solution.bodies * 2)[:2], (problem.parts * 2)[:2], (1, -1), strict=True):
         # q acts in the opposite direction on the lower body
@@ -57,7 +57,9 @@ def displace_bodies(solution: MeshSolution, problem: Problem) -> tuple[Displaced
             forces = np.concatenate([back @ forces[: len(line.x)], back @ forces[len(line.x) :]])
         u = condensed.condensation.displace(forces[-condensed.condensation.columns :]).T.reshape(2, 2, -1)
         if way > 0:
-            u = u + np.multiply.outer(strains, condensed.stretched)
+            u = u + np.multiply.outer(strains[:, 0], condensed.stretched)
+            if strains[:, 1].any():  # only half-planes: x counts from the scene's x = 0
+                u = u + np.multiply.outer(strains[:, 1], condensed.bent + problem.origin * condensed.stretched)
         displaced.append(DisplacedBody(condensed, part, way, u, pressures))
     lower, upper = displaced
     return lower, upper

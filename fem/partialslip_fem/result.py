@@ -115,6 +115,7 @@ def _state(scene: Scene, problem: Problem, solution: MeshSolution) -> State | No
         scene.material.A,
         *scene.load.points[-1],
         *(rescaled(each, scene.P / L, L, origin) for each in (p, q)),
+        scene.load.along[-1][2],
     )
 
 

@@ -13,7 +13,7 @@ from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.ends import within
 from partialslip.condensed.history import History, certified
 from partialslip.condensed.normal import Presses, press
-from partialslip.condensed.path import Path
+from partialslip.condensed.path import Path, stretched
 from partialslip.condensed.steps import follow_refined, march_refined
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, condense, key_of, mesh_bodies
@@ -126,6 +126,7 @@ class _ContactForces:
 def _contact_forces(problem: Problem, C: coupled.Relative, lower: CondensedBody, steps: int | None) -> _ContactForces:
     """Solve p and q together if ``C`` couples them; otherwise p first, then q along the load path."""
     line, stretch = lower.body, lower.stretch
+    moved = np.array([stretch[0], stretched(line.x, problem.origin)[1]])
     gap, path, pressed = problem.gap(line.x), problem.path, None
     if path and problem.start:
         pressed, before = (nodal_forces(line, traction) for traction in problem.start)
@@ -133,7 +134,7 @@ def _contact_forces(problem: Problem, C: coupled.Relative, lower: CondensedBody,
     if path and C.xy is not None:
         along = coupled.Line(line.x, line.weights, lambda forces: contact_ends(line, forces), problem.similar)
         near = BARS["q"] * problem.accuracy
-        history, pressing, first = coupled.march(C, gap, stretch, problem.f, path, pressed, along, near)
+        history, pressing, first = coupled.march(C, gap, stretch, moved[1], problem.f, path, pressed, along, near)
         nodes = np.flatnonzero(history.bound > 0)
         most = np.maximum(*history.bounds) / problem.f if problem.pressing else None
         return _ContactForces(pressing, history.of(nodes), nodes, first, most=most)
@@ -156,7 +157,7 @@ def _contact_forces(problem: Problem, C: coupled.Relative, lower: CondensedBody,
         zones = stick_zone_of(line, nodes, history), stick_zone_of(line, nodes, finer)
         return step_errors.halved(history, finer, zones, line.weights[nodes], half_width)
 
-    tangential = inner, stretch[0][nodes], bound, path, problem.accuracy
+    tangential = inner, moved[:, nodes], bound, path, problem.accuracy
     history, left = march_refined(*tangential, None if steps is None else errors, steps or 0)
     return _ContactForces(pressing, history, nodes, None, left)
 
@@ -183,8 +184,10 @@ def _under_varying_pressure(
         if not any(part.finite for part in problem.parts):  # see partialslip.condensed.varying.march
             holding = Presses(C.xx, problem.gap(line.x), line.x if problem.turns else None)
 
+        moved = np.array([lower.stretch[0], stretched(line.x, problem.origin)[1]])
+
         def along(path: Path) -> History:
-            return varying.march(line.x, C.xx, lower.stretch[0], problem.f, holding, path)  # type: ignore[arg-type]
+            return varying.march(line.x, C.xx, moved, problem.f, holding, path)  # type: ignore[arg-type]
 
         def errors(history: History, finer: History) -> step_errors.Errors:
             on = [np.flatnonzero(each.bound > 0) for each in (history, finer)]

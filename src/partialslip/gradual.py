@@ -45,7 +45,7 @@ def may_turn_round(scene: Scene) -> bool:
         return True
     if f == 0 or scene.slides:
         return False
-    if scene.presses_anew:
+    if scene.presses_anew or load.dslope:
         return True
     if load.dsigma == 0:
         return False
@@ -61,7 +61,7 @@ def small_tension(scene: Scene) -> bool:
     load, f = scene.load, scene.friction.f
     if not isinstance(scene.profile, Hertz) or scene.finite or not scene.mirrored or scene.slides or f == 0:
         return False
-    if scene.presses_anew:
+    if scene.presses_anew or load.dslope:
         return False
     a = math.sqrt(2 / math.pi) * scene.length
     return load.in_phase and 0 < abs(load.dsigma) * a < 4 / math.pi * abs(load.dQ)

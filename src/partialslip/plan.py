@@ -99,14 +99,15 @@ def reduced(scene: Scene) -> Scene:
     if effects.shear is False:
         load = replace(load, Q=(0.0,) * len(load.Q))
     if effects.tension is False:
-        load = replace(load, sigma=(0.0,) * len(load.sigma))
+        load = replace(load, sigma=(0.0,) * len(load.sigma), sigma_slope=(0.0,) * len(load.sigma_slope))
     if effects.varying_pressure is False and scene.presses_anew:
         load = replace(load, P=scene.P, a=None, p0=None, M=scene.M, e=None)
     if effects.moment is False:
         load = replace(load, M=None, e=None)
     if effects.history is False:
-        Q, sigma = load.dQ / 2, load.dsigma / 2
-        load = replace(load, Q=(-Q, Q), sigma=(-sigma, sigma), cycles=1, steps=1)
+        changes = {"Q": load.dQ, "sigma": load.dsigma, "sigma_slope": load.dslope}
+        ends = {key: (-change / 2, change / 2) for key, change in changes.items()}
+        load = replace(load, **ends, cycles=1, steps=1)
     if effects.far_field is not None:
         width = fem.width or WIDTHS["half-plane"]
         fem = replace(fem, far_field="half-plane" if effects.far_field else "box", width=width)
@@ -126,9 +127,11 @@ def _forced(scene: Scene) -> dict[Effect, bool]:
 def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
     """Decisions for ``scene``, taking forced loads and forced coupling into account."""
     load, f, forced = scene.load, scene.friction.f, _forced(scene)
-    Q, sigma = zip(*load.points, strict=True)
+    Q, sigma, slope = zip(*load.along, strict=True)
+    tension = {"sigma": (sigma, "Pa"), "sigma_slope": (slope, "Pa/m")}
+    stretched = [f"{key} goes between {scene.units.span(each, of)}" for key, (each, of) in tension.items() if any(each)]
     coupled = forced.get("coupling", not scene.mirrored)
-    tangential = any(Q) or any(sigma) or forced.get("shear", False) or forced.get("tension", False)
+    tangential = any(Q) or bool(stretched) or forced.get("shear", False) or forced.get("tension", False)
     friction = forced.get("friction", tangential or coupled) and not (scene.slides or scene.free)
     why = f"tangential loads act and f = {f:g}" if tangential else f"pressure moves the surfaces along x and f = {f:g}"
     if not (tangential or coupled):
@@ -153,9 +156,9 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
                    "no moment acts, and the gap is even" if scene.even else "the bodies do not turn"),
         "friction": (friction, why, no_friction),
         "shear": (any(Q), f"Q goes between {scene.units.span(Q, 'N/m')}", "Q = 0 at every load point"),
-        "tension": (any(sigma), f"sigma goes between {scene.units.span(sigma, 'Pa')}",
+        "tension": (bool(stretched), ", ".join(stretched),
                     "sigma = 0 at every load point: the problem is symmetric in x up to sign"),
-        "opposing-slip": (friction and (coupled or (load.dsigma != 0 and not small)),
+        "opposing-slip": (friction and (coupled or ((load.dsigma != 0 or load.dslope != 0) and not small)),
                           "pressure drags the ends of the contact opposite ways" if coupled else opposing,
                           no_friction if not friction else small or
                           "without a change of tension both ends slip the same way in the steady state"),

@@ -230,7 +230,7 @@ def run(
 def _reference_for(scene: Scene) -> str:
     """Return the most accurate method for ``scene``; march where the exact method has no closed form."""
     name = reference_for(scene)
-    if name == "exact" and scene.presses_anew:
+    if name == "exact":
         from partialslip.halfplane.method import has_closed_form
 
         return name if has_closed_form(scene) else "march"

@@ -256,6 +256,7 @@ def march(
     C: Relative,
     gap: Array,
     stretch: Array,
+    bent: Array,
     f: float,
     path: Path,
     pressed: Array | None = None,
@@ -274,6 +275,8 @@ def march(
         Gap before loading.
     stretch : (2, n) array
         Displacements of the lower surface, along x and y, under the tension that strains a long body by 1.
+    bent : (n,) array
+        Displacements along x under the tension that strains the surface by x; there are none along y.
     f : float
         Coefficient of friction.
     path : Path
@@ -290,7 +293,7 @@ def march(
     gap = gap - path.begin[1] * stretch[1]
     first: Pressed | None = None
     if pressed is None:
-        first = press(full, gap, f, line, path.substeps, accuracy, path.begin[2] if path.presses_anew else 1.0)
+        first = press(full, gap, f, line, path.substeps, accuracy, path.begin[3] if path.presses_anew else 1.0)
         done = [(first.normal, first.tangential)]
     else:
         done = [(resting(pressed), resting(0 * gap if path.before is None else path.before))]
@@ -304,9 +307,9 @@ def march(
             done.append((replace(still(normal), rest=normal.rest), still(before)))
             return done[-1][1], f * normal.x
         gap = gap - strain * stretch[1]
-        kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0]
+        kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0] + change[2] * bent
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the previous step, and this step of the previous cycle
-        P = float(load[2]) if path.presses_anew else 1.0
+        P = float(load[3]) if path.presses_anew else 1.0
         normal, sheared = _solve(_Step(xx, C.yy, xy, full.opening, f, P, gap, Q, kept), starts)
         done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
         return sheared, f * normal.x

@@ -154,8 +154,9 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
     ----------
     tangential : (n, n) array
         Relative compliance C of the nodes in contact.
-    stretch : (n,) array
-        Displacements of the lower surface along x under the tension that strains it by 1.
+    stretch : (2, n) array
+        Displacements of the lower surface along x under the tension that strains it by 1, and under the tension that
+        strains it by x (:func:`partialslip.condensed.path.stretched`).
     bound : (n,) array
         f times the normal forces.
     path : Path
@@ -165,11 +166,11 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
     sides: list[Sides] = []
 
     def advance(before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
-        Q, strain = float(load[0]), float(change[1])
+        Q = float(load[0])
         if not change.any():
             sides.append(before.sides)
             return still(before), bound
-        free = tangential @ before.x + strain * stretch
+        free = tangential @ before.x + change[1] * stretch[0] + change[2] * stretch[1]
         near = sides[-cycle] if len(sides) >= first + cycle else before.sides  # this step in the previous cycle
         found = solve_bounded(tangential, free, -bound, bound, Q, near)
         sides.append(found.sides)

@@ -13,8 +13,8 @@ from partialslip.scene import Scene
 
 @dataclass(frozen=True)
 class Path:
-    """Loads at the points of a ``cycle``, scaled: Q and the relative strain of the surfaces due to bulk tension; where
-    the pressure varies, then P and M, too.
+    """Loads at the points of a ``cycle``, scaled: Q, the relative strain of the surfaces due to bulk tension at the
+    scene's x = 0, and its slope along x; where the pressure varies, then P and M, too.
 
     ``ends`` are the indices of load points 1 and 2, the extremes of the cycle; ``in_phase`` says whether the points lie
     on one line. The path begins at ``begin`` with the tangential forces ``before`` (n,) (None: zero), goes to the last
@@ -31,7 +31,7 @@ class Path:
     in_phase: bool
     cycles: int
     substeps: int
-    begin: tuple[float, ...] = (0.0, 0.0)
+    begin: tuple[float, ...] = (0.0, 0.0, 0.0)
     before: Array | None = None
     half: bool = False
     one_way: bool = False
@@ -60,7 +60,7 @@ class Path:
     @property
     def presses_anew(self) -> bool:
         """Whether the pressure varies."""
-        return len(self.begin) > 2
+        return len(self.begin) > 3
 
     @property
     def moves(self) -> bool:
@@ -83,15 +83,18 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | No
     if not plan.needs("friction"):
         return None
     P, load = scene.P, scene.load
-    begins = (start.Q, start.sigma) if start else (0.0, 0.0)
-    along = [(Q / P, lower_strain(scene, sigma)) for Q, sigma in (begins, *load.points)]
+    begins = (start.Q, start.sigma, start.sigma_slope) if start else (0.0, 0.0, 0.0)
+    L = scene.length
+    along = [
+        (Q / P, lower_strain(scene, sigma), lower_strain(scene, slope * L)) for Q, sigma, slope in (begins, *load.along)
+    ]
     half, one_way = start is None and not plan.needs("history"), False
     loads: list[tuple[float, ...]] = [*along]
     if scene.presses_anew:
         presses = scaled_pressing(scene)
         loads = [(*each, *down) for each, down in zip(along, (presses[-1], *presses), strict=True)]
         changes = np.abs(np.diff([loads[0], loads[-1], *loads[1:]], axis=0))
-        one_way = scene.even and bool((changes[:, 0] >= scene.friction.f * changes[:, 2]).all())
+        one_way = scene.even and bool((changes[:, 0] >= scene.friction.f * changes[:, 3]).all())
     begin, *cycle = loads
     return Path(tuple(cycle), load.ends, load.in_phase, load.cycles, load.steps, begin, half=half, one_way=one_way)
 
@@ -100,6 +103,12 @@ def scaled_pressing(scene: Scene) -> tuple[tuple[float, float], ...]:
     """(P, M) at the load points, scaled; M about the line of action of P at the load point ``scene.largest``."""
     P, origin, L = scene.P, scene.origin, scene.length
     return tuple((force / P, ((moment or 0.0) - force * origin) / (P * L)) for force, moment in scene.pressing)
+
+
+def stretched(x: Array, origin: float) -> Array:
+    """Displacements along x, (2, n), at ``x`` (n,) from ``origin`` (scaled), under a strain of 1, and under the strain
+    x of a slope of 1; less a rigid shift."""
+    return np.array([x, x * (x / 2 + origin)])
 
 
 def lower_strain(scene: Scene, sigma: float) -> float:

@@ -53,7 +53,7 @@ def steady_state(
         note = "no load but P acts: the stick zone is where the surfaces have stuck since they touched"
         return SteadyState("pressing", (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, (note,))
     if (
-        history is None or stick is None or (load.dQ == 0 and load.dsigma == 0 and not anew)
+        history is None or stick is None or (not (load.dQ or load.dsigma or load.dslope) and not anew)
     ):  # all of the contact sticks
         left, right = common or (-half_width, half_width)
         return SteadyState("stuck", (right + left) / 2, (right - left) / 2, ())

@@ -108,7 +108,7 @@ def follow_refined(
 def one_step_suffices(path: Path) -> bool:
     """Whether the bulk tension is constant, so that Q drives all slip one way, and slip does not reverse; where the
     pressure varies, whether this is known from the loads (:attr:`Path.one_way`)."""
-    constant = len({load[1] for load in (path.begin, *path.cycle)}) == 1
+    constant = len({load[1:3] for load in (path.begin, *path.cycle)}) == 1
     return constant and (path.one_way or not path.presses_anew)
 
 
@@ -151,7 +151,7 @@ class _Coarse:
         self._bound = self.sums(bound)
         share = bound / np.repeat(self._bound, np.diff(self._first, append=len(bound)))
         self._C = np.add.reduceat(self.sums(share[:, None] * tangential) * share, self._first, axis=1)
-        self._stretch = self.sums(share * stretch)
+        self._stretch = [self.sums(share * each) for each in stretch]
         self._near, self._solves = max(accuracy, _TELLING) * float(self._bound.sum()), 0
 
     def sums(self, forces: Array) -> Array:
@@ -197,7 +197,7 @@ class _Coarse:
 
     def _step(self, q: Array, load: Array, end: Array) -> Array:
         self._solves += 1
-        free = self._C @ q + (end[1] - load[1]) * self._stretch
+        free = self._C @ q + (end[1] - load[1]) * self._stretch[0] + (end[2] - load[2]) * self._stretch[1]
         return solve_bounded(self._C, free, -self._bound, self._bound, float(end[0])).x
 
 

@@ -54,16 +54,16 @@ def march(
     first, *ways = (len(way) for way in path.fractions)
     cycle = sum(ways)
     sides: list[Sides] = []
-    pressed = [press(*path.begin[2:])]
+    pressed = [press(*path.begin[3:])]
     attached = _spanned(pressed[0].x)  # nodes that remember where they stuck: those between the ends of the contact
     drift = 0 * x  # displacement of attached nodes that are open, since they opened
 
     def advance(before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
         nonlocal attached, drift
-        Q, P, M = (float(load[i]) for i in (0, 2, 3))
+        Q, P, M = (float(load[i]) for i in (0, 3, 4))
         normal = press(P, M)
         near = sides[-cycle] if len(sides) >= first + cycle else before.sides
-        free = tangential @ before.x + float(change[1]) * stretch - drift
+        free = tangential @ before.x + change[1] * stretch[0] + change[2] * stretch[1] - drift
         step = _Step(x, tangential, free, f * normal.x, Q, attached)
         found = step.solve(pressed[-1].x, normal.x, near)
         moved = tangential @ found.x - free

@@ -13,7 +13,7 @@ from partialslip.halfplane.given import Given
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch, punch_force
 from partialslip.halfplane.shape import Shape
-from partialslip.halfplane.steady import stick_zones
+from partialslip.halfplane.steady import TOO_STEEP, drive, stick_zones
 from partialslip.halfplane.uneven import press
 from partialslip.result import StickZone
 from partialslip.result.points import AtPoints
@@ -152,7 +152,9 @@ def contact_of(
     return Contact(a, shape.scale * math.pi * a / 2, shape, centre)
 
 
-def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: npt.ArrayLike) -> StickZone[Array]:
+def stick_zone(
+    contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: npt.ArrayLike, dslope: npt.ArrayLike = 0.0
+) -> StickZone[Array]:
     """Permanent stick zones of the steady state (paper, eqs. (17) and (18)), m; arrays of the broadcast shape.
 
     Where the loads of an array make the contact slide, |dQ| >= 2 f P, the stick zone is NaN, and
@@ -165,31 +167,41 @@ def stick_zone(contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: np
         Coefficient of friction.
     dQ, dsigma : array_like
         Changes of the shear force (N/m) and of the differential bulk tension (Pa) over half a cycle, of any sign.
+    dslope : array_like
+        Change of sigma_slope, Pa/m, of any sign: the change of tension at x is dsigma + dslope x. Where it is so large
+        that points inside slip before the ends do, the stick zone is NaN with s not 0; an error for numbers.
 
     Raises
     ------
     InputError
-        If f is not positive, a number is not finite, or f, dQ and dsigma are numbers and the contact slides.
+        If f is not positive, a number is not finite, or all loads are numbers and the contact slides or has no such
+        stick zone.
     """
-    given = {"f": f, "dQ": dQ, "dsigma": dsigma}
+    given = {"f": f, "dQ": dQ, "dsigma": dsigma, "dslope": dslope}
     arrays = np.broadcast_arrays(*(np.asarray(values, float) for values in given.values()))
     for name, values in zip(given, arrays, strict=True):
         if not np.isfinite(values).all():
             raise InputError(f"{name} = {values[~np.isfinite(values)].flat[0]}: must be finite")
-    f_, dQ_, dsigma_ = arrays
+    f_, dQ_, dsigma_, dslope_ = arrays
     if not (f_ > 0).all():
         raise InputError(f"f = {f_[~(f_ > 0)].flat[0]}: must be > 0")
-    Qf, sf = np.abs(dQ_) / (2 * f_ * contact.P), np.abs(dsigma_) / (f_ * contact.p0)
-    slides = Qf >= 1
+    at_middle = dsigma_ + dslope_ * contact.centre
+    Qf, sf = dQ_ / (2 * f_ * contact.P), np.abs(at_middle) / (f_ * contact.p0)
+    gf = dslope_ * contact.a / (f_ * contact.p0)
+    slides = np.abs(Qf) >= 1
     if slides.ndim == 0 and slides:
         raise InputError(f"dQ = {dQ_}: must be less than 2 f P in size, or the contact slides")
-    Qf, mirror = np.where(slides, 0.0, Qf), np.where((dQ_ < 0) == (dsigma_ < 0), 1, -1)
+    turn = np.where(drive(Qf, gf) < 0, -1, 1)
+    Qf, gf = (np.where(slides, 0.0, turn * each) for each in (Qf, gf))
+    mirror = np.where((turn < 0) == (at_middle < 0), 1, -1)
     if contact.shape.even:
-        centre, half_width, s = stick_zones(Qf, sf, contact.shape)
+        centre, half_width, s = stick_zones(Qf, sf, contact.shape, gf)
     else:
         centre, half_width, s = np.empty(Qf.shape), np.empty(Qf.shape), np.empty(Qf.shape, dtype=np.int64)
         for way, shape in ((1, contact.shape), (-1, contact.shape.mirrored)):
             here = mirror == way
-            centre[here], half_width[here], s[here] = stick_zones(Qf[here], sf[here], shape)
+            centre[here], half_width[here], s[here] = stick_zones(Qf[here], sf[here], shape, gf[here])
+    if np.ndim(half_width) == 0 and np.isnan(half_width):
+        raise InputError(f"dslope = {dslope_}: {TOO_STEEP}")
     a = np.where(slides, np.nan, contact.a)
     return StickZone((contact.centre + mirror * centre * a)[()], (half_width * a)[()], np.where(slides, 0, s)[()])

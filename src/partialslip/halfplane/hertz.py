@@ -47,15 +47,37 @@ class Hertz(Shape):
         large = edge < 0
         if not large.any():
             return edge, c, ~large
-        c_touching, y, beyond = c[large], np.pi / 2 * Qf[large], -8 * edge[large]
-        b = y / 2  # narrow limit: centre -sin(b), with b + sin(b) cos(b) = y from the condition on dQ
-        for _ in range(3):
-            b = np.clip(b - (b + np.sin(2 * b) / 2 - y) / (1 + np.cos(2 * b) + 1e-9), 0.0, np.pi / 2)
-        decay = np.exp(np.maximum(-np.pi * beyond / (16 * np.maximum(np.cos(b), 1e-3)), -230.0))
+        c_touching = c[large]
+        b, decay = _narrow(Qf[large], -8 * edge[large])
         c[large] = c_touching * decay
         centre = -np.sin(b) + (c_touching - 1 + np.sin(b)) * decay
         edge[large] = -np.clip(1 + centre - c[large], 1e-6 * (1 - c[large]), 1 - c[large])
         return edge, c, ~large
+
+    def sloped_guess(self, Qf: Array, sf: Array, gf: Array) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+        """:meth:`guess` under a change of tension that varies as ``gf`` x: the stick zone for small tension is that of
+        a contact whose curvature is 1 + gf/8 times as large."""
+        stiffness = 1 + gf / 8
+        c = np.sqrt((1 - Qf) / stiffness)
+        edge = (Qf + gf / 8) / stiffness / (1 + c) - sf / (8 * stiffness)
+        large = edge < 0
+        touching = c[large]
+        b, decay = _narrow(np.abs(Qf[large]), -8 * stiffness[large] * edge[large])
+        c[large] = touching * decay
+        middle = -np.copysign(np.sin(b), Qf[large])
+        centre = middle + (touching - 1 - middle) * decay
+        edge[large] = -np.clip(1 + centre - c[large], 1e-6 * (1 - c[large]), (2 - 1e-6) * (1 - c[large]))
+        return edge, c, ~large
+
+
+def _narrow(Qf: Array, beyond: Array) -> tuple[Array, Array]:
+    """b of narrow stick zones, whose centre is at -sin(b), and about the factor by which tension reduces the half-width
+    ``beyond`` the transition; b + sin(b) cos(b) = pi/2 Qf from the condition on dQ."""
+    y = np.pi / 2 * Qf
+    b = y / 2
+    for _ in range(3):
+        b = np.clip(b - (b + np.sin(2 * b) / 2 - y) / (1 + np.cos(2 * b) + 1e-9), 0.0, np.pi / 2)
+    return b, np.exp(np.maximum(-np.pi * beyond / (16 * np.maximum(np.cos(b), 1e-3)), -230.0))
 
 
 def _opposite(edge: Array, c: Array) -> Conditions:

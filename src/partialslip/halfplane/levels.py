@@ -16,7 +16,7 @@ from partialslip.scene import Load
 _ROUNDING = 1e-9  # tolerance: lengths in a, tractions in f p0, slip in A f p0 a
 _PLACES = np.cos(np.linspace(np.pi, 0, 81))[1:-1]
 _SHARES = np.linspace(0, 1, 9)[1:-1]
-_Point = tuple[float, float]
+_Point = tuple[float, float, float]
 
 PATH_DEPENDENT = "path-dependent: slip reverses "
 
@@ -54,7 +54,7 @@ def levels(pressed: Contact, f: float, load: Load, cycle: Loading) -> Levels | s
 
     Fully reversed loads satisfy all conditions if each half cycle is one step.
     """
-    points = [load.points[end] for end in load.ends]
+    points = [load.along[end] for end in load.ends]
     if load.fully_reversed:
         return Levels(loading(pressed, f, *points[1], bound=1), cycle, 1)
     reason = ""
@@ -99,7 +99,7 @@ def _levels(pressed: Contact, f: float, load: Load, cycle: Loading, points: list
 
 def _before(load: Load, points: list[_Point], known: int) -> list[_Point]:
     """Loads at which the path reverses before the first visit of load point ``known``."""
-    path = [load.points[-1], *load.points]
+    path = [load.along[-1], *load.along]
     visited = path[: path.index(points[known])]
     turns = {path[0], points[1 - known]} & set(visited)
     return [point for point in turns if any(point)]
@@ -110,6 +110,7 @@ def _bounded(pressed: Contact, f: float, load: Load, found: Levels) -> bool:
     p, q = found.cycle.shape.pressure(_PLACES), found.first.traction(_PLACES)
     back = 1 - 2 * found.known
     ways = [found.cycle]
-    if found.cycle.zone.s < 0:
-        ways += [loading(pressed, f, share * load.dQ, share * load.dsigma, bound=2) for share in _SHARES]
+    if found.cycle.zone.s < 0 or found.cycle.gf:
+        changes = load.dQ, load.dsigma, load.dslope
+        ways += [loading(pressed, f, *(share * change for change in changes), bound=2) for share in _SHARES.tolist()]
     return all((np.abs(q + back * way.traction(_PLACES)) <= p + _ROUNDING).all() for way in ways)

@@ -1,20 +1,25 @@
 """One proportional change of the loads: the first loading of a contact without shear, or half a steady cycle, which is
 a first loading under twice the bound. Scaled: lengths by a, tractions by f p0, slip by A f p0 a."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from partialslip.arrays import Array
+from partialslip.errors import InputError
 from partialslip.gradual import left_end_turns, turns_round
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.slip import slip
-from partialslip.halfplane.steady import NARROWEST, stick_zone
+from partialslip.halfplane.steady import NARROWEST, TOO_STEEP, drive, stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
 
 _NOTHING = StickZone(0.0, 1.0, 1)
+_STAGES = 16  # of the way from load point to load point
+_SHARES = np.arange(1, 9) / 8  # of slip zones
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -25,15 +30,17 @@ class Loading:
     ----------
     shape : Shape
     Qf, sf : float
-        Magnitudes of the changes relative to the ``bound``: \\|dQ\\|/(bound f P) and 2 \\|dsigma\\|/(bound f p0).
+        Changes relative to the ``bound``: turn dQ/(bound f P) and 2 \\|dsigma\\|/(bound f p0), in the contact's middle.
     turn : int
-        -1 if dQ < 0: q is reversed.
+        -1 if dQ < 0 (with a slope, if :func:`partialslip.halfplane.steady.drive` < 0): q is reversed.
     mirror : int
-        -1 if dQ and dsigma have opposite signs: x is mirrored.
+        -1 if the sign of dsigma is not ``turn``: x is mirrored.
     bound : int
         Largest change of traction, in f p: 1 for a first loading, 2 for half a cycle.
     zone : StickZone
         Stick zone for positive changes of both loads, on the mirrored pressure; ``ends`` has the mirrored one.
+    gf : float
+        Change of the tension along x, turn 2 a dslope/(bound f p0).
     """
 
     shape: Shape
@@ -43,6 +50,7 @@ class Loading:
     mirror: int
     bound: int
     zone: StickZone[float]
+    gf: float = 0.0
 
     @property
     def seen(self) -> Shape:
@@ -64,23 +72,25 @@ class Loading:
     @property
     def nothing(self) -> bool:
         """Whether no load changes."""
-        return self.Qf == 0 and self.sf == 0
+        return self.Qf == 0 and self.sf == 0 and self.gf == 0
 
     def traction(self, x: Array) -> Array:
         """Change of shear traction at ``x``, in f p0."""
         if self.nothing:
             return np.zeros_like(x)
-        return self.turn * self.bound * half_range(self.mirror * x, self.zone, self.seen)
+        return self.turn * self.bound * half_range(self.mirror * x, self.zone, self.seen, self.gf)
 
     def slip(self, x: Array) -> Array:
         """Slip at ``x``, in A f p0 a."""
         if self.nothing:
             return np.zeros_like(x)
-        return self.turn * self.bound / 2 * slip(self.mirror * x, self.zone, self.seen)
+        return self.turn * self.bound / 2 * slip(self.mirror * x, self.zone, self.seen, self.gf)
 
     def left_end_turns(self, half_width: float | None = None) -> bool:
         """Whether slip in the left slip zone reverses under gradual loading before the stick zone has ``half_width``
         (default: the final one); see :func:`partialslip.gradual.left_end_turns`."""
+        if self.gf:
+            return self.turns_round
         half_width = self.zone.half_width if half_width is None else half_width
         return left_end_turns(self.Qf, self.sf, self.zone.s, half_width)
 
@@ -92,7 +102,9 @@ class Loading:
         dQ, which the tension residual therefore leaves out.
         """
         c, sf, Qf = self.zone.half_width, self.sf, self.Qf
-        found = self.seen.conditions(*map(np.array, (1 + self.zone.centre - c, c, self.zone.s)))
+        at = np.array(1 + self.zone.centre - c), np.array(c), np.array(self.zone.s)
+        found = self.seen.conditions(*at)
+        found = found.sloped(np.array(self.gf), *at) if self.gf else found
         tension = 0.0 if c <= NARROWEST and sf > found.sf else abs(float(found.sf) - sf) / max(sf, 1.0)
         rounding = np.finfo(float).eps / max(1 - Qf, np.finfo(float).eps)
         return {"tension": max(tension - float(rounding), 0.0), "shear": abs(float(found.Qf) - Qf)}
@@ -100,13 +112,55 @@ class Loading:
     @property
     def turns_round(self) -> bool:
         """Whether slip reverses during half a cycle of gradual loading; see :func:`partialslip.gradual.turns_round`."""
+        if self.gf:
+            return self._reverses()
         return turns_round(self.Qf, self.sf, self.zone.s, self.zone.centre, self.zone.half_width)
 
+    def _reverses(self) -> bool:
+        """Whether slip reverses at stages of the way: the stick zone does not shrink, or does not always have the slip
+        of the last stage, or an increment of the loads pushes points that slip back.
 
-def loading(pressed: Contact, f: float, dQ: float, dsigma: float, bound: int) -> Loading:
-    """Loading by ``dQ`` (N/m) and ``dsigma`` (Pa) of any sign, with |dQ| < ``bound`` f P."""
-    Qf, sf = abs(dQ) / (bound * f * pressed.P), 2 * abs(dsigma) / (bound * f * pressed.p0)
-    turn = -1 if dQ < 0 else 1
-    mirror = turn * (-1 if dsigma < 0 else 1)
-    found = Loading(pressed.shape, Qf, sf, turn, mirror, bound, _NOTHING)
-    return replace(found, zone=stick_zone(Qf, sf, found.seen)) if Qf or sf else found
+        An increment slips the surfaces at the distance c cosh(eta) from the middle e of the stick zone, on the side
+        tau = +-1, by the integral of its strain, in proportion to
+
+            dQ/2 eta + tau c/8 (dsigma + dslope e) sinh(eta) + c^2/32 dslope sinh(2 eta).
+        """
+        shares = np.arange(1, _STAGES + 1) / _STAGES
+        zones = stick_zones(*(shares * load for load in (self.Qf, self.sf)), self.seen, shares * self.gf)
+        if not (zones.s == self.zone.s).all() or np.isnan(zones.half_width).any():
+            return True
+        if (np.diff(zones.left, prepend=-1.0) < -_ROUNDING).any() or (
+            np.diff(zones.right, prepend=1.0) > _ROUNDING
+        ).any():
+            return True
+        e, c = zones.centre[:, None], zones.half_width[:, None]
+        for side, sign in ((1, 1), (-1, self.zone.s)):
+            width = np.maximum(1 - side * e - c, 0.0)
+            eta = 2 * np.arcsinh(np.sqrt(width / (2 * c))) * _SHARES
+            slips = self.Qf / 2 * eta + side * c / 8 * (self.sf + self.gf * e) * np.sinh(eta)
+            slips += c**2 / 32 * self.gf * np.sinh(2 * eta)
+            if (sign * slips < -_ROUNDING * eta).any():
+                return True
+        return False
+
+
+def loading(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0, *, bound: int) -> Loading:
+    """Loading by ``dQ`` (N/m), ``dsigma`` (Pa) and ``dslope`` (Pa/m) of any sign, with |dQ| < ``bound`` f P.
+
+    Raises
+    ------
+    InputError
+        If the tension varies too much along x for a single stick zone.
+    """
+    at_middle = dsigma + dslope * pressed.centre
+    Qf, sf = dQ / (bound * f * pressed.P), 2 * abs(at_middle) / (bound * f * pressed.p0)
+    gf = 2 * dslope * pressed.a / (bound * f * pressed.p0)
+    turn = -1 if drive(Qf, gf) < 0 else 1
+    mirror = turn * (-1 if at_middle < 0 else 1)
+    found = Loading(pressed.shape, turn * Qf, sf, turn, mirror, bound, _NOTHING, turn * gf)
+    if found.nothing:
+        return found
+    zone = stick_zone(found.Qf, sf, found.seen, found.gf)
+    if math.isnan(zone.half_width):
+        raise InputError(f"load.sigma_slope: {TOO_STEEP}")
+    return replace(found, zone=zone)

@@ -19,7 +19,7 @@ from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.condensed import varying
 from partialslip.condensed.ends import StickInterval, apart, finest, kinks, stick_zone, within
 from partialslip.condensed.history import History, certificate, last_cycle_change
-from partialslip.condensed.path import Path, load_path
+from partialslip.condensed.path import Path, load_path, stretched
 from partialslip.condensed.regime import doubts, steady_state
 from partialslip.condensed.step_errors import halved, steps_matter
 from partialslip.condensed.steps import MOST, follow_refined, march_refined
@@ -177,7 +177,7 @@ def _solve_level(
     with clock.phase("compliance"):
         tangential = compliance(vertices / 2)  # scaling lengths adds a rigid shift only
     with clock.phase("contact"):
-        moved = x * frame.a / scene.length
+        moved = stretched(x * frame.a / scene.length, frame.centre / scene.length)
 
         def zone(of: History) -> StickInterval:
             if not of.path.presses_anew:
@@ -326,4 +326,4 @@ def _state(normal: NormalLoads, level: _Level, places: Array) -> State:
     pressed = normal.forces(normal.last, level.vertices) if scene.presses_anew else bound / scene.friction.f
     stress = scene.P / np.diff(places)
     p, q = (PPoly((stress * forces)[None], places) for forces in (pressed, shear))
-    return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q)
+    return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q, scene.load.along[-1][2])

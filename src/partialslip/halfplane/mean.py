@@ -108,7 +108,8 @@ class Path:
         way = -1 if back else 1
         self._scene = scene
         self._first, self._second = scene.end_pressing[::way]
-        self.dQ, self.dsigma = way * scene.load.dQ, way * scene.load.dsigma
+        load = scene.load
+        self.dQ, self.dsigma, self.dslope = way * load.dQ, way * load.dsigma, way * load.dslope
 
     def at(self, share: float) -> Contact:
         """Contact at the ``share`` of the way, from 0 to 1."""
@@ -123,7 +124,8 @@ class Path:
         """Stage at the ``share`` of the way, from 0 to 1."""
         now = self.at(share)
         mean = Mean(self.begin, now).contact
-        change = loading(mean, self._scene.friction.f, share * self.dQ, share * self.dsigma, bound=2)
+        loads = (share * load for load in (self.dQ, self.dsigma, self.dslope))
+        change = loading(mean, self._scene.friction.f, *loads, bound=2)
         return Stage(now, mean, change)
 
     def pressed(self, now: Contact) -> tuple[float, float]:
@@ -140,7 +142,9 @@ class Path:
         ways = np.array([-1.0, 1.0])
         uniform, turned = self.pressed(now)
         pressure = uniform + ways * turned
-        return Rates(math.pi * pressure, self.dQ + ways * math.pi / 4 * now.a * self.dsigma)
+        tension = self.dsigma + self.dslope * now.centre
+        shear = self.dQ + ways * math.pi / 4 * now.a * tension + math.pi / 8 * now.a**2 * self.dslope
+        return Rates(math.pi * pressure, shear)
 
 
 def common(first: Contact, second: Contact) -> tuple[float, float]:

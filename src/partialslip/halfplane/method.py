@@ -102,8 +102,13 @@ def solve(
 
 def has_closed_form(scene: Scene) -> bool:
     """Whether the steady state of ``scene``, two similar half-planes under loads in phase, has a closed form: always
-    under constant pressure."""
-    return not (scene.presses_anew and plan(scene).needs("friction") and closed_form(scene))
+    under constant pressure, unless sigma_slope is too large."""
+    if not ((scene.presses_anew or scene.load.dslope) and plan(scene).needs("friction")):
+        return True
+    try:
+        return not closed_form(scene) if scene.presses_anew else bool(_change(scene))
+    except InputError:  # sigma_slope is too large
+        return False
 
 
 def path_dependent(scene: Scene) -> bool:
@@ -118,8 +123,8 @@ def path_dependent(scene: Scene) -> bool:
 def _change(scene: Scene) -> tuple[Contact, Loading]:
     """Contact, and change from load point 1 to 2, of a ``scene`` that does not slide. Cached: :func:`path_dependent` is
     called before :func:`solve`."""
-    pressed = contact(scene)
-    return pressed, loading(pressed, scene.friction.f, scene.load.dQ, scene.load.dsigma, bound=2)
+    pressed, load = contact(scene), scene.load
+    return pressed, loading(pressed, scene.friction.f, load.dQ, load.dsigma, load.dslope, bound=2)
 
 
 def _steady_state(scene: Scene, plan: Plan) -> tuple[Contact, Regime, Loading | None]:
@@ -135,10 +140,11 @@ def _steady_state(scene: Scene, plan: Plan) -> tuple[Contact, Regime, Loading | 
     pressed, cycle = _change(scene)
     if cycle.nothing:
         return pressed, "stuck", cycle
-    # for small tension the bound is gross sliding, ruled out above; a zero mean is within any bound, even one that
+    # where dq has one sign the bound is gross sliding, ruled out above; a zero mean is within any bound, even one that
     # rounding makes negative
     mean = abs(load.Q_mean)
-    if cycle.zone.s < 0 and mean > 0 and mean > limit * mean_load_bound(cycle.zone, cycle.seen):
+    bounded = cycle.zone.s < 0 or cycle.gf > 0
+    if bounded and mean > 0 and mean > limit * mean_load_bound(cycle.zone, cycle.seen, cycle.gf):
         return pressed, "ratchets", cycle
     return pressed, ("small tension" if cycle.zone.s > 0 else "large tension"), cycle
 
@@ -170,13 +176,14 @@ def _limits(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[str, 
     limit = scene.friction.f * scene.P
     limits = {"Q_sliding": limit}
     if cycle:
-        limits["dsigma_transition"] = float(transition(cycle.Qf, cycle.seen)) * scene.friction.f * pressed.p0
-        limits["Q_mean"] = limit * mean_load_bound(cycle.zone, cycle.seen)
+        if not cycle.gf:
+            limits["dsigma_transition"] = float(transition(cycle.Qf, cycle.seen)) * scene.friction.f * pressed.p0
+        limits["Q_mean"] = limit * mean_load_bound(cycle.zone, cycle.seen, cycle.gf)
     return limits
 
 
 def _slip(scene: Scene, pressed: Contact, cycle: Loading) -> Slip:
-    x, slips, dissipated = dissipation(cycle.zone, cycle.seen)
+    x, slips, dissipated = dissipation(cycle.zone, cycle.seen, cycle.gf)
     stress, unit = scene.friction.f * pressed.p0, scene.material.A * scene.friction.f * pressed.p0 * pressed.a
     return Slip(
         pressed.centre + cycle.mirror * pressed.a * x[:: cycle.mirror],

@@ -1,7 +1,8 @@
 """Pressures over [-1, 1] and the consistency conditions on the stick zone (paper, eqs. (17) and (18)).
 
 Scaled: lengths by a, pressures by p0 = 2 P/(pi a) (for Hertz the largest pressure), so that every pressure has the
-resultant pi/2; loads Qf = dQ/(2 f P) and sf = dsigma/(f p0). A stick zone is given by ``edge`` = 1 - m, the width of
+resultant pi/2; loads Qf = dQ/(2 f P), sf = dsigma/(f p0) and gf = a dslope/(f p0), the change of tension being
+sf + gf x. A stick zone is given by ``edge`` = 1 - m, the width of
 the left slip zone, and by the half-width ``c`` = (n + m)/2, which keep their digits when they are small; ``s`` is +1
 where both ends slip the same way and -1 where they slip opposite ways. All arguments may be arrays.
 """
@@ -38,6 +39,17 @@ class Conditions(NamedTuple):
     right: Array
     left: Array
     skew: Array
+
+    def sloped(self, gf: Array, edge: Array, c: Array, s: Array) -> "Conditions":
+        """Conditions under a change of tension that varies as ``gf`` x: the traction in the stick zone is less by
+        gf/8 sqrt((n-x)(x+m)) (docs/theory.md, section 4)."""
+        return Conditions(
+            self.sf - gf * (edge + c - 1),
+            self.Qf - gf * c**2 / 8,
+            self.right + c * gf / 8,
+            self.left + s * c * gf / 8,
+            self.skew + (1 - s) * gf / 8,
+        )
 
 
 class Shape:

@@ -17,14 +17,15 @@ _NODES, _FEWEST = 32, 6  # Gauss points in a slip zone, and in each of its piece
 _TINY = 1e-300
 
 
-def density(x: Array, zone: StickZone[float], shape: Shape) -> Array:
+def density(x: Array, zone: StickZone[float], shape: Shape, gf: float = 0.0) -> Array:
     """Slope of the slip at ``x``, the paper's density of glide dislocations, in A f p0; zero outside the slip zones.
 
     In the slip zone on the side tau = +-1,
 
         D(y) = 2 tau w(y)/pi [ PV int_n^1 p/(w(t)(y-t)) dt - s PV int_{-1}^{-m} p/(w(t)(y-t)) dt ],
 
-    w(t) = sqrt(|(t-n)(t+m)|). The integral of p(y) is a logarithm; (p(t) - p(y))/(y - t) has no pole.
+    w(t) = sqrt(|(t-n)(t+m)|). The integral of p(y) is a logarithm; (p(t) - p(y))/(y - t) has no pole. A change of
+    tension that varies as ``gf`` x adds tau w(y) gf/4.
     """
     result = np.zeros_like(x)
     edge = 1 + zone.centre - zone.half_width
@@ -44,10 +45,11 @@ def density(x: Array, zone: StickZone[float], shape: Shape) -> Array:
         across = (shape.pressure(other.t) * other.weights / (y[:, None] - other.t)).sum(axis=-1)
         same = shape.pressure(y) * logarithm - side * w * smooth
         result[here] = side * 2 / np.pi * (sign * same - (zone.s if side > 0 else -1) * w * across)
+        result[here] += side * w * gf / 4
     return result
 
 
-def slip(x: Array, zone: StickZone[float], shape: Shape) -> Array:
+def slip(x: Array, zone: StickZone[float], shape: Shape, gf: float = 0.0) -> Array:
     """Slip at ``x``, in A f p0 a; zero in the stick zone. The integral of :func:`density` from the stick zone's end,
     with the order of integration swapped."""
     result = np.zeros_like(x)
@@ -70,10 +72,11 @@ def slip(x: Array, zone: StickZone[float], shape: Shape) -> Array:
         by_own = np.where(elsewhere, same(own), 0.0) @ (own.weights * shape.pressure(own.t))
         by_own += (around.weights * shape.pressure(around.t) * same(around)).sum(axis=-1)
         result[here] = 2 / np.pi * c * (sign * by_own - (zone.s if side > 0 else 1) * by_other)
+        result[here] += gf / 8 * c**2 * (np.sinh(2 * eta[:, 0]) / 2 - eta[:, 0])
     return result
 
 
-def dissipation(zone: StickZone[float], shape: Shape) -> tuple[Array, Array, float]:
+def dissipation(zone: StickZone[float], shape: Shape, gf: float = 0.0) -> tuple[Array, Array, float]:
     """Points in the slip zones (k,), ascending, with the contact's ends; the slip there (k,); and the energy dissipated
     in a whole cycle, 2 int f p |slip| dx, in A (f p0 a)^2."""
     x, weights = [], []
@@ -84,7 +87,7 @@ def dissipation(zone: StickZone[float], shape: Shape) -> tuple[Array, Array, flo
         x.append((ends[:-1, None] + half * (1 - np.cos(angle))).ravel())
         weights.append((half * np.pi / 2 * factors * np.sin(angle)).ravel())
     points = np.concatenate([[-1.0], *x, [1.0]])
-    slips = slip(points, zone, shape)
+    slips = slip(points, zone, shape, gf)
     return points, slips, 2 * float(np.concatenate(weights) @ (shape.pressure(points) * np.abs(slips))[1:-1])
 
 

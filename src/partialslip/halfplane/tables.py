@@ -45,7 +45,7 @@ def table_error(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[s
         errors["left"], errors["right"] = (np.abs(moved) / a).tolist()
     if cycle and not cycle.nothing:
         f, load = scene.friction.f, scene.load
-        coarse_cycle = loading(other, f, load.dQ, load.dsigma, bound=2)
+        coarse_cycle = loading(other, f, load.dQ, load.dsigma, load.dslope, bound=2)
         ends, moved = np.array(cycle.ends), pressed.scaled(other.centre + np.array(coarse_cycle.ends) * other.a)
         errors["m"], errors["n"] = np.abs(moved - ends).tolist()
         dq, coarse_dq = (

@@ -4,14 +4,17 @@ import math
 
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Mask
 from partialslip.halfplane.shape import Shape
 from partialslip.result import StickZone
 
 _AT_ONCE = 2**22  # pairs of points in memory
+_PLACES = np.cos(np.arange(1, 8) / 8 * np.pi)  # in a stick zone, at which tractions are compared with the bound
+_ROUNDING = 1e-9
+_ANGLES = 65  # at which changes of the sign of dq are looked for
 
 
-def half_range(x: Array, zone: StickZone[float], shape: Shape) -> Array:
+def half_range(x: Array, zone: StickZone[float], shape: Shape, gf: float = 0.0) -> Array:
     """dq/(2 f p0) at ``x`` (fractions of a), for positive dQ and dsigma; zero outside [-1, 1].
 
     In the slip zones dq/2 = p on the right and s p on the left. In the stick zone, from the bounded inversion of
@@ -19,17 +22,40 @@ def half_range(x: Array, zone: StickZone[float], shape: Shape) -> Array:
 
         dq/2 = sqrt((n-x)(x+m))/pi [ int_n^1 p(t)/(w(t)(t-x)) dt + s int_{-1}^{-m} p(t)/(w(t)(x-t)) dt ],
 
-    w(t) = sqrt((t-n)(t+m)). For small tension and Hertz it is p - sqrt((n-x)(x+m)).
+    w(t) = sqrt((t-n)(t+m)). For small tension and Hertz it is p - sqrt((n-x)(x+m)). If the change of tension varies as
+    ``gf`` x, it is less by gf/8 sqrt((n-x)(x+m)).
     """
     p = shape.pressure(x)
     result = np.where(x < zone.centre, zone.s * p, p)
     sticks = (x > zone.left) & (x < zone.right)
     if sticks.any():
-        result[sticks] = _inside(x[sticks], zone, shape)
+        y = x[sticks]
+        result[sticks] = _inside(y, zone, shape)
+        if gf:
+            result[sticks] -= gf / 8 * np.sqrt((zone.right - y) * (y - zone.left))
     return result
 
 
-def mean_load_bound(zone: StickZone[float], shape: Shape) -> float:
+def within_bound(zones: StickZone[Array], shape: Shape, gf: Array) -> Mask:
+    """Whether \\|dq\\| <= 2 f p at places in the stick ``zones`` (k,), under changes of tension that vary as ``gf`` x."""
+    centre, c, s = (np.asarray(each)[:, None, None] for each in zones)
+    x, half = centre + c * _PLACES[:, None], c * np.sqrt((1 - _PLACES) * (1 + _PLACES))[:, None]
+    p = shape.pressure(x)
+    h = -gf[:, None, None] / 8 * half
+    for side, sign in ((1, 1), (-1, s)):
+        # the integral of p(x) between the ends of the slip zone is an arc tangent, see _inside
+        gap = np.maximum(1 - side * centre - c, 0.0)
+        arc = 2 * np.arctan(
+            np.sqrt(gap / (gap + 2 * c) * (1 + side * _PLACES[:, None]) / (1 - side * _PLACES[:, None]))
+        )
+        t, _, weights = shape.rule(zones.left + 1, zones.half_width, side)
+        smooth = (shape.difference(t[:, None], x) * weights[:, None]).sum(axis=-1)[..., None]
+        h = h + sign * (p * arc + side * half * smooth) / np.pi
+    result: Mask = (np.abs(h) <= p + _ROUNDING).all(axis=(1, 2))
+    return result
+
+
+def mean_load_bound(zone: StickZone[float], shape: Shape, gf: float = 0.0) -> float:
     """Largest \\|Q_mean\\|/(f P) of a steady state: int (f p - \\|dq\\|/2) dx over the stick zone.
 
     Above it no locked-in mean traction fits under the friction bound and the contact ratchets (frictional Melan
@@ -41,22 +67,28 @@ def mean_load_bound(zone: StickZone[float], shape: Shape) -> float:
     slips = {side: (rule.weights * shape.pressure(rule.t), rule.theta) for side, rule in rules.items()}
     # f P, half of pi/2, less the slip zones: int p dt, dt = c sinh(theta) dtheta
     room = np.pi / 2 - sum(float(weights @ (c * np.sinh(theta))) for weights, theta in slips.values())
-    if zone.s > 0:
-        return (room - _resultant(np.pi, slips, zone)) * 2 / np.pi
+    if zone.s > 0 and gf <= 0:
+        return (room - _resultant(np.pi, slips, zone, gf)) * 2 / np.pi
 
     def sign(angle: float) -> float:
         """Sign of dq/2 at e + c cos(``angle``): positive at n, where dq/2 = p, and negative at -m, where dq/2 = -p."""
         if angle in (0.0, math.pi):
-            return 1.0 - 2.0 * (angle > 0)
-        return float(half_range(np.array([centre + c * math.cos(angle)]), zone, shape)[0])
+            return 1.0 - (1.0 - zone.s) * (angle > 0)
+        return float(half_range(np.array([centre + c * math.cos(angle)]), zone, shape, gf)[0])
 
     from scipy.optimize import brentq  # takes long to import
 
+    if gf:
+        angles = np.linspace(0.0, math.pi, _ANGLES).tolist()
+        signs = [sign(angle) > 0 for angle in angles]
+        turns = [brentq(sign, angles[i], angles[i + 1]) for i in range(len(angles) - 1) if signs[i] != signs[i + 1]]
+        shares = np.diff([_resultant(angle, slips, zone, gf) for angle in (0.0, *turns, math.pi)])
+        return float(room - np.abs(shares).sum()) * 2 / np.pi
     turn = brentq(sign, 0.0, math.pi)
     return (room - 2 * _resultant(turn, slips, zone) + _resultant(math.pi, slips, zone)) * 2 / np.pi
 
 
-def _resultant(angle: float, slips: dict[int, tuple[Array, Array]], zone: StickZone[float]) -> float:
+def _resultant(angle: float, slips: dict[int, tuple[Array, Array]], zone: StickZone[float], gf: float = 0.0) -> float:
     """int dq/2 dx from the stick zone's right end to x = e + c cos(``angle``), with the order of integration swapped:
 
         int sin^2(y)/(cosh(theta) -+ cos(y)) dy = y cosh(theta) +- sin(y) - 2 sinh(theta) arctan(tan(y/2) r),
@@ -70,7 +102,8 @@ def _resultant(angle: float, slips: dict[int, tuple[Array, Array]], zone: StickZ
         arc = np.arctan2(sine, cosine * half) if side > 0 else np.arctan2(sine * half, cosine)
         kernel = angle * np.cosh(theta) + side * math.sin(angle) - 2 * np.sinh(theta) * arc
         total += (1 if side > 0 else zone.s) * float(weights @ kernel)
-    return total * zone.half_width / np.pi
+    by_slope = gf / 16 * zone.half_width**2 * (angle - math.sin(2 * angle) / 2)
+    return total * zone.half_width / np.pi - by_slope
 
 
 def _inside(x: Array, zone: StickZone[float], shape: Shape) -> Array:

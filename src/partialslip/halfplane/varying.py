@@ -66,7 +66,7 @@ class Cycle:
             found: Array = self.scene.friction.f * self.mean.p0 * self.change.traction(self.mean.scaled(x))
             return found
         load, (one, other) = self.scene.load, (self.first, self.second)
-        if load.dQ == 0 and load.dsigma == 0:
+        if load.dQ == 0 and load.dsigma == 0 and load.dslope == 0:
             return np.zeros(np.shape(x))
         ratio = (load.dQ + math.pi / 4 * x * load.dsigma) / (other.P - one.P)
         return ratio * (other.pressure(x) - one.pressure(x))
@@ -111,7 +111,7 @@ class Cycle:
         """
         assert self.change
         unit = self._unit(self.mean)
-        x, slips, _ = dissipation(self.change.zone, self.change.seen)
+        x, slips, _ = dissipation(self.change.zone, self.change.seen, self.change.gf)
         mirror = self.change.mirror
         x, slips = self.mean.places(mirror * x[::mirror]), self.change.turn * unit * slips[::mirror]
         low, high = common(self.first, self.second)
@@ -172,7 +172,8 @@ def steady_cycle(scene: Scene) -> Cycle:
     mean = Mean(first, second).contact
     left, right = common(first, second)
     rates = _exceeds(path, f)
-    change = loading(mean, f, path.dQ, path.dsigma, bound=2) if left < right and rates.any() else None
+    loads = path.dQ, path.dsigma, path.dslope
+    change = loading(mean, f, *loads, bound=2) if left < right and rates.any() else None
     if not change:
         slips: tuple[EndSlip, EndSlip] = ("never", "never") if left < right else ("part of the cycle",) * 2
         return Cycle(scene, first, second, mean, None, slips, False)
@@ -192,11 +193,11 @@ def closed_form(scene: Scene) -> str:
     if cycle.change:
         return ""
     if set(cycle.slips) == {"never"}:
-        if scene.load.dQ == 0 and scene.load.dsigma == 0:
+        if scene.load.dQ == 0 and scene.load.dsigma == 0 and scene.load.dslope == 0:
             return ""
-        if isinstance(scene.profile, Hertz) and scene.even:
+        if isinstance(scene.profile, Hertz) and scene.even and scene.load.dslope == 0:
             return ""
-        return "neither end of the contact slips, and only for hertz without a moment there is a closed form"
+        return "neither end of the contact slips, and only for hertz without a moment and sigma_slope there is a closed form"
     sides = zip(("left", "right"), cycle.slips, strict=True)
     told = " and ".join(f"the {side} end" for side, how in sides if how == "part of the cycle")
     slips = "slips" if told.count("end") == 1 else "slip"

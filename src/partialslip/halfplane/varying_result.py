@@ -143,10 +143,10 @@ def _first_loading(scene: Scene, cycle: Cycle, started: bool) -> Loading | str:
     if load.ends[1] != len(load.points) - 1 or len(load.points) > 2:
         return "the path goes through more than two load points; use march"
     end = cycle.second
-    Q, sigma = load.points[load.ends[1]]
-    if Q == 0 and sigma == 0:
+    loads = load.along[load.ends[1]]
+    if not any(loads):
         return "no load acts along x at load point 2, and the cycle slips; use march"
-    first = loading(end, f, Q, sigma, bound=1)
+    first = loading(end, f, *loads, bound=1)
     if first.left_end_turns():
         return f"{PATH_DEPENDENT}during the first loading; the reference is march with refined steps"
     left, right = end.places(first.ends)

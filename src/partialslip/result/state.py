@@ -37,6 +37,8 @@ class State(Short):
         Tangential force, N/m, and differential bulk tension, Pa.
     p, q : PPoly
         Tractions, Pa, over the cells of the contact line, m.
+    sigma_slope : float
+        Slope of the bulk tension along x, Pa/m.
     """
 
     P: float
@@ -45,6 +47,7 @@ class State(Short):
     sigma: float
     p: "PPoly"
     q: "PPoly"
+    sigma_slope: float = 0.0
 
     def check(self, scene: Scene) -> None:
         """Raise InputError if ``scene`` cannot continue from this state: P at the last load point, with which the path
@@ -61,7 +64,7 @@ class State(Short):
 
     def save(self, path: Path) -> None:
         """Write the state to ``path`` as an .npz file."""
-        loads = np.array([self.P, self.A, self.Q, self.sigma])
+        loads = np.array([self.P, self.A, self.Q, self.sigma, self.sigma_slope])
         with path.open("wb") as file:
             np.savez(file, loads=loads, cells=self.q.x, p=self.p.c, q=self.q.c)
 
@@ -89,8 +92,8 @@ def load_state(path: str | Path) -> State:
         raise InputError(f"{path}: not a state that partialslip has saved")
     from scipy.interpolate import PPoly  # takes long to import
 
-    P, A, Q, sigma = loads.tolist()
-    state = State(P, A, Q, sigma, PPoly(p, cells), PPoly(q, cells))
+    P, A, Q, sigma, *slope = loads.tolist()
+    state = State(P, A, Q, sigma, PPoly(p, cells), PPoly(q, cells), *slope)
     held = [float(traction.integrate(cells[0], cells[-1])) for traction in (state.p, state.q)]
     if not np.allclose(held, (P, Q), rtol=0.0, atol=_HELD * abs(P)):
         raise InputError(
@@ -104,4 +107,4 @@ def _sound(loads: Array, cells: Array, *coefficients: Array) -> bool:
         return False
     line = cells.ndim == 1 and len(cells) > 1 and cells[0] < 0 < cells[-1] and bool((np.diff(cells) > 0).all())
     shapes = line and all(c.ndim == 2 and len(c) >= 1 and c.shape[1] == len(cells) - 1 for c in coefficients)
-    return loads.shape == (4,) and shapes
+    return loads.shape in ((4,), (5,)) and shapes

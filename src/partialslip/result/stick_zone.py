@@ -15,7 +15,8 @@ class StickZone(NamedTuple, Generic[Number]):
 
     ``centre`` is (n - m)/2. ``half_width`` is (n + m)/2, which keeps its digits in a narrow zone. ``s`` is +1 where
     both ends slip the same way (small tension) and -1 where they slip opposite ways (large tension). Where the contact
-    slides as a whole, ``centre`` and ``half_width`` are NaN and ``s`` is 0; see :attr:`slides`.
+    slides as a whole, ``centre`` and ``half_width`` are NaN and ``s`` is 0; see :attr:`slides`. Where the tension varies
+    so much along x that there is no such zone, they are NaN, too, and ``s`` is not 0.
     """
 
     centre: Number
@@ -32,7 +33,7 @@ class StickZone(NamedTuple, Generic[Number]):
     @property
     def slides(self) -> Mask:
         """Whether the contact slides as a whole and there is no stick zone; an array of the zones' shape."""
-        result: Mask = np.isnan(self.half_width)
+        result: Mask = np.asarray(self.s) == 0
         return result
 
     @property

@@ -25,6 +25,7 @@ DIMENSIONS: dict[str, Dimension] = {
     "load.e": "m",
     "load.Q": "N/m",
     "load.sigma": "Pa",
+    "load.sigma_slope": "Pa/m",
     **{f"{body}.{key}": of for body in _BODIES for key, of in _BODY.items()},
     "fem.accuracy": "1",
     "fem.width": "1",

@@ -12,6 +12,7 @@ from partialslip.scene.limits import ROUGH
 from partialslip.scene.table import Positive, Table
 
 _FEW, _MOST = 2, 1000
+_LISTS = ("Q", "sigma", "sigma_slope", "P", "M", "e")
 Turns = Annotated[tuple[float, ...], msgspec.Meta(min_length=_FEW, max_length=_MOST)]
 Forces = Annotated[tuple[Positive, ...], msgspec.Meta(min_length=_FEW, max_length=_MOST)]
 
@@ -24,8 +25,8 @@ class Load(Table, frozen=True, kw_only=True):
     values at the load points; instead the eccentricity ``e`` = M/P (m) may be given: P and M, not e, vary linearly
     between the load points. Without either M = 0. ``Q`` (N/m) and ``sigma`` (Pa, bulk tension of the lower body less
     that of the upper body) are values at the load points: usually points 1 and 2, between which the loads cycle in
-    phase, or more points. The path begins at P and M of the last load point with Q = sigma = 0, goes to the last point,
-    and then ``cycles`` times through all points. Methods that follow the path take at least ``steps`` load steps
+    phase, or more points. With ``sigma_slope`` (Pa/m) the bulk tension varies along x: it is sigma + sigma_slope x. The
+    path begins at P and M of the last load point with Q = sigma = sigma_slope = 0, goes to the last point, and then ``cycles`` times through all points. Methods that follow the path take at least ``steps`` load steps
     between points.
     """
 
@@ -36,13 +37,14 @@ class Load(Table, frozen=True, kw_only=True):
     e: float | Turns | None = None
     Q: Turns = (0.0, 0.0)
     sigma: Turns = (0.0, 0.0)
+    sigma_slope: Turns = (0.0, 0.0)
     cycles: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 1
     steps: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 1
 
     def __post_init__(self) -> None:
         if self.M is not None and self.e is not None:
             raise InputError(f"load.e = {self.e}: must not be given together with load.M")
-        lists = {key: len(getattr(self, key)) for key in ("Q", "sigma", "P", "M", "e") if self._matters(key)}
+        lists = {key: len(getattr(self, key)) for key in _LISTS if self._matters(key)}
         for key, length in list(lists.items())[1:]:
             first, count = next(iter(lists.items()))
             if length != count:
@@ -58,12 +60,19 @@ class Load(Table, frozen=True, kw_only=True):
         """(Q, sigma) at the load points of the cycle."""
         return tuple(zip(self._at_points("Q"), self._at_points("sigma"), strict=True))
 
+    @property
+    def along(self) -> tuple[tuple[float, float, float], ...]:
+        """(Q, sigma, sigma_slope), all loads along x, at the load points of the cycle."""
+        return tuple(
+            (Q, sigma, slope) for (Q, sigma), slope in zip(self.points, self._at_points("sigma_slope"), strict=True)
+        )
+
     def _at_points(self, key: str) -> tuple[float, ...]:
         """Values of ``key`` at the load points; zeros where it is not given."""
         values = getattr(self, key)
         if isinstance(values, tuple) and self._matters(key):
             return values
-        count = max((len(getattr(self, other)) for other in ("Q", "sigma", "P", "M", "e") if self._matters(other)),
+        count = max((len(getattr(self, other)) for other in _LISTS if self._matters(other)),
                     default=max(len(self.Q), len(self.sigma)))  # fmt: skip
         return ((0.0 if isinstance(values, tuple) else values) or 0.0,) * count
 
@@ -82,13 +91,14 @@ class Load(Table, frozen=True, kw_only=True):
 
     @property
     def _all(self) -> Array:
-        """Q, sigma, P and M at the load points, (points, 4)."""
-        return np.concatenate([self.points, self.pressing(1.0)], axis=1)
+        """Q, sigma, P, M and sigma_slope at the load points, (points, 5)."""
+        slopes = np.array(self._at_points("sigma_slope"))[:, None]
+        return np.concatenate([self.points, self.pressing(1.0), slopes], axis=1)
 
     @property
     def ends(self) -> tuple[int, int]:
         """Indices of load points 1 and 2, the extremes of the cycle in the order of visits: the extremes of Q, or of
-        sigma where Q is constant, or of P, or of M."""
+        sigma where Q is constant, or of P, or of M, or of sigma_slope."""
         loads = self._all.T
         values = next((each for each in loads if np.ptp(each) > 0), loads[0])
         first, second = sorted((int(np.argmin(values)), int(np.argmax(values))))
@@ -117,6 +127,12 @@ class Load(Table, frozen=True, kw_only=True):
         return self.points[second][1] - self.points[first][1]
 
     @property
+    def dslope(self) -> float:
+        """Change of sigma_slope from load point 1 to 2, Pa/m."""
+        first, second = self.ends
+        return self.along[second][2] - self.along[first][2]
+
+    @property
     def Q_mean(self) -> float:
         """(Q1 + Q2)/2, N/m."""
         first, second = self.ends
@@ -126,5 +142,7 @@ class Load(Table, frozen=True, kw_only=True):
     def fully_reversed(self) -> bool:
         """Whether P and M are constant and the other loads are in phase with Q1 = -Q2 and sigma1 = -sigma2, without
         mean loads."""
-        (Q1, sigma1), (Q2, sigma2) = (self.points[end] for end in self.ends)
-        return self.in_phase and not self.presses_anew and Q1 == -Q2 and sigma1 == -sigma2
+        first, second = (self.along[end] for end in self.ends)
+        return (
+            self.in_phase and not self.presses_anew and all(one == -two for one, two in zip(first, second, strict=True))
+        )

@@ -83,6 +83,10 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             sizes = f"from {SMALLEST} to {LARGEST} with this E and R"
             raise InputError(f"load.{given[0]} = {value!r}: must give P and sqrt(A R P) {sizes}")
         self._check_moment()
+        if self.finite and any(self.load.sigma_slope):
+            raise InputError(
+                f"load.sigma_slope = {list(self.load.sigma_slope)}: must be 0 or left out with finite bodies"
+            )
         for name, body in self.bodies:
             if body.kind == "pad" and body.width is not None and body.height is not None:
                 self._check_pad(name, body.width, body.height)
