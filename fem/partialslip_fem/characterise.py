@@ -16,7 +16,7 @@ from partialslip_fem.surroundings import surroundings
 _REACH = 0.5  # range of the polynomials, in the smallest half-width or height of the bodies
 _TERMS = 11  # of each polynomial
 _ORDER = 4  # of the elements
-_FINE, _ROUGH = (0.2, 1e-6), (0.4, 1e-5)  # element size in the middle, and tolerance of singular corners
+_FINE, _ROUGH = (0.1, 1e-7), (0.2, 1e-6)  # element size in the middle, and tolerance of singular corners
 
 
 def characterise(scene: Scene) -> Rig:

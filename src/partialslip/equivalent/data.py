@@ -15,9 +15,8 @@ from partialslip.result import Result
 from partialslip.rig import Rig
 from partialslip.scene import Scene
 
-_POINTS = 32  # of Gauss-Chebyshev quadrature
-_ANGLES = np.pi * (np.arange(_POINTS) + 0.5) / _POINTS
-_NODES = np.cos(_ANGLES)
+_POINTS = 32  # of quadrature
+_NODES = np.cos(np.pi * (np.arange(_POINTS) + 0.5) / _POINTS)  # Gauss-Chebyshev's rule
 _STEP = 1e-4  # of the contact, for the slope of a face
 
 
@@ -101,9 +100,10 @@ def data_of(rig: Rig, scene: Scene, moments: Moments, result: Result) -> Data:
 
 def _rule(breaks: Array) -> tuple[Array, Array]:
     """Points and weights of quadrature between neighbouring ``breaks``, for functions with square roots there."""
-    half = np.diff(breaks)[:, None] / 2
-    weights = half * np.pi / _POINTS * np.sin(_ANGLES)
-    return (breaks[:-1, None] + half * (1 + _NODES)).ravel(), weights.ravel()
+    nodes, weights = np.polynomial.legendre.leggauss(_POINTS)
+    angles, half = np.pi / 2 * (1 + nodes), np.diff(breaks)[:, None] / 2
+    factors = half * np.pi / 2 * weights * np.sin(angles)
+    return (breaks[:-1, None] + half * (1 - np.cos(angles))).ravel(), factors.ravel()
 
 
 def _arc(scene: Scene, x: Array) -> Array:

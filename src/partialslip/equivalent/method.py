@@ -39,7 +39,7 @@ def half_planes(scene: Scene, data: Data | None) -> Scene:
     R = 1 / (1 / scene.profile.R + data.curvature.mean())
     M = scene.P * -R * data.tilt
     load = {"Q": Q, "sigma": data.sigma.tolist(), "M": M.tolist()}
-    if np.any(data.sigma_slope) and "sigma_slope" in type(scene.load).__struct_fields__:
+    if np.any(data.sigma_slope):
         load["sigma_slope"] = data.sigma_slope.tolist()
     return plain.replace(profile={"R": R}, load=load)
 
