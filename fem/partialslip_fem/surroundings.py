@@ -42,7 +42,7 @@ class Surroundings:
 
 
 def surroundings(
-    part: Part, points: Array, places: Array, order: int, size: float, corners: float, backend: Backend
+    part: Part, points: Array, places: Array, order: int, sizes: tuple[float, float, float], backend: Backend
 ) -> Surroundings:
     """Surroundings of the finite body ``part``, which lies below its contact line.
 
@@ -53,14 +53,15 @@ def surroundings(
         Points x at which displacements are wanted, and places x of the forces; no point is a place.
     order : int
         Polynomial order of the elements.
-    size : float
-        Element size in the middle of the contact line; a mesh from a file has its own.
-    corners : float
-        Largest error due to singular corners, relative to the displacements of the contact line.
+    sizes : (float, float, float)
+        Element size in the middle of the contact line; largest error due to singular corners, relative to the
+        displacements of the contact line; largest distance of a round face from the sides of elements, in ranges of
+        the points. A mesh from a file has its own.
     backend : "superlu" or "cholmod"
     """
     reach = max(np.abs(points).max(), np.abs(places).max())
-    grading = Grading((-reach, reach), {0.0: size}, _GROWTH, None, corners, corners)
+    size, corners, facets = sizes
+    grading = Grading((-reach, reach), {0.0: size}, _GROWTH, None, facets, corners)
     mesh = part.mesh or block_of(part, 0.0, grading)
     own = body(mesh, part.kappa, order, part.compliance, part.held, part.pulled)
     nodes = own.points.shape[1]

@@ -313,5 +313,5 @@ def _method(
     if name == "equivalent":
         from partialslip.equivalent import solve as solve_as_half_planes
 
-        return partial(solve_as_half_planes, rig_of)
+        return partial(solve_as_half_planes, rig_of=rig_of)
     raise InputError(f"method {name!r}: must be one of {', '.join(METHODS)}")

@@ -3,10 +3,11 @@
 What a rig adds to the displacements of half-planes is smooth: v(x), an opening, acts like a change of the gap, and u(x)
 like a bulk strain. Half-planes take the linear and the quadratic part of v, a tilt and a curvature, and the constant and
 the linear part of the strain, a tension that varies along x. Each is the projection on Chebyshev polynomials over the
-contact, or over the stick zone, so that the conditions that fix their ends hold exactly, whatever the rest is.
+contact, or over the stick zone: the conditions that fix their ends then hold exactly, whatever the rest is.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,82 +21,120 @@ _NODES = np.cos(np.pi * (np.arange(_POINTS) + 0.5) / _POINTS)  # Gauss-Chebyshev
 _STEP = 1e-4  # of the contact, for the slope of a face
 
 
-@dataclass(frozen=True)
+class Moments(NamedTuple):
+    """Moments int (x/reach)^j p dx and int (x/reach)^j q dx, N/m, at all load points, (points, k)."""
+
+    p: Array
+    q: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Data:
-    """Data of half-planes at load points 1 and 2; all arrays are (2,).
+    """Data of half-planes at all load points; arrays (points,).
 
     Parameters
     ----------
     curvature : Array
         What the curvature of the gap gains, 1/m.
     tilt : Array
-        Slope at x = 0 that the gap gains, rad.
+        What the slope of the gap at x = 0 gains, rad.
     sigma : Array
         Differential bulk tension at x = 0, Pa.
     sigma_slope : Array
         Slope of the differential bulk tension along x, Pa/m.
+    rest : Array
+        Chebyshev coefficients, from the second on, of what half-planes leave out of the slope of the gap over the
+        contact, (points, c).
+    strain_rest : Array
+        The same of the strain over the stick zone, (points, c).
     """
 
     curvature: Array
     tilt: Array
     sigma: Array
     sigma_slope: Array
+    rest: Array
+    strain_rest: Array
 
     def apart(self, other: "Data", scene: Scene) -> float:
-        """Largest difference of the ``other`` data, relative to curvature, slope of the gap, and stress of ``scene``."""
+        """Largest difference from the ``other`` data, relative to the curvature of the gap of ``scene``, its slope at
+        the ends of the contact, and the mean pressure."""
         R, length, stress = scene.profile.R, scene.length, scene.P / scene.length
+        units = {"curvature": 1 / R, "tilt": length / R, "sigma": stress, "sigma_slope": stress / length}
         return max(
-            float(np.abs(self.curvature - other.curvature).max()) * R,
-            float(np.abs(self.tilt - other.tilt).max()) * R / length,
-            float(np.abs(self.sigma - other.sigma).max()) / stress,
-            float(np.abs(self.sigma_slope - other.sigma_slope).max()) * length / stress,
+            float(np.abs(getattr(self, key) - getattr(other, key)).max()) / unit for key, unit in units.items()
         )
 
 
-@dataclass(frozen=True)
-class Moments:
-    """Moments int (x/reach)^j ... dx of the tractions at load points 1 and 2: ``p`` and ``q`` (2, k), N/m."""
-
-    p: Array
-    q: Array
-
-
 def moments_of(rig: Rig, scene: Scene, result: Result) -> Moments:
-    """Moments of the tractions of ``result``, a solution of ``scene``. What q is on the mean of a cycle does not count
-    where the method does not determine it, but for its resultant."""
-    of, (first, second) = result.traction, scene.load.ends
-    Q = [scene.load.points[end][0] for end in (first, second)]
-    x, weights = _rule(of.breaks)
+    """Moments of the tractions of ``result``, a solution of ``scene``.
+
+    Between load points 1 and 2, moments other than the resultants P and Q are taken as linear. What a cycle locks in
+    and the method does not determine does not count.
+    """
+    of, x, weights = result.traction, *_rule(result.traction.breaks)
     p2, dq = of.at(x)
     p1 = of.pressures_at(x)[0] if of.pressures_at else p2
-    mean = np.zeros_like(dq)
-    if of.levels_at:
-        mean = sum(of.levels_at(x)) / 2
-    p, q = np.array([p1, p2]), np.array([mean - dq / 2, mean + dq / 2])
-    if not of.levels_at:  # the mean of Q acts somewhere: like the pressure, say
-        q += np.mean(Q) / scene.P * p
-    return Moments(rig.moments(x, weights * p), rig.moments(x, weights * q))
+    q1, q2 = of.levels_at(x) if of.levels_at else (-dq / 2, dq / 2)
+    (p1, q1), (p2, q2) = (
+        (rig.moments(x, weights * p), rig.moments(x, weights * q)) for p, q in ((p1, q1), (p2, q2))
+    )
+    shares = _shares(scene)[:, None]
+    q = q1 + shares * (q2 - q1)
+    q[:, 0] = [Q for Q, *_ in scene.load.points]
+    return Moments(p1 + shares * (p2 - p1), q)
 
 
-def data_of(rig: Rig, scene: Scene, moments: Moments, result: Result) -> Data:
-    """Data for tractions with ``moments``, projected over the contacts and the stick zone of ``result``."""
-    A, sigma = scene.material.A, np.array([scene.load.points[end][1] for end in scene.load.ends])
-    strain = scene.material.bodies[0].A / 4 * sigma  # of the lower body
-    opening = A * rig.opening(moments.p, moments.q) + rig.reach * strain[:, None] * rig.pulled[1]
-    shift = A * rig.shift(moments.p, moments.q) + rig.reach * strain[:, None] * rig.pulled[0]
-    curvature, tilt = np.empty(2), np.empty(2)
-    for k, (left, right) in enumerate(result.ends):
-        centre, a = (left + right) / 2, (right - left) / 2
-        x = centre + a * _NODES
-        slope = rig.slopes(x, opening[k]) + _arc(scene, x)
-        curvature[k] = 2 * np.mean(slope * _NODES) / a
-        tilt[k] = np.mean(slope) - curvature[k] * centre
+def data_of(rig: Rig, scene: Scene, moments: Moments, result: Result, shear: bool) -> Data:
+    """Data for tractions with ``moments``, projected over the contacts and the stick zone of ``result``. Without
+    ``shear`` the strain by shear tractions does not count."""
+    A, sigma = scene.material.A, np.array([sigma for _, sigma, *_ in scene.load.points])
+    strain = scene.material.bodies[0].A / 4 * sigma[:, None]  # of the lower body
+    opening = A * rig.opening(*moments) + rig.reach * strain * rig.terms.pulled[1]
+    shift = A * rig.shift(moments.p, moments.q * shear) + rig.reach * strain * rig.terms.pulled[0]
+    (left1, right1), (left2, right2) = result.ends
+    shares = _shares(scene)
+    centres = ((1 - shares) * (left1 + right1) + shares * (left2 + right2)) / 2
+    a = (right1 - left1 + right2 - left2) / 4
+    x = centres[:, None] + a * _NODES
+    slope = np.array([rig.slopes(at, own) for at, own in zip(x, opening, strict=True)]) + _arc(scene, x)
+    gap = chebyshev_coefficients(slope)
     centre, c = result.stick_centre, result.stick_half_width
     if centre is None or c is None:
-        centre, c = 0.0, result.a
-    lost = -4 / A * np.array([rig.slopes(centre + c * _NODES, each) for each in shift])
-    sigma_slope = 2 * np.mean(lost * _NODES, axis=1) / c
-    return Data(curvature, tilt, sigma + lost.mean(axis=1) - sigma_slope * centre, sigma_slope)
+        centre, c = 0.0, a
+    lost = chebyshev_coefficients(-4 / A * rig.slopes(centre + c * _NODES, shift))
+    return Data(
+        curvature=gap[:, 1] / a,
+        tilt=gap[:, 0] - gap[:, 1] / a * centres,
+        sigma=sigma + lost[:, 0] - lost[:, 1] / c * centre,
+        sigma_slope=lost[:, 1] / c,
+        rest=gap[:, 2:],
+        strain_rest=lost[:, 2:],
+    )
+
+
+def _shares(scene: Scene) -> Array:
+    """Places of the load points on the way from load point 1, at 0, to load point 2, at 1: by Q, or by sigma where Q is
+    constant."""
+    Q, sigma = (np.array(loads) for loads in list(zip(*scene.load.points, strict=True))[:2])
+    along = Q if np.ptp(Q) > 0 else sigma
+    first, second = scene.load.ends
+    way = along[second] - along[first]
+    shares: Array = (along - along[first]) / way if way else np.zeros_like(along)
+    return shares
+
+
+def nodes() -> Array:
+    """Points in [-1, 1] at which functions are projected."""
+    return _NODES
+
+
+def chebyshev_coefficients(values: Array) -> Array:
+    """Chebyshev coefficients (..., c) of functions with ``values`` (..., n) at the nodes."""
+    count = _POINTS // 2
+    result: Array = 2 / _POINTS * values @ np.polynomial.chebyshev.chebvander(_NODES, count)
+    result[..., 0] /= 2
+    return result
 
 
 def _rule(breaks: Array) -> tuple[Array, Array]:
@@ -107,10 +146,10 @@ def _rule(breaks: Array) -> tuple[Array, Array]:
 
 
 def _arc(scene: Scene, x: Array) -> Array:
-    """Slope at ``x`` (n,), m, of the gap of a pad's true face less that of the profile."""
+    """Slope at ``x`` (..., n), m, of the gap of a pad's true face less that of the profile."""
     if not scene.bodies.pad:
         return np.zeros_like(x)
-    step = _STEP * np.ptp(x)
-    more = scene.gap_at(x + [[step], [-step]]) - scene.profile.gap_at(x + [[step], [-step]])
-    result: Array = (more[0] - more[1]) / (2 * step)
+    step = _STEP * float(np.ptp(x))
+    after, before = (scene.gap_at(x + by) - scene.profile.gap_at(x + by) for by in (step, -step))
+    result: Array = (after - before) / (2 * step)
     return result

@@ -1,48 +1,162 @@
-"""Method ``equivalent``: bodies of a size as half-planes with other data, in closed form."""
+"""Method ``equivalent``: bodies of a size as half-planes with other data (docs/theory.md, section 12)."""
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from partialslip.equivalent.data import Data, Moments, data_of, moments_of
+from partialslip.arrays import Array
+from partialslip.equivalent.data import Data, data_of, moments_of
+from partialslip.equivalent.estimate import estimate
 from partialslip.errors import InputError
+from partialslip.halfplane.marching import solve as solve_by_marching
+from partialslip.halfplane.method import has_closed_form
 from partialslip.halfplane.method import solve as solve_exactly
 from partialslip.plan import Plan
 from partialslip.plan import plan as plan_of
 from partialslip.result import Clock, Result
+from partialslip.result.state import State
 from partialslip.rig import Rig
 from partialslip.scene import Bodies, Hertz, Scene
 
-_SETTLED, _MOST = 1e-13, 40  # change of the data in an iteration; iterations
+_KEYS = ("a", "left", "right", "m", "n", "p", "q")
+_SETTLED, _MOST = 1e-12, 40  # relative change of the data in an iteration; iterations
+_SETTLED_MARCH = 1e-3  # of the accuracy asked for, where each iteration is a march
 
 
-def solve(scene: Scene, plan: Plan, rig: Rig, progress: Callable[[str], None] = lambda _: None) -> Result:
+def solve(
+    scene: Scene,
+    plan: Plan,
+    progress: Callable[[str], None] = lambda _: None,
+    start: State | None = None,
+    *,
+    rig_of: Callable[[Scene], Rig],
+) -> Result:
+    """Solve ``scene`` as half-planes with the data that make them act like its bodies.
+
+    The data depend on the tractions: they are found by iteration. Steady states with a closed form are solved exactly;
+    other loads by marching, with what the bodies add to the shear displacements in full.
+
+    Parameters
+    ----------
+    scene : Scene
+    plan : Plan
+    progress : callable, optional
+        Called with a line of text from time to time.
+    start : State, optional
+        Not supported.
+    rig_of : callable
+        Gives the rig of a scene.
+
+    Raises
+    ------
+    InputError
+        If no body is finite, the materials differ, a state is given, the profile is not hertz, or the contact extends
+        beyond the range in which the rig holds.
+    """
+    _check(scene, start)
     clock = Clock()
-    found = _solved(half_planes(scene, None))
-    data = None
-    for _ in range(_MOST):
-        before, data = data, data_of(rig, scene, moments_of(rig, scene, found), found)
-        if before and data.apart(before, scene) <= _SETTLED:
-            break
-        found = _solved(half_planes(scene, data))
-    return replace(found, method="equivalent", cost=clock.cost())
+    progress("characterising the bodies")
+    rig = rig_of(scene)
+    with clock.phase("half-planes"):
+        closed = scene.load.in_phase and has_closed_form(half_planes(scene, None))
+        found, seen, data = _iterated(rig, scene, closed, progress)
+        if closed and not has_closed_form(seen):
+            found, seen, data = _iterated(rig, scene, False, progress)
+    coarser = half_planes(scene, data_of(rig.coarser, scene, moments_of(rig, scene, found), found, shear=closed))
+    shares = dict(found.shares) | estimate(rig, scene, seen, data, coarser, shear=closed)
+    errors = {key: sum(share.get(key, 0.0) for share in shares.values()) for key in _KEYS}
+    levels = {key: errors["q"] for key in ("q1", "q2") if found.traction.levels_at}
+    return replace(
+        found,
+        method="equivalent",
+        cost=clock.cost(),
+        settings={"model": "half-planes with the data of the bodies", "solved by": found.method},
+        estimate=errors | levels,
+        shares=shares,
+        notes=found.notes,
+        surface=None,
+        stress_at=None,
+        state=None,
+    )
 
 
 def half_planes(scene: Scene, data: Data | None) -> Scene:
-    """The scene of half-planes with the ``data`` that act like the bodies of ``scene``; without data, like no size."""
+    """The scene of half-planes with the ``data`` that act like the bodies of ``scene``; without data, of half-planes
+    that act like no size at all."""
     plain = scene.replace(bodies=Bodies(), load={"P": scene.P, "a": None, "p0": None})
     if data is None:
         return plain
-    first, second = scene.load.ends
-    Q = [scene.load.points[end][0] for end in (first, second)]
-    R = 1 / (1 / scene.profile.R + data.curvature.mean())
-    M = scene.P * -R * data.tilt
-    load = {"Q": Q, "sigma": data.sigma.tolist(), "M": M.tolist()}
-    if np.any(data.sigma_slope):
-        load["sigma_slope"] = data.sigma_slope.tolist()
+    R = 1 / (1 / scene.profile.R + float(data.curvature.mean()))
+    M = -R * scene.P * data.tilt
+    load = {
+        "Q": [Q for Q, *_ in scene.load.points],
+        "sigma": data.sigma.tolist(),
+        "sigma_slope": data.sigma_slope.tolist(),
+        "M": M.tolist() if M.any() else None,
+    }
     return plain.replace(profile={"R": R}, load=load)
 
 
-def _solved(scene: Scene) -> Result:
-    return solve_exactly(scene, plan_of(scene))
+def _check(scene: Scene, start: State | None) -> None:
+    """Raise InputError if half-planes cannot stand for the bodies of ``scene``."""
+    if not scene.finite:
+        raise InputError("bodies: must have upper or lower for equivalent; half-planes are solved by exact")
+    if not scene.material.alike:
+        raise InputError("material.upper, material.lower: the bodies differ; must be of one material for equivalent")
+    if not isinstance(scene.profile, Hertz):
+        raise InputError("profile.kind: must be hertz for equivalent; use fem")
+    if len({P for P, _ in scene.pressing}) > 1:
+        raise InputError("load.P: must be constant for equivalent, as the bodies bend with P; use fem")
+    if start:
+        raise InputError("start: must not be given for equivalent; use fem")
+
+
+def _iterated(rig: Rig, scene: Scene, closed: bool, progress: Callable[[str], None]) -> tuple[Result, Scene, Data]:
+    """Result, scene of half-planes, and data that belong to each other."""
+    seen = half_planes(scene, None)
+    found = solve_exactly(seen, plan_of(seen)) if closed else _pressed(seen)
+    settled = _SETTLED
+    data = None
+    for number in range(1, _MOST + 1):
+        before, data = data, data_of(rig, scene, moments_of(rig, scene, found), found, shear=closed)
+        if before and data.apart(before, scene) <= settled:
+            return found, seen, data
+        seen = half_planes(scene, data)
+        if closed:
+            found = solve_exactly(seen, plan_of(seen))
+        else:
+            progress(f"march {number}")
+            found = solve_by_marching(seen, plan_of(seen), added=partial(_added, rig))
+            settled = _SETTLED_MARCH * scene.fem.accuracy
+        _check_range(rig, scene, found)
+    raise InputError("bodies: must be larger compared with the contact: equivalent does not settle; use fem")
+
+
+def _pressed(scene: Scene) -> Result:
+    """``scene`` without shear."""
+    still = scene.replace(load={"Q": [0.0, 0.0], "sigma": [0.0, 0.0], "M": None})
+    return solve_exactly(still, plan_of(still))
+
+
+def _check_range(rig: Rig, scene: Scene, found: Result) -> None:
+    """Raise InputError if the contact is too large for the rig."""
+    farthest = max(abs(end) for ends in found.ends for end in ends)
+    if farthest > rig.reach:
+        shown = scene.units.labelled
+        raise InputError(
+            f"bodies: must be larger compared with the contact, which reaches x = {shown(farthest, 'm')}: "
+            f"equivalent holds up to {shown(rig.reach, 'm')}; use fem"
+        )
+
+
+def _added(rig: Rig, places: Array) -> Array:
+    """Mean displacements along x of cells with ends at ``places`` (c + 1,), m, under unit forces on cells, in A."""
+    # integrals of the powers over the cells: Gauss's rule is exact
+    nodes, weights = np.polynomial.legendre.leggauss(len(rig.terms.xx) // 2 + 1)
+    middle, half = (places[1:] + places[:-1]) / 2, np.diff(places) / 2
+    powers = rig.powers((middle[:, None] + half[:, None] * nodes).ravel()).reshape(len(middle), len(nodes), -1)
+    means = np.einsum("cgk,g->ck", powers, weights / 2)
+    result: Array = means @ rig.terms.xx @ means.T
+    return result

@@ -48,6 +48,7 @@ _SHEARS: dict[str, Callable[[History], Array]] = {
     "q2": lambda history: history.q2,
 }
 _JUDGED = ("m", "n", "q", "q1", "q2")
+Added = Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,7 @@ def solve(
     progress: Callable[[str], None] = lambda _: None,
     start: State | None = None,
     allowance: Allowance | None = None,
+    added: Added | None = None,
 ) -> Result:
     """Solve ``scene`` by marching through the load history, as two elastically similar half-planes.
 
@@ -93,6 +95,9 @@ def solve(
     allowance : Allowance, optional
         CPU seconds. From the third mesh on, a mesh is not begun if it is likely to take more than a third of the
         remaining seconds. Load steps are compared with finer steps once.
+    added : callable, optional
+        ``added(places) -> (c, c)``: what unit shear forces on cells with ends at ``places`` (c + 1,), m, add to the
+        mean displacements of the cells of half-planes along x, in A.
     """
     clock = Clock(allowance)
     normal = NormalLoads.of(scene)
@@ -114,7 +119,7 @@ def solve(
         # steps are chosen on the second mesh and used on all later meshes. Finer cells see more of a moving stick zone:
         # where steps matter, each later mesh halves them once and estimates their errors anew
         choose = meshes == 1 or (steps_matter(stepped, _accuracy(scene)) and not clock.limited)
-        before, level = level, _solve_level(normal, path, start, cells, clock, choose)
+        before, level = level, _solve_level(normal, path, start, cells, clock, choose, added)
         spent = clock.cost().cpu_s - began
         meshes, iterations = meshes + 1, iterations + (level.history.iterations if level.history else 0)
         if level.stick is None:
@@ -165,6 +170,7 @@ def _solve_level(
     vertices: Array,
     clock: Clock,
     choose: bool,
+    added: Added | None,
 ) -> _Level:
     scene, frame = normal.scene, normal.frame
     if not path:
@@ -175,7 +181,8 @@ def _solve_level(
         before = np.diff(resultant(np.clip(frame.centre + vertices * frame.a, known[0], known[-1]))) / scene.P
         path = replace(path, before=before)
     with clock.phase("compliance"):
-        tangential = compliance(vertices / 2)  # scaling lengths adds a rigid shift only
+        normally = compliance(vertices / 2)  # scaling lengths adds a rigid shift only
+        tangential = normally + added(frame.places(vertices)) if added else normally
     with clock.phase("contact"):
         moved = stretched(x * frame.a / scene.length, frame.centre / scene.length)
 
@@ -197,7 +204,7 @@ def _solve_level(
         most = 0 if clock.limited else MOST  # the cost of more steps is not predicted
         wanted = errors if choose else None
         if path.presses_anew:
-            presses = normal.presses(vertices, tangential)
+            presses = normal.presses(vertices, normally)
             along = partial(varying.march, x, tangential, moved, scene.friction.f, presses)
             history, stepped = follow_refined(along, lambda path, _: path, path, _accuracy(scene), wanted, most)
         else:

@@ -2,7 +2,7 @@
 
 import os
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import msgspec
 import numpy as np
@@ -12,7 +12,7 @@ from partialslip.inputfile import read_bytes
 from partialslip.output.files import write_texts
 from partialslip.output.json import json_text
 from partialslip.rig.key import key_of
-from partialslip.rig.rig import Rig
+from partialslip.rig.rig import Rig, Terms
 from partialslip.scene import Scene
 
 SCHEMA = "partialslip/rig/1"
@@ -22,15 +22,19 @@ _Row = Annotated[list[float], msgspec.Meta(min_length=2, max_length=_MOST)]
 _Rows = Annotated[list[_Row], msgspec.Meta(min_length=2, max_length=_MOST)]
 
 
-class _File(msgspec.Struct, forbid_unknown_fields=True):
-    schema: str
-    key: str
-    reach: Annotated[float, msgspec.Meta(gt=0)]
+class _Terms(msgspec.Struct, forbid_unknown_fields=True):
     xx: _Rows
     yy: _Rows
     xy: _Rows
     pulled: _Rows
-    errors: dict[str, float]
+
+
+class _File(msgspec.Struct, forbid_unknown_fields=True):
+    schema: str
+    key: str
+    reach: Annotated[float, msgspec.Meta(gt=0)]
+    terms: _Terms
+    rough: _Terms
 
 
 def write_rig(rig: Rig, path: str | os.PathLike[str]) -> None:
@@ -41,8 +45,8 @@ def write_rig(rig: Rig, path: str | os.PathLike[str]) -> None:
     InputError
         If the file cannot be written.
     """
-    arrays = {key: getattr(rig, key).tolist() for key in ("xx", "yy", "xy", "pulled")}
-    data = _File(SCHEMA, rig.key, rig.reach, **arrays, errors=rig.errors)
+    terms, rough = (_Terms(*(each.tolist() for each in terms)) for terms in (rig.terms, rig.rough))
+    data = _File(SCHEMA, rig.key, rig.reach, terms, rough)
     write_texts(Path(path).parent, {Path(path).name: json_text(data)})
 
 
@@ -66,17 +70,22 @@ def load_rig(path: str | os.PathLike[str], scene: Scene | None = None) -> Rig:
         raise InputError(f"{path}: not a rig: {error}") from None
     if found.schema != SCHEMA:
         raise InputError(f"{path}: schema = {found.schema!r}: must be {SCHEMA!r}")
-    count = len(found.xx)
-    shapes = {"xx": (count, count), "yy": (count, count), "xy": (count, count), "pulled": (2, count)}
-    arrays: dict[str, Any] = {}
-    for key, shape in shapes.items():
-        rows = getattr(found, key)
-        if len(rows) != shape[0] or any(len(row) != shape[1] for row in rows):
-            raise InputError(f"{path}: {key}: must have {shape[0]} rows of {shape[1]} numbers")
-        arrays[key] = np.array(rows)
+    count = len(found.terms.xx)
+    terms, rough = (_arrays(f"{path}: {name}", getattr(found, name), count) for name in ("terms", "rough"))
     if scene and found.key != key_of(scene):
         raise InputError(
             f"{path}: this rig has other bodies, supports or materials than {scene.name}; "
             "must be made from them: partialslip equivalent"
         )
-    return Rig(found.key, found.reach, **arrays, errors=found.errors)
+    return Rig(found.key, found.reach, terms, rough)
+
+
+def _arrays(name: str, found: _Terms, count: int) -> Terms:
+    shapes = {"xx": (count, count), "yy": (count, count), "xy": (count, count), "pulled": (2, count)}
+    arrays = {}
+    for key, shape in shapes.items():
+        rows = getattr(found, key)
+        if len(rows) != shape[0] or any(len(row) != shape[1] for row in rows):
+            raise InputError(f"{name}.{key}: must have {shape[0]} rows of {shape[1]} numbers")
+        arrays[key] = np.array(rows)
+    return Terms(**arrays)

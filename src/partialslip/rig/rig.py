@@ -5,17 +5,35 @@ in :mod:`partialslip.condensed.coupled`. Forces q and p per unit depth at t add 
 
     u = A (xx(x, t) q + xy(x, t) p),    v = A (xy(t, x) q + yy(x, t) p),
 
-where A is the compliance of the pair and xx, yy and xy are polynomials in x/reach and t/reach. The data do not depend on
+where A is the compliance of the pair and xx, yy and xy are polynomials in x/reach and t/reach. They do not depend on
 loads, friction or, without a pad, on the profile.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial import polynomial
 
 from partialslip.arrays import Array
+
+
+class Terms(NamedTuple):
+    """Coefficients of the polynomials, dimensionless.
+
+    Parameters
+    ----------
+    xx, yy, xy : (k, k) array
+        Row i and column j belong to (x/reach)^i (t/reach)^j.
+    pulled : (2, k) array
+        u and v that a tension of the lower body adds to those of uniform strain, relative to reach and to the strain of
+        a long body; element i belongs to (x/reach)^i. Zero unless the body is pulled.
+    """
+
+    xx: Array
+    yy: Array
+    xy: Array
+    pulled: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,22 +46,20 @@ class Rig:
         Checksum of the bodies, their supports and materials, and the face of a pad.
     reach : float
         Largest |x| at which the polynomials hold, m.
-    xx, yy, xy : (k, k) array
-        Coefficients of the polynomials, dimensionless: row i and column j belong to (x/reach)^i (t/reach)^j.
-    pulled : (2, k) array
-        u and v, relative to reach and to the strain of a long body, that a tension of the lower body adds to those of
-        uniform strain: coefficients of (x/reach)^i; zero unless the body is pulled.
-    errors : mapping of str to float
-        Estimated errors of ``xx``, ``yy``, ``xy`` and ``pulled``: the largest over the range of x and t.
+    terms : Terms
+    rough : Terms
+        The same from a coarser mesh: the difference shows the error.
     """
 
     key: str
     reach: float
-    xx: Array
-    yy: Array
-    xy: Array
-    pulled: Array
-    errors: dict[str, float]
+    terms: Terms
+    rough: Terms
+
+    @property
+    def coarser(self) -> "Rig":
+        """The rig from the coarser mesh."""
+        return Rig(self.key, self.reach, self.rough, self.rough)
 
     def moments(self, x: Array, forces: Array) -> Array:
         """Moments sum (x/reach)^j F_j of ``forces`` (..., n) at ``x`` (n,), (..., k)."""
@@ -52,21 +68,21 @@ class Rig:
 
     def powers(self, x: Array) -> Array:
         """Powers (x/reach)^j, (n, k), at ``x`` (n,), m."""
-        result: Array = polynomial.polyvander(np.asarray(x) / self.reach, len(self.xx) - 1)
+        result: Array = polynomial.polyvander(x / self.reach, len(self.terms.xx) - 1)
         return result
 
     def slopes(self, x: Array, coefficients: Array) -> Array:
         """Derivatives by x, (..., n), at ``x`` (n,), m, of polynomials with the ``coefficients`` (..., k)."""
-        powers = np.arange(1, len(self.xx))
+        powers = np.arange(1, len(self.terms.xx))
         result: Array = (coefficients[..., 1:] * powers) @ self.powers(x)[:, :-1].T / self.reach
         return result
 
-    def opening(self, p: npt.ArrayLike, q: npt.ArrayLike) -> Array:
+    def opening(self, p: Array, q: Array) -> Array:
         """Coefficients (..., k) of v/A under tractions with the moments ``p`` and ``q`` (..., k)."""
-        result: Array = np.asarray(p) @ self.yy + np.asarray(q) @ self.xy
+        result: Array = p @ self.terms.yy + q @ self.terms.xy
         return result
 
-    def shift(self, p: npt.ArrayLike, q: npt.ArrayLike) -> Array:
+    def shift(self, p: Array, q: Array) -> Array:
         """Coefficients (..., k) of u/A under tractions with the moments ``p`` and ``q`` (..., k)."""
-        result: Array = np.asarray(q) @ self.xx + np.asarray(p) @ self.xy.T
+        result: Array = q @ self.terms.xx + p @ self.terms.xy.T
         return result
