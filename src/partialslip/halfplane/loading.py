@@ -126,7 +126,7 @@ class Loading:
             dQ/2 eta + tau c/8 (dsigma + dslope e) sinh(eta) + c^2/32 dslope sinh(2 eta).
         """
         shares = np.arange(1, _STAGES + 1) / _STAGES
-        zones = stick_zones(*(shares * load for load in (self.Qf, self.sf)), self.seen, shares * self.gf)
+        zones = stick_zones(shares * self.Qf, shares * self.sf, self.seen, shares * self.gf)
         if not (zones.s == self.zone.s).all() or np.isnan(zones.half_width).any():
             return True
         if (np.diff(zones.left, prepend=-1.0) < -_ROUNDING).any() or (
