@@ -70,7 +70,7 @@ def transition(Qf: Array | float, shape: Shape) -> Array:
     return _at(shape, 0.0, _touching(np.asarray(Qf, float), shape)).sf
 
 
-def _solve(Qf: Array, sf: Array, shape: Shape, gf: Array | None) -> tuple[Array, Array]:
+def _solve(Qf: Array, sf: Array, shape: Shape, gf: Array | None = None) -> tuple[Array, Array]:
     """Solve for (s * edge, c) of each pair of loads by Newton's method, by bracketing where it does not converge; None
     for ``gf`` stands for zeros.
 
@@ -128,7 +128,7 @@ def _of(gf: Array | None, numbers: Indices | Mask) -> Array | None:
     return None if gf is None else gf[numbers]
 
 
-def _bracketed(Qf: Array, sf: Array, shape: Shape, gf: Array | None) -> tuple[Array, Array]:
+def _bracketed(Qf: Array, sf: Array, shape: Shape, gf: Array | None = None) -> tuple[Array, Array]:
     """Solve for (s * edge, c) by two nested root searches on decreasing functions."""
     touching = _touching(Qf, shape, gf)
     edge, c = np.empty_like(Qf), np.empty_like(Qf)
