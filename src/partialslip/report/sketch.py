@@ -187,7 +187,9 @@ def _axes(scene: Scene) -> list[str]:
     """Return x and y in the contact, and the data of profile, friction and materials."""
     profile, material = scene.profile, scene.material
     data = [f"{profile.__struct_config__.tag}, R = {scene.units.length(profile.R)}"]
-    data += [f"b = {scene.units.length(profile.b)}"] if isinstance(profile, FlatRounded) else []
+    if isinstance(profile, FlatRounded):
+        data += [f"b = {scene.units.length(profile.b)}"]
+        data += [f"crown = {scene.units.length(profile.crown)}"] if profile.crown else []
     data.append(f"f = {scene.friction.f:g}")
     kinds = {"material": "other" if material.upper or material.lower else "both"}
     stiffness = [

@@ -15,7 +15,7 @@ from partialslip.scene.bodies import Bodies
 from partialslip.scene.limits import LARGEST, NO_TEXT, SMALLEST, STEEPEST
 from partialslip.scene.loads import Load
 from partialslip.scene.materials import Material
-from partialslip.scene.profiles import Hertz, Profile
+from partialslip.scene.profiles import FlatRounded, Hertz, Profile
 from partialslip.scene.settings import Effects, Fem
 from partialslip.scene.table import Table
 from partialslip.shown import Notebook, short
@@ -87,6 +87,8 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             raise InputError(
                 f"load.sigma_slope = {list(self.load.sigma_slope)}: must be 0 or left out with finite bodies"
             )
+        if self.bodies.pad and isinstance(self.profile, FlatRounded) and self.profile.crown is not None:
+            raise InputError(f"profile.crown = {self.profile.crown}: must be left out with a pad, {self.bodies.pad}")
         for name, body in self.bodies:
             if body.kind == "pad" and body.width is not None and body.height is not None:
                 self._check_pad(name, body.width, body.height)
