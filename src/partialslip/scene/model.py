@@ -116,10 +116,11 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             raise InputError(f"load.{key} = {getattr(self.load, key)}: {near}")
 
     def require_even(self, purpose: str) -> None:
-        """Raise InputError if the pressure of half-planes is not even, which the ``purpose`` (in words) needs."""
+        """Raise InputError if the pressure of half-planes is not even, or the tension varies along x, which the
+        ``purpose`` (in words) needs."""
         if not self.profile.even:
             raise InputError(f"profile.x: must begin at 0 {purpose}; only even gaps")
-        for key in ("M", "e"):
+        for key in ("M", "e", "sigma_slope"):
             if np.any(getattr(self.load, key) or 0.0):
                 raise InputError(f"load.{key} = {getattr(self.load, key)}: must be 0 or left out {purpose}")
 
