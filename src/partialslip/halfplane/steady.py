@@ -119,7 +119,8 @@ def _holds(edge: Array, c: Array, Qf: Array, sf: Array, shape: Shape, gf: Array)
     found &= (at.right > 0) & (at.left > 0) & (c <= 1)
     zones = StickZone(np.abs(edge) + c - 1, c, s)
     numbers = np.flatnonzero(found)
-    for part in np.array_split(numbers, len(numbers) // _FEWER + 1):
+    for start in range(0, len(numbers), _FEWER):
+        part = numbers[start : start + _FEWER]
         found[part] = within_bound(StickZone(*(each[part] for each in zones)), shape, gf[part])
     return found
 
