@@ -110,13 +110,9 @@ def _state(scene: Scene, problem: Problem, solution: MeshSolution) -> State | No
     shear, bound = solution.history.end
     p, q = (solution.shear(forces) for forces in (bound / scene.friction.f, shear))
     L, origin = scene.length, problem.origin * scene.length
-    return State(
-        scene.pressing[-1].P,
-        scene.material.A,
-        *scene.load.points[-1],
-        *(rescaled(each, scene.P / L, L, origin) for each in (p, q)),
-        scene.load.along[-1][2],
-    )
+    p, q = (rescaled(each, scene.P / L, L, origin) for each in (p, q))
+    Q, sigma, slope = scene.load.along[-1]
+    return State(scene.pressing[-1].P, scene.material.A, Q, sigma, p, q, slope)
 
 
 def _certificate(problem: Problem, solution: MeshSolution, p0: float) -> dict[str, float]:

@@ -3,6 +3,7 @@
 Methods read the plan and build only the effects called for. A scene's ``[effects]`` force effects on or off.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -12,6 +13,7 @@ from msgspec.structs import replace
 from partialslip.errors import InputError
 from partialslip.gradual import may_turn_round, small_tension
 from partialslip.scene import WIDTHS, Bodies, Effects, Friction, Scene
+from partialslip.units import Dimension
 
 Effect = Literal[
     "normal",
@@ -128,7 +130,7 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
     """Decisions for ``scene``, taking forced loads and forced coupling into account."""
     load, f, forced = scene.load, scene.friction.f, _forced(scene)
     Q, sigma, slope = zip(*load.along, strict=True)
-    tension = {"sigma": (sigma, "Pa"), "sigma_slope": (slope, "Pa/m")}
+    tension: dict[str, tuple[Sequence[float], Dimension]] = {"sigma": (sigma, "Pa"), "sigma_slope": (slope, "Pa/m")}
     stretched = [f"{key} goes between {scene.units.span(each, of)}" for key, (each, of) in tension.items() if any(each)]
     coupled = forced.get("coupling", not scene.mirrored)
     tangential = any(Q) or bool(stretched) or forced.get("shear", False) or forced.get("tension", False)

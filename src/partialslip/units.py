@@ -10,7 +10,8 @@ from partialslip.arrays import Array
 
 System = Literal["SI", "N-mm"]
 Dimension = Literal["m", "Pa", "Pa/m", "N/m", "N", "J/m", "1"]
-"""A dimension by its SI unit: length, stress, stress over length, force, moment and energy per unit depth, and pure numbers."""
+"""A dimension by its SI unit: length, stress, stress over length, force, moment and energy per unit depth, and pure
+numbers."""
 
 _DIMENSIONS: tuple[Dimension, ...] = get_args(Dimension)
 _T = TypeVar("_T", float, Array)

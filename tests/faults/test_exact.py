@@ -22,7 +22,7 @@ def test_sign_of_x_instead_of_the_slip_zones(monkeypatch, sound, red):
     """sgn(x) breaks down where the stick zone lies beside the middle: here it ends at n < 0."""
     scene, true = sound(LARGE, "load.sigma=[-1e9, 1e9]"), exact_traction.half_range
 
-    def by_x(x, zone, shape):
+    def by_x(x, zone, shape, _):
         slips = np.abs(x - zone.centre) > zone.half_width
         return np.where(slips, np.sign(x) * np.abs(true(x, zone, shape)), true(x, zone, shape))
 
@@ -51,7 +51,7 @@ def test_moment_about_the_middle_without_its_term(monkeypatch, sound, red):
     """The second condition has moments about the stick zone's centre; about x = 0 a term of dsigma belongs to it."""
     scene, true = sound(LARGE), steady._at
 
-    def about_the_middle(shape, edge, c):
+    def about_the_middle(shape, edge, c, _=None):
         at = true(shape, edge, c)
         return at._replace(Qf=at.Qf + (np.abs(edge) + c - 1) * at.sf / 4)
 

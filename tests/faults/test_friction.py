@@ -26,7 +26,7 @@ def march_with(change):
     """A march along a path whose load points have been changed, and that says nothing of it."""
 
     def march(C, x, bound, path):
-        changed = replace(path, cycle=tuple(change(Q, strain) for Q, strain in path.cycle))
+        changed = replace(path, cycle=tuple((*change(Q, strain), slope) for Q, strain, slope in path.cycle))
         return replace(true_march(C, x, bound, changed), path=path)
 
     return march

@@ -6,7 +6,8 @@ P = np.pi / 2  # of a contact with a = p0 = 1
 
 
 def march(shape, path, count=80, steps=12):
-    """q along a path of (Q in f P, sigma in f p0), from nothing, in so many ``steps`` to each point: cells of constant
+    """q along a path of (Q in f P, sigma in f p0, and its slope in f p0/a if it has one), from nothing, in so many
+    ``steps`` to each point: cells of constant
     traction, collocation, active sets. Returns points, widths of cells, p and q at each point, scaled."""
     ends = -np.cos(np.linspace(0, np.pi, count + 1))
     x, widths = (ends[1:] + ends[:-1]) / 2, np.diff(ends)
@@ -15,12 +16,13 @@ def march(shape, path, count=80, steps=12):
         return apart * np.log(np.abs(apart)) - apart
 
     C = -(primitive(x[:, None] - ends[:-1]) - primitive(x[:, None] - ends[1:])) / np.pi
-    p, q, load, found = shape.pressure(x), np.zeros(count), np.zeros(2), []
-    for point in np.array(path) * [P, 1]:
+    path = [(*point, 0.0)[:3] for point in path]
+    p, q, load, found = shape.pressure(x), np.zeros(count), np.zeros(3), []
+    for point in np.array(path) * [P, 1, 1]:
         side = np.zeros(count, int)
         for share in np.arange(1, steps + 1) / steps:
             Q = load[0] + share * (point[0] - load[0])
-            free = C @ q + x * (point[1] - load[1]) / steps / 4
+            free = C @ q + (x * (point[1] - load[1]) + x**2 / 2 * (point[2] - load[2])) / steps / 4
             for _ in range(200):
                 sticks = side == 0
                 known = np.where(sticks, 0.0, side * p)

@@ -99,7 +99,7 @@ def test_the_first_loading_of_the_wrong_load_point_is_caught():
     """q2 by the first loading of load point 1, which slips less, and the change."""
     pressed, path = Contact(1.0, P, Hertz()), [(0.8, 0.0), (0.3, 0.0), (0.8, 0.0)]
     x, widths, p, (_, _, two) = march(Hertz(), path)
-    first, cycle = (loading(pressed, 1.0, Q * P, 0.0, bound) for Q, bound in ((0.3, 1), (0.5, 2)))
+    first, cycle = (loading(pressed, 1.0, Q * P, 0.0, bound=bound) for Q, bound in ((0.3, 1), (0.5, 2)))
     wrong = first.traction(x) + cycle.traction(x)
     assert np.sqrt((wrong - two) ** 2 @ widths / (p**2 @ widths)) > 5e-2
 

@@ -9,7 +9,7 @@ from varying_scenes import varying
 from partialslip import run
 from partialslip.condensed import varying as stepping
 from partialslip.condensed.normal import Presses
-from partialslip.condensed.path import Path
+from partialslip.condensed.path import Path, stretched
 from partialslip.halfplane.cells import compliance, graded
 
 A1, A2 = 0.8, 1.0
@@ -26,10 +26,10 @@ PRESSES = Presses(COMPLIANCE, np.diff(VERTICES**3) / 6 / WIDTHS, X)
 
 def history(dQ, dsigma, steps, f=1.0, mean=0.0, cycles=2, moments=(0.0, 0.0)):
     cycle = tuple(
-        (mean + way * dQ / 2, way * dsigma / 8, P, M) for way, P, M in ((-1, P1, moments[0]), (1, P2, moments[1]))
+        (mean + way * dQ / 2, way * dsigma / 8, 0.0, P, M) for way, P, M in ((-1, P1, moments[0]), (1, P2, moments[1]))
     )
-    begin = (0.0, 0.0, *cycle[1][2:])
-    return stepping.march(X, COMPLIANCE, X, f, PRESSES, Path(cycle, (0, 1), True, cycles, steps, begin))
+    begin = (0.0, 0.0, 0.0, *cycle[1][3:])
+    return stepping.march(X, COMPLIANCE, stretched(X, 0.0), f, PRESSES, Path(cycle, (0, 1), True, cycles, steps, begin))
 
 
 def norm(forces):

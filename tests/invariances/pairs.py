@@ -358,7 +358,7 @@ def reordered(seed: int, method: str, kind: str, *settings: str) -> Apart:
     true_march = marching.march_refined
 
     def march(C: Array, x: Array, bound: Array, path: Any, accuracy: float, errors: Any, *rest: Any) -> Any:
-        order = np.random.default_rng(seed).permutation(len(x))
+        order = np.random.default_rng(seed).permutation(len(bound))
         back = np.argsort(order)
 
         def told(*histories: History) -> dict[str, float]:
@@ -366,7 +366,7 @@ def reordered(seed: int, method: str, kind: str, *settings: str) -> Apart:
             return left
 
         asked = told if errors else None
-        found, left = true_march(C[np.ix_(order, order)], x[order], bound[order], path, accuracy, asked, *rest)
+        found, left = true_march(C[np.ix_(order, order)], x[:, order], bound[order], path, accuracy, asked, *rest)
         return found.of(back), left
 
     scene = scene_of(kind, *settings)

@@ -35,6 +35,16 @@ TWINS = {
         load.P = 135750.0                              | 135.75
         load.Q = [-13.1e3, 38.75e3]                    | [-13.1, 38.75]
         load.sigma = [-101e6, 100e6]                   | [-101, 100]""",
+    "slope of tension, crown": """
+        material.nu = 0.33
+        material.E = 72.1e9                            | 72.1e3
+        profile.kind = "flat-rounded"
+        profile.R = 0.3e-3                             | 0.3
+        profile.b = 0.1e-3                             | 0.1
+        profile.crown = 3.3                            | 3300
+        load.P = 135750.0                              | 135.75
+        load.Q = [-13.1e3, 38.75e3]                    | [-13.1, 38.75]
+        load.sigma_slope = [-2.3e9, 1.7e9]             | [-2.3, 1.7]""",
     "half-width, own materials": """
         material.upper = {E = 210e9, nu = 0.3}         | {E = 210e3, nu = 0.3}
         material.lower = {E = 7.3e9, nu = 0.3}         | {E = 7300, nu = 0.3}
@@ -165,7 +175,7 @@ def test_twins_are_the_same_scene_bit_for_bit():
 @pytest.mark.parametrize("key", WITH_DIMENSION)
 def test_dimension_of_a_key_wrong(monkeypatch, key):
     """A deliberate fault: a key left out of the table, or in it with another dimension."""
-    others = {"m": "Pa", "Pa": "N/m", "N/m": "Pa"}
+    others = {"m": "Pa", "Pa": "N/m", "N/m": "Pa", "Pa/m": "Pa"}
     for wrong in ("1", others[DIMENSIONS[key]]):
         with monkeypatch.context() as patched:
             patched.setitem(DIMENSIONS, key, wrong)

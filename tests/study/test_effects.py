@@ -14,7 +14,7 @@ import partialslip
 from partialslip import InputError, load_scene, plan
 from partialslip.cli import main
 from partialslip.condensed.history import march as follow_path
-from partialslip.condensed.path import Path
+from partialslip.condensed.path import Path, stretched
 from partialslip.halfplane import marching
 from partialslip.plan import reduced
 from partialslip_fem import Kept, bodies, condensation, model, solving
@@ -159,8 +159,8 @@ def test_half_a_cycle_tells_the_whole_of_any_body():
         root, x = rng.normal(size=(n, n)), np.sort(rng.uniform(-1, 1, n))
         C, bound = root @ root.T + 0.1 * np.eye(n), rng.uniform(0.01, 1, n)
         Q, strain = rng.uniform(-1, 1) * bound.sum(), 10.0 ** rng.uniform(-2, 2) * rng.normal()
-        whole = Path(((-Q, -strain), (Q, strain)), (0, 1), True, 1, 1)
-        one, other = (follow_path(C, x, bound, path) for path in (replace(whole, half=True), whole))
+        whole = Path(((-Q, -strain, 0.0), (Q, strain, 0.0)), (0, 1), True, 1, 1)
+        one, other = (follow_path(C, stretched(x, 0.0), bound, path) for path in (replace(whole, half=True), whole))
         assert one.q1 == pytest.approx(other.q1, abs=1e-9)
         assert one.q2 == pytest.approx(other.q2, abs=1e-9)
         assert one.slip == pytest.approx(other.slip, abs=1e-9 * max(np.abs(other.slip).max(), 1))

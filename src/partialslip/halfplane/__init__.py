@@ -14,6 +14,7 @@ from partialslip.halfplane.contact import Contact as Contact
 from partialslip.halfplane.contact import contact as contact
 from partialslip.halfplane.contact import contact_of as contact_of
 from partialslip.halfplane.contact import stick_zone as stick_zone
+from partialslip.halfplane.contact import tilted_contact as tilted_contact
 from partialslip.halfplane.loop import Loop as Loop
 from partialslip.halfplane.loop import hysteresis as hysteresis
 from partialslip.halfplane.method import solve as solve
@@ -31,6 +32,7 @@ __all__ = [
     "hysteresis",
     "solve",
     "stick_zone",
+    "tilted_contact",
 ]
 
 

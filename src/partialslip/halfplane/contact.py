@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -17,9 +17,11 @@ from partialslip.halfplane.steady import TOO_STEEP, drive, stick_zones
 from partialslip.halfplane.uneven import press
 from partialslip.result import StickZone
 from partialslip.result.points import AtPoints
+from partialslip.scene import FlatRounded, Pressing, Scene
 from partialslip.scene import Hertz as HertzProfile
-from partialslip.scene import Pressing, Scene
+from partialslip.scene.profiles import Curvature
 
+_INSIDE = np.cos(np.arange(1, 200) / 200 * np.pi)  # places, in a, at which a hollow flat must be in contact
 _HARDLY = 1e-13  # of the flat's half-width: rounding hides how far the contact extends beyond the flat by less
 
 
@@ -43,6 +45,16 @@ class Contact:
     def p0(self) -> float:
         """2 P/(pi a), Pa; for Hertz the largest pressure."""
         return 2 * self.P / (math.pi * self.a)
+
+    @property
+    def moment(self) -> float:
+        """Moment int x p dx of the pressure about x = 0, N."""
+        if self.shape.even:
+            return self.P * self.centre
+        # by the rule for a slip zone beside a stick zone that shrinks to nothing; the resultant of p/p0 is pi/2
+        rules = (self.shape.rule(1.0, 1e-30, side) for side in (1, -1))
+        arm = sum(float((weights * self.shape.pressure(t) * np.abs(t) * t).sum()) for t, _, weights in rules)
+        return self.P * (self.centre + 2 / math.pi * self.a * arm)
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -88,11 +100,7 @@ def contact(scene: Scene, pressing: Pressing | None = None) -> Contact:
         a, origin = math.sqrt(2 * A * profile.R * P / math.pi), (M or 0.0) / P
         return Contact(a, P, Hertz(), origin, origin / profile.R)
     if not profile.even or M:
-        moment = None if M is None else A * M
-        if not (pressed := press(profile.curvature, A * P, moment, scene.length)):
-            shown, span = scene.units.plain(P, "N/m"), scene.units.span(profile.curvature.reach, "m")
-            raise InputError(f"load.P = {shown}: must keep the contact within profile.x, between {span}")
-        return Contact(pressed.a, P, pressed.shape, pressed.centre, pressed.tilt)
+        return _uneven(scene, profile.curvature, Pressing(P, M))
     at, steps = profile.curvature_steps()
     inner, reach = float(at[0]), profile.reach
 
@@ -119,7 +127,49 @@ def contact(scene: Scene, pressing: Pressing | None = None) -> Contact:
     beyond = math.exp(brentq(excess, low, high, xtol=1e-15, rtol=8.9e-16))
     a = inner + beyond
     within = at < a
-    return Contact(a, P, Punch(at[within] / a, steps[within], psi(beyond)[within]))
+    return _closed(Contact(a, P, Punch(at[within] / a, steps[within], psi(beyond)[within])), scene)
+
+
+def tilted_contact(scene: Scene, P: float, tilt: float) -> Contact:
+    """Contact of the profile of ``scene`` as two half-planes under ``P`` (N/m), turned by the rigid ``tilt`` (rad),
+    which adds tilt x to the approach, whatever moment (:attr:`Contact.moment`) it takes. A Hertz contact moves by
+    tilt R.
+
+    Raises
+    ------
+    InputError
+        As :func:`contact`.
+    """
+    profile = scene.profile
+    if tilt == 0:
+        return contact(scene, Pressing(P, None))
+    if isinstance(profile, HertzProfile):
+        even = contact(scene, Pressing(P, None))
+        return replace(even, centre=tilt * profile.R, tilt=tilt)
+    turned = _uneven(scene, profile.curvature.tilted(tilt), Pressing(P, None))
+    return replace(turned, tilt=tilt)
+
+
+def _uneven(scene: Scene, gap: Curvature, pressing: Pressing) -> Contact:
+    """Contact of a ``gap`` that is not even, or under a moment."""
+    A, (P, M) = scene.material.A, pressing
+    pressed = press(gap, A * P, None if M is None else A * M, scene.length)
+    if not pressed:
+        shown, span = scene.units.plain(P, "N/m"), scene.units.span(gap.reach, "m")
+        raise InputError(f"load.P = {shown}: must keep the contact within profile.x, between {span}")
+    return _closed(Contact(pressed.a, P, pressed.shape, pressed.centre, pressed.tilt), scene)
+
+
+def _closed(pressed: Contact, scene: Scene) -> Contact:
+    """The contact ``pressed``, if a hollow flat is in contact everywhere."""
+    if isinstance(scene.profile, FlatRounded) and scene.profile.bow < 0:
+        x = pressed.places(_INSIDE)
+        if (pressed.pressure(x[np.abs(x) < scene.profile.b]) <= 0).any():
+            crown, P = scene.units.labelled(scene.profile.bow**-1, "m"), scene.units.labelled(pressed.P, "N/m")
+            raise InputError(
+                f"profile.crown = {crown}: must be less hollow: the flat is not in contact everywhere under {P}"
+            )
+    return pressed
 
 
 def contact_of(

@@ -18,7 +18,7 @@ from partialslip.result import StickZone
 
 _NOTHING = StickZone(0.0, 1.0, 1)
 _STAGES = 16  # of the way from load point to load point
-_SHARES = np.arange(1, 9) / 8  # of slip zones
+_SHARES = np.arange(9) / 8  # of slip zones
 _ROUNDING = 1e-9
 
 
@@ -118,7 +118,8 @@ class Loading:
 
     def _reverses(self) -> bool:
         """Whether slip reverses at stages of the way: the stick zone does not shrink, or does not always have the slip
-        of the last stage, or an increment of the loads pushes points that slip back.
+        of the last stage, or an increment of the loads pushes points that slip back. Points that slip must
+        be pushed in the direction of slip by the adhered traction of the whole contact, too, as the way begins.
 
         An increment slips the surfaces at the distance c cosh(eta) from the middle e of the stick zone, on the side
         tau = +-1, by the integral of its strain, in proportion to
@@ -126,7 +127,7 @@ class Loading:
             dQ/2 eta + tau c/8 (dsigma + dslope e) sinh(eta) + c^2/32 dslope sinh(2 eta).
         """
         shares = np.arange(1, _STAGES + 1) / _STAGES
-        zones = stick_zones(*(shares * load for load in (self.Qf, self.sf)), self.seen, shares * self.gf)
+        zones = stick_zones(shares * self.Qf, shares * self.sf, self.seen, shares * self.gf)
         if not (zones.s == self.zone.s).all() or np.isnan(zones.half_width).any():
             return True
         if (np.diff(zones.left, prepend=-1.0) < -_ROUNDING).any() or (
@@ -139,7 +140,9 @@ class Loading:
             eta = 2 * np.arcsinh(np.sqrt(width / (2 * c))) * _SHARES
             slips = self.Qf / 2 * eta + side * c / 8 * (self.sf + self.gf * e) * np.sinh(eta)
             slips += c**2 / 32 * self.gf * np.sinh(2 * eta)
-            if (sign * slips < -_ROUNDING * eta).any():
+            y = side * (zones.right if side > 0 else -zones.left)[-1] + side * width[-1] * _SHARES
+            pushed = self.Qf / 2 + y / 8 * self.sf + (y**2 - 0.5) / 8 * self.gf
+            if (sign * slips < -_ROUNDING * eta).any() or (sign * pushed < -_ROUNDING).any():
                 return True
         return False
 

@@ -71,7 +71,7 @@ def solve(
     q1, q2 = levels_at(x) if levels_at else (None, None)
     far = abs(pressed.centre) + _BEYOND * a
     reversed_ = load.fully_reversed and isinstance(found, Levels)
-    stress = Stress(pressed, f, load.dQ, load.dsigma) if plan.needs("subsurface") and reversed_ else None
+    stress = Stress(pressed, f, load.dQ, load.dsigma, load.dslope) if plan.needs("subsurface") and reversed_ else None
     surface = _surface(stress, np.concatenate([[-far], breaks, [far]])) if stress else None
     slips = cycle and not cycle.nothing
     why = undetermined(regime, turns, found)

@@ -70,7 +70,7 @@ def transition(Qf: Array | float, shape: Shape) -> Array:
     return _at(shape, 0.0, _touching(np.asarray(Qf, float), shape)).sf
 
 
-def _solve(Qf: Array, sf: Array, shape: Shape, gf: Array | None) -> tuple[Array, Array]:
+def _solve(Qf: Array, sf: Array, shape: Shape, gf: Array | None = None) -> tuple[Array, Array]:
     """Solve for (s * edge, c) of each pair of loads by Newton's method, by bracketing where it does not converge; None
     for ``gf`` stands for zeros.
 
@@ -119,7 +119,8 @@ def _holds(edge: Array, c: Array, Qf: Array, sf: Array, shape: Shape, gf: Array)
     found &= (at.right > 0) & (at.left > 0) & (c <= 1)
     zones = StickZone(np.abs(edge) + c - 1, c, s)
     numbers = np.flatnonzero(found)
-    for part in np.array_split(numbers, len(numbers) // _FEWER + 1):
+    for start in range(0, len(numbers), _FEWER):
+        part = numbers[start : start + _FEWER]
         found[part] = within_bound(StickZone(*(each[part] for each in zones)), shape, gf[part])
     return found
 
@@ -128,7 +129,7 @@ def _of(gf: Array | None, numbers: Indices | Mask) -> Array | None:
     return None if gf is None else gf[numbers]
 
 
-def _bracketed(Qf: Array, sf: Array, shape: Shape, gf: Array | None) -> tuple[Array, Array]:
+def _bracketed(Qf: Array, sf: Array, shape: Shape, gf: Array | None = None) -> tuple[Array, Array]:
     """Solve for (s * edge, c) by two nested root searches on decreasing functions."""
     touching = _touching(Qf, shape, gf)
     edge, c = np.empty_like(Qf), np.empty_like(Qf)

@@ -8,6 +8,7 @@ import numpy.typing as npt
 from partialslip.arrays import Array
 from partialslip.halfplane.cauchy import Cauchy
 from partialslip.halfplane.contact import Contact, stick_zone
+from partialslip.halfplane.loading import loading
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
 from partialslip.result.points import AtPoints
@@ -27,8 +28,9 @@ class Stress:
     contact : Contact
     f : float
         Coefficient of friction.
-    dQ, dsigma : float
-        Changes of the shear force (N/m) and of the differential bulk tension (Pa) over half a cycle, of any sign.
+    dQ, dsigma, dslope : float
+        Changes of the shear force (N/m), of the differential bulk tension (Pa) and of its slope (Pa/m) over half a
+        cycle, of any sign.
 
     Raises
     ------
@@ -36,9 +38,9 @@ class Stress:
         As :func:`partialslip.halfplane.stick_zone`.
     """
 
-    def __init__(self, contact: Contact, f: float, dQ: float, dsigma: float) -> None:
-        self.contact, self.f, self.dQ, self.dsigma = contact, f, dQ, dsigma
-        self._zone = stick_zone(contact, f, dQ, dsigma)
+    def __init__(self, contact: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0) -> None:
+        self.contact, self.f, self.dQ, self.dsigma, self.dslope = contact, f, dQ, dsigma, dslope
+        self._zone = stick_zone(contact, f, dQ, dsigma, dslope)
 
     def surface(self, x: npt.ArrayLike) -> Array:
         """sigma_xx (Pa) along the surfaces at ``x``, m: (2, 2, ...), by body (lower, upper), load point and the shape
@@ -77,21 +79,24 @@ class Stress:
         pressure = self.contact.p0 * np.stack([P.imag + y * P_z.real, P.imag - y * P_z.real, -side * y * P_z.imag])
         shear = unit * np.stack([side * along, -side * y * T_z.imag, T.imag + y * T_z.real])
         # no relative strain in the stick zone: the bodies share the tension
-        shear[0] = np.where(sticks, -side * self.dsigma / 4, shear[0]) + np.where(side > 0, self.dsigma / 2, 0.0)
+        tension = self.dsigma + self.dslope * x
+        shear[0] = np.where(sticks, -side * tension / 4, shear[0]) + np.where(side > 0, tension / 2, 0.0)
+        if self.dslope:  # sigma_xx = s x is in equilibrium with sigma_xy = -s y
+            shear[2] += np.where(side > 0, self.dslope / 2 * depth, 0.0)
         return np.stack([pressure - shear, pressure + shear])
 
     @cached_property
     def _cauchy(self) -> Cauchy:
         """Cauchy integrals of p/p0 and q/(f p0) at load point 2, lengths scaled by a."""
         shape = self.contact.shape
-        turn = -1 if self.dQ < 0 else 1
-        mirror = turn * (-1 if self.dsigma < 0 else 1)
+        change = loading(self.contact, self.f, self.dQ, self.dsigma, self.dslope, bound=2)
+        turn, mirror = change.turn, change.mirror
         centre, c = float(self.contact.scaled(self._zone.centre)), float(self._zone.half_width) / self.contact.a
         zone, seen = StickZone(mirror * centre, c, int(self._zone.s)), shape if mirror > 0 else shape.mirrored
         ends = [centre - c, centre + c] if c > _APART else [centre]
         inner = np.sort([place for place in (*shape.kinks, *ends) if abs(place) < 1 - _APART])
         inner = inner[np.diff(inner, prepend=-1.0) > _APART]
         return Cauchy(
-            lambda x: np.stack([shape.pressure(x), turn * half_range(mirror * x, zone, seen)]),
+            lambda x: np.stack([shape.pressure(x), turn * half_range(mirror * x, zone, seen, change.gf)]),
             np.concatenate([[-1.0], inner, [1.0]]),
         )

@@ -37,7 +37,7 @@ def half_range(x: Array, zone: StickZone[float], shape: Shape, gf: float = 0.0) 
 
 
 def within_bound(zones: StickZone[Array], shape: Shape, gf: Array) -> Mask:
-    """Whether \\|dq\\| <= 2 f p at places in the stick ``zones`` (k,), under changes of tension that vary as ``gf`` x."""
+    """Whether \\|dq\\| <= 2 f p at places in stick ``zones`` (k,) under changes of tension that vary as ``gf`` x."""
     centre, c, s = (np.asarray(each)[:, None, None] for each in zones)
     x, half = centre + c * _PLACES[:, None], c * np.sqrt((1 - _PLACES) * (1 + _PLACES))[:, None]
     p = shape.pressure(x)

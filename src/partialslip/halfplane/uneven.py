@@ -133,7 +133,7 @@ def press(of: Curvature, force: float, moment: float | None, scale: float) -> Pr
         Length of about the contact's size, m.
     """
     number = int(np.searchsorted(of.breaks, of.lowest, "right"))
-    flat = of.values[number] == 0
+    flat = of.values[number] <= 0
     low, high = (of.breaks[number - 1], of.breaks[number]) if flat else (of.lowest, of.lowest)
     origin = moment / force if moment is not None else 0.0
     search = _Search(of, force, moment, float(low), float(high), _TINY * scale, origin)

@@ -197,7 +197,8 @@ def closed_form(scene: Scene) -> str:
             return ""
         if isinstance(scene.profile, Hertz) and scene.even and scene.load.dslope == 0:
             return ""
-        return "neither end of the contact slips, and only for hertz without a moment and sigma_slope there is a closed form"
+        without = "a moment and sigma_slope" if scene.load.dslope else "a moment"
+        return f"neither end of the contact slips, and only for hertz without {without} there is a closed form"
     sides = zip(("left", "right"), cycle.slips, strict=True)
     told = " and ".join(f"the {side} end" for side, how in sides if how == "part of the cycle")
     slips = "slips" if told.count("end") == 1 else "slip"

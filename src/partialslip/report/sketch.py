@@ -160,8 +160,7 @@ def _rollers(start: Point, end: Point, out: Point) -> list[str]:
 
 def _loads(scene: Scene) -> list[str]:
     """Return arrows and texts of P, Q and sigma."""
-    points = scene.load.points
-    Q, sigma = [each for each, _ in points], [each for _, each in points]
+    Q, sigma, slope = ([*each] for each in zip(*scene.load.along, strict=True))
     top = 26.0
     pressing = [(P, M or 0.0) for P, M in scene.pressing]
     P, moment = ([each[i] for each in pressing] for i in (0, 1))
@@ -171,7 +170,7 @@ def _loads(scene: Scene) -> list[str]:
     if any(Q):
         shapes += [_arrow((_MIDDLE - 10 - _ARROW, top + 20), (_MIDDLE - 10, top + 20))]
         shapes += [_text(_MIDDLE - 18 - _ARROW, top + 24, f"Q = {_values(Q, 'N/m', scene.units)}", "end")]
-    if any(sigma):
+    if any(sigma) or any(slope):
         lower = scene.bodies.lower
         half, height = _HALF_PLANE if lower is None else _GIVEN if lower.mesh is not None else _drawn(scene, lower)[0]
         for share in (0.25, 0.75):
@@ -179,7 +178,9 @@ def _loads(scene: Scene) -> list[str]:
             shapes.append(_arrow((_MIDDLE + half + 4, y), (_MIDDLE + half + 4 + _ARROW, y)))
             if not (lower and lower.pulled):
                 shapes.append(_arrow((_MIDDLE - half - 4, y), (_MIDDLE - half - 4 - _ARROW, y)))
-        shapes += [_text(_WIDTH - 6, _LINE + _HALF_PLANE[1] + 58, f"σ = {_values(sigma, 'Pa', scene.units)}", "end")]
+        shown = f"σ = {_values(sigma, 'Pa', scene.units)}"
+        shown += f", σ' = {_values(slope, 'Pa/m', scene.units)}" if any(slope) else ""
+        shapes += [_text(_WIDTH - 6, _LINE + _HALF_PLANE[1] + 58, shown, "end")]
     return shapes
 
 
@@ -187,7 +188,9 @@ def _axes(scene: Scene) -> list[str]:
     """Return x and y in the contact, and the data of profile, friction and materials."""
     profile, material = scene.profile, scene.material
     data = [f"{profile.__struct_config__.tag}, R = {scene.units.length(profile.R)}"]
-    data += [f"b = {scene.units.length(profile.b)}"] if isinstance(profile, FlatRounded) else []
+    if isinstance(profile, FlatRounded):
+        data += [f"b = {scene.units.length(profile.b)}"]
+        data += [f"crown = {scene.units.length(profile.crown)}"] if profile.crown else []
     data.append(f"f = {scene.friction.f:g}")
     kinds = {"material": "other" if material.upper or material.lower else "both"}
     stiffness = [

@@ -64,7 +64,8 @@ class State(Short):
 
     def save(self, path: Path) -> None:
         """Write the state to ``path`` as an .npz file."""
-        loads = np.array([self.P, self.A, self.Q, self.sigma, self.sigma_slope])
+        slope = [self.sigma_slope] if self.sigma_slope else []
+        loads = np.array([self.P, self.A, self.Q, self.sigma, *slope])
         with path.open("wb") as file:
             np.savez(file, loads=loads, cells=self.q.x, p=self.p.c, q=self.q.c)
 

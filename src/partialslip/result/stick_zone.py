@@ -15,8 +15,8 @@ class StickZone(NamedTuple, Generic[Number]):
 
     ``centre`` is (n - m)/2. ``half_width`` is (n + m)/2, which keeps its digits in a narrow zone. ``s`` is +1 where
     both ends slip the same way (small tension) and -1 where they slip opposite ways (large tension). Where the contact
-    slides as a whole, ``centre`` and ``half_width`` are NaN and ``s`` is 0; see :attr:`slides`. Where the tension varies
-    so much along x that there is no such zone, they are NaN, too, and ``s`` is not 0.
+    slides as a whole, ``centre`` and ``half_width`` are NaN and ``s`` is 0; see :attr:`slides`. Where the tension
+    varies so much along x that there is no such zone, they are NaN, too, and ``s`` is not 0.
     """
 
     centre: Number

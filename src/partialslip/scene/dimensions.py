@@ -14,6 +14,7 @@ DIMENSIONS: dict[str, Dimension] = {
     **{f"material.{body}nu": "1" for body in ("", "upper.", "lower.")},
     "profile.R": "m",
     "profile.b": "m",
+    "profile.crown": "m",
     "profile.x": "m",
     "profile.gap": "m",
     **{f"profile.measured.{key}": "m" for key in ("unit", "smooth", "noise", "offset", "misfit")},

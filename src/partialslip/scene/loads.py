@@ -26,8 +26,8 @@ class Load(Table, frozen=True, kw_only=True):
     between the load points. Without either M = 0. ``Q`` (N/m) and ``sigma`` (Pa, bulk tension of the lower body less
     that of the upper body) are values at the load points: usually points 1 and 2, between which the loads cycle in
     phase, or more points. With ``sigma_slope`` (Pa/m) the bulk tension varies along x: it is sigma + sigma_slope x. The
-    path begins at P and M of the last load point with Q = sigma = sigma_slope = 0, goes to the last point, and then ``cycles`` times through all points. Methods that follow the path take at least ``steps`` load steps
-    between points.
+    path begins at P and M of the last load point with Q = sigma = sigma_slope = 0, goes to the last point, and then
+    ``cycles`` times through all points. Methods that follow the path take at least ``steps`` load steps between points.
     """
 
     P: Positive | Forces | None = None

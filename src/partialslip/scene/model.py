@@ -15,7 +15,7 @@ from partialslip.scene.bodies import Bodies
 from partialslip.scene.limits import LARGEST, NO_TEXT, SMALLEST, STEEPEST
 from partialslip.scene.loads import Load
 from partialslip.scene.materials import Material
-from partialslip.scene.profiles import Hertz, Profile
+from partialslip.scene.profiles import FlatRounded, Hertz, Profile
 from partialslip.scene.settings import Effects, Fem
 from partialslip.scene.table import Table
 from partialslip.shown import Notebook, short
@@ -87,6 +87,8 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             raise InputError(
                 f"load.sigma_slope = {list(self.load.sigma_slope)}: must be 0 or left out with finite bodies"
             )
+        if self.bodies.pad and isinstance(self.profile, FlatRounded) and self.profile.crown is not None:
+            raise InputError(f"profile.crown = {self.profile.crown}: must be left out with a pad, {self.bodies.pad}")
         for name, body in self.bodies:
             if body.kind == "pad" and body.width is not None and body.height is not None:
                 self._check_pad(name, body.width, body.height)
@@ -114,10 +116,11 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             raise InputError(f"load.{key} = {getattr(self.load, key)}: {near}")
 
     def require_even(self, purpose: str) -> None:
-        """Raise InputError if the pressure of half-planes is not even, which the ``purpose`` (in words) needs."""
+        """Raise InputError if the pressure of half-planes is not even, or the tension varies along x, which the
+        ``purpose`` (in words) needs."""
         if not self.profile.even:
             raise InputError(f"profile.x: must begin at 0 {purpose}; only even gaps")
-        for key in ("M", "e"):
+        for key in ("M", "e", "sigma_slope"):
             if np.any(getattr(self.load, key) or 0.0):
                 raise InputError(f"load.{key} = {getattr(self.load, key)}: must be 0 or left out {purpose}")
 

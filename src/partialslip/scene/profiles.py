@@ -27,7 +27,7 @@ class Curvature(NamedTuple):
     breaks : (k,) array
         Points of the steps of curvature, ascending, m.
     values : (k + 1,) array
-        Curvatures between the points, 1/m, not negative.
+        Curvatures between the points, 1/m, not negative but around the middle of a hollow flat.
     reach : (float, float)
         Ends of the range in which the gap is known, m.
     """
@@ -42,6 +42,21 @@ class Curvature(NamedTuple):
         """Curvature of the mirror image."""
         low, high = self.reach
         return Curvature(-self.lowest, -self.breaks[::-1], self.values[::-1], (-high, -low))
+
+    def tilted(self, tilt: float) -> "Curvature":
+        """Curvature of the gap less ``tilt`` x: the same but for the point of zero slope."""
+        number = int(np.searchsorted(self.breaks, self.lowest, "right"))
+        ends = np.concatenate([[-math.inf], self.breaks, [math.inf]])
+        base, slope = self.values[number], 0.0
+        x, way = self.lowest, 1 if tilt > 0 else -1
+        if base < 0 and ends[number] < (inner := self.lowest + tilt / base) < ends[number + 1]:
+            return self._replace(lowest=float(inner))
+        while True:  # outwards, where the slope grows
+            end = ends[number + (way > 0)]
+            value = self.values[number]
+            if math.isinf(end) or way * (slope + value * (end - x) - tilt) >= 0:
+                return self._replace(lowest=float(x + (tilt - slope) / value if tilt != slope else x))
+            slope, x, number = slope + value * (end - x), end, number + way
 
     def slope_at(self, x: Array) -> Array:
         """Slope of the gap at ``x`` (m)."""
@@ -108,15 +123,31 @@ class Hertz(Even, frozen=True, kw_only=True, tag_field="kind", tag="hertz"):
 
 
 class FlatRounded(Even, frozen=True, kw_only=True, tag_field="kind", tag="flat-rounded"):
-    """Flat of half-width ``b`` (m) with corners of radius ``R`` (m): undeformed gap (|x| - b)^2/(2R) for |x| > b."""
+    """Flat of half-width ``b`` (m) with corners of radius ``R`` (m): undeformed gap (|x| - b)^2/(2R) for |x| > b.
+
+    A flat that is not quite flat has the radius ``crown`` (m), negative if it is hollow: x^2/(2 crown) more gap.
+    """
 
     R: Positive
     b: Positive
+    crown: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.crown is not None and -self.R <= self.crown <= 0:
+            raise InputError(
+                f"profile.crown = {self.crown}: must be > 0, or < {-self.R} m, hollow by less than the corners"
+            )
+
+    @property
+    def bow(self) -> float:
+        """Curvature of the flat, 1/m: 1/crown, or zero."""
+        return 1 / self.crown if self.crown else 0.0
 
     @property
     def curvature(self) -> Curvature:
         """Curvature of the gap."""
-        return Curvature(0.0, np.array(self.kinks), np.array([1, 0, 1]) / self.R, (-math.inf, math.inf))
+        values = np.array([1, 0, 1]) / self.R + self.bow
+        return Curvature(0.0, np.array(self.kinks), values, (-math.inf, math.inf))
 
     @property
     def kinks(self) -> tuple[float, ...]:
@@ -130,7 +161,7 @@ class FlatRounded(Even, frozen=True, kw_only=True, tag_field="kind", tag="flat-r
 
     def gap_at(self, x: Array) -> Array:
         """Gap before loading at ``x`` (m), m."""
-        result: Array = np.maximum(np.abs(x) - self.b, 0.0) ** 2 / (2 * self.R)
+        result: Array = np.maximum(np.abs(x) - self.b, 0.0) ** 2 / (2 * self.R) + np.square(x) * (self.bow / 2)
         return result
 
     @property
@@ -143,7 +174,9 @@ class FlatRounded(Even, frozen=True, kw_only=True, tag_field="kind", tag="flat-r
         return _arc(np.maximum(np.abs(x) - self.b, 0.0), self.R)
 
     def curvature_steps(self) -> tuple[Array, Array]:
-        """Points of the steps of the gap's curvature (|x|, m), (1,), and the steps (1/m), (1,)."""
+        """Points of the steps of the gap's curvature (|x|, m), (k,), and the steps (1/m), (k,)."""
+        if self.bow:
+            return np.array([0.0, self.b]), np.array([self.bow, 1 / self.R])
         return np.array([self.b]), np.array([1 / self.R])
 
 

@@ -33,7 +33,7 @@ def _normal(scene: Scene) -> Formula:
     """Return the formula of the pressure."""
     if isinstance(scene.profile, Hertz):
         return "p = p0 √(1 − x²/a²), p0 = 2 P/(π a), a² = 2 A R P/π", "2"
-    if isinstance(scene.profile, FlatRounded):
+    if isinstance(scene.profile, FlatRounded) and not scene.profile.crown:
         return "P = a²/(A R) (ψ − sin ψ cos ψ), b = a cos ψ; p by the closed form of the reference", "3"
     return "p = the sum of the pressures of flat punches with round corners, one for each step of the curvature", "3"
 
@@ -58,8 +58,8 @@ def _tangential(scene: Scene, result: Result) -> tuple[Formula, ...]:
 
 
 def _small_tension(scene: Scene, hertz: bool) -> tuple[Formula, ...]:
-    if hertz and not scene.load.dsigma:
+    if hertz and not (scene.load.dsigma or scene.load.dslope):
         return (("m = n = a √(1 − ΔQ/(2 f P))", "4"),)
-    if hertz:
+    if hertz and not scene.load.dslope:
         return (("(n + m)/2 = a √(1 − ΔQ/(2 f P)), (n − m)/2 = −A R Δσ/(8 f)", "1, 5"),)
     return (("m and n from the two consistency conditions, by quadrature", "1"),)
