@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 import skfem
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Complex
 from partialslip_fem.bodies import Grading, block_of
 from partialslip_fem.elasticity import ELEMENTS, body, facets_of, triangles_of
 from partialslip_fem.factor import Backend, factor
@@ -66,7 +66,7 @@ def surroundings(
     own = body(mesh, part.kappa, order, part.compliance, part.held, part.pulled)
     nodes = own.points.shape[1]
     z = own.points[0] + 1j * own.points[1]
-    origins = places + 1j * _height(part, places)
+    origins = _on_face(part, places)
     known = np.zeros((2 * nodes, 2 * len(places) + 1))
     along_y = own.held >= nodes
     held = _flamant(part, z[own.held % nodes], origins)  # (2, 2, h, l)
@@ -84,11 +84,12 @@ def surroundings(
     stretched = np.zeros((2, len(points)))
     if own.pull is not None:
         stretched = 4 / part.compliance * moved[..., -1] - np.array([points, 0 * points])
-    off_line = _flamant(part, points + 1j * _height(part, points), origins)
-    return Surroundings(forced + off_line - _flamant(part, points + 0j, places + 0j), stretched)
+    off_line = _flamant(part, _on_face(part, points), origins)
+    on_line = _flamant(part, points.astype(complex), places.astype(complex))
+    return Surroundings(forced + off_line - on_line, stretched)
 
 
-def _flamant(part: Part, z: Array, origins: Array) -> Array:
+def _flamant(part: Part, z: Complex, origins: Complex) -> Array:
     """Displacements (2, 2, k, l) of a half-plane at ``z`` (k,), complex, under unit forces at ``origins`` (l,).
 
     4 pi mu w = -F (kappa log zeta + conj(log zeta)) + conj(F) zeta/conj(zeta), zeta = z - s, in Muskhelishvili's form.
@@ -128,11 +129,15 @@ def _left_over(part: Part, mesh: Mesh, order: int, places: Array) -> Array:
     columns = np.concatenate([tractions * r_x, tractions * r_y], axis=1)
     rows = np.concatenate([np.repeat(nodes, x.shape[1]) for nodes in basis.element_dofs])
     values = np.concatenate([(np.broadcast_to(each[0].value, x.shape) * ds).ravel() for each in basis.basis])
-    quadrature = sp.coo_array(
-        (values, (rows, np.tile(np.arange(x.size), len(basis.basis)))), (basis.N, x.size)
-    ).tocsr()
+    quadrature = sp.coo_array((values, (rows, np.tile(np.arange(x.size), len(basis.basis)))), (basis.N, x.size)).tocsr()
     both = np.tile(r_x, 2), np.tile(r_y, 2)
     return np.concatenate([quadrature @ (columns * each) for each in both])
+
+
+def _on_face(part: Part, x: Array) -> Complex:
+    """Points x + iy of the face at ``x``."""
+    result: Complex = x + 1j * _height(part, x)
+    return result
 
 
 def _height(part: Part, x: Array) -> Array:

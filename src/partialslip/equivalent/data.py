@@ -1,9 +1,9 @@
 """The data of half-planes that act like bodies of a size (docs/theory.md, section 12).
 
 What a rig adds to the displacements of half-planes is smooth: v(x), an opening, acts like a change of the gap, and u(x)
-like a bulk strain. Half-planes take the linear and the quadratic part of v, a tilt and a curvature, and the constant and
-the linear part of the strain, a tension that varies along x. Each is the projection on Chebyshev polynomials over the
-contact, or over the stick zone: the conditions that fix their ends then hold exactly, whatever the rest is.
+like a bulk strain. Half-planes take the linear and the quadratic part of v, a tilt and a curvature, and the constant
+and the linear part of the strain, a tension that varies along x. Each is the projection on Chebyshev polynomials over
+the contact, or over the stick zone: the conditions that fix their ends then hold exactly, whatever the rest is.
 """
 
 from dataclasses import dataclass
@@ -61,9 +61,7 @@ class Data:
         the ends of the contact, and the mean pressure."""
         R, length, stress = scene.profile.R, scene.length, scene.P / scene.length
         units = {"curvature": 1 / R, "tilt": length / R, "sigma": stress, "sigma_slope": stress / length}
-        return max(
-            float(np.abs(getattr(self, key) - getattr(other, key)).max()) / unit for key, unit in units.items()
-        )
+        return max(float(np.abs(getattr(self, key) - getattr(other, key)).max()) / unit for key, unit in units.items())
 
 
 def moments_of(rig: Rig, scene: Scene, result: Result) -> Moments:
@@ -76,9 +74,7 @@ def moments_of(rig: Rig, scene: Scene, result: Result) -> Moments:
     p2, dq = of.at(x)
     p1 = of.pressures_at(x)[0] if of.pressures_at else p2
     q1, q2 = of.levels_at(x) if of.levels_at else (-dq / 2, dq / 2)
-    (p1, q1), (p2, q2) = (
-        (rig.moments(x, weights * p), rig.moments(x, weights * q)) for p, q in ((p1, q1), (p2, q2))
-    )
+    (p1, q1), (p2, q2) = ((rig.moments(x, weights * p), rig.moments(x, weights * q)) for p, q in ((p1, q1), (p2, q2)))
     shares = _shares(scene)[:, None]
     q = q1 + shares * (q2 - q1)
     q[:, 0] = [Q for Q, *_ in scene.load.points]

@@ -5,7 +5,7 @@ the moments. What is left out of the strain changes the shear of the stick zone.
 see how much it matters.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,12 +13,14 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.equivalent.data import Data, chebyshev_coefficients, nodes
 from partialslip.halfplane import Contact, contact, contact_of
+from partialslip.halfplane.contact import tilted_contact
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.rig import Rig
 from partialslip.scene import Scene
 
 _MESH = 0.25  # error of the rig, in its difference from the rig of the coarser mesh
 _WAY = 2.0  # factor of what is left out where the pressure moves
+_MORE = 1e-4  # of P
 _ANGLES = np.pi * (np.arange(200) + 0.5) / 200
 _PLACES = np.cos(_ANGLES)  # in half-widths of the contact
 
@@ -68,13 +70,14 @@ def estimate(
     shear : bool
         Whether the half-planes leave out a part of the strain.
     """
-    A, R, (first, second) = scene.material.A, seen.profile.R, scene.load.ends
+    A, (first, second) = scene.material.A, scene.load.ends
     own = _look(seen)
     rests = data.rest[second], (data.rest[first] + data.rest[second]) / 2
-    whole = (_with(pressed, rest / A) for pressed, rest in zip((own.second, own.mean), rests, strict=True))
+    kinks = scene.profile.kinks
+    whole = (_with(pressed, rest / A, kinks) for pressed, rest in zip((own.second, own.mean), rests, strict=True))
     left_out = own.apart(_look(seen, *whole), own.second.a)
     # the moments of the pressure that is left out change the curvature and the tilt; the curvature is a mean
-    a, x = own.second.a, own.second.places(_PLACES)
+    a, x, R = own.second.a, own.second.places(_PLACES), _radius(seen, own.second)
     moments = rig.moments(x, _series(data.rest[second] / A)(_PLACES) * a * np.sin(_ANGLES) * np.pi / len(x))
     slope = chebyshev_coefficients(A * rig.slopes(own.second.places(nodes()), rig.opening(moments, 0 * moments)))
     grown = abs(R * slope[1] / (2 * a)) + R * float(np.ptp(data.curvature)) / 4
@@ -101,10 +104,17 @@ def _look(seen: Scene, second: Contact | None = None, mean: Contact | None = Non
     return _Look(second, mean, None if change and change.nothing else change, f)
 
 
-def _with(pressed: Contact, rest: Array) -> Contact:
+def _radius(seen: Scene, pressed: Contact) -> float:
+    """Radius of a Hertz contact of the half-width of ``pressed`` that grows like it with P, dP = pi a da/(A R)."""
+    more = pressed.P * (1 + _MORE)
+    grown = tilted_contact(seen, more, pressed.tilt).a - pressed.a
+    return np.pi * pressed.a * grown / (seen.material.A * _MORE * pressed.P)
+
+
+def _with(pressed: Contact, rest: Array, kinks: Sequence[float]) -> Contact:
     """The contact ``pressed`` with the pressure that the ``rest`` of the gap's slope, over A, adds."""
     more = _series(rest)
-    return contact_of(lambda x: pressed.pressure(x) + more(pressed.scaled(x)), pressed.a, centre=pressed.centre)
+    return contact_of(lambda x: pressed.pressure(x) + more(pressed.scaled(x)), pressed.a, kinks, pressed.centre)
 
 
 def _series(coefficients: Array) -> Callable[[Array], Array]:

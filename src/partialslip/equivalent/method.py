@@ -3,13 +3,16 @@
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.equivalent.data import Data, data_of, moments_of
 from partialslip.equivalent.estimate import estimate
+from partialslip.equivalent.words import in_words
 from partialslip.errors import InputError
+from partialslip.halfplane.contact import tilted_contact
 from partialslip.halfplane.marching import solve as solve_by_marching
 from partialslip.halfplane.method import has_closed_form
 from partialslip.halfplane.method import solve as solve_exactly
@@ -18,16 +21,25 @@ from partialslip.plan import plan as plan_of
 from partialslip.result import Clock, Result
 from partialslip.result.state import State
 from partialslip.rig import Rig
-from partialslip.scene import Bodies, Hertz, Scene
+from partialslip.scene import Bodies, FlatRounded, Hertz, Profile, Scene
 
 _KEYS = ("a", "left", "right", "m", "n", "p", "q")
+_PRESSED = "bodies that are not mirror images lock shear in when they are pressed, which is not followed; use fem"
 _SETTLED, _MOST = 1e-12, 40  # relative change of the data in an iteration; iterations
 _SETTLED_MARCH = 1e-3  # of the accuracy asked for, where each iteration is a march
 
 
+class StandIns(NamedTuple):
+    """Half-planes that stand for bodies of a size: their ``scene``, its ``result`` and the ``data``."""
+
+    result: Result
+    scene: Scene
+    data: Data
+
+
 def solve(
     scene: Scene,
-    plan: Plan,
+    _: Plan,
     progress: Callable[[str], None] = lambda _: None,
     start: State | None = None,
     *,
@@ -41,7 +53,6 @@ def solve(
     Parameters
     ----------
     scene : Scene
-    plan : Plan
     progress : callable, optional
         Called with a line of text from time to time.
     start : State, optional
@@ -52,22 +63,26 @@ def solve(
     Raises
     ------
     InputError
-        If no body is finite, the materials differ, a state is given, the profile is not hertz, or the contact extends
-        beyond the range in which the rig holds.
+        If no body is finite, the materials differ, P varies, a state is given, or the contact extends beyond the range
+        in which the rig holds.
     """
-    _check(scene, start)
+    if start:
+        raise InputError("start: must not be given for equivalent; use fem")
     clock = Clock()
-    progress("characterising the bodies")
-    rig = rig_of(scene)
+    with clock.phase("rig"):
+        progress("characterising the bodies")
+        rig = rig_of(_checked(scene))
     with clock.phase("half-planes"):
-        closed = scene.load.in_phase and has_closed_form(half_planes(scene, None))
-        found, seen, data = _iterated(rig, scene, closed, progress)
-        if closed and not has_closed_form(seen):
-            found, seen, data = _iterated(rig, scene, False, progress)
+        found, seen, data = stand_ins(scene, rig, progress)
+    closed = found.method == "exact"
     coarser = half_planes(scene, data_of(rig.coarser, scene, moments_of(rig, scene, found), found, shear=closed))
     shares = dict(found.shares) | estimate(rig, scene, seen, data, coarser, shear=closed)
     errors = {key: sum(share.get(key, 0.0) for share in shares.values()) for key in _KEYS}
-    levels = {key: errors["q"] for key in ("q1", "q2") if found.traction.levels_at}
+    undetermined, notes = dict(found.undetermined), found.notes
+    if rig.terms.xy.any():  # not mirror images
+        undetermined |= dict.fromkeys(("q1", "q2"), _PRESSED)
+        notes = (*(note for note in notes if not note.startswith("q1 and q2")), f"q1 and q2: {_PRESSED}")
+    levels = {key: errors["q"] for key in ("q1", "q2") if found.traction.levels_at and key not in undetermined}
     return replace(
         found,
         method="equivalent",
@@ -75,11 +90,27 @@ def solve(
         settings={"model": "half-planes with the data of the bodies", "solved by": found.method},
         estimate=errors | levels,
         shares=shares,
-        notes=found.notes,
+        notes=(in_words(scene, seen, data), *notes),
+        undetermined=undetermined,
         surface=None,
         stress_at=None,
         state=None,
     )
+
+
+def stand_ins(scene: Scene, rig: Rig, progress: Callable[[str], None] = lambda _: None) -> StandIns:
+    """Half-planes that act like the bodies of ``scene``, of which ``rig`` is the rig.
+
+    Raises
+    ------
+    InputError
+        As :func:`solve`.
+    """
+    closed = _checked(scene).load.in_phase and has_closed_form(half_planes(scene, None))
+    found = _iterated(rig, scene, closed, progress)
+    if closed and not has_closed_form(found.scene):
+        found = _iterated(rig, scene, False, progress)
+    return found
 
 
 def half_planes(scene: Scene, data: Data | None) -> Scene:
@@ -88,33 +119,41 @@ def half_planes(scene: Scene, data: Data | None) -> Scene:
     plain = scene.replace(bodies=Bodies(), load={"P": scene.P, "a": None, "p0": None})
     if data is None:
         return plain
-    R = 1 / (1 / scene.profile.R + float(data.curvature.mean()))
-    M = -R * scene.P * data.tilt
+    plain = plain.replace(profile=_bent(scene.profile, float(data.curvature.mean())))
+    M = np.array([tilted_contact(plain, scene.P, -float(tilt)).moment for tilt in data.tilt])
     load = {
         "Q": [Q for Q, *_ in scene.load.points],
         "sigma": data.sigma.tolist(),
         "sigma_slope": data.sigma_slope.tolist(),
         "M": M.tolist() if M.any() else None,
     }
-    return plain.replace(profile={"R": R}, load=load)
+    return plain.replace(load=load)
 
 
-def _check(scene: Scene, start: State | None) -> None:
+def _bent(profile: Profile, curvature: float) -> dict[str, Any]:
+    """Keys of ``profile`` with the ``curvature`` (1/m) added to that of its gap."""
+    if isinstance(profile, Hertz):
+        return {"R": 1 / (1 / profile.R + curvature)}
+    if isinstance(profile, FlatRounded):
+        bow = profile.bow + curvature
+        return {"crown": 1 / bow if bow else None}
+    x, gap = np.array(profile.x), np.array(profile.gap)
+    return {"gap": (gap + curvature * x**2 / 2).tolist(), "tilt": "free"}
+
+
+def _checked(scene: Scene) -> Scene:
     """Raise InputError if half-planes cannot stand for the bodies of ``scene``."""
     if not scene.finite:
         raise InputError("bodies: must have upper or lower for equivalent; half-planes are solved by exact")
     if not scene.material.alike:
         raise InputError("material.upper, material.lower: the bodies differ; must be of one material for equivalent")
-    if not isinstance(scene.profile, Hertz):
-        raise InputError("profile.kind: must be hertz for equivalent; use fem")
     if len({P for P, _ in scene.pressing}) > 1:
         raise InputError("load.P: must be constant for equivalent, as the bodies bend with P; use fem")
-    if start:
-        raise InputError("start: must not be given for equivalent; use fem")
+    return scene
 
 
-def _iterated(rig: Rig, scene: Scene, closed: bool, progress: Callable[[str], None]) -> tuple[Result, Scene, Data]:
-    """Result, scene of half-planes, and data that belong to each other."""
+def _iterated(rig: Rig, scene: Scene, closed: bool, progress: Callable[[str], None]) -> StandIns:
+    """Data, and what half-planes with these data do, that belong to each other."""
     seen = half_planes(scene, None)
     found = solve_exactly(seen, plan_of(seen)) if closed else _pressed(seen)
     settled = _SETTLED
@@ -122,7 +161,7 @@ def _iterated(rig: Rig, scene: Scene, closed: bool, progress: Callable[[str], No
     for number in range(1, _MOST + 1):
         before, data = data, data_of(rig, scene, moments_of(rig, scene, found), found, shear=closed)
         if before and data.apart(before, scene) <= settled:
-            return found, seen, data
+            return StandIns(found, seen, data)
         seen = half_planes(scene, data)
         if closed:
             found = solve_exactly(seen, plan_of(seen))
@@ -136,7 +175,7 @@ def _iterated(rig: Rig, scene: Scene, closed: bool, progress: Callable[[str], No
 
 def _pressed(scene: Scene) -> Result:
     """``scene`` without shear."""
-    still = scene.replace(load={"Q": [0.0, 0.0], "sigma": [0.0, 0.0], "M": None})
+    still = scene.replace(load={"Q": [0.0, 0.0], "sigma": [0.0, 0.0]})
     return solve_exactly(still, plan_of(still))
 
 

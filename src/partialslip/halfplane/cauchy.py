@@ -9,9 +9,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array
-
-Complex = npt.NDArray[np.complex128]
+from partialslip.arrays import Array, Complex
 
 _COUNT = 16  # nodes on a panel
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(_COUNT)

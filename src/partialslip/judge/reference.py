@@ -23,8 +23,8 @@ def reference_for(scene: Scene) -> str:
 def reference_of(results: Mapping[str, Result]) -> str | None:
     """Return the name of the reference among ``results``; None without results.
 
-    The reference is the result with all effects, else the first of exact, march, fem and equivalent. March precedes exact if slip
-    reverses between the load points.
+    The reference is the result with all effects, else the first of exact, march, fem and equivalent. March precedes
+    exact if slip reverses between the load points.
     """
     known = [name for name in (ALL_EFFECTS, *METHODS) if name in results]
     if known[:1] == ["exact"] and results["exact"].path_dependent and "march" in known:

@@ -68,8 +68,7 @@ class Rig:
 
     def powers(self, x: Array) -> Array:
         """Powers (x/reach)^j, (n, k), at ``x`` (n,), m."""
-        result: Array = polynomial.polyvander(x / self.reach, len(self.terms.xx) - 1)
-        return result
+        return np.asarray(polynomial.polyvander(x / self.reach, len(self.terms.xx) - 1), float)
 
     def slopes(self, x: Array, coefficients: Array) -> Array:
         """Derivatives by x, (..., n), at ``x`` (n,), m, of polynomials with the ``coefficients`` (..., k)."""

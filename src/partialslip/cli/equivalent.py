@@ -1,0 +1,79 @@
+"""partialslip equivalent: characterise the bodies of a scene as half-planes with other data."""
+
+import argparse
+from typing import TYPE_CHECKING
+
+import partialslip
+from partialslip.cli.common import add_force, add_scene, check_folder, print_written, results_folder
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rich.console import Console
+
+    from partialslip.cli.common import Commands
+    from partialslip.equivalent import Share
+
+RIG, SCENE = "rig.json", "half-planes.toml"
+
+
+def add(commands: "Commands") -> None:
+    """Add the command to the parser of ``commands``."""
+    equivalents = commands.add_parser(
+        "equivalent",
+        help="find half-planes that act like the bodies of a scene",
+        description="Find what the size and the supports of the bodies change: curvature and tilt of the gap, bulk "
+        f"tension. Write {RIG}, for bodies.equivalent in scenes with the same bodies, and {SCENE}, a scene of "
+        "half-planes with these data.",
+        examples=[
+            "partialslip equivalent my-rig.toml",
+            "partialslip equivalent my-rig.toml --set load.P=2e5 --out rigs",
+        ],
+    )
+    add_scene(equivalents)
+    equivalents.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-equivalent)")
+    add_force(equivalents)
+    equivalents.set_defaults(command=_equivalent)
+
+
+def _equivalent(options: argparse.Namespace) -> int:
+    check_folder(options.out)
+    scene = partialslip.load_scene(options.scene, options.overrides)
+
+    from partialslip.cli.consoles import output, working
+    from partialslip.equivalent import in_words, shares, stand_ins
+    from partialslip.output.files import write_files
+    from partialslip.rig import write_rig
+    from partialslip.run import rig_of
+    from partialslip.scene.writing import scene_toml
+
+    with working(scene.name) as tell:
+        rig = rig_of(scene)
+        found = stand_ins(scene, rig, tell)
+    named = found.scene.replace(name=f"{scene.name}-half-planes", title=f"Half-planes that act like {scene.name}"[:200])
+    with results_folder(options, "equivalent", f"{scene.name}-equivalent", scene) as (folder, passed):
+        files = write_files(
+            folder,
+            {RIG: lambda path: write_rig(rig, path), SCENE: lambda path: path.write_text(scene_toml(named), "utf-8")},
+        )
+    console = output()
+    console.print(f"{scene.name}: {in_words(scene, found.scene, found.data)}", soft_wrap=True, markup=False)
+    _print_shares(shares(rig, scene), console)
+    console.print(f"The data hold where |x| <= {scene.units.length(rig.reach)}.", soft_wrap=True, markup=False)
+    print_written(files, console, passed)
+    return 0
+
+
+def _print_shares(found: "Sequence[Share]", console: "Console") -> None:
+    """Print what loads add to half-planes, in SI units with prefixes."""
+    from partialslip.output.tables import print_table
+
+    head = ("load", "curvature", "tilt", "tension", "its slope")
+    console.print("\nThe half-planes gain, where tractions act at x = 0:", markup=False)
+    rows = []
+    for share in found:
+        name, size = ("1 MPa of sigma", 1e6) if share.load == "sigma" else (f"1 kN/m of {share.load}", 1e3)
+        gains = ((share.curvature, "1/m", 1.0), (share.tilt, "rad", 1.0), (share.sigma, "MPa", 1e6))
+        gains = (*gains, (share.sigma_slope, "MPa/mm", 1e9))
+        rows.append((name, *(f"{size * gain / unit:.4g} {label}" for gain, label, unit in gains)))
+    print_table(console, head, rows)

@@ -1,0 +1,78 @@
+"""The data of equivalent half-planes in words."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from partialslip.equivalent.data import Data
+from partialslip.rig import Rig
+from partialslip.scene import Hertz, Scene
+
+
+class Share(NamedTuple):
+    """What a unit of a load adds to half-planes.
+
+    Parameters
+    ----------
+    load : str
+        P, Q or sigma.
+    unit : str
+        Unit of the load, SI.
+    curvature, tilt : float
+        Curvature (1/m) and slope (rad) of the gap at x = 0.
+    sigma, sigma_slope : float
+        Tension at x = 0 (Pa) and its slope (Pa/m).
+    """
+
+    load: str
+    unit: str
+    curvature: float
+    tilt: float
+    sigma: float
+    sigma_slope: float
+
+
+def shares(rig: Rig, scene: Scene) -> tuple[Share, ...]:
+    """What units of P and Q at x = 0, and of sigma, add to the half-planes of ``scene``; 0 for what is not more than
+    the error of the rig."""
+    fine, rough = _shares(rig, scene), _shares(rig.coarser, scene)
+    return tuple(
+        Share(
+            *one[:2],
+            *(own if abs(own) > abs(own - other) else 0.0 for own, other in zip(one[2:], two[2:], strict=True)),
+        )
+        for one, two in zip(fine, rough, strict=True)
+    )
+
+
+def _shares(rig: Rig, scene: Scene) -> tuple[Share, ...]:
+    A, reach, (xx, yy, xy, pulled) = scene.material.A, rig.reach, rig.terms
+    strain = scene.material.bodies[0].A / 4
+    columns = (
+        ("P", "N/m", A * yy[:, 0], A * xy[:, 0]),
+        ("Q", "N/m", A * xy[0], A * xx[:, 0]),
+        ("sigma", "Pa", reach * strain * pulled[1], reach * strain * pulled[0]),
+    )
+    return tuple(
+        Share(load, unit, 2 * v[2] / reach**2, v[1] / reach, -4 / A * u[1] / reach, -8 / A * u[2] / reach**2)
+        for load, unit, v, u in columns
+    )
+
+
+def in_words(scene: Scene, seen: Scene, data: Data) -> str:
+    """The ``data`` of the half-planes ``seen`` that stand for the bodies of ``scene``, in a line."""
+    units, (first, second) = scene.units, scene.load.ends
+    if isinstance(scene.profile, Hertz) and isinstance(seen.profile, Hertz):
+        bent = f"R = {units.length(seen.profile.R)}, not {units.length(scene.profile.R)}"
+    else:
+        bent = f"a gap of {float(data.curvature.mean()):.4g} 1/m more curvature"
+    told = [bent]
+    ends = [(first, "1"), (second, "2")]
+    if np.ptp(data.sigma - [sigma for _, sigma, *_ in scene.load.points]) or np.any(data.sigma_slope):
+        values = " and ".join(units.labelled(float(data.sigma[end]), "Pa", 4) for end, _ in ends)
+        slopes = " and ".join(units.labelled(float(data.sigma_slope[end]), "Pa/m", 4) for end, _ in ends)
+        told.append(f"sigma = {values} at load points 1 and 2, growing along x by {slopes}")
+    if data.tilt.any():
+        turned = " and ".join(f"{float(data.tilt[end]):.4g}" for end, _ in ends)
+        told.append(f"turned by {turned} rad")
+    return f"the bodies act like half-planes with {'; '.join(told)}"
