@@ -73,7 +73,7 @@ def _print_shares(found: "Sequence[Share]", console: "Console") -> None:
     rows = []
     for share in found:
         name, size = ("1 MPa of sigma", 1e6) if share.load == "sigma" else (f"1 kN/m of {share.load}", 1e3)
-        gains = ((share.curvature, "1/m", 1.0), (share.tilt, "rad", 1.0), (share.sigma, "MPa", 1e6))
-        gains = (*gains, (share.sigma_slope, "MPa/mm", 1e9))
+        gains = [(share.curvature, "1/m", 1.0), (share.tilt, "rad", 1.0), (share.sigma, "MPa", 1e6)]
+        gains.append((share.sigma_slope, "MPa/mm", 1e9))
         rows.append((name, *(f"{size * gain / unit:.4g} {label}" for gain, label, unit in gains)))
     print_table(console, head, rows)
