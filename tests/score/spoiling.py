@@ -90,7 +90,7 @@ def penalty(scene: Scene, softest: float = DELTAS[-1], stiffest: float = DELTAS[
     assert state.n is not None
     path = load_path(scene, plan(scene))
     assert path is not None
-    (Q1, strain1), (Q2, strain2) = (path.cycle[end] for end in path.ends)
+    (Q1, strain1, _), (Q2, strain2, _) = (path.cycle[end] for end in path.ends)
     ends = np.unique([-1.0, *np.clip([-state.m / state.a, state.n / state.a], -0.999, 0.999), 1.0])
     vertices = graded(ends, 2e-4, 0.06)
     x = (vertices[1:] + vertices[:-1]) / 2
