@@ -203,7 +203,13 @@ def contact_of(
 
 
 def stick_zone(
-    contact: Contact, f: npt.ArrayLike, dQ: npt.ArrayLike, dsigma: npt.ArrayLike, dslope: npt.ArrayLike = 0.0
+    contact: Contact,
+    f: npt.ArrayLike,
+    dQ: npt.ArrayLike,
+    dsigma: npt.ArrayLike,
+    dslope: npt.ArrayLike = 0.0,
+    *,
+    checked: bool = True,
 ) -> StickZone[Array]:
     """Permanent stick zones of the steady state (paper, eqs. (17) and (18)), m; arrays of the broadcast shape.
 
@@ -220,6 +226,8 @@ def stick_zone(
     dslope : array_like
         Change of sigma_slope, Pa/m, of any sign: the change of tension at x is dsigma + dslope x. Where it is so large
         that points inside slip before the ends do, the stick zone is NaN with s not 0; an error for numbers.
+    checked : bool
+        Whether to look for such points, which takes most of the time.
 
     Raises
     ------
@@ -245,12 +253,12 @@ def stick_zone(
     Qf, gf = (np.where(slides, 0.0, turn * each) for each in (Qf, gf))
     mirror = np.where((turn < 0) == (at_middle < 0), 1, -1)
     if contact.shape.even:
-        centre, half_width, s = stick_zones(Qf, sf, contact.shape, gf)
+        centre, half_width, s = stick_zones(Qf, sf, contact.shape, gf, checked)
     else:
         centre, half_width, s = np.empty(Qf.shape), np.empty(Qf.shape), np.empty(Qf.shape, dtype=np.int64)
         for way, shape in ((1, contact.shape), (-1, contact.shape.mirrored)):
             here = mirror == way
-            centre[here], half_width[here], s[here] = stick_zones(Qf[here], sf[here], shape, gf[here])
+            centre[here], half_width[here], s[here] = stick_zones(Qf[here], sf[here], shape, gf[here], checked)
     if np.ndim(half_width) == 0 and np.isnan(half_width):
         raise InputError(f"dslope = {dslope_}: {TOO_STEEP}")
     a = np.where(slides, np.nan, contact.a)
