@@ -8,8 +8,9 @@ Scenes
 
 Solving
     run(scene)                          exact and fem, compared: a Run; run["fem"] is a Result
-    run(scene, "exact")                 one method of exact, march and fem
+    run(scene, "exact")                 one method of exact, march, fem and equivalent
     sweep(scene, {"friction.f": [...]}) many points, as a data frame
+    characterise(scene)                 what the size of its bodies adds to half-planes: a Rig
     plan(scene)                         the effects that the scene calls for
     compare(result, reference, ...)     a Comparison of two results
 
@@ -55,7 +56,9 @@ if TYPE_CHECKING:
     from partialslip.result import Traction as Traction
     from partialslip.result.state import State as State
     from partialslip.result.state import load_state as load_state
+    from partialslip.rig import load_rig as load_rig
     from partialslip.run import Run as Run
+    from partialslip.run import characterise as characterise
     from partialslip.run import run as run
     from partialslip.scene import Scene as Scene
     from partialslip.scene.measured import refitted as refitted
@@ -82,9 +85,11 @@ _HOMES = {
     "State": "result.state",
     "Traction": "result",
     "Verdict": "judge",
+    "characterise": "run",
     "compare": "judge",
     "export": "export",
     "load_result": "record",
+    "load_rig": "rig",
     "load_scene": "scene.reading",
     "load_state": "result.state",
     "parse_scene": "scene.reading",

@@ -43,7 +43,8 @@ def stick_zone(scene: Scene, rig: Rig, dQ: npt.ArrayLike, dsigma: npt.ArrayLike)
     seen = stand_ins(still, rig).scene
     pressed = contact(seen, Pressing(seen.P, seen.M))
     loads = np.broadcast_arrays(np.asarray(dQ, float), np.asarray(dsigma, float))
-    shape = loads[0].shape
+    if not (shape := loads[0].shape):
+        stick_zone_of(pressed, scene.friction.f, dQ, dsigma)  # raises if the contact slides
     flat_Q, flat_sigma = (load.ravel() for load in loads)
     centre, c, s = np.empty(flat_Q.size), np.empty(flat_Q.size), np.empty(flat_Q.size, int)
     for start in range(0, flat_Q.size, _CHUNK):
@@ -128,6 +129,7 @@ def _moments(
         p = pressed.shape.pressure(t) * width * np.sin(phi) / 2 * factors * np.pi / 2 * sign[:, None]
         tau = 1 + beyond / c[:, None]
         root = np.sqrt(beyond / c[:, None] * (tau + 1))
+        root = np.where(root == 0, np.inf, root)  # no slip zone
         J, place, power = np.pi * (tau - root), offset + a * t, p
         for j in range(count):
             result[:, j] += (power + p * J / (np.pi * root)).sum(axis=1)

@@ -79,7 +79,7 @@ def solve(
     shares = dict(found.shares) | estimate(rig, scene, seen, data, coarser, shear=closed)
     errors = {key: sum(share.get(key, 0.0) for share in shares.values()) for key in _KEYS}
     undetermined, notes = dict(found.undetermined), found.notes
-    if rig.terms.xy.any():  # not mirror images
+    if rig.terms.xy.any() and found.stick_centre is not None:  # not mirror images
         undetermined |= dict.fromkeys(("q1", "q2"), _PRESSED)
         notes = (*(note for note in notes if not note.startswith("q1 and q2")), f"q1 and q2: {_PRESSED}")
     levels = {key: errors["q"] for key in ("q1", "q2") if found.traction.levels_at and key not in undetermined}
