@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from known import EXACT, SCENE, A, result, traction
 
+from partialslip.bars import BARS
 from partialslip.judge import Bar, Outcome
 from partialslip.run import Run
 from partialslip.verify import REQUIREMENTS, Case, CaseVerdict, judge_case, number_of, requirement_of, run_case
@@ -76,6 +77,11 @@ def test_a_sound_result_answers_all_requirements():
     assert not {"p_max", "q_max"} & {each.quantity for each in verdicts}
     kept = {"left": "a", "right_2": "a", "P": "p", "p_1": "p", "dQ": "q", "q1": "q", "m": "m", "finite": "finite"}
     assert {key: requirement_of(key) for key in kept} == kept
+
+
+def test_every_quantity_with_a_bar_belongs_to_a_requirement():
+    assert {requirement_of(quantity) for quantity in BARS} < set(REQUIREMENTS)
+    assert {number_of(quantity) for quantity in BARS} == {"R5", "R6", "R7", "R8", "R9"}
 
 
 def test_work_and_words_go_with_a_verdict():
