@@ -124,7 +124,7 @@ def test_an_exact_solution_that_is_missing_is_missed():
     both = judge_case(replace(CASE, methods=("exact", "fem")), {"exact": EXACT, "fem": SOUND})
     assert {v.quantity for v in both if v.method == "exact"} == {"finishes", "finite"} | {"certificate"}
     for results in ({"fem": SOUND}, {"exact": EXACT, "fem": SOUND}):  # not compared, with any results
-        alone = judge_case(replace(CASE, compared=False), results)
+        alone = judge_case(replace(CASE, reference=""), results)
         assert {v.quantity for v in alone} == {"finishes", "finite", "certificate"}
 
 
@@ -146,7 +146,7 @@ def test_a_case_is_solved_by_what_it_needs(monkeypatch):
     monkeypatch.setattr(module, "_solve", solved)
     assert missed(run_case(CASE)) == set()
     assert asked == ["exact", "fem"]
-    assert list(solve_case(replace(CASE, compared=False))) == ["fem"]
+    assert list(solve_case(replace(CASE, reference=""))) == ["fem"]
 
 
 def test_finite_elements_are_solved_on_the_meshes_of_a_case(monkeypatch):
@@ -166,7 +166,7 @@ def test_what_a_method_raises_is_kept_with_its_time(monkeypatch):
     monkeypatch.setattr(module, "run", raises)
     times = iter([100.0, 102.5])
     monkeypatch.setattr(module.time, "process_time", lambda: next(times))
-    assert solve_case(replace(CASE, compared=False)) == {"fem": Failure("ZeroDivisionError: none", 2.5)}
+    assert solve_case(replace(CASE, reference="")) == {"fem": Failure("ZeroDivisionError: none", 2.5)}
 
 
 def test_a_verdict_without_work_has_none():
