@@ -17,6 +17,7 @@ SHARE = 1 / 3  # of the scenes, in which the pressure varies
 _STREAM = 1  # beside that of the other random numbers of a scene
 _LEAST = 0.4  # of the larger P, above which dQ = f dP is possible without sliding
 _HALVINGS = 50
+_CYCLES = 100  # most: the steady state is compared, and methods end with the first cycle that repeats
 
 
 def varies(seed: int, number: int) -> bool:
@@ -69,7 +70,7 @@ def _within_profile(scene: Scene, way: str, loads: Array) -> Scene:
     within the table of the profile."""
     P, M, Q, sigma = loads
     for _ in range(_HALVINGS):
-        load = {"a": None, "p0": None, "P": P.tolist(), "Q": Q.tolist(), "sigma": sigma.tolist()}
+        load = {"a": None, "p0": None, "P": P.tolist(), "Q": Q.tolist(), "sigma": sigma.tolist(), "cycles": _CYCLES}
         load |= {"M": M.tolist()} if "M" in way else {"e": (M / P).tolist()} if "e" in way else {}
         varying = scene.replace(load=load)
         try:
