@@ -27,10 +27,12 @@ def stress_case(method: str, seed: int, number: int) -> Case:
         return Case(scene.name, scene, (method,), reference="", hard=kind)
     kind, scene = draw_varying(seed, number)
     closed = scene.load.in_phase and has_closed_form(scene)
-    if method == "exact":
-        return Case(scene.name, scene, (method if closed else "march",), reference="", hard=kind)
-    reference = "exact" if closed and not _reverses(scene) else "march"
-    return Case(scene.name, scene, (method,), reference="" if reference == method else reference, hard=kind)
+    if method == "exact" and not closed:
+        method = "march"
+    elif kind_of(number) != "lost digits" and method != "exact":  # whose stick zone may be narrower than any cell
+        reference = "exact" if closed and not _reverses(scene) else "march"
+        return Case(scene.name, scene, (method,), reference="" if reference == method else reference, hard=kind)
+    return Case(scene.name, scene, (method,), reference="", hard=kind)
 
 
 def _reverses(scene: Scene) -> bool:
