@@ -13,6 +13,7 @@ from partialslip_fem.problem import Part, Problem
 FIRST_SIZE = 0.1  # element size, in half-widths of the contact line
 _GROWTH = 1.0  # of the first mesh
 _POINTS = 16  # points of that element size, evenly spaced along the contact line
+_WIDER = 8.0  # largest first contact line over the usual one: elements of more than it are wider than the contact
 _FILLS = 0.95  # largest contact line, in the width of a finite block: it keeps off the block's corners
 
 
@@ -37,10 +38,18 @@ def solve_on_first_mesh(
     Raises
     ------
     InputError
-        If the contact does not fit on a finite body.
+        If the contact does not fit on a finite body, or a moment moves it by many times its width.
     """
     reach, limit, meshes, factored = 1.5 + max(map(abs, problem.kinks), default=0.0), contact_line_limit(problem), 0, 0
     steps = MOST if problem.meshed else None  # on meshes from files this solution is also the last
+    farthest, most = max(map(abs, problem.lines), default=0.0), _WIDER * reach
+    if farthest >= most:
+        raise InputError(
+            f"load.M, load.e: must move the line of action of P by less than {most:.3g} sqrt(A R P) for fem, not "
+            f"{farthest:.3g}; use march"
+        )
+    while reach <= farthest:  # no pressure within the contact line has this moment
+        reach *= 2
     while True:
         reach = min(reach, limit)
         sizes = dict.fromkeys(np.linspace(-reach, reach, _POINTS).tolist(), 2 * FIRST_SIZE * reach)

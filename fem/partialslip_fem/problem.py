@@ -192,6 +192,14 @@ class Problem:
     largest: int = 2
 
     @property
+    def lines(self) -> tuple[float, ...]:
+        """Lines of action of P at the load points, where the pressure varies."""
+        loads: tuple[tuple[float, float], ...] = self.pressing or ()
+        if self.path and self.path.presses_anew:
+            loads = tuple((P, M) for _, _, P, M in self.path.cycle)
+        return tuple(M / P for P, M in loads)
+
+    @property
     def meshed(self) -> bool:
         """Whether every body has a mesh from a file."""
         return all(part.mesh for part in self.parts)

@@ -4,9 +4,11 @@ import math
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from partialslip import run
+from partialslip.errors import InputError
 
 sys.path.append(str(Path(__file__).parent.parent / "halfplane"))
 from varying_scenes import varying
@@ -59,3 +61,13 @@ def test_without_tangential_loads_both_contacts_are_found():
     result = run(varying((0.8, 1), 0.0, 0.0, accuracy=1e-3), ["exact", "fem"])
     assert result.passed
     assert result["fem"].regime == result["exact"].regime == "stuck"
+
+
+def test_contacts_that_have_nothing_in_common():
+    """A moment moves the contact by more than its width: a contact line around one has not the moment of the other."""
+    scene = varying((1, 0.9), 0.02, 0.0, (-2, 2), cycles=1)
+    result = run(scene, ["fem"])["fem"]
+    assert np.array(result.ends) == pytest.approx(np.array([(-3, -1), (1.1, 2.9)]), abs=1e-4)
+    far = varying((1, 0.9), 0.02, 0.0, (-20, 20), cycles=1)
+    with pytest.raises(InputError, match=r"^load\.M, load\.e: must move the line of action .*; use march$"):
+        run(far, ["fem"])

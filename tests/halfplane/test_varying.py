@@ -54,6 +54,36 @@ def test_the_bound_on_the_mean_where_fully_reversed_shear_ratchets():
     assert exact(RATCHET).regime == "ratchets"
 
 
+def test_the_bound_on_the_mean_holds_all_along_the_way():
+    """Between the load points p may be low where q is not: marching in steps ratchets where both load points allow a
+    steady state (tests/halfplane/test_varying_march.py)."""
+    scene = varying((0.9, 0.9), 0.7, 8.0, (0.1, -0.1))
+    cycle, f = steady_cycle(scene), scene.friction.f
+    left, right = cycle.stick
+    angle = (np.arange(2000) + 0.5) * np.pi / 2000
+    x, width = (
+        (left + right) / 2 - (right - left) / 2 * np.cos(angle),
+        (right - left) / 2 * np.sin(angle) * np.pi / 2000,
+    )
+    dq = cycle.dq(x)
+    states = [(cycle.first.pressure(x), 0 * x), (cycle.second.pressure(x), dq)]
+    at_ends = states.copy()
+    for back, before in ((False, 0 * x), (True, dq)):
+        for share in (np.arange(1, 160) / 160).tolist():
+            now, mean, change = Path(scene, back).stage(share)
+            states.append((now.pressure(x), before + f * mean.p0 * change.traction(mean.scaled(x))))
+    found, half = cycle.bounds_of_Q1, scene.load.dQ / 2
+
+    def tightest(sign, some):
+        return sign * np.min([f * p - sign * moved for p, moved in some], axis=0)
+
+    by_ends = (-0.412507760 - half, 0.064098721 - half)  # if only both load points count
+    for sign, bound, loose in zip((-1, 1), found, by_ends, strict=True):
+        tighter = float((tightest(sign, states) - tightest(sign, at_ends)) @ width)
+        assert bound - loose == pytest.approx(tighter, abs=3e-6)
+    assert found[0] - by_ends[0] > 0.015 * f * scene.P
+
+
 @pytest.mark.parametrize("scene", [MODERATE, TURNED], ids=["small", "large"])
 def test_conditions_by_direct_integration(scene):
     cycle = steady_cycle(scene)

@@ -151,6 +151,15 @@ def test_march_ratchets_where_the_bound_says_so():
     assert regimes == ["large tension", "ratchets"]
 
 
+@pytest.mark.slow
+def test_march_in_steps_ratchets_where_the_way_between_the_load_points_says_so():
+    """0.008 f P beyond the lower bound both load points alone would allow a steady state."""
+    a, e, P = (0.9, 0.9), (0.1, -0.1), math.pi * 0.9**2 / 2
+    least = run(varying(a, 0.7, 8.0, e), ["exact"])["exact"].limits["Q_mean_least"]
+    scenes = [varying(a, 0.7, 8.0, e, mean=least + off * P, cycles=400, steps=16) for off in (0.008, -0.008)]
+    assert [run(scene, ["march"])["march"].regime for scene in scenes] == ["large tension", "ratchets"]
+
+
 def test_counts_of_constant_pressure_do_not_change():
     scene = varying((1, 1), 0.3, 0.2, mean=0.1, cycles=3)
     number = scene.replace(load={"P": scene.P})

@@ -77,5 +77,5 @@ def test_the_ladder_measures_the_errors_of_the_meshes(monkeypatch):
 def test_cases_without_a_uniform_mesh_have_no_ladder():
     assert has_ladder(Case("it", SCENE))
     assert not has_ladder(Case("it", SCENE, ("march",)))
-    assert not has_ladder(Case("it", SCENE, compared=False))
+    assert not has_ladder(Case("it", SCENE, reference=""))
     assert not has_ladder(Case("it", SCENE, meshes=lambda _: []))

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from known import EXACT, SCENE, A, result, traction
 
+from partialslip.bars import BARS
 from partialslip.judge import Bar, Outcome
 from partialslip.run import Run
 from partialslip.verify import REQUIREMENTS, Case, CaseVerdict, judge_case, number_of, requirement_of, run_case
@@ -78,6 +79,11 @@ def test_a_sound_result_answers_all_requirements():
     assert {key: requirement_of(key) for key in kept} == kept
 
 
+def test_every_quantity_with_a_bar_belongs_to_a_requirement():
+    assert {requirement_of(quantity) for quantity in BARS} < set(REQUIREMENTS)
+    assert {number_of(quantity) for quantity in BARS} == {"R5", "R6", "R7", "R8", "R9"}
+
+
 def test_work_and_words_go_with_a_verdict():
     counted = replace(SOUND, counts={"iterations": 7})
     assert {(each.iterations, each.cpu_s) for each in found(counted)} == {(7, 1.0)}
@@ -118,7 +124,7 @@ def test_an_exact_solution_that_is_missing_is_missed():
     both = judge_case(replace(CASE, methods=("exact", "fem")), {"exact": EXACT, "fem": SOUND})
     assert {v.quantity for v in both if v.method == "exact"} == {"finishes", "finite"} | {"certificate"}
     for results in ({"fem": SOUND}, {"exact": EXACT, "fem": SOUND}):  # not compared, with any results
-        alone = judge_case(replace(CASE, compared=False), results)
+        alone = judge_case(replace(CASE, reference=""), results)
         assert {v.quantity for v in alone} == {"finishes", "finite", "certificate"}
 
 
@@ -140,7 +146,7 @@ def test_a_case_is_solved_by_what_it_needs(monkeypatch):
     monkeypatch.setattr(module, "_solve", solved)
     assert missed(run_case(CASE)) == set()
     assert asked == ["exact", "fem"]
-    assert list(solve_case(replace(CASE, compared=False))) == ["fem"]
+    assert list(solve_case(replace(CASE, reference=""))) == ["fem"]
 
 
 def test_finite_elements_are_solved_on_the_meshes_of_a_case(monkeypatch):
@@ -160,7 +166,7 @@ def test_what_a_method_raises_is_kept_with_its_time(monkeypatch):
     monkeypatch.setattr(module, "run", raises)
     times = iter([100.0, 102.5])
     monkeypatch.setattr(module.time, "process_time", lambda: next(times))
-    assert solve_case(replace(CASE, compared=False)) == {"fem": Failure("ZeroDivisionError: none", 2.5)}
+    assert solve_case(replace(CASE, reference="")) == {"fem": Failure("ZeroDivisionError: none", 2.5)}
 
 
 def test_a_verdict_without_work_has_none():

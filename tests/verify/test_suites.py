@@ -45,7 +45,7 @@ def test_random_scenes_by_number():
     assert list(stress_suite("fem", 7, 3)) == ["stress-7-0", "stress-7-1", "stress-7-2"]
     assert list(stress_suite("fem", 7, 3, ["12", "4" * 18])) == ["stress-7-12", "stress-7-" + "4" * 18]
     case = stress_suite("march", 7, 3, ["12"])["stress-7-12"]()
-    assert (case.name, case.methods, case.compared, case.hard) == ("stress-7-12", ("march",), False, kind_of(12))
+    assert (case.name, case.methods, case.reference, case.hard) == ("stress-7-12", ("march",), "", kind_of(12))
     for wrong in ("-1", "x", "", "1.0", "4" * 19):
         with pytest.raises(InputError, match="must be the number of a random scene"):
             stress_suite("fem", 7, 3, ["1", wrong])

@@ -70,7 +70,7 @@ def test_what_is_raised_is_a_verdict(monkeypatch):
 
     monkeypatch.setattr("partialslip.verify.case.run", raising)
     kind, scene = draw(0, 1)
-    (found,) = run_case(Case(kind, scene, ("march",), compared=False))
+    (found,) = run_case(Case(kind, scene, ("march",), reference=""))
     assert (found.quantity, found.outcome, found.reason) == ("finishes", "missed", "ZeroDivisionError: none left")
 
 
@@ -285,4 +285,5 @@ def test_a_random_scene_is_its_seed_and_number():
 def test_random_scenes_have_certificates(method, count):
     found = [v for make in stress_suite(method, 1, count).values() for v in run_case(make())]
     assert not [v for v in found if v.outcome is Outcome.MISSED]
-    assert {v.outcome for v in found} == {Outcome.PASSED}
+    alone = {v.outcome for v in found if v.quantity in ("finishes", "finite", "certificate")}
+    assert alone == {Outcome.PASSED}

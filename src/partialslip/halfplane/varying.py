@@ -22,6 +22,8 @@ _EQUAL = 1e-12  # relative difference of rates that is rounding
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
 _FEWER_NODES, _FEWER_WEIGHTS = np.polynomial.legendre.leggauss(20)
 _SHARES = (1 - np.cos(np.linspace(0, np.pi, 14)))[1:-1] / 2  # of the way, at which points touch or open
+_ALONG = 32  # stages of a way at which q is within its bounds
+_PANELS = 16  # of the stick zone, on which bounds along the way are integrated
 _PLACES = np.cos(np.linspace(np.pi, 0, 401))[1:-1]
 
 
@@ -73,29 +75,51 @@ class Cycle:
 
     @functools.cached_property
     def bounds_of_Q1(self) -> tuple[float, float]:
-        """Least and largest Q at load point 1 of a steady state, N/m: some q1 must keep within the bounds at both load
-        points."""
+        """Least and largest Q at load point 1 of a steady state, N/m: some q1 must keep within the bounds all along
+        both ways; at the load points only, where slip reverses: the stages are then not those of the formula."""
         f, (left, right) = self.scene.friction.f, self.stick
         slipping = 0.0
         if self.change:
             outer = self.first.ends
             for sign, low, high in zip(self.change.signs, (outer[0], right), (left, outer[1]), strict=True):
-                slipping -= sign * f * _integral(self.first.pressure, low, high, self._kinks)
+                slipping -= sign * f * float(_integral(self.first.pressure, low, high, self._kinks))
 
         def apart(sign: int) -> Callable[[Array], Array]:
             return lambda x: self.dq(x) - sign * f * (self.second.pressure(x) - self.first.pressure(x))
 
-        def inner(sign: int) -> Callable[[Array], Array]:
-            """sign times the tighter of both bounds."""
-            return lambda x: (
-                sign * np.minimum(f * self.first.pressure(x), f * self.second.pressure(x) - sign * self.dq(x))
-            )
+        crossings = [point for sign in (-1, 1) for point in _crossings(apart(sign), left, right)]
+        panels = np.linspace(left, right, _PANELS + 1 if self.change else 2).tolist()
+        low, high = slipping + _integral(self._tightest, left, right, [*self._kinks, *panels, *crossings])
+        return float(low), float(high)
 
-        low, high = (
-            slipping + _integral(inner(sign), left, right, [*self._kinks, *_crossings(apart(sign), left, right)])
-            for sign in (-1, 1)
+    def _tightest(self, x: Array) -> Array:
+        """Least and largest q1 at ``x`` (k,), Pa, (2, k): the bounds of q at load points 1 and 2 and at stages of both
+        ways, less the change of q since load point 1."""
+        f, dq = self.scene.friction.f, self.dq(x)
+        first, second = (f * self.first.pressure(x), 0 * x), (f * self.second.pressure(x), dq)
+
+        def between(stages: list[Stage], before: Array) -> list[tuple[Array, Array]]:
+            return [
+                (f * now.pressure(x), before + f * mean.p0 * change.traction(mean.scaled(x)))
+                for now, mean, change in stages
+            ]
+
+        forth, back = self._stages
+        ways = [first, *between(forth, 0 * x), second], [second, *between(back, dq), first]
+        rooms = [[_least(np.array([bound + sign * moved for bound, moved in way])) for way in ways] for sign in (1, -1)]
+        tightest: Array = np.array([[-1.0], [1.0]]) * np.min(rooms, axis=1)
+        return tightest
+
+    @functools.cached_property
+    def _stages(self) -> tuple[list[Stage], list[Stage]]:
+        """Stages between the load points, from 1 to 2 and back; none where there is no slip or slip reverses."""
+        if not self.change or self.turns_round:
+            return [], []
+        forth, back = (
+            [Path(self.scene, way).stage(share) for share in (np.arange(1, _ALONG) / _ALONG).tolist()]
+            for way in (False, True)
         )
-        return low, high
+        return forth, back
 
     @property
     def _kinks(self) -> list[float]:
@@ -237,15 +261,31 @@ def _turns(path: Path, change: Loading) -> bool:
     return False
 
 
-def _integral(function: Callable[[Array], Array], low: float, high: float, kinks: list[float]) -> float:
-    """Integral from ``low`` to ``high``; the function has square roots at both and at the ``kinks``."""
-    if high <= low:
-        return 0.0
+def _least(values: Array) -> Array:
+    """Least of ``values`` (n, k) at n evenly spaced places, (k,): of the parabola through the least one and its two
+    neighbours."""
+    if len(values) < 3:
+        return values.min(axis=0)  # type: ignore[no-any-return]
+    place = values.argmin(axis=0)
+    before, at, after = (
+        np.take_along_axis(values, np.clip(place + way, 0, len(values) - 1)[None], 0)[0] for way in (-1, 0, 1)
+    )
+    bend = before - 2 * at + after
+    inside = (place > 0) & (place < len(values) - 1) & (bend > 0)
+    found: Array = np.where(inside, at - (after - before) ** 2 / (8 * np.where(inside, bend, 1.0)), at)
+    return found
+
+
+def _integral(function: Callable[[Array], Array], low: float, high: float, kinks: list[float]) -> Array:
+    """Integrals from ``low`` to ``high`` of the values or rows of values of the ``function``, which has square roots at
+    both and at the ``kinks``."""
+    high = max(low, high)
     ends = np.unique([low, *(kink for kink in kinks if low < kink < high), high])
     half = np.diff(ends)[:, None] / 2
     angle = np.pi / 2 * (1 + _NODES)
     x = ends[:-1, None] + half * (1 - np.cos(angle))
-    return float((half * np.pi / 2 * _WEIGHTS * np.sin(angle)).ravel() @ function(x.ravel()))
+    result: Array = function(x.ravel()) @ (half * np.pi / 2 * _WEIGHTS * np.sin(angle)).ravel()
+    return result
 
 
 def _crossings(function: Callable[[Array], Array], low: float, high: float) -> list[float]:

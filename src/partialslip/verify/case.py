@@ -36,7 +36,7 @@ REQUIREMENTS = {
 }
 _PART_OF = {
     **dict.fromkeys(("left", "right", "left_1", "right_1", "left_2", "right_2"), "a"),
-    **dict.fromkeys(("P", "P_1", "M", "p_1"), "p"),
+    **dict.fromkeys(("P", "P_1", "M", "M_1", "p_1"), "p"),
     **dict.fromkeys(("dQ", "q1", "q2"), "q"),
 }
 
@@ -64,8 +64,9 @@ class Case:
     bars : mapping of str to Bar
         Unusual bars by method and quantity, for example ``"fem.q"``. Usual bars: the accuracy of the scene, ten times
         the accuracy for p, fifteen times the accuracy for q.
-    compared : bool
-        Whether to compare with the exact solution; if not, only certificates are judged.
+    reference : str
+        Method with which the others are compared: "exact", "march" where there is no closed form, or "": only
+        certificates are judged.
     meshes : callable, optional
         ``meshes(scene)``: given meshes for the finite elements (see :func:`partialslip_fem.model.solve_meshed`).
         There are then no usual bars.
@@ -77,7 +78,7 @@ class Case:
     scene: Scene
     methods: Sequence[str] = ("exact", "march", "fem")
     bars: Mapping[str, Bar] = field(default_factory=dict)
-    compared: bool = True
+    reference: str = "exact"
     meshes: Meshes | None = None
     hard: str = ""
 
@@ -120,20 +121,20 @@ def run_case(case: Case) -> list[CaseVerdict]:
 
 
 def solve_case(case: Case) -> Found:
-    """Return result or failure of each method of ``case``; exact comes first if the case is compared."""
-    needed = ["exact"] if case.compared else []
+    """Return result or failure of each method of ``case``; the reference comes first."""
+    needed = [case.reference] if case.reference else []
     return {method: _solve(case, method) for method in dict.fromkeys([*needed, *case.methods])}
 
 
 def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
     """Return the verdicts on the results ``found`` for ``case``.
 
-    If the case is compared and the exact method fails, the failure is a missed verdict. March replaces exact as the
-    reference where slip reverses between the load points.
+    If the reference fails, the failure is a missed verdict. March replaces exact as the reference where slip reverses
+    between the load points.
     """
-    lost = ["exact"] if case.compared and isinstance(found["exact"], Failure) else []
+    lost = [case.reference] if case.reference and isinstance(found[case.reference], Failure) else []
     results = {method: result for method, result in found.items() if isinstance(result, Result)}
-    judging = reference_of(results) if case.compared and not lost else None
+    judging = reference_of(results) if case.reference and not lost else None
     verdicts = []
     for method in dict.fromkeys([*lost, *case.methods]):
         result = found[method]

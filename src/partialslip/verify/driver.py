@@ -241,7 +241,7 @@ def _content(case: Case) -> dict[str, Any]:
     own = {
         "methods": list(case.methods),
         "bars": dict(case.bars),
-        "compared": case.compared,
+        "reference": case.reference,
         "meshes": list(map(_named, meshes)),
     }
     return {"scene": scene_content(case.scene), **own}
