@@ -99,7 +99,15 @@ def solve(
 
 
 def stand_ins(scene: Scene, rig: Rig, progress: Callable[[str], None] = lambda _: None) -> StandIns:
-    """Half-planes that act like the bodies of ``scene``, of which ``rig`` is the rig.
+    """Half-planes that act like the bodies of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    rig : Rig
+        The rig of the scene's bodies.
+    progress : callable, optional
+        Called with a line of text from time to time.
 
     Raises
     ------

@@ -33,8 +33,14 @@ class Share(NamedTuple):
 
 
 def shares(rig: Rig, scene: Scene) -> tuple[Share, ...]:
-    """What units of P and Q at x = 0, and of sigma, add to the half-planes of ``scene``; 0 for what is not more than
-    the error of the rig."""
+    """What units of P and Q at x = 0, and of sigma, add to half-planes; 0 for what is not more than the rig's error.
+
+    Parameters
+    ----------
+    rig : Rig
+    scene : Scene
+        A scene with the bodies of the rig.
+    """
     fine, rough = _shares(rig, scene), _shares(rig.coarser, scene)
     return tuple(
         Share(
