@@ -196,7 +196,7 @@ class Problem:
         """Lines of action of P at the load points, where the pressure varies."""
         loads: tuple[tuple[float, float], ...] = self.pressing or ()
         if self.path and self.path.presses_anew:
-            loads = tuple((P, M) for _, _, P, M in self.path.cycle)
+            loads = tuple((P, M) for *_, P, M in self.path.cycle)
         return tuple(M / P for P, M in loads)
 
     @property

@@ -12,7 +12,7 @@ from msgspec.structs import replace as changed
 from partialslip import compare
 from partialslip.bars import BARS
 from partialslip.judge import NO_BAR, Bar, Outcome, Verdict, conditions, judged, overall
-from partialslip.judge.reference import ALL_EFFECTS, METHODS
+from partialslip.judge.reference import ALL_EFFECTS, REFERENCES
 from partialslip.plan import plan
 from partialslip.result import SurfaceStress
 from partialslip.run import compared
@@ -458,7 +458,7 @@ def test_a_run_as_a_whole():
 def test_the_reference_is_the_first_that_can_judge():
     turning = replace(EXACT, path_dependent=True)
     march = replace(EXACT, method="march")
-    assert METHODS == ("exact", "march", "fem")
+    assert REFERENCES == ("exact", "march", "fem")
     assert ran({"fem": result(), "march": march, "exact": EXACT}).reference == "exact"
     assert ran({"fem": result(), "march": march, "exact": turning}).reference == "march"
     assert ran({"fem": result(), "exact": turning}).reference == "exact"

@@ -45,8 +45,8 @@ def add(commands: "Commands") -> None:
     )
     add_scene(runs)
     runs.add_argument("--with", dest="methods", metavar="METHODS",
-                      help="methods of exact, march and fem, separated by commas (default: exact,fem; march,fem if Q "
-                      "and sigma are out of phase)")  # fmt: skip
+                      help="methods of exact, march, fem and equivalent, separated by commas (default: exact,fem; "
+                      "march,fem if Q and sigma are out of phase)")  # fmt: skip
     runs.add_argument("--accuracy", metavar="FRACTION",
                       help="accuracy of a, m and n, as a fraction of a; fem takes the element order with the lowest "
                       "predicted cost; --set fem.order overrides it")  # fmt: skip
