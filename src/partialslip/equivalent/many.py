@@ -24,7 +24,8 @@ def stick_zone(scene: Scene, rig: Rig, dQ: npt.ArrayLike, dsigma: npt.ArrayLike)
 
     P, f and the bodies are those of the scene, the loads fully reversed: between their extremes the contact moves
     evenly about its place under P alone. As :func:`partialslip.halfplane.stick_zone`, for half-planes that act like the
-    bodies; shapes follow NumPy's broadcasting.
+    bodies; shapes follow NumPy's broadcasting. Where slip reverses between the load points, the stick zones are those
+    of a single step; the method ``equivalent`` marches then.
 
     Parameters
     ----------

@@ -47,8 +47,8 @@ def solve(
 ) -> Result:
     """Solve ``scene`` as half-planes with the data that make them act like its bodies.
 
-    The data depend on the tractions: they are found by iteration. Steady states with a closed form are solved exactly;
-    other loads by marching, with what the bodies add to the shear displacements in full.
+    The data depend on the tractions: they are found by iteration. Steady states with a closed form are solved exactly
+    if slip does not reverse; other loads by marching, with what the bodies add to the shear displacements in full.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def stand_ins(scene: Scene, rig: Rig, progress: Callable[[str], None] = lambda _
     """
     closed = _checked(scene).load.in_phase and has_closed_form(half_planes(scene, None))
     found = _iterated(rig, scene, closed, progress)
-    if closed and not has_closed_form(found.scene):
+    if closed and (found.result.path_dependent or not has_closed_form(found.scene)):
         found = _iterated(rig, scene, False, progress)
     return found
 
