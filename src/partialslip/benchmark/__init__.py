@@ -1,0 +1,37 @@
+"""Numbered problems with frozen targets, for other codes to measure themselves by."""
+
+from partialslip.benchmark.book import book_page as book_page
+from partialslip.benchmark.book import book_zip as book_zip
+from partialslip.benchmark.grade import Graded as Graded
+from partialslip.benchmark.grade import Mark as Mark
+from partialslip.benchmark.grade import graded as graded
+from partialslip.benchmark.problem import Problem as Problem
+from partialslip.benchmark.problem import Source as Source
+from partialslip.benchmark.problem import Target as Target
+from partialslip.benchmark.problem import problems as problems
+from partialslip.benchmark.scoreboard import Board as Board
+from partialslip.benchmark.scoreboard import scoreboard as scoreboard
+from partialslip.benchmark.submission import Answer as Answer
+from partialslip.benchmark.submission import Meta as Meta
+from partialslip.benchmark.submission import Submission as Submission
+from partialslip.benchmark.submission import read_submission as read_submission
+from partialslip.benchmark.submission import write_submission as write_submission
+
+__all__ = [
+    "Answer",
+    "Board",
+    "Graded",
+    "Mark",
+    "Meta",
+    "Problem",
+    "Source",
+    "Submission",
+    "Target",
+    "book_page",
+    "book_zip",
+    "graded",
+    "problems",
+    "read_submission",
+    "scoreboard",
+    "write_submission",
+]

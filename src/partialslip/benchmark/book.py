@@ -1,0 +1,101 @@
+"""The book of the benchmark: a page with all problems and the scoreboard, and a zip of plain data."""
+
+import io
+import zipfile
+from collections.abc import Mapping, Sequence
+
+import msgspec
+
+from partialslip.benchmark.grade import LIMITS
+from partialslip.benchmark.problem import EDITION, Problem, read_frozen
+from partialslip.benchmark.scoreboard import Board
+from partialslip.origin import Made, origin_lines
+from partialslip.output.csv import csv_text
+from partialslip.output.json import json_text
+from partialslip.output.page import render_page
+from partialslip.report import rows
+from partialslip.report.sketch import sketch_svg
+from partialslip.scene.writing import scene_tables, scene_toml
+
+_EARLY = (1980, 1, 1, 0, 0, 0)  # date of all files in the zip: the same content gives the same zip
+_LEFT_OUT = ("fem", "effects")  # tables of a scene that are settings of partialslip
+_PLACES = ("a", "m", "n")
+
+
+def book_page(problems: Mapping[str, Problem], board: Board | None, made: Made) -> str:
+    """The book as HTML.
+
+    Parameters
+    ----------
+    problems : mapping of str to Problem
+    board : Board or None
+    made : Made
+    """
+    return render_page(
+        "partialslip.benchmark",
+        "book.html",
+        title=f"Benchmark of frictional contact, edition {EDITION}",
+        origin=origin_lines([made]),
+        limits=LIMITS,
+        board=board,
+        overview=[_overview(problem) for problem in problems.values()],
+        problems=list(problems.values()),
+        sketches={number: sketch_svg(problem.scene) for number, problem in problems.items()},
+        data={number: _data(problem) for number, problem in problems.items()},
+        targets={number: _targets(problem) for number, problem in problems.items()},
+        edition=EDITION,
+        checksums=read_frozen().checksums,
+    )
+
+
+def book_zip(problems: Mapping[str, Problem]) -> bytes:
+    """Problems as plain data: for each a JSON file with everything, the scene as TOML, and the targets as CSV."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for number, problem in problems.items():
+            for name, text in _files(problem).items():
+                archive.writestr(zipfile.ZipInfo(f"{number}/{name}", _EARLY), text, zipfile.ZIP_DEFLATED)
+    return buffer.getvalue()
+
+
+def _files(problem: Problem) -> dict[str, str]:
+    tables = {key: table for key, table in scene_tables(problem.scene).items() if key not in _LEFT_OUT}
+    everything = {
+        "number": problem.number,
+        "edition": EDITION,
+        "title": problem.title,
+        "statement": problem.statement,
+        "sources": msgspec.to_builtins(problem.sources),
+        "data": tables,
+        "targets": msgspec.to_builtins(dict(problem.targets)),
+    }
+    columns = ("key", "value", "unit", "scale", "uncertainty", "group", "known")
+    lines = [[key, *(getattr(target, name) for name in columns[1:])] for key, target in problem.targets.items()]
+    return {
+        "problem.json": json_text(everything),
+        "scene.toml": scene_toml(problem.scene),
+        "targets.csv": csv_text(columns, lines),
+    }
+
+
+def _overview(problem: Problem) -> Sequence[str]:
+    a = problem.targets["a"].value
+    ends = [f"{problem.targets[key].value / a:.6f}" if key in problem.targets else "–" for key in ("m", "n")]
+    return (problem.number, problem.title, problem.regime, f"{a * 1e3:.6g}", *ends)
+
+
+def _data(problem: Problem) -> list[tuple[str, str, str]]:
+    """Data of a problem: rows of table, key and value, without settings of partialslip."""
+    found, table = [], ""
+    for line in rows.settings(problem.scene):
+        table = line[0] or table
+        if table not in _LEFT_OUT:
+            found.append(line)
+    return found
+
+
+def _targets(problem: Problem) -> list[tuple[str, ...]]:
+    return [
+        (key, each.group, f"{each.value:.12g}", each.unit, f"{each.scale:.6g}", f"{each.uncertainty:.0e}", each.known)
+        for key, each in problem.targets.items()
+    ]

@@ -1,0 +1,78 @@
+"""Targets: values that two independent methods agree on, with their uncertainty."""
+
+from collections.abc import Callable, Mapping
+
+from partialslip.benchmark.measured import Quantity, quantities
+from partialslip.benchmark.problem import Problem, Target
+from partialslip.result import Result
+from partialslip.run import run
+
+_DIGITS = 1e-9  # uncertainty of closed forms, in the scale of the quantity
+_FINE, _COARSER = 1e-5, 8.0  # accuracy asked of march and fem, and factor of the second accuracy of one method
+
+
+def ways(problem: Problem) -> tuple[tuple[str, float], ...]:
+    """Methods, with their accuracies, that find the targets of ``problem``: the first gives the values, the others
+    check them."""
+    from partialslip.halfplane.method import has_closed_form, path_dependent
+
+    scene = problem.scene
+    if not scene.material.alike:
+        return ("fem", _FINE), ("fem", _FINE * _COARSER)
+    if scene.finite:
+        return ("fem", _FINE), ("equivalent", _FINE)
+    by_steps = ("march", _FINE), ("fem", _FINE)
+    sticks = scene.friction.f > 0 and not scene.slides
+    if not scene.load.in_phase or (sticks and (not has_closed_form(scene) or path_dependent(scene))):
+        return by_steps
+    return ("exact", _FINE), *by_steps
+
+
+def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: None) -> tuple[dict[str, Target], str]:
+    """Find the targets of ``problem``, and its regime.
+
+    The uncertainty is that of a closed form, or the largest of the method's estimate and the differences between the
+    methods.
+
+    Parameters
+    ----------
+    problem : Problem
+    progress : callable, optional
+        Called with a line of text from time to time.
+    """
+    found: list[tuple[str, Result, Mapping[str, Quantity]]] = []
+    for method, accuracy in ways(problem):
+        progress(f"{problem.number}: {method}")
+        result = run(problem.scene.replace(fem={"accuracy": accuracy}), method)[method]
+        a = found[0][1].a if found else result.a
+        found.append((method, result, quantities(problem.scene, result, problem.places, a)))
+    (method, result, values), *checks = found
+    return {key: _target(key, method, result, value, checks) for key, value in values.items()}, result.regime
+
+
+def _target(
+    key: str,
+    method: str,
+    result: Result,
+    quantity: Quantity,
+    checks: list[tuple[str, Result, Mapping[str, Quantity]]],
+) -> Target:
+    apart = {
+        f"{name}, accuracy {other.settings['accuracy']:.0e}" if name == method else name: abs(
+            values[key].value - quantity.value
+        )
+        / quantity.scale
+        for name, other, values in checks
+        if key in values
+    }
+    said = [f"{name} within {max(off, 1e-16):.0e}" for name, off in apart.items()]
+    exact = method == "exact"
+    known = "closed form" if exact else f"{method}, estimate {result.estimate.get(quantity.estimate, float('nan')):.0e}"
+    return Target(
+        value=quantity.value,
+        unit=quantity.unit,
+        scale=quantity.scale,
+        uncertainty=_DIGITS if exact else max([result.estimate.get(quantity.estimate, 0.0), *apart.values()]),
+        known="; ".join([known, *said]),
+        group=quantity.group,
+    )

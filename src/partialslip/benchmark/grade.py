@@ -1,0 +1,73 @@
+"""Grades: how near a code comes to the targets of a problem, from A to D by its worst target, and E beyond."""
+
+from collections.abc import Mapping
+
+import msgspec
+
+from partialslip.benchmark.measured import GROUPS
+from partialslip.benchmark.problem import Problem, Target
+from partialslip.benchmark.submission import Answer
+
+LIMITS = {"A": 1e-4, "B": 1e-3, "C": 1e-2, "D": 5e-2}
+BEYOND = "E"
+NOT_OFFERED, NOT_GRADED = "not offered", "not graded"
+_SURE = 0.2  # largest uncertainty of a target, in the limit of a grade
+_GRADED = ("contact", "stick", "tractions")  # groups that count for the whole
+
+
+class Mark(msgspec.Struct, frozen=True):
+    """Grade of a group of targets, or of a problem.
+
+    Parameters
+    ----------
+    grade : str
+        A to E; "not offered" if a value is missing; "not graded" if the targets are not sure enough.
+    worst : str
+        Key of the target that decides; empty without one.
+    error : float or None
+        Its error, in the scale of the target.
+    """
+
+    grade: str
+    worst: str = ""
+    error: float | None = None
+
+
+class Graded(msgspec.Struct, frozen=True):
+    """Marks of an answer: ``overall``, the worst of contact, stick and tractions, and by ``groups``."""
+
+    overall: Mark
+    groups: dict[str, Mark]
+    errors: dict[str, float]
+
+
+def graded(problem: Problem, answer: Answer) -> Graded:
+    """Grade ``answer`` to ``problem``."""
+    errors = {
+        key: abs(value - problem.targets[key].value) / problem.targets[key].scale
+        for key, value in answer.values.items()
+        if value is not None
+    }
+    marks = {}
+    for group in GROUPS:
+        some = {key: target for key, target in problem.targets.items() if target.group == group}
+        if some:
+            marks[group] = _mark(some, errors)
+    counted = [marks[group] for group in _GRADED if group in marks]
+    return Graded(max(counted, key=lambda mark: (_rank(mark), mark.error or 0.0)), marks, errors)
+
+
+def _mark(targets: Mapping[str, Target], errors: Mapping[str, float]) -> Mark:
+    missing = [key for key in targets if key not in errors]
+    if missing:
+        return Mark(NOT_OFFERED, missing[0])
+    worst = max(targets, key=lambda key: errors[key])
+    unsure = max(target.uncertainty for target in targets.values())
+    if errors[worst] > max(LIMITS.values()):
+        return Mark(BEYOND, worst, errors[worst])
+    reached = [grade for grade, limit in LIMITS.items() if errors[worst] <= limit and unsure <= _SURE * limit]
+    return Mark(reached[0] if reached else NOT_GRADED, worst, errors[worst])
+
+
+def _rank(mark: Mark) -> int:
+    return [*LIMITS, BEYOND, NOT_GRADED, NOT_OFFERED].index(mark.grade)

@@ -1,0 +1,90 @@
+"""Quantities of the benchmark, taken from a result: what a target is, and what a method's values are."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from partialslip.result import Result
+from partialslip.scene import Scene
+from partialslip.units import Dimension
+
+GROUPS = ("contact", "stick", "tractions", "stress")
+
+
+class Quantity(NamedTuple):
+    """A quantity of a result.
+
+    Parameters
+    ----------
+    value : float
+        SI units.
+    unit : str
+        Dimension.
+    scale : float
+        Size to which an error is relative, in the same unit.
+    group : str
+        One of :data:`GROUPS`.
+    estimate : str
+        Key of the method's error estimate that holds for it; empty if none does.
+    """
+
+    value: float
+    unit: Dimension
+    scale: float
+    group: str
+    estimate: str
+
+
+def quantities(scene: Scene, result: Result, places: tuple[float, ...], a: float | None = None) -> dict[str, Quantity]:
+    """Quantities of ``result``, by key.
+
+    Parameters
+    ----------
+    scene : Scene
+    result : Result
+    places : tuple of float
+        x/a at which tractions are taken.
+    a : float, optional
+        Half-width that places and scales refer to, m; default: that of the result.
+
+    Notes
+    -----
+    ``a``, ``left``, ``right`` (contact, ends where it is not even), ``m``, ``n``; ``p_max``, ``p@x``, ``dq@x`` and,
+    where determined, ``q1@x`` and ``q2@x`` at x/a; ``slip`` (the largest) and ``dissipated``. A quantity that the
+    method does not determine is not there.
+    """
+    return dict(_quantities(scene, result, places, a or result.a))
+
+
+def _quantities(scene: Scene, result: Result, places: tuple[float, ...], a: float) -> Iterator[tuple[str, Quantity]]:
+    f, of = scene.friction.f, result.traction
+    p0 = 2 * scene.P / (np.pi * a)
+    yield "a", Quantity(result.a, "m", a, "contact", "a")
+    if result.contact_ends:
+        names = ("left_1", "right_1", "left_2", "right_2")
+        for name, end in zip(names, (end for ends in result.contact_ends for end in ends), strict=True):
+            yield name, Quantity(end, "m", a, "contact", name.partition("_")[0])
+    for key in ("m", "n"):
+        end = getattr(result, key)
+        if end is not None and key not in result.undetermined:
+            yield key, Quantity(end, "m", a, "stick", key)
+    x = a * np.array(places)
+    p, dq = of.at(x)
+    yield "p_max", Quantity(of.p_max, "Pa", p0, "tractions", "p")
+    for place, value in zip(places, p.tolist(), strict=True):
+        yield f"p@{place:g}", Quantity(value, "Pa", p0, "tractions", "p")
+    if not f or not np.any(dq):
+        return
+    if "q" not in result.undetermined:
+        for place, value in zip(places, dq.tolist(), strict=True):
+            yield f"dq@{place:g}", Quantity(value, "Pa", 2 * f * p0, "tractions", "q")
+    if of.levels_at and "q1" not in result.undetermined:
+        for key, values in zip(("q1", "q2"), of.levels_at(x), strict=True):
+            for place, value in zip(places, values.tolist(), strict=True):
+                yield f"{key}@{place:g}", Quantity(value, "Pa", f * p0, "tractions", key)
+    if result.slip and not {"q", "m"} & set(result.undetermined):
+        most = float(np.abs(result.slip.slip).max())
+        if most > 0:
+            yield "slip", Quantity(most, "m", most, "tractions", "q")
+            yield "dissipated", Quantity(result.slip.dissipated, "J/m", result.slip.dissipated, "tractions", "q")

@@ -1,0 +1,112 @@
+"""Submissions: what a code found, as a folder of plain files."""
+
+import math
+import os
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import tomli_w
+
+from partialslip.errors import InputError
+from partialslip.inputfile import read_bytes, read_text
+from partialslip.output.files import write_texts
+from partialslip.output.json import json_text
+
+_LARGEST = 2**20  # bytes of a file
+META = "meta.toml"
+
+
+class Meta(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Who found the values: ``code`` and its ``version``, ``machine``, and ``settings`` in words."""
+
+    code: Annotated[str, msgspec.Meta(min_length=1, max_length=60)]
+    version: Annotated[str, msgspec.Meta(max_length=60)]
+    settings: Annotated[str, msgspec.Meta(max_length=400)] = ""
+    machine: Annotated[str, msgspec.Meta(max_length=200)] = ""
+
+
+class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What a code found for a problem.
+
+    Parameters
+    ----------
+    values : mapping of str to float or None
+        By key of the target, SI units; None, or no key, where the code has no value.
+    cpu_s : float, optional
+        CPU seconds.
+    unknowns : int, optional
+    memory_mb : float, optional
+        Peak memory.
+    note : str
+        For the reader.
+    """
+
+    values: dict[str, float | None]
+    cpu_s: Annotated[float, msgspec.Meta(ge=0)] | None = None
+    unknowns: Annotated[int, msgspec.Meta(ge=0)] | None = None
+    memory_mb: Annotated[float, msgspec.Meta(ge=0)] | None = None
+    note: Annotated[str, msgspec.Meta(max_length=1000)] = ""
+
+
+class Submission(msgspec.Struct, frozen=True):
+    """A code, ``meta``, and its ``answers`` by number of the problem."""
+
+    meta: Meta
+    answers: dict[str, Answer]
+
+
+def read_submission(folder: str | os.PathLike[str], known: Mapping[str, object]) -> Submission:
+    """Read a submission: ``meta.toml``, and a file PS-01.json and so on for each problem that is answered.
+
+    Parameters
+    ----------
+    folder : str or path
+    known : mapping
+        Problems by number, with their ``targets``.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, has a field or a value that is not allowed, or answers no problem of the benchmark.
+    """
+    path = Path(folder)
+    if not path.is_dir():
+        raise InputError(f"{folder}: must be a folder with {META} and PS-01.json and so on")
+    try:
+        meta = msgspec.convert(tomllib.loads(read_text(path / META, _LARGEST)), Meta)
+    except (msgspec.ValidationError, tomllib.TOMLDecodeError) as error:
+        raise InputError(f"{path / META}: {error}") from None
+    answers = {}
+    for file in sorted(path.glob("*.json")):
+        number = file.stem
+        if number not in known:
+            raise InputError(f"{file}: no problem has this number; known are {', '.join(known)}")
+        answers[number] = _answer(file, known[number].targets)  # type: ignore[attr-defined]
+    if not answers:
+        raise InputError(f"{folder}: no answers; must have PS-01.json and so on")
+    return Submission(meta, answers)
+
+
+def _answer(file: Path, targets: Mapping[str, object]) -> Answer:
+    try:
+        answer = msgspec.json.decode(read_bytes(file, _LARGEST), type=Answer)
+    except msgspec.DecodeError as error:
+        raise InputError(f"{file}: {error}") from None
+    for key, value in answer.values.items():
+        if key not in targets:
+            raise InputError(f"{file}: values.{key}: no target has this key; known are {', '.join(targets)}")
+        if value is not None and not math.isfinite(value):
+            raise InputError(f"{file}: values.{key} = {value}: must be finite, or null without a value")
+    return answer
+
+
+def write_submission(submission: Submission, folder: str | os.PathLike[str]) -> list[Path]:
+    """Write ``submission`` into ``folder``, as :func:`read_submission` reads it."""
+    meta = {key: value for key, value in msgspec.to_builtins(submission.meta).items() if value}
+    files = {META: tomli_w.dumps(meta)}
+    return write_texts(
+        Path(folder), files | {f"{key}.json": json_text(each) for key, each in submission.answers.items()}
+    )

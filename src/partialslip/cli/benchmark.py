@@ -1,0 +1,151 @@
+"""partialslip benchmark: numbered problems with frozen targets, for any code."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from partialslip.cli.common import add_force, add_pdf, check_folder, check_report, print_written, results_folder
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from partialslip.benchmark import Problem, Submission
+    from partialslip.cli.common import Commands
+
+_PROBLEMS = "numbers of problems, or patterns such as PS-0*, separated by commas (default: all)"
+
+
+def add(commands: "Commands") -> None:
+    """Add the command to the parser of ``commands``."""
+    benchmark = commands.add_parser(
+        "benchmark",
+        help="numbered problems with frozen targets, for any code",
+        description="List the problems of the benchmark, answer them with a method of partialslip, score the answers "
+        "of any code, or write the book.",
+        examples=[
+            "partialslip benchmark list",
+            "partialslip benchmark score my-answers",
+            "partialslip benchmark build",
+        ],
+    )
+    parts = benchmark.add_subparsers(required=True, metavar="PART", parser_class=type(benchmark))
+    lists = parts.add_parser("list", help="list the problems", description="List numbers, titles and targets.",
+                             examples=["partialslip benchmark list"])  # fmt: skip
+    lists.set_defaults(command=_list)
+
+    runs = parts.add_parser("run", help="answer problems with a method of partialslip",
+                            description="Answer problems with a method of partialslip, and write the answers.",
+                            examples=["partialslip benchmark run --code fem-1e-4 --problems PS-0*"])  # fmt: skip
+    runs.add_argument("--code", required=True, metavar="CODE", help="exact, march, fem-1e-3, fem-1e-4, fem-1e-5, "
+                      "fem-P1, fem-P2 or equivalent")  # fmt: skip
+    runs.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
+    _add_out(runs, "results/benchmark-CODE")
+    runs.set_defaults(command=_run, overrides=[])
+
+    scores = parts.add_parser("score", help="grade the answers of a code",
+                              description="Grade the answers of a code: a folder with meta.toml and PS-01.json and "
+                              "so on.",
+                              examples=["partialslip benchmark score my-answers"])  # fmt: skip
+    scores.add_argument("folder", metavar="FOLDER", help="folder with the answers")
+    scores.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
+    scores.set_defaults(command=_score)
+
+    builds = parts.add_parser("build", help="write the book",
+                              description="Write the book of problems as HTML, and a zip of plain data, with a "
+                              "scoreboard of the given answers.",
+                              examples=["partialslip benchmark build my-answers results/benchmark-march"])  # fmt: skip
+    builds.add_argument("folders", nargs="*", metavar="FOLDER", help="folders with answers")
+    builds.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
+    add_pdf(builds)
+    _add_out(builds, "results/benchmark")
+    builds.set_defaults(command=_build, overrides=[])
+
+
+def _add_out(parser: argparse.ArgumentParser, usual: str) -> None:
+    parser.add_argument("--out", metavar="DIR", help=f"folder for the files (default: {usual})")
+    add_force(parser)
+
+
+def _list(_: argparse.Namespace) -> int:
+    from partialslip.benchmark import problems
+    from partialslip.cli.consoles import output
+    from partialslip.output.tables import print_table
+
+    table = [(each.number, each.title, each.regime, str(len(each.targets))) for each in problems().values()]
+    print_table(output(), ("", "problem", "regime", "targets"), table, words=(0, 1, 2))
+    return 0
+
+
+def _run(options: argparse.Namespace) -> int:
+    from partialslip.benchmark import write_submission
+    from partialslip.benchmark.own import CODES, answers
+    from partialslip.benchmark.problem import chosen
+    from partialslip.cli.consoles import counting, output
+    from partialslip.errors import InputError
+
+    check_folder(options.out)
+    if options.code not in CODES:
+        raise InputError(f"--code {options.code!r}: must be one of {', '.join(CODES)}")
+    some = chosen(options.problems)
+    with (
+        results_folder(options, "benchmark", f"benchmark-{options.code}", None) as (folder, passed),
+        counting(options.code) as progress,
+    ):
+        found = answers(options.code, some, progress)
+        files = write_submission(found, folder)
+    console = output()
+    _print_grades(found, some)
+    print_written(files, console, passed)
+    return 0
+
+
+def _score(options: argparse.Namespace) -> int:
+    from partialslip.benchmark import problems, read_submission
+    from partialslip.benchmark.problem import chosen
+
+    _print_grades(read_submission(options.folder, problems()), chosen(options.problems))
+    return 0
+
+
+def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> None:
+    """Print the grades of a submission, with the target that decides."""
+    from partialslip.benchmark.scoreboard import grades
+    from partialslip.cli.consoles import output
+    from partialslip.output.tables import print_table
+
+    table = []
+    for number, found in grades(some, submission).items():
+        worst, answer = found.overall, submission.answers[number]
+        error = "" if worst.error is None else f"{worst.error:.1e}"
+        groups = [
+            found.groups[group].grade if group in found.groups else "" for group in ("contact", "stick", "tractions")
+        ]
+        spent = "" if answer.cpu_s is None else f"{answer.cpu_s:.2g}"
+        table.append((number, some[number].title, worst.grade, *groups, worst.worst, error, spent))
+    console = output()
+    console.print(f"{submission.meta.code} {submission.meta.version}", markup=False)
+    heads = ("", "problem", "grade", "contact", "stick", "tractions", "worst", "error", "CPU s")
+    print_table(console, heads, table, words=(0, 1, 2, 3, 4, 5, 6))
+
+
+def _build(options: argparse.Namespace) -> int:
+    from partialslip.benchmark import book_page, book_zip, problems, read_submission, scoreboard
+    from partialslip.benchmark.problem import chosen
+    from partialslip.cli.common import origin
+    from partialslip.cli.consoles import output
+    from partialslip.output.files import write_files
+    from partialslip.output.pdf import write_pdf
+
+    check_folder(options.out)
+    check_report(options)
+    some = chosen(options.problems)
+    submissions = [read_submission(folder, problems()) for folder in options.folders]
+    board = scoreboard(some, submissions) if submissions else None
+    with results_folder(options, "benchmark", "benchmark", None) as (folder, passed):
+        html, data = book_page(some, board, origin(options)), book_zip(some)
+        writers = {"book.html": lambda path: path.write_text(html, "utf-8"),
+                   "problems.zip": lambda path: path.write_bytes(data)}  # fmt: skip
+        files = write_files(Path(folder), writers)
+        files += write_pdf(html, Path(folder), "book.pdf") if options.pdf else []
+    print_written(files, output(), passed)
+    return 0

@@ -1,0 +1,91 @@
+"""Answers of any code are plain files; what is wrong with them is said in one line."""
+
+import json
+import zipfile
+
+import pytest
+
+from partialslip.benchmark import book_zip, problems, read_submission, scoreboard, write_submission
+from partialslip.benchmark.own import CODES, answers
+from partialslip.cli import main
+from partialslip.errors import InputError
+
+SOME = {"PS-02": problems()["PS-02"]}
+
+
+def test_answers_are_written_and_read_back(tmp_path):
+    found = answers("exact", SOME)
+    write_submission(found, tmp_path)
+    again = read_submission(tmp_path, problems())
+    assert again == found
+    board = scoreboard(SOME, [again])
+    assert board.rows[0][:2] == ("PS-02", SOME["PS-02"].title)
+    assert board.rows[0][2].startswith("A (")
+
+
+def test_a_code_that_lacks_something_does_not_offer_it():
+    assert answers("equivalent", SOME).answers == {}
+    assert scoreboard(SOME, [answers("equivalent", SOME)]).rows[0][2] == "–"
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_codes_are_methods_that_there_are(code):
+    assert CODES[code][0] in ("exact", "march", "fem", "equivalent")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("meta.toml", "code = 3", r"meta.toml: Expected `str`, got `int` - at `\$.code`"),
+        ("meta.toml", "code = ", "meta.toml: "),
+        ("PS-02.json", "{", "PS-02.json: "),
+        ("PS-02.json", '{"values": {"a": "large"}}', "PS-02.json: Expected"),
+        ("PS-02.json", '{"values": {"b": 1.0}}', r"values.b: no target has this key; known are a, m, n"),
+        ("PS-02.json", '{"values": {}, "cpu_s": -1}', "PS-02.json: Expected `float` >= 0"),
+        ("PS-99.json", '{"values": {}}', "no problem has this number; known are PS-"),
+    ],
+)
+def test_what_is_wrong_is_said_in_a_line(tmp_path, name, content, said):
+    write_submission(answers("exact", SOME), tmp_path)
+    (tmp_path / name).write_text(content, "utf-8")
+    with pytest.raises(InputError, match=said) as caught:
+        read_submission(tmp_path, problems())
+    assert "\n" not in str(caught.value)
+
+
+def test_a_folder_without_answers_is_refused(tmp_path):
+    with pytest.raises(InputError, match="must be a folder with meta.toml"):
+        read_submission(tmp_path / "none", problems())
+    (tmp_path / "meta.toml").write_text('code = "mine"\nversion = "1"\n', "utf-8")
+    with pytest.raises(InputError, match="no answers; must have PS-01.json"):
+        read_submission(tmp_path, problems())
+
+
+def test_the_zip_has_all_that_is_needed_and_is_always_the_same(tmp_path):
+    data = book_zip(SOME)
+    assert data == book_zip(SOME)
+    (tmp_path / "problems.zip").write_bytes(data)
+    with zipfile.ZipFile(tmp_path / "problems.zip") as archive:
+        assert sorted(archive.namelist()) == ["PS-02/problem.json", "PS-02/scene.toml", "PS-02/targets.csv"]
+        told = json.loads(archive.read("PS-02/problem.json"))
+    assert told["data"]["load"]["P"] == SOME["PS-02"].scene.load.P
+    assert told["targets"]["m"]["value"] == SOME["PS-02"].targets["m"].value
+
+
+def test_commands(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["benchmark", "list"]) == 0
+    assert main(["benchmark", "run", "--code", "march", "--problems", "PS-02"]) == 0
+    assert main(["benchmark", "score", "results/benchmark-march"]) == 0
+    assert "partialslip march" in capsys.readouterr().out
+    assert main(["benchmark", "build", "results/benchmark-march", "--problems", "PS-02"]) == 0
+    page = (tmp_path / "results/benchmark/book.html").read_text("utf-8")
+    assert "PS-02 Cattaneo and Mindlin" in page
+    assert "partialslip march" in page
+    assert main(["benchmark", "run", "--code", "ansys"]) == 2
+    assert main(["benchmark", "score", "nowhere"]) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert said == [
+        "partialslip: --code 'ansys': must be one of " + ", ".join(CODES),
+        "partialslip: nowhere: must be a folder with meta.toml and PS-01.json and so on",
+    ]
