@@ -6,7 +6,7 @@ import zipfile
 import pytest
 
 from partialslip.benchmark import book_zip, problems, read_submission, scoreboard, write_submission
-from partialslip.benchmark.own import CODES, answers
+from partialslip.benchmark.codes import CODES, answers
 from partialslip.cli import main
 from partialslip.errors import InputError
 
@@ -26,11 +26,6 @@ def test_answers_are_written_and_read_back(tmp_path):
 def test_a_code_that_lacks_something_does_not_offer_it():
     assert answers("equivalent", SOME).answers == {}
     assert scoreboard(SOME, [answers("equivalent", SOME)]).rows[0][2] == "–"
-
-
-@pytest.mark.parametrize("code", CODES)
-def test_codes_are_methods_that_there_are(code):
-    assert CODES[code][0] in ("exact", "march", "fem", "equivalent")
 
 
 @pytest.mark.parametrize(
@@ -54,10 +49,10 @@ def test_what_is_wrong_is_said_in_a_line(tmp_path, name, content, said):
 
 
 def test_a_folder_without_answers_is_refused(tmp_path):
-    with pytest.raises(InputError, match="must be a folder with meta.toml"):
+    with pytest.raises(InputError, match=r"must be a folder with meta\.toml"):
         read_submission(tmp_path / "none", problems())
     (tmp_path / "meta.toml").write_text('code = "mine"\nversion = "1"\n', "utf-8")
-    with pytest.raises(InputError, match="no answers; must have PS-01.json"):
+    with pytest.raises(InputError, match=r"no answers; must have PS-01\.json"):
         read_submission(tmp_path, problems())
 
 

@@ -5,6 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from partialslip.benchmark.problem import Problem
+from partialslip.benchmark.submission import Answer
 from partialslip.result import Result
 from partialslip.scene import Scene
 from partialslip.units import Dimension
@@ -55,6 +57,17 @@ def quantities(scene: Scene, result: Result, places: tuple[float, ...], a: float
     method does not determine is not there.
     """
     return dict(_quantities(scene, result, places, a or result.a))
+
+
+def answer_of(problem: Problem, result: Result, unknowns: int | None = None) -> Answer:
+    """Answer to ``problem`` from a ``result``, with what it has of the targets."""
+    values = quantities(problem.scene, result, problem.places, problem.targets["a"].value)
+    return Answer(
+        values={key: float(values[key].value) for key in problem.targets if key in values},
+        cpu_s=result.cost.cpu_s,
+        unknowns=unknowns,
+        memory_mb=result.cost.peak_rss_mb,
+    )
 
 
 def _quantities(scene: Scene, result: Result, places: tuple[float, ...], a: float) -> Iterator[tuple[str, Quantity]]:

@@ -103,6 +103,11 @@ def _answer(file: Path, targets: Mapping[str, object]) -> Answer:
     return answer
 
 
+def write_answer(number: str, answer: Answer, folder: str | os.PathLike[str]) -> Path:
+    """Write the ``answer`` to the problem ``number`` into ``folder``."""
+    return write_texts(Path(folder), {f"{number}.json": json_text(answer)})[0]
+
+
 def write_submission(submission: Submission, folder: str | os.PathLike[str]) -> list[Path]:
     """Write ``submission`` into ``folder``, as :func:`read_submission` reads it."""
     meta = {key: value for key, value in msgspec.to_builtins(submission.meta).items() if value}

@@ -37,10 +37,19 @@ def add(commands: "Commands") -> None:
                             description="Answer problems with a method of partialslip, and write the answers.",
                             examples=["partialslip benchmark run --code fem-1e-4 --problems PS-0*"])  # fmt: skip
     runs.add_argument("--code", required=True, metavar="CODE", help="exact, march, fem-1e-3, fem-1e-4, fem-1e-5, "
-                      "fem-P1, fem-P2 or equivalent")  # fmt: skip
+                      "fem-P1, fem-P2, equivalent, calculix-mortar or calculix-penalty")  # fmt: skip
     runs.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
     _add_out(runs, "results/benchmark-CODE")
     runs.set_defaults(command=_run, overrides=[])
+
+    reads = parts.add_parser("read", help="turn a table of tractions into an answer",
+                             description="Turn a table of tractions, or results of CalculiX, into the answer to a "
+                             "problem, as partialslip score reads it.",
+                             examples=["partialslip benchmark read PS-02 tractions.csv -o my-answers"])  # fmt: skip
+    reads.add_argument("problem", metavar="PROBLEM", help="number of the problem")
+    reads.add_argument("file", metavar="FILE", help="table of x, p and q, or CalculiX's .frd")
+    reads.add_argument("-o", "--out", metavar="DIR", required=True, help="folder of the answers")
+    reads.set_defaults(command=_read)
 
     scores = parts.add_parser("score", help="grade the answers of a code",
                               description="Grade the answers of a code: a folder with meta.toml and PS-01.json and "
@@ -78,14 +87,11 @@ def _list(_: argparse.Namespace) -> int:
 
 def _run(options: argparse.Namespace) -> int:
     from partialslip.benchmark import write_submission
-    from partialslip.benchmark.own import CODES, answers
+    from partialslip.benchmark.codes import answers
     from partialslip.benchmark.problem import chosen
     from partialslip.cli.consoles import counting, output
-    from partialslip.errors import InputError
 
     check_folder(options.out)
-    if options.code not in CODES:
-        raise InputError(f"--code {options.code!r}: must be one of {', '.join(CODES)}")
     some = chosen(options.problems)
     with (
         results_folder(options, "benchmark", f"benchmark-{options.code}", None) as (folder, passed),
@@ -96,6 +102,17 @@ def _run(options: argparse.Namespace) -> int:
     console = output()
     _print_grades(found, some)
     print_written(files, console, passed)
+    return 0
+
+
+def _read(options: argparse.Namespace) -> int:
+    from partialslip.benchmark.problem import chosen
+    from partialslip.benchmark.submission import write_answer
+    from partialslip.benchmark.table import answer_from
+    from partialslip.cli.consoles import output
+
+    problem = next(iter(chosen(options.problem).values()))
+    print_written([write_answer(problem.number, answer_from(problem, options.file), options.out)], output())
     return 0
 
 
