@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Mapping
 
+from msgspec.structs import replace
+
 from partialslip.benchmark.measured import Quantity, quantities
 from partialslip.benchmark.problem import Problem, Target
 from partialslip.result import Result
@@ -47,7 +49,19 @@ def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: N
         a = found[0][1].a if found else result.a
         found.append((method, result, quantities(problem.scene, result, problem.places, a)))
     (method, result, values), *checks = found
-    return {key: _target(key, method, result, value, checks) for key, value in values.items()}, result.regime
+    found_targets = {
+        key: _target(key, method, result, value, checks)
+        for key, value in values.items()
+        if any(key in others for *_, others in checks)  # known in two ways
+    }
+    scene = problem.scene
+    tension = any(sigma or slope for _, sigma, slope in scene.load.along)
+    if scene.even and not tension and {"m", "n"} <= found_targets.keys():
+        # by symmetry m = n: a difference is an error
+        apart = abs(found_targets["m"].value - found_targets["n"].value) / found_targets["m"].scale
+        for key in "mn":
+            found_targets[key] = replace(found_targets[key], uncertainty=max(apart, found_targets[key].uncertainty))
+    return found_targets, result.regime
 
 
 def _target(

@@ -11,7 +11,7 @@ from partialslip.result import Result
 from partialslip.scene import Scene
 from partialslip.units import Dimension
 
-GROUPS = ("contact", "stick", "tractions", "stress")
+GROUPS = ("contact", "stick", "tractions", "levels", "slip")  # levels: q1 and q2
 
 
 class Quantity(NamedTuple):
@@ -56,7 +56,8 @@ def quantities(scene: Scene, result: Result, places: tuple[float, ...], a: float
     where determined, ``q1@x`` and ``q2@x`` at x/a; ``slip`` (the largest) and ``dissipated``. A quantity that the
     method does not determine is not there.
     """
-    return dict(_quantities(scene, result, places, a or result.a))
+    found = _quantities(scene, result, places, a or result.a)
+    return {key: each._replace(value=float(each.value), scale=float(each.scale)) for key, each in found}
 
 
 def answer_of(problem: Problem, result: Result, unknowns: int | None = None) -> Answer:
@@ -80,14 +81,14 @@ def _quantities(scene: Scene, result: Result, places: tuple[float, ...], a: floa
             yield name, Quantity(end, "m", a, "contact", name.partition("_")[0])
     for key in ("m", "n"):
         end = getattr(result, key)
-        if end is not None and key not in result.undetermined:
+        if end is not None and key not in result.undetermined and result.regime != "ratchets":
             yield key, Quantity(end, "m", a, "stick", key)
     x = a * np.array(places)
     p, dq = of.at(x)
     yield "p_max", Quantity(of.p_max, "Pa", p0, "tractions", "p")
     for place, value in zip(places, p.tolist(), strict=True):
         yield f"p@{place:g}", Quantity(value, "Pa", p0, "tractions", "p")
-    if not f or not np.any(dq):
+    if not f or not np.any(dq) or result.regime == "ratchets":
         return
     if "q" not in result.undetermined:
         for place, value in zip(places, dq.tolist(), strict=True):
@@ -95,9 +96,9 @@ def _quantities(scene: Scene, result: Result, places: tuple[float, ...], a: floa
     if of.levels_at and "q1" not in result.undetermined:
         for key, values in zip(("q1", "q2"), of.levels_at(x), strict=True):
             for place, value in zip(places, values.tolist(), strict=True):
-                yield f"{key}@{place:g}", Quantity(value, "Pa", f * p0, "tractions", key)
+                yield f"{key}@{place:g}", Quantity(value, "Pa", f * p0, "levels", key)
     if result.slip and not {"q", "m"} & set(result.undetermined):
         most = float(np.abs(result.slip.slip).max())
         if most > 0:
-            yield "slip", Quantity(most, "m", most, "tractions", "q")
-            yield "dissipated", Quantity(result.slip.dissipated, "J/m", result.slip.dissipated, "tractions", "q")
+            yield "slip", Quantity(most, "m", most, "slip", "q")
+            yield "dissipated", Quantity(result.slip.dissipated, "J/m", result.slip.dissipated, "slip", "q")

@@ -42,7 +42,7 @@ class Target(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     known : str
         How the value is known.
     group : str
-        contact, stick, tractions or stress.
+        contact, stick, tractions, levels or slip.
     """
 
     value: float

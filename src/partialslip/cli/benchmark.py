@@ -126,6 +126,7 @@ def _score(options: argparse.Namespace) -> int:
 
 def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> None:
     """Print the grades of a submission, with the target that decides."""
+    from partialslip.benchmark.measured import GROUPS
     from partialslip.benchmark.scoreboard import grades
     from partialslip.cli.consoles import output
     from partialslip.output.tables import print_table
@@ -134,15 +135,13 @@ def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> No
     for number, found in grades(some, submission).items():
         worst, answer = found.overall, submission.answers[number]
         error = "" if worst.error is None else f"{worst.error:.1e}"
-        groups = [
-            found.groups[group].grade if group in found.groups else "" for group in ("contact", "stick", "tractions")
-        ]
+        groups = [found.groups[group].grade if group in found.groups else "" for group in GROUPS]
         spent = "" if answer.cpu_s is None else f"{answer.cpu_s:.2g}"
         table.append((number, some[number].title, worst.grade, *groups, worst.worst, error, spent))
     console = output()
     console.print(f"{submission.meta.code} {submission.meta.version}", markup=False)
-    heads = ("", "problem", "grade", "contact", "stick", "tractions", "worst", "error", "CPU s")
-    print_table(console, heads, table, words=(0, 1, 2, 3, 4, 5, 6))
+    heads = ("", "problem", "grade", *GROUPS, "worst", "error", "CPU s")
+    print_table(console, heads, table, words=range(4 + len(GROUPS)))
 
 
 def _build(options: argparse.Namespace) -> int:
