@@ -219,7 +219,7 @@ def _share(sizes: Sizes, k: int) -> str:
     """Return the largest share of a difference that may be an error of the mesh, as text."""
     shares = [sizes.mesh[key][k] / sizes.off[key][k] for key in QUANTITIES if sizes.off[key][k] > 0]
     known = [share for share in shares if not math.isnan(share)]
-    return f"{max(known):.1%}" if known else ""
+    return "" if not known else f"{max(known):.1%}" if max(known) < 1 else "> 100%"
 
 
 def _short(size: float) -> str:
