@@ -409,6 +409,15 @@ def test_equivalent_half_planes_leave_a_tenth_of_the_difference():
     assert (half_planes.error, half_planes.refused, half_planes.equivalent) == ("", "", None)
 
 
+def test_entries_without_equivalent_half_planes_are_read():
+    """Those of older ledgers."""
+    old = made.solved(scene(), {"load.P": 1.0, "accuracy": 1.0}, {"p": None, "q": None}, exact={"a": 1.0},
+                      fem={"a": 1.1, "estimate": {}, "counts": {"dofs": 1}})  # fmt: skip
+    found = Sized.of(msgspec.to_builtins(old))
+    assert size.along(read("load.P=1,2"), [found]).off["a"] == pytest.approx(0.1)
+    assert size.along(read("load.P=1,2"), [found], "equivalent").size.size == 0
+
+
 def test_maps_leave_out_what_was_not_solved():
     """Each change is at the right place: first axis across, second axis up."""
     axes = [read("bodies.*.width=2a,4a,8a"), read("bodies.*.height=3a,9a")]
