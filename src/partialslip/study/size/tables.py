@@ -93,7 +93,7 @@ def remarks(axes: Sequence[Axis], entries: Sequence[Sized]) -> list[str]:
         if entry.error
     ]
     if without := refused(axes, entries):
-        points = [", ".join(map(_short, point)) for point in without]
+        points = [_short(*point) if len(point) == 1 else f"({', '.join(map(_short, point))})" for point in without]
         reason, where = next(iter(without.values())), _listed_points(points)
         lines.append(f"no equivalent half-planes at {where}: {reason}")
     return lines
