@@ -127,7 +127,7 @@ def _draw_needed(axes: "Axes", needed: Needed, farthest: float) -> None:
             if 0 < at < np.inf:
                 axes.plot(at, needed.level, **_MARKS[key], zorder=2)
         return
-    if needed.kind is Kind.EXTRAPOLATED:
+    if needed.kind is Kind.EXTRAPOLATED and needed.low < farthest:
         axes.plot([needed.low, min(needed.high, farthest)], [needed.level] * 2, **_MARKS["interval"], zorder=2)
     if needed.size <= farthest:
         axes.plot(needed.size, needed.level, **_MARKS["size"], zorder=2)
