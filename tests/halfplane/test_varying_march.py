@@ -160,6 +160,20 @@ def test_march_in_steps_ratchets_where_the_way_between_the_load_points_says_so()
     assert [run(scene, ["march"])["march"].regime for scene in scenes] == ["large tension", "ratchets"]
 
 
+@pytest.mark.slow
+def test_march_in_steps_ratchets_under_constant_pressure_where_the_way_says_so():
+    """0.008 f P inside and outside the bound, at 0.185; both load points alone would allow a mean of 0.209."""
+
+    def scene(mean):
+        varies = varying((0.9, 0.9), 1.2, 8.0, mean=mean, cycles=400, steps=16)
+        return varies.replace(load={"P": varies.P})
+
+    bound, P = run(scene(0.0), ["exact"])["exact"].limits["Q_mean"], scene(0.0).P
+    runs = [run(scene(bound + off * P), ["exact", "march"]) for off in (-0.008, 0.008)]
+    regimes = [[found[method].regime for method in ("exact", "march")] for found in runs]
+    assert regimes == [["large tension"] * 2, ["ratchets"] * 2]
+
+
 def test_counts_of_constant_pressure_do_not_change():
     scene = varying((1, 1), 0.3, 0.2, mean=0.1, cycles=3)
     number = scene.replace(load={"P": scene.P})
