@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from varying_scenes import varying
 
-from partialslip import run
+from partialslip import parse_scene, run
 from partialslip.condensed import varying as stepping
 from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path, stretched
@@ -180,3 +180,22 @@ def test_counts_of_constant_pressure_do_not_change():
     one, other = (run(each, ["march"])["march"] for each in (scene, number))
     assert dict(one.counts) == dict(other.counts)
     assert (one.traction.dq == other.traction.dq).all()
+
+
+def test_slip_that_begins_in_the_wrong_direction_is_known():
+    """The adhered traction of the whole contact changes its sign inside the right slip zone: points there first slip on
+    in the direction of the way before, and the stick zone's right end is elsewhere on a gradual way. march and finite
+    elements agree on where."""
+    load = {"P": [1.0, 0.517], "e": -0.109, "Q": [0.1506, -0.1506], "sigma": [1.9515, -1.9515], "steps": 4}
+    scene = parse_scene({
+        "name": "wrong-way",
+        "material": {"E": 4.0, "nu": 0.0},
+        "profile": {"kind": "flat-rounded", "R": 1.0, "b": 0.6077},
+        "friction": {"f": 1.0},
+        "load": load | {"cycles": 10},
+    })  # fmt: skip
+    found = run(scene, ["exact", "march"])
+    exact, march = found["exact"], found["march"]
+    assert exact.path_dependent
+    assert exact.m == pytest.approx(march.m, abs=1e-3 * exact.a)
+    assert exact.n - march.n > 0.015 * exact.a
