@@ -11,6 +11,7 @@ from partialslip.condensed import varying as stepping
 from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path, stretched
 from partialslip.halfplane.cells import compliance, graded
+from partialslip.judge.verdict import Outcome
 
 A1, A2 = 0.8, 1.0
 P1, P2 = (math.pi * a**2 / 2 for a in (A1, A2))
@@ -172,6 +173,21 @@ def test_march_in_steps_ratchets_under_constant_pressure_where_the_way_says_so()
     runs = [run(scene(bound + off * P), ["exact", "march"]) for off in (-0.008, 0.008)]
     regimes = [[found[method].regime for method in ("exact", "march")] for found in runs]
     assert regimes == [["large tension"] * 2, ["ratchets"] * 2]
+
+
+def test_regimes_at_the_bound_on_the_mean_are_not_judged():
+    """The net slip of a cycle vanishes as the mean approaches the bound: 0.004 f P beyond it march with 1e-2 sees
+    none, 0.012 f P beyond it does, in the steps that it chooses."""
+    varies = varying((0.9, 0.9), 1.2, 8.0, mean=0.19, cycles=20)
+    scene = varies.replace(load={"P": varies.P})
+    loads = [{"Q": [mean - 0.6, mean + 0.6]} for mean in (0.19, 0.2)]
+    near, beyond = (run(scene.replace(load=load), ["exact", "march"]) for load in loads)
+    assert (near["exact"].regime, near["march"].regime) == ("ratchets", "large tension")
+    assert near.passed
+    judged = {verdict.quantity: verdict for verdict in near.comparisons["march"].verdicts}
+    assert judged["regime"].outcome == Outcome.NOT_JUDGED
+    assert "nearer to the bound" in judged["regime"].reason
+    assert (beyond["exact"].regime, beyond["march"].regime) == ("ratchets", "ratchets")
 
 
 def test_counts_of_constant_pressure_do_not_change():
