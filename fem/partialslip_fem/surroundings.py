@@ -114,8 +114,8 @@ def _left_over(part: Part, mesh: Mesh, order: int, places: Array) -> Array:
     face = facets_of(triangles, np.concatenate([mesh.lines["contact"], mesh.lines.get("face", mesh.lines["contact"])]))
     boundary = np.setdiff1d(triangles.boundary_facets(), [] if part.face else face)
     basis = skfem.FacetBasis(triangles, element, facets=boundary, intorder=2 * order + 2)
-    x, y = basis.global_coordinates().value
-    n_x, n_y = basis.normals.value
+    x, y = np.asarray(basis.global_coordinates())
+    n_x, n_y = np.asarray(basis.normals)
     ds = basis.dx
     if part.face:  # a straight side stands for a part of the round face: its true place and normal count
         on = np.isin(boundary, face)[:, None] & np.ones_like(x, dtype=bool)
@@ -128,7 +128,7 @@ def _left_over(part: Part, mesh: Mesh, order: int, places: Array) -> Array:
     tractions = 2 / np.pi * to_n / (r_x**2 + r_y**2) ** 2
     columns = np.concatenate([tractions * r_x, tractions * r_y], axis=1)
     rows = np.concatenate([np.repeat(nodes, x.shape[1]) for nodes in basis.element_dofs])
-    values = np.concatenate([(np.broadcast_to(each[0].value, x.shape) * ds).ravel() for each in basis.basis])
+    values = np.concatenate([(np.broadcast_to(np.asarray(each[0]), x.shape) * ds).ravel() for each in basis.basis])
     quadrature = sp.coo_array((values, (rows, np.tile(np.arange(x.size), len(basis.basis)))), (basis.N, x.size)).tocsr()
     both = np.tile(r_x, 2), np.tile(r_y, 2)
     return np.concatenate([quadrature @ (columns * each) for each in both])
