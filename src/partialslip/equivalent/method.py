@@ -12,7 +12,7 @@ from partialslip.equivalent.data import Data, data_of, moments_of
 from partialslip.equivalent.estimate import estimate
 from partialslip.equivalent.words import in_words
 from partialslip.errors import InputError
-from partialslip.halfplane.contact import tilted_contact
+from partialslip.halfplane.contact import contact, tilted_contact
 from partialslip.halfplane.marching import solve as solve_by_marching
 from partialslip.halfplane.method import has_closed_form
 from partialslip.halfplane.method import solve as solve_exactly
@@ -107,10 +107,7 @@ def stand_ins(scene: Scene, rig: Rig, progress: Callable[[str], None] = lambda _
         As :func:`solve`.
     """
     closed = _checked(scene).load.in_phase and has_closed_form(half_planes(scene, None))
-    found = _iterated(rig, scene, closed, progress)
-    if closed and not has_closed_form(found.scene):
-        found = _iterated(rig, scene, False, progress)
-    return found
+    return _iterated(rig, scene, closed, progress)
 
 
 def half_planes(scene: Scene, data: Data | None) -> Scene:
@@ -163,13 +160,15 @@ def _iterated(rig: Rig, scene: Scene, closed: bool, progress: Callable[[str], No
         if before and data.apart(before, scene) <= settled:
             return StandIns(found, seen, data)
         seen = half_planes(scene, data)
+        _check_range(rig, seen)
+        if closed and not has_closed_form(seen):
+            return _iterated(rig, scene, False, progress)
         if closed:
             found = solve_exactly(seen, plan_of(seen))
         else:
             progress(f"march {number}")
             found = solve_by_marching(seen, plan_of(seen), added=partial(_added, rig))
             settled = _SETTLED_MARCH * scene.fem.accuracy
-        _check_range(rig, scene, found)
     raise InputError("bodies: must be larger compared with the contact: equivalent does not settle; use fem")
 
 
@@ -179,11 +178,12 @@ def _pressed(scene: Scene) -> Result:
     return solve_exactly(still, plan_of(still))
 
 
-def _check_range(rig: Rig, scene: Scene, found: Result) -> None:
-    """Raise InputError if the contact is too large for the rig."""
-    farthest = max(abs(end) for ends in found.ends for end in ends)
+def _check_range(rig: Rig, seen: Scene) -> None:
+    """Raise InputError if the contact of the half-planes ``seen`` is too large for the rig, whose polynomials mean
+    nothing out there."""
+    farthest = max(abs(end) for pressed in set(seen.pressing) for end in contact(seen, pressed).ends)
     if farthest > rig.reach:
-        shown = scene.units.labelled
+        shown = seen.units.labelled
         raise InputError(
             f"bodies: must be larger compared with the contact, which reaches x = {shown(farthest, 'm')}: "
             f"equivalent holds up to {shown(rig.reach, 'm')}; use fem"
