@@ -235,6 +235,18 @@ def test_loads_that_end_the_closed_form_are_marched(scene):
     assert stand_ins(seen, rig).result.method == "march"
 
 
+def test_slip_that_reverses_is_marched(scene):
+    """One step from load point to load point is not gradual loading then: m of the closed form is 4e-2 a off."""
+    loads = {"Q": [-287e3, 242e3], "sigma": [-434e6, 462e6], "cycles": 3}
+    seen = scene.replace(load=loads, fem={"accuracy": 1e-3})
+    plain = run(seen.replace(bodies={"upper": None, "lower": None}), ["exact", "march"])
+    assert plain["exact"].path_dependent
+    found = stand_ins(seen, made(scene)).result
+    assert found.method == "march"
+    assert (found.m, found.n) == pytest.approx((plain["march"].m, plain["march"].n), abs=1e-3 * found.a)
+    assert abs(found.m - plain["exact"].m) > 1e-2 * found.a
+
+
 def test_contacts_out_of_range_are_refused_before_they_are_marched(scene):
     """Beyond its range a polynomial is anything: compliances with it need not be positive."""
     rig = made(scene, reach=2e-3, yy={(1, 0): 1500.0, (0, 1): 1500.0}, xx={(4, 4): -1e12})

@@ -165,6 +165,8 @@ def _iterated(rig: Rig, scene: Scene, closed: bool, progress: Callable[[str], No
             return _iterated(rig, scene, False, progress)
         if closed:
             found = solve_exactly(seen, plan_of(seen))
+            if found.path_dependent:  # the closed form is not the result of gradual loading
+                return _iterated(rig, scene, False, progress)
         else:
             progress(f"march {number}")
             found = solve_by_marching(seen, plan_of(seen), added=partial(_added, rig))
