@@ -1,6 +1,7 @@
 """Bodies of a size as half-planes with other data: closed forms for polynomials with few terms, finite elements, and
 invariances."""
 
+import functools
 import subprocess
 import sys
 
@@ -175,6 +176,7 @@ def ends(result):
 UNLIKE = ["bodies.upper={width=14e-3, height=9e-3}", "bodies.lower={width=30e-3, height=8e-3, support='sides'}"]
 
 
+@functools.cache
 def solved(*settings, name=SCENE):
     return run(load_scene(name, list(settings)), ["equivalent"])["equivalent"]
 
@@ -224,6 +226,15 @@ def test_march_agrees_with_the_closed_form(monkeypatch):
         assert apart <= exact.estimate[key] + marched.estimate[key]
 
 
+@pytest.mark.parametrize("effect", ["moment", "varying-pressure"])
+def test_effects_of_half_planes_are_those_of_the_bodies(scene, effect):
+    """That the bodies do not turn, and P is constant, does not keep Q from tilting their surfaces."""
+    rig = made(scene, xy={(0, 1): 100.0})
+    one, other = (stand_ins(seen, rig).result.ends for seen in (scene, scene.replace(effects={effect: False})))
+    assert one == other
+    assert one[0] != one[1]
+
+
 # beside these
 
 
@@ -238,13 +249,13 @@ def test_loads_that_end_the_closed_form_are_marched(scene):
 def test_slip_that_reverses_is_marched(scene):
     """One step from load point to load point is not gradual loading then: m of the closed form is 4e-2 a off."""
     loads = {"Q": [-287e3, 242e3], "sigma": [-434e6, 462e6], "cycles": 3}
-    seen = scene.replace(load=loads, fem={"accuracy": 1e-3})
+    seen = scene.replace(load=loads, fem={"accuracy": 1e-2})
     plain = run(seen.replace(bodies={"upper": None, "lower": None}), ["exact", "march"])
     assert plain["exact"].path_dependent
     found = stand_ins(seen, made(scene)).result
     assert found.method == "march"
-    assert (found.m, found.n) == pytest.approx((plain["march"].m, plain["march"].n), abs=1e-3 * found.a)
-    assert abs(found.m - plain["exact"].m) > 1e-2 * found.a
+    assert (found.m, found.n) == pytest.approx((plain["march"].m, plain["march"].n), abs=1e-2 * found.a)
+    assert abs(found.m - plain["exact"].m) > 3e-2 * found.a
 
 
 def test_contacts_out_of_range_are_refused_before_they_are_marched(scene):

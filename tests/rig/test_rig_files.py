@@ -162,6 +162,7 @@ SPOILED = {
         spoiled(lambda data: data["rough"]["pulled"][0].pop()),
         "rough.pulled: must have 2 rows of 11 numbers",
     ),
+    "asymmetry": (spoiled(lambda data: data["terms"]["yy"][2].__setitem__(0, 1.0)), r"terms.yy: must be symmetric"),
     "schema": (
         spoiled(lambda data: data.update(schema="partialslip/rig/2")),
         "schema = 'partialslip/rig/2': must be 'partialslip/rig/1'",
@@ -191,13 +192,18 @@ def test_spoiled_files_are_one_line(file, tmp_path, how):
     assert len(str(caught.value)) < 400
 
 
-def test_huge_terms_are_refused_or_say_so(file, tmp_path):
-    """A file may be well-formed and mean nothing: no traceback."""
+@pytest.mark.parametrize(("i", "j", "value"), [(2, 0, 1e300), (2, 0, -1e3), (1, 0, 1e300), (1, 1, -1e9), (1, 1, 1e5)])
+def test_terms_that_mean_nothing_are_one_line(file, tmp_path, i, j, value):
+    """A file may be well-formed and of no body: the line names the bodies, not data that nobody gave."""
     path = tmp_path / "rig.json"
     shutil.copy(file, path)
-    for kind in ("terms", "rough"):
-        spoiled(lambda data, kind=kind: data[kind]["yy"][2].__setitem__(0, 1e300))(path)
-    with pytest.raises(InputError) as caught:
+
+    def change(data):
+        for kind in ("terms", "rough"):
+            data[kind]["yy"][i][j] = data[kind]["yy"][j][i] = value
+
+    spoiled(change)(path)
+    with pytest.raises(InputError, match=r"^bodies: must be ") as caught:
         run(referring(path), ["equivalent"])
     assert "\n" not in str(caught.value)
 

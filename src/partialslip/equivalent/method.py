@@ -113,7 +113,8 @@ def stand_ins(scene: Scene, rig: Rig, progress: Callable[[str], None] = lambda _
 def half_planes(scene: Scene, data: Data | None) -> Scene:
     """The scene of half-planes with the ``data`` that act like the bodies of ``scene``; without data, of half-planes
     that act like no size at all."""
-    plain = scene.replace(bodies=Bodies(), load={"P": scene.P, "a": None, "p0": None})
+    own = {"moment": None, "varying-pressure": None, "coupling": None}  # of half-planes: their tilt is that of bodies
+    plain = scene.replace(bodies=Bodies(), load={"P": scene.P, "a": None, "p0": None}, effects=own)
     if data is None:
         return plain
     plain = plain.replace(profile=_bent(scene.profile, float(data.curvature.mean())))
@@ -159,8 +160,7 @@ def _iterated(rig: Rig, scene: Scene, closed: bool, progress: Callable[[str], No
         before, data = data, data_of(rig, scene, moments_of(rig, scene, found), found, shear=closed)
         if before and data.apart(before, scene) <= settled:
             return StandIns(found, seen, data)
-        seen = half_planes(scene, data)
-        _check_range(rig, seen)
+        seen = _in_range(rig, scene, data)
         if closed and not has_closed_form(seen):
             return _iterated(rig, scene, False, progress)
         if closed:
@@ -180,16 +180,22 @@ def _pressed(scene: Scene) -> Result:
     return solve_exactly(still, plan_of(still))
 
 
-def _check_range(rig: Rig, seen: Scene) -> None:
-    """Raise InputError if the contact of the half-planes ``seen`` is too large for the rig, whose polynomials mean
-    nothing out there."""
-    farthest = max(abs(end) for pressed in set(seen.pressing) for end in contact(seen, pressed).ends)
-    if farthest > rig.reach:
-        shown = seen.units.labelled
+def _in_range(rig: Rig, scene: Scene, data: Data) -> Scene:
+    """Half-planes with the ``data``. Raise InputError if there are none, or if their contact is too large for the rig,
+    whose polynomials mean nothing out there."""
+    too_small = "bodies: must be larger compared with the contact"
+    try:
+        seen = half_planes(scene, data)
+        ends = [end for pressed in set(seen.pressing) for end in contact(seen, pressed).ends]
+    except InputError as error:
+        raise InputError(f"{too_small}: no half-planes act like them ({error}); use fem") from None
+    if (farthest := max(map(abs, ends))) > rig.reach:
+        shown = scene.units.labelled
         raise InputError(
-            f"bodies: must be larger compared with the contact, which reaches x = {shown(farthest, 'm')}: "
+            f"{too_small}, which reaches x = {shown(farthest, 'm')}: "
             f"equivalent holds up to {shown(rig.reach, 'm')}; use fem"
         )
+    return seen
 
 
 def _added(rig: Rig, places: Array) -> Array:
