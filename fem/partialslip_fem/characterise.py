@@ -52,7 +52,11 @@ def _terms(parts: Sequence[Part], sizes: tuple[float, float, float], backend: Ba
     along, across = _to_powers(points), _to_powers(places)
     (xx, xy), (yx, yy) = (along @ forced @ across.T)[..., :_TERMS]
     # by reciprocity
-    return Terms((xx + xx.T) / 2, (yy + yy.T) / 2, (xy + yx.T) / 2, pulled @ along.T / _REACH)
+    xx, yy, xy = (xx + xx.T) / 2, (yy + yy.T) / 2, (xy + yx.T) / 2
+    if not any(part.pulled or part.mesh for part in parts):  # bodies are their own mirror images, which meshes are not
+        odd = np.add.outer(range(_TERMS), range(_TERMS)) % 2 == 1
+        xx, yy, xy = np.where(odd, 0.0, xx), np.where(odd, 0.0, yy), np.where(odd, xy, 0.0)
+    return Terms(xx, yy, xy, pulled @ along.T / _REACH)
 
 
 def _to_powers(points: Array) -> Array:

@@ -198,8 +198,8 @@ def test_units_do_not_matter():
 def test_a_mirror_shows_the_mirror_image():
     one, other = solved(*UNLIKE), solved(*UNLIKE, *(f"load.Q={[-Q for Q in load_scene(SCENE).load.Q]}",))
     for (left, right), mirrored in zip(one.ends, other.ends, strict=True):
-        assert mirrored == pytest.approx((-right, -left), rel=1e-5)
-    assert (other.m, other.n) == pytest.approx((one.n, one.m), rel=1e-5)
+        assert mirrored == pytest.approx((-right, -left), rel=1e-10)
+    assert (other.m, other.n) == pytest.approx((one.n, one.m), rel=1e-9)
 
 
 def test_it_does_not_matter_which_body_is_called_upper():
