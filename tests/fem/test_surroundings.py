@@ -2,6 +2,7 @@
 fem's own compliances with and without the half-plane around."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -156,7 +157,9 @@ def test_bodies_that_are_their_own_mirror_images_turn_nothing():
     assert not terms.xy[even].any()
     assert not terms.xx[~even].any()
     assert not terms.yy[~even].any()
-    assert np.abs(rig_of("bodies.lower={width=16e-3, height=9e-3, support='roller', pulled=true}").terms.xx[1, 0]) > 0.01
+    assert (
+        np.abs(rig_of("bodies.lower={width=16e-3, height=9e-3, support='roller', pulled=true}").terms.xx[1, 0]) > 0.01
+    )
 
 
 def test_the_lower_and_the_upper_body_couple_the_other_way():
@@ -183,7 +186,34 @@ def test_the_difference_of_the_meshes_is_the_error():
     found = characterise(scene)
     length = characterising._smallest(parts_of(scene, 1.0))
     parts = [part for part in parts_of(scene, length) if part.finite]
-    finest = characterising._terms(parts, (0.05, 1e-8, 1e-6), default_backend())
+    finest = characterising._terms(parts, (0.05, 1e-8, 1e-6), 4, default_backend())
     for key in ("xx", "yy", "xy"):
         own, rough, true = (getattr(terms, key)[:3, :3] for terms in (found.terms, found.rough, finest))
         assert np.abs(own - true).max() < np.abs(own - rough).max()
+
+
+SPECIMEN = Path(__file__).parents[1] / "meshes" / "specimen.inp"  # 40 mm x 5 mm, with a contact line of 0.8 mm
+
+
+def test_given_meshes_reach_as_far_as_their_contact_line():
+    """Which is a part of the flat face, not the size of the body; and they are the specimen that they are."""
+    settings = "support='roller', pulled=true"
+    of_mesh, of_sizes = (
+        characterise(load_scene("fretting-aluminium", [f"bodies.lower={{{body}, {settings}}}"]))
+        for body in (f"mesh='{SPECIMEN}', unit=1e-3", "width=40e-3, height=5e-3")
+    )
+    assert of_mesh.reach == pytest.approx(4e-4, rel=1e-6)
+    shared = np.arange(3)
+    way = (of_mesh.reach / of_sizes.reach) ** np.add.outer(shared, shared)  # the terms are in units of reach
+    for key in ("xx", "yy"):
+        found, expected = (getattr(terms, key)[:3, :3] for terms in (of_mesh.terms, of_sizes.terms))
+        odd = np.add.outer(shared, shared) > 0  # but for displacements as a whole
+        assert found[odd] == pytest.approx((expected * way)[odd], abs=1e-4 * np.abs(expected * way)[odd].max())
+
+
+def test_given_meshes_know_their_error():
+    """There is no coarser mesh, but elements of lower order."""
+    scene = load_scene("fretting-aluminium", [f"bodies.lower={{mesh='{SPECIMEN}', unit=1e-3, support='roller'}}"])
+    found = characterise(scene)
+    apart = np.abs(found.terms.yy - found.rough.yy)[:3, :3].max()
+    assert 1e-9 < apart < 1e-3
