@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from partialslip import load_scene, run
-from partialslip.equivalent import method, shares, stand_ins
+from partialslip.equivalent import data, method, shares, stand_ins
 from partialslip.errors import InputError
 from partialslip.rig import Rig, Terms, key_of, write_rig
 from partialslip.run import rig_of
@@ -57,25 +57,45 @@ def test_constants_are_rigid_displacements(scene):
     assert (found.a, found.m, found.n) == pytest.approx((plain.a, plain.m, plain.n), rel=1e-11)
 
 
-def test_hertz_under_a_smooth_compliance_in_closed_form(scene):
-    """The data are exact here, and the contact is a Hertz one: 1/R' = 1/R + 2 c20 A P, and the shear is that of the
-    change of tension less 4 times what the strain c10 dQ + c11 int x dq dx + 2 c20 dQ x takes, over A."""
+def smooth(scene):
+    """A rig, and what is known in closed form: half-width of the contact, and centre and half-width of the stick zone.
+
+    The data are exact here, and the contact is a Hertz one: 1/R' = 1/R + 2 c20 A P, and the shear is that of the change
+    of tension less 4 times the strain c10 dQ + c11 int x dq dx + 2 c20 dQ x.
+    """
     A, P, R, f, dQ = scene.material.A, scene.P, scene.profile.R, scene.friction.f, scene.load.dQ
     normal, c10, c11, c20 = 400.0, -9.0, 3e3, 5e2
-    rig = made(
-        scene, yy={(2, 0): normal, (0, 2): normal}, xx={(1, 0): c10, (0, 1): c10, (1, 1): c11, (2, 0): c20, (0, 2): c20}
-    )
-    found = stand_ins(scene, rig)
-    # the opening is due to all of P: its t^2 is the same everywhere
+    tangential = {(1, 0): c10, (0, 1): c10, (1, 1): c11, (2, 0): c20, (0, 2): c20}
+    rig = made(scene, yy={(2, 0): normal, (0, 2): normal}, xx=tangential)
     curvature = 1 / R + 2 * normal * A * P
-    assert found.result.a == pytest.approx(np.sqrt(2 * A * P / (np.pi * curvature)), rel=1e-12)
-    k = 2 * f * curvature - 2 * A * c20 * dQ
-    corrective = 2 * f * P - dQ
-    # the stick zone is centred at e; int x dq dx = -(2 f P - dQ) e
-    e = -A / 4 * (scene.load.dsigma - 4 * c10 * dQ) / (k + A * c11 * corrective)
-    b = np.sqrt(corrective * 2 * A / (np.pi * k))
-    assert found.result.stick_centre == pytest.approx(e, rel=1e-9)
-    assert found.result.stick_half_width == pytest.approx(b, rel=1e-9)
+    k, corrective = 2 * f * curvature - 2 * A * c20 * dQ, 2 * f * P - dQ
+    # int x dq dx = -(2 f P - dQ) times the centre
+    centre = -A / 4 * (scene.load.dsigma - 4 * c10 * dQ) / (k + A * c11 * corrective)
+    return rig, (np.sqrt(2 * A * P / (np.pi * curvature)), centre, np.sqrt(corrective * 2 * A / (np.pi * k)))
+
+
+def found_ends(scene, rig):
+    found = stand_ins(scene, rig).result
+    return found.a, found.stick_centre, found.stick_half_width
+
+
+def test_hertz_under_a_smooth_compliance_in_closed_form(scene):
+    rig, known = smooth(scene)
+    assert found_ends(scene, rig) == pytest.approx(known, rel=1e-9)
+
+
+@pytest.mark.fault
+def test_quadrature_that_knows_no_ends_is_seen(scene, monkeypatch):
+    """Deliberate fault: Gauss's rule in x, in which tractions are square roots at the ends."""
+
+    def plain(breaks):
+        nodes, weights = np.polynomial.legendre.leggauss(32)
+        half = np.diff(breaks)[:, None] / 2
+        return ((breaks[1:] + breaks[:-1])[:, None] / 2 + half * nodes).ravel(), (half * weights).ravel()
+
+    monkeypatch.setattr(data, "_rule", plain)
+    rig, known = smooth(scene)
+    assert found_ends(scene, rig) != pytest.approx(known, rel=1e-8)
 
 
 def test_a_contact_that_is_turned_moves(scene):

@@ -150,6 +150,15 @@ def test_mirror_images_do_not_couple():
     assert not rig_of(f"bodies.upper={block}", f"bodies.lower={block}").terms.xy.any()
 
 
+@pytest.mark.fault
+def test_coupling_of_the_upper_body_without_its_sign_is_seen(monkeypatch):
+    """Deliberate fault: the upper body taken for a lower one. Mirror images couple then."""
+    both = [f"bodies.{name}={{width=8e-3, height=4e-3}}" for name in ("upper", "lower")]
+    assert not rig_of(*both).terms.xy.any()
+    monkeypatch.setattr(characterising, "parts_of", lambda *of: [replace(part, name="lower") for part in parts_of(*of)])
+    assert np.abs(rig_of(*both).terms.xy).max() > 1e-2
+
+
 def test_bodies_that_are_their_own_mirror_images_turn_nothing():
     """Nothing tells left from right, though the elements do; a specimen that is held at its left end does."""
     terms = rig_of("bodies.lower={width=16e-3, height=9e-3}", PAD).terms
