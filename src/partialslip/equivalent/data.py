@@ -18,6 +18,7 @@ from partialslip.scene import Scene
 
 _POINTS = 32  # of quadrature
 _NODES = np.cos(np.pi * (np.arange(_POINTS) + 0.5) / _POINTS)  # Gauss-Chebyshev's rule
+_ROUNDING = 1e-13  # of the slope of the gap at the ends of the contact
 _STEP = 1e-4  # of the contact, for the slope of a face
 
 
@@ -98,10 +99,11 @@ def data_of(rig: Rig, scene: Scene, moments: Moments, result: Result, shear: boo
     centre, c = result.stick_centre, result.stick_half_width
     if centre is None or c is None:
         centre, c = 0.0, a
+    tilt = gap[:, 0] - gap[:, 1] / a * centres
     lost = chebyshev_coefficients(-4 / A * rig.slopes(centre + c * _NODES, shift))
     return Data(
         curvature=gap[:, 1] / a,
-        tilt=gap[:, 0] - gap[:, 1] / a * centres,
+        tilt=np.where(np.abs(tilt) > _ROUNDING * a / scene.profile.R, tilt, 0.0),
         sigma=sigma + lost[:, 0] - lost[:, 1] / c * centre,
         sigma_slope=lost[:, 1] / c,
         rest=gap[:, 2:],
