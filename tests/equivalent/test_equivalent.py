@@ -109,6 +109,16 @@ def test_a_contact_that_is_turned_moves(scene):
         assert np.diff(ends)[0] == pytest.approx(2 * np.sqrt(2 * A * R * P / np.pi), rel=1e-11)
 
 
+@pytest.mark.parametrize("gain", [0.5, 0.9, 1.5, 3.0])
+def test_bodies_that_turn_back_far_settle(scene, gain):
+    """A slender body turns back by more than it has been turned; plain iteration then moves away from the answer."""
+    A, P, R = scene.material.A, scene.P, scene.profile.R
+    c10 = 100.0
+    rig = made(scene, yy={(1, 0): c10, (0, 1): c10, (1, 1): gain / (R * A * P)})
+    found = stand_ins(scene.replace(load={"sigma": [0.0, 0.0]}), rig).result
+    assert np.mean(found.ends[0]) == pytest.approx(-R * A * c10 * P / (1 + gain), rel=1e-10)
+
+
 def test_shear_tips_a_pad_over(scene):
     """Where the opening is xy(t, x) q, Q turns the gap by A c x: to one side at load point 1, to the other at 2."""
     A, R, (Q1, Q2) = scene.material.A, scene.profile.R, scene.load.Q

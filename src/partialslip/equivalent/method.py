@@ -1,6 +1,6 @@
 """Method ``equivalent``: bodies of a size as half-planes with other data (docs/theory.md, section 12)."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -26,6 +26,7 @@ from partialslip.scene import Bodies, FlatRounded, Hertz, Profile, Scene
 _KEYS = ("a", "left", "right", "m", "n", "p", "q")
 _PRESSED = "bodies that are not mirror images lock shear in when they are pressed, which is not followed; use fem"
 _SETTLED, _MOST = 1e-12, 40  # relative change of the data in an iteration; iterations
+_MIXED = 6  # latest iterations that the next one is made of
 _SETTLED_MARCH = 1e-3  # of the accuracy asked for, where each iteration is a march
 
 
@@ -155,11 +156,16 @@ def _iterated(rig: Rig, scene: Scene, closed: bool, progress: Callable[[str], No
     seen = half_planes(scene, None)
     found = solve_exactly(seen, plan_of(seen)) if closed else _pressed(seen)
     settled = _SETTLED
-    data = None
+    given: list[Array] = []  # data of the half-planes, and the data that their tractions call for
+    called: list[Array] = []
     for number in range(1, _MOST + 1):
-        before, data = data, data_of(rig, scene, moments_of(rig, scene, found), found, shear=closed)
-        if before and data.apart(before, scene) <= settled:
+        data = data_of(rig, scene, moments_of(rig, scene, found), found, shear=closed)
+        called.append(data.scaled(scene))
+        if given and np.abs(called[-1] - given[-1]).max() <= settled:
             return StandIns(found, seen, data)
+        given = given or [0 * called[0]]
+        given.append(_mixed(given, called))
+        data = data.moved(given[-1], scene)
         seen = _in_range(rig, scene, data)
         if closed and not has_closed_form(seen):
             return _iterated(rig, scene, False, progress)
@@ -172,6 +178,16 @@ def _iterated(rig: Rig, scene: Scene, closed: bool, progress: Callable[[str], No
             found = solve_by_marching(seen, plan_of(seen), added=partial(_added, rig))
             settled = _SETTLED_MARCH * scene.fem.accuracy
     raise InputError("bodies: must be larger compared with the contact: equivalent does not settle; use fem")
+
+
+def _mixed(given: Sequence[Array], called: Sequence[Array]) -> Array:
+    """Data to go on with, by Anderson's method: a contact that turns the bodies back by more than they have turned has
+    data, too, which plain iteration does not reach."""
+    had, got = (np.array(each[-_MIXED:]).reshape(min(len(each), _MIXED), -1) for each in (given, called))
+    left = got - had
+    weights = np.linalg.lstsq((left[:-1] - left[-1]).T, -left[-1], rcond=1e-10)[0]
+    result: Array = (got[-1] + weights @ (got[:-1] - got[-1])).reshape(called[-1].shape)
+    return result
 
 
 def _pressed(scene: Scene) -> Result:
