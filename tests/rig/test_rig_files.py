@@ -192,7 +192,7 @@ def test_spoiled_files_are_one_line(file, tmp_path, how):
     assert len(str(caught.value)) < 400
 
 
-@pytest.mark.parametrize(("i", "j", "value"), [(2, 0, 1e300), (2, 0, -1e3), (1, 0, 1e300), (1, 1, -1e9), (1, 1, 1e5)])
+@pytest.mark.parametrize(("i", "j", "value"), [(2, 0, 1e300), (2, 0, -1e3), (1, 0, 1e300), (1, 1, -1e9)])
 def test_terms_that_mean_nothing_are_one_line(file, tmp_path, i, j, value):
     """A file may be well-formed and of no body: the line names the bodies, not data that nobody gave."""
     path = tmp_path / "rig.json"
