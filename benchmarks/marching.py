@@ -15,10 +15,11 @@ from partialslip.condensed.path import Path
 from partialslip.condensed.threads import one_thread
 from partialslip.halfplane.cells import compliance, forces, graded
 from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.loading import half_cycle
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone
-from partialslip.halfplane.traction import half_range, mean_load_bound
+from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
 
 P0 = 2 / np.pi  # a = P = 1
@@ -99,7 +100,7 @@ def example(cycles: int = 200) -> None:
     print("change of q at the loaded end, cycles 1-13:", " ".join(f"{c:.1e}" for c in changes[:13]))
     print(
         "mean Q 0.4 f P, bound",
-        f"{mean_load_bound(zone, shape):.4f} f P; q error of the last cycle",
+        f"{half_cycle(0.3, 4.0, shape).mean_load_bound:.4f} f P; q error of the last cycle",
         f"{error_of_q(history, vertices, zone, shape, f):.1e}",
     )
 
@@ -108,7 +109,7 @@ def settling() -> None:
     """f = 0.5, dQ/(2fP) = 0.2546, dsigma/(f p0) = 1.6: cycles until the range of q changes by less than 1e-6 f p0."""
     f, shape, Qf, sf = 0.5, Hertz(), 0.2546, 1.6
     zone = stick_zone(Qf, sf, shape)
-    bound = mean_load_bound(zone, shape)
+    bound = half_cycle(Qf, sf, shape).mean_load_bound
     m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
     vertices = graded(np.array([-1.0, -m, n, 1.0]), 2e-3, 0.1)
     widths = np.diff(vertices)

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from partialslip.halfplane.hertz import Hertz
-from partialslip.halfplane.steady import stick_zone
-from partialslip.halfplane.traction import mean_load_bound
+from partialslip.halfplane.loading import half_cycle
 
 FOLDER = Path(__file__).parents[1] / "docs"
 DOCS = {
@@ -66,10 +65,11 @@ def test_there_is_something_to_check():
 @pytest.mark.parametrize("row", SPOT.findall(DOCS["theory.md"]), ids=lambda row: f"{row[0]}-{row[1]}")
 def test_spot_values(row):
     Qf, sf, s, m, n, bound = row
-    zone = stick_zone(float(Qf), float(sf), Hertz())
+    cycle = half_cycle(float(Qf), float(sf), Hertz())
+    zone = cycle.zone
     assert zone.s == int(s)
     assert (len(m), len(n)) == (14, 14)  # twelve digits
-    values = zone.half_width - zone.centre, zone.half_width + zone.centre, mean_load_bound(zone, Hertz())
+    values = zone.half_width - zone.centre, zone.half_width + zone.centre, cycle.mean_load_bound
     for value, printed in zip(values, (m, n, bound), strict=True):
         assert value == pytest.approx(float(printed), rel=0, abs=10.0 ** -len(printed.split(".")[1]))
 

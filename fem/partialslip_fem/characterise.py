@@ -9,15 +9,18 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.rig import Rig, Terms, key_of
 from partialslip.scene import Scene
+from partialslip_fem.elasticity import triangles_of
 from partialslip_fem.factor import Backend, default_backend
 from partialslip_fem.problem import Part, parts_of
-from partialslip_fem.surroundings import surroundings
+from partialslip_fem.surroundings import height, surroundings
 
 _REACH = 0.5  # range of the polynomials, in the smallest half-width or height of the bodies
+_FLAT = 1e-6  # of the height: distance from the face that counts as rounding
 _TERMS = 11  # of each polynomial
 _ORDER = 4  # of the elements
-# element size in the middle, tolerance of singular corners, distance of round faces from the sides of elements
-_FINE, _ROUGH = (0.1, 1e-7, 1e-5), (0.2, 1e-6, 1e-4)
+# element size in the middle, tolerance of singular corners, distance of round faces from the sides of elements; and
+# order of the elements on a given mesh
+_FINE, _ROUGH = ((0.1, 1e-7, 1e-5), _ORDER), ((0.2, 1e-6, 1e-4), _ORDER - 1)
 
 
 def characterise(scene: Scene) -> Rig:
@@ -35,16 +38,16 @@ def characterise(scene: Scene) -> Rig:
     length = _smallest(parts_of(scene, 1.0))
     parts = [part for part in parts_of(scene, length) if part.finite]
     backend = scene.fem.factor or default_backend()
-    fine, rough = (_terms(parts, sizes, backend) for sizes in (_FINE, _ROUGH))
+    fine, rough = (_terms(parts, *sizes, backend) for sizes in (_FINE, _ROUGH))
     return Rig(key_of(scene), _REACH * length, fine, rough)
 
 
-def _terms(parts: Sequence[Part], sizes: tuple[float, float, float], backend: Backend) -> Terms:
-    """Sum of the terms of all bodies, on a mesh of these ``sizes``."""
+def _terms(parts: Sequence[Part], sizes: tuple[float, float, float], order: int, backend: Backend) -> Terms:
+    """Sum of the terms of all bodies, on a mesh of these ``sizes``, or by elements of this ``order`` on a given one."""
     points, places = chebyshev.chebpts1(_TERMS), chebyshev.chebpts1(_TERMS + 1)
     forced, pulled = np.zeros((2, 2, _TERMS, _TERMS + 1)), np.zeros((2, _TERMS))
     for part in parts:
-        found = surroundings(part, _REACH * points, _REACH * places, _ORDER, sizes, backend)
+        found = surroundings(part, _REACH * points, _REACH * places, order if part.mesh else _ORDER, sizes, backend)
         # the mesh of the upper body is mirrored: along y, forces and displacements have the other sign
         way = 1 if part.name == "lower" else -1
         forced += np.array([[1, way], [way, 1]])[..., None, None] * found.forced
@@ -52,7 +55,11 @@ def _terms(parts: Sequence[Part], sizes: tuple[float, float, float], backend: Ba
     along, across = _to_powers(points), _to_powers(places)
     (xx, xy), (yx, yy) = (along @ forced @ across.T)[..., :_TERMS]
     # by reciprocity
-    return Terms((xx + xx.T) / 2, (yy + yy.T) / 2, (xy + yx.T) / 2, pulled @ along.T / _REACH)
+    xx, yy, xy = (xx + xx.T) / 2, (yy + yy.T) / 2, (xy + yx.T) / 2
+    if not any(part.pulled or part.mesh for part in parts):  # bodies are their own mirror images, which meshes are not
+        odd = np.add.outer(range(_TERMS), range(_TERMS)) % 2 == 1
+        xx, yy, xy = np.where(odd, 0.0, xx), np.where(odd, 0.0, yy), np.where(odd, xy, 0.0)
+    return Terms(xx, yy, xy, pulled @ along.T / _REACH)
 
 
 def _to_powers(points: Array) -> Array:
@@ -66,12 +73,22 @@ def _to_powers(points: Array) -> Array:
 
 
 def _smallest(parts: Sequence[Part]) -> float:
-    """Smallest half-width or height of the finite ``parts``."""
+    """Smallest half-width or height of the finite ``parts``; less where the contact line of a mesh ends before."""
     sizes = []
     for part in parts:
         if part.mesh:
-            line, points = part.mesh.points[part.mesh.lines["contact"], 0], part.mesh.points
-            sizes += [-line.min(), line.max(), -points[:, 1].min()]
+            line = part.mesh.points[part.mesh.lines["contact"], 0]
+            sizes += [_clearance(part), -line.min() / _REACH, line.max() / _REACH]
         elif part.extent:
             sizes += [part.extent[0], part.extent[1] + (part.holder[1] if part.holder else 0.0)]
     return float(min(sizes))
+
+
+def _clearance(part: Part) -> float:
+    """Distance of the middle of the face from the nearest point of the boundary that is not on the face; the contact
+    line of a mesh may be a part of the face only."""
+    assert part.mesh
+    triangles = triangles_of(part.mesh)
+    x, y = triangles.p[:, np.unique(triangles.facets[:, triangles.boundary_facets()])]
+    below = np.abs(y - height(part, x)) > _FLAT * np.ptp(y)
+    return float(np.hypot(x, y)[below].min())

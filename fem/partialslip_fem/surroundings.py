@@ -114,8 +114,8 @@ def _left_over(part: Part, mesh: Mesh, order: int, places: Array) -> Array:
     face = facets_of(triangles, np.concatenate([mesh.lines["contact"], mesh.lines.get("face", mesh.lines["contact"])]))
     boundary = np.setdiff1d(triangles.boundary_facets(), [] if part.face else face)
     basis = skfem.FacetBasis(triangles, element, facets=boundary, intorder=2 * order + 2)
-    x, y = np.array(basis.global_coordinates())
-    n_x, n_y = np.array(basis.normals)
+    x, y = np.asarray(basis.global_coordinates())
+    n_x, n_y = np.asarray(basis.normals)
     ds = basis.dx
     if part.face:  # a straight side stands for a part of the round face: its true place and normal count
         on = np.isin(boundary, face)[:, None] & np.ones_like(x, dtype=bool)
@@ -123,7 +123,7 @@ def _left_over(part: Part, mesh: Mesh, order: int, places: Array) -> Array:
         y[on], n_x[on], ds[on] = -part.face(x[on]), slope, ds[on] * n_y[on]
         n_y[on] = 1.0
     r_x = x.ravel()[:, None] - places
-    r_y = y.ravel()[:, None] - _height(part, places)
+    r_y = y.ravel()[:, None] - height(part, places)
     to_n = r_x * n_x.ravel()[:, None] + r_y * n_y.ravel()[:, None]
     tractions = 2 / np.pi * to_n / (r_x**2 + r_y**2) ** 2
     columns = np.concatenate([tractions * r_x, tractions * r_y], axis=1)
@@ -136,10 +136,10 @@ def _left_over(part: Part, mesh: Mesh, order: int, places: Array) -> Array:
 
 def _on_face(part: Part, x: Array) -> Complex:
     """Points x + iy of the face at ``x``."""
-    result: Complex = x + 1j * _height(part, x)
+    result: Complex = x + 1j * height(part, x)
     return result
 
 
-def _height(part: Part, x: Array) -> Array:
+def height(part: Part, x: Array) -> Array:
     """Height of the face at ``x``: 0 or less."""
     return -part.face(x) if part.face else np.zeros_like(x)

@@ -261,7 +261,8 @@ def characterise(scene: Scene) -> Rig:
     """Find by finite elements what the bodies of ``scene`` add to half-planes: its rig.
 
     The rig depends on the bodies, their supports and materials, and on the profile only if a body is a pad. It is kept
-    for further calls with the same bodies. :meth:`Rig.write` writes it to a file, which a scene may refer to.
+    for further calls with the same bodies. :func:`partialslip.rig.write_rig` writes it to a file, which a scene may
+    refer to.
 
     Raises
     ------

@@ -11,6 +11,7 @@ import pytest
 import partialslip
 from partialslip.batch import grid, job
 from partialslip.batch.ledger import Ledger
+from partialslip_fem import characterise
 
 pytest.importorskip("pandas")
 SCENE = partialslip.load_scene("fretting-aluminium")
@@ -97,6 +98,41 @@ def test_columns_of_another_method():
     assert [*row][-2:] == ["outcome", "failure"]
 
 
+def blocks(width):
+    """Blocks as wide as high."""
+    return SCENE.replace(
+        {f"bodies.{body}.{key}": width for body in ("upper", "lower") for key in ("width", "height")}
+        | {"load.P": None, "load.a": 1e-3, "load.sigma": [0.0, 0.0], "fem.accuracy": 1e-2}
+    )
+
+
+def test_a_geometry_is_characterised_once(solved, monkeypatch):
+    """In whatever order its points are asked for, and however many geometries there are."""
+    found, rig = [], characterise.characterise(blocks(20e-3))  # instead of that of either geometry
+    monkeypatch.setattr(sys.modules["partialslip.run"], "_rigs", {})
+    monkeypatch.setattr(sys.modules["partialslip.run"], "_KEPT", 1)
+    monkeypatch.setattr(characterise, "characterise", lambda scene: found.append(scene) or rig)
+    over = {"friction.f": F[:2], "bodies.lower.width": [16e-3, 20e-3]}
+    table = partialslip.sweep(blocks(20e-3), over, "equivalent", cores=1)
+    assert table["friction.f"].tolist() == [F[0], F[0], F[1], F[1]]
+    assert table["failure"].tolist() == [""] * 4
+    assert (len(solved), len(found)) == (4, 2)
+
+
+def test_a_share_of_the_points_is_checked_by_finite_elements(solved):
+    """Points are drawn, the same in each call; errors are those of the method asked for."""
+    table = partialslip.sweep(blocks(20e-3), {"friction.f": F}, "equivalent", check=0.5, cores=1)
+    assert table["method"].tolist() == ["equivalent"] * 4
+    checked = table["fem.m"].notna()
+    assert checked.sum() == table["error.m"].notna().sum() == 2
+    assert (table["error.m"][checked] < 1e-3).all()
+    assert np.allclose(abs(table["m"] - table["fem.m"])[checked], (table["error.m"] * table["fem.a"])[checked])
+    again = partialslip.sweep(blocks(20e-3), {"friction.f": F}, "equivalent", check=0.5, cores=1)
+    assert again.equals(table)
+    assert len(solved) == 4
+    assert "fem.m" not in partialslip.sweep(SCENE, {"friction.f": F[:1]}, "exact")
+
+
 @pytest.mark.parametrize(
     ("over", "more", "line"),
     [
@@ -109,6 +145,7 @@ def test_columns_of_another_method():
         (3, {}, "over: must be values by key, or a list of points, each with a value by key"),
         ({"friction.f": F}, {"methods": "exactly"}, "methods = exactly: must be of exact, march, fem"),
         ({"friction.f": F}, {"methods": []}, "methods = none: must be of exact, march, fem"),
+        ({"friction.f": F}, {"check": 1.5}, "check = 1.5: must be from 0 to 1"),
         ({"friction.f": F}, {"cores": 0}, "cores = 0: must be a whole number >= 1"),
         ({"friction.f": F}, {"cluster": "nowhere"}, "--cluster 'nowhere': must be a scheduler's address"),
     ],

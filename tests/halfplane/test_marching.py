@@ -57,9 +57,9 @@ def test_transients_die_out_and_leave_the_steady_range():
     ("level", "steady"), [(0.5, True), (0.9, True), pytest.param(1.1, False, marks=pytest.mark.slow)]
 )
 def test_steady_below_the_mean_load_bound_ratchets_above(level, steady):
-    """The bound is 0.4725 f P for dQ/(2 f P) = 0.3, dsigma/(f p0) = 4."""
+    """The bound is 0.4711 f P for dQ/(2 f P) = 0.3, dsigma/(f p0) = 4."""
     fP = 314159.26535897935
-    Q = [(level * 0.47249988 + turn * 0.3) * fP for turn in (-1, 1)]
+    Q = [(level * 0.471092 + turn * 0.3) * fP for turn in (-1, 1)]
     result = marched("hertz-large-tension", ROUGH, f"load.Q={Q}", "load.sigma=[-4e8, 4e8]", "load.cycles=30")
     exact_m, exact_n = 0.749058362969, 0.370590356334
     off = max(abs(result.m / result.a - exact_m), abs(result.n / result.a - exact_n))

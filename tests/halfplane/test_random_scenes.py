@@ -16,9 +16,10 @@ import partialslip
 from partialslip.errors import InputError
 from partialslip.halfplane import Contact, contact, contact_of, stick_zone
 from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.loading import loading
 from partialslip.halfplane.slip import dissipation
 from partialslip.halfplane.steady import transition
-from partialslip.halfplane.traction import half_range, mean_load_bound
+from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
 from partialslip.verify.random_scenes import KINDS, PROFILES, changes, draw, kind_of, without_shear
 from partialslip.verify.stress import stress_numbers
@@ -108,7 +109,8 @@ def of_pressure(pressed, f, dQ, dsigma):
     regime = "stuck" if dQ == dsigma == 0 else "small tension" if found.s > 0 else "large tension"
     slips = mirror * a * at_slips[::mirror], turn * a * slip[::mirror]
     turns = float(transition(abs(dQ) / (2 * f * pressed.P), pressed.shape)) * f * pressed.p0
-    limits = {"dsigma_transition": turns, "Q_mean": mean_load_bound(zone, pressed.shape) * f * pressed.P}
+    room = loading(pressed, f, dQ, dsigma, bound=2).mean_load_bound * f * pressed.P
+    limits = {"dsigma_transition": turns, "Q_mean": room}
     return Answer(
         pressed, f, dQ, dsigma, 0.0, regime, float(found.m), float(found.n),
         float(found.half_width), x, *at(x), at, limits, (), slips, dissipated,
@@ -144,8 +146,14 @@ def loads_at(answer):
 
 
 def room_of(answer):
-    """Of the mean force, as a fraction of f P."""
-    return 1 - np.trapezoid(np.abs(answer.dq), answer.x) / (2 * answer.f * answer.pressed.P)
+    """Of the mean force, as a fraction of f P: at stages of the way, at the load points only where slip reverses."""
+    pressed, f, x, unit = answer.pressed, answer.f, answer.x, answer.f * answer.pressed.p0
+    cycle, y, dq = loading(pressed, f, answer.shear, answer.tension, bound=2), x / pressed.a, answer.dq / unit
+    sticks, least = (y > cycle.ends[0]) & (y < cycle.ends[1]), np.abs(dq) / 2
+    for share in np.arange(1, 40) / 40 if cycle.zone.s < 0 and not cycle.turns_round else ():
+        so_far = loading(pressed, f, share * answer.shear, share * answer.tension, bound=2).traction(y)
+        least[sticks] = np.maximum(least, np.abs(so_far - dq / 2))[sticks]
+    return 1 - np.trapezoid(least, y) * 2 / np.pi
 
 
 def complaints(answer):

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from varying_scenes import varying
 
-from partialslip import run
+from partialslip import parse_scene, run
 from partialslip.condensed import varying as stepping
 from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path, stretched
 from partialslip.halfplane.cells import compliance, graded
+from partialslip.judge.verdict import Outcome
 
 A1, A2 = 0.8, 1.0
 P1, P2 = (math.pi * a**2 / 2 for a in (A1, A2))
@@ -160,9 +161,57 @@ def test_march_in_steps_ratchets_where_the_way_between_the_load_points_says_so()
     assert [run(scene, ["march"])["march"].regime for scene in scenes] == ["large tension", "ratchets"]
 
 
+@pytest.mark.slow
+def test_march_in_steps_ratchets_under_constant_pressure_where_the_way_says_so():
+    """0.008 f P inside and outside the bound, at 0.185; both load points alone would allow a mean of 0.209."""
+
+    def scene(mean):
+        varies = varying((0.9, 0.9), 1.2, 8.0, mean=mean, cycles=400, steps=16)
+        return varies.replace(load={"P": varies.P})
+
+    bound, P = run(scene(0.0), ["exact"])["exact"].limits["Q_mean"], scene(0.0).P
+    runs = [run(scene(bound + off * P), ["exact", "march"]) for off in (-0.008, 0.008)]
+    regimes = [[found[method].regime for method in ("exact", "march")] for found in runs]
+    assert regimes == [["large tension"] * 2, ["ratchets"] * 2]
+
+
+def test_regimes_at_the_bound_on_the_mean_are_not_judged():
+    """The net slip of a cycle vanishes as the mean approaches the bound: 0.004 f P beyond it march with 1e-2 sees
+    none, 0.012 f P beyond it does, in the steps that it chooses."""
+    varies = varying((0.9, 0.9), 1.2, 8.0, mean=0.19, cycles=20)
+    scene = varies.replace(load={"P": varies.P})
+    loads = [{"Q": [mean - 0.6, mean + 0.6]} for mean in (0.19, 0.2)]
+    near, beyond = (run(scene.replace(load=load), ["exact", "march"]) for load in loads)
+    assert (near["exact"].regime, near["march"].regime) == ("ratchets", "large tension")
+    assert near.passed
+    judged = {verdict.quantity: verdict for verdict in near.comparisons["march"].verdicts}
+    assert judged["regime"].outcome == Outcome.NOT_JUDGED
+    assert "nearer to the bound" in judged["regime"].reason
+    assert (beyond["exact"].regime, beyond["march"].regime) == ("ratchets", "ratchets")
+
+
 def test_counts_of_constant_pressure_do_not_change():
     scene = varying((1, 1), 0.3, 0.2, mean=0.1, cycles=3)
     number = scene.replace(load={"P": scene.P})
     one, other = (run(each, ["march"])["march"] for each in (scene, number))
     assert dict(one.counts) == dict(other.counts)
     assert (one.traction.dq == other.traction.dq).all()
+
+
+def test_slip_that_begins_in_the_wrong_direction_is_known():
+    """The adhered traction of the whole contact changes its sign inside the right slip zone: points there first slip on
+    in the direction of the way before, and the stick zone's right end is elsewhere on a gradual way. march and finite
+    elements agree on where."""
+    load = {"P": [1.0, 0.517], "e": -0.109, "Q": [0.1506, -0.1506], "sigma": [1.9515, -1.9515], "steps": 4}
+    scene = parse_scene({
+        "name": "wrong-way",
+        "material": {"E": 4.0, "nu": 0.0},
+        "profile": {"kind": "flat-rounded", "R": 1.0, "b": 0.6077},
+        "friction": {"f": 1.0},
+        "load": load | {"cycles": 10},
+    })  # fmt: skip
+    found = run(scene, ["exact", "march"])
+    exact, march = found["exact"], found["march"]
+    assert exact.path_dependent
+    assert exact.m == pytest.approx(march.m, abs=1e-3 * exact.a)
+    assert exact.n - march.n > 0.015 * exact.a

@@ -12,9 +12,9 @@ import pytest
 from partialslip.cli import main
 from partialslip.halfplane import contact
 from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.loading import half_cycle
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.steady import stick_zone, stick_zones, transition
-from partialslip.halfplane.traction import mean_load_bound
 from partialslip.map import files as map_files
 from partialslip.map import grid, place, stick_map
 from partialslip.output.place import NAME
@@ -162,7 +162,7 @@ def test_a_scene_on_the_map(tmp_path, monkeypatch, capsys):
     assert main(["map", "hertz-large-tension"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "hertz-large-tension: large tension, m = 0.8038533 a, n = 0.2949287 a"
-    transition, bound = 8 * (1 - 0.6**0.5) * 200, mean_load_bound(stick_zone(0.4, 4.03, Hertz()), Hertz())
+    transition, bound = 8 * (1 - 0.6**0.5) * 200, half_cycle(0.4, 4.03, Hertz()).mean_load_bound
     assert f"{transition:.4g} MPa" in lines[1]
     assert f"{bound * np.pi * 100:.4g} kN/m" in lines[1]
     assert len(lines) == 3

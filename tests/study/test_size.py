@@ -1,9 +1,7 @@
 """Sweeps: axes, cases solved once, and the law of the sizes."""
 
 import csv
-import json
 import math
-import os
 import signal
 import subprocess
 import sys
@@ -18,7 +16,7 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.batch.job import Job, Solved, solve
+from partialslip.batch.job import Job, solve
 from partialslip.batch.ledger import Ledger
 from partialslip.batch.sweep import Task, sweep, workers
 from partialslip.cli import main
@@ -26,6 +24,7 @@ from partialslip.study.size import sizes as size
 from partialslip.study.size import tables
 from partialslip.study.size.axes import axis as read
 from partialslip.study.size.axes import cases as make
+from partialslip.study.size.case import METHODS, Sized, solve_case
 from partialslip.study.size.figure import grid_svg, size_svg
 from partialslip.study.size.law import Point, trend
 
@@ -212,13 +211,14 @@ def test_what_the_mesh_is_off_by_is_no_law():
 @pytest.mark.parametrize(
     ("off", "mesh", "kinds", "texts"),
     [
-        (0.3 * X**-2.0, 0.0, ("bound", "interpolated", "interpolated"), ("<= 4", "5.48, inter", "17.3, inter")),
-        (8 * X**-2.0, 0.0, ("interpolated", "interpolated", "interpolated"), ("12.6", "28.3", "89.4")),
-        (0.64 * X**-2.0, 1e-5, ("bound", "measured", "interpolated"), ("<= 4", "8, measured", "25.3, inter")),
-        (80 * X**-2.0, 0.0, ("interpolated", "interpolated", "extrapolated"), ("40", "89.4", "283 (283 to 283), ex")),
+        (0.1 * X**-2.0, 0.0, ("bound", "interpolated", "interpolated"), ("<= 4", "10.0, inter", "31.6, inter")),
+        (1.6 * X**-2.0, 0.0, ("interpolated", "interpolated", "interpolated"), ("12.6", "40", "126")),
+        (0.64 * X**-2.0, 1e-6, ("measured", "interpolated", "interpolated"), ("8, measured", "25.3, inter", "80")),
+        (16 * X**-2.0, 0.0, ("interpolated", "interpolated", "extrapolated"), ("40", "126", "400 (400 to 400), ex")),
         (0.2 + 0 * X, 0.0, ("bound", "bound", "bound"), ("> 128", "> 128", "> 128")),
-        (0.3 * X**-2.0, 0.3 * X**-2.0, ("bound", "bound", "bound"), ("<= 4", "<= 8", "<= 32")),  # no law
-        (0.3 * X**-2.0, np.where(X == 16, 1e-3, 0), ("bound", "interpolated", "extrapolated"), ("<= 4", "5", "17.3")),
+        (0.3 * X**-2.0, 0.3 * X**-2.0, ("bound", "bound", "bound"), ("<= 8", "<= 32", "<= 128")),  # no law
+        (0.3 * X**-2.0, np.where(X == 16, 1e-3, 0), ("interpolated", "extrapolated", "interpolated"),
+         ("5", "17.3", "54")),
         (1.0 + 0 * X, 1.0, ("bound", "bound", "bound"), ("not known",) * 3),
     ],
 )  # fmt: skip
@@ -271,8 +271,8 @@ def test_the_same_mesh_twice_gives_no_error_of_the_mesh():
     """A fixed element size gives the same mesh for every accuracy, and no estimate."""
     axis = read("load.P=1,2")
     meshes = [
-        made.solved(
-            scene(), {"load.P": 1.0, "accuracy": accuracy}, {"p": None, "q": None},
+        sized(
+            {"load.P": 1.0, "accuracy": accuracy},
             fem={"a": a, "p_max": 1.0, "m": None, "n": None, "estimate": {}, "counts": {"dofs": dofs}},
             exact={"a": 1.0, "p_max": 1.0, "m": None, "n": None},
         )
@@ -283,24 +283,37 @@ def test_the_same_mesh_twice_gives_no_error_of_the_mesh():
     assert size.along(axis, meshes).mesh["a"] == pytest.approx(0.01)
 
 
-def entries(name, found, failed=()):
-    """Return solved cases along the axis ``name``: changes of a by size; and failed cases."""
-    none = {"p_max": 1.0, "m": None, "n": None}
-    solved = [
-        made.solved(
-            scene(), {name: at, "accuracy": 1.0}, {"p": None, "q": None},
-            fem={"a": 1 + off, "estimate": {"a": 3e-5}, "counts": {"dofs": 100}, **none}, exact={"a": 1.0, **none},
+def sized(labels, left=None, rig=0.0, refused="", **methods):
+    """Return a solved case; ``left`` is the difference of equivalent half-planes in a, and ``rig`` the rig's error."""
+    solved = made.solved(scene(), labels, {"p": None, "q": None}, **methods)
+    more = {}
+    if left is not None:
+        errors = msgspec.structs.replace(solved.run.comparison["fem"], errors={"a": left, "p": None})
+        method = made.method(shares={"rig": {"a": rig}})
+        more["equivalent"] = msgspec.structs.replace(
+            solved.run, comparison={"equivalent": errors}, methods={"equivalent": method}
         )
-        for at, off in found.items()
-    ]  # fmt: skip
-    return solved + [Solved(labels={name: at, "accuracy": 1.0}, error="too narrow") for at in failed]
+    return Sized(labels=labels, run=solved.run, refused=refused, **more)
+
+
+def entries(name, found, failed=(), left=None, rig=0.0):
+    """Return solved cases along the axis ``name``: differences of a by size, and what is left with equivalent
+    half-planes, text where there are none; and failed cases."""
+    none = {"p_max": 1.0, "m": None, "n": None}
+    solved = []
+    for at, off in found.items():
+        beside = (left or {}).get(at)
+        more = {"refused": beside} if isinstance(beside, str) else {"left": beside, "rig": rig}
+        fem = {"a": 1 + off, "estimate": {"a": 3e-5}, "counts": {"dofs": 100}, **none}
+        solved.append(sized({name: at, "accuracy": 1.0}, fem=fem, exact={"a": 1.0, **none}, **more))
+    return solved + [Sized(labels={name: at, "accuracy": 1.0}, error="too narrow") for at in failed]
 
 
 def test_table_csv_and_figure_mark_the_same_points():
     axis = read("bodies.*.width=2a,4a,8a,16a,32a,64a,128a")
     found = entries(axis.name, {at: 0.3 * at**-2.0 for at in (4.0, 8.0, 16.0, 32.0, 64.0, 128.0)}, [2.0])
     study = tables.size_study(scene(), axis, found)
-    headings, rows = tables.changes_table(study)
+    headings, rows = tables.differences_table(study, study.models[0])
     assert headings == ("size", "a", "p0", "mesh")
     marks = {row[0]: row[1][-1] for row in rows}
     assert marks == {"2": "-", "4": "f", "8": "f", "16": "f", "32": "e", "64": "e", "128": "e"}
@@ -308,7 +321,7 @@ def test_table_csv_and_figure_mark_the_same_points():
     assert [row["point"] for row in points if row["quantity"] == "a"] == ["fitted"] * 3 + [Point.UNCLEAR] * 3
     assert points[-1]["point"] == "too narrow"
     laws = list(csv.DictReader(tables.laws_csv(study).splitlines()))
-    assert [laws[0][key] for key in ("quantity", "kind", "low", "high")] == ["a", "bound", "", "4.0"]
+    assert [laws[0][key] for key in ("quantity", "kind", "low", "high")] == ["a", "interpolated", "4.0", "8.0"]
     assert tables.laws_table(study)[1][0][-1] == "4, 8, 16"
     assert [row[0] for row in tables.needed_table(study)[1]] == ["a", "p0"]
     assert "not solved: bodies.*.width 2.0, accuracy 1.0: too narrow" in tables.notes(study)
@@ -316,7 +329,9 @@ def test_table_csv_and_figure_mark_the_same_points():
 
     drawn = xml.etree.ElementTree.fromstring(size_svg(study))
     texts = ["".join(text.itertext()).strip() for text in drawn.iter("{http://www.w3.org/2000/svg}text")]
-    assert {"2", "4", "8", "16", "32", "64", "128", "fitted", "not fitted", "not solved"} <= set(texts)
+    assert {"2", "4", "8", "16", "32", "64", "128", "not solved"} <= set(texts)
+    assert {"half-plane, fitted", "half-plane, not fitted"} <= set(texts)
+    assert not any("equivalent" in text for text in texts)
     panel = next(group for group in drawn.iter() if group.get("id") == "axes_1")
     fills = [
         [mark.get("style", "") for mark in group.iter("{http://www.w3.org/2000/svg}use")]
@@ -326,18 +341,93 @@ def test_table_csv_and_figure_mark_the_same_points():
     assert [("fill: #ffffff" in group[0]) for group in circles] == [True, False]  # open: not fitted; filled: fitted
 
 
+def test_both_half_planes_have_their_laws():
+    """Equivalent half-planes have points, laws and sizes of their own; where there are none, one line says so."""
+    axis = read("bodies.*.width=2a,4a,8a,16a,32a,64a")
+    left = {at: 800 * at**-4.0 for at in (8.0, 16.0, 32.0, 64.0)} | {2.0: "must be larger", 4.0: "too large"}
+    found = entries(axis.name, {at: 30 * at**-2.0 for at in (2.0, 4.0, 8.0, 16.0, 32.0, 64.0)}, left=left)
+    study = tables.size_study(scene(), axis, found)
+    plain, alike = study.models
+    assert (plain.name, alike.name) == ("half-plane", "equivalent")
+    assert [trend.quantity for trend in alike.trends] == ["a"]
+    assert (plain.trends[0].law.k, alike.trends[0].law.k) == pytest.approx((2, 4))
+    rows = {row[0]: row[1] for row in tables.differences_table(study, alike)[1]}
+    assert rows == {"2": "-", "4": "-", "8": "2.0e-01 f", "16": "1.2e-02 f", "32": "7.6e-04 f", "64": "4.8e-05 e"}
+    assert [row[:2] for row in tables.laws_table(study)[1]] == [("a", "half-plane"), ("a", "equivalent")]
+    needed = {row[:2]: row[2] for row in tables.needed_table(study)[1]}
+    assert needed["a", "equivalent"] == "16.8, interpolated"
+    assert needed["a", "half-plane"] == "54.8, interpolated"
+    assert "no equivalent half-planes at 2 and 4: must be larger" in tables.notes(study)
+    points = list(csv.DictReader(tables.points_csv(study).splitlines()))
+    assert [float(row["difference"]) for row in points if row["half-planes"] == "equivalent"] == pytest.approx(
+        [800 * at**-4.0 for at in (8.0, 16.0, 32.0, 64.0)]
+    )
+    laws = list(csv.DictReader(tables.laws_csv(study).splitlines()))
+    assert {row["half-planes"]: round(float(row["k"]), 6) for row in laws if row["k"]} == {
+        "half-plane": 2, "equivalent": 4,
+    }  # fmt: skip
+    head, rows = size.table([axis], found)
+    column = head.index("equivalent: a")
+    assert [row[column] for row in rows] == ["", "", *(left[at] for at in (8.0, 16.0, 32.0, 64.0))]
+    assert [row[head.index("no equivalent")] for row in rows] == ["must be larger", "too large", "", "", "", ""]
+    assert all(len(row) == len(head) for row in rows)
+
+    drawn = xml.etree.ElementTree.fromstring(size_svg(study))
+    texts = ["".join(text.itertext()).strip() for text in drawn.iter("{http://www.w3.org/2000/svg}text")]
+    assert {"half-plane, fitted", "equivalent, fitted", "equivalent, not fitted"} <= set(texts)
+
+
+def test_the_error_of_the_rig_is_an_error_of_the_mesh():
+    axis = read("load.P=4,8,16,32")
+    found = entries(axis.name, {at: 30 * at**-2.0 for at in axis.values}, left=dict.fromkeys(axis.values, 1e-3))
+    assert size.along(axis, found, "equivalent").mesh["a"] == pytest.approx(3e-5)
+    found = entries(axis.name, {4.0: 1.0}, left={4.0: 1e-3}, rig=1e-4)
+    assert size.along(axis, found, "equivalent").mesh["a"] == pytest.approx(1.3e-4)
+    assert size.along(axis, found).mesh["a"] == pytest.approx(3e-5)
+
+
+def test_equivalent_half_planes_leave_a_tenth_of_the_difference():
+    """Blocks of width 8 a. Without equivalent half-planes the case stands, and says why; half-planes need none."""
+    (case,) = make(scene(accuracy=1e-2), [read("bodies.*.width+bodies.*.height=8a")])
+    assert case.methods == METHODS
+    found = solve_case(case)
+    off, left = (size.along(read("bodies.*.width+bodies.*.height=8a"), [found], name).off for name in
+                 ("half-plane", "equivalent"))  # fmt: skip
+    for quantity in ("a", "p", "m", "n", "q"):
+        assert left[quantity] < off[quantity] / 10
+    again = msgspec.json.decode(msgspec.json.encode(found), type=Sized)
+    assert again.equivalent.comparison["equivalent"].errors["a"] == left["a"]
+
+    (case,) = make(scene(accuracy=1e-2), [read("bodies.*.width+bodies.*.height=3a")])
+    found = solve_case(case)
+    assert found.run.comparison["fem"].errors["a"] > 0
+    assert found.equivalent is None
+    assert "must be larger compared with the contact" in found.refused
+    half_planes = solve_case(Job(scene().replace(bodies={"upper": None, "lower": None}), METHODS))
+    assert (half_planes.error, half_planes.refused, half_planes.equivalent) == ("", "", None)
+
+
+def test_entries_without_equivalent_half_planes_are_read():
+    """Those of older ledgers."""
+    old = made.solved(scene(), {"load.P": 1.0, "accuracy": 1.0}, {"p": None, "q": None}, exact={"a": 1.0},
+                      fem={"a": 1.1, "estimate": {}, "counts": {"dofs": 1}})  # fmt: skip
+    found = Sized.of(msgspec.to_builtins(old))
+    assert size.along(read("load.P=1,2"), [found]).off["a"] == pytest.approx(0.1)
+    assert size.along(read("load.P=1,2"), [found], "equivalent").size.size == 0
+
+
 def test_maps_leave_out_what_was_not_solved():
     """Each change is at the right place: first axis across, second axis up."""
     axes = [read("bodies.*.width=2a,4a,8a"), read("bodies.*.height=3a,9a")]
     entries = [
-        made.solved(
-            scene(), {"bodies.*.width": x, "bodies.*.height": y, "accuracy": 1.0}, {"p": None, "q": None},
+        sized(
+            {"bodies.*.width": x, "bodies.*.height": y, "accuracy": 1.0},
             fem={"a": 1 + 0.1 / x / y, "p_max": 1.0, "m": None, "n": None, "estimate": {}},
             exact={"a": 1.0, "p_max": 1.0, "m": None, "n": None},
         )
         for x in axes[0].values for y in axes[1].values
     ]  # fmt: skip
-    entries[0] = Solved(labels=entries[0].labels, error="too narrow")
+    entries[0] = Sized(labels=entries[0].labels, error="too narrow")
     x, y, off = size.grid(axes, entries, "a")
     expected = 0.1 / x / y[:, None]
     expected[0, 0] = np.nan
@@ -357,114 +447,3 @@ def test_blocks_come_near_the_half_plane_with_the_square_of_their_size(tmp_path)
         assert trend(sizes, quantity).law.k == pytest.approx(2, abs=0.1)
     meshes = [sum(entry.labels["bodies.*.width = bodies.*.height"] == each for entry in found) for each in sizes.size]
     assert meshes[0] < meshes[-1]
-
-
-def test_a_dask_cluster_goes_on_where_a_worker_is_killed(tmp_path):
-    pytest.importorskip("distributed")
-    file, folder = tmp_path / "scheduler.json", ["--local-directory", str(tmp_path)]
-
-    def start(what, *options):
-        command = [sys.executable, "-m", f"distributed.cli.dask_{what}", "--scheduler-file", str(file), *options]
-        return subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.DEVNULL)
-
-    cases = [Job(scene(), ("exact",), {"number": number}) for number in range(40)]
-    ledger, done = Ledger(tmp_path / "ledger.jsonl"), []
-    scheduler = start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
-    crew = [start("worker", "--no-nanny", "--nthreads", "1", "--no-dashboard", *folder) for _ in range(2)]
-    try:
-        for _ in range(600):
-            if file.exists() and file.read_text():
-                break
-            time.sleep(0.05)
-        address = json.loads(file.read_text())["address"]
-
-        def kill(count, *_):
-            done.append(count)
-            if count == 10:
-                crew[0].kill()
-
-        with workers(address) as executor:
-            sweep([case.task for case in cases], ledger, executor, kill)
-    finally:
-        for process in (*crew, scheduler):
-            process.kill()
-            process.wait()
-    assert done == list(range(41))
-    assert {entry["labels"]["number"] for entry in ledger} == set(range(40))
-    assert len(ledger.path.read_text().splitlines()) == 40  # nothing twice
-
-
-@pytest.mark.parametrize(
-    "address",
-    ["tcp://127.0.0.1:9", "127.0.0.1:9", "nonsense", "", "tcp://", "http://127.0.0.1:9", "tcp://127.0.0.1:99999"],
-)
-def test_no_scheduler_is_one_line(address):
-    """At once, without messages of Dask."""
-    pytest.importorskip("distributed")
-    with pytest.raises(partialslip.InputError, match="--cluster"), workers(address):
-        pass
-
-
-SWEEP = """
-import sys
-from pathlib import Path
-from partialslip import load_scene
-from partialslip.cli.ending import ended
-from partialslip.batch.job import Job
-from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import sweep, workers
-def main():
-    tasks = [Job(load_scene("hertz-shear"), ("exact",), {"number": n}).task for n in range(int(sys.argv[3]))]
-    with workers(sys.argv[1]) as executor:
-        sweep(tasks, Ledger(Path(sys.argv[2])), executor, lambda done, *_: print(done, flush=True))
-    return 0
-sys.exit(ended(main))
-"""
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("fault", ["scheduler killed", "no package"])
-def test_what_a_cluster_lacks_is_one_line(tmp_path, fault):
-    """The sweep continues with another cluster."""
-    pytest.importorskip("distributed")
-    (tmp_path / "bare" / "partialslip").mkdir(parents=True)
-    (tmp_path / "bare" / "partialslip" / "__init__.py").write_text("raise ImportError('none here')\n", "utf-8")
-    bare = {**os.environ, "PYTHONPATH": str(tmp_path / "bare")}
-    count = 60
-
-    def attempt(fault):
-        file = tmp_path / f"scheduler-{fault}.json"
-        command = [sys.executable, "-m"]
-        quiet = {"cwd": tmp_path, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        of_scheduler = ["--scheduler-file", str(file), "--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
-        scheduler = subprocess.Popen([*command, "distributed.cli.dask_scheduler", *of_scheduler], **quiet)
-        of_worker = ["--scheduler-file", str(file), "--no-nanny", "--nthreads", "1", "--no-dashboard"]
-        environment = bare if fault == "no package" else None
-        crew = [
-            subprocess.Popen([*command, "distributed.cli.dask_worker", *of_worker], env=environment, **quiet)
-            for _ in range(2)
-        ]
-        try:
-            for _ in range(2400):
-                if file.exists() and file.read_text():
-                    break
-                time.sleep(0.05)
-            address, ledger = json.loads(file.read_text())["address"], str(tmp_path / "ledger.jsonl")
-            work = [sys.executable, "-c", SWEEP, address, ledger, str(count)]
-            study = subprocess.Popen(work, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            if fault == "scheduler killed":
-                next(line for line in study.stdout if line == "5\n")
-                scheduler.kill()
-            _, said = study.communicate(timeout=300)
-        finally:
-            for process in (*crew, scheduler):
-                process.kill()
-                process.wait()
-        return study.returncode, said
-
-    code, said = attempt(fault)
-    assert code == 2
-    assert said.startswith("partialslip: --cluster ")
-    assert said.count("\n") == 1
-    assert attempt("none") == (0, "")
-    assert len((tmp_path / "ledger.jsonl").read_text("utf-8").splitlines()) == count

@@ -1,8 +1,10 @@
 """Sweeps of a scene over values of its keys, as a data frame."""
 
 import itertools
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +12,7 @@ import numpy as np
 
 from partialslip.batch.job import Job, Sharing, Solved
 from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import Progress, workers
+from partialslip.batch.sweep import Progress, Task, workers
 from partialslip.batch.sweep import sweep as work_through
 from partialslip.errors import InputError
 from partialslip.frame import frame
@@ -32,6 +34,7 @@ def sweep(
     over: Mapping[str, Iterable[Any]] | Sequence[Mapping[str, Any]],
     methods: str | Iterable[str] | None = None,
     *,
+    check: float = 0.0,
     cores: int | None = None,
     cluster: str | None = None,
     ledger: str | Path | None = None,
@@ -50,10 +53,13 @@ def sweep(
         points are all combinations, and the last key varies fastest. A value of ``load.Q`` is a list of numbers. A
         sequence ``[{"friction.f": 0.3, "load.P": 1e5}, ...]`` gives the points themselves.
     methods : str or iterable of str, optional
-        As for :func:`partialslip.run`.
+        As for :func:`partialslip.run`. By equivalent, each geometry is characterised once per process.
+    check : float, optional
+        Share of the points, from 0 to 1, that are also solved by fem. The points are drawn at random, the same in each
+        call.
     cores : int, optional
-        Number of processes; default: all cores, and for the exact method alone this process, as the start of another
-        process takes longer than many points. 1 means this process.
+        Number of processes; default: all cores, and this process for the exact method, or equivalent and one
+        geometry, alone: the start of another process takes longer than many points. 1 means this process.
     cluster : str, optional
         Address of a Dask scheduler, ``tcp://host:port``, whose workers solve the points.
     ledger : str or Path, optional
@@ -66,9 +72,10 @@ def sweep(
     DataFrame
         SI units. The keys of ``over``; ``method``, ``regime``, ``a``, ``p0``, ``m``, ``n``, ``estimate.*`` (the
         method's own estimates) and ``cpu_s`` of the reference method; the same with the prefix ``fem.`` (or
-        ``march.``) of other methods, with ``fem.error.*`` against the reference; ``outcome``: passed, missed or not
-        judged; ``failure``: why the point could not be solved, empty if it was. Errors and estimates of a, m and n are
-        fractions of a, those of p and q are relative L2. Values that do not exist are NaN or None.
+        ``march.``) of other methods, with ``fem.error.*`` against the reference. With ``check`` the columns without a
+        prefix stay those of the method asked for, and ``error.*`` are its errors against fem. ``outcome``: passed,
+        missed or not judged; ``failure``: why the point could not be solved, empty if it was. Errors and estimates of
+        a, m and n are fractions of a, those of p and q are relative L2. Values that do not exist are NaN or None.
 
     Raises
     ------
@@ -82,16 +89,24 @@ def sweep(
     frame({})  # pandas is missing before the first point is solved, not after the last one
     if cores is not None and not (isinstance(cores, (int, np.integer)) and cores >= 1):
         raise InputError(f"cores = {cores}: must be a whole number >= 1")
+    if not 0 <= check <= 1:
+        raise InputError(f"check = {check}: must be from 0 to 1")
     points = _points(over)
     methods = [methods] if isinstance(methods, str) else None if methods is None else list(methods)
     jobs = [_job(scene.replace(point), methods, point) for point in points]
-    if cores is None and all(job.methods == ("exact",) for job in jobs):
-        cores = 1
+    leading = [job.methods[0] if "fem" not in job.methods else None for job in jobs]
+    for k in np.random.default_rng(0).choice(len(jobs), math.ceil(check * len(jobs)), replace=False):
+        jobs[k] = replace(jobs[k], methods=tuple(dict.fromkeys((*jobs[k].methods, "fem"))))
     known, solve = _SESSION if ledger is None else Ledger(Path(ledger)), Sharing()
     tasks = [job.task._replace(do=solve) for job in jobs]
+    quick = all({*job.methods} <= {"exact", "equivalent"} for job in jobs) and len({*map(_geometry, tasks)}) == 1
+    cores = 1 if cores is None and quick else cores
     with _told(progress, scene.name) as tell, workers(cluster, cores) as executor:
-        work_through(tasks, known, executor, tell)
-    rows = [_row(point, Solved.of(known[task.key])) for point, task in zip(points, tasks, strict=True)]
+        work_through(sorted(tasks, key=_geometry), known, executor, tell)
+    rows = [
+        _row(point, Solved.of(known[task.key]), first)
+        for point, task, first in zip(points, tasks, leading, strict=True)
+    ]
     keys = dict.fromkeys(key for row in rows for key in row)
     last = ("outcome", "failure")
     return frame({key: [row.get(key) for row in rows] for key in (*(key for key in keys if key not in last), *last)})
@@ -129,16 +144,23 @@ def _job(scene: Scene, methods: list[str] | None, point: Mapping[str, Any]) -> J
     return Job(scene, chosen, {key: value if isinstance(value, float) else str(value) for key, value in point.items()})
 
 
-def _row(point: Mapping[str, Any], solved: Solved) -> dict[str, Any]:
-    """Columns of a point."""
+def _geometry(task: Task) -> str:
+    """Sort key of a ``task``: by equivalent, points of one geometry follow each other, as few rigs are kept."""
+    scene, methods = task.argument.scene, task.argument.methods
+    return str((scene.bodies, scene.material, scene.profile)) if "equivalent" in methods else ""
+
+
+def _row(point: Mapping[str, Any], solved: Solved, first: str | None = None) -> dict[str, Any]:
+    """Columns of a point; those of fem do not precede those of the ``first`` method."""
     if solved.run is None:
         return {**point, **dict.fromkeys(("method", *_VALUES, "cpu_s", "outcome")), "failure": solved.error}
-    return {**point, **_columns(solved.run), "outcome": str(solved.run.outcome), "failure": ""}
+    return {**point, **_columns(solved.run, first), "outcome": str(solved.run.outcome), "failure": ""}
 
 
-def _columns(run: Record) -> dict[str, Any]:
-    """Columns of a solved point, those of the reference first."""
+def _columns(run: Record, first: str | None) -> dict[str, Any]:
+    """Columns of a solved point, those of the reference first, or of the ``first`` method instead of fem."""
     reference = run.reference or next(iter(run.methods))
+    reference = first if first and reference == "fem" else reference
     columns: dict[str, Any] = {"method": reference}
     for name in sorted(run.methods, key=lambda name: name != reference):
         result, own = run.methods[name], "" if name == reference else f"{name}."

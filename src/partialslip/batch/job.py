@@ -5,11 +5,11 @@ import sys
 import tempfile
 import time
 import uuid
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import msgspec
 
@@ -95,7 +95,7 @@ class Solved(msgspec.Struct, frozen=True, kw_only=True):
     process: ProcessCost | None = None
 
     @classmethod
-    def of(cls, entry: Mapping[str, Any]) -> "Solved":
+    def of(cls, entry: Mapping[str, Any]) -> Self:
         """Convert an ``entry`` of a ledger to this type."""
         return msgspec.convert(entry, cls)
 
@@ -114,13 +114,13 @@ def _solved(job: Job, keep: "Kept | None" = None) -> tuple[Solved, Run | None]:
 
 
 class Sharing:
-    """:func:`solve` for a sweep, picklable: jobs in one process share factored meshes."""
+    """``do``, by default :func:`solve`, for a sweep, picklable: jobs in one process share factored meshes."""
 
-    def __init__(self) -> None:
-        self._sweep = uuid.uuid4().hex
+    def __init__(self, do: "Callable[[Job, Kept | None], Solved] | None" = None) -> None:
+        self._do, self._sweep = do or solve, uuid.uuid4().hex
 
     def __call__(self, job: Job) -> Solved:
-        return solve(job, keep=_kept_in(self._sweep) if "fem" in job.methods else None)
+        return self._do(job, _kept_in(self._sweep) if "fem" in job.methods else None)
 
 
 @lru_cache(maxsize=1)

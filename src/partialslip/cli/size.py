@@ -1,4 +1,4 @@
-"""partialslip study size: changes from the half-plane over sizes of bodies."""
+"""partialslip study size: half-planes against finite elements over sizes of bodies."""
 
 import argparse
 from typing import TYPE_CHECKING
@@ -29,9 +29,11 @@ def add(topics: "Commands") -> None:
     """Add the topic to the parser of ``topics``."""
     size = topics.add_parser(
         "size",
-        help="changes from the half-plane, over sizes of bodies or other settings",
-        description="Sweep over sizes of bodies, or other settings of a scene. Refined meshes separate the change by "
-        "the body from the error of the mesh. Fit a law for the change over the size. A stopped study continues.",
+        help="half-planes against finite elements, over sizes of bodies or other settings",
+        description="Sweep over sizes of bodies, or other settings of a scene. Compare half-planes, and half-planes "
+        "with the data that make them act like the bodies, with finite elements. Refined meshes separate the "
+        "differences from the error of the mesh. Fit laws for the differences over the size. A stopped study "
+        "continues.",
         examples=[
             "partialslip study size block.toml --over bodies.*.width+bodies.*.height=4a..256a",
             "partialslip study size pad.toml --over bodies.upper.height=8a,16a,32a --over friction.f=0.2,0.4",
@@ -100,18 +102,21 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", plac
         console.print(tables.heading(study), style="bold", markup=False)
         if study.trends:
             texts["size.svg"] = size_svg(study)
-        found = tables.changes_table(study), tables.laws_table(study), tables.needed_table(study)
-        for title, (headings, rows) in zip(("Changes from the half-plane", "Laws", "Sizes needed"), found, strict=True):
+        found = [(each.title, tables.differences_table(study, each)) for each in study.models]
+        found += [("Laws", tables.laws_table(study)), ("Sizes needed", tables.needed_table(study))]
+        for title, (headings, rows) in found:
             if rows:
-                print_table(console, headings, rows)
-                sections.append(Section(title, (), "", "", headings, rows))
+                words = (1,) if headings[1] == tables.HALF_PLANES else ()
+                console.print(f"\n{title}", style="bold", markup=False)
+                print_table(console, headings, rows, (0, *words))
+                sections.append(Section(title, (), "", "", headings, rows, words))
         lines = tables.notes(study)
     else:
         for quantity in sizes.QUANTITIES:
             grid = sizes.grid(axes, entries, quantity)
             names = tuple(f"{each.name}{', in a' if each.in_a else ''}" for each in axes)
             texts[f"map-{quantity}.svg"] = grid_svg(*grid, (names[0], names[1]), f"{scene.name}: change of {quantity}")
-        lines = tables.unsolved(entries)
+        lines = tables.remarks(axes, entries)
     for line in lines:
         console.print(line, soft_wrap=True, markup=False)
     figures = [Section(name.removesuffix(".svg"), (), text) for name, text in texts.items() if name.endswith(".svg")]

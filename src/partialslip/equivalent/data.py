@@ -6,7 +6,7 @@ and the linear part of the strain, a tension that varies along x. Each is the pr
 the contact, or over the stick zone: the conditions that fix their ends then hold exactly, whatever the rest is.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +18,7 @@ from partialslip.scene import Scene
 
 _POINTS = 32  # of quadrature
 _NODES = np.cos(np.pi * (np.arange(_POINTS) + 0.5) / _POINTS)  # Gauss-Chebyshev's rule
+_ROUNDING = 1e-13  # of the slope of the gap at the ends of the contact
 _STEP = 1e-4  # of the contact, for the slope of a face
 
 
@@ -56,12 +57,17 @@ class Data:
     rest: Array
     strain_rest: Array
 
-    def apart(self, other: "Data", scene: Scene) -> float:
-        """Largest difference from the ``other`` data, relative to the curvature of the gap of ``scene``, its slope at
-        the ends of the contact, and the mean pressure."""
-        R, length, stress = scene.profile.R, scene.length, scene.P / scene.length
-        units = {"curvature": 1 / R, "tilt": length / R, "sigma": stress, "sigma_slope": stress / length}
-        return max(float(np.abs(getattr(self, key) - getattr(other, key)).max()) / unit for key, unit in units.items())
+    def scaled(self, scene: Scene) -> Array:
+        """The data but for the rests, (4, points), relative to the curvature of the gap of ``scene``, its slope at the
+        ends of the contact, and the mean pressure."""
+        values = np.array([self.curvature, self.tilt, self.sigma, self.sigma_slope])
+        result: Array = values / _units(scene)
+        return result
+
+    def moved(self, scaled: Array, scene: Scene) -> "Data":
+        """These data with others in their place, ``scaled`` (4, points) as by :meth:`scaled`."""
+        curvature, tilt, sigma, sigma_slope = scaled * _units(scene)
+        return replace(self, curvature=curvature, tilt=tilt, sigma=sigma, sigma_slope=sigma_slope)
 
 
 def moments_of(rig: Rig, scene: Scene, result: Result) -> Moments:
@@ -98,15 +104,22 @@ def data_of(rig: Rig, scene: Scene, moments: Moments, result: Result, shear: boo
     centre, c = result.stick_centre, result.stick_half_width
     if centre is None or c is None:
         centre, c = 0.0, a
+    tilt = gap[:, 0] - gap[:, 1] / a * centres
     lost = chebyshev_coefficients(-4 / A * rig.slopes(centre + c * _NODES, shift))
     return Data(
         curvature=gap[:, 1] / a,
-        tilt=gap[:, 0] - gap[:, 1] / a * centres,
+        tilt=np.where(np.abs(tilt) > _ROUNDING * a / scene.profile.R, tilt, 0.0),
         sigma=sigma + lost[:, 0] - lost[:, 1] / c * centre,
         sigma_slope=lost[:, 1] / c,
         rest=gap[:, 2:],
         strain_rest=lost[:, 2:],
     )
+
+
+def _units(scene: Scene) -> Array:
+    """Sizes of curvature, tilt, sigma and its slope, (4, 1)."""
+    R, length, stress = scene.profile.R, scene.length, scene.P / scene.length
+    return np.array([[1 / R], [length / R], [stress], [stress / length]])
 
 
 def _shares(scene: Scene) -> Array:

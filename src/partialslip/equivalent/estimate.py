@@ -90,8 +90,11 @@ def estimate(
         left_out["q"] += _norm(rest((_PLACES - middle) / c)) / (_norm(own.dq(own.mean.places(_PLACES))) or 1.0)
     if np.ptp(data.tilt):  # the pressure moves, and the way from load point to load point is not followed
         left_out = {key: _WAY * error for key, error in left_out.items()}
-    mesh = own.apart(_look(coarser), a)
-    return {"half-planes": left_out, "rig": {key: _MESH * error for key, error in mesh.items()}}
+    mesh = {key: _MESH * error for key, error in own.apart(_look(coarser), a).items()}
+    return {
+        source: {key: float(error) for key, error in share.items()}
+        for source, share in (("half-planes", left_out), ("rig", mesh))
+    }
 
 
 def _look(seen: Scene, second: Contact | None = None, mean: Contact | None = None) -> _Look:

@@ -1,6 +1,6 @@
 """Method ``equivalent``: bodies of a size as half-planes with other data (docs/theory.md, section 12)."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -12,7 +12,7 @@ from partialslip.equivalent.data import Data, data_of, moments_of
 from partialslip.equivalent.estimate import estimate
 from partialslip.equivalent.words import in_words
 from partialslip.errors import InputError
-from partialslip.halfplane.contact import tilted_contact
+from partialslip.halfplane.contact import contact, tilted_contact
 from partialslip.halfplane.marching import solve as solve_by_marching
 from partialslip.halfplane.method import has_closed_form
 from partialslip.halfplane.method import solve as solve_exactly
@@ -26,6 +26,7 @@ from partialslip.scene import Bodies, FlatRounded, Hertz, Profile, Scene
 _KEYS = ("a", "left", "right", "m", "n", "p", "q")
 _PRESSED = "bodies that are not mirror images lock shear in when they are pressed, which is not followed; use fem"
 _SETTLED, _MOST = 1e-12, 40  # relative change of the data in an iteration; iterations
+_MIXED = 6  # latest iterations that the next one is made of
 _SETTLED_MARCH = 1e-3  # of the accuracy asked for, where each iteration is a march
 
 
@@ -115,16 +116,14 @@ def stand_ins(scene: Scene, rig: Rig, progress: Callable[[str], None] = lambda _
         As :func:`solve`.
     """
     closed = _checked(scene).load.in_phase and has_closed_form(half_planes(scene, None))
-    found = _iterated(rig, scene, closed, progress)
-    if closed and (found.result.path_dependent or not has_closed_form(found.scene)):
-        found = _iterated(rig, scene, False, progress)
-    return found
+    return _iterated(rig, scene, closed, progress)
 
 
 def half_planes(scene: Scene, data: Data | None) -> Scene:
     """The scene of half-planes with the ``data`` that act like the bodies of ``scene``; without data, of half-planes
     that act like no size at all."""
-    plain = scene.replace(bodies=Bodies(), load={"P": scene.P, "a": None, "p0": None})
+    own = {"moment": None, "varying-pressure": None, "coupling": None}  # of half-planes: their tilt is that of bodies
+    plain = scene.replace(bodies=Bodies(), load={"P": scene.P, "a": None, "p0": None}, effects=own)
     if data is None:
         return plain
     plain = plain.replace(profile=_bent(scene.profile, float(data.curvature.mean())))
@@ -165,20 +164,38 @@ def _iterated(rig: Rig, scene: Scene, closed: bool, progress: Callable[[str], No
     seen = half_planes(scene, None)
     found = solve_exactly(seen, plan_of(seen)) if closed else _pressed(seen)
     settled = _SETTLED
-    data = None
+    given: list[Array] = []  # data of the half-planes, and the data that their tractions call for
+    called: list[Array] = []
     for number in range(1, _MOST + 1):
-        before, data = data, data_of(rig, scene, moments_of(rig, scene, found), found, shear=closed)
-        if before and data.apart(before, scene) <= settled:
+        data = data_of(rig, scene, moments_of(rig, scene, found), found, shear=closed)
+        called.append(data.scaled(scene))
+        if given and np.abs(called[-1] - given[-1]).max() <= settled:
             return StandIns(found, seen, data)
-        seen = half_planes(scene, data)
+        given = given or [0 * called[0]]
+        given.append(_mixed(given, called))
+        data = data.moved(given[-1], scene)
+        seen = _in_range(rig, scene, data)
+        if closed and not has_closed_form(seen):
+            return _iterated(rig, scene, False, progress)
         if closed:
             found = solve_exactly(seen, plan_of(seen))
+            if found.path_dependent:  # the closed form is not the result of gradual loading
+                return _iterated(rig, scene, False, progress)
         else:
             progress(f"march {number}")
             found = solve_by_marching(seen, plan_of(seen), added=partial(_added, rig))
             settled = _SETTLED_MARCH * scene.fem.accuracy
-        _check_range(rig, scene, found)
     raise InputError("bodies: must be larger compared with the contact: equivalent does not settle; use fem")
+
+
+def _mixed(given: Sequence[Array], called: Sequence[Array]) -> Array:
+    """Data to go on with, by Anderson's method: a contact that turns the bodies back by more than they have turned has
+    data, too, which plain iteration does not reach."""
+    had, got = (np.array(each[-_MIXED:]).reshape(min(len(each), _MIXED), -1) for each in (given, called))
+    left = got - had
+    weights = np.linalg.lstsq((left[:-1] - left[-1]).T, -left[-1], rcond=1e-10)[0]
+    result: Array = (got[-1] + weights @ (got[:-1] - got[-1])).reshape(called[-1].shape)
+    return result
 
 
 def _pressed(scene: Scene) -> Result:
@@ -187,15 +204,22 @@ def _pressed(scene: Scene) -> Result:
     return solve_exactly(still, plan_of(still))
 
 
-def _check_range(rig: Rig, scene: Scene, found: Result) -> None:
-    """Raise InputError if the contact is too large for the rig."""
-    farthest = max(abs(end) for ends in found.ends for end in ends)
-    if farthest > rig.reach:
+def _in_range(rig: Rig, scene: Scene, data: Data) -> Scene:
+    """Half-planes with the ``data``. Raise InputError if there are none, or if their contact is too large for the rig,
+    whose polynomials mean nothing out there."""
+    too_small = "bodies: must be larger compared with the contact"
+    try:
+        seen = half_planes(scene, data)
+        ends = [end for pressed in set(seen.pressing) for end in contact(seen, pressed).ends]
+    except InputError as error:
+        raise InputError(f"{too_small}: no half-planes act like them ({error}); use fem") from None
+    if (farthest := max(map(abs, ends))) > rig.reach:
         shown = scene.units.labelled
         raise InputError(
-            f"bodies: must be larger compared with the contact, which reaches x = {shown(farthest, 'm')}: "
+            f"{too_small}, which reaches x = {shown(farthest, 'm')}: "
             f"equivalent holds up to {shown(rig.reach, 'm')}; use fem"
         )
+    return seen
 
 
 def _added(rig: Rig, places: Array) -> Array:

@@ -8,6 +8,8 @@ from partialslip.equivalent.data import Data
 from partialslip.rig import Rig
 from partialslip.scene import Hertz, Scene
 
+_ROUNDING = 1e-10  # of terms
+
 
 class Share(NamedTuple):
     """What a unit of a load adds to half-planes.
@@ -52,7 +54,8 @@ def shares(rig: Rig, scene: Scene) -> tuple[Share, ...]:
 
 
 def _shares(rig: Rig, scene: Scene) -> tuple[Share, ...]:
-    A, reach, (xx, yy, xy, pulled) = scene.material.A, rig.reach, rig.terms
+    A, reach = scene.material.A, rig.reach
+    xx, yy, xy, pulled = (np.where(np.abs(terms) > _ROUNDING, terms, 0.0) for terms in rig.terms)
     strain = scene.material.bodies[0].A / 4
     columns = (
         ("P", "N/m", A * yy[:, 0], A * xy[:, 0]),

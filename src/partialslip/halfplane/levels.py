@@ -106,11 +106,12 @@ def _before(load: Load, points: list[_Point], known: int) -> list[_Point]:
 
 
 def _bounded(pressed: Contact, f: float, load: Load, found: Levels) -> bool:
-    """Whether |q| <= f p up to the other load point; if both ends slip the same way, |q| is largest there."""
-    p, q = found.cycle.shape.pressure(_PLACES), found.first.traction(_PLACES)
-    back = 1 - 2 * found.known
-    ways = [found.cycle]
+    """Whether |q| <= f p up to the other load point and on the way back; if both ends slip the same way, |q| is largest
+    at a load point."""
+    p, (q1, q2) = found.cycle.shape.pressure(_PLACES), found.at(_PLACES)
+    so_far = [np.zeros_like(p)]
     if found.cycle.zone.s < 0 or found.cycle.gf:
         changes = load.dQ, load.dsigma, load.dslope
-        ways += [loading(pressed, f, *(share * change for change in changes), bound=2) for share in _SHARES.tolist()]
-    return all((np.abs(q + back * way.traction(_PLACES)) <= p + _ROUNDING).all() for way in ways)
+        stages = [loading(pressed, f, *(share * change for change in changes), bound=2) for share in _SHARES.tolist()]
+        so_far += [stage.traction(_PLACES) for stage in stages]
+    return all((np.abs(q) <= p + _ROUNDING).all() for dq in so_far for q in (q1 + dq, q2 - dq))

@@ -3,6 +3,7 @@ a first loading under twice the bound. Scaled: lengths by a, tractions by f p0, 
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.gradual import left_end_turns, turns_round
 from partialslip.halfplane.contact import Contact
+from partialslip.halfplane.room import mean_load_bound
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.slip import slip
 from partialslip.halfplane.steady import NARROWEST, TOO_STEEP, drive, stick_zone, stick_zones
@@ -109,7 +111,13 @@ class Loading:
         rounding = np.finfo(float).eps / max(1 - Qf, np.finfo(float).eps)
         return {"tension": max(tension - float(rounding), 0.0), "shear": abs(float(found.Qf) - Qf)}
 
-    @property
+    @cached_property
+    def mean_load_bound(self) -> float:
+        """Largest \\|Q_mean\\|/(f P) of a steady state whose half cycle this is; see
+        :func:`partialslip.halfplane.room.mean_load_bound`."""
+        return mean_load_bound(self.zone, self.seen, self.Qf, self.sf, self.gf, reverses=self.turns_round)
+
+    @cached_property
     def turns_round(self) -> bool:
         """Whether slip reverses during half a cycle of gradual loading; see :func:`partialslip.gradual.turns_round`."""
         if self.gf:
@@ -161,9 +169,23 @@ def loading(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float 
     turn = -1 if drive(Qf, gf) < 0 else 1
     mirror = turn * (-1 if at_middle < 0 else 1)
     found = Loading(pressed.shape, turn * Qf, sf, turn, mirror, bound, _NOTHING, turn * gf)
-    if found.nothing:
-        return found
-    zone = stick_zone(found.Qf, sf, found.seen, found.gf)
+    return found if found.nothing else _solved(found)
+
+
+def half_cycle(Qf: float, sf: float, shape: Shape, gf: float = 0.0) -> Loading:
+    """Half a steady cycle by changes ``Qf`` (of 2 f P), ``sf`` and ``gf`` (of f p0, f p0/a) of positive sign; see
+    :class:`partialslip.halfplane.shape.Shape`.
+
+    Raises
+    ------
+    InputError
+        If the tension varies too much along x for a single stick zone.
+    """
+    return _solved(Loading(shape, Qf, sf, 1, 1, 2, _NOTHING, gf))
+
+
+def _solved(found: Loading) -> Loading:
+    zone = stick_zone(found.Qf, found.sf, found.seen, found.gf)
     if math.isnan(zone.half_width):
         raise InputError(f"load.sigma_slope: {TOO_STEEP}")
     return replace(found, zone=zone)

@@ -13,6 +13,8 @@ from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.shape import Shape
 from partialslip.scene import Scene
 
+_ENDS = np.array([-1.0, 1.0])
+
 
 class Mean(Shape):
     """Mean of the pressures of the contacts ``first`` and ``second`` over the union of both, from ``left`` to ``right``
@@ -79,8 +81,8 @@ class Mean(Shape):
 
 
 class Rates(NamedTuple):
-    """Singularities of the increments of p and q at both ends of a contact that sticks as a whole, times pi (N/m):
-    ``pressure`` and ``shear``, (2,) each by left and right end."""
+    """Increments of p and q in a contact that sticks as a whole, times pi sqrt(a^2 - y^2) (N/m), which is finite at the
+    ends: ``pressure`` and ``shear``, (k,) each."""
 
     pressure: Array
     shear: Array
@@ -137,14 +139,13 @@ class Path:
         turned = self._second.M - self._first.M - now.centre * dP
         return dP / math.pi, 2 * turned / (math.pi * now.a)
 
-    def rates(self, now: Contact) -> Rates:
-        """Singularities of the increments over the way in the contact ``now``."""
-        ways = np.array([-1.0, 1.0])
+    def rates(self, now: Contact, y: Array = _ENDS) -> Rates:
+        """Increments over the way in the contact ``now``, if it sticks as a whole, at the distances a ``y`` (k,) from
+        its middle (default: at its ends)."""
         uniform, turned = self.pressed(now)
-        pressure = uniform + ways * turned
         tension = self.dsigma + self.dslope * now.centre
-        shear = self.dQ + ways * math.pi / 4 * now.a * tension + math.pi / 8 * now.a**2 * self.dslope
-        return Rates(math.pi * pressure, shear)
+        shear = self.dQ + y * math.pi / 4 * now.a * tension + math.pi / 4 * now.a**2 * self.dslope * (y**2 - 0.5)
+        return Rates(math.pi * (uniform + y * turned), shear)
 
 
 def common(first: Contact, second: Contact) -> tuple[float, float]:

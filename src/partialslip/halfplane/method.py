@@ -16,7 +16,6 @@ from partialslip.halfplane.slip import dissipation
 from partialslip.halfplane.steady import transition
 from partialslip.halfplane.stress import Stress
 from partialslip.halfplane.tables import table_error
-from partialslip.halfplane.traction import mean_load_bound
 from partialslip.halfplane.tractions import ExactTractions, sample
 from partialslip.halfplane.varying import closed_form, require_closed_form, steady_cycle
 from partialslip.halfplane.varying_result import solve_varying
@@ -144,7 +143,7 @@ def _steady_state(scene: Scene, plan: Plan) -> tuple[Contact, Regime, Loading | 
     # rounding makes negative
     mean = abs(load.Q_mean)
     bounded = cycle.zone.s < 0 or cycle.gf > 0
-    if bounded and mean > 0 and mean > limit * mean_load_bound(cycle.zone, cycle.seen, cycle.gf):
+    if bounded and mean > 0 and mean > limit * cycle.mean_load_bound:
         return pressed, "ratchets", cycle
     return pressed, ("small tension" if cycle.zone.s > 0 else "large tension"), cycle
 
@@ -178,7 +177,7 @@ def _limits(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[str, 
     if cycle:
         if not cycle.gf:
             limits["dsigma_transition"] = float(transition(cycle.Qf, cycle.seen)) * scene.friction.f * pressed.p0
-        limits["Q_mean"] = limit * mean_load_bound(cycle.zone, cycle.seen, cycle.gf)
+        limits["Q_mean"] = limit * cycle.mean_load_bound
     return limits
 
 

@@ -207,7 +207,7 @@ def steady_cycle(scene: Scene) -> Cycle:
     slips = (ways[0] if inside[0] else "part of the cycle", ways[1] if inside[1] else "part of the cycle")
     if not all(inside):
         return Cycle(scene, first, second, mean, None, slips, False)
-    turns = any(_turns(Path(scene, back), change) for back in (False, True))
+    turns = any(_turns(Path(scene, back), f, change) for back in (False, True))
     return Cycle(scene, first, second, mean, change, slips, turns)
 
 
@@ -245,9 +245,11 @@ def _exceeds(path: Path, f: float) -> Array:
     return np.array(found)
 
 
-def _turns(path: Path, change: Loading) -> bool:
+def _turns(path: Path, f: float, change: Loading) -> bool:
     """Whether slip turns round on the way: the stick zones of the stages do not shrink, or not always with the slip of
-    the whole ``change``."""
+    the whole ``change``, or slip begins in the wrong direction."""
+    if _goes_back(path, f, path.stage(1.0)):
+        return True
     before = path.begin.ends
     for share in (np.arange(1, _STAGES + 1) / _STAGES).tolist():
         stage = path.stage(share)
@@ -258,6 +260,18 @@ def _turns(path: Path, change: Loading) -> bool:
         if right > min(before[1], inner[1]) + room:
             return True
         before = left, right
+    return False
+
+
+def _goes_back(path: Path, f: float, last: Stage) -> bool:
+    """Whether points that slip on the way to the ``last`` stage slip on at its beginning in the direction of the way
+    before: the increments of q in the contact, which sticks as a whole, then lead beyond the bound, whose increments
+    are those of f p."""
+    begin, (left, right) = path.begin, path.begin.scaled(np.array(last.stick)).tolist()
+    for sign, low, high in zip(last.change.signs, (-1.0, min(right, 1.0)), (max(left, -1.0), 1.0), strict=True):
+        rates = path.rates(begin, np.linspace(low, high, _STAGES + 1))
+        if (sign * rates.shear + f * rates.pressure < -_ROUNDING * f * begin.P).any():
+            return True
     return False
 
 

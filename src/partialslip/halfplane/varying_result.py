@@ -153,13 +153,16 @@ def _first_loading(scene: Scene, cycle: Cycle, started: bool) -> Loading | str:
     room = _ROUNDING * end.a
     if not (cycle.stick[0] - room <= left and right <= cycle.stick[1] + room) or first.signs != cycle.change.signs:
         return "mean loads act, and the cycle slips where the first loading sticks; use march"
-    back = Path(scene, back=True)
-    for share in _STAGES[1:].tolist():
-        now, mean, part = back.stage(share)
-        x = mean.places(_PLACES)
-        q = f * end.p0 * first.traction(end.scaled(x)) + f * mean.p0 * part.traction(mean.scaled(x))
-        if (np.abs(q) > f * (now.pressure(x) + _ROUNDING * mean.p0)).any():
-            return "mean loads act, and the first loading less the change exceeds f p; use march"
+    for back in (True, False):
+        way = Path(scene, back)
+        for share in _STAGES[1:].tolist():
+            now, mean, part = way.stage(share)
+            x = mean.places(_PLACES)
+            q = f * end.p0 * first.traction(end.scaled(x)) + f * mean.p0 * part.traction(mean.scaled(x))
+            if not back:
+                q = q - cycle.dq(x)
+            if (np.abs(q) > f * (now.pressure(x) + _ROUNDING * mean.p0)).any():
+                return "mean loads act, and the first loading less the change exceeds f p; use march"
     return first
 
 

@@ -153,7 +153,7 @@ def compare(
     applied = {key: _beside(bar, key, reference) for key, bar in {**usual, **own}.items()}
     verdicts = [decide(each, applied.get(each.quantity), result) for each in measures(result, reference, scene)]
     nodal = _nodal_errors(result, reference, scene.friction.f)
-    return Comparison((*verdicts, judge_regime(result, reference, applied)), conditions(result), *nodal)
+    return Comparison((*verdicts, judge_regime(result, reference, scene, applied)), conditions(result), *nodal)
 
 
 def _beside(bar: Bar, quantity: str, reference: Result) -> Bar:
@@ -205,11 +205,12 @@ def _decided(measure: Measure, bar: Bar | None) -> tuple[Outcome, str]:
     return judged(measure.error, bar.value), bar.reason
 
 
-def judge_regime(result: Result, reference: Result, bars: Mapping[str, Bar]) -> Verdict:
+def judge_regime(result: Result, reference: Result, scene: Scene, bars: Mapping[str, Bar]) -> Verdict:
     """Judge the name of the regime of ``result`` against ``reference``, with ``bars`` by quantity.
 
-    The regime is not judged in three cases: no quantity has a bar; the slip or stick zone that distinguishes the two
-    names is narrower than the bars of m and n; the stick zone depends on the load path.
+    The regime is not judged in four cases: no quantity has a bar; the slip or stick zone that distinguishes the two
+    names is narrower than the bars of m and n; the mean of Q is nearer to its bound, in f P, than these bars in a: the
+    room for it is an integral over the stick zone; the stick zone depends on the load path.
     """
     found, true = result.regime, reference.regime
     own = bars.get("regime", Bar(1.0))
@@ -221,7 +222,7 @@ def judge_regime(result: Result, reference: Result, bars: Mapping[str, Bar]) -> 
         outcome, reason = Outcome.PASSED, ""
     elif why := _undetermined_regime(result, reference):
         outcome, reason = Outcome.NOT_JUDGED, why
-    elif near := _too_near(result, reference, width * reference.a):
+    elif near := _too_near(result, reference, width * reference.a) or _barely(result, reference, scene, width):
         outcome, reason = Outcome.NOT_JUDGED, near
     else:
         outcome, reason = Outcome.MISSED, f"{found}, not {true}"
@@ -247,6 +248,17 @@ def _too_near(result: Result, reference: Result, width: float) -> str:
     if (names == _TENSIONS or "sliding" in names) and zone.stick_half_width <= width:
         return "the stick zone is narrower than the bar"
     return ""
+
+
+def _barely(result: Result, reference: Result, scene: Scene, share: float) -> str:
+    """Return that the mean of Q is within ``share`` f P of a bound of the ``reference``, if one of both ratchets."""
+    limits, room = reference.limits, share * scene.friction.f * scene.P
+    most = limits.get("Q_mean_most", limits.get("Q_mean", math.inf))
+    least = limits.get("Q_mean_least", -most)
+    names, mean = {result.regime, reference.regime}, scene.load.Q_mean
+    if "ratchets" not in names or "sliding" in names or min(abs(mean - least), abs(mean - most)) > room:
+        return ""
+    return "the mean of Q is nearer to the bound for a steady state than the bar can tell"
 
 
 def _nodal_errors(

@@ -71,10 +71,10 @@ const page = (() => {
 
   // The solution for constant P and e = 0. `ends`: direction of slip at the left and the right end, times `turn`.
   function even(Qf, sf) {
-    const zone = hertz.stickZone(Qf, sf), bound = hertz.meanLoadBound(zone, Qf);
+    const zone = hertz.stickZone(Qf, sf), bound = hertz.meanLoadBound(zone, Qf, sf);
     const found = { zone, stick: varying.ends(zone), ends: [zone.s, 1], means: [-bound, bound] };
     if (Qf === 0 && sf === 0) return { ...found, points: [{ x: -1, q: 0 }, { x: 1, q: 0 }], q: 0, regime: "stuck" };
-    const reverses = sf > 0 && (zone.s > 0 ? sf > 4 * Qf : zone.c * sf < 4 * Qf);
+    const reverses = hertz.reverses(zone, Qf, sf);
     return { ...found, points: hertz.tractions(zone), q: hertz.largest(zone), reverses, regime: tensile(zone) };
   }
 

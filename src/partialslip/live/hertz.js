@@ -10,6 +10,7 @@ const hertz = (() => {
   const SETTLED = 1e-13;
   const ROUNDING = 4 * Number.EPSILON;
   const STEPS = 40;
+  const STAGES = 48;  // of the way between the load points
 
   // Nodes in (-1, 1), their distances from 1, and weights of the tanh-sinh rule.
   const RULE = Array.from({ length: 81 }, (_, i) => {
@@ -149,8 +150,15 @@ const hertz = (() => {
     return Math.abs(centre) >= c ? 1 : pressure(Math.min(...ends));
   }
 
-  // The largest |Q_mean|/(f P) of a steady state: f P less the resultant of |dq|/2 (section 7).
-  function meanLoadBound(zone, Qf) {
+  // Whether slip reverses on the straight way between the load points (section 7).
+  function reverses({ centre, c, s }, Qf, sf) {
+    if (sf === 0) return false;
+    return s > 0 ? sf > 4 * Qf : c * sf < 4 * Qf || Math.abs(-4 * Qf / sf - centre) > c;
+  }
+
+  // The largest |Q_mean|/(f P) of a steady state (section 7): the resultant of f p less |dq|/2, and less what the way
+  // between the load points takes.
+  function meanLoadBound(zone, Qf, sf) {
     if (zone.s > 0) return 1 - Qf;
     const inside = insideOf(zone), at = (angle) => inside(zone.c * Math.cos(angle));
     let low = 0, high = Math.PI;  // dq changes sign between n and -m
@@ -166,8 +174,30 @@ const hertz = (() => {
         room += (to - from) / 2 * weight * sine * free;
       }
     }
-    return 2 / Math.PI * zone.c * room;
+    const between = reverses(zone, Qf, sf) ? 0 : takenBetween(zone, Qf, sf, inside, zone.centre + zone.c * Math.cos(low));
+    return 2 / Math.PI * (zone.c * room - between);
   }
 
-  return { conditions, insideOf, largest, meanLoadBound, rule: RULE, stickZone, tractions, transition };
+  // The integral of max |dq_t - dq/2| - |dq|/2 over the points at which dq_t, the change on the way so far, has an
+  // extreme: where the adhered traction of the stick zone of a stage changes its sign. `turn`: where dq changes sign.
+  function takenBetween(zone, Qf, sf, inside, turn) {
+    const stages = Array.from({ length: STAGES + 1 }, (_, i) => {
+      return (i ? stickZone(i / STAGES * Qf, i / STAGES * sf).centre : 0) - 4 * Qf / sf;
+    });
+    const low = zone.centre - 4 * Qf / sf, high = -4 * Qf / sf, places = [low, clamp(turn, low, high), high];
+    let taken = 0;
+    for (const [from, to] of [places.slice(0, 2), places.slice(1)].filter((ends) => ends[1] > ends[0])) {
+      for (const { node, weight } of RULE) {
+        const x = (from + to) / 2 + (to - from) / 2 * node;
+        const next = clamp(stages.findIndex((place) => place <= x), 1, STAGES), after = stages[next];
+        const share = (next - (x - after) / (stages[next - 1] - after)) / STAGES;
+        const stage = stickZone(share * Qf, share * sf), final = inside(x - zone.centre);
+        const extreme = insideOf(stage)(x - stage.centre);
+        taken += (to - from) / 2 * weight * (Math.abs(2 * extreme - final) - Math.abs(final));
+      }
+    }
+    return taken;
+  }
+
+  return { conditions, insideOf, largest, meanLoadBound, reverses, rule: RULE, stickZone, tractions, transition };
 })();

@@ -5,7 +5,7 @@
 // at load points 1 and 2. All formulas hold with the mean of both pressures and are linear in the pressure. The loads
 // of a stick zone, and q, are therefore the means over the two contacts, each in its own scale, with one stick zone.
 const varying = (() => {
-  const STEPS = 60, HALVINGS = 50, SAMPLES = 64;
+  const STEPS = 60, HALVINGS = 50, SAMPLES = 64, STAGES = 16, PLACES = 96;
   const NARROWEST = 1e-100, ROUNDING = 1e-12;
   const CLOSE = 1e-15;  // smallest distance of a narrow stick zone from the right end of a contact
 
@@ -168,16 +168,51 @@ const varying = (() => {
 
   // Smallest and largest mean of Q of a steady state, in units of f P of the half-width 1: q1 and q2 must be within
   // their bounds, and are on them in the slip zones.
-  function meanLoads(contacts, zone, Qf, q) {
+  function meanLoads(contacts, zone, Qf, sf, q) {
     const [one, two] = contacts, [low, high] = zone ? ends(zone) : common(contacts);
     const slip = zone ? -force(one, high) - zone.s * (force(one, -Infinity) - force(one, low)) : 0;
-    const [least, most] = [-1, 1].map((side) => {
+    const between = zone && !reverses(contacts, Qf, sf, zone.s) ? takenBetween(contacts, zone, Qf, sf, q) : [0, 0];
+    const [least, most] = [-1, 1].map((side, i) => {
       const at = (angle) => (low + high) / 2 + (high - low) / 2 * Math.cos(angle);
       const spare = (angle) => pressureOf(two, at(angle)) - side * 2 * q(at(angle));
-      return slip + side * integral((angle) => Math.sin(angle) * Math.min(pressureOf(one, at(angle)), spare(angle)),
+      return slip - side * between[i] + side * integral((angle) => Math.sin(angle) * Math.min(pressureOf(one, at(angle)), spare(angle)),
         turns((angle) => pressureOf(one, at(angle)) - spare(angle))) * (high - low) / 2;
     });
     return [least, most].map((Q) => 2 / Math.PI * Q + Qf);
+  }
+
+  // What stages of the ways between the load points take of the smallest and of the largest mean: q keeps its bound there,
+  // too. Midpoint rule; the tightest of all stages by the parabola through it and its neighbours.
+  function takenBetween(contacts, zone, Qf, sf, q) {
+    const [one, two] = contacts;
+    const stages = [[one, two], [two, one]].map(([from, to]) => Array.from({ length: STAGES - 1 }, (_, i) => {
+      const share = (i + 1) / STAGES, now = between(from, to, share), found = stickZone([from, now], share * Qf, share * sf);
+      return { now, change: found && halfChange([from, now], found) };
+    }));
+    if (stages.flat().some(({ change }) => !change)) return [0, 0];
+    const taken = [0, 0];
+    for (let k = 0; k < PLACES; k++) {
+      const angle = Math.PI * (k + 0.5) / PLACES, x = zone.centre + zone.c * Math.cos(angle), dq = 2 * q(x);
+      const [forth, back] = stages.map((way, returns) => way.map(({ now, change }) => {
+        return [pressureOf(now, x), returns ? dq - 2 * change(x) : 2 * change(x)];
+      }));
+      const first = [pressureOf(one, x), 0], second = [pressureOf(two, x), dq];
+      [-1, 1].forEach((side, i) => {
+        const [there, again] = [[first, ...forth, second], [second, ...back, first]].map((states) => {
+          return states.map(([p, moved]) => p - side * moved);
+        });
+        const spare = Math.min(there[0], again[0]) - Math.min(least(there), least(again));
+        taken[i] += zone.c * Math.PI / PLACES * Math.sin(angle) * spare;
+      });
+    }
+    return taken;
+  }
+
+  // The smallest of evenly spaced values, on the parabola through the smallest one and its neighbours.
+  function least(values) {
+    const i = values.indexOf(Math.min(...values)), [before, at, after] = [i - 1, i, i + 1].map((k) => values[k]);
+    const bend = before - 2 * at + after;
+    return bend > 0 ? at - (after - before) ** 2 / (8 * bend) : at;
   }
 
   // 0, the changes of sign of a function between 0 and pi, and pi.
@@ -199,6 +234,12 @@ const varying = (() => {
     return [contacts, [contacts[1], contacts[0]]].some(([one, two]) => {
       const [left, right] = rates([one, two], Qf, sf, 0);
       if (right.q < Math.abs(right.p) - ROUNDING || s * left.q < Math.abs(left.p) - ROUNDING) return true;
+      // rates are linear in between: at the ends of the stick zone, slip must not begin the other way
+      const [low, high] = ends(stickZone([one, two], Qf, sf)).map((x) => {
+        const share = clamp((x - one.e + one.a) / (2 * one.a), 0, 1);
+        return { q: left.q + share * (right.q - left.q), p: left.p + share * (right.p - left.p) };
+      });
+      if (high.q < -high.p - ROUNDING || s * low.q < -low.p - ROUNDING) return true;
       const shares = [0.25, 0.5, 0.75, 0.999, 1];
       const zones = shares.map((share) => stickZone([one, between(one, two, share)], share * Qf, share * sf));
       return zones.some((zone, i) => {
@@ -221,7 +262,7 @@ const varying = (() => {
     const stuck = sticking(contacts, Qf, sf), whole = stuck.every((end) => end === "always");
     const zone = whole ? null : stickZone(contacts, Qf, sf);
     const q = zone || whole ? halfChange(contacts, zone, adhered(contacts, Qf, sf)) : null;
-    const means = q && meanLoads(contacts, zone, Qf, q);
+    const means = q && meanLoads(contacts, zone, Qf, sf, q);
     if (zone || whole) return { zone, sticking: stuck, q, means };
     // a slip zone that would end beyond the common contact is there during part of the cycle at most
     const [low, high] = common(contacts), [left, right] = ends(alike(contacts, Qf, sf));

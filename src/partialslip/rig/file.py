@@ -88,4 +88,6 @@ def _arrays(name: str, found: _Terms, count: int) -> Terms:
         if len(rows) != shape[0] or any(len(row) != shape[1] for row in rows):
             raise InputError(f"{name}.{key}: must have {shape[0]} rows of {shape[1]} numbers")
         arrays[key] = np.array(rows)
+        if key in ("xx", "yy") and not np.array_equal(arrays[key], arrays[key].T):
+            raise InputError(f"{name}.{key}: must be symmetric")
     return Terms(**arrays)

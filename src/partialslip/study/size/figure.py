@@ -9,8 +9,9 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.output.svg import svg
-from partialslip.study.size.law import Kind, Needed, Point, Trend
-from partialslip.study.size.tables import SizeStudy, heading
+from partialslip.study.size.law import LEVELS, Kind, Needed, Point, Trend
+from partialslip.study.size.sizes import EQUIVALENT, HALF_PLANE, QUANTITIES
+from partialslip.study.size.tables import Model, SizeStudy, heading
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,12 +31,12 @@ _LINE = 66  # characters of the heading
 
 
 def size_svg(study: SizeStudy) -> str:
-    """Return the changes of ``study`` over the size as SVG, a panel for each quantity; one size at least is solved.
+    """Return the differences of ``study`` over the size as SVG, a panel for each quantity; one size at least is solved.
 
-    Fitted points are filled, others open. Lines show the law, errors of the mesh are grey, and marks on the levels the
-    sizes from which on the change is below.
+    Circles are the half-plane's, squares those of equivalent half-planes. Fitted points are filled, others open. Lines
+    show the laws, errors of the mesh are grey, and marks on the levels the sizes from which on the difference is below.
     """
-    found = study.trends
+    found = [quantity for quantity in QUANTITIES if any(trend.quantity == quantity for trend in study.trends)]
     count = -(-len(found) // _COLUMNS)
     title = textwrap.fill(heading(study), _LINE)
 
@@ -44,46 +45,74 @@ def size_svg(study: SizeStudy) -> str:
         for axes in panels.flat[len(found) :]:
             axes.set_axis_off()
         _put_sizes(panels.flat[0], study)
-        for number, trend in enumerate(found):
+        for number, quantity in enumerate(found):
             axes = panels.flat[number]
-            _draw_trend(axes, study, trend)
+            _draw_quantity(axes, study, quantity)
             axes.tick_params(axis="x", labelsize=8, labelbottom=number + _COLUMNS >= len(found))
             if number + _COLUMNS >= len(found):
                 axes.set_xlabel("size")
         for axes in panels[:, 0]:
-            axes.set_ylabel("change")
+            axes.set_ylabel("difference")
+        panels.flat[0].set_ylim(bottom=_lowest(study) / 3)  # laws may fall far below
         figure.suptitle(title, x=0.01, ha="left", fontsize=10)
         figure.legend(handles=_keys(study), loc="outside lower left", ncols=2, frameon=False, fontsize=8)
 
-    return svg(draw, (5.2, 1.5 + 2.1 * count + 0.15 * title.count("\n")))
+    lines = 0.15 * count * (len(study.models) - 1)  # of the titles of the panels
+    return svg(draw, (5.6, 1.7 + 2.3 * count + lines + 0.15 * title.count("\n")))
 
 
-def _draw_trend(axes: "Axes", study: SizeStudy, trend: Trend) -> None:
-    """Draw points, law and needed sizes of one quantity."""
-    size, off, mesh = study.sizes.size, study.sizes.off[trend.quantity], study.sizes.mesh[trend.quantity]
-    fitted = np.array([point is Point.FITTED for point in trend.points])
-    title, across = _NAMES[trend.quantity], axes.get_yaxis_transform()
+def _draw_quantity(axes: "Axes", study: SizeStudy, quantity: str) -> None:
+    """Draw points, laws and needed sizes of one quantity."""
+    title, across = [_NAMES[quantity]], axes.get_yaxis_transform()
+    for model in study.models:
+        for trend in (each for each in model.trends if each.quantity == quantity):
+            _draw_trend(axes, study, model, trend)
+            if law := trend.law:
+                spread = (law.bounds[1] - law.bounds[0]) / 2
+                title.append(f"{model.name}: {law.C:.2g} size$^{{-{law.k:.2f}}}$ (± {spread:.1g})")
+    mesh = study.models[0].sizes.mesh[quantity]
+    axes.plot(study.models[0].sizes.size, np.where(mesh > 0, mesh, np.nan), ".-", color="0.6", ms=3, lw=0.6, zorder=1)
+    for failed in study.models[0].sizes.failed:
+        axes.axvline(failed, **_FAILED, zorder=0)
+    for level in LEVELS:
+        axes.axhline(level, color="0.8", lw=0.6, zorder=0)
+        axes.text(1.01, level, f"{100 * level:g} %", transform=across, fontsize=8, va="center")
+    axes.set_title("\n".join(title), loc="left", fontsize=8.5)
+
+
+def _draw_trend(axes: "Axes", study: SizeStudy, model: Model, trend: Trend) -> None:
+    """Draw points, law and needed sizes of one quantity of one model."""
+    size, off, style = model.sizes.size, model.sizes.off[trend.quantity], _MODELS[model.name]
     for needed in trend.needed:
-        axes.axhline(needed.level, color="0.8", lw=0.6, zorder=0)
-        axes.text(1.01, needed.level, f"{100 * needed.level:g} %", transform=across, fontsize=8, va="center")
         _draw_needed(axes, needed, _farthest(study))
     if law := trend.law:
-        title += f"\n{law.C:.2g} size$^{{-{law.k:.2f}}}$ (k ± {(law.bounds[1] - law.bounds[0]) / 2:.1g})"
-        for reach, style in (((min(law.sizes), max(law.sizes)), "-"), ((size.min(), _farthest(study)), ":")):
+        for reach, line in (((min(law.sizes), max(law.sizes)), style["ls"]), ((size.min(), _farthest(study)), ":")):
             ends = np.array(reach)
-            axes.plot(ends, law.C * ends**-law.k, color="black", ls=style, lw=0.9, zorder=1)
-    axes.plot(size, np.where(mesh > 0, mesh, np.nan), ".-", color="0.6", ms=3, lw=0.6, zorder=1)
+            axes.plot(ends, law.C * ends**-law.k, color="black", ls=line, lw=0.9, zorder=1)
+    fitted = np.array([point is Point.FITTED for point in trend.points])
     for which, fill in ((~fitted, "white"), (fitted, "black")):
-        axes.plot(size[which], np.where(off > 0, off, np.nan)[which], "o", mec="black", mfc=fill, ms=5, zorder=3)
-    for failed in study.sizes.failed:
-        axes.axvline(failed, **_FAILED, zorder=0)
-    axes.set_title(title, loc="left", fontsize=9)
+        shown = np.where(off > 0, off, np.nan)[which]
+        axes.plot(size[which], shown, style["marker"], mec="black", mfc=fill, ms=5, zorder=3)
 
 
 def _farthest(study: SizeStudy) -> float:
     """Return the largest size that is shown."""
-    sizes: list[float] = [*study.sizes.size.tolist(), *study.sizes.failed]
+    sizes = _all_sizes(study)
     return min(max([*sizes, *_extrapolated(study)]), _FARTHEST * max(sizes))
+
+
+def _lowest(study: SizeStudy) -> float:
+    """Return the smallest difference, error of the mesh or level."""
+    values = [
+        each for model in study.models for found in (model.sizes.off, model.sizes.mesh) for each in found.values()
+    ]
+    known = np.concatenate([*values, LEVELS])
+    return float(known[known > 0].min())
+
+
+def _all_sizes(study: SizeStudy) -> list[float]:
+    """Return the sizes that were solved or failed."""
+    return sorted([*study.models[0].sizes.size.tolist(), *study.models[0].sizes.failed])
 
 
 def _extrapolated(study: SizeStudy) -> list[float]:
@@ -98,7 +127,7 @@ def _draw_needed(axes: "Axes", needed: Needed, farthest: float) -> None:
             if 0 < at < np.inf:
                 axes.plot(at, needed.level, **_MARKS[key], zorder=2)
         return
-    if needed.kind is Kind.EXTRAPOLATED:
+    if needed.kind is Kind.EXTRAPOLATED and needed.low < farthest:
         axes.plot([needed.low, min(needed.high, farthest)], [needed.level] * 2, **_MARKS["interval"], zorder=2)
     if needed.size <= farthest:
         axes.plot(needed.size, needed.level, **_MARKS["size"], zorder=2)
@@ -107,7 +136,7 @@ def _draw_needed(axes: "Axes", needed: Needed, farthest: float) -> None:
 def _put_sizes(axes: "Axes", study: SizeStudy) -> None:
     """Set logarithmic axes with ticks at the sizes that were solved or failed."""
     axes.set(xscale="log", yscale="log")
-    sizes = sorted(size for size in (*study.sizes.size.tolist(), *study.sizes.failed) if size > 0)
+    sizes = [size for size in _all_sizes(study) if size > 0]
     width = math.log(_farthest(study) / sizes[0]) or 1.0
     axes.set_xlim(sizes[0] * math.exp(-0.05 * width), _farthest(study) * math.exp(0.05 * width))
     _put_ticks(axes.xaxis, sizes, lambda label: width * _LETTER * (len(label) + 1))
@@ -128,7 +157,8 @@ def _put_ticks(axis: "XAxis | YAxis", values: Sequence[float], room: Callable[[s
     axis.set_minor_locator(NullLocator())
 
 
-_POINT = {"marker": "o", "ls": "", "mec": "black", "ms": 5}
+_MODELS = {HALF_PLANE: {"marker": "o", "ls": "-"}, EQUIVALENT: {"marker": "s", "ls": "--"}}
+_POINT = {"ls": "", "mec": "black", "ms": 5}
 _BOUND = {"mec": "black", "mfc": "white", "ls": "", "ms": 5}
 _FAILED: dict[str, Any] = {"color": "0.5", "lw": 1.2, "ls": (0, (1, 2))}
 _MARKS: dict[str, dict[str, Any]] = {
@@ -143,19 +173,29 @@ def _keys(study: SizeStudy) -> "list[Line2D]":
     """Return the entries of the legend: of what is drawn."""
     from matplotlib.lines import Line2D
 
-    points = {point for trend in study.trends for point in trend.points}
     bounds = [needed for trend in study.trends for needed in trend.needed if needed.kind is Kind.BOUND]
-    entries: list[tuple[str, dict[str, Any], bool]] = [
-        ("fitted", {"mfc": "black", **_POINT}, Point.FITTED in points),
-        ("not fitted", {"mfc": "white", **_POINT}, bool(points - {Point.FITTED})),
-        ("law, dotted beyond the fitted sizes", {"color": "black", "lw": 0.9}, Point.FITTED in points),
-        ("error of the mesh", {"color": "0.6", "marker": ".", "ms": 3, "lw": 0.6},
-         any((mesh > 0).any() for mesh in study.sizes.mesh.values())),
-        ("change below the level from here on", _MARKS["size"], len(bounds) < 3 * len(study.trends)),
+    entries: list[tuple[str, dict[str, Any], bool]] = []
+    for model in study.models:
+        points = {point for trend in model.trends for point in trend.points}
+        name, point = model.name, _POINT | {"marker": _MODELS[model.name]["marker"]}
+        entries += [
+            (f"{name}, fitted", {"mfc": "black", **point}, Point.FITTED in points),
+            (f"{name}, not fitted", {"mfc": "white", **point}, bool(points - {Point.FITTED})),
+        ]
+    for model in study.models:
+        fitted = any(trend.law for trend in model.trends)
+        style = {"color": "black", "lw": 0.9, "ls": _MODELS[model.name]["ls"]}
+        entries.append((f"law, {model.name}", style, fitted))
+    mesh = any((each > 0).any() for each in study.models[0].sizes.mesh.values())
+    entries += [
+        ("law beyond the fitted sizes", {"color": "black", "lw": 0.9, "ls": ":"},
+         any(trend.law for trend in study.trends)),
+        ("error of the mesh", {"color": "0.6", "marker": ".", "ms": 3, "lw": 0.6}, mesh),
+        ("below the level from here on", _MARKS["size"], len(bounds) < len(LEVELS) * len(study.trends)),
         ("95 % interval, extrapolated", _MARKS["interval"], bool(_extrapolated(study))),
         ("at most this size", _MARKS["at most"], any(needed.high < math.inf for needed in bounds)),
         ("more than this size", _MARKS["more"], any(needed.low > 0 for needed in bounds)),
-        ("not solved", _FAILED, bool(study.sizes.failed)),
+        ("not solved", _FAILED, bool(study.models[0].sizes.failed)),
     ]  # fmt: skip
     return [Line2D([], [], label=label, **style) for label, style, drawn in entries if drawn]
 

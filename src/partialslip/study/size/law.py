@@ -1,4 +1,4 @@
-"""Laws of the changes over the size, and the sizes from which on a body acts as a half-plane."""
+"""Laws of the differences over the size, and the sizes from which on a body acts as a half-plane."""
 
 import math
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from scipy.stats import t as student
 from partialslip.arrays import Array
 from partialslip.study.size.sizes import CLEAR, QUANTITIES, Sizes
 
-LEVELS = (0.05, 0.01, 0.001)
+LEVELS = (1e-2, 1e-3, 1e-4)
 _FEWEST = 3  # points of a law
 _SHARE = 0.95  # of confidence
 
@@ -21,7 +21,7 @@ class Point(StrEnum):
 
     FITTED = "fitted"
     SMALLER = "among the smaller sizes; the law holds for large ones"
-    UNCLEAR = f"change less than {CLEAR:g} times the mesh's error"
+    UNCLEAR = f"difference less than {CLEAR:g} times the mesh's error"
     UNKNOWN = "the mesh's error is not known: give fem.accuracy instead of fem.size"
     FEW = f"fewer than {_FEWEST} points are left for a law"
     NO_VALUE = "no value to compare"
@@ -38,7 +38,7 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True)
 class Law:
-    """Fitted law change = C size^-k, by least squares in logarithms.
+    """Fitted law difference = C size^-k, by least squares in logarithms.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class Law:
     sizes : tuple of float
         Fitted sizes.
     scatter : float
-        Standard deviation of the logarithm of the change about the law, times Student's factor for a confidence of
+        Standard deviation of the logarithm of the difference about the law, times Student's factor for a confidence of
         95 %.
     """
 
@@ -63,7 +63,7 @@ class Law:
 
     @property
     def falls(self) -> bool:
-        """Whether the change falls with the size, with a confidence of 95 %."""
+        """Whether the difference falls with the size, with a confidence of 95 %."""
         return self.bounds[0] > 0
 
     @property
@@ -86,18 +86,18 @@ class Law:
 
 @dataclass(frozen=True)
 class Needed:
-    """Size from which on the change is below ``level``.
+    """Size from which on the difference is below ``level``.
 
     Parameters
     ----------
     level : float
     kind : Kind
-        ``measured``: at a solved size the change equals the level within the mesh's error. ``interpolated`` between two
-        solved sizes. ``extrapolated`` by the law. ``bound``: only ``low`` and ``high`` are known.
+        ``measured``: at a solved size the difference equals the level within the mesh's error. ``interpolated`` between
+        two solved sizes. ``extrapolated`` by the law. ``bound``: only ``low`` and ``high`` are known.
     size : float
         NaN for a bound.
     low, high : float
-        Solved sizes beside the size: at ``low`` the change is above the level (0 if no such size was solved), from
+        Solved sizes beside the size: at ``low`` the difference is above the level (0 if no such size was solved), from
         ``high`` on below (infinite if no such size was solved). If extrapolated, the 95 % confidence interval.
     """
 
@@ -127,7 +127,7 @@ def _digits(size: float) -> str:
 
 @dataclass(frozen=True)
 class Trend:
-    """How one quantity approaches the half-plane's.
+    """How one quantity of half-planes approaches that of the bodies.
 
     Parameters
     ----------
@@ -154,8 +154,8 @@ def trends(sizes: Sizes) -> list[Trend]:
 def trend(sizes: Sizes, quantity: str) -> Trend:
     """Fit the law of ``quantity`` and find the sizes for all levels.
 
-    A point is clear if the change is more than ten times the mesh's error. Of six or more clear points the larger half
-    is fitted, of fewer the last three.
+    A point is clear if the difference is more than ten times the mesh's error. Of six or more clear points the larger
+    half is fitted, of fewer the last three.
     """
     size, off, mesh = sizes.size, sizes.off[quantity], sizes.mesh[quantity]
     known = np.isfinite(off) & (size > 0)
@@ -184,7 +184,7 @@ def _fit(size: Array, off: Array) -> Law:
 def _needed(
     level: float, size: Array, off: Array, mesh: Array, clear: npt.NDArray[np.bool_], law: Law | None
 ) -> Needed:
-    """Return the size from which on the change ``off``, with errors ``mesh``, is below ``level``."""
+    """Return the size from which on the difference ``off``, with errors ``mesh``, is below ``level``."""
     above = off - mesh > level
     last = int(np.flatnonzero(~(off + mesh <= level)).max(initial=-1))
     low = float(size[above].max(initial=0.0))

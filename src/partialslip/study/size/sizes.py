@@ -1,4 +1,4 @@
-"""Sweeps over sizes of bodies, or other settings of a scene, compared with the half-plane's solution."""
+"""Sweeps over sizes of bodies, or other settings of a scene: half-planes compared with finite elements."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -9,16 +9,18 @@ from typing import Any
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.batch.job import Sharing, Solved
+from partialslip.batch.job import Sharing
 from partialslip.batch.ledger import Ledger
 from partialslip.batch.sweep import Progress, sweep
 from partialslip.scene import Scene
 from partialslip.study.size.axes import ACCURACY, Axis, cases
+from partialslip.study.size.case import Sized, solve_case
 
 QUANTITIES = ("a", "p0", "p", "m", "n", "q")
-CLEAR = 10.0  # a change counts if it exceeds the mesh's error by this factor
+HALF_PLANE, EQUIVALENT = "half-plane", "equivalent"
+CLEAR = 10.0  # a difference counts if it exceeds the mesh's error by this factor
 _COARSER = 8.0  # ratio of the accuracies of two successive meshes
-_FINER = 3  # largest number of additional meshes where the change is hardly larger than the mesh's error
+_FINER = 3  # largest number of additional meshes where the half-plane's difference is not clear
 _FINEST = 1e-8  # finest accuracy that rounding allows
 
 
@@ -29,7 +31,7 @@ def measure(
     executor: Executor,
     progress: Progress = lambda *_: None,
     control: bool = True,
-) -> list[Solved]:
+) -> list[Sized]:
     """Solve ``scene`` over the grid of ``axes``. Cases in ``ledger`` are not solved again.
 
     Parameters
@@ -42,12 +44,12 @@ def measure(
         ``progress(done, total, seconds_left)``.
     control : bool
         Whether to solve each point on at least two meshes: for the scene's accuracy and for one eight times coarser.
-        Where a change is less than ten times the mesh's error, up to three further meshes follow, each eight times
-        finer.
+        Where the difference of the half-plane is less than ten times the mesh's error, up to three further meshes
+        follow, each eight times finer.
 
     Returns
     -------
-    list of Solved
+    list of Sized
         Entries of the ledger.
 
     Raises
@@ -57,11 +59,11 @@ def measure(
     PartialslipError
         If a worker process dies; finished cases are in the ledger.
     """
-    solve, asked = Sharing(), cases(scene, axes, (_COARSER, 1.0) if control else (1.0,))
+    solve, asked = Sharing(solve_case), cases(scene, axes, (_COARSER, 1.0) if control else (1.0,))
     sweep([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
     finer = [_COARSER**-k for k in range(1, _FINER + 1)] if control else []
     for accuracy in (each for each in finer if each * scene.fem.accuracy >= _FINEST):
-        points = _by_point(axes, (Solved.of(ledger[case.key]) for case in asked))
+        points = _by_point(axes, (Sized.of(ledger[case.key]) for case in asked))
         unclear = {point for point, meshes in points.items() if not _clear(meshes)}
         asked += [
             case
@@ -69,24 +71,23 @@ def measure(
             if tuple(case.labels[each.name] for each in axes) in unclear
         ]
         sweep([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
-    return [Solved.of(ledger[case.key]) for case in asked]
+    return [Sized.of(ledger[case.key]) for case in asked]
 
 
 @dataclass(frozen=True)
 class Sizes:
-    """A sweep along one axis.
+    """A sweep along one axis: how far half-planes are from the finite elements.
 
     Parameters
     ----------
     name : str
-        Name of the axis.
+        ``half-plane``, or ``equivalent`` for half-planes with the data that make them act like the bodies.
     size : (k,) array
         Values along the axis.
     off : mapping of str to (k,) array
-        Change from the half-plane by quantity: a and p0 (largest p) relative, m and n as fractions of a, p and q in
-        relative L2.
+        Difference by quantity: a and p0 (largest p) relative, m and n as fractions of a, p and q in relative L2.
     mesh : mapping of str to (k,) array
-        Part of the change that may be an error of the mesh; NaN if not known.
+        Part of the difference that may be an error of the meshes; NaN if not known.
     failed : mapping of float to str
         Values along the axis without a solution, and why.
     """
@@ -98,13 +99,17 @@ class Sizes:
     failed: Mapping[float, str] = field(default_factory=dict)
 
 
-def along(axis: Axis, entries: Iterable[Solved]) -> Sizes:
-    """Return the sweep along ``axis`` from ``entries`` of a ledger."""
+def along(axis: Axis, entries: Iterable[Sized], name: str = HALF_PLANE) -> Sizes:
+    """Return the sweep along ``axis`` of the half-planes ``name`` from ``entries`` of a ledger."""
     entries = list(entries)
-    points = {point[0]: _change(meshes) for point, meshes in sorted(_by_point([axis], entries).items())}
+    points = {
+        point[0]: found[name]
+        for point, meshes in sorted(_by_point([axis], entries).items())
+        if name in (found := _differences(meshes))
+    }
     errors = {float(entry.labels[axis.name]): entry.error for entry in entries if entry.error}
     return Sizes(
-        axis.name,
+        name,
         np.array(list(points)),
         {key: np.array([off[key] for off, _ in points.values()]) for key in QUANTITIES},
         {key: np.array([mesh[key] for _, mesh in points.values()]) for key in QUANTITIES},
@@ -112,20 +117,26 @@ def along(axis: Axis, entries: Iterable[Solved]) -> Sizes:
     )
 
 
-def _by_point(axes: Sequence[Axis], entries: Iterable[Solved]) -> dict[tuple[float, ...], list[Solved]]:
+def refused(axes: Sequence[Axis], entries: Iterable[Sized]) -> dict[tuple[float, ...], str]:
+    """Return the points of the grid of ``axes`` without equivalent half-planes, and why."""
+    points = sorted(_by_point(axes, entries).items())
+    return {point: meshes[-1].refused for point, meshes in points if meshes[-1].refused}
+
+
+def _by_point(axes: Sequence[Axis], entries: Iterable[Sized]) -> dict[tuple[float, ...], list[Sized]]:
     """Return the entries by point of the grid, from the coarsest mesh to the finest, without failed cases."""
-    points: dict[tuple[float, ...], list[Solved]] = {}
+    points: dict[tuple[float, ...], list[Sized]] = {}
     for entry in sorted(entries, key=lambda entry: -float(entry.labels[ACCURACY])):
         if entry.run:
             points.setdefault(tuple(float(entry.labels[each.name]) for each in axes), []).append(entry)
     return points
 
 
-def _change(meshes: Sequence[Solved]) -> tuple[dict[str, float], dict[str, float]]:
-    """Return the change at one point on the finest mesh, and the error of the finest mesh.
+def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], dict[str, float]]]:
+    """Return the differences at one point on the finest mesh, and the errors of the meshes, by half-planes.
 
-    The error is the larger of the method's estimate and an eighth of the change by the last refinement; NaN without
-    either, as for a fixed element size.
+    The error of the finite elements is the larger of the method's estimate and an eighth of the change by the last
+    refinement; NaN without either, as for a fixed element size. That of the rig adds to it.
     """
     found, estimate = _off(meshes[-1]), _estimate(meshes[-1])
     estimate["p0"] = estimate.get("p", math.nan)
@@ -133,26 +144,31 @@ def _change(meshes: Sequence[Solved]) -> tuple[dict[str, float], dict[str, float
     rough = _off(coarser[-1]) if coarser else {}
     changed = {key: abs(rough.get(key, math.nan) - found.get(key, math.nan)) / _COARSER for key in QUANTITIES}
     mesh = {key: float(np.fmax(estimate.get(key, math.nan), changed[key])) for key in QUANTITIES}
-    return {key: abs(found.get(key, math.nan)) for key in QUANTITIES}, mesh
+    differences = {HALF_PLANE: ({key: abs(found.get(key, math.nan)) for key in QUANTITIES}, mesh)}
+    if meshes[-1].equivalent:
+        left, rig = _left(meshes[-1])
+        both = {key: mesh[key] + rig.get(key, 0.0) for key in QUANTITIES}
+        differences[EQUIVALENT] = ({key: left.get(key, math.nan) for key in QUANTITIES}, both)
+    return differences
 
 
-def _clear(meshes: Sequence[Solved]) -> bool:
-    off, mesh = _change(meshes)
+def _clear(meshes: Sequence[Sized]) -> bool:
+    off, mesh = _differences(meshes)[HALF_PLANE]
     return all(not off[key] < CLEAR * mesh[key] for key in QUANTITIES)
 
 
-def _dofs(entry: Solved) -> int | None:
+def _dofs(entry: Sized) -> int | None:
     assert entry.run
     return entry.run.methods["fem"].counts.get("dofs")
 
 
-def _estimate(entry: Solved) -> dict[str, float]:
+def _estimate(entry: Sized) -> dict[str, float]:
     """Return the error estimates of the finite elements by quantity."""
     assert entry.run
     return {key: error for key, error in entry.run.methods["fem"].estimate.items() if error is not None}
 
 
-def _off(entry: Solved) -> dict[str, float]:
+def _off(entry: Sized) -> dict[str, float]:
     """Return the change from the half-plane at one point on one mesh, by quantity."""
     assert entry.run
     fem, exact, errors = entry.run.methods["fem"], entry.run.methods["exact"], entry.run.comparison["fem"].errors
@@ -164,30 +180,48 @@ def _off(entry: Solved) -> dict[str, float]:
     return found | {key: error for key in ("p", "q") if (error := errors[key]) is not None}
 
 
-def grid(axes: Sequence[Axis], entries: Iterable[Solved], quantity: str) -> tuple[Array, Array, Array]:
+def _left(entry: Sized) -> tuple[dict[str, float], dict[str, float]]:
+    """Return what is left with equivalent half-planes at one point on one mesh, and the error of the rig, by
+    quantity."""
+    if not entry.equivalent:
+        return {}, {}
+    errors = entry.equivalent.comparison["equivalent"].errors
+    shares = entry.equivalent.methods["equivalent"].shares.get("rig", {})
+    left = {key: errors.get("p_max" if key == "p0" else key) for key in QUANTITIES}
+    rig = {key: shares.get("p" if key == "p0" else key) for key in QUANTITIES}
+    return _known(left), _known(rig)
+
+
+def _known(values: Mapping[str, float | None]) -> dict[str, float]:
+    return {key: abs(value) for key, value in values.items() if value is not None}
+
+
+def grid(axes: Sequence[Axis], entries: Iterable[Sized], quantity: str) -> tuple[Array, Array, Array]:
     """Return the values of two ``axes`` and the absolute change of ``quantity``, (second, first), from ``entries``.
 
     NaN where not solved.
     """
     x, y = (np.array(each.values) for each in axes)
-    points = {point: _change(meshes)[0][quantity] for point, meshes in _by_point(axes, entries).items()}
+    points = {
+        point: _differences(meshes)[HALF_PLANE][0][quantity] for point, meshes in _by_point(axes, entries).items()
+    }
     return x, y, np.array([[points.get((first, second), math.nan) for first in x.tolist()] for second in y.tolist()])
 
 
-def table(axes: Sequence[Axis], entries: Iterable[Solved]) -> tuple[list[str], list[list[Any]]]:
+def table(axes: Sequence[Axis], entries: Iterable[Sized]) -> tuple[list[str], list[list[Any]]]:
     """Return headings and rows for a CSV file, one row per case, from ``axes`` and ``entries``."""
     figures = ("a", "p_max", "m", "n", "regime")
-    head = [*(each.name for each in axes), ACCURACY, *figures, *(f"change of {key}" for key in QUANTITIES)]
-    head += ["dofs", "cpu_s", "error"]
+    head = [*(each.name for each in axes), ACCURACY, *figures]
+    head += [f"{name}: {key}" for name in (HALF_PLANE, EQUIVALENT) for key in QUANTITIES]
+    head += ["dofs", "cpu_s", "error", "no equivalent"]
     rows: list[list[Any]] = []
     for entry in entries:
         row = [entry.labels[name] for name in (*(each.name for each in axes), ACCURACY)]
         if entry.run is None:
-            rows.append([*row, *[""] * (len(head) - len(row) - 1), entry.error])
+            rows.append([*row, *[""] * (len(head) - len(row) - 2), entry.error, ""])
         else:
-            fem, off = entry.run.methods["fem"], _off(entry)
-            costs = [fem.counts["dofs"], fem.cost.cpu_s, ""]
-            rows.append(
-                [*row, *(getattr(fem, key) for key in figures), *(off.get(key, "") for key in QUANTITIES), *costs]
-            )
+            fem, differences = entry.run.methods["fem"], (_off(entry), _left(entry)[0])
+            row += [getattr(fem, key) for key in figures]
+            row += [each.get(key, "") for each in differences for key in QUANTITIES]
+            rows.append([*row, fem.counts["dofs"], fem.cost.cpu_s, "", entry.refused])
     return head, rows

@@ -1,25 +1,51 @@
 """What a study of sizes found, as headings, rows and notes: for the terminal, CSV files and pages."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from partialslip.batch.job import Solved
 from partialslip.output.csv import csv_text
 from partialslip.scene import Scene
 from partialslip.study.size.axes import Axis
+from partialslip.study.size.case import Sized
 from partialslip.study.size.law import LEVELS, Kind, Point, Trend, trends
-from partialslip.study.size.sizes import QUANTITIES, Sizes, along
+from partialslip.study.size.sizes import EQUIVALENT, HALF_PLANE, QUANTITIES, Sizes, along, refused
 
 Rows = list[tuple[str, ...]]
 _MARKS = {Point.FITTED: "f", Point.SMALLER: "s", Point.UNCLEAR: "e", Point.UNKNOWN: "u", Point.FEW: "x"}
+HALF_PLANES = "half-planes"  # heading of the names of models
 _LISTED = 3  # largest number of sizes that are listed
 _MEANINGS = {
-    Kind.MEASURED: "measured: a solved size, where the change is the level within the mesh's error",
+    Kind.MEASURED: "measured: a solved size, where the difference is the level within the mesh's error",
     Kind.INTERPOLATED: "interpolated: between two solved sizes",
     Kind.EXTRAPOLATED: "extrapolated: by the law, with the 95 % confidence interval",
     Kind.BOUND: "<=, > and to: only bounds, solved sizes",
 }
+
+
+@dataclass(frozen=True)
+class Model:
+    """How far half-planes are from bodies of a size.
+
+    Parameters
+    ----------
+    sizes : Sizes
+    trends : list of Trend
+        One per quantity with a value.
+    """
+
+    sizes: Sizes
+    trends: list[Trend]
+
+    @property
+    def name(self) -> str:
+        """Name of the half-planes: ``half-plane`` or ``equivalent``."""
+        return self.sizes.name
+
+    @property
+    def title(self) -> str:
+        """Title of a table of the differences."""
+        return f"Differences of the {self.name}" if self.name == HALF_PLANE else "Differences of equivalent half-planes"
 
 
 @dataclass(frozen=True)
@@ -30,86 +56,119 @@ class SizeStudy:
     ----------
     scene : Scene
     axis : Axis
-    sizes : Sizes
-    trends : list of Trend
-        One per quantity with a value.
-    unsolved : tuple of str
-        Cases that failed, and why.
+    models : tuple of Model
+        The half-plane, then equivalent half-planes if a case has them.
+    remarks : tuple of str
+        Cases that failed or have no equivalent half-planes, and why.
     """
 
     scene: Scene
     axis: Axis
-    sizes: Sizes
-    trends: list[Trend]
-    unsolved: tuple[str, ...]
+    models: tuple[Model, ...]
+    remarks: tuple[str, ...]
 
     @property
     def label(self) -> str:
         """Name of the axis with its unit."""
         return f"{self.axis.name} {'in contact half-widths' if self.axis.in_a else 'as in the scene'}"
 
+    @property
+    def trends(self) -> list[Trend]:
+        """Trends of all models."""
+        return [trend for model in self.models for trend in model.trends]
 
-def size_study(scene: Scene, axis: Axis, entries: Sequence[Solved]) -> SizeStudy:
+
+def size_study(scene: Scene, axis: Axis, entries: Sequence[Sized]) -> SizeStudy:
     """Evaluate the ``entries`` of a ledger for a sweep of ``scene`` along ``axis``."""
-    sizes = along(axis, entries)
-    return SizeStudy(scene, axis, sizes, trends(sizes), tuple(unsolved(entries)))
+    sweeps = [along(axis, entries, name) for name in (HALF_PLANE, EQUIVALENT)]
+    models = tuple(Model(each, trends(each)) for each in sweeps if each.name == HALF_PLANE or each.size.size)
+    return SizeStudy(scene, axis, models, tuple(remarks([axis], entries)))
 
 
-def unsolved(entries: Iterable[Solved]) -> list[str]:
-    """Return which of ``entries`` failed and why, as lines of text."""
-    return [
+def remarks(axes: Sequence[Axis], entries: Sequence[Sized]) -> list[str]:
+    """Return which of ``entries`` failed, and which have no equivalent half-planes, and why, as lines of text."""
+    lines = [
         f"not solved: {', '.join(f'{key} {value}' for key, value in entry.labels.items())}: {entry.error}"
         for entry in entries
         if entry.error
     ]
+    if without := refused(axes, entries):
+        points = [_short(*point) if len(point) == 1 else f"({', '.join(map(_short, point))})" for point in without]
+        reason, where = next(iter(without.values())), _listed_points(points)
+        lines.append(f"no equivalent half-planes at {where}: {reason}")
+    return lines
+
+
+def _listed_points(points: Sequence[str]) -> str:
+    if len(points) <= _LISTED:
+        return " and ".join(points)
+    return f"{points[0]} and {len(points) - 1} more"
 
 
 def heading(study: SizeStudy) -> str:
     """Return what was measured over which axis, as one line."""
-    return f"{study.scene.name}: change from the half-plane, over {study.label}"
+    return f"{study.scene.name}: half-planes against finite elements, over {study.label}"
 
 
-def changes_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
-    """Return headings and rows of the changes by size; a letter says whether the law is fitted to a change."""
-    found = study.sizes
-    points = {trend.quantity: trend.points for trend in study.trends}
+def differences_table(study: SizeStudy, model: Model) -> tuple[tuple[str, ...], Rows]:
+    """Return headings and rows of the differences by size; a letter says whether the law is fitted to a difference."""
+    found = model.sizes
+    points = {trend.quantity: trend.points for trend in model.trends}
     solved: dict[float, tuple[str, ...]] = {
         size: (*(_marked(found.off[key][k], points[key][k]) for key in points), _share(found, k))
         for k, size in enumerate(found.size.tolist())
     }
-    failed = {size: (*["-"] * len(points), "") for size in found.failed}
-    rows = [(_short(size), *cells) for size, cells in sorted((solved | failed).items())] if points else []
+    without = study.models[0].sizes.size.tolist() if model.name == EQUIVALENT else ()
+    failed = {size: (*["-"] * len(points), "") for size in (*found.failed, *without)}
+    rows = [(_short(size), *cells) for size, cells in sorted((failed | solved).items())] if points else []
     return ("size", *points, "mesh"), rows
 
 
 def laws_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
     """Return headings and rows of the fitted laws."""
     rows: Rows = [
-        (trend.quantity, f"{law.C:.3g}", f"{law.k:.2f}", "{:.2f} to {:.2f}".format(*law.bounds), _listed(law.sizes))
-        for trend in study.trends
+        (*of, f"{law.C:.3g}", f"{law.k:.2f}", "{:.2f} to {:.2f}".format(*law.bounds), _listed(law.sizes))
+        for *of, trend in _by_quantity(study)
         if (law := trend.law)
     ]
-    return ("change = C size^-k", "C", "k", "95 %", "fitted sizes"), rows
+    return ("C size^-k", HALF_PLANES, "C", "k", "95 %", "fitted sizes"), rows
 
 
 def needed_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
-    """Return headings and rows of the sizes from which on the change is below each level, and how they are known."""
-    rows = [(trend.quantity, *map(str, trend.needed)) for trend in study.trends]
-    return ("change below", *(f"{level:.1%}" for level in LEVELS)), rows
+    """Return headings and rows of the sizes from which on the difference is below each level, and how they are
+    known."""
+    rows = [(*of, *map(str, trend.needed)) for *of, trend in _by_quantity(study)]
+    return ("below", HALF_PLANES, *(f"{100 * level:g} %" for level in LEVELS)), rows
+
+
+def _by_quantity(study: SizeStudy) -> list[tuple[str, str, Trend]]:
+    """Quantity, model and trend: the models of a quantity one after the other."""
+    return [
+        (trend.quantity, model.name, trend)
+        for quantity in QUANTITIES
+        for model in study.models
+        for trend in model.trends
+        if trend.quantity == quantity
+    ]
 
 
 def notes(study: SizeStudy) -> list[str]:
     """Return what the letters and words of the tables mean, what is not extrapolated, and which cases failed."""
     points = {point for trend in study.trends for point in trend.points}
     kinds = {needed.kind for trend in study.trends for needed in trend.needed}
-    flat = [trend.quantity for trend in study.trends if trend.law and not trend.law.falls]
+    flat = [
+        f"{trend.quantity} of {model.name}"
+        for model in study.models
+        for trend in model.trends
+        if trend.law and not trend.law.falls
+    ]
     lines = [
         *(f"{mark}: {_fitted(point)}" for point, mark in _MARKS.items() if point in points),
-        *(["mesh: the largest share of a change that may be an error of the mesh"] if points else []),
+        *(["mesh: the largest share of a difference that may be an error of the mesh"] if points else []),
         *(meaning for kind, meaning in _MEANINGS.items() if kind in kinds),
         *([f"no sizes are extrapolated for {', '.join(flat)}: the law may not fall"] if flat else []),
     ]
-    return [*lines, *study.unsolved]
+    return [*lines, *study.remarks]
 
 
 def _fitted(point: Point) -> str:
@@ -117,42 +176,50 @@ def _fitted(point: Point) -> str:
 
 
 def points_csv(study: SizeStudy) -> str:
-    """Return all points of ``study`` as CSV: change and mesh's error by size and quantity, and whether it is fitted."""
-    found = study.sizes
+    """Return all points of ``study`` as CSV: difference and mesh's error by half-planes, size and quantity, and whether
+    it is fitted."""
     rows: list[tuple[object, ...]] = [
-        (size, trend.quantity, found.off[trend.quantity][k], found.mesh[trend.quantity][k], trend.points[k])
-        for trend in study.trends
-        for k, size in enumerate(found.size.tolist())
-    ]
-    rows += [(size, "", "", "", error) for size, error in found.failed.items()]
-    return csv_text(("size", "quantity", "change", "error of the mesh", "point"), rows)
+        (model.name, size, trend.quantity, model.sizes.off[trend.quantity][k], model.sizes.mesh[trend.quantity][k],
+         trend.points[k])
+        for model in study.models
+        for trend in model.trends
+        for k, size in enumerate(model.sizes.size.tolist())
+    ]  # fmt: skip
+    rows += [("", size, "", "", "", error) for size, error in study.models[0].sizes.failed.items()]
+    return csv_text((HALF_PLANES, "size", "quantity", "difference", "error of the mesh", "point"), rows)
 
 
 def laws_csv(study: SizeStudy) -> str:
-    """Return laws and needed sizes of ``study`` as CSV, one row per quantity and level; empty where there is none."""
+    """Return laws and needed sizes of ``study`` as CSV, one row per half-planes, quantity and level; empty where there
+    is none."""
     rows = [
         (
+            model.name,
             trend.quantity,
             *((trend.law.C, trend.law.k, *trend.law.bounds) if trend.law else ("",) * 4),
             needed.level,
             needed.kind,
             *("" if not math.isfinite(each) or each == 0 else each for each in (needed.size, needed.low, needed.high)),
         )
-        for trend in study.trends
+        for model in study.models
+        for trend in model.trends
         for needed in trend.needed
     ]
-    return csv_text(("quantity", "C", "k", "k low", "k high", "change below", "kind", "size", "low", "high"), rows)
+    head = (HALF_PLANES, "quantity", "C", "k", "k low", "k high", "difference below", "kind", "size", "low", "high")
+    return csv_text(head, rows)
 
 
-def _marked(change: float, point: Point) -> str:
-    return f"{change:.1e} {_MARKS[point]}" if point in _MARKS else "-" if math.isnan(change) else f"{change:.1e}"
+def _marked(difference: float, point: Point) -> str:
+    if point in _MARKS:
+        return f"{difference:.1e} {_MARKS[point]}"
+    return "-" if math.isnan(difference) else f"{difference:.1e}"
 
 
 def _share(sizes: Sizes, k: int) -> str:
-    """Return the largest share of a change that may be an error of the mesh, as text."""
+    """Return the largest share of a difference that may be an error of the mesh, as text."""
     shares = [sizes.mesh[key][k] / sizes.off[key][k] for key in QUANTITIES if sizes.off[key][k] > 0]
     known = [share for share in shares if not math.isnan(share)]
-    return f"{max(known):.1%}" if known else ""
+    return "" if not known else f"{max(known):.1%}" if max(known) < 1 else "> 100%"
 
 
 def _short(size: float) -> str:

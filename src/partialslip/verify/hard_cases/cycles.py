@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 
 from partialslip.halfplane.hertz import Hertz
-from partialslip.halfplane.steady import stick_zone
-from partialslip.halfplane.traction import mean_load_bound
+from partialslip.halfplane.loading import half_cycle
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.scenes import MANY_CYCLES, hard_scene
 
@@ -18,7 +17,7 @@ accuracy is 1e-3.
 
 def cases() -> Iterator[Case]:
     """Make the cases of the family."""
-    bound = mean_load_bound(stick_zone(0.3, 4.0, Hertz()), Hertz())
+    bound = half_cycle(0.3, 4.0, Hertz()).mean_load_bound
     scene = hard_scene(
         "cycles-200", 0.3, 4.0, Q_mean=0.995 * bound, sigma_mean=3.0, load={"cycles": 200}, fem=MANY_CYCLES
     )

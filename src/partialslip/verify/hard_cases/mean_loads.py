@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 
 from partialslip.halfplane.hertz import Hertz
-from partialslip.halfplane.steady import stick_zone
-from partialslip.halfplane.traction import mean_load_bound
+from partialslip.halfplane.loading import half_cycle
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.scenes import MANY_CYCLES, hard_scene
 
@@ -20,7 +19,7 @@ the bound, too. The accuracy is 1e-3: the first cycles take many steps.
 
 def cases() -> Iterator[Case]:
     """Make the cases of the family."""
-    bound = mean_load_bound(stick_zone(0.3, 4.0, Hertz()), Hertz())
+    bound = half_cycle(0.3, 4.0, Hertz()).mean_load_bound
     for share in (0.5, 0.9, 0.98, 1.02):
         name = f"mean-load-{share:g}"
         yield Case(

@@ -1,0 +1,130 @@
+"""partialslip equivalent: what it prints and writes, and how scenes refer to it."""
+
+import json
+import re
+
+import pytest
+
+import partialslip
+from partialslip.cli import main
+
+TEXT = """
+name = "blocks"
+[material]
+E = 72.8e9
+nu = 0.3
+[profile]
+kind = "hertz"
+R = 50e-3
+[load]
+p0 = 4e8
+Q = [-2.3e5, 2.3e5]
+sigma = [-2.4e8, 2.4e8]
+[friction]
+f = 0.5
+[bodies.upper]
+width = 16e-3
+height = 8e-3
+[bodies.lower]
+width = 16e-3
+height = 8e-3
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A scene, and another that refers to the rig which is not there yet."""
+    path = tmp_path_factory.mktemp("equivalent")
+    (path / "blocks.toml").write_text(TEXT)
+    (path / "referring.toml").write_text(TEXT + '[bodies]\nequivalent = "results/blocks-equivalent/rig.json"\n')
+    return path
+
+
+@pytest.fixture
+def call(folder, monkeypatch, capsys):
+    monkeypatch.chdir(folder)
+    monkeypatch.setenv("COLUMNS", "100")
+
+    def called(*arguments):
+        code = main(arguments)
+        return code, *capsys.readouterr()
+
+    return called
+
+
+@pytest.fixture
+def done(call):
+    return call("equivalent", "blocks.toml")
+
+
+def test_the_half_planes_are_named(done):
+    code, out, _ = done
+    assert code == 0
+    first = out.splitlines()[0]
+    assert re.match(r"blocks: the bodies act like half-planes with R = 49\.4\d+ mm, not 50 mm; sigma = ", first)
+    assert "turned" not in first  # mirror images
+    assert re.search(r"1 kN/m of P +0\.000384\d* 1/m +0 rad +0 MPa +0 MPa/mm", out)
+    assert "The data hold where |x| <= 4 mm." in out
+    assert "written: rig.json, half-planes.toml" in out
+
+
+@pytest.mark.usefixtures("done")
+def test_the_half_planes_of_the_file_do_what_the_bodies_do(call, folder):
+    """By exact and by march, and the same in both scenes."""
+    code, out, _ = call("run", "results/blocks-equivalent/half-planes.toml", "--with", "exact,march", "--json")
+    assert code == 0
+    found = json.loads(out)["methods"]
+    own = partialslip.run(partialslip.load_scene(folder / "referring.toml"), ["equivalent"])["equivalent"]
+    assert found["exact"]["m"] == pytest.approx(own.m, rel=1e-9)
+    assert found["march"]["m"] == pytest.approx(own.m, rel=1e-3)
+
+
+@pytest.mark.usefixtures("done")
+def test_a_scene_that_refers_to_the_rig_runs_by_exact_and_equivalent(call):
+    code, out, _ = call("run", "referring.toml", "--json")
+    assert code == 0
+    assert set(json.loads(out)["methods"]) == {"exact", "equivalent"}
+
+
+@pytest.mark.usefixtures("done")
+def test_once_more_the_files_are_the_same(call, folder):
+    before = (folder / "results/blocks-equivalent/rig.json").read_bytes()
+    code, out, _ = call("equivalent", "blocks.toml", "--force")
+    assert (code, (folder / "results/blocks-equivalent/rig.json").read_bytes()) == (0, before)
+    assert "written: rig.json" in out
+
+
+def test_settings_change_the_scene(call):
+    code, out, _ = call("equivalent", "blocks.toml", "--set", "load.Q=[0, 1e5]", "--out", "other")
+    assert code == 0
+    assert "written: rig.json, half-planes.toml in other" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("equivalent", "hertz-shear"), "bodies: must have upper or lower"),
+        (("equivalent", "absent.toml"), "absent.toml: cannot be read"),
+        (("equivalent", "blocks.toml", "--set", "load.p0=2e9"), "bodies: must be larger compared with"),
+        (("equivalent", "blocks.toml", "--set", "material.E=-1"), "material.E = -1"),
+        (("equivalent", "blocks.toml", "--out", "blocks.toml"), "--out blocks.toml: cannot be written"),
+        (("verify", "--suite", "stress", "--method", "equivalent"), "must be one of exact, march, fem"),
+        (("score", "blocks.toml", "blocks.toml", "--with", "equivalent"), "choose from 'exact', 'march', 'fem'"),
+    ],
+)
+def test_errors_are_one_line(call, arguments, said):
+    try:
+        code, _, error = call(*arguments)
+    except SystemExit as ended:
+        pytest.fail(f"ended with {ended.code}")
+    assert code == 2
+    assert said in error
+    assert len(error.strip().splitlines()) == 1
+
+
+@pytest.mark.usefixtures("done")
+def test_a_rig_of_other_bodies_is_one_line(call):
+    code, _, error = call("run", "referring.toml", "--set", "bodies.upper.height=9e-3", "--with", "equivalent")
+    assert code == 2
+    assert "rig.json: this rig has other bodies, supports or materials than blocks" in error
+    assert len(error.strip().splitlines()) == 1

@@ -1,0 +1,229 @@
+"""Rigs in files: what is read is what was written, for the same bodies only; what cannot be meant is one line."""
+
+import json
+import os
+import re
+import shutil
+
+import numpy as np
+import pytest
+
+from partialslip import load_scene, run
+from partialslip.errors import InputError
+from partialslip.rig import Rig, Terms, key_of, load_rig, write_rig
+from partialslip.run import characterise, rig_of
+
+SCENE = "hertz-small-tension"
+BLOCKS = ("bodies.upper={width=16e-3, height=8e-3}", "bodies.lower={width=16e-3, height=8e-3}")
+PAD = "bodies.upper={kind='pad', width=16e-3, height=8e-3}"
+
+
+def scene_of(*settings):
+    return load_scene(SCENE, [*BLOCKS, *settings])
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("rig") / "rig.json"
+    write_rig(characterise(scene_of()), path)
+    return path
+
+
+def referring(path, *settings):
+    return scene_of(f"bodies.equivalent='{path}'", *settings)
+
+
+def test_a_rig_is_read_as_it_was_written(file):
+    own, read = characterise(scene_of()), load_rig(file)
+    assert (own.key, own.reach) == (read.key, read.reach)
+    for kind in ("terms", "rough"):
+        for one, other in zip(getattr(own, kind), getattr(read, kind), strict=True):
+            assert np.array_equal(one, other)
+
+
+def test_results_are_the_same_bit_for_bit(file):
+    one, other = (run(scene, ["equivalent"])["equivalent"] for scene in (scene_of(), referring(file)))
+    assert (one.a, one.m, one.n, one.ends, one.estimate) == (other.a, other.m, other.n, other.ends, other.estimate)
+    assert np.array_equal(one.traction.dq, other.traction.dq)
+
+
+def test_estimates_are_plain_numbers(file):
+    """As in the other methods: they are printed, and encoded as JSON."""
+    found = run(referring(file), ["equivalent"])["equivalent"]
+    kinds = {type(error) for share in (found.estimate, *found.shares.values()) for error in share.values()}
+    assert kinds == {float}
+
+
+OTHER = {
+    "half-plane": "bodies.upper=None",
+    "width": "bodies.upper.width=16.1e-3",
+    "height": "bodies.lower.height=9e-3",
+    "holder": "bodies.lower.holder={width=16e-3, height=1e-3}",
+    "support": "bodies.lower.support='roller'",
+    "pulled": ("bodies.lower.support='roller'", "bodies.lower.pulled=true"),
+    "pad": "bodies.upper.kind='pad'",
+    "E": "material.E=7e10",
+    "nu": "material.nu=0.31",
+    "plane": "material.plane='stress'",
+}
+
+
+@pytest.mark.parametrize("what", OTHER)
+def test_the_rig_of_other_bodies_is_refused(file, what):
+    changes = OTHER[what]
+    if what == "half-plane":
+        scene = load_scene(SCENE, [BLOCKS[1], f"bodies.equivalent='{file}'"])
+    else:
+        scene = referring(file, *([changes] if isinstance(changes, str) else changes))
+    said = f"^{re.escape(str(file))}: this rig has other bodies, supports or materials than {SCENE}; must be made"
+    with pytest.raises(InputError, match=said) as caught:
+        run(scene, ["equivalent"])
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "change",
+    ["load.Q=[0, 1e5]", "load.sigma=[0, 0]", "load.p0=3e8", "friction.f=0.9", "profile.R=0.04", "fem.accuracy=1e-2"],
+)
+def test_other_loads_friction_and_profiles_have_the_same_rig(file, change):
+    assert rig_of(referring(file, change)).reach == 4e-3
+
+
+def test_the_profile_of_a_pad_is_part_of_its_rig():
+    keys = [key_of(load_scene(SCENE, [PAD, f"profile.R={R}"])) for R in (0.04, 0.05)]
+    assert keys[0] != keys[1]
+
+
+def test_the_content_of_a_mesh_counts_not_its_name(tmp_path):
+    first, second = tmp_path / "a.msh", tmp_path / "b.msh"
+    first.write_text("one")
+    shutil.copy(first, second)
+    one, other = (key_of(load_scene(SCENE, [f"bodies.lower={{mesh='{path}'}}"])) for path in (first, second))
+    assert one == other
+    second.write_text("two")
+    assert key_of(load_scene(SCENE, [f"bodies.lower={{mesh='{second}'}}"])) != one
+
+
+def test_rigs_are_found_beside_the_scene(file, tmp_path, monkeypatch):
+    (tmp_path / "scenes").mkdir()
+    shutil.copy(file, tmp_path / "scenes" / "rig.json")
+    from partialslip.scene.writing import scene_toml
+
+    text = scene_toml(scene_of()) + '\n[bodies]\nequivalent = "rig.json"\n'
+    text = text.replace("\n[bodies]\n", "\n[bodies]\n", 1)
+    (tmp_path / "scenes" / "mine.toml").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    scene = load_scene("scenes/mine.toml")
+    assert rig_of(scene).key == load_rig(file).key
+
+
+def spoiled(change):
+    def of(path):
+        data = json.loads(path.read_text())
+        change(data)
+        path.write_text(json.dumps(data))
+
+    return of
+
+
+def folder(path):
+    path.unlink()
+    path.mkdir()
+
+
+def pipe(path):
+    path.unlink()
+    os.mkfifo(path)
+
+
+def large(path):
+    with path.open("r+b") as file:
+        file.truncate(2**30)
+
+
+def more_terms(data):
+    for kind in ("terms", "rough"):
+        data[kind]["xx"].append(data[kind]["xx"][0])
+
+
+SPOILED = {
+    "NaN": (lambda path: path.write_text(path.read_text().replace("0.00", "NaN", 1)), "not a rig: "),
+    "null": (spoiled(lambda data: data["terms"]["xx"][0].__setitem__(0, None)), "not a rig: .*`null`"),
+    "text": (spoiled(lambda data: data["terms"]["xx"][0].__setitem__(0, "1")), "not a rig: .*`str`"),
+    "infinite": (
+        lambda path: path.write_text(re.sub(r'"reach": [^,]*', '"reach": 1e999', path.read_text())),
+        "not a rig: ",
+    ),
+    "no reach": (spoiled(lambda data: data.pop("reach")), "not a rig: .*missing required field `reach`"),
+    "negative reach": (spoiled(lambda data: data.update(reach=-1.0)), "not a rig: .*reach"),
+    "more": (spoiled(lambda data: data.update(more=1)), "not a rig: .*unknown field `more`"),
+    "shape": (spoiled(more_terms), r"terms.xx: must have 12 rows of 12 numbers|terms\.\w+: must have"),
+    "short row": (
+        spoiled(lambda data: data["rough"]["pulled"][0].pop()),
+        "rough.pulled: must have 2 rows of 11 numbers",
+    ),
+    "asymmetry": (spoiled(lambda data: data["terms"]["yy"][2].__setitem__(0, 1.0)), r"terms.yy: must be symmetric"),
+    "schema": (
+        spoiled(lambda data: data.update(schema="partialslip/rig/2")),
+        "schema = 'partialslip/rig/2': must be 'partialslip/rig/1'",
+    ),
+    "not JSON": (lambda path: path.write_text("reach = 1"), "not a rig: "),
+    "empty": (lambda path: path.write_text(""), "not a rig: "),
+    "a list": (lambda path: path.write_text("[]"), "not a rig: "),
+    "not UTF-8": (lambda path: path.write_bytes(b'{"schema": "\xff\xfe"}'), "not a rig: "),
+    "truncated": (lambda path: path.write_text(path.read_text()[:1000]), "not a rig: "),
+    "1 GB": (large, "1073741824 bytes: must be at most 1048576"),
+    "a folder": (folder, "cannot be read: Is a directory"),
+    "a pipe": (pipe, "cannot be read: must be a regular file"),
+    "absent": (lambda path: path.unlink(), "cannot be read: No such file"),
+}
+
+
+@pytest.mark.parametrize("how", SPOILED)
+def test_spoiled_files_are_one_line(file, tmp_path, how):
+    spoil, said = SPOILED[how]
+    path = tmp_path / "rig.json"
+    shutil.copy(file, path)
+    spoil(path)
+    with pytest.raises(InputError, match=said) as caught:
+        run(referring(path), ["equivalent"])
+    assert str(caught.value).startswith(str(path))
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 400
+
+
+@pytest.mark.parametrize(("i", "j", "value"), [(2, 0, 1e300), (2, 0, -1e3), (1, 0, 1e300), (1, 1, -1e9)])
+def test_terms_that_mean_nothing_are_one_line(file, tmp_path, i, j, value):
+    """A file may be well-formed and of no body: the line names the bodies, not data that nobody gave."""
+    path = tmp_path / "rig.json"
+    shutil.copy(file, path)
+
+    def change(data):
+        for kind in ("terms", "rough"):
+            data[kind]["yy"][i][j] = data[kind]["yy"][j][i] = value
+
+    spoiled(change)(path)
+    with pytest.raises(InputError, match=r"^bodies: must be ") as caught:
+        run(referring(path), ["equivalent"])
+    assert "\n" not in str(caught.value)
+
+
+def test_files_that_cannot_be_written_are_one_line(tmp_path):
+    rig = Rig("key", 1.0, *[Terms(*[np.zeros((2, 2))] * 4)] * 2)
+    (tmp_path / "rig.json").mkdir()
+    with pytest.raises(InputError):
+        write_rig(rig, tmp_path / "rig.json")
+
+
+def test_a_rig_without_bodies_is_refused():
+    with pytest.raises(InputError, match=r"bodies.equivalent = 'rig.json': must be given only with bodies"):
+        load_scene(SCENE, ["bodies.equivalent='rig.json'"])
+
+
+def test_characterising_half_planes_is_refused():
+    with pytest.raises(InputError, match="bodies: must have upper or lower"):
+        characterise(load_scene(SCENE))
+
+
+def test_rigs_are_kept_for_the_same_bodies():
+    assert characterise(scene_of()) is characterise(scene_of("load.Q=[0, 1e5]", "friction.f=0.7"))
