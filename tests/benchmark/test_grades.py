@@ -3,9 +3,9 @@
 import msgspec
 import pytest
 
-from partialslip.benchmark import Answer, graded, problems
+from partialslip.benchmark import Answer, graded, read_problems
 
-PROBLEM = problems()["PS-02"]
+PROBLEM = read_problems()["PS-02"]
 
 
 def answer(**off):

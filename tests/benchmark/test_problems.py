@@ -4,14 +4,14 @@ import math
 
 import pytest
 
-from partialslip.benchmark import problems
+from partialslip.benchmark import read_problems
 from partialslip.benchmark.freeze import ways
 from partialslip.benchmark.measured import GROUPS, quantities
 from partialslip.benchmark.problem import EDITION, checksum, chosen, read_frozen, texts
 from partialslip.errors import InputError
 from partialslip.run import run
 
-PROBLEMS = problems()
+PROBLEMS = read_problems()
 CLOSED = [number for number, problem in PROBLEMS.items() if ways(problem)[0][0] == "exact"]
 
 

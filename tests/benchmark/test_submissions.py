@@ -5,18 +5,18 @@ import zipfile
 
 import pytest
 
-from partialslip.benchmark import book_zip, problems, read_submission, scoreboard, write_submission
+from partialslip.benchmark import book_zip, read_problems, read_submission, scoreboard, write_submission
 from partialslip.benchmark.codes import CODES, answers
 from partialslip.cli import main
 from partialslip.errors import InputError
 
-SOME = {"PS-02": problems()["PS-02"]}
+SOME = {"PS-02": read_problems()["PS-02"]}
 
 
 def test_answers_are_written_and_read_back(tmp_path):
     found = answers("exact", SOME)
     write_submission(found, tmp_path)
-    again = read_submission(tmp_path, problems())
+    again = read_submission(tmp_path, read_problems())
     assert again == found
     board = scoreboard(SOME, [again])
     assert board.rows[0][:2] == ("PS-02", SOME["PS-02"].title)
@@ -44,16 +44,16 @@ def test_what_is_wrong_is_said_in_a_line(tmp_path, name, content, said):
     write_submission(answers("exact", SOME), tmp_path)
     (tmp_path / name).write_text(content, "utf-8")
     with pytest.raises(InputError, match=said) as caught:
-        read_submission(tmp_path, problems())
+        read_submission(tmp_path, read_problems())
     assert "\n" not in str(caught.value)
 
 
 def test_a_folder_without_answers_is_refused(tmp_path):
     with pytest.raises(InputError, match=r"must be a folder with meta\.toml"):
-        read_submission(tmp_path / "none", problems())
+        read_submission(tmp_path / "none", read_problems())
     (tmp_path / "meta.toml").write_text('code = "mine"\nversion = "1"\n', "utf-8")
     with pytest.raises(InputError, match=r"no answers; must have PS-01\.json"):
-        read_submission(tmp_path, problems())
+        read_submission(tmp_path, read_problems())
 
 
 def test_the_zip_has_all_that_is_needed_and_is_always_the_same(tmp_path):

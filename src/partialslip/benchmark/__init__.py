@@ -8,7 +8,7 @@ from partialslip.benchmark.grade import graded as graded
 from partialslip.benchmark.problem import Problem as Problem
 from partialslip.benchmark.problem import Source as Source
 from partialslip.benchmark.problem import Target as Target
-from partialslip.benchmark.problem import problems as problems
+from partialslip.benchmark.problem import read_problems as read_problems
 from partialslip.benchmark.scoreboard import Board as Board
 from partialslip.benchmark.scoreboard import scoreboard as scoreboard
 from partialslip.benchmark.submission import Answer as Answer
@@ -30,7 +30,7 @@ __all__ = [
     "book_page",
     "book_zip",
     "graded",
-    "problems",
+    "read_problems",
     "read_submission",
     "scoreboard",
     "write_submission",

@@ -49,7 +49,8 @@ def book_page(problems: Mapping[str, Problem], board: Board | None, made: Made) 
 
 
 def book_zip(problems: Mapping[str, Problem]) -> bytes:
-    """Problems as plain data: for each a JSON file with everything, the scene as TOML, and the targets as CSV."""
+    """The ``problems`` by number as plain data, a zip: for each a JSON file with everything, the scene as TOML, and the
+    targets as CSV."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         for number, problem in problems.items():

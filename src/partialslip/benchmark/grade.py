@@ -34,7 +34,8 @@ class Mark(msgspec.Struct, frozen=True):
 
 
 class Graded(msgspec.Struct, frozen=True):
-    """Marks of an answer: ``overall``, the worst of contact, stick and tractions, and by ``groups``."""
+    """Marks of an answer: ``overall``, the worst of contact, stick and tractions, and by ``groups``; and its ``errors``
+    by key of the target, in the target's scale."""
 
     overall: Mark
     groups: dict[str, Mark]

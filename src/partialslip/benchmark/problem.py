@@ -103,7 +103,7 @@ class Problem(msgspec.Struct, frozen=True):
 
 
 @cache
-def problems() -> dict[str, Problem]:
+def read_problems() -> dict[str, Problem]:
     """All problems by number, with their frozen targets."""
     frozen = read_frozen()
     return {number: read(number, text, frozen) for number, text in texts().items()}
@@ -119,7 +119,7 @@ def chosen(numbers: str | None) -> dict[str, Problem]:
     """
     from fnmatch import fnmatchcase
 
-    known = problems()
+    known = read_problems()
     if numbers is None:
         return known
     found: dict[str, Problem] = {}

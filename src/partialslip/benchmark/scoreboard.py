@@ -24,7 +24,7 @@ def grades(problems: Mapping[str, Problem], submission: Submission) -> dict[str,
 
 
 def scoreboard(problems: Mapping[str, Problem], submissions: Sequence[Submission]) -> Board:
-    """Problems in rows, codes in columns: grade and CPU seconds."""
+    """Table with the ``problems`` in rows and the codes of the ``submissions`` in columns: grade and CPU seconds."""
     found = [grades(problems, submission) for submission in submissions]
     table = []
     for number, problem in problems.items():

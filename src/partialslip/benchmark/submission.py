@@ -64,8 +64,8 @@ def read_submission(folder: str | os.PathLike[str], known: Mapping[str, object])
     Parameters
     ----------
     folder : str or path
-    known : mapping
-        Problems by number, with their ``targets``.
+    known : mapping of str to Problem
+        Problems by number.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def write_answer(number: str, answer: Answer, folder: str | os.PathLike[str]) ->
 
 
 def write_submission(submission: Submission, folder: str | os.PathLike[str]) -> list[Path]:
-    """Write ``submission`` into ``folder``, as :func:`read_submission` reads it."""
+    """Write ``submission`` into ``folder``, as :func:`read_submission` reads it. Returns the paths."""
     meta = {key: value for key, value in msgspec.to_builtins(submission.meta).items() if value}
     files = {META: tomli_w.dumps(meta)}
     return write_texts(

@@ -29,13 +29,15 @@ def add(commands: "Commands") -> None:
         ],
     )
     parts = benchmark.add_subparsers(required=True, metavar="PART", parser_class=type(benchmark))
-    lists = parts.add_parser("list", help="list the problems", description="List numbers, titles and targets.",
-                             examples=["partialslip benchmark list"])  # fmt: skip
+    lists = parts.add_parser("list", help="list the problems",
+                             description="List the problems: number, title, regime, and how many targets.",
+                             examples=["partialslip benchmark list", "partialslip benchmark list --help"])  # fmt: skip
     lists.set_defaults(command=_list)
 
     runs = parts.add_parser("run", help="answer problems with a method of partialslip",
                             description="Answer problems with a method of partialslip, and write the answers.",
-                            examples=["partialslip benchmark run --code fem-1e-4 --problems PS-0*"])  # fmt: skip
+                            examples=["partialslip benchmark run --code exact",
+                                      "partialslip benchmark run --code fem-1e-4 --problems PS-0*"])  # fmt: skip
     runs.add_argument("--code", required=True, metavar="CODE", help="exact, march, fem-1e-3, fem-1e-4, fem-1e-5, "
                       "fem-P1, fem-P2, equivalent, calculix-mortar or calculix-penalty")  # fmt: skip
     runs.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
@@ -45,7 +47,8 @@ def add(commands: "Commands") -> None:
     reads = parts.add_parser("read", help="turn a table of tractions into an answer",
                              description="Turn a table of tractions, or results of CalculiX, into the answer to a "
                              "problem, as partialslip score reads it.",
-                             examples=["partialslip benchmark read PS-02 tractions.csv -o my-answers"])  # fmt: skip
+                             examples=["partialslip benchmark read PS-02 tractions.csv -o my-answers",
+                                       "partialslip benchmark read PS-05 job.frd -o my-answers"])  # fmt: skip
     reads.add_argument("problem", metavar="PROBLEM", help="number of the problem")
     reads.add_argument("file", metavar="FILE", help="table of x, p and q, or CalculiX's .frd")
     reads.add_argument("-o", "--out", metavar="DIR", required=True, help="folder of the answers")
@@ -54,7 +57,8 @@ def add(commands: "Commands") -> None:
     scores = parts.add_parser("score", help="grade the answers of a code",
                               description="Grade the answers of a code: a folder with meta.toml and PS-01.json and "
                               "so on.",
-                              examples=["partialslip benchmark score my-answers"])  # fmt: skip
+                              examples=["partialslip benchmark score my-answers",
+                                        "partialslip benchmark score my-answers --problems PS-0*"])  # fmt: skip
     scores.add_argument("folder", metavar="FOLDER", help="folder with the answers")
     scores.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
     scores.set_defaults(command=_score)
@@ -62,7 +66,8 @@ def add(commands: "Commands") -> None:
     builds = parts.add_parser("build", help="write the book",
                               description="Write the book of problems as HTML, and a zip of plain data, with a "
                               "scoreboard of the given answers.",
-                              examples=["partialslip benchmark build my-answers results/benchmark-march"])  # fmt: skip
+                              examples=["partialslip benchmark build",
+                                        "partialslip benchmark build my-answers results/benchmark-march"])  # fmt: skip
     builds.add_argument("folders", nargs="*", metavar="FOLDER", help="folders with answers")
     builds.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
     add_pdf(builds)
@@ -76,11 +81,11 @@ def _add_out(parser: argparse.ArgumentParser, usual: str) -> None:
 
 
 def _list(_: argparse.Namespace) -> int:
-    from partialslip.benchmark import problems
+    from partialslip.benchmark import read_problems
     from partialslip.cli.consoles import output
     from partialslip.output.tables import print_table
 
-    table = [(each.number, each.title, each.regime, str(len(each.targets))) for each in problems().values()]
+    table = [(each.number, each.title, each.regime, str(len(each.targets))) for each in read_problems().values()]
     print_table(output(), ("", "problem", "regime", "targets"), table, words=(0, 1, 2))
     return 0
 
@@ -117,10 +122,10 @@ def _read(options: argparse.Namespace) -> int:
 
 
 def _score(options: argparse.Namespace) -> int:
-    from partialslip.benchmark import problems, read_submission
+    from partialslip.benchmark import read_problems, read_submission
     from partialslip.benchmark.problem import chosen
 
-    _print_grades(read_submission(options.folder, problems()), chosen(options.problems))
+    _print_grades(read_submission(options.folder, read_problems()), chosen(options.problems))
     return 0
 
 
@@ -145,7 +150,7 @@ def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> No
 
 
 def _build(options: argparse.Namespace) -> int:
-    from partialslip.benchmark import book_page, book_zip, problems, read_submission, scoreboard
+    from partialslip.benchmark import book_page, book_zip, read_problems, read_submission, scoreboard
     from partialslip.benchmark.problem import chosen
     from partialslip.cli.common import origin
     from partialslip.cli.consoles import output
@@ -155,7 +160,7 @@ def _build(options: argparse.Namespace) -> int:
     check_folder(options.out)
     check_report(options)
     some = chosen(options.problems)
-    submissions = [read_submission(folder, problems()) for folder in options.folders]
+    submissions = [read_submission(folder, read_problems()) for folder in options.folders]
     board = scoreboard(some, submissions) if submissions else None
     with results_folder(options, "benchmark", "benchmark", None) as (folder, passed):
         html, data = book_page(some, board, origin(options)), book_zip(some)
