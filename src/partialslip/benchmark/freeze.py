@@ -10,6 +10,9 @@ from partialslip.result import Result
 from partialslip.run import run
 
 _DIGITS = 1e-9  # uncertainty of closed forms, in the scale of the quantity
+_ENDS = ("left_1", "right_1", "left_2", "right_2")
+_NEAR = 1e-3  # another method that is farther off does not check the digits of a closed form
+_EVEN = 1e-4  # of a: nearer to x = 0 the middle of a contact is there
 _FINE, _COARSER = 1e-5, 8.0  # accuracy asked of march and fem, and factor of the second accuracy of one method
 
 
@@ -54,6 +57,8 @@ def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: N
         for key, value in values.items()
         if any(key in others for *_, others in checks)  # known in two ways
     }
+    if not _off_middle(values):  # a tells it all
+        found_targets = {key: target for key, target in found_targets.items() if key not in _ENDS}
     scene = problem.scene
     tension = any(sigma or slope for _, sigma, slope in scene.load.along)
     if scene.even and not tension and {"m", "n"} <= found_targets.keys():
@@ -62,6 +67,20 @@ def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: N
         for key in "mn":
             found_targets[key] = replace(found_targets[key], uncertainty=max(apart, found_targets[key].uncertainty))
     return found_targets, result.regime
+
+
+def _of_closed_form(checked: float) -> float:
+    """Uncertainty of a closed form that the nearest other method finds within ``checked``: its digits, unless no other
+    method comes near."""
+    return _DIGITS if checked <= _NEAR else checked
+
+
+def _off_middle(values: Mapping[str, Quantity]) -> bool:
+    """Whether the middle of the contact is off x = 0 at a load point."""
+    ends = [values[key] for key in _ENDS if key in values]
+    return any(
+        abs(left.value + right.value) > _EVEN * left.scale for left, right in zip(ends[::2], ends[1::2], strict=True)
+    )
 
 
 def _target(
@@ -86,7 +105,9 @@ def _target(
         value=quantity.value,
         unit=quantity.unit,
         scale=quantity.scale,
-        uncertainty=_DIGITS if exact else max([result.estimate.get(quantity.estimate, 0.0), *apart.values()]),
+        uncertainty=_of_closed_form(min(apart.values()))
+        if exact
+        else max([result.estimate.get(quantity.estimate, 0.0), *apart.values()]),
         known="; ".join([known, *said]),
         group=quantity.group,
     )

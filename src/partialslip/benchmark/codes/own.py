@@ -30,6 +30,8 @@ class Own:
 
     def answer(self, problem: Problem) -> Answer | None:
         """Answer to ``problem``; None if the method does not offer it."""
+        if problem.scene.finite and self.method in ("exact", "march"):  # half-planes
+            return None
         try:
             result = run(problem.scene.replace(fem=dict(self.fem)), self.method)[self.method]
         except PartialslipError:
