@@ -121,3 +121,10 @@ def test_a_stage_bears_its_load_and_no_shear():
     p, q = Punch(1.0, x, weights, normal, 0.3 * np.sign(x) * normal).stage(0.95)
     assert p.sum() == pytest.approx(0.95**2)
     assert abs(q.sum()) < 1e-12
+
+
+def test_pressing_begins_on_a_mesh_with_hardly_a_node_in_the_contact():
+    """The first mesh of linear elements may have two nodes on either side of the middle."""
+    found = partialslip.run(scene(0.2).replace(fem={"order": 1, "size": 0.1}), "fem")["fem"]
+    assert found.regime == "pressing"
+    assert found.m == pytest.approx(found.n, abs=0.05 * found.a)

@@ -54,10 +54,13 @@ class Punch:
         result = np.zeros(len(scaled))
         for way in (1, -1):
             side = np.flatnonzero((way * scaled > _TELLING) & (way * scaled < 1 - _TELLING))
+            if not len(side):
+                continue
             side = side[np.argsort(way * scaled[side])]
             angle = np.arcsin(way * scaled[side])
             regular = forces[side] / self.weights[side] * np.cos(angle)
-            regular[-2:] = regular[-3]  # nodes beside the end are inaccurate due to the singularity
+            # nodes beside the end are inaccurate due to the singularity; coarse meshes have no others
+            regular[-2:] = regular[-min(3, len(regular))]
             angle, regular = np.append(angle, np.pi / 2), np.append(regular, regular[-1])
             slope = np.diff(regular) / np.diff(angle)
             pieces = slope * np.diff(np.log(np.sin(angle))) - np.diff(regular / np.tan(angle))
