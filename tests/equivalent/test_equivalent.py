@@ -127,6 +127,12 @@ def test_shear_tips_a_pad_over(scene):
     assert [np.mean(ends) for ends in found.ends] == pytest.approx([-R * A * c * Q1, -R * A * c * Q2], rel=1e-6)
 
 
+def test_coupling_can_be_forced_off(scene):
+    rig = made(scene, xy={(0, 1): 0.2}, yy={(2, 0): 1e3, (0, 2): 1e3})
+    one = stand_ins(scene.replace(effects={"coupling": False}), rig).result
+    assert one.ends == stand_ins(scene, made(scene, yy={(2, 0): 1e3, (0, 2): 1e3})).result.ends
+
+
 def test_a_long_specimen_bears_its_shear_force():
     """Held at its left: the tension is less by Q/(2 t) where it is touched, and nothing else changes to first order."""
     specimen = load_scene(SCENE, ["bodies.lower={width=80e-3, height=5e-3, support='roller', pulled=true}"])

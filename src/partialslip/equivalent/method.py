@@ -72,7 +72,7 @@ def solve(
     clock = Clock()
     with clock.phase("rig"):
         progress("characterising the bodies")
-        rig = rig_of(_checked(scene))
+        rig = _called_for(rig_of(_checked(scene)), scene)
     with clock.phase("half-planes"):
         found, seen, data = stand_ins(scene, rig, progress)
     closed = found.method == "exact"
@@ -116,7 +116,12 @@ def stand_ins(scene: Scene, rig: Rig, progress: Callable[[str], None] = lambda _
         As :func:`solve`.
     """
     closed = _checked(scene).load.in_phase and has_closed_form(half_planes(scene, None))
-    return _iterated(rig, scene, closed, progress)
+    return _iterated(_called_for(rig, scene), scene, closed, progress)
+
+
+def _called_for(rig: Rig, scene: Scene) -> Rig:
+    """``rig``, without coupling if ``scene`` forces it off."""
+    return rig.uncoupled if scene.effects.coupling is False else rig
 
 
 def half_planes(scene: Scene, data: Data | None) -> Scene:

@@ -57,6 +57,11 @@ class Rig:
     rough: Terms
 
     @property
+    def uncoupled(self) -> "Rig":
+        """The rig without what p does along x and q along y."""
+        return Rig(self.key, self.reach, *(each._replace(xy=0 * each.xy) for each in (self.terms, self.rough)))
+
+    @property
     def coarser(self) -> "Rig":
         """The rig from the coarser mesh."""
         return Rig(self.key, self.reach, self.rough, self.rough)
