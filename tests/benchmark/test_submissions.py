@@ -84,3 +84,26 @@ def test_commands(tmp_path, monkeypatch, capsys):
         "partialslip: --code 'ansys': must be one of " + ", ".join(CODES),
         "partialslip: nowhere: must be a folder with meta.toml and PS-01.json and so on",
     ]
+
+
+def test_a_code_that_is_not_installed_is_said_to_be(monkeypatch):
+    monkeypatch.setattr("shutil.which", lambda _: None)
+    with pytest.raises(InputError, match="--code 'calculix-mortar': is not installed"):
+        answers("calculix-mortar", SOME)
+
+
+def test_tractions_of_any_code_make_an_answer(tmp_path):
+    """a, m and n are found from the tractions, as score finds them."""
+    import numpy as np
+
+    from partialslip.benchmark.table import answer_from
+    from partialslip.run import run
+
+    problem = SOME["PS-02"]
+    exact = run(problem.scene, "exact")["exact"]
+    x = np.linspace(-1.05, 1.05, 2001) * exact.a
+    table = np.column_stack([x, *exact.traction.at(x)])
+    np.savetxt(tmp_path / "mine.csv", table, delimiter=",", header="x,p,dq", comments="")
+    found = answer_from(problem, tmp_path / "mine.csv")
+    for key in ("a", "m", "n"):
+        assert found.values[key] == pytest.approx(problem.targets[key].value, abs=2e-3 * exact.a)
