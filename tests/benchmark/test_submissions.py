@@ -7,6 +7,7 @@ import pytest
 
 from partialslip.benchmark import book_zip, read_problems, read_submission, scoreboard, write_submission
 from partialslip.benchmark.codes import CODES, answers
+from partialslip.benchmark.codes.own import Own
 from partialslip.cli import main
 from partialslip.errors import InputError
 
@@ -107,3 +108,22 @@ def test_tractions_of_any_code_make_an_answer(tmp_path):
     found = answer_from(problem, tmp_path / "mine.csv")
     for key in ("a", "m", "n"):
         assert found.values[key] == pytest.approx(problem.targets[key].value, abs=2e-3 * exact.a)
+
+
+def test_what_was_finished_before_an_interruption_is_kept(tmp_path, monkeypatch):
+    two = {number: each for number, each in read_problems().items() if number in ("PS-01", "PS-02")}
+    true, asked = Own.answer, []
+
+    def interrupted(code, problem):
+        asked.append(problem.number)
+        if asked == ["PS-01", "PS-02"]:
+            raise KeyboardInterrupt
+        return true(code, problem)
+
+    monkeypatch.setattr(Own, "answer", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        answers("exact", two, folder=tmp_path)
+    found = answers("exact", two, folder=tmp_path)
+    assert asked == ["PS-01", "PS-02", "PS-02"]
+    assert read_submission(tmp_path, read_problems()) == found
+    assert list(found.answers) == ["PS-01", "PS-02"]

@@ -102,7 +102,7 @@ def _run(options: argparse.Namespace) -> int:
         results_folder(options, "benchmark", f"benchmark-{options.code}", None) as (folder, passed),
         counting(options.code) as progress,
     ):
-        found = answers(options.code, some, progress)
+        found = answers(options.code, some, progress, folder)
         files = write_submission(found, folder)
     console = output()
     _print_grades(found, some)

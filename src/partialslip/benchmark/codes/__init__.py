@@ -1,12 +1,13 @@
 """Codes that answer the problems: an adapter each."""
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Protocol
 
 from partialslip.benchmark.codes.calculix import Calculix
 from partialslip.benchmark.codes.own import Own
-from partialslip.benchmark.problem import Problem
-from partialslip.benchmark.submission import Answer, Meta, Submission
+from partialslip.benchmark.problem import Problem, read_problems
+from partialslip.benchmark.submission import META, Answer, Meta, Submission, read_submission, write_submission
 from partialslip.errors import InputError
 from partialslip.origin import made_now
 
@@ -41,9 +42,21 @@ CODES: dict[str, Code] = {
 
 
 def answers(
-    name: str, problems: Mapping[str, Problem], progress: Callable[[int, int, float], None] = lambda *_: None
+    name: str,
+    problems: Mapping[str, Problem],
+    progress: Callable[[int, int, float], None] = lambda *_: None,
+    folder: Path | None = None,
 ) -> Submission:
     """Answers of one of :data:`CODES` to ``problems``. A problem that the code does not offer has no answer.
+
+    Parameters
+    ----------
+    name : str
+    problems : mapping of str to Problem
+    progress : callable
+        ``progress(done, total, seconds_left)``.
+    folder : Path, optional
+        Each answer is written there at once; answers of the same code and settings that are there are kept.
 
     Raises
     ------
@@ -55,15 +68,23 @@ def answers(
     code = CODES[name]
     if code.version is None:
         raise InputError(f"--code {name!r}: is not installed; must be one of those that are")
-    found: dict[str, Answer] = {}
+    machine = made_now().machine
+    title = f"partialslip {name}" if isinstance(code, Own) else name
+    meta = Meta(title, code.version, code.settings, f"{machine.processor}, {machine.system}")
+    found = _kept(meta, problems, folder)
     for number, (key, problem) in enumerate(problems.items()):
         progress(number, len(problems), float("nan"))
-        if answer := code.answer(problem):
+        if key not in found and (answer := code.answer(problem)):
             found[key] = answer
+            if folder:
+                write_submission(Submission(meta, {key: answer}), folder)
     progress(len(problems), len(problems), 0.0)
-    machine = made_now().machine
-    own = isinstance(code, Own)
-    meta = Meta(
-        f"partialslip {name}" if own else name, code.version, code.settings, f"{machine.processor}, {machine.system}"
-    )
-    return Submission(meta, found)
+    return Submission(meta, {key: found[key] for key in problems if key in found})
+
+
+def _kept(meta: Meta, problems: Mapping[str, Problem], folder: Path | None) -> dict[str, Answer]:
+    """Answers in ``folder`` to the ``problems``, of the code ``meta``."""
+    if not folder or not (folder / META).exists() or not list(folder.glob("*.json")):
+        return {}
+    kept = read_submission(folder, read_problems())
+    return {key: answer for key, answer in kept.answers.items() if key in problems} if kept.meta == meta else {}
