@@ -32,7 +32,7 @@ def page() -> str:
         for letter, each in zip(letters, found, strict=True)
     )
     lines = ["| | " + " | ".join(letters) + " |", "|---|" + "---|" * len(letters)]
-    lines += [f"| {row[0]} | " + " | ".join(row[2:]) + " |" for row in board.rows]
+    lines += [f"| {row[0]} | " + " | ".join(row[1:]) + " |" for row in board.rows]
     return _HEAD.format(edition=EDITION, codes=codes) + "\n".join(lines) + "\n"
 
 

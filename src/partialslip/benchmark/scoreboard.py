@@ -27,11 +27,11 @@ def scoreboard(problems: Mapping[str, Problem], submissions: Sequence[Submission
     """Table with the ``problems`` in rows and the codes of the ``submissions`` in columns: grade and CPU seconds."""
     found = [grades(problems, submission) for submission in submissions]
     table = []
-    for number, problem in problems.items():
+    for number in problems:
         cells = [_cell(own.get(number), each, number) for own, each in zip(found, submissions, strict=True)]
-        table.append((number, problem.title, *cells))
+        table.append((number, *cells))
     heads = tuple(f"{each.meta.code} {each.meta.version}".strip() for each in submissions)
-    return Board(("", "problem", *heads), table, tuple(range(1, 2 + len(heads))))
+    return Board(("", *heads), table, tuple(range(1, 1 + len(heads))))
 
 
 def _cell(graded: Graded | None, submission: Submission, number: str) -> str:
