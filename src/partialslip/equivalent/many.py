@@ -9,10 +9,11 @@ from partialslip.halfplane import Contact, contact
 from partialslip.halfplane.contact import stick_zone as stick_zone_of
 from partialslip.halfplane.steady import drive
 from partialslip.result import StickZone
-from partialslip.rig import Rig
+from partialslip.rig import Rig, Terms
 from partialslip.scene import Pressing, Scene
 
 _SETTLED, _MOST = 1e-8, 20  # change of the tension in an iteration, in f p0; iterations
+_LEAST = 1e-10  # power that counts, in the largest
 _POINTS = 16  # of quadrature in a slip zone
 # the slope of the strain is of degree 9: the rule is exact
 _PLACES = np.cos(np.pi * (np.arange(8) + 0.5) / 8)
@@ -43,6 +44,7 @@ def stick_zone(scene: Scene, rig: Rig, dQ: npt.ArrayLike, dsigma: npt.ArrayLike)
     still = scene.replace(load={"Q": [0.0, 0.0], "sigma": [0.0, 0.0], "cycles": 1})
     seen = stand_ins(still, rig).scene
     pressed = contact(seen, Pressing(seen.P, seen.M))
+    rig = _shortened(rig, max(map(abs, pressed.ends)))
     loads = np.broadcast_arrays(np.asarray(dQ, float), np.asarray(dsigma, float))
     if not (shape := loads[0].shape):
         stick_zone_of(pressed, scene.friction.f, dQ, dsigma)  # raises if the contact slides
@@ -52,6 +54,17 @@ def stick_zone(scene: Scene, rig: Rig, dQ: npt.ArrayLike, dsigma: npt.ArrayLike)
         part = slice(start, start + _CHUNK)
         centre[part], c[part], s[part] = _solved(scene, rig, pressed, flat_Q[part], flat_sigma[part])
     return StickZone(*(values.reshape(shape)[()] for values in (centre, c, s)))
+
+
+def _shortened(rig: Rig, farthest: float) -> Rig:
+    """``rig`` without the highest powers, which do not count within the distance ``farthest`` (m) of x = 0."""
+    powers = (farthest / rig.reach) ** np.arange(len(rig.terms.xx))
+    size = np.abs(rig.terms.xx * powers * powers[:, None]).max(axis=0)
+    size += np.abs(rig.terms.pulled[0]) * powers
+    count = max(int(np.flatnonzero(size >= _LEAST * size.max())[-1]) + 1, 2)
+    xx, yy, xy = (each[:count, :count] for each in rig.terms[:3])
+    own = Terms(xx, yy, xy, rig.terms.pulled[:, :count])
+    return Rig(rig.key, rig.reach, own, own)
 
 
 def _solved(scene: Scene, rig: Rig, pressed: Contact, dQ: Array, dsigma: Array) -> tuple[Array, Array, Array]:
