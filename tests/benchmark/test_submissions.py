@@ -127,3 +127,19 @@ def test_what_was_finished_before_an_interruption_is_kept(tmp_path, monkeypatch)
     assert asked == ["PS-01", "PS-02", "PS-02"]
     assert read_submission(tmp_path, read_problems()) == found
     assert list(found.answers) == ["PS-01", "PS-02"]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["run", "--code", "../x"], "--code '../x': must be one of exact"),
+        (["run", "--code", "exact", "--problems", ","], "--problems '': must be numbers of PS-01"),
+        (["read", "", "mine.csv", "-o", "mine"], "PROBLEM '': must be one of PS-01"),
+        (["read", "PS-01,PS-02", "mine.csv", "-o", "mine"], "PROBLEM 'PS-01,PS-02': must be one of PS-01"),
+    ],
+)
+def test_names_that_name_nothing_write_nothing(words, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["benchmark", *words]) == 2
+    assert capsys.readouterr().err.startswith(f"partialslip: {said}")
+    assert not list(tmp_path.iterdir())

@@ -64,7 +64,7 @@ def answer_of(problem: Problem, result: Result, unknowns: int | None = None) -> 
     """Answer to ``problem`` from a ``result``, with what it has of the targets."""
     values = quantities(problem.scene, result, problem.places, problem.targets["a"].value)
     return Answer(
-        values={key: float(values[key].value) for key in problem.targets if key in values},
+        values={key: values[key].value for key in problem.targets if key in values},
         cpu_s=result.cost.cpu_s,
         unknowns=unknowns,
         memory_mb=result.cost.peak_rss_mb,

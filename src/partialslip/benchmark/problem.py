@@ -115,7 +115,7 @@ def chosen(numbers: str | None) -> dict[str, Problem]:
     Raises
     ------
     InputError
-        If a pattern matches no problem.
+        If there is no pattern, or one matches no problem.
     """
     from fnmatch import fnmatchcase
 
@@ -123,7 +123,7 @@ def chosen(numbers: str | None) -> dict[str, Problem]:
     if numbers is None:
         return known
     found: dict[str, Problem] = {}
-    for pattern in filter(None, (each.strip() for each in numbers.split(","))):
+    for pattern in (each.strip() for each in numbers.split(",")):
         some = {number: each for number, each in known.items() if fnmatchcase(number, pattern)}
         if not some:
             raise InputError(
@@ -131,6 +131,14 @@ def chosen(numbers: str | None) -> dict[str, Problem]:
             )
         found |= some
     return dict(sorted(found.items()))
+
+
+def numbered(number: str) -> Problem:
+    """The problem with this ``number``. Raises InputError if there is none."""
+    known = read_problems()
+    if number not in known:
+        raise InputError(f"PROBLEM {number!r}: must be one of {', '.join(known)}")
+    return known[number]
 
 
 def texts() -> dict[str, str]:

@@ -10,6 +10,7 @@ from typing import Annotated
 import msgspec
 import tomli_w
 
+from partialslip.benchmark.problem import Problem, Target
 from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes, read_text
 from partialslip.output.files import write_texts
@@ -58,7 +59,7 @@ class Submission(msgspec.Struct, frozen=True):
     answers: dict[str, Answer]
 
 
-def read_submission(folder: str | os.PathLike[str], known: Mapping[str, object]) -> Submission:
+def read_submission(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> Submission:
     """Read a submission: ``meta.toml``, and a file PS-01.json and so on for each problem that is answered.
 
     Parameters
@@ -84,13 +85,13 @@ def read_submission(folder: str | os.PathLike[str], known: Mapping[str, object])
         number = file.stem
         if number not in known:
             raise InputError(f"{file}: no problem has this number; known are {', '.join(known)}")
-        answers[number] = _answer(file, known[number].targets)  # type: ignore[attr-defined]
+        answers[number] = _answer(file, known[number].targets)
     if not answers:
         raise InputError(f"{folder}: no answers; must have PS-01.json and so on")
     return Submission(meta, answers)
 
 
-def _answer(file: Path, targets: Mapping[str, object]) -> Answer:
+def _answer(file: Path, targets: Mapping[str, Target]) -> Answer:
     try:
         answer = msgspec.json.decode(read_bytes(file, _LARGEST), type=Answer)
     except msgspec.DecodeError as error:

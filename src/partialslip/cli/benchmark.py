@@ -91,32 +91,32 @@ def _list(_: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from partialslip.benchmark import write_submission
-    from partialslip.benchmark.codes import answers
+    from partialslip.benchmark.codes import answers, installed
     from partialslip.benchmark.problem import chosen
+    from partialslip.benchmark.submission import META
     from partialslip.cli.consoles import counting, output
 
     check_folder(options.out)
+    installed(options.code)
     some = chosen(options.problems)
     with (
         results_folder(options, "benchmark", f"benchmark-{options.code}", None) as (folder, passed),
         counting(options.code) as progress,
     ):
         found = answers(options.code, some, progress, folder)
-        files = write_submission(found, folder)
     console = output()
     _print_grades(found, some)
-    print_written(files, console, passed)
+    print_written([folder / META, *(folder / f"{number}.json" for number in found.answers)], console, passed)
     return 0
 
 
 def _read(options: argparse.Namespace) -> int:
-    from partialslip.benchmark.problem import chosen
+    from partialslip.benchmark.problem import numbered
     from partialslip.benchmark.submission import write_answer
     from partialslip.benchmark.table import answer_from
     from partialslip.cli.consoles import output
 
-    problem = next(iter(chosen(options.problem).values()))
+    problem = numbered(options.problem)
     print_written([write_answer(problem.number, answer_from(problem, options.file), options.out)], output())
     return 0
 

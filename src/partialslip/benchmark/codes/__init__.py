@@ -41,6 +41,16 @@ CODES: dict[str, Code] = {
 }
 
 
+def installed(name: str) -> str:
+    """Version of a code. Raises InputError if there is no such code, or it is not installed."""
+    if name not in CODES:
+        raise InputError(f"--code {name!r}: must be one of {', '.join(CODES)}")
+    version = CODES[name].version
+    if version is None:
+        raise InputError(f"--code {name!r}: is not installed; must be one of those that are")
+    return version
+
+
 def answers(
     name: str,
     problems: Mapping[str, Problem],
@@ -63,15 +73,12 @@ def answers(
     InputError
         If there is no such code, or it is not installed.
     """
-    if name not in CODES:
-        raise InputError(f"--code {name!r}: must be one of {', '.join(CODES)}")
-    code = CODES[name]
-    if code.version is None:
-        raise InputError(f"--code {name!r}: is not installed; must be one of those that are")
-    machine = made_now().machine
+    version, code, machine = installed(name), CODES[name], made_now().machine
     title = f"partialslip {name}" if isinstance(code, Own) else name
-    meta = Meta(title, code.version, code.settings, f"{machine.processor}, {machine.system}")
+    meta = Meta(title, version, code.settings, f"{machine.processor}, {machine.system}")
     found = _kept(meta, problems, folder)
+    if folder:
+        write_submission(Submission(meta, found), folder)
     for number, (key, problem) in enumerate(problems.items()):
         progress(number, len(problems), float("nan"))
         if key not in found and (answer := code.answer(problem)):
