@@ -216,8 +216,8 @@ def _in_range(rig: Rig, scene: Scene, data: Data) -> Scene:
     try:
         seen = half_planes(scene, data)
         ends = [end for pressed in set(seen.pressing) for end in contact(seen, pressed).ends]
-    except InputError as error:
-        raise InputError(f"{too_small}: no half-planes act like them ({error}); use fem") from None
+    except InputError:  # its field is one of the half-planes, which the user has not written
+        raise InputError(f"{too_small}: no half-planes act like them; use fem") from None
     if (farthest := max(map(abs, ends))) > rig.reach:
         shown = scene.units.labelled
         raise InputError(

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.equivalent.data import Data
+from partialslip.halfplane.contact import contact
 from partialslip.rig import Rig
 from partialslip.scene import Hertz, Scene
 
@@ -78,7 +79,10 @@ def in_words(scene: Scene, seen: Scene, data: Data) -> str:
     told = [bent]
     ends = [(first, "1"), (second, "2")]
     if np.ptp(data.sigma - [sigma for _, sigma, *_ in scene.load.points]) or np.any(data.sigma_slope):
-        values = " and ".join(units.labelled(float(data.sigma[end]), "Pa", 4) for end, _ in ends)
+        grows = np.abs(data.sigma_slope).max() * contact(seen, seen.pressing[0]).a
+        rounding = _ROUNDING * max(np.abs(data.sigma).max(), grows)
+        sigma = np.where(np.abs(data.sigma) > rounding, data.sigma, 0.0)
+        values = " and ".join(units.labelled(float(sigma[end]), "Pa", 4) for end, _ in ends)
         slopes = " and ".join(units.labelled(float(data.sigma_slope[end]), "Pa/m", 4) for end, _ in ends)
         told.append(f"sigma = {values} at load points 1 and 2, growing along x by {slopes}")
     if data.tilt.any():
