@@ -15,7 +15,7 @@ from partialslip_fem import estimate, goals, solving
 from partialslip_fem.bodies import Grading
 from partialslip_fem.expense import Expense, again
 from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_first_mesh, too_narrow
-from partialslip_fem.goals import Goal, course, gaps, reached, sizes_at, worst
+from partialslip_fem.goals import Goal, course, gaps, reached, worst
 from partialslip_fem.mesh_solution import Adapted
 from partialslip_fem.problem import Problem
 
@@ -159,7 +159,7 @@ class _Refinement:
         self.block_width = self.width * a
         expected = None
         if self.expense.limited:
-            expected = self.expense.unknowns(grading.sizes, grading.growth, problem.order, self.block_width)
+            expected = self.expense.unknowns(grading, problem.order, self.block_width)
         choose = self.step_errors is None and self.size <= goals.COARSEST
         steps = (0 if self.expense.limited else MOST) if choose else None  # the cost of more steps is not predicted
         self.solution = solving.mesh_and_solve(problem, self.block_width, grading, self.clock, steps=steps)
@@ -174,8 +174,7 @@ class _Refinement:
         if not solution.enclosed and max(-solution.reach[0], solution.reach[1]) >= self.limit:
             raise too_narrow(self.problem)
         at_ends, at_kinks = (
-            sizes_at(points, grading.sizes, grading.growth) * coarsest / a
-            for points in (solution.zone_ends, np.array(solution.kinks))
+            grading.at(points) * coarsest / a for points in (solution.zone_ends, np.array(solution.kinks))
         )
         self.largest_end_element = at_ends.max()
         self.errors = self.end_errors = self._errors_of_ends(at_ends, at_kinks)
@@ -215,10 +214,11 @@ class _Refinement:
         points = apart([*solution.zone_ends.tolist(), *kinks], self.size * a)
         sizes = dict.fromkeys(points, self.size * a / coarsest)
         at_kinks = np.clip(estimate.kink_sizes(solution, self.goal.end_error * BARS["q1"]), self.size, None)
+        goal, eased = self.goal, goals.eased(a, self.problem.order)
+        grading = Grading(contact, sizes, growth / coarsest, None, goal.facet_error, goal.corner_error, eased)
         for kink, needed in zip(solution.kinks, at_kinks.tolist(), strict=True):
-            if sizes_at(np.array([kink]), sizes, growth / coarsest)[0] > _KINK_SLACK * needed * a / coarsest:
+            if grading.at(np.array([kink]))[0] > _KINK_SLACK * needed * a / coarsest:
                 sizes[kink] = needed * a / coarsest
-        goal = self.goal
         for low, high in solution.swept:
             # where surfaces that stick come into contact, what is locked in depends on the distance of the nodes
             size = (high - low) * goals.sweep(goal.accuracy) / coarsest
@@ -226,7 +226,7 @@ class _Refinement:
             sizes |= {
                 point: size for point in np.linspace(low, high, count + 2)[1:-1].tolist() if size > sizes[points[0]]
             }
-        return Grading(contact, sizes, growth / coarsest, facet_error=goal.facet_error, corner_error=goal.corner_error)
+        return grading
 
     def _keep_steps(self) -> None:
         """Keep the load steps of the present solution for all meshes to come, and their errors."""
@@ -267,6 +267,7 @@ class _Refinement:
         once_more = again(order, estimate.NEIGHBOUR[order]) + problem.inside
         best: Goal = self.goal
         asked = self.goal.accuracy
+        ends, eased = solution.zone_ends.tolist(), goals.eased(a, order)
         for accuracy in np.geomspace(asked, max(goals.LOOSEST, asked), _CHOICES).tolist():
             best = self.goal if accuracy == asked else Goal.at(accuracy, problem)
             size_goal = best.element_size(solution, problem)
@@ -274,7 +275,9 @@ class _Refinement:
             meshes = course(self.size, finer, size_goal, self.least * best.growth / self.goal.growth, order)
             unknowns = [
                 self.expense.unknowns(
-                    dict.fromkeys(solution.zone_ends.tolist(), mesh.size * a), mesh.growth, order, self.width * a
+                    Grading((-a, a), dict.fromkeys(ends, mesh.size * a), mesh.growth, eased=eased),
+                    order,
+                    self.width * a,
                 )
                 for mesh in meshes
             ]

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.result import Clock
 from partialslip_fem.condensation import Condensation
@@ -15,7 +16,7 @@ from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import body
 from partialslip_fem.farfield import half_plane
 from partialslip_fem.problem import Part, Problem
-from partialslip_meshes import Mesh, block
+from partialslip_meshes import Eased, Mesh, block, size_at
 
 _OVERHANG = 1e-9  # of the opposite contact line: overhang that counts as rounding of coordinates
 _KEPT = 2  # sets of bodies in Kept: those of the first mesh, and of the uniform mesh that follows
@@ -32,6 +33,8 @@ class Grading(NamedTuple):
         Largest distance of a round face from the straight sides of the elements, in half-widths of the contact line.
     corner_error : float, optional
         Largest change of the contact by the elements at corners of finite bodies, relative.
+    eased : Eased, optional
+        Larger growth near the points of ``sizes``.
     """
 
     contact: tuple[float, float]
@@ -40,6 +43,13 @@ class Grading(NamedTuple):
     along: float | None = None
     facet_error: float | None = None
     corner_error: float | None = None
+    eased: Eased | None = None
+
+    def at(self, points: Array) -> Array:
+        """Element sizes at ``points`` (k,) of the contact line."""
+        places, sizes = np.array([*self.sizes]), np.array([*self.sizes.values()])
+        smallest: Array = size_at(sizes, self.growth, np.abs(points[:, None] - places), self.eased).min(axis=1)
+        return smallest
 
 
 class Kept(threading.local):
@@ -107,7 +117,7 @@ def _condensed(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Cl
 def block_of(part: Part, width: float, grading: Grading) -> Mesh:
     """Mesh a block: ``part``, or a block of the half-width ``width`` that stands for a half-plane."""
     half_width, height = part.extent or (width, width)
-    contact, sizes, growth, along, facet_error, corner_error = grading
+    contact, sizes, growth, along, facet_error, corner_error, eased = grading
     finer = {x: size * part.fineness for x, size in sizes.items()}
     everywhere = None if along is None else along * part.fineness
     facets = None
@@ -115,7 +125,7 @@ def block_of(part: Part, width: float, grading: Grading) -> Mesh:
         # a chord of length c is c^2/(8 R) off its arc; the effect on the contact decreases with the distance
         facets = math.sqrt(8 * facet_error * part.face.radius / (contact[1] - contact[0]) * 2)
     corners = part.corners(corner_error) if part.extent and corner_error else {}
-    shape = (part.holder, part.face, facets, corners)
+    shape = (part.holder, part.face, facets, corners, eased)
     return block(half_width, contact, finer, growth * part.fineness, height, everywhere, *shape)
 
 

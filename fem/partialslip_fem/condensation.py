@@ -4,7 +4,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip_fem.elasticity import Body
-from partialslip_fem.factor import Backend, Factor, factor
+from partialslip_fem.factor import Backend, Factor, Held, factor
 from partialslip_fem.farfield import FarField
 
 
@@ -48,17 +48,15 @@ class Condensation:
         self._free, self._held, self._n = np.concatenate([np.flatnonzero(inner), contact]), held, len(contact)
         self._to_held = body.stiffness[self._free][:, held]
         self._far = far_field.along_y if far_field and not shear else far_field
-        self._factor: Factor | None = factor(body.stiffness, np.flatnonzero(inner), contact, backend)
-        # before take_inverse_of_schur, which may use the factor up
+        fields = Held(held, self._far.fields) if self._far else None
+        self._factor: Factor | None = factor(body.stiffness, np.flatnonzero(inner), contact, backend, fields)
         self.pulled: Array | None = None
         if body.pull is not None:
             self.pulled = np.zeros(len(body.pull))
             self.pulled[self._free] = self._factor.back_substitute(body.pull[self._free, None])[:, 0]
-        moved: Array | float = 0.0
+        self.compliance, moved = self._factor.take_inverse_of_schur()
         if self._far:
-            fields = self._displace_free(np.zeros((self._n, self.far_columns)), self._far.fields)[-self._n :]
-            moved = fields @ self._far.moments
-        self.compliance = self._factor.take_inverse_of_schur() + moved
+            self.compliance += moved @ self._far.moments
         if not inside:
             self._factor = None
 

@@ -5,11 +5,12 @@ with the depth y like sqrt(h^2 + (g y)^2). There are pi/(2 g h) 4/sqrt(3) elemen
 unknowns at order k.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 
 from partialslip.result import Clock
+from partialslip_fem.bodies import Grading
 
 _PER_LENGTH = 2 * np.pi / np.sqrt(3)
 # Work in unknowns of a small mesh.
@@ -56,17 +57,16 @@ class Expense:
         """Attribute the seconds since the last call to no mesh."""
         self._before = self._clock.remaining()
 
-    def unknowns(self, sizes: Mapping[float, float], growth: float, order: int, width: float) -> float:
-        """Predicted number of unknowns of a mesh on [-``width``, ``width``].
-
-        ``sizes`` are element sizes at points of the contact line, ``growth`` the size gained per unit of distance from
-        each point, ``order`` the order of the elements.
-        """
-        at, size = np.array([*sizes]), np.array([*sizes.values()])
+    def unknowns(self, grading: Grading, order: int, width: float) -> float:
+        """Predicted number of unknowns of a mesh on [-``width``, ``width``] with elements of ``order``."""
+        at, size = np.array([*grading.sizes]), np.array([*grading.sizes.values()])
         steps = np.geomspace(size.min(), 2 * width, _POINTS)
         x = np.unique(np.clip(at[:, None] + np.concatenate([-steps, [0.0], steps]), -width, width))
-        local = (size + growth * np.abs(x[:, None] - at)).min(axis=1)
-        return float(self._ratio * _PER_LENGTH * order**2 / growth * np.trapezoid(1 / local, x))
+        local = grading.at(x)
+        growth = (local - size.min()) / np.maximum(np.abs(x[:, None] - at).min(axis=1), np.finfo(float).tiny)
+        return float(
+            self._ratio * _PER_LENGTH * order**2 * np.trapezoid(1 / (np.maximum(growth, grading.growth) * local), x)
+        )
 
     def affords(self, meshes: Iterable[float], again: float) -> bool:
         """Whether the seconds left suffice for ``meshes`` of so many unknowns and for solving on the last one again.

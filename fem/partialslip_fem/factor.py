@@ -6,8 +6,9 @@ times faster: ``pip install partialslip[fast]``.
 
 import importlib.util
 import threading
+from collections.abc import Callable
 from types import ModuleType
-from typing import Literal, Protocol
+from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 import scipy.linalg as la
@@ -27,14 +28,16 @@ class Factor(Protocol):
 
     made: int
 
-    def take_inverse_of_schur(self) -> Array:
-        """Return the inverse of the Schur complement onto the last unknowns, (n, n).
+    def take_inverse_of_schur(self) -> tuple[Array, Array]:
+        """Return the inverse of the Schur complement onto the last unknowns, (n, n), and their values under each of
+        the fields of the held unknowns, (n, k).
 
         This may use the factor up: a later :meth:`back_substitute` then factors the matrix again.
         """
 
     def back_substitute(self, load: Array) -> Array:
-        """Solution for the right-hand sides ``load``, (N, k); the last unknowns are the last rows of both."""
+        """Solution for the right-hand sides ``load``, (N, k), while held unknowns are zero; the last unknowns are the
+        last rows of both."""
 
 
 def default_backend() -> Backend:
@@ -42,7 +45,14 @@ def default_backend() -> Backend:
     return "cholmod" if importlib.util.find_spec("cvxopt") else "superlu"
 
 
-def factor(K: sp.csr_matrix, inner: Indices, last: Indices, backend: Backend) -> Factor:
+class Held(NamedTuple):
+    """Indices ``unknowns`` (h,) that are held, and their values in k ``fields`` (h, k)."""
+
+    unknowns: Indices
+    fields: Array
+
+
+def factor(K: sp.csr_matrix, inner: Indices, last: Indices, backend: Backend, held: Held | None = None) -> Factor:
     """Factor the rows and columns ``inner`` and ``last`` of ``K``, ``inner`` in an order that reduces fill.
 
     Raises
@@ -50,70 +60,112 @@ def factor(K: sp.csr_matrix, inner: Indices, last: Indices, backend: Backend) ->
     MissingLibraryError
         If ``backend`` is "cholmod" and cvxopt is not installed.
     """
-    return _Cholmod(K, inner, last) if backend == "cholmod" else _SuperLU(K, inner, last)
+    return (_Cholmod if backend == "cholmod" else _SuperLU)(K, inner, last, held)
+
+
+class _Matrices:
+    """The matrix with its unknowns ``inner`` in a given ``order`` and ``last`` after them; bordered by held fields.
+
+    The factors of the fields, unknowns after the last, are eliminated with the matrix, which costs far less than k
+    right-hand sides.
+    """
+
+    def __init__(self, K: sp.csr_matrix, inner: Indices, order: Indices, last: Indices, held: Held | None) -> None:
+        unknowns = np.concatenate([inner[order], last])
+        self.order, self.n, self.k = order, len(last), held.fields.shape[1] if held else 0
+        self.plain = self.bordered = K[unknowns][:, unknowns]
+        if held:
+            across = sp.csr_matrix(K[:, held.unknowns] @ held.fields)
+            # the fields' own block matters to no result: it need only make the matrix positive definite
+            own = np.abs(held.fields.T @ across[held.unknowns]).sum(axis=1)
+            self.bordered = sp.bmat([[self.plain, across[unknowns]], [across[unknowns].T, sp.diags(2 * own)]])
+
+    def taken(self, lower: Array) -> tuple[Array, Array]:
+        """Result of :meth:`Factor.take_inverse_of_schur` from the last rows of the factor, ``lower``."""
+        n = self.n
+        under = -la.solve_triangular(lower[:n, :n], lower[n:, :n].T, lower=True, trans="T")
+        return _inverse(np.asfortranarray(lower[:n, :n])), under
+
+    def solved(self, solve: Callable[[Array], Array], load: Array) -> Array:
+        """Solution by ``solve`` of the plain matrix for ``load``, both in the order of ``inner`` and ``last``."""
+        inner = len(self.order)
+        result = solve(np.concatenate([load[self.order], load[inner:]])).copy()
+        result[self.order] = result[:inner]
+        return result
 
 
 class _SuperLU:
-    def __init__(self, K: sp.csr_matrix, inner: Indices, last: Indices) -> None:
+    def __init__(self, K: sp.csr_matrix, inner: Indices, last: Indices, held: Held | None) -> None:
         # SuperLU returns its minimum-degree order with a factor only: an incomplete one without entries is cheapest
         block = K[inner][:, inner].tocsc()
         ordered = spla.spilu(block, drop_tol=np.inf, fill_factor=1, permc_spec="MMD_AT_PLUS_A", **_SYMMETRIC)
-        self._n, self._order = len(last), np.argsort(ordered.perm_c)
-        unknowns = np.concatenate([inner[self._order], last])
-        self._factor = spla.splu(K[unknowns][:, unknowns].tocsc(), permc_spec="NATURAL", **_SYMMETRIC)
-        self.made = 1
+        self._of = _Matrices(K, inner, np.argsort(ordered.perm_c), last, held)
+        self._factor: spla.SuperLU | None = None
+        self.made = 0
 
-    def take_inverse_of_schur(self) -> Array:
-        n, first = self._n, len(self._order)
-        place = self._factor.perm_c[-n:]  # the last unknowns are last in the factor, but perhaps in another order
-        if place.min() < first or not np.array_equal(self._factor.perm_r, self._factor.perm_c):
+    def take_inverse_of_schur(self) -> tuple[Array, Array]:
+        of, first = self._of, len(self._of.order)
+        found = self._numeric(of.bordered)
+        place = found.perm_c[first:]  # the last unknowns are last in the factor, but perhaps in another order
+        if place.min() < first or not np.array_equal(found.perm_r, found.perm_c):
             raise AssertionError("the factor must keep the last unknowns last and its pivots on the diagonal")
-        upper = self._factor.U[-n:, -n:].toarray()
-        pivots = np.sqrt(np.diag(upper))
-        inverse = _inverse((upper / pivots[:, None]).T)  # S = L D L^T, and U = D L^T
-        return inverse[np.ix_(place - first, place - first)]
+        upper = found.U[first:, first:].toarray()
+        lower = (upper / np.sqrt(np.diag(upper))[:, None]).T  # S = L D L^T, and U = D L^T
+        inverse, under = of.taken(lower)
+        at = place[: of.n] - first
+        return inverse[np.ix_(at, at)], under[at]
 
     def back_substitute(self, load: Array) -> Array:
-        return _back(self._order, self._factor.solve(_forth(self._order, load)))
+        self._factor = self._factor or self._numeric(self._of.plain)
+        return self._of.solved(self._factor.solve, load)
+
+    def _numeric(self, matrix: sp.spmatrix) -> spla.SuperLU:
+        self.made += 1
+        return spla.splu(matrix.tocsc(), permc_spec="NATURAL", **_SYMMETRIC)
 
 
 class _Cholmod:
-    def __init__(self, K: sp.csr_matrix, inner: Indices, last: Indices) -> None:
+    def __init__(self, K: sp.csr_matrix, inner: Indices, last: Indices, held: Held | None) -> None:
         self._cvxopt = _import_cvxopt()
-        self._n, self.made = len(last), 0
-        self._order = np.asarray(self._cvxopt.amd.order(self._lower(K[inner][:, inner]))).ravel()
-        unknowns = np.concatenate([inner[self._order], last])
-        # CHOLMOD orders the elimination tree from its leaves to its root. An explicit zero between the last inner
-        # unknown and the first of the last unknowns puts the rest of the tree below these.
-        self._matrix = self._lower(K[unknowns][:, unknowns], (len(inner), len(inner) - 1))
-        self._factored = self._numeric()
+        order = np.asarray(self._cvxopt.amd.order(self._lower(K[inner][:, inner]))).ravel()
+        self._of = _Matrices(K, inner, order, last, held)
+        self._factor: object | None = None
+        self.made = 0
 
-    def take_inverse_of_schur(self) -> Array:
-        n, first = self._n, len(self._order)
-        place = self._cvxopt.matrix(np.arange(first + n, dtype=float))
-        self._cvxopt.cholmod.solve(self._factored, place, sys=7)  # permutes into the factor's order
-        if not np.array_equal(np.asarray(place).ravel()[first:], np.arange(first, first + n)):
+    def take_inverse_of_schur(self) -> tuple[Array, Array]:
+        of, first = self._of, len(self._of.order)
+        count = of.n + of.k
+        found = self._numeric(of.bordered)
+        place = self._cvxopt.matrix(np.arange(first + count, dtype=float))
+        self._cvxopt.cholmod.solve(found, place, sys=7)  # permutes into the factor's order
+        if not np.array_equal(np.asarray(place).ravel()[first:], np.arange(first, first + count)):
             raise AssertionError("the factor must keep the last unknowns last")
-        starts, rows, values = (np.asarray(part).ravel() for part in self._cvxopt.cholmod.getfactor(self._factored).CCS)
-        self._factored = None  # getfactor has converted it; back_substitute factors again
-        lower = np.zeros((n, n), order="F")
+        starts, rows, values = (np.asarray(part).ravel() for part in self._cvxopt.cholmod.getfactor(found).CCS)
+        lower = np.zeros((count, count), order="F")
         kept = slice(starts[first], None)
-        lower[rows[kept] - first, np.repeat(np.arange(n), np.diff(starts[first:]))] = values[kept]
-        return _inverse(lower)
+        lower[rows[kept] - first, np.repeat(np.arange(count), np.diff(starts[first:]))] = values[kept]
+        return of.taken(lower)
 
     def back_substitute(self, load: Array) -> Array:
-        self._factored = self._factored or self._numeric()
-        solution = self._cvxopt.matrix(_forth(self._order, load))
-        self._cvxopt.cholmod.solve(self._factored, solution)
-        return _back(self._order, np.asarray(solution))
+        self._factor = self._factor or self._numeric(self._of.plain)
+        return self._of.solved(self._solve, load)
 
-    def _numeric(self) -> object:
-        cholmod, as_it_is = self._cvxopt.cholmod, self._cvxopt.matrix(np.arange(len(self._order) + self._n))
+    def _solve(self, load: Array) -> Array:
+        solution = self._cvxopt.matrix(load)
+        self._cvxopt.cholmod.solve(self._factor, solution)
+        return np.asarray(solution)
+
+    def _numeric(self, matrix: sp.spmatrix) -> object:
+        cholmod, as_it_is = self._cvxopt.cholmod, self._cvxopt.matrix(np.arange(matrix.shape[0]))
+        # CHOLMOD orders the elimination tree from its leaves to its root. An explicit zero between the last inner
+        # unknown and the first of the last unknowns puts the rest of the tree below these.
+        inner = len(self._of.order)
+        lower = self._lower(matrix, (inner, inner - 1))
         with _options:
             cholmod.options["nmethods"] = 1  # no other order than the given one
             try:
-                factored = cholmod.symbolic(self._matrix, p=as_it_is)
-                cholmod.numeric(self._matrix, factored)
+                factored = cholmod.symbolic(lower, p=as_it_is)
+                cholmod.numeric(lower, factored)
                 self.made += 1
             finally:
                 del cholmod.options["nmethods"]
@@ -128,16 +180,6 @@ class _Cholmod:
         )
         values = self._cvxopt.matrix(np.append(lower.data, np.zeros(len(zeros))))
         return self._cvxopt.spmatrix(values, rows, columns, K.shape)
-
-
-def _forth(order: Indices, load: Array) -> Array:
-    return np.concatenate([load[order], load[len(order) :]])
-
-
-def _back(order: Indices, solution: Array) -> Array:
-    result = solution.copy()
-    result[order] = solution[: len(order)]
-    return result
 
 
 def _inverse(lower: Array) -> Array:

@@ -17,16 +17,18 @@ from partialslip.bars import BARS
 from partialslip_fem import estimate
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.problem import Problem
+from partialslip_meshes import Eased
 
 # Bounds on element sizes at the ends of zones, in contact half-widths.
 FINEST = 1e-7  # smallest: with smaller elements rounding errors dominate (benchmarks/accuracy.py floor)
 COARSEST = 0.005  # largest on a mesh whose errors are estimated; coarser meshes only locate the ends
 FINER = 16.0  # largest ratio of these sizes from mesh to mesh
 
-# Growth of the elements away from the ends: errors there are about (growth/2.8)^(2 order)
+# Growth of the elements away from the ends: errors there are about (growth/2.4)^(2 order)
 # (compare benchmarks/accuracy.py orders).
-_SMOOTH = 2.8
+_SMOOTH = 2.4
 _LARGEST_GROWTH = 0.7
+_STEEPEST = 0.5  # largest growth near the ends of zones, where it may be larger than elsewhere
 
 # Shares of the accuracy asked for.
 AIM = 0.5  # error that meshes are designed for: estimates are right within a factor of two (benchmarks/estimates.py)
@@ -142,11 +144,12 @@ def growth_for(error: float, order: int) -> float:
     return float(min(_SMOOTH * error ** (0.5 / order), _LARGEST_GROWTH))
 
 
-def sizes_at(points: Array, sizes: Mapping[float, float], growth: float) -> Array:
-    """Element sizes at ``points`` (k,) of the contact line, on a mesh graded to other points with given ``sizes``."""
-    at, size = np.array([*sizes]), np.array([*sizes.values()])
-    smallest: Array = (size + growth * np.abs(points[:, None] - at)).min(axis=1)
-    return smallest
+def eased(half_width: float, order: int) -> Eased:
+    """How much faster elements of ``order`` grow near the ends of zones in a contact of that ``half_width``.
+
+    An end depends on elements of the size h at the distance r from it like (h/r)^(2 order) r^2.
+    """
+    return Eased(_STEEPEST, half_width, 1 / order)
 
 
 def gaps(solution: MeshSolution, problem: Problem) -> Array:

@@ -8,7 +8,10 @@ import numpy.typing as npt
 
 from partialslip_meshes.gmsh import ask
 from partialslip_meshes.mesh import Mesh, QuadMesh
+from partialslip_meshes.sizes import Eased, formula
 
+# Squares of the largest ratio of neighbours on a line: gmsh's own, and one above all that the sizes ask for
+_SMOOTH, _UNSMOOTHED = 1.8, 4.0
 _NOTCH_SIZE = 0.02  # element size in the notch between block and holder, in the block's half-width
 
 Corner = Literal["foot", "shoulder", "notch"]
@@ -25,6 +28,7 @@ def block(
     face: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]] | None = None,
     facets: float | None = None,
     corners: Mapping[Corner, float] | None = None,
+    eased: Eased | None = None,
 ) -> Mesh:
     """Mesh the block [-width, width] x [-height, 0].
 
@@ -54,6 +58,8 @@ def block(
     corners : mapping of str to float, optional
         Element sizes at corners on both sides: "foot" (ends of the back), "shoulder" (upper ends of "left" and
         "right"), "notch" (between block and holder).
+    eased : Eased, optional
+        Larger growth near the points of ``sizes``.
 
     Raises
     ------
@@ -65,8 +71,9 @@ def block(
     height = width if height is None else height
     at_corners: dict[Corner, float] = {"notch": _NOTCH_SIZE * width} if holder else {}
     at_corners.update(corners or {})
-    outline = {"width": width, "height": height, "holder": holder, "facets": facets, "at_corners": at_corners}
-    points, triangles, lines, cpu_s = _made(3, contact, sizes, growth, along, **outline)
+    formulas = {corner: formula(size, growth) for corner, size in at_corners.items()}
+    outline = {"width": width, "height": height, "holder": holder, "facets": facets, "at_corners": formulas}
+    points, triangles, lines, cpu_s = _made(3, contact, sizes, growth, along, eased, **outline)
     if face:
         x, y = points.T
         points[:, 1] -= face(np.clip(x, -width, width)) * np.maximum(1 + y / height, 0.0)
@@ -80,7 +87,7 @@ def quad_block(width: float, contact: tuple[float, float], sizes: Mapping[float,
     ``width``, ``contact``, ``sizes``, ``growth``, ``along`` and errors as for :func:`block`.
     """
     outline: dict[str, Any] = {"width": width, "height": width, "holder": None, "facets": None, "at_corners": {}}
-    return QuadMesh(*_made(4, contact, sizes, growth, along, **outline)[:3])
+    return QuadMesh(*_made(4, contact, sizes, growth, along, None, **outline)[:3])
 
 
 def _made(
@@ -89,10 +96,13 @@ def _made(
     sizes: Mapping[float, float],
     growth: float,
     along: float | None,
+    eased: Eased | None,
     **outline: Any,
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], dict[str, npt.NDArray[np.int64]], float]:
     """Points, elements with so many ``corners``, named lines, and CPU seconds of a mesh; nodes are numbered from 0."""
-    request = {"contact": contact, "sizes": [*sizes.items()], "growth": growth, "along": along, **outline}
+    formulas = [(x, formula(size, growth, eased)) for x, size in sizes.items()]
+    outline["smooth"] = _UNSMOOTHED if eased and eased.steepest > growth else _SMOOTH
+    request = {"contact": contact, "sizes": formulas, "growth": growth, "along": along, **outline}
     head, (tags, coordinates, elements, *lines) = ask({"corners": corners, **request})
     named = np.frombuffer(tags, dtype=np.uint64).astype(np.int64)
     number = np.zeros(int(named.max()) + 1, dtype=np.int64)

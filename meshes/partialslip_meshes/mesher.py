@@ -95,7 +95,7 @@ def _answer(request: Mapping[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
         return {"error": "gmsh", "text": str(error)}, []
 
 
-def mesh(gmsh: ModuleType, corners: int, options: Mapping[str, float] | None = None,
+def mesh(gmsh: ModuleType, corners: int, smooth: float, options: Mapping[str, float] | None = None,
          **outline: Any) -> tuple[dict[str, Any], list[bytes]]:  # fmt: skip
     """Mesh a block in a new gmsh session.
 
@@ -104,10 +104,13 @@ def mesh(gmsh: ModuleType, corners: int, options: Mapping[str, float] | None = N
     gmsh : module
     corners : int
         Corners of an element: 3 or 4.
+    smooth : float
+        Square of the largest ratio of neighbours on a line.
     options : mapping, optional
         Further gmsh options.
     **outline
-        As for :func:`partialslip_meshes.block`, with sizes as pairs, and "at_corners" for corners.
+        As for :func:`partialslip_meshes.block`, with sizes as pairs, and "at_corners" for corners; element sizes there
+        are formulas of the distance F.
 
     Returns
     -------
@@ -118,7 +121,8 @@ def mesh(gmsh: ModuleType, corners: int, options: Mapping[str, float] | None = N
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         lines = _outline(gmsh, **outline)
-        for option, value in {**(_ALL_QUADS if corners == 4 else {}), **(options or {})}.items():
+        kind = _ALL_QUADS if corners == 4 else {}
+        for option, value in {"SmoothRatio": smooth, **kind, **(options or {})}.items():
             gmsh.option.setNumber(f"Mesh.{option}", value)
         gmsh.model.mesh.generate(2)
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
@@ -142,11 +146,11 @@ def _outline(
     height: float,
     holder: tuple[float, float] | None,
     contact: tuple[float, float],
-    sizes: Sequence[tuple[float, float]],
+    sizes: Sequence[tuple[float, str]],
     growth: float,
     along: float | None,
     facets: float | None,
-    at_corners: Mapping[str, float],
+    at_corners: Mapping[str, str],
 ) -> dict[str, list[int]]:
     """Make the geometry and the size field; return the curves of each named line."""
     geo, field = gmsh.model.geo, gmsh.model.mesh.field
@@ -177,7 +181,7 @@ def _outline(
         distance = field.add("Distance")
         field.setNumbers(distance, "PointsList", [point])
         grades.append(field.add("MathEval"))
-        field.setString(grades[-1], "F", f"{float(size_there)!r} + {float(growth)!r} * F{distance}")
+        field.setString(grades[-1], "F", size_there.replace("F", f"F{distance}"))
     middle, half = (contact[0] + contact[1]) / 2, (contact[1] - contact[0]) / 2
     beyond = f"(abs(x - ({middle!r})) - {half!r})"
     if along is not None:

@@ -75,12 +75,28 @@ def test_schur_complement_from_the_factor_is_the_inverse(half, backend):
 
 
 def test_one_factorisation(half, monkeypatch):
+    """The far field's displacements of the contact line are read off the same factor; displacing all nodes needs
+    another one."""
     calls = []
     original = factor.spla.splu
     monkeypatch.setattr(factor.spla, "splu", lambda *args, **kw: calls.append(1) or original(*args, **kw))
     far = FarField(np.ones((half.held.size, 3)), np.ones((3, half.contact.size)))
-    Condensation(half, far).displace(np.zeros((half.contact.size, 3)))
+    condensed = Condensation(half, far)
     assert len(calls) == 1
+    condensed.displace(np.zeros((half.contact.size, 3)))
+    condensed.displace(np.zeros((half.contact.size, 3)))
+    assert len(calls) == 2
+
+
+@pytest.mark.parametrize("backend", ["superlu", "cholmod"])
+def test_far_field_moves_the_contact_line_as_it_moves_all_nodes(half, backend):
+    """By two ways: the border of the factor, and back substitution under given displacements."""
+    random = np.random.default_rng(3)
+    far = FarField(random.normal(size=(half.held.size, 3)), random.normal(size=(3, half.contact.size)))
+    condensed = Condensation(half, far, backend)
+    forces = random.normal(size=(half.contact.size, 2))
+    moved = condensed.displace(forces)[half.contact.ravel()]
+    assert condensed.compliance @ forces == pytest.approx(moved, abs=1e-11 * np.abs(moved).max())
 
 
 @pytest.mark.parametrize("backend", ["superlu", "cholmod"])
