@@ -8,7 +8,7 @@ in the last elements.
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -138,9 +138,9 @@ def finest(vertices: Array) -> list[float]:
     return places
 
 
-def apart(ends: list[float], size: float) -> list[float]:
-    """The ``ends`` without those within ``size`` of an earlier one."""
-    kept: list[float] = []
+def apart(ends: Sequence[float], size: float, known: Sequence[float] = ()) -> list[float]:
+    """The ``known`` ends, and the ``ends`` without those within ``size`` of a known or an earlier one."""
+    kept = [*known]
     for end in ends:
         if all(abs(end - other) > size for other in kept):
             kept.append(end)

@@ -11,11 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.arrays import Array, Mask
-from partialslip.condensed.bounded import Sides, Solution, solve_bounded
+from partialslip.condensed.bounded import Factored, Sides, Solution, solve_bounded
 from partialslip.condensed.path import Path
 
 STEADY = 1e-6  # change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
 _REPEATS = 1e-13  # change of a node's q in a cycle, relative to the sum of |q|, that is rounding
+_MANY = 16  # load steps from which on inverting the compliance pays
 _SLIPS = 1e-9  # distance of |dq| from the bound, relative, at which a node slips
 
 
@@ -164,6 +165,7 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
     first, *ways = (len(way) for way in path.fractions)
     cycle = sum(ways)
     sides: list[Sides] = []
+    factored = Factored(tangential, many=first + cycle * path.cycles > _MANY)
 
     def advance(before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
         Q = float(load[0])
@@ -172,7 +174,7 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
             return still(before), bound
         free = tangential @ before.x + change[1] * stretch[0] + change[2] * stretch[1]
         near = sides[-cycle] if len(sides) >= first + cycle else before.sides  # this step in the previous cycle
-        found = solve_bounded(tangential, free, -bound, bound, Q, near)
+        found = solve_bounded(tangential, free, -bound, bound, Q, near, factored)
         sides.append(found.sides)
         return found, bound
 

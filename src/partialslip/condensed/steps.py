@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.bars import BARS
-from partialslip.condensed.bounded import solve_bounded
+from partialslip.condensed.bounded import Factored, solve_bounded
 from partialslip.condensed.history import History, march
 from partialslip.condensed.path import Path
 from partialslip.condensed.step_errors import Errors
@@ -151,6 +151,7 @@ class _Coarse:
         self._bound = self.sums(bound)
         share = bound / np.repeat(self._bound, np.diff(self._first, append=len(bound)))
         self._C = np.add.reduceat(self.sums(share[:, None] * tangential) * share, self._first, axis=1)
+        self._factored = Factored(self._C, many=True)
         self._stretch = [self.sums(share * each) for each in stretch]
         self._near, self._solves = max(accuracy, _TELLING) * float(self._bound.sum()), 0
 
@@ -198,7 +199,7 @@ class _Coarse:
     def _step(self, q: Array, load: Array, end: Array) -> Array:
         self._solves += 1
         free = self._C @ q + (end[1] - load[1]) * self._stretch[0] + (end[2] - load[2]) * self._stretch[1]
-        return solve_bounded(self._C, free, -self._bound, self._bound, float(end[0])).x
+        return solve_bounded(self._C, free, -self._bound, self._bound, float(end[0]), None, self._factored).x
 
 
 def _groups(count: int) -> npt.NDArray[np.int64]:
