@@ -1,5 +1,6 @@
 """Adaptive refinement: each mesh is fine where the mesh before found the ends of the contact and of the stick zone."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
@@ -219,6 +220,10 @@ class _Refinement:
             if sizes_at(np.array([kink]), sizes, growth / coarsest)[0] > _KINK_SLACK * needed * a / coarsest:
                 sizes[kink] = needed * a / coarsest
         goal = self.goal
+        size = goals.PASSING * math.sqrt(goal.accuracy) * a / coarsest
+        for kink in solution.passing:
+            if sizes_at(np.array([kink]), sizes, growth / coarsest)[0] > _KINK_SLACK * size:
+                sizes[kink] = size
         for low, high in solution.swept:
             # where surfaces that stick come into contact, what is locked in depends on the distance of the nodes
             size = (high - low) * goals.sweep(goal.accuracy) / coarsest

@@ -51,6 +51,8 @@ class MeshSolution:
         on the path.
     largest : int
         Load point with the larger P, 1 or 2, whose contact scales the results.
+    passing : tuple of float
+        Points where q has a kink at single load points, but neither q1 nor q2 has.
     """
 
     bodies: tuple[CondensedBody, ...]
@@ -69,6 +71,7 @@ class MeshSolution:
     first: Array | None = None
     most: Array | None = None
     largest: int = 2
+    passing: tuple[float, ...] = ()
 
     @property
     def slips_when_pressed(self) -> bool:

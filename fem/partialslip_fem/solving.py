@@ -101,15 +101,17 @@ def solve_contact(
             stick = within(stick, (max(left, left_at_1), min(right, right_at_1)), line.x[:: line.order])
         leftmost, rightmost = min([left, *ends_at_1[:1]]), max([right, *ends_at_1[1:]])
         kinks = shear_kinks(problem, line, nodes, history) if history else ()
-        if stick and history and not (history.path.in_phase or history.path.presses_anew or both):
-            # beside the stick zone q1 and q2 are -f p and f p; the kinks of single load points pass by
-            leftmost, rightmost = stick.left, stick.right
         kinks = tuple(kink for kink in kinks if leftmost < kink < rightmost)
+        passing: tuple[float, ...] = ()
+        if stick and history and not (history.path.in_phase or history.path.presses_anew or both):
+            # beside the stick zone q1 and q2 are -f p and f p
+            passing = tuple(kink for kink in kinks if not stick.left < kink < stick.right)
+            kinks = tuple(kink for kink in kinks if kink not in passing)
         if history and forces.pressed:
             errors = step_errors.pressed_together(history, forces.pressed, line.weights, nodes)
         return MeshSolution(
             bodies, factored, nodes, forces.pressing, history, left, right, stick, ends_at_1, kinks, both,
-            forces.pressed, errors, forces.first, forces.most, problem.largest,
+            forces.pressed, errors, forces.first, forces.most, problem.largest, passing,
         )  # fmt: skip
 
 

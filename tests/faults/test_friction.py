@@ -166,12 +166,12 @@ def test_iteration_that_ends_before_it_has_converged(monkeypatch, sound, red):
     """The first guess of what slips is taken for the answer."""
 
     def guessed(self, total):
-        at_zero, slope = self._linear_solve(0.0)
-        return (total - at_zero.sum()) / slope
+        line = self._solutions()
+        return (total - line.total) / line.slope
 
     def hasty(self, shift):
-        x, slope = self._linear_solve(shift)
-        return x, self._C @ x - self._g - shift, slope
+        x, r, _ = self._at(shift)
+        return x, r, self._solutions().slope
 
     def in_haste(*args):
         with pytest.MonkeyPatch.context() as inner:

@@ -85,10 +85,10 @@ class Factored:
         others = np.flatnonzero(~free)
         if self._inverse is None or all_free is None or 2 * len(others) > len(free):
             return self._line_of_free(np.flatnonzero(free), g, np.where(free, 0.0, held))
-        if not len(others):
-            return Line(float(all_free.sum()), float(self._uniform.sum()), lambda shift: all_free + shift * self._uniform)
         K, uniform = self._inverse, self._uniform[others]
-        first, by = self._back(K, others, (held - all_free)[others], -uniform)
+        first = by = np.empty(0)
+        if len(others):
+            first, by = self._back(K, others, (held - all_free)[others], -uniform)
 
         def at(shift: float) -> Array:
             forces = np.zeros(len(free))
@@ -188,6 +188,7 @@ def solve_bounded(
         if following in (low, high, shift) or not np.isfinite(following):
             break  # the sum cannot come closer to the total in this arithmetic
         shift = following
+    x, r = pivoting.refined(x, r, shift, total)
     found, x = x, np.clip(x, lower, upper)  # removes rounding errors; the residual below includes the clip
     r = r + C @ (x - found)
     residual = np.abs(x - np.clip(x - r / pivoting.diagonal, lower, upper))
@@ -261,6 +262,16 @@ class _BlockPivoting:
                 return self._descend(x, shift)
             self._turn(wanted)
 
+    def refined(self, x: Array, r: Array, shift: float, total: float) -> tuple[Array, Array]:
+        """x and r after a step of iterative refinement, where an inverse has left more than a factor leaves."""
+        if self._all_free is None or not (free := self._side == 0).any():
+            return x, r
+        off = np.where(free, -r, 0.0)
+        line = self._factored.line(free, off, 0 * x, self._factored.all_free(off))
+        change = (total - float(x.sum()) - line.total) / line.slope
+        x = x + line.at(change)
+        return x, self._C @ x - self._g - (shift + change)
+
     def _descend(self, x: Array, shift: float) -> tuple[Array, Array, float]:
         """The same as :meth:`solve` by projected Newton steps, beginning near ``x``.
 
@@ -327,6 +338,6 @@ class _BlockPivoting:
             self._line = (
                 self._factored.line(free, self._g, held, self._all_free)
                 if free.any()
-                else Line(float(held.sum()), 0.0, lambda shift: held)
+                else Line(float(held.sum()), 0.0, lambda _: held)
             )
         return self._line

@@ -127,8 +127,8 @@ def solve(
             if work > _WORK or (meshes > 1 and likely > _SHARE * clock.remaining()):
                 break
         began = clock.cost().cpu_s
-        # steps are chosen on the first mesh that is not coarse and used on all later meshes. Finer cells see more of a moving stick zone:
-        # where steps matter, each later mesh halves them once and estimates their errors anew
+        # steps are chosen on the first mesh that is not coarse and used on all later meshes. Finer cells see more of a
+        # moving stick zone: where steps matter, each later mesh halves them once and estimates their errors anew
         choose = meshes == coarse or (steps_matter(stepped, _accuracy(scene)) and not clock.limited)
         before, level = level, _solve_level(normal, path, start, cells, clock, choose, added)
         spent = clock.cost().cpu_s - began
