@@ -192,8 +192,8 @@ def ellipse(name, points, *overrides):
 
 @pytest.mark.parametrize("method", ["march", "fem"])
 def test_kinks_that_pass_by_cost_little(method):
-    """Out of phase slip leaves kinks at all load points. Beside the stick zone neither q1 nor q2 has them: meshes hardly
-    follow them, and the ends of the stick zone are right (a march on 2,700 cells knows them to 2e-6 a)."""
+    """Out of phase slip leaves kinks at all load points. Beside the stick zone neither q1 nor q2 has them: meshes
+    hardly follow them, and the ends of the stick zone are right (a march on 2,700 cells knows them to 2e-6 a)."""
     scene = ellipse("fretting-aluminium", 16, "load.cycles=2", "fem.accuracy=1e-4")
     result = partialslip.run(scene, [method]).results[method]
     unknowns, meshes = {"march": (850, 4), "fem": (450, 3)}[method]
