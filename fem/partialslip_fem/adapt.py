@@ -120,7 +120,7 @@ class _Refinement:
         if self.expense.limited or not steps_matter(self.step_errors or {}, self.problem.accuracy):
             return
         coarse = self.solution
-        fine = solving.solve_contact(self.problem, coarse.bodies, coarse.factored, self.clock, MOST)
+        fine = solving.solve_contact(self.problem, coarse.bodies, coarse.factored, self.clock, MOST, before=coarse)
         self.solution, self.step_errors = fine, fine.step_errors
         self.iterations += fine.iterations
 
@@ -163,7 +163,9 @@ class _Refinement:
             expected = self.expense.unknowns(grading.sizes, grading.growth, problem.order, self.block_width)
         choose = self.step_errors is None and self.size <= goals.COARSEST
         steps = (0 if self.expense.limited else MOST) if choose else None  # the cost of more steps is not predicted
-        self.solution = solving.mesh_and_solve(problem, self.block_width, grading, self.clock, steps=steps)
+        self.solution = solving.mesh_and_solve(
+            problem, self.block_width, grading, self.clock, None, steps, self.solution
+        )
         if choose:
             self._keep_steps()
         elif self.step_errors is not None:

@@ -12,11 +12,11 @@ from partialslip.condensed.bounded import Solution
 from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.ends import within
 from partialslip.condensed.history import History, certified
-from partialslip.condensed.normal import Presses, press
+from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path, stretched
 from partialslip.condensed.steps import follow_refined, march_refined
 from partialslip.result import Clock
-from partialslip_fem.bodies import Grading, Kept, condense, key_of, mesh_bodies
+from partialslip_fem.bodies import Grading, Kept, Shared, condense, key_of, mesh_bodies
 from partialslip_fem.contact import CondensedBody, relative_compliances
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import nodal_forces
@@ -32,6 +32,7 @@ def mesh_and_solve(
     clock: Clock,
     keep: Kept | None = None,
     steps: int | None = None,
+    before: MeshSolution | None = None,
 ) -> MeshSolution:
     """Mesh the bodies and solve ``problem`` on them.
 
@@ -49,39 +50,54 @@ def mesh_and_solve(
     steps : int, optional
         Refine the load steps up to about this many from load point to load point, as the accuracy requires, and
         estimate their errors (:attr:`MeshSolution.step_errors`). By default the path's steps are used.
+    before : MeshSolution, optional
+        Solution on other meshes: the search for the zones begins at its zones.
     """
     key = key_of(problem, width, grading)
     if keep and (known := keep.find(key)):
-        return solve_contact(problem, known, 0, clock, steps)
-    solution = solve_on_meshes(mesh_bodies(problem, width, grading, clock), problem, width, clock, steps)
+        bodies, shared = known
+        return solve_contact(problem, bodies, 0, clock, steps, shared, before)
+    bodies, shared = condense(mesh_bodies(problem, width, grading, clock), problem, width, clock), Shared()
     if keep:
-        keep.add(key, solution.bodies)
-    return solution
+        keep.add(key, bodies, shared)
+    return solve_contact(problem, bodies, len(bodies), clock, steps, shared, before)
 
 
 def solve_on_meshes(
-    meshes: Sequence[Mesh], problem: Problem, width: float, clock: Clock, steps: int | None = None
+    meshes: Sequence[Mesh],
+    problem: Problem,
+    width: float,
+    clock: Clock,
+    steps: int | None = None,
+    before: MeshSolution | None = None,
 ) -> MeshSolution:
     """Solve ``problem`` on ``meshes``, in the order of the problem's parts.
 
-    ``width``, ``clock`` and ``steps`` as for :func:`mesh_and_solve`.
+    ``width``, ``clock``, ``steps`` and ``before`` as for :func:`mesh_and_solve`.
     """
     bodies = condense(meshes, problem, width, clock)
-    return solve_contact(problem, bodies, len(bodies), clock, steps)
+    return solve_contact(problem, bodies, len(bodies), clock, steps, before=before)
 
 
 def solve_contact(
-    problem: Problem, bodies: tuple[CondensedBody, ...], factored: int, clock: Clock, steps: int | None = None
+    problem: Problem,
+    bodies: tuple[CondensedBody, ...],
+    factored: int,
+    clock: Clock,
+    steps: int | None = None,
+    shared: Shared | None = None,
+    before: MeshSolution | None = None,
 ) -> MeshSolution:
     """Solve contact and friction of condensed ``bodies`` and find the zones.
 
-    ``factored`` is the number of factorisations made for them; ``clock`` and ``steps`` as for :func:`mesh_and_solve`.
+    ``factored`` is the number of factorisations made for them; ``clock``, ``steps`` and ``before`` as for
+    :func:`mesh_and_solve`; ``shared`` is what earlier solutions on these bodies have found.
     """
     with clock.phase("condensation"):
         relative = relative_compliances(bodies, problem.coupled)
     with clock.phase("contact"):
         line, both = bodies[0].body, relative.xy is not None
-        forces = _contact_forces(problem, relative, bodies[0], steps)
+        forces = _contact_forces(problem, relative, bodies[0], steps, shared or Shared(), before)
         history, nodes, errors = forces.history, forces.nodes, forces.step_errors
         left, right = contact_ends(line, forces.pressing.x)
         ends_at_1: tuple[float, float] | tuple[()] = ()
@@ -128,14 +144,21 @@ class _ContactForces:
     most: Array | None = None
 
 
-def _contact_forces(problem: Problem, C: coupled.Relative, lower: CondensedBody, steps: int | None) -> _ContactForces:
+def _contact_forces(
+    problem: Problem,
+    C: coupled.Relative,
+    lower: CondensedBody,
+    steps: int | None,
+    shared: Shared,
+    before: MeshSolution | None,
+) -> _ContactForces:
     """Solve p and q together if ``C`` couples them; otherwise p first, then q along the load path."""
     line, stretch = lower.body, lower.stretch
     moved = np.array([stretch[0], stretched(line.x, problem.origin)[1]])
     gap, path, pressed = problem.gap(line.x), problem.path, None
     if path and problem.start:
-        pressed, before = (nodal_forces(line, traction) for traction in problem.start)
-        path = replace(path, before=before)
+        pressed, locked = (nodal_forces(line, traction) for traction in problem.start)
+        path = replace(path, before=locked)
     if path and C.xy is not None:
         along = coupled.Line(line.x, line.weights, lambda forces: contact_ends(line, forces), problem.similar)
         near = BARS["q"] * problem.accuracy
@@ -148,22 +171,24 @@ def _contact_forces(problem: Problem, C: coupled.Relative, lower: CondensedBody,
     if problem.pressing:
         presses = Presses(C.yy, opened, arms)
         return _under_varying_pressure(problem, C, lower, presses, problem.pressing, steps)
-    pressing, _ = press(C.yy, opened, 1.0, arms)
+    apart = -((line.x < before.left) | (line.x > before.right)).astype(np.int8) if before else None
+    pressing = shared.press(C.yy, opened, arms, apart)
     nodes = np.flatnonzero(pressing.x > 0)
     if not path:
         return _ContactForces(pressing, None, nodes)
     if path.before is not None:
         path = replace(path, before=path.before[nodes])
     assert C.xx is not None
-    inner, bound = C.xx[np.ix_(nodes, nodes)], problem.f * pressing.x[nodes]
+    slipping = before.stick.sides(line.x[nodes]) if before and before.stick else None
+    tangential, bound = shared.tangential(C.xx, nodes, slipping), problem.f * pressing.x[nodes]
     half_width = float(np.subtract(*contact_ends(line, pressing.x)[::-1])) / 2
 
     def errors(history: History, finer: History) -> step_errors.Errors:
         zones = stick_zone_of(line, nodes, history), stick_zone_of(line, nodes, finer)
         return step_errors.halved(history, finer, zones, line.weights[nodes], half_width)
 
-    tangential = inner, moved[:, nodes], bound, path, problem.accuracy
-    history, left = march_refined(*tangential, None if steps is None else errors, steps or 0)
+    sheared = tangential.C, moved[:, nodes], bound, path, problem.accuracy
+    history, left = march_refined(*sheared, None if steps is None else errors, steps or 0, tangential)
     return _ContactForces(pressing, history, nodes, None, left)
 
 

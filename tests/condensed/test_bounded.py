@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from partialslip.condensed.bounded import Factored, solve_bounded
+from partialslip.condensed.history import ahead
 
 
 def compliance(n: int, random: np.random.Generator) -> np.ndarray:
@@ -95,7 +96,8 @@ def test_factors_of_earlier_programmes_change_nothing(seed):
     random = np.random.default_rng([2, seed])
     n = int(random.integers(2, 80))
     C, bound = compliance(n, random), random.random(n)
-    inverted, remembered, sides = Factored(C, many=True), Factored(C), None
+    inverted, remembered, sides = Factored(C), Factored(C), None
+    inverted.expect(1000)
     for level in (0.1, 0.5, 0.9, -0.3):
         g, total = random.standard_normal(n), level * bound.sum()
         alone = check(C, g, -bound, bound, total)
@@ -107,6 +109,21 @@ def test_factors_of_earlier_programmes_change_nothing(seed):
             assert np.array_equal(solution.sides, alone.sides)
             assert solve_bounded(C, g, -bound, bound, total, solution.sides, factored).iterations == 1
         sides = alone.sides
+
+
+@pytest.mark.parametrize(
+    ("earlier", "sides", "times", "expected"),
+    [
+        ("++....--", "+++..---", 1, "++++----"),  # both zones grow on
+        ("++....--", "+++...--", 2, "+++++.--"),
+        ("......--", "+....---", 1, "+....---"),  # a zone has come
+        ("+++...--", "++....--", 3, "......--"),  # a zone that shrinks is gone, not less than nothing
+    ],
+)
+def test_sides_ahead(earlier, sides, times, expected):
+    of = {"+": 1, ".": 0, "-": -1}
+    found = ahead(*(np.array([of[side] for side in each], dtype=np.int8) for each in (sides, earlier)), times)
+    assert "".join("-.+"[side + 1] for side in found) == expected
 
 
 @pytest.mark.parametrize("scale", [1e-12, 1e12])

@@ -14,6 +14,7 @@ Sides = npt.NDArray[np.int8]
 
 _EPS = float(np.finfo(float).eps)
 _HALVINGS = 60  # of a step: the last one is below rounding
+_MANY = 12  # programmes with one C for which inverting it pays
 _CHANCES = 3  # iterations in which the number of members on a wrong side need not decrease
 
 
@@ -65,16 +66,24 @@ class Line(NamedTuple):
 class Factored:
     """Symmetric positive definite ``C`` (n, n) with factors of its parts, for all programmes with the same C.
 
-    With ``many`` programmes ahead C is inverted, once: a factor of as many members as are held then suffices, if these
-    are fewer than the free ones. The last factor is remembered.
+    For many programmes C is inverted, once: a factor of as many members as are held then suffices, if these are fewer
+    than the free ones. The last factor is remembered. ``near`` are sides (n,) to begin with, known from elsewhere.
     """
 
-    def __init__(self, C: Array, many: bool = False) -> None:
-        self.C = C
+    def __init__(self, C: Array, near: Sides | None = None) -> None:
+        self.C, self.near = C, near
         self.diagonal = np.diag(C).copy()
-        self._inverse = _inverse(C) if many else None
-        self._uniform: Array = np.empty(0) if self._inverse is None else self._inverse.sum(axis=0)
+        self._inverse: Array | None = None
+        self._uniform: Array = np.empty(0)
         self._last: tuple[Array, Indices] | None = None
+        self._programmes = 0
+
+    def expect(self, count: int) -> None:
+        """Prepare for ``count`` more programmes."""
+        self._programmes += count
+        if self._inverse is None and self._programmes > _MANY:
+            self._inverse = _inverse(self.C)
+            self._uniform = self._inverse.sum(axis=0)
 
     def all_free(self, g: Array) -> Array | None:
         """Solution (n,) of C x = ``g``, which :meth:`line` can use; None if C has not been inverted."""

@@ -34,11 +34,16 @@ def march_refined(
     accuracy: float,
     errors: Callable[[History, History], Errors] | None = None,
     most: int = MOST,
+    factored: Factored | None = None,
 ) -> tuple[History, Errors]:
     """:func:`partialslip.condensed.history.march`, at constant pressure, with steps refined as by
     :func:`follow_refined`."""
-    problem = tangential, stretch, bound
-    return follow_refined(partial(march, *problem), partial(refined, *problem), path, accuracy, errors, most)
+    problem, known = (tangential, stretch, bound), factored or Factored(tangential)
+
+    def along(path: Path) -> History:
+        return march(*problem, path, known)
+
+    return follow_refined(along, partial(refined, *problem), path, accuracy, errors, most)
 
 
 def follow_refined(
@@ -151,7 +156,8 @@ class _Coarse:
         self._bound = self.sums(bound)
         share = bound / np.repeat(self._bound, np.diff(self._first, append=len(bound)))
         self._C = np.add.reduceat(self.sums(share[:, None] * tangential) * share, self._first, axis=1)
-        self._factored = Factored(self._C, many=True)
+        self._factored = Factored(self._C)
+        self._factored.expect(_SOLVES)
         self._stretch = [self.sums(share * each) for each in stretch]
         self._near, self._solves = max(accuracy, _TELLING) * float(self._bound.sum()), 0
 
