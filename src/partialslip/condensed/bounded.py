@@ -199,7 +199,8 @@ def solve_bounded(
         shift = following
     x, r = pivoting.refined(x, r, shift, total)
     found, x = x, np.clip(x, lower, upper)  # removes rounding errors; the residual below includes the clip
-    r = r + C @ (x - found)
+    if not np.array_equal(x, found):
+        r = r + C @ (x - found)
     residual = np.abs(x - np.clip(x - r / pivoting.diagonal, lower, upper))
     rest = np.clip(r, np.where(x < upper, 0.0, -np.inf), np.where(x > lower, 0.0, np.inf))
     return Solution(x, rest, residual, abs(float(x.sum()) - total), pivoting.iterations, pivoting.changes)
