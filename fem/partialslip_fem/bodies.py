@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array, Indices
+from partialslip.arrays import Array, Indices, submatrix
 from partialslip.condensed.bounded import Factored, Sides, Solution
 from partialslip.condensed.normal import press
 from partialslip.errors import InputError
@@ -44,7 +44,7 @@ class Shared:
     def tangential(self, compliance: Array, nodes: Indices, near: Sides | None) -> Factored:
         """Factors of the ``compliance`` of the ``nodes``, (k, k); ``near`` are sides (k,) to begin with."""
         if not self._sheared or not np.array_equal(self._sheared[0], nodes):
-            self._sheared = nodes, Factored(compliance[np.ix_(nodes, nodes)])
+            self._sheared = nodes, Factored(submatrix(compliance, nodes, nodes))
         self._sheared[1].near = near
         return self._sheared[1]
 

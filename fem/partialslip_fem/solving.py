@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from partialslip.condensed.history import History, certified
 from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path, stretched
 from partialslip.condensed.steps import follow_refined, march_refined
+from partialslip.condensed.trail import Trail
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, condense, key_of, mesh_bodies
 from partialslip_fem.contact import CondensedBody, relative_compliances
@@ -127,7 +129,7 @@ def solve_contact(
             errors = step_errors.pressed_together(history, forces.pressed, line.weights, nodes)
         return MeshSolution(
             bodies, factored, nodes, forces.pressing, history, left, right, stick, ends_at_1, kinks, both,
-            forces.pressed, errors, forces.first, forces.most, problem.largest, passing,
+            forces.pressed, errors, forces.first, forces.most, problem.largest, passing, forces.trail,
         )  # fmt: skip
 
 
@@ -142,6 +144,7 @@ class _ContactForces:
     step_errors: Mapping[str, float] = field(default_factory=dict)
     first: Array | None = None
     most: Array | None = None
+    trail: Trail | None = None
 
 
 def _contact_forces(
@@ -160,12 +163,14 @@ def _contact_forces(
         pressed, locked = (nodal_forces(line, traction) for traction in problem.start)
         path = replace(path, before=locked)
     if path and C.xy is not None:
-        along = coupled.Line(line.x, line.weights, lambda forces: contact_ends(line, forces), problem.similar)
+        trail = Trail(line.x, before.trail if before else None)
+        ends = partial(contact_ends, line)
+        along = coupled.Line(line.x, line.weights, ends, problem.similar, trail=trail)
         near = BARS["q"] * problem.accuracy
         history, pressing, first = coupled.march(C, gap, stretch, moved[1], problem.f, path, pressed, along, near)
         nodes = np.flatnonzero(history.bound > 0)
         most = np.maximum(*history.bounds) / problem.f if problem.pressing else None
-        return _ContactForces(pressing, history.of(nodes), nodes, first, most=most)
+        return _ContactForces(pressing, history.of(nodes), nodes, first, most=most, trail=trail)
     opened = gap if path else gap - problem.strain * stretch[1]
     arms = line.x if problem.turns else None
     if problem.pressing:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Indices, Mask
+from partialslip.arrays import Array, Indices, Mask, submatrix
 
 Sides = npt.NDArray[np.int8]
 
@@ -126,18 +126,18 @@ class Factored:
     def _back(self, matrix: Array, members: Indices, *loads: Array) -> Array:
         """Solutions of the rows and columns ``members`` of ``matrix`` for ``loads``, (m,) each."""
         if self._last is None or self._last[0] is not matrix or not np.array_equal(self._last[1], members):
-            self._factor = _cholesky(matrix[np.ix_(members, members)])
+            self._factor = _cholesky(submatrix(matrix, members, members))
             self._last = matrix, members
         found, _ = la.lapack.dpotrs(self._factor, np.array(loads).T, lower=True)
         result: Array = found.T
         return result
 
 
-def _cholesky(block: Array) -> Array:
-    """Lower factor of the symmetric ``block`` (m, m), which is overwritten. SciPy's wrapper costs more than a small
+def _cholesky(matrix: Array) -> Array:
+    """Lower factor of the symmetric ``matrix`` (m, m), which is overwritten. SciPy's wrapper costs more than a small
     factor."""
     factor: Array
-    factor, failed = la.lapack.dpotrf(block.T, lower=True, clean=False, overwrite_a=True)
+    factor, failed = la.lapack.dpotrf(matrix.T, lower=True, clean=False, overwrite_a=True)
     if failed:
         raise la.LinAlgError(f"the leading minor {failed} of the compliance is not positive")
     return factor
