@@ -1,5 +1,6 @@
 """Adaptive refinement: each mesh is fine where the mesh before found the ends of the contact and of the stick zone."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
@@ -119,7 +120,7 @@ class _Refinement:
         if self.expense.limited or not steps_matter(self.step_errors or {}, self.problem.accuracy):
             return
         coarse = self.solution
-        fine = solving.solve_contact(self.problem, coarse.bodies, coarse.factored, self.clock, MOST)
+        fine = solving.solve_contact(self.problem, coarse.bodies, coarse.factored, self.clock, MOST, before=coarse)
         self.solution, self.step_errors = fine, fine.step_errors
         self.iterations += fine.iterations
 
@@ -162,7 +163,9 @@ class _Refinement:
             expected = self.expense.unknowns(grading, problem.order, self.block_width)
         choose = self.step_errors is None and self.size <= goals.COARSEST
         steps = (0 if self.expense.limited else MOST) if choose else None  # the cost of more steps is not predicted
-        self.solution = solving.mesh_and_solve(problem, self.block_width, grading, self.clock, steps=steps)
+        self.solution = solving.mesh_and_solve(
+            problem, self.block_width, grading, self.clock, None, steps, self.solution
+        )
         if choose:
             self._keep_steps()
         elif self.step_errors is not None:
@@ -219,6 +222,10 @@ class _Refinement:
         for kink, needed in zip(solution.kinks, at_kinks.tolist(), strict=True):
             if grading.at(np.array([kink]))[0] > _KINK_SLACK * needed * a / coarsest:
                 sizes[kink] = needed * a / coarsest
+        size = goals.PASSING * math.sqrt(goal.accuracy) * a / coarsest
+        for kink in solution.passing:
+            if grading.at(np.array([kink]))[0] > _KINK_SLACK * size:
+                sizes[kink] = size
         for low, high in solution.swept:
             # where surfaces that stick come into contact, what is locked in depends on the distance of the nodes
             size = (high - low) * goals.sweep(goal.accuracy) / coarsest

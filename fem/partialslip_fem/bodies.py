@@ -8,7 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Indices, submatrix
+from partialslip.condensed.bounded import Factored, Sides, Solution
+from partialslip.condensed.normal import press
 from partialslip.errors import InputError
 from partialslip.result import Clock
 from partialslip_fem.condensation import Condensation
@@ -20,6 +22,31 @@ from partialslip_meshes import Eased, Mesh, block, size_at
 
 _OVERHANG = 1e-9  # of the opposite contact line: overhang that counts as rounding of coordinates
 _KEPT = 2  # sets of bodies in Kept: those of the first mesh, and of the uniform mesh that follows
+
+
+class Shared:
+    """What solutions on the same bodies share: the last pressing, and factors of the compliance of what touches."""
+
+    def __init__(self) -> None:
+        self._pressed: tuple[Array, Solution] | None = None
+        self._sheared: tuple[Indices, Factored] | None = None
+
+    def press(self, normal: Array, gap: Array, arms: Array | None, near: Sides | None) -> Solution:
+        """Normal forces (n,), as from :func:`partialslip.condensed.normal.press` under a force of 1; ``near`` are sides
+        (n,) to begin with."""
+        key = gap if arms is None else np.concatenate([gap, arms])
+        if self._pressed and np.array_equal(self._pressed[0], key):
+            return replace(self._pressed[1], iterations=0, changes=0)
+        found, _ = press(normal, gap, 1.0, arms, near=None if near is None else (near, 0.0))
+        self._pressed = key, found
+        return found
+
+    def tangential(self, compliance: Array, nodes: Indices, near: Sides | None) -> Factored:
+        """Factors of the ``compliance`` of the ``nodes``, (k, k); ``near`` are sides (k,) to begin with."""
+        if not self._sheared or not np.array_equal(self._sheared[0], nodes):
+            self._sheared = nodes, Factored(submatrix(compliance, nodes, nodes))
+        self._sheared[1].near = near
+        return self._sheared[1]
 
 
 class Grading(NamedTuple):
@@ -59,15 +86,15 @@ class Kept(threading.local):
     """
 
     def __init__(self) -> None:
-        self._bodies: dict[tuple[object, ...], tuple[CondensedBody, ...]] = {}
+        self._bodies: dict[tuple[object, ...], tuple[tuple[CondensedBody, ...], Shared]] = {}
 
-    def find(self, key: tuple[object, ...]) -> tuple[CondensedBody, ...] | None:
-        """Return the bodies stored under ``key``, or None."""
+    def find(self, key: tuple[object, ...]) -> tuple[tuple[CondensedBody, ...], Shared] | None:
+        """Return the bodies stored under ``key``, and what solutions on them share; or None."""
         return self._bodies.get(key)
 
-    def add(self, key: tuple[object, ...], bodies: tuple[CondensedBody, ...]) -> None:
+    def add(self, key: tuple[object, ...], bodies: tuple[CondensedBody, ...], shared: Shared) -> None:
         """Store ``bodies`` under ``key``; drop the oldest set if there are too many."""
-        self._bodies[key] = bodies
+        self._bodies[key] = bodies, shared
         for oldest in list(self._bodies)[:-_KEPT]:
             del self._bodies[oldest]
 

@@ -58,7 +58,11 @@ def neighbour(solution: MeshSolution, problem: Problem, width: float, clock: Clo
     ``width`` and ``clock`` as for :func:`partialslip_fem.solving.solve_on_meshes`.
     """
     return solve_on_meshes(
-        [body.mesh for body in solution.bodies], replace(problem, order=NEIGHBOUR[problem.order]), width, clock
+        [body.mesh for body in solution.bodies],
+        replace(problem, order=NEIGHBOUR[problem.order]),
+        width,
+        clock,
+        before=solution,
     )
 
 

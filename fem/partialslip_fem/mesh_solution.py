@@ -11,6 +11,7 @@ from partialslip.condensed.bounded import Solution
 from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.ends import StickInterval
 from partialslip.condensed.history import History
+from partialslip.condensed.trail import Trail
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import Body
 from partialslip_fem.recovery import traction
@@ -51,6 +52,10 @@ class MeshSolution:
         on the path.
     largest : int
         Load point with the larger P, 1 or 2, whose contact scales the results.
+    passing : tuple of float
+        Points where q has a kink at single load points, but neither q1 nor q2 has.
+    trail : Trail or None
+        Which nodes of coupled bodies touch and slip in each step.
     """
 
     bodies: tuple[CondensedBody, ...]
@@ -69,6 +74,8 @@ class MeshSolution:
     first: Array | None = None
     most: Array | None = None
     largest: int = 2
+    passing: tuple[float, ...] = ()
+    trail: Trail | None = None
 
     @property
     def slips_when_pressed(self) -> bool:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -12,11 +13,12 @@ from partialslip.condensed.bounded import Solution
 from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.ends import within
 from partialslip.condensed.history import History, certified
-from partialslip.condensed.normal import Presses, press
+from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path, stretched
 from partialslip.condensed.steps import follow_refined, march_refined
+from partialslip.condensed.trail import Trail
 from partialslip.result import Clock
-from partialslip_fem.bodies import Grading, Kept, condense, key_of, mesh_bodies
+from partialslip_fem.bodies import Grading, Kept, Shared, condense, key_of, mesh_bodies
 from partialslip_fem.contact import CondensedBody, relative_compliances
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import nodal_forces
@@ -32,6 +34,7 @@ def mesh_and_solve(
     clock: Clock,
     keep: Kept | None = None,
     steps: int | None = None,
+    before: MeshSolution | None = None,
 ) -> MeshSolution:
     """Mesh the bodies and solve ``problem`` on them.
 
@@ -49,39 +52,54 @@ def mesh_and_solve(
     steps : int, optional
         Refine the load steps up to about this many from load point to load point, as the accuracy requires, and
         estimate their errors (:attr:`MeshSolution.step_errors`). By default the path's steps are used.
+    before : MeshSolution, optional
+        Solution on other meshes: the search for the zones begins at its zones.
     """
     key = key_of(problem, width, grading)
     if keep and (known := keep.find(key)):
-        return solve_contact(problem, known, 0, clock, steps)
-    solution = solve_on_meshes(mesh_bodies(problem, width, grading, clock), problem, width, clock, steps)
+        bodies, shared = known
+        return solve_contact(problem, bodies, 0, clock, steps, shared, before)
+    bodies, shared = condense(mesh_bodies(problem, width, grading, clock), problem, width, clock), Shared()
     if keep:
-        keep.add(key, solution.bodies)
-    return solution
+        keep.add(key, bodies, shared)
+    return solve_contact(problem, bodies, len(bodies), clock, steps, shared, before)
 
 
 def solve_on_meshes(
-    meshes: Sequence[Mesh], problem: Problem, width: float, clock: Clock, steps: int | None = None
+    meshes: Sequence[Mesh],
+    problem: Problem,
+    width: float,
+    clock: Clock,
+    steps: int | None = None,
+    before: MeshSolution | None = None,
 ) -> MeshSolution:
     """Solve ``problem`` on ``meshes``, in the order of the problem's parts.
 
-    ``width``, ``clock`` and ``steps`` as for :func:`mesh_and_solve`.
+    ``width``, ``clock``, ``steps`` and ``before`` as for :func:`mesh_and_solve`.
     """
     bodies = condense(meshes, problem, width, clock)
-    return solve_contact(problem, bodies, len(bodies), clock, steps)
+    return solve_contact(problem, bodies, len(bodies), clock, steps, before=before)
 
 
 def solve_contact(
-    problem: Problem, bodies: tuple[CondensedBody, ...], factored: int, clock: Clock, steps: int | None = None
+    problem: Problem,
+    bodies: tuple[CondensedBody, ...],
+    factored: int,
+    clock: Clock,
+    steps: int | None = None,
+    shared: Shared | None = None,
+    before: MeshSolution | None = None,
 ) -> MeshSolution:
     """Solve contact and friction of condensed ``bodies`` and find the zones.
 
-    ``factored`` is the number of factorisations made for them; ``clock`` and ``steps`` as for :func:`mesh_and_solve`.
+    ``factored`` is the number of factorisations made for them; ``clock``, ``steps`` and ``before`` as for
+    :func:`mesh_and_solve`; ``shared`` is what earlier solutions on these bodies have found.
     """
     with clock.phase("condensation"):
         relative = relative_compliances(bodies, problem.coupled)
     with clock.phase("contact"):
         line, both = bodies[0].body, relative.xy is not None
-        forces = _contact_forces(problem, relative, bodies[0], steps)
+        forces = _contact_forces(problem, relative, bodies[0], steps, shared or Shared(), before)
         history, nodes, errors = forces.history, forces.nodes, forces.step_errors
         left, right = contact_ends(line, forces.pressing.x)
         ends_at_1: tuple[float, float] | tuple[()] = ()
@@ -102,11 +120,16 @@ def solve_contact(
         leftmost, rightmost = min([left, *ends_at_1[:1]]), max([right, *ends_at_1[1:]])
         kinks = shear_kinks(problem, line, nodes, history) if history else ()
         kinks = tuple(kink for kink in kinks if leftmost < kink < rightmost)
+        passing: tuple[float, ...] = ()
+        if stick and history and not (history.path.in_phase or history.path.presses_anew or both):
+            # beside the stick zone q1 and q2 are -f p and f p
+            passing = tuple(kink for kink in kinks if not stick.left < kink < stick.right)
+            kinks = tuple(kink for kink in kinks if kink not in passing)
         if history and forces.pressed:
             errors = step_errors.pressed_together(history, forces.pressed, line.weights, nodes)
         return MeshSolution(
             bodies, factored, nodes, forces.pressing, history, left, right, stick, ends_at_1, kinks, both,
-            forces.pressed, errors, forces.first, forces.most, problem.largest,
+            forces.pressed, errors, forces.first, forces.most, problem.largest, passing, forces.trail,
         )  # fmt: skip
 
 
@@ -121,44 +144,56 @@ class _ContactForces:
     step_errors: Mapping[str, float] = field(default_factory=dict)
     first: Array | None = None
     most: Array | None = None
+    trail: Trail | None = None
 
 
-def _contact_forces(problem: Problem, C: coupled.Relative, lower: CondensedBody, steps: int | None) -> _ContactForces:
+def _contact_forces(
+    problem: Problem,
+    C: coupled.Relative,
+    lower: CondensedBody,
+    steps: int | None,
+    shared: Shared,
+    before: MeshSolution | None,
+) -> _ContactForces:
     """Solve p and q together if ``C`` couples them; otherwise p first, then q along the load path."""
     line, stretch = lower.body, lower.stretch
     moved = np.array([stretch[0], stretched(line.x, problem.origin)[1]])
     gap, path, pressed = problem.gap(line.x), problem.path, None
     if path and problem.start:
-        pressed, before = (nodal_forces(line, traction) for traction in problem.start)
-        path = replace(path, before=before)
+        pressed, locked = (nodal_forces(line, traction) for traction in problem.start)
+        path = replace(path, before=locked)
     if path and C.xy is not None:
-        along = coupled.Line(line.x, line.weights, lambda forces: contact_ends(line, forces), problem.similar)
+        trail = Trail(line.x, before.trail if before else None)
+        ends = partial(contact_ends, line)
+        along = coupled.Line(line.x, line.weights, ends, problem.similar, trail=trail)
         near = BARS["q"] * problem.accuracy
         history, pressing, first = coupled.march(C, gap, stretch, moved[1], problem.f, path, pressed, along, near)
         nodes = np.flatnonzero(history.bound > 0)
         most = np.maximum(*history.bounds) / problem.f if problem.pressing else None
-        return _ContactForces(pressing, history.of(nodes), nodes, first, most=most)
+        return _ContactForces(pressing, history.of(nodes), nodes, first, most=most, trail=trail)
     opened = gap if path else gap - problem.strain * stretch[1]
     arms = line.x if problem.turns else None
     if problem.pressing:
         presses = Presses(C.yy, opened, arms)
         return _under_varying_pressure(problem, C, lower, presses, problem.pressing, steps)
-    pressing, _ = press(C.yy, opened, 1.0, arms)
+    apart = -((line.x < before.left) | (line.x > before.right)).astype(np.int8) if before else None
+    pressing = shared.press(C.yy, opened, arms, apart)
     nodes = np.flatnonzero(pressing.x > 0)
     if not path:
         return _ContactForces(pressing, None, nodes)
     if path.before is not None:
         path = replace(path, before=path.before[nodes])
     assert C.xx is not None
-    inner, bound = C.xx[np.ix_(nodes, nodes)], problem.f * pressing.x[nodes]
+    slipping = before.stick.sides(line.x[nodes]) if before and before.stick else None
+    tangential, bound = shared.tangential(C.xx, nodes, slipping), problem.f * pressing.x[nodes]
     half_width = float(np.subtract(*contact_ends(line, pressing.x)[::-1])) / 2
 
     def errors(history: History, finer: History) -> step_errors.Errors:
         zones = stick_zone_of(line, nodes, history), stick_zone_of(line, nodes, finer)
         return step_errors.halved(history, finer, zones, line.weights[nodes], half_width)
 
-    tangential = inner, moved[:, nodes], bound, path, problem.accuracy
-    history, left = march_refined(*tangential, None if steps is None else errors, steps or 0)
+    sheared = tangential.C, moved[:, nodes], bound, path, problem.accuracy
+    history, left = march_refined(*sheared, None if steps is None else errors, steps or 0, tangential)
     return _ContactForces(pressing, history, nodes, None, left)
 
 

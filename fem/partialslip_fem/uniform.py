@@ -47,7 +47,7 @@ def uniform(problem: Problem, size: float | None, width: float, clock: Clock, ke
     while True:
         reach = min(float(f"{reach:.2g}"), limit)
         grading = Grading((-reach, reach), {}, growth, size * a)
-        solution = solving.mesh_and_solve(problem, width * a, grading, clock, keep, steps=MOST)
+        solution = solving.mesh_and_solve(problem, width * a, grading, clock, keep, MOST, solution)
         meshes, factored = meshes + 1, factored + solution.factored
         iterations += solution.iterations
         if solution.enclosed:

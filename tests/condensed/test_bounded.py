@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from partialslip.condensed.bounded import solve_bounded
+from partialslip.condensed.bounded import Factored, solve_bounded
+from partialslip.condensed.history import ahead
 
 
 def compliance(n: int, random: np.random.Generator) -> np.ndarray:
@@ -87,6 +88,42 @@ def test_sides_and_a_start_from_them(seed):
     for other in (again, anywhere):
         assert other.x == pytest.approx(cold.x, abs=1e-11)
         assert np.array_equal(other.sides, cold.sides)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_factors_of_earlier_programmes_change_nothing(seed):
+    """Programmes with one C, whose inverse or last factor serves all of them: the same answers, to rounding."""
+    random = np.random.default_rng([2, seed])
+    n = int(random.integers(2, 80))
+    C, bound = compliance(n, random), random.random(n)
+    inverted, remembered, sides = Factored(C), Factored(C), None
+    inverted.expect(1000)
+    for level in (0.1, 0.5, 0.9, -0.3):
+        g, total = random.standard_normal(n), level * bound.sum()
+        alone = check(C, g, -bound, bound, total)
+        for factored in (inverted, remembered):
+            solution = solve_bounded(C, g, -bound, bound, total, sides, factored)
+            assert solution.x == pytest.approx(alone.x, abs=1e-11)
+            assert solution.residual.max() <= 1e-13 * np.abs(C).max() * n
+            assert solution.imbalance <= 1e-14 * n
+            assert np.array_equal(solution.sides, alone.sides)
+            assert solve_bounded(C, g, -bound, bound, total, solution.sides, factored).iterations == 1
+        sides = alone.sides
+
+
+@pytest.mark.parametrize(
+    ("earlier", "sides", "times", "expected"),
+    [
+        ("++....--", "+++..---", 1, "++++----"),  # both zones grow on
+        ("++....--", "+++...--", 2, "+++++.--"),
+        ("......--", "+....---", 1, "+....---"),  # a zone has come
+        ("+++...--", "++....--", 3, "......--"),  # a zone that shrinks is gone, not less than nothing
+    ],
+)
+def test_sides_ahead(earlier, sides, times, expected):
+    of = {"+": 1, ".": 0, "-": -1}
+    found = ahead(*(np.array([of[side] for side in each], dtype=np.int8) for each in (sides, earlier)), times)
+    assert "".join("-.+"[side + 1] for side in found) == expected
 
 
 @pytest.mark.parametrize("scale", [1e-12, 1e12])

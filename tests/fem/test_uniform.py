@@ -40,6 +40,7 @@ def test_factored_once_for_all_loads(monkeypatch):
     results = [solved(*scene, keep=keep)[0] for scene in scenes]
     assert len(calls) == 2  # the rough mesh, and the uniform one
     assert [result.counts["factorizations"] for result in results] == [2, 0, 0, 0]
+    assert [result.counts["normal_iterations"] > 0 for result in results] == [True, False, False, False]
     afresh = solved(*scenes[-1])[0]
     assert afresh.counts["factorizations"] == 2
     assert (afresh.a, afresh.m, afresh.n) == (results[-1].a, results[-1].m, results[-1].n)

@@ -1,17 +1,20 @@
 """Convex quadratic programme with bounds and a prescribed sum: the problem of both normal contact and friction."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Indices
+from partialslip.arrays import Array, Indices, Mask, submatrix
 
 Sides = npt.NDArray[np.int8]
 
 _EPS = float(np.finfo(float).eps)
 _HALVINGS = 60  # of a step: the last one is below rounding
+_MANY = 12  # programmes with one C for which inverting it pays
 _CHANCES = 3  # iterations in which the number of members on a wrong side need not decrease
 
 
@@ -51,7 +54,112 @@ def spread(values: Array, where: Indices, count: int) -> Array:
     return result
 
 
-def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, start: Sides | None = None) -> Solution:
+class Line(NamedTuple):
+    """Solutions of one active set, by the rigid shift: ``at(shift)`` is x (n,), with the sum ``total`` + ``slope``
+    shift."""
+
+    total: float
+    slope: float
+    at: Callable[[float], Array]
+
+
+class Factored:
+    """Symmetric positive definite ``C`` (n, n) with factors of its parts, for all programmes with the same C.
+
+    For many programmes C is inverted, once: a factor of as many members as are held then suffices, if these are fewer
+    than the free ones. The last factor is remembered. ``near`` are sides (n,) to begin with, known from elsewhere.
+    """
+
+    def __init__(self, C: Array, near: Sides | None = None) -> None:
+        self.C, self.near = C, near
+        self.diagonal = np.diag(C).copy()
+        self._inverse: Array | None = None
+        self._uniform: Array = np.empty(0)
+        self._last: tuple[Array, Indices] | None = None
+        self._programmes = 0
+
+    def expect(self, count: int) -> None:
+        """Prepare for ``count`` more programmes."""
+        self._programmes += count
+        if self._inverse is None and self._programmes > _MANY:
+            self._inverse = _inverse(self.C)
+            self._uniform = self._inverse.sum(axis=0)
+
+    def all_free(self, g: Array) -> Array | None:
+        """Solution (n,) of C x = ``g``, which :meth:`line` can use; None if C has not been inverted."""
+        return None if self._inverse is None else self._inverse @ g
+
+    def line(self, free: Mask, g: Array, held: Array, all_free: Array | None) -> Line:
+        """Solutions with C x - ``g`` - shift = 0 at the ``free`` members (n,), the others at ``held`` (n,)."""
+        others = np.flatnonzero(~free)
+        if self._inverse is None or all_free is None or 2 * len(others) > len(free):
+            return self._line_of_free(np.flatnonzero(free), g, np.where(free, 0.0, held))
+        K, uniform = self._inverse, self._uniform[others]
+        first = by = np.empty(0)
+        if len(others):
+            first, by = self._back(K, others, (held - all_free)[others], -uniform)
+
+        def at(shift: float) -> Array:
+            forces = np.zeros(len(free))
+            forces[others] = first + shift * by
+            x: Array = all_free + shift * self._uniform + K @ forces
+            x[others] = held[others]
+            return x
+
+        return Line(float(all_free.sum() + uniform @ first), float(self._uniform.sum() + uniform @ by), at)
+
+    def _line_of_free(self, members: Indices, g: Array, held: Array) -> Line:
+        first, by = self._back(self.C, members, (g - self.C @ held)[members], np.ones(len(members)))
+
+        def at(shift: float) -> Array:
+            x = held.copy()
+            x[members] = first + shift * by
+            return x
+
+        return Line(float(held.sum() + first.sum()), float(by.sum()), at)
+
+    def newton(self, free: Mask, gradient: Array) -> Array:
+        """Changes of the ``free`` members (n,), k of them, that make their ``gradient`` (k,) vanish."""
+        result: Array = -self._back(self.C, np.flatnonzero(free), gradient)[0]
+        return result
+
+    def _back(self, matrix: Array, members: Indices, *loads: Array) -> Array:
+        """Solutions of the rows and columns ``members`` of ``matrix`` for ``loads``, (m,) each."""
+        if self._last is None or self._last[0] is not matrix or not np.array_equal(self._last[1], members):
+            self._factor = _cholesky(submatrix(matrix, members, members))
+            self._last = matrix, members
+        found, _ = la.lapack.dpotrs(self._factor, np.array(loads).T, lower=True)
+        result: Array = found.T
+        return result
+
+
+def _cholesky(matrix: Array) -> Array:
+    """Lower factor of the symmetric ``matrix`` (m, m), which is overwritten. SciPy's wrapper costs more than a small
+    factor."""
+    factor: Array
+    factor, failed = la.lapack.dpotrf(matrix.T, lower=True, clean=False, overwrite_a=True)
+    if failed:
+        raise la.LinAlgError(f"the leading minor {failed} of the compliance is not positive")
+    return factor
+
+
+def _inverse(C: Array) -> Array:
+    half, _ = la.lapack.dpotri(_cholesky(C.copy()), lower=True, overwrite_c=True)
+    half = np.tril(half)
+    result: Array = half + half.T
+    result[np.diag_indices_from(result)] /= 2
+    return result
+
+
+def solve_bounded(
+    C: Array,
+    g: Array,
+    lower: Array,
+    upper: Array,
+    total: float,
+    start: Sides | None = None,
+    factored: Factored | None = None,
+) -> Solution:
     """Minimise x.C x/2 - g.x over lower <= x <= upper with sum(x) = total.
 
     The multiplier of the sum is a rigid shift. With r = C x - g - shift and any rho > 0, x is optimal if x is the
@@ -71,8 +179,10 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, 
         Between sum(lower) and sum(upper).
     start : (n,) int8 array, optional
         Initial active set, from a similar problem (:attr:`Solution.sides`); default: all members are free.
+    factored : Factored, optional
+        Factors of ``C`` to use and to add to; default: none are known.
     """
-    pivoting = _BlockPivoting(C, g, lower, upper, start)
+    pivoting = _BlockPivoting(factored or Factored(C), g, lower, upper, start)
     low, high, shift = -np.inf, np.inf, pivoting.settle(total)
     while True:
         x, r, slope = pivoting.solve(shift)
@@ -87,9 +197,11 @@ def solve_bounded(C: Array, g: Array, lower: Array, upper: Array, total: float, 
         if following in (low, high, shift) or not np.isfinite(following):
             break  # the sum cannot come closer to the total in this arithmetic
         shift = following
+    x, r = pivoting.refined(x, r, shift, total)
     found, x = x, np.clip(x, lower, upper)  # removes rounding errors; the residual below includes the clip
-    r = r + C @ (x - found)
-    residual = np.abs(x - np.clip(x - r / np.diag(C), lower, upper))
+    if not np.array_equal(x, found):
+        r = r + C @ (x - found)
+    residual = np.abs(x - np.clip(x - r / pivoting.diagonal, lower, upper))
     rest = np.clip(r, np.where(x < upper, 0.0, -np.inf), np.where(x > lower, 0.0, np.inf))
     return Solution(x, rest, residual, abs(float(x.sum()) - total), pivoting.iterations, pivoting.changes)
 
@@ -104,13 +216,15 @@ class _BlockPivoting:
     the remaining residual is rounding.
     """
 
-    def __init__(self, C: Array, g: Array, lower: Array, upper: Array, start: Sides | None) -> None:
-        self._C, self._g, self._lower, self._upper = C, g, lower, upper
-        self._diagonal = np.diag(C).copy()
+    def __init__(self, factored: Factored, g: Array, lower: Array, upper: Array, start: Sides | None) -> None:
+        self._factored, self._C, self.diagonal = factored, factored.C, factored.diagonal
+        self._g, self._lower, self._upper = g, lower, upper
+        self._all_free = factored.all_free(g)
         self._side = np.zeros(len(g), dtype=np.int8)  # -1 at the lower bound, 0 free, +1 at the upper
         if start is not None and (start == 0).any():
             self._side[:] = start
-        self._factored: npt.NDArray[np.bool_] | None = None
+        self._line: Line | None = None  # of the present sides
+        self._tried: tuple[float, Array, Array, Sides] | None = None  # a shift, with what it gives on these sides
         self.iterations = self.changes = 0
 
     def settle(self, total: float) -> float:
@@ -118,13 +232,11 @@ class _BlockPivoting:
         member changes sides or the number of changes stops decreasing."""
         fewest, chances, shift = len(self._g) + 1, _CHANCES, 0.0
         while True:
-            at_zero, slope = self._linear_solve(0.0)
-            if slope <= 0:
+            line = self._solutions()
+            if line.slope <= 0:
                 return shift
-            shift = float((total - at_zero.sum()) / slope)
-            x = at_zero
-            x[self._side == 0] += shift * self._growth
-            _, wanted = self._conditions(x, shift)
+            shift = (total - line.total) / line.slope
+            _, _, wanted = self._at(shift)
             wrong = int(np.count_nonzero(wanted != self._side))
             if wrong < fewest:
                 fewest, chances = wrong, _CHANCES
@@ -139,19 +251,19 @@ class _BlockPivoting:
         return the change of the shift up to this point."""
         steps = np.where(self._side == (-1 if more else 1), np.abs(r), np.inf)
         nearest = int(np.argmin(steps))
-        self._side[nearest] = 0
-        self.changes += 1
+        sides = self._side.copy()
+        sides[nearest] = 0
+        self._change(sides)
         return float(steps[nearest] if more else -steps[nearest])
 
     def solve(self, shift: float) -> tuple[Array, Array, float]:
         """Minimiser x (n,) at the ``shift``, r = C x - g - shift (n,), and the derivative of sum(x) by the shift."""
         fewest, chances = len(self._g) + 1, _CHANCES
         while True:
-            x, slope = self._linear_solve(shift)
-            r, wanted = self._conditions(x, shift)
+            x, r, wanted = self._at(shift)
             wrong = np.flatnonzero(wanted != self._side)
             if len(wrong) == 0:
-                return x, r, slope
+                return x, r, self._solutions().slope
             if len(wrong) < fewest:
                 fewest, chances = len(wrong), _CHANCES
             elif chances > 0:
@@ -159,6 +271,16 @@ class _BlockPivoting:
             else:
                 return self._descend(x, shift)
             self._turn(wanted)
+
+    def refined(self, x: Array, r: Array, shift: float, total: float) -> tuple[Array, Array]:
+        """x and r after a step of iterative refinement, where an inverse has left more than a factor leaves."""
+        if self._all_free is None or not (free := self._side == 0).any():
+            return x, r
+        off = np.where(free, -r, 0.0)
+        line = self._factored.line(free, off, 0 * x, self._factored.all_free(off))
+        change = (total - float(x.sum()) - line.total) / line.slope
+        x = x + line.at(change)
+        return x, self._C @ x - self._g - (shift + change)
 
     def _descend(self, x: Array, shift: float) -> tuple[Array, Array, float]:
         """The same as :meth:`solve` by projected Newton steps, beginning near ``x``.
@@ -170,13 +292,13 @@ class _BlockPivoting:
         while True:
             r, sides = self._conditions(at, shift)
             self._change(sides)
-            x, slope = self._linear_solve(shift)
-            new, wanted = self._conditions(x, shift)
+            slope = self._solutions().slope
+            x, new, wanted = self._at(shift)
             if np.array_equal(wanted, sides):
                 return x, new, slope
             free, way = sides == 0, x - at
             if free.any():
-                way[free] = -la.cho_solve(self._factor, r[free], check_finite=False)
+                way[free] = self._factored.newton(free, r[free])
             noise = self._noise(at, shift)
             for halvings in range(_HALVINGS):
                 step = np.clip(at + 0.5**halvings * way, self._lower, self._upper) - at
@@ -184,21 +306,21 @@ class _BlockPivoting:
                     break
             else:
                 return at, r, slope
-            if np.all(self._diagonal * np.abs(step) <= noise):
+            if np.all(self.diagonal * np.abs(step) <= noise):
                 return at, r, slope
             at = at + step
 
     def _conditions(self, x: Array, shift: float) -> tuple[Array, Sides]:
         """r, and the sides that x and r require, within rounding."""
         r = self._C @ x - self._g - shift
-        noise = self._noise(x, shift) / self._diagonal
-        augmented = x - r / self._diagonal
+        noise = self._noise(x, shift) / self.diagonal
+        augmented = x - r / self.diagonal
         above, below = augmented > self._upper + noise, augmented < self._lower - noise
         return r, above.astype(np.int8) - below
 
     def _noise(self, x: Array, shift: float) -> Array:
         """Rounding error of r."""
-        noise: Array = 4 * _EPS * (self._diagonal * np.abs(x).sum() + np.abs(self._g) + abs(shift))
+        noise: Array = 4 * _EPS * (self.diagonal * np.abs(x).sum() + np.abs(self._g) + abs(shift))
         return noise
 
     def _turn(self, wanted: Sides) -> None:
@@ -206,19 +328,26 @@ class _BlockPivoting:
         self._change(np.where((self._side == 0) | (wanted == self._side), wanted, 0))
 
     def _change(self, sides: Sides) -> None:
-        self.changes += not np.array_equal(sides, self._side)
-        self._side = sides
+        if not np.array_equal(sides, self._side):
+            self._side, self._line, self._tried = sides, None, None
+            self.changes += 1
 
-    def _linear_solve(self, shift: float) -> tuple[Array, float]:
-        """Minimise with members at bounds held there: x (n,), and the derivative of sum(x) by the shift."""
-        self.iterations += 1
-        free = self._side == 0
-        x = np.select([self._side < 0, self._side > 0], [self._lower, self._upper], 0.0)
-        if not free.any():
-            return x, 0.0
-        if self._factored is None or not np.array_equal(free, self._factored):
-            self._factored = free
-            self._factor = la.cho_factor(self._C[np.ix_(free, free)], check_finite=False)
-            self._growth = la.cho_solve(self._factor, np.ones(free.sum()), check_finite=False)
-        x[free] = la.cho_solve(self._factor, (self._g + shift - self._C @ x)[free], check_finite=False)
-        return x, float(self._growth.sum())
+    def _at(self, shift: float) -> tuple[Array, Array, Sides]:
+        """x of the present sides at the ``shift``, r, and the sides that they require."""
+        if self._tried is None or self._tried[0] != shift:
+            x = self._solutions().at(shift)
+            self._tried = shift, x, *self._conditions(x, shift)
+        return self._tried[1:]
+
+    def _solutions(self) -> Line:
+        """Solutions with members at bounds held there, by the shift."""
+        if self._line is None:
+            self.iterations += 1
+            free = self._side == 0
+            held = np.where(self._side < 0, self._lower, self._upper)
+            self._line = (
+                self._factored.line(free, self._g, held, self._all_free)
+                if free.any()
+                else Line(float(held.sum()), 0.0, lambda _: held)
+            )
+        return self._line

@@ -6,18 +6,20 @@ along x) and v (opening, along y) under normal forces p and tangential forces q 
     u = C_xx q + C_xy p,    v = C_xy^T q + C_yy p.
 """
 
-from collections.abc import Callable, Sequence
+import itertools
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 import scipy.linalg as la
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, submatrix
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
 from partialslip.condensed.history import History, certified, follow, resting, still
 from partialslip.condensed.path import Path
 from partialslip.condensed.pressing import Punch
+from partialslip.condensed.trail import Trail
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
 _STICKS = 1e-9  # relative tolerance of the friction bound and of lengths
@@ -72,7 +74,7 @@ class _Step:
         on = np.flatnonzero(pressed.x > 0)
         bound = self.f * pressed.x[on]
         free = (self.kept - self.xy @ pressed.x)[on]
-        held = solve_bounded(self.xx[np.ix_(on, on)], free, -bound, bound, self.Q, q.sides[on])
+        held = solve_bounded(submatrix(self.xx, on, on), free, -bound, bound, self.Q, q.sides[on])
         sheared = held.spread(on, n)
         moved = self.yx @ (sheared.x - q.x)  # opening due to the change of q, which p does not include yet
         return replace(pressed, residual=np.abs(moved - moved[on].mean()) / np.diag(self.yy)), sheared
@@ -114,10 +116,10 @@ class _Step:
         i, end = len(on), len(on) + len(sticks)
         dragged = self.f * slip[on]
         matrix, right = np.zeros((end + 2, end + 2)), np.zeros(end + 2)
-        matrix[:i, :i] = self.yy[np.ix_(on, on)] + self.yx[np.ix_(on, on)] * dragged
-        matrix[:i, i:end] = self.yx[np.ix_(on, sticks)]
-        matrix[i:end, :i] = self.xx[np.ix_(sticks, on)] * dragged + self.xy[np.ix_(sticks, on)]
-        matrix[i:end, i:end] = self.xx[np.ix_(sticks, sticks)]
+        matrix[:i, :i] = submatrix(self.yy, on, on) + submatrix(self.yx, on, on) * dragged
+        matrix[:i, i:end] = submatrix(self.yx, on, sticks)
+        matrix[i:end, :i] = submatrix(self.xx, sticks, on) * dragged + submatrix(self.xy, sticks, on)
+        matrix[i:end, i:end] = submatrix(self.xx, sticks, sticks)
         matrix[:i, -2] = matrix[i:end, -1] = -1  # rigid shifts
         matrix[-2, :i] = 1
         matrix[-1, :i], matrix[-1, i:end] = dragged, 1
@@ -145,12 +147,14 @@ class _Step:
 class Line:
     """Nodes of the contact line: ``x`` (n,), ``weights`` (n,) that turn tractions into forces, and
     ``ends(forces) -> (left, right)``, the ends of the contact under nodal normal forces (n,). ``similar``: whether
-    half-planes are pressed together under a parabolic gap, so that all stages of pressing are similar."""
+    half-planes are pressed together under a parabolic gap, so that all stages of pressing are similar. ``trail``: where
+    the steps begin, and are to be remembered."""
 
     x: Array
     weights: Array
     ends: Callable[[Array], tuple[float, float]]
     similar: bool
+    trail: Trail | None = None
 
 
 @dataclass(frozen=True)
@@ -187,9 +191,13 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
     zero, xx, xy = 0 * gap, C.xx, C.xy
     apart = resting(zero), resting(zero)
 
+    trail = line.trail if line is not None else None
+    number = itertools.count()
+
     def step(P: float, gap: Array, before: tuple[Solution, Solution]) -> tuple[Solution, Solution]:
         kept = xx @ before[1].x + xy @ before[0].x
-        return _solve(_Step(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept), [before])
+        this = _Step(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept)
+        return _solve_near(this, [before], trail, ("pressing", next(number)))
 
     def steps(count: int) -> list[tuple[Solution, Solution]]:
         found = [apart]
@@ -310,7 +318,8 @@ def march(
         kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0] + change[2] * bent
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the previous step, and this step of the previous cycle
         P = float(load[3]) if path.presses_anew else 1.0
-        normal, sheared = _solve(_Step(xx, C.yy, xy, full.opening, f, P, gap, Q, kept), starts)
+        this = _Step(xx, C.yy, xy, full.opening, f, P, gap, Q, kept)
+        normal, sheared = _solve_near(this, starts, line.trail if line is not None else None, ("path", len(done)))
         done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
         return sheared, f * normal.x
 
@@ -324,6 +333,16 @@ def march(
         changes=sum(normal.changes + sheared.changes for normal, sheared in done),
     )
     return history, together, first
+
+
+def _solve_near(
+    step: _Step, starts: Sequence[tuple[Solution, Solution]], trail: Trail | None, key: Hashable
+) -> tuple[Solution, Solution]:
+    """Solve one step, first from what the ``trail`` knows of it under its ``key``."""
+    found = _solve(step, [*starts, *(trail.starts(key) if trail else [])])
+    if trail:
+        trail.keep(key, found)
+    return found
 
 
 def _solve(step: _Step, starts: Sequence[tuple[Solution, Solution]]) -> tuple[Solution, Solution]:

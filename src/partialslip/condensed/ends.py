@@ -8,7 +8,7 @@ in the last elements.
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -31,6 +31,10 @@ class StickInterval:
     left: float
     right: float
     signs: tuple[int, int]
+
+    def sides(self, x: Array) -> npt.NDArray[np.int8]:
+        """Sides of nodes at ``x`` (n,) under a change of the loads from no shear: signs of slip, 0 where they stick."""
+        return np.where(x < self.left, self.signs[0], np.where(x > self.right, self.signs[1], 0)).astype(np.int8)
 
 
 def stick_zone(
@@ -138,9 +142,9 @@ def finest(vertices: Array) -> list[float]:
     return places
 
 
-def apart(ends: list[float], size: float) -> list[float]:
-    """The ``ends`` without those within ``size`` of an earlier one."""
-    kept: list[float] = []
+def apart(ends: Sequence[float], size: float, known: Sequence[float] = ()) -> list[float]:
+    """The ``known`` ends, and the ``ends`` without those within ``size`` of a known or an earlier one."""
+    kept = [*known]
     for end in ends:
         if all(abs(end - other) > size for other in kept):
             kept.append(end)

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.arrays import Array, Mask
-from partialslip.condensed.bounded import Sides, Solution, solve_bounded
+from partialslip.condensed.bounded import Factored, Sides, Solution, solve_bounded
 from partialslip.condensed.path import Path
 
 STEADY = 1e-6  # change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
@@ -144,7 +144,7 @@ class History:
         return sum(step.changes for step in self.points)
 
 
-def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> History:
+def march(tangential: Array, stretch: Array, bound: Array, path: Path, factored: Factored | None = None) -> History:
     """Follow the path at constant pressure; every step has a certificate.
 
     A step is a convex problem: nodes that stick keep the relative displacement, so that C (T - T_before) equals the
@@ -160,23 +160,49 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> Histor
     bound : (n,) array
         f times the normal forces.
     path : Path
+    factored : Factored, optional
+        Factors of ``tangential`` to use and to add to; if one step suffices, it begins with the sides in it.
     """
     first, *ways = (len(way) for way in path.fractions)
     cycle = sum(ways)
     sides: list[Sides] = []
+    factored = factored or Factored(tangential)
+    factored.expect(first + cycle * (0 if path.half else path.cycles))
+
+    last = np.zeros(len(path.begin))
 
     def advance(before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
+        nonlocal last
         Q = float(load[0])
         if not change.any():
             sides.append(before.sides)
             return still(before), bound
         free = tangential @ before.x + change[1] * stretch[0] + change[2] * stretch[1]
-        near = sides[-cycle] if len(sides) >= first + cycle else before.sides  # this step in the previous cycle
-        found = solve_bounded(tangential, free, -bound, bound, Q, near)
+        near: Sides | None = before.sides
+        if len(sides) >= first + cycle:
+            near = sides[-cycle]  # this step in the previous cycle
+        elif path.half and first == 1:
+            near = factored.near
+        elif len(sides) > 1 and before.rest.any():  # not the first step of a way
+            near = ahead(sides[-1], sides[-2], float(change @ last / (last @ last)))
+        found = solve_bounded(tangential, free, -bound, bound, Q, near, factored)
         sides.append(found.sides)
+        last = change
         return found, bound
 
     return follow(path, advance, resting(0 * bound if path.before is None else path.before))
+
+
+def ahead(sides: Sides, earlier: Sides, times: float) -> Sides:
+    """Sides after a step if the ends of slip zones go on moving, ``times`` as far as in the step from the ``earlier``
+    sides to these ``sides``, (n,) each; the same ``sides`` if slip zones have come or gone."""
+    ends, before = (np.flatnonzero(np.diff(each)) + 1 for each in (sides, earlier))
+    runs, runs_before = (each[np.append(0, at)] for each, at in ((sides, ends), (earlier, before)))
+    if not np.array_equal(runs, runs_before):
+        return sides
+    moved = np.maximum.accumulate(np.clip(np.rint(ends + times * (ends - before)), 0, len(sides)).astype(np.int64))
+    result: Sides = np.repeat(runs, np.diff(moved, prepend=0, append=len(sides)))
+    return result
 
 
 Advance = Callable[[Solution, Array, Array], tuple[Solution, Array]]

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import scipy.linalg as la
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, submatrix
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
 
 _TURNS = 100  # largest number of angles tried
@@ -39,7 +39,7 @@ def press(
             break
         low, high = (angle, high) if off < 0 else (low, angle)
         on = np.flatnonzero(found.x > 0)
-        factor = la.cho_factor(normal[np.ix_(on, on)], check_finite=False)
+        factor = la.cho_factor(submatrix(normal, on, on), check_finite=False)
         uniform, tilted = la.cho_solve(factor, np.stack([np.ones(len(on)), arms[on]], axis=1), check_finite=False).T
         rate = float(arms[on] @ (tilted - uniform * tilted.sum() / uniform.sum()))
         step = -off / rate if rate > 0 else np.copysign(_WIDER * (abs(angle) + _START), -off)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.bars import BARS
-from partialslip.condensed.bounded import solve_bounded
+from partialslip.condensed.bounded import Factored, solve_bounded
 from partialslip.condensed.history import History, march
 from partialslip.condensed.path import Path
 from partialslip.condensed.step_errors import Errors
@@ -34,11 +34,16 @@ def march_refined(
     accuracy: float,
     errors: Callable[[History, History], Errors] | None = None,
     most: int = MOST,
+    factored: Factored | None = None,
 ) -> tuple[History, Errors]:
     """:func:`partialslip.condensed.history.march`, at constant pressure, with steps refined as by
     :func:`follow_refined`."""
-    problem = tangential, stretch, bound
-    return follow_refined(partial(march, *problem), partial(refined, *problem), path, accuracy, errors, most)
+    problem, known = (tangential, stretch, bound), factored or Factored(tangential)
+
+    def along(path: Path) -> History:
+        return march(*problem, path, known)
+
+    return follow_refined(along, partial(refined, *problem), path, accuracy, errors, most)
 
 
 def follow_refined(
@@ -151,6 +156,8 @@ class _Coarse:
         self._bound = self.sums(bound)
         share = bound / np.repeat(self._bound, np.diff(self._first, append=len(bound)))
         self._C = np.add.reduceat(self.sums(share[:, None] * tangential) * share, self._first, axis=1)
+        self._factored = Factored(self._C)
+        self._factored.expect(_SOLVES)
         self._stretch = [self.sums(share * each) for each in stretch]
         self._near, self._solves = max(accuracy, _TELLING) * float(self._bound.sum()), 0
 
@@ -198,7 +205,7 @@ class _Coarse:
     def _step(self, q: Array, load: Array, end: Array) -> Array:
         self._solves += 1
         free = self._C @ q + (end[1] - load[1]) * self._stretch[0] + (end[2] - load[2]) * self._stretch[1]
-        return solve_bounded(self._C, free, -self._bound, self._bound, float(end[0])).x
+        return solve_bounded(self._C, free, -self._bound, self._bound, float(end[0]), None, self._factored).x
 
 
 def _groups(count: int) -> npt.NDArray[np.int64]:

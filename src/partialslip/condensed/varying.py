@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Mask
+from partialslip.arrays import Array, Mask, submatrix
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded, spread
 from partialslip.condensed.history import History, follow, resting
 from partialslip.condensed.path import Path
@@ -92,7 +92,7 @@ class _Step:
         self._x, self._C, self._free, self._bound, self._Q = x, tangential, free, bound, Q
         self._attached = attached
         self._on = np.flatnonzero(bound > 0)
-        self._inner = tangential[np.ix_(self._on, self._on)]
+        self._inner = submatrix(tangential, self._on, self._on)
 
     def solve(self, before: Array, after: Array, near: Sides) -> Solution:
         """Solve the step in which the normal forces change from ``before`` to ``after``, (n,) each, beginning with the
@@ -119,7 +119,7 @@ class _Step:
         if not ratios[:, free].any():
             found: Array = ratios @ q
             return found
-        factor = la.cho_factor(self._C[np.ix_(free, free)], check_finite=False)
+        factor = la.cho_factor(submatrix(self._C, free, free), check_finite=False)
         moved = la.cho_solve(
             factor,
             np.column_stack([np.ones(len(free)), (self._free - self._C @ q)[free], kept.T[free]]),

@@ -37,6 +37,7 @@ _CELLS, _SOMEWHERE = 4.0, 0.5  # a zone of fewer cells is unresolved: the error 
 _NEAR = 10.0  # cells at ends closer to each other than a/10 are reduced in proportion
 _SMALLEST = 1e-9  # in a: closer ends are merged, and smaller cells are not requested
 _INNER = 8.0  # size of cells at kinks of q over the size at the ends: kinks hardly affect m and n
+_PASSING = 32.0  # the same at kinks that neither q1 nor q2 has
 _SHARE = 1 / 3  # largest part of the remaining CPU seconds for one mesh
 _WORK = 5e11  # limit of cells^3 times load steps of a mesh
 # Errors of m and n, as parts of the change from mesh to mesh and of growth^3
@@ -70,6 +71,14 @@ class _Level:
     def zone(self) -> tuple[float, ...]:
         """Ends of the stick zone; empty without friction."""
         return (self.stick.left, self.stick.right) if self.stick else ()
+
+    @property
+    def passing(self) -> list[float]:
+        """Kinks that neither q1 nor q2 has: out of phase these are -f p and f p beside the stick zone, where the kinks
+        of single load points pass by, if the pressure is constant. Kinks in the stick zone last."""
+        if not self.stick or not self.history or self.history.path.in_phase or self.history.path.presses_anew:
+            return []
+        return [kink for kink in self.kinks if not self.stick.left <= kink <= self.stick.right]
 
 
 @one_thread
@@ -109,26 +118,29 @@ def solve(
     shares: dict[str, dict[str, float]] = {}
     stepped: dict[str, float] = {}
     meshes, iterations, spent = 0, 0, 0.0
-    for size, growth in _MESHES:
+    # a path out of phase takes more than one coarse mesh to find its stick zone
+    coarse = 2 if path and not path.in_phase else 1
+    for size, growth in (*_MESHES[:1] * coarse, *_MESHES[1:]):
         cells = _cells(ends, inner, level, size, growth)
         if level and level.history:
             work, likely = level.history.load_steps * len(cells) ** 3, spent * (len(cells) / len(level.vertices)) ** 3
             if work > _WORK or (meshes > 1 and likely > _SHARE * clock.remaining()):
                 break
         began = clock.cost().cpu_s
-        # steps are chosen on the second mesh and used on all later meshes. Finer cells see more of a moving stick zone:
-        # where steps matter, each later mesh halves them once and estimates their errors anew
-        choose = meshes == 1 or (steps_matter(stepped, _accuracy(scene)) and not clock.limited)
+        # steps are chosen on the first mesh that is not coarse and used on all later meshes. Finer cells see more of a
+        # moving stick zone: where steps matter, each later mesh halves them once and estimates their errors anew
+        choose = meshes == coarse or (steps_matter(stepped, _accuracy(scene)) and not clock.limited)
         before, level = level, _solve_level(normal, path, start, cells, clock, choose, added)
         spent = clock.cost().cpu_s - began
         meshes, iterations = meshes + 1, iterations + (level.history.iterations if level.history else 0)
         if level.stick is None:
             break
-        if before:
-            if meshes == 2:
+        if before and meshes > coarse:
+            first = meshes == coarse + 1
+            if first:
                 path = level.history.path if level.history else None
             stepped = level.stepped or stepped
-            meshed = _mesh_errors(normal, level, before, growth, meshes == 2)
+            meshed = _mesh_errors(normal, level, before, growth, first)
             shares = {"discretisation": meshed, "steps": stepped}
             errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
             ends_known = max(errors["m"], errors["n"])
@@ -155,9 +167,12 @@ def _cells(ends: list[float], inner: list[float], level: _Level | None, size: fl
     fine: Array = np.sort(apart([*ends, *(level.zone if level else ())], _SMALLEST))
     gaps = np.diff(fine)
     gap = np.minimum(np.append(gaps, np.inf), np.append(np.inf, gaps))
-    known = apart([*fine.tolist(), *inner, *(level.kinks if level else ())], _INNER * size)
-    points: Array = np.concatenate([fine, [kink for kink in known if kink not in fine]])
-    sizes = np.full(len(points), _INNER * size)
+    passing = level.passing if level else []
+    lasting = [kink for kink in (level.kinks if level else ()) if kink not in passing]
+    known = apart([*inner, *lasting], _INNER * size, fine.tolist())
+    points = np.array(apart(passing, _PASSING * size, known))
+    sizes = np.full(len(points), _PASSING * size)
+    sizes[: len(known)] = _INNER * size
     sizes[: len(fine)] = np.maximum(size * np.minimum(_NEAR * gap, 1.0), _SMALLEST)
     order = np.argsort(points)
     return graded(points[order], sizes[order], growth)
@@ -210,7 +225,7 @@ def _solve_level(
         else:
             bound = scene.friction.f * normal.forces(frame, vertices)
             history, stepped = march_refined(tangential, moved, bound, path, _accuracy(scene), wanted, most)
-        inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in history.visited]
+        inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in reversed(history.visited)]
         forces = normal.forces(normal.second, vertices)
         return _Level(vertices, forces, history, zone(history), tuple(itertools.chain.from_iterable(inner)), stepped)
 
