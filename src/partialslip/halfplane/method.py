@@ -13,9 +13,9 @@ from partialslip.halfplane.levels import Levels, levels
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.remarks import no_stresses, remarks, undetermined
 from partialslip.halfplane.slip import dissipation
-from partialslip.halfplane.states import constant, sliding, without_shear
+from partialslip.halfplane.states import Around, constant, sliding, without_shear
 from partialslip.halfplane.steady import transition
-from partialslip.halfplane.stress import BEYOND, Fields, along_surface
+from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tables import table_error
 from partialslip.halfplane.tractions import ExactTractions, sample
 from partialslip.halfplane.varying import closed_form, require_closed_form, steady_cycle
@@ -71,7 +71,7 @@ def solve(
     far = abs(pressed.centre) + BEYOND * a
     inside = plan.needs("subsurface")
     stress = _stresses(scene, pressed, found) if inside else None
-    surface = along_surface(stress, np.concatenate([[-far], breaks, [far]])) if stress else None
+    surface = along_surface(stress.fields.surface, np.concatenate([[-far], breaks, [far]])) if stress else None
     slips = cycle and not cycle.nothing
     why = undetermined(regime, turns, found) | (no_stresses(found) if inside and not stress else {})
     table = table_error(scene, pressed, cycle)
@@ -191,7 +191,7 @@ def _slip(scene: Scene, pressed: Contact, cycle: Loading) -> Slip:
     )
 
 
-def _stresses(scene: Scene, pressed: Contact, found: Levels | str) -> Fields | None:
+def _stresses(scene: Scene, pressed: Contact, found: Levels | str) -> Around | None:
     """Stresses of the steady state; None where q1 and q2 are not known."""
     if isinstance(found, Levels):
         return constant(scene, pressed, found)

@@ -5,12 +5,13 @@ from typing import Protocol
 
 import numpy as np
 
+from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.levels import Levels
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.mean import Path
-from partialslip.halfplane.stress import Fields, Shear, State
+from partialslip.halfplane.stress import Fields, Points, Shear, State
 from partialslip.result import StickZone
 from partialslip.scene import Load, Scene
 
@@ -26,13 +27,13 @@ class _Way(Protocol):
 
 @dataclass(frozen=True)
 class Around:
-    """States around a steady cycle.
+    """Stresses around a steady cycle.
 
     Parameters
     ----------
     load : Load
-    first, second : State
-        States at load points 1 and 2.
+    fields : Fields
+        Of the states at load points 1 and 2.
     way : callable
         ``way(*, back, share)``: the contact at this share of the way from load point 1 to 2 (``back``: from 2 to 1),
         and the change of q since the beginning of the way.
@@ -41,25 +42,28 @@ class Around:
     """
 
     load: Load
-    first: State
-    second: State
+    fields: Fields
     way: _Way
     unknown: str = ""
 
-    def __call__(self, phase: float) -> State:
-        """State at the ``phase``, from 0 to 1.
+    def inside(self, x: Array, y: Array, phases: Array) -> Array:
+        """Stresses (s, 3, k), Pa, at points (``x``, ``y``), m, (k,) each, and ``phases`` (s,) from 0 to 1.
 
         Raises
         ------
         InputError
-            If the state has no closed form.
+            If the state at a phase has no closed form.
         """
+        return self.fields.at(Points.of(x, y), [self._state(phase) for phase in phases.tolist()])
+
+    def _state(self, phase: float) -> State:
+        first, second = self.fields.ends
         if phase in (0.0, 0.5, 1.0):
-            return self.second if phase == 0.5 else self.first
+            return second if phase == 0.5 else first
         back, share = self._share(phase)
         if self.unknown:
             raise InputError(f"phases: {phase:g} is between load points 1 and 2, where {self.unknown}; use march")
-        begin, end = (self.second, self.first) if back else (self.first, self.second)
+        begin, end = (second, first) if back else (first, second)
         pressed, change = self.way(back=back, share=share)
         sigma, slope = (
             one + share * (other - one) for one, other in ((begin.sigma, end.sigma), (begin.slope, end.slope))
@@ -78,7 +82,7 @@ class Around:
         return back, float(np.interp(position, np.arange(len(way)), way))
 
 
-def constant(scene: Scene, pressed: Contact, found: Levels) -> Fields:
+def constant(scene: Scene, pressed: Contact, found: Levels) -> Around:
     """Stresses under constant pressure, between the tractions ``found`` at the load points."""
     load = scene.load
     _, sigma, slope = load.along[load.ends[found.known]]
@@ -87,38 +91,38 @@ def constant(scene: Scene, pressed: Contact, found: Levels) -> Fields:
     other = _merged((known, (-2.0 if found.known else 2.0, change)))
     first, second = (other, (known,)) if found.known else ((known,), other)
     unknown = "slip reverses" if found.cycle.turns_round else ""
-    states = Around(load, State(pressed, first), State(pressed, second), _Constant(scene, pressed), unknown)
-    return Fields(scene.friction.f, states)
+    fields = Fields(scene.friction.f, (State(pressed, first), State(pressed, second)))
+    return Around(load, fields, _Constant(scene, pressed), unknown)
 
 
-def varying(scene: Scene, end: Contact, loaded: Loading, unknown: str) -> Fields:
+def varying(scene: Scene, end: Contact, loaded: Loading, unknown: str) -> Around:
     """Stresses under varying pressure, from the first loading to load point 2 in the contact ``end``."""
     load, way = scene.load, _Varying(scene)
     _, sigma, slope = load.along[load.ends[1]]
     second: _Sum = ((1.0, Shear.of(end, loaded, sigma, slope)),)
     _, change = way(back=False, share=1.0)
     first = (*second, *((-factor, shear) for factor, shear in change))
-    begin = Path(scene).begin
-    return Fields(scene.friction.f, Around(load, State(begin, first), State(end, second), way, unknown))
+    fields = Fields(scene.friction.f, (State(Path(scene).begin, first), State(end, second)))
+    return Around(load, fields, way, unknown)
 
 
-def without_shear(scene: Scene) -> Fields:
+def without_shear(scene: Scene) -> Around:
     """Stresses of bodies that are pressed together without any shear traction."""
-    return Fields(scene.friction.f, Around(scene.load, *_ends(scene), _Pressed(scene)))
+    return Around(scene.load, Fields(scene.friction.f, _ends(scene)), _Pressed(scene))
 
 
-def sliding(scene: Scene) -> Fields | None:
+def sliding(scene: Scene) -> Around | None:
     """Stresses at the load points of a contact that slides at both, with q = f p; None where Q is larger, or smaller at
     a load point: q is then not known."""
-    f, shears = scene.friction.f, []
+    f, found = scene.friction.f, []
     for point, state in zip(scene.load.ends, _ends(scene), strict=True):
         Q, contact = scene.load.points[point][0], state.pressed
         if abs(abs(Q) - f * contact.P) > _SLIDING * f * contact.P:
             return None
         nothing = StickZone(-np.inf, 0.0, 1)
-        shears.append(((1.0, Shear(contact, nothing, 1 if Q > 0 else -1, 1, 0.0, 0.0, 0.0)),))
-    first, second = (state._replace(shears=each) for state, each in zip(_ends(scene), shears, strict=True))
-    return Fields(f, Around(scene.load, first, second, _Pressed(scene), "the contact slides"))
+        shear = Shear(contact, nothing, 1 if Q > 0 else -1, 1, 0.0, 0.0, 0.0)
+        found.append(state._replace(shears=((1.0, shear),)))
+    return Around(scene.load, Fields(f, tuple(found)), _Pressed(scene), "the contact slides")
 
 
 def _ends(scene: Scene) -> tuple[State, State]:

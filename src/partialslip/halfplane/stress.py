@@ -1,6 +1,6 @@
 """Stresses in the half-planes, on their surfaces and inside; SI units."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -20,7 +20,6 @@ from partialslip.result.points import AtPoints
 _SURFACE = 1e-30  # depth of points on the surface, as a fraction of a
 _APART = 1e-12  # distance below which breaks are merged, as a fraction of a
 BEYOND = 4.0  # half-widths up to which surface stresses are reported
-LOAD_POINTS = np.array([0.0, 0.5])  # phases of load points 1 and 2
 
 
 @dataclass(frozen=True)
@@ -90,6 +89,11 @@ class Points(NamedTuple):
     depth: Array
     side: Array
 
+    @classmethod
+    def of(cls, x: Array, y: Array) -> "Points":
+        """Points (``x``, ``y``); those of the lower body have y <= 0."""
+        return cls(x, np.abs(y), np.where(y <= 0, 1.0, -1.0))
+
     def scaled(self, contact: Contact) -> Complex:
         """x + i y, scaled by ``contact``, for Cauchy integrals."""
         z: Complex = contact.scaled(self.x) + 1j * np.minimum(-self.depth / contact.a, -_SURFACE)
@@ -108,7 +112,7 @@ class State(NamedTuple):
 
 @dataclass(frozen=True)
 class Fields:
-    """Stresses of the half-planes in states of the steady cycle.
+    """Stresses of half-planes.
 
     The lower body, y <= 0, exerts q on the upper body and carries all of the bulk tension.
 
@@ -116,25 +120,21 @@ class Fields:
     ----------
     f : float
         Coefficient of friction.
-    state : callable
-        ``state(phase)``: the state at a phase from 0 to 1, see :class:`partialslip.result.stresses.StressAt`.
+    ends : tuple of State
+        States at the load points, whose Cauchy integrals share panels.
     """
 
     f: float
-    state: Callable[[float], State]
+    ends: tuple[State, ...]
     _known: dict[Contact | Shear, tuple[Cauchy, int]] = field(default_factory=dict, repr=False, compare=False)
 
     def surface(self, x: Array) -> Array:
         """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body (lower, upper) and load point."""
         sides = np.ones_like(x), -np.ones_like(x)
-        return np.stack([self._at(Points(x, 0 * x, side), LOAD_POINTS)[:, 0] for side in sides])
+        return np.stack([self.at(Points(x, 0 * x, side), self.ends)[:, 0] for side in sides])
 
-    def inside(self, x: Array, y: Array, phases: Array = LOAD_POINTS) -> Array:
-        """sigma_xx, sigma_yy and sigma_xy (Pa) at points (``x``, ``y``), m, (k,) each: (s, 3, k), by phase (s,)."""
-        return self._at(Points(x, np.abs(y), np.where(y <= 0, 1.0, -1.0)), phases)
-
-    def _at(self, at: Points, phases: Array) -> Array:
-        states = [self.state(phase) for phase in phases.tolist()]
+    def at(self, at: "Points", states: Sequence[State]) -> Array:
+        """sigma_xx, sigma_yy and sigma_xy (Pa) at k points: (s, 3, k), by state."""
         made: dict[Contact | Shear, Array] = {}
         integrals: dict[Cauchy, Complex] = {}
 
@@ -162,8 +162,8 @@ class Fields:
 
     def _cauchy(self, of: Contact | Shear) -> tuple[Cauchy, int]:
         """Cauchy integrals of p/p0 or q/(f p0), lengths scaled by a, and the row of these integrals."""
-        if not self._known:  # what acts at the load points on one contact shares its panels
-            self._add(*dict.fromkeys(each for phase in LOAD_POINTS.tolist() for each in _summands(self.state(phase))))
+        if not self._known:
+            self._add(*dict.fromkeys(each for state in self.ends for each in _summands(state)))
         if of not in self._known:
             self._add(of)
         return self._known[of]
@@ -188,10 +188,10 @@ def _summands(state: State) -> list[Contact | Shear]:
     return [state.pressed, *(shear for _, shear in state.shears)]
 
 
-def along_surface(fields: Fields, breaks: Array) -> SurfaceStress:
+def along_surface(surface: Callable[[Array], Array], breaks: Array) -> SurfaceStress:
     """Stresses along the surfaces, from the first to the last of the ``breaks`` (b,), m."""
     x = sample(breaks)
-    return SurfaceStress(x, fields.surface(x), fields.surface)
+    return SurfaceStress(x, surface(x), surface)
 
 
 class Stress:
@@ -219,7 +219,8 @@ class Stress:
         self.contact, self.f, self.dQ, self.dsigma, self.dslope = contact, f, dQ, dsigma, dslope
         self._zone = stick_zone(contact, f, dQ, dsigma, dslope)
         change = loading(contact, f, dQ, dsigma, dslope, bound=2)
-        self._fields = Fields(f, Reversed(contact, Shear.of(contact, change, dsigma, dslope)))
+        half = Shear.of(contact, change, dsigma, dslope)
+        self._fields = Fields(f, tuple(State(contact, ((sign, half),)) for sign in (-1.0, 1.0)))
 
     def surface(self, x: npt.ArrayLike) -> Array:
         """sigma_xx (Pa) along the surfaces at ``x``, m: (2, 2, ...), by body (lower, upper), load point and the shape
@@ -233,16 +234,5 @@ class Stress:
     def inside(self, x: npt.ArrayLike, y: npt.ArrayLike) -> Array:
         """sigma_xx, sigma_yy and sigma_xy (Pa) at the points (``x``, ``y``), m: (2, 3, ...), by load point, component
         and the common shape of ``x`` and ``y``. Points with y <= 0 are in the lower body."""
-        found: Array = AtPoints(self._fields.inside)(x, y)
+        found: Array = AtPoints(lambda x, y: self._fields.at(Points.of(x, y), self._fields.ends))(x, y)
         return found
-
-
-@dataclass(frozen=True)
-class Reversed:
-    """States at the load points of fully reversed loads: ``shear`` at load point 2, the opposite at load point 1."""
-
-    contact: Contact
-    shear: Shear
-
-    def __call__(self, phase: float) -> State:
-        return State(self.contact, ((1.0 if phase == 0.5 else -1.0, self.shear),))

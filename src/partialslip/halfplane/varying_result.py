@@ -11,8 +11,8 @@ from partialslip.halfplane.levels import PATH_DEPENDENT
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.mean import Path, common
 from partialslip.halfplane.remarks import no_stresses, remarks, undetermined
-from partialslip.halfplane.states import sliding, varying, without_shear
-from partialslip.halfplane.stress import BEYOND, Fields, along_surface
+from partialslip.halfplane.states import Around, sliding, varying, without_shear
+from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tractions import sample
 from partialslip.halfplane.varying import Cycle, steady_cycle
 from partialslip.plan import Plan
@@ -108,7 +108,7 @@ def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Resu
         limits=_limits(scene, cycle) if cycle else {},
         certificate=cycle.change.certificate if cycle and cycle.change else {},
         notes=remarks(regime, turns, why, _SLIDES, _RATCHETS),
-        surface=along_surface(stress, np.sort([*far, *breaks])) if stress else None,
+        surface=along_surface(stress.fields.surface, np.sort([*far, *breaks])) if stress else None,
         stress_at=StressAt(stress.inside) if stress else None,
         undetermined=why,
         path_dependent=turns,
@@ -134,7 +134,7 @@ def _regime(scene: Scene, cycle: Cycle | None) -> Regime:
     return "small tension" if cycle.change.zone.s > 0 else "large tension"
 
 
-def _stresses(scene: Scene, cycle: Cycle | None, loaded: Loading | str) -> Fields | None:
+def _stresses(scene: Scene, cycle: Cycle | None, loaded: Loading | str) -> Around | None:
     """Stresses of the steady state; None where q1 and q2 are not known."""
     if isinstance(loaded, Loading) and cycle:
         return varying(scene, cycle.second, loaded, "slip reverses" if cycle.turns_round else "")
