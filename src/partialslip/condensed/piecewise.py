@@ -18,8 +18,9 @@ _AT_ONCE = 2**20  # pairs of points in memory
 
 
 class PiecewiseCauchy:
-    """(1/pi) int g(t)/(t - z) dt of piecewise polynomials g, and the derivatives of these integrals; where the cells lie
-    on a polygon y = h(x), with t + i h(t) for t in the denominator.
+    """(1/pi) int g(t)/(t - z) dt of piecewise polynomials g, and the derivatives of these integrals.
+
+    Where the cells lie on a polygon y = h(x), t + i h(t) stands for t in the denominator.
 
     Parameters
     ----------
