@@ -24,11 +24,15 @@ from partialslip.condensed.regime import doubts, steady_state
 from partialslip.condensed.step_errors import halved, steps_matter
 from partialslip.condensed.steps import MOST, follow_refined, march_refined
 from partialslip.condensed.threads import one_thread
+from partialslip.halfplane.cell_stress import CellStresses
 from partialslip.halfplane.cells import compliance, graded
 from partialslip.halfplane.pressing import NormalLoads
+from partialslip.halfplane.remarks import no_stresses
+from partialslip.halfplane.states import Around, sliding, without_shear
+from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tractions import CellTractions
 from partialslip.plan import Plan
-from partialslip.result import Clock, Result, Slip, Traction
+from partialslip.result import Clock, Result, Slip, StressAt, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene
 
@@ -150,7 +154,23 @@ def solve(
             if all(meshed[key] <= max(most - stepped.get(key, 0.0), most / 2) for key, most in allowed.items()):
                 break
     assert level is not None
-    return _result(normal, level, errors, shares, {"meshes": meshes, "iterations": iterations}, clock)
+    found = _result(normal, level, errors, shares, {"meshes": meshes, "iterations": iterations}, clock)
+    return _with_stresses(found, normal, level) if plan.needs("subsurface") else found
+
+
+def _with_stresses(found: Result, normal: NormalLoads, level: _Level) -> Result:
+    """Result with stresses, where q1 and q2 are known."""
+    scene = normal.scene
+    if level.history:
+        stresses: CellStresses | Around | None = CellStresses.of(normal, level.vertices, level.history.around)
+    else:
+        stresses = sliding(scene) if scene.slides else without_shear(scene)
+    if not stresses:
+        return replace(found, undetermined=no_stresses("the contact slides"))
+    far = normal.frame.places([-BEYOND, BEYOND])
+    breaks = np.unique([*far, *normal.frame.places([*normal.ends, *level.zone])])
+    surface = along_surface(stresses.surface, breaks)
+    return replace(found, surface=surface, stress_at=StressAt(stresses.inside))
 
 
 def _accuracy(scene: Scene) -> float:
