@@ -8,7 +8,7 @@ import pytest
 
 from partialslip.judge.means import norm_errors
 from partialslip.judge.stresses import inside_error, surface_error
-from partialslip.result import DeformedBody, SurfaceStress
+from partialslip.result import DeformedBody, StressAt, SurfaceStress
 
 POINTS = np.array([[0, 0], [1, 0], [0, -1], [2, 0], [0, -2.2], [3.2, 0.1], [3.7, 0.1], [3.7, -0.2]]) * known.A
 TRIANGLES = np.array([[0, 1, 2], [1, 3, 4], [5, 6, 7]])  # areas 0.5 and 1.1 a^2, and one with its centroid at 3.5 a
@@ -25,7 +25,7 @@ def surface(of=lambda x: 1.0 + 0 * x):
     return SurfaceStress(x, at(x), at)
 
 
-def stresses(x, y):
+def stresses(x, y, _):
     """Stresses at two load points, three components; the second component is zero."""
     return np.array([[1, 0, 2], [3, 0, 4]])[:, :, None] * (1 + (x + 2 * y) / known.A)
 
@@ -33,7 +33,7 @@ def stresses(x, y):
 def inside(add=(0.0, 0.0, 0.0)):
     """Return a body with the exact stresses, plus a perturbation of the first component at load point 2."""
     x, y = POINTS[TRIANGLES].mean(axis=1).T
-    first, second = np.moveaxis(stresses(x, y), 2, 1)
+    first, second = np.moveaxis(stresses(x, y, None), 2, 1)
     off = np.array(add)[:, None] * [1, 0, 0]
     return DeformedBody("lower", POINTS, TRIANGLES, {}, {}, {"1": first, "2": second + off})
 
@@ -58,24 +58,24 @@ def test_uneven_cells_count_by_their_widths():
 
 @pytest.mark.parametrize("triangle", [0, 1])
 def test_stress_inside_is_compared_by_area(triangle):
-    true = replace(known.EXACT, stress_at=stresses)
+    true = replace(known.EXACT, stress_at=StressAt(stresses))
     add = np.zeros(3)
     add[triangle] = 0.3
     found = replace(known.result(), bodies=(inside(add), inside()))
     x, y = POINTS[TRIANGLES[:2]].mean(axis=1).T
-    norm = 2 * ((stresses(x, y) ** 2).sum(axis=(0, 1)) @ AREAS)
+    norm = 2 * ((stresses(x, y, None) ** 2).sum(axis=(0, 1)) @ AREAS)
     assert inside_error(found, true) == pytest.approx(0.3 * np.sqrt(AREAS[triangle] / norm), rel=1e-9)
 
 
 def test_stress_beyond_three_half_widths_is_not_compared():
-    true = replace(known.EXACT, stress_at=stresses)
+    true = replace(known.EXACT, stress_at=StressAt(stresses))
     assert inside_error(replace(known.result(), bodies=(inside((0, 0, 1.0)),)), true) == 0
 
 
 def test_what_one_result_does_not_have_is_not_compared():
     with_bodies = replace(known.result(), bodies=(inside(),), surface=surface())
     assert inside_error(with_bodies, known.EXACT) is surface_error(with_bodies, known.EXACT) is None
-    true = replace(known.EXACT, stress_at=stresses, surface=surface())
+    true = replace(known.EXACT, stress_at=StressAt(stresses), surface=surface())
     assert inside_error(known.result(), true) is surface_error(known.result(), true) is None
     without_cells = replace(with_bodies, traction=known.traction(cells=None))
     assert surface_error(without_cells, true) is None

@@ -5,7 +5,7 @@ Scaled: lengths by sqrt(A R P), forces by P and displacements by A P, so that no
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -51,6 +51,8 @@ class History:
         Where the pressure varies: slip of the last cycle along +x and along -x; None under constant P.
     held : (n,) bool array or None
         Where the pressure varies: nodes that are in contact throughout the last cycle.
+    around : Steps
+        The load steps of the last cycle.
     """
 
     path: Path
@@ -64,6 +66,7 @@ class History:
     dissipated: float
     end: tuple[Array, Array]
     load_steps: int
+    around: "Steps"
     room: Array | None = None
     slipped: Array | None = None
     held: Mask | None = None
@@ -76,6 +79,7 @@ class History:
         fields: dict[str, Any] = {key: getattr(self, key)[nodes] for key in ("q1", "q2", "slip", "net_slip")} | {
             key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "bounds", "end")
         }
+        fields["around"] = self.around.of(nodes)
         if self.room is not None and self.slipped is not None and self.held is not None:
             fields |= {"room": self.room[nodes], "slipped": self.slipped[:, nodes], "held": self.held[nodes]}
         return replace(self, points=points, **fields)
@@ -142,6 +146,20 @@ class History:
     def changes(self) -> int:
         """Changes of the sets of sticking and slipping nodes; 0 if one linear solve per step sufficed."""
         return sum(step.changes for step in self.points)
+
+
+class Steps(NamedTuple):
+    """Load steps of a cycle: the ways to each load point, as ascending fractions up to 1, and the states at the ends of
+    the steps, in turn: tangential ``forces`` (s, n), and ``bounds`` (s, n), f times the normal forces; (1, n) where
+    they are constant."""
+
+    ways: tuple[tuple[float, ...], ...]
+    forces: Array
+    bounds: Array
+
+    def of(self, nodes: npt.NDArray[np.int64]) -> "Steps":
+        """Steps of some ``nodes`` only (indices)."""
+        return self._replace(forces=self.forces[:, nodes], bounds=self.bounds[:, nodes])
 
 
 def march(tangential: Array, stretch: Array, bound: Array, path: Path) -> History:
@@ -223,8 +241,10 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
     forces = np.array([step.x for step in steps])
     dissipated = -sum(float(step.x @ step.rest) for step in steps)
     anew: dict[str, Any] = {}
+    all_bounds = [bound for way in went for _, bound in way]
+    constant = all(bound is all_bounds[0] for bound in all_bounds)
+    bounds = np.array(all_bounds[:1] if constant else all_bounds)
     if path.presses_anew:
-        bounds = np.array([bound for way in went for _, bound in way])
         slip = -np.array([step.rest for step in steps])
         room = (bounds - forces).min(axis=0) + (bounds + forces).min(axis=0)
         anew = {
@@ -246,6 +266,7 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
         dissipated=dissipated,
         end=(ends[-1][0].x, ends[-1][1]),
         load_steps=taken,
+        around=Steps(tuple(ways), forces, bounds),
         **anew,
     )
 
@@ -266,6 +287,7 @@ def _reversed(path: Path, first: Solution, went: "_Way") -> History:
         dissipated=2 * float(forces @ slip),
         end=(forces, bound),
         load_steps=len(went),
+        around=Steps(((1.0,), (1.0,)), np.array([-forces, forces]), bound[None]),
     )
 
 

@@ -24,11 +24,14 @@ from partialslip.condensed.regime import doubts, steady_state
 from partialslip.condensed.step_errors import halved, steps_matter
 from partialslip.condensed.steps import MOST, follow_refined, march_refined
 from partialslip.condensed.threads import one_thread
+from partialslip.halfplane.cell_stress import CellStresses
 from partialslip.halfplane.cells import compliance, graded
 from partialslip.halfplane.pressing import NormalLoads
+from partialslip.halfplane.remarks import no_stresses
+from partialslip.halfplane.states import sliding, without_shear
 from partialslip.halfplane.tractions import CellTractions
 from partialslip.plan import Plan
-from partialslip.result import Clock, Result, Slip, Traction
+from partialslip.result import Clock, Result, Slip, StressAt, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene
 
@@ -138,7 +141,20 @@ def solve(
             if all(meshed[key] <= max(most - stepped.get(key, 0.0), most / 2) for key, most in allowed.items()):
                 break
     assert level is not None
-    return _result(normal, level, errors, shares, {"meshes": meshes, "iterations": iterations}, clock)
+    found = _result(normal, level, errors, shares, {"meshes": meshes, "iterations": iterations}, clock)
+    return _with_stresses(found, normal, level) if plan.needs("subsurface") else found
+
+
+def _with_stresses(found: Result, normal: NormalLoads, level: _Level) -> Result:
+    """Result with stresses, where q1 and q2 are known."""
+    scene = normal.scene
+    if level.history:
+        stresses = CellStresses.of(normal, level.vertices, level.history.around)
+        return replace(found, stress_at=StressAt(stresses.inside))
+    pressed = sliding(scene) if scene.slides else without_shear(scene)
+    if not pressed:
+        return replace(found, undetermined=no_stresses("the contact slides"))
+    return replace(found, stress_at=StressAt(pressed.inside))
 
 
 def _accuracy(scene: Scene) -> float:

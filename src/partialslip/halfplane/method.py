@@ -11,22 +11,22 @@ from partialslip.gradual import may_turn_round
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.levels import Levels, levels
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.halfplane.remarks import remarks, undetermined
+from partialslip.halfplane.remarks import no_stresses, remarks, undetermined
 from partialslip.halfplane.slip import dissipation
+from partialslip.halfplane.states import Around, constant, sliding, without_shear
 from partialslip.halfplane.steady import transition
-from partialslip.halfplane.stress import Stress
+from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tables import table_error
 from partialslip.halfplane.tractions import ExactTractions, sample
 from partialslip.halfplane.varying import closed_form, require_closed_form, steady_cycle
 from partialslip.halfplane.varying_result import solve_varying
 from partialslip.plan import Plan, plan
-from partialslip.result import Clock, Regime, Result, Slip, SurfaceStress, Traction
+from partialslip.result import Clock, Regime, Result, Slip, StressAt, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene
 
 _SLIDES = "the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip"
 _RATCHETS = "the mean of Q is above the bound for a steady state: the contact ratchets, m and n are not reached"
-_BEYOND = 4.0  # half-widths up to which surface stresses are reported
 
 
 def solve(
@@ -68,12 +68,12 @@ def solve(
     p, dq = tractions.change(x)
     levels_at = tractions.at_load_points if tractions.levels else None
     q1, q2 = levels_at(x) if levels_at else (None, None)
-    far = abs(pressed.centre) + _BEYOND * a
-    reversed_ = load.fully_reversed and isinstance(found, Levels)
-    stress = Stress(pressed, f, load.dQ, load.dsigma, load.dslope) if plan.needs("subsurface") and reversed_ else None
-    surface = _surface(stress, np.concatenate([[-far], breaks, [far]])) if stress else None
+    far = abs(pressed.centre) + BEYOND * a
+    inside = plan.needs("subsurface")
+    stress = _stresses(scene, pressed, found) if inside else None
+    surface = along_surface(stress.fields.surface, np.concatenate([[-far], breaks, [far]])) if stress else None
     slips = cycle and not cycle.nothing
-    why = undetermined(regime, turns, found)
+    why = undetermined(regime, turns, found) | (no_stresses(found) if inside and not stress else {})
     table = table_error(scene, pressed, cycle)
     return Result(
         method="exact",
@@ -92,7 +92,7 @@ def solve(
         shares={"table": table} if table else {},
         notes=remarks(regime, turns, why, _SLIDES, _RATCHETS) + _coarse(table, scene.fem.accuracy),
         surface=surface,
-        stress_at=stress.inside if stress else None,
+        stress_at=StressAt(stress.inside) if stress else None,
         undetermined=why,
         path_dependent=turns,
         contact_ends=(pressed.ends,) * 2 if pressed.centre else None,
@@ -191,9 +191,11 @@ def _slip(scene: Scene, pressed: Contact, cycle: Loading) -> Slip:
     )
 
 
-def _surface(stress: Stress, breaks: Array) -> SurfaceStress:
-    x = sample(breaks)
-    return SurfaceStress(x, stress.surface(x), stress.surface)
+def _stresses(scene: Scene, pressed: Contact, found: Levels | str) -> Around | None:
+    """Stresses of the steady state; None where q1 and q2 are not known."""
+    if isinstance(found, Levels):
+        return constant(scene, pressed, found)
+    return without_shear(scene) if scene.free else sliding(scene) if scene.slides else None
 
 
 def _coarse(table: dict[str, float], accuracy: float) -> tuple[str, ...]:

@@ -29,3 +29,8 @@ def remarks(regime: Regime, turns: bool, undetermined: dict[str, str], slides: s
     if turns:
         notes.append(f"m, n, q: {undetermined['m']}")
     return tuple(notes)
+
+
+def no_stresses(found: object) -> dict[str, str]:
+    """Why the stresses are not known: ``found``, q1 and q2, is a reason instead."""
+    return {"stresses": f"q1 and q2 are not known: {found}"}

@@ -1,27 +1,204 @@
-"""Stresses in the half-planes, on their surfaces and inside, at the load points of fully reversed loads; SI units."""
+"""Stresses in the half-planes, on their surfaces and inside; SI units."""
 
-from functools import cached_property
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Complex
+from partialslip.condensed.below import under_pressure, under_shear, under_tension
 from partialslip.halfplane.cauchy import Cauchy
 from partialslip.halfplane.contact import Contact, stick_zone
-from partialslip.halfplane.loading import loading
+from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.traction import half_range
-from partialslip.result import StickZone
+from partialslip.halfplane.tractions import sample
+from partialslip.result import StickZone, SurfaceStress
 from partialslip.result.points import AtPoints
 
 _SURFACE = 1e-30  # depth of points on the surface, as a fraction of a
 _APART = 1e-12  # distance below which breaks are merged, as a fraction of a
+BEYOND = 4.0  # half-widths up to which surface stresses are reported
+
+
+@dataclass(frozen=True)
+class Shear:
+    """Shear traction of one proportional change of the loads, with which a contact slips up to f p; of half a cycle,
+    which slips up to 2 f p, half of the change.
+
+    Parameters
+    ----------
+    contact : Contact
+    stick : StickZone
+        Stick zone, m.
+    turn, mirror, gf
+        As of :class:`partialslip.halfplane.loading.Loading`.
+    sigma, slope : float
+        Change of the bulk tension at x = 0, Pa, and of its slope, Pa/m; of half a cycle, half of the change.
+    """
+
+    contact: Contact
+    stick: StickZone[float]
+    turn: int
+    mirror: int
+    gf: float
+    sigma: float
+    slope: float
+
+    @classmethod
+    def of(cls, contact: Contact, change: Loading, sigma: float, slope: float) -> "Shear":
+        """Shear of ``change``, a loading of ``contact`` by the tension ``sigma`` and its ``slope``."""
+        zone, share = change.zone, 1 / change.bound
+        stick = StickZone(contact.centre + change.mirror * zone.centre * contact.a, zone.half_width * contact.a, zone.s)
+        return cls(contact, stick, change.turn, change.mirror, change.gf, share * sigma, share * slope)
+
+    @property
+    def breaks(self) -> list[float]:
+        """Ends of the stick zone, scaled; one place if the zone is too narrow."""
+        centre, c = self._scaled
+        return [centre - c, centre + c] if c > _APART else [centre]
+
+    @property
+    def _scaled(self) -> tuple[float, float]:
+        return float(self.contact.scaled(self.stick.centre)), float(self.stick.half_width) / self.contact.a
+
+    def traction(self, x: Array) -> Array:
+        """q at ``x`` (scaled), in f p0."""
+        centre, c = self._scaled
+        shape = self.contact.shape if self.mirror > 0 else self.contact.shape.mirrored
+        zone = StickZone(self.mirror * centre, c, int(self.stick.s))
+        return self.turn * half_range(self.mirror * x, zone, shape, self.gf)
+
+    def stresses(self, unit: float, T: Complex, T_z: Complex, at: "Points") -> Array:
+        """Stresses (3, k), Pa, at points, from the Cauchy integrals of q in ``unit``."""
+        y = -at.depth / self.contact.a
+        sticks = (y == 0) & (np.abs(at.x - self.stick.centre) <= self.stick.half_width)
+        tension = self.sigma + self.slope * at.x
+        found = unit * under_shear(T, T_z, y, at.side)
+        # no relative strain in the stick zone: the bodies share the tension
+        found[0] = np.where(sticks, -at.side * tension / 2, found[0])
+        result: Array = found + under_tension(tension, self.slope, at.depth, at.side)
+        return result
+
+
+class Points(NamedTuple):
+    """Points ``x`` (k,), m, at ``depth`` (k,), m, in the lower (``side`` = 1) or the upper body (-1)."""
+
+    x: Array
+    depth: Array
+    side: Array
+
+    @classmethod
+    def of(cls, x: Array, y: Array) -> "Points":
+        """Points (``x``, ``y``); those of the lower body have y <= 0."""
+        return cls(x, np.abs(y), np.where(y <= 0, 1.0, -1.0))
+
+    def scaled(self, contact: Contact) -> Complex:
+        """x + i y, scaled by ``contact``, for Cauchy integrals."""
+        z: Complex = contact.scaled(self.x) + 1j * np.minimum(-self.depth / contact.a, -_SURFACE)
+        return z
+
+
+class State(NamedTuple):
+    """Tractions at a moment: the contact that is ``pressed``, and the sum of ``shears``, each with its factor, in slip
+    under f p, and of the bulk tension ``sigma`` (Pa) and its ``slope`` (Pa/m) that act without friction."""
+
+    pressed: Contact
+    shears: tuple[tuple[float, Shear], ...] = ()
+    sigma: float = 0.0
+    slope: float = 0.0
+
+
+@dataclass(frozen=True)
+class Fields:
+    """Stresses of half-planes.
+
+    The lower body, y <= 0, exerts q on the upper body and carries all of the bulk tension.
+
+    Parameters
+    ----------
+    f : float
+        Coefficient of friction.
+    ends : tuple of State
+        States at the load points, whose Cauchy integrals share panels.
+    """
+
+    f: float
+    ends: tuple[State, ...]
+    _known: dict[Contact | Shear, tuple[Cauchy, int]] = field(default_factory=dict, repr=False, compare=False)
+
+    def surface(self, x: Array) -> Array:
+        """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body (lower, upper) and load point."""
+        sides = np.ones_like(x), -np.ones_like(x)
+        return np.stack([self.at(Points(x, 0 * x, side), self.ends)[:, 0] for side in sides])
+
+    def at(self, at: "Points", states: Sequence[State]) -> Array:
+        """sigma_xx, sigma_yy and sigma_xy (Pa) at k points: (s, 3, k), by state."""
+        made: dict[Contact | Shear, Array] = {}
+        integrals: dict[Cauchy, Complex] = {}
+
+        def stresses(of: Contact | Shear) -> Array:
+            if of not in made:
+                contact = of if isinstance(of, Contact) else of.contact
+                cauchy, row = self._cauchy(of)
+                if cauchy not in integrals:
+                    integrals[cauchy] = cauchy(at.scaled(contact))
+                value, slope = integrals[cauchy][:, row]
+                if isinstance(of, Contact):
+                    made[of] = of.p0 * under_pressure(value, slope, -at.depth / of.a, at.side)
+                else:
+                    made[of] = of.stresses(self.f * contact.p0, value, slope, at)
+            return made[of]
+
+        result = np.empty((len(states), 3, len(at.x)))
+        for found, state in zip(result, states, strict=True):
+            found[:] = stresses(state.pressed)
+            if state.shears:
+                found += sum(factor * stresses(shear) for factor, shear in state.shears)
+            if state.sigma or state.slope:
+                found += under_tension(state.sigma + state.slope * at.x, state.slope, at.depth, at.side)
+        return result
+
+    def _cauchy(self, of: Contact | Shear) -> tuple[Cauchy, int]:
+        """Cauchy integrals of p/p0 or q/(f p0), lengths scaled by a, and the row of these integrals."""
+        if not self._known:
+            self._add(*dict.fromkeys(each for state in self.ends for each in _summands(state)))
+        if of not in self._known:
+            self._add(of)
+        return self._known[of]
+
+    def _add(self, *all_: Contact | Shear) -> None:
+        groups: dict[Contact, list[Contact | Shear]] = {}
+        for each in all_:
+            groups.setdefault(each if isinstance(each, Contact) else each.contact, []).append(each)
+        for contact, group in groups.items():
+            ends = [place for each in group if isinstance(each, Shear) for place in each.breaks]
+            inner = np.sort([place for place in (*contact.shape.kinks, *ends) if abs(place) < 1 - _APART])
+            inner = inner[np.diff(inner, prepend=-1.0) > _APART]
+            rows = [each.shape.pressure if isinstance(each, Contact) else each.traction for each in group]
+            cauchy = Cauchy(
+                lambda x, rows=rows: np.stack([row(x) for row in rows]),  # type: ignore[misc]
+                np.concatenate([[-1.0], inner, [1.0]]),
+            )
+            self._known.update((each, (cauchy, row)) for row, each in enumerate(group))
+
+
+def _summands(state: State) -> list[Contact | Shear]:
+    return [state.pressed, *(shear for _, shear in state.shears)]
+
+
+def along_surface(surface: Callable[[Array], Array], breaks: Array) -> SurfaceStress:
+    """Stresses along the surfaces, from the first to the last of the ``breaks`` (b,), m."""
+    x = sample(breaks)
+    return SurfaceStress(x, surface(x), surface)
 
 
 class Stress:
     """Stresses of the steady state between -(dQ, dsigma)/2 at load point 1 and (dQ, dsigma)/2 at load point 2.
 
-    The lower body, y <= 0, exerts q on the upper body and carries all of the bulk tension. The loads must be fully
-    reversed: under mean loads the first cycles lock in a traction that the steady state does not determine.
+    The lower body, y <= 0, exerts q on the upper body and carries all of the bulk tension. The loads are fully
+    reversed; for mean loads, which the first cycles determine, see :attr:`partialslip.Result.stress_at`.
 
     Parameters
     ----------
@@ -41,6 +218,9 @@ class Stress:
     def __init__(self, contact: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0) -> None:
         self.contact, self.f, self.dQ, self.dsigma, self.dslope = contact, f, dQ, dsigma, dslope
         self._zone = stick_zone(contact, f, dQ, dsigma, dslope)
+        change = loading(contact, f, dQ, dsigma, dslope, bound=2)
+        half = Shear.of(contact, change, dsigma, dslope)
+        self._fields = Fields(f, tuple(State(contact, ((sign, half),)) for sign in (-1.0, 1.0)))
 
     def surface(self, x: npt.ArrayLike) -> Array:
         """sigma_xx (Pa) along the surfaces at ``x``, m: (2, 2, ...), by body (lower, upper), load point and the shape
@@ -48,55 +228,11 @@ class Stress:
 
         Continuous; usually largest at the trailing edge of the contact, where the slope is infinite.
         """
-        found: Array = AtPoints(self._on_surfaces)(x)
+        found: Array = AtPoints(self._fields.surface)(x)
         return found
 
     def inside(self, x: npt.ArrayLike, y: npt.ArrayLike) -> Array:
         """sigma_xx, sigma_yy and sigma_xy (Pa) at the points (``x``, ``y``), m: (2, 3, ...), by load point, component
         and the common shape of ``x`` and ``y``. Points with y <= 0 are in the lower body."""
-        found: Array = AtPoints(lambda x, y: self._at(x, np.abs(y), np.where(y <= 0, 1.0, -1.0)))(x, y)
+        found: Array = AtPoints(lambda x, y: self._fields.at(Points.of(x, y), self._fields.ends))(x, y)
         return found
-
-    def _on_surfaces(self, x: Array) -> Array:
-        return np.stack([self._at(x, 0 * x, side)[:, 0] for side in (np.ones_like(x), -np.ones_like(x))])
-
-    def _at(self, x: Array, depth: Array, side: Array) -> Array:
-        """Stresses (2, 3, k), Pa, in the lower (``side`` = 1) and the upper body (-1).
-
-        Let P = (1/pi) int p dt/(t - z), T the same of q, z = x - i depth and y = -depth. In the lower body
-
-            sigma_xx = Im P + y Re P' - 2 Re T + y Im T',    sigma_yy = Im P - y Re P' - y Im T',
-            sigma_xy = Im T - y Im P' + y Re T'
-
-        (Muskhelishvili, Some basic problems of the mathematical theory of elasticity). The upper body is the mirror
-        image of the lower body under the opposite q.
-        """
-        y = -depth / self.contact.a
-        (P, T), (P_z, T_z) = self._cauchy(self.contact.scaled(x) + 1j * np.minimum(y, -_SURFACE))
-        along = y * T_z.imag - 2 * T.real
-        sticks = (y == 0) & (np.abs(x - self._zone.centre) <= self._zone.half_width)
-        unit = self.f * self.contact.p0
-        pressure = self.contact.p0 * np.stack([P.imag + y * P_z.real, P.imag - y * P_z.real, -side * y * P_z.imag])
-        shear = unit * np.stack([side * along, -side * y * T_z.imag, T.imag + y * T_z.real])
-        # no relative strain in the stick zone: the bodies share the tension
-        tension = self.dsigma + self.dslope * x
-        shear[0] = np.where(sticks, -side * tension / 4, shear[0]) + np.where(side > 0, tension / 2, 0.0)
-        if self.dslope:  # sigma_xx = s x is in equilibrium with sigma_xy = -s y
-            shear[2] += np.where(side > 0, self.dslope / 2 * depth, 0.0)
-        return np.stack([pressure - shear, pressure + shear])
-
-    @cached_property
-    def _cauchy(self) -> Cauchy:
-        """Cauchy integrals of p/p0 and q/(f p0) at load point 2, lengths scaled by a."""
-        shape = self.contact.shape
-        change = loading(self.contact, self.f, self.dQ, self.dsigma, self.dslope, bound=2)
-        turn, mirror = change.turn, change.mirror
-        centre, c = float(self.contact.scaled(self._zone.centre)), float(self._zone.half_width) / self.contact.a
-        zone, seen = StickZone(mirror * centre, c, int(self._zone.s)), shape if mirror > 0 else shape.mirrored
-        ends = [centre - c, centre + c] if c > _APART else [centre]
-        inner = np.sort([place for place in (*shape.kinks, *ends) if abs(place) < 1 - _APART])
-        inner = inner[np.diff(inner, prepend=-1.0) > _APART]
-        return Cauchy(
-            lambda x: np.stack([shape.pressure(x), turn * half_range(mirror * x, zone, seen, change.gf)]),
-            np.concatenate([[-1.0], inner, [1.0]]),
-        )

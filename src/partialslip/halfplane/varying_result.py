@@ -10,11 +10,13 @@ from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.levels import PATH_DEPENDENT
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.mean import Path, common
-from partialslip.halfplane.remarks import remarks, undetermined
+from partialslip.halfplane.remarks import no_stresses, remarks, undetermined
+from partialslip.halfplane.states import Around, sliding, varying, without_shear
+from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tractions import sample
 from partialslip.halfplane.varying import Cycle, steady_cycle
 from partialslip.plan import Plan
-from partialslip.result import Clock, Regime, Result, Slip, Traction
+from partialslip.result import Clock, Regime, Result, Slip, StressAt, Traction
 from partialslip.scene import Scene
 
 _ROUNDING = 1e-9  # lengths in a, tractions in f p0
@@ -75,6 +77,8 @@ def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Resu
     loaded = _first_loading(scene, cycle, started) if cycle and regime != "ratchets" else _no_levels(regime)
     tractions = VaryingTractions(first, second, cycle, f, None if isinstance(loaded, str) else loaded)
     still = not slipping and regime == "stuck"
+    inside = plan.needs("subsurface")
+    stress = _stresses(scene, cycle, loaded) if inside else None
     left, right = cycle.stick if cycle else common(first, second) if still else (math.nan, math.nan)
     known = math.isfinite(left)
     breaks = _breaks(scene, first, second, (left, right) if known else (), tractions)
@@ -84,6 +88,9 @@ def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Resu
     q1, q2 = levels_at(x) if levels_at else (np.zeros_like(x), np.zeros_like(x)) if still else (None, None)
     turns = cycle is not None and cycle.turns_round
     why = {} if still else undetermined(regime, turns, loaded)
+    if inside and not stress:
+        why |= no_stresses(loaded)
+    far = np.array([-1.0, 1.0]) * (abs(sum(largest.ends)) / 2 + BEYOND * largest.a)
     return Result(
         method="exact",
         a=largest.a,
@@ -101,6 +108,8 @@ def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Resu
         limits=_limits(scene, cycle) if cycle else {},
         certificate=cycle.change.certificate if cycle and cycle.change else {},
         notes=remarks(regime, turns, why, _SLIDES, _RATCHETS),
+        surface=along_surface(stress.fields.surface, np.sort([*far, *breaks])) if stress else None,
+        stress_at=StressAt(stress.inside) if stress else None,
         undetermined=why,
         path_dependent=turns,
         end_slips=cycle.slips if cycle else None,
@@ -123,6 +132,15 @@ def _regime(scene: Scene, cycle: Cycle | None) -> Regime:
     if cycle.change is None:
         return "no slip"
     return "small tension" if cycle.change.zone.s > 0 else "large tension"
+
+
+def _stresses(scene: Scene, cycle: Cycle | None, loaded: Loading | str) -> Around | None:
+    """Stresses of the steady state; None where q1 and q2 are not known."""
+    if isinstance(loaded, Loading) and cycle:
+        return varying(scene, cycle.second, loaded, "slip reverses" if cycle.turns_round else "")
+    if scene.slides:
+        return sliding(scene)
+    return None if cycle else without_shear(scene)
 
 
 def _no_levels(regime: Regime) -> str:

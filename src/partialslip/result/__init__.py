@@ -12,4 +12,5 @@ from partialslip.result.result import Result as Result
 from partialslip.result.state import State as State
 from partialslip.result.state import load_state as load_state
 from partialslip.result.stick_zone import StickZone as StickZone
+from partialslip.result.stresses import StressAt as StressAt
 from partialslip.result.traction import Traction as Traction

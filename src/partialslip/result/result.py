@@ -1,6 +1,6 @@
 """The result of a method; every method returns this type."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
@@ -8,8 +8,8 @@ from partialslip.arrays import Array
 from partialslip.frame import frame
 from partialslip.result.cost import Cost
 from partialslip.result.fields import DeformedBody, Slip, SurfaceStress
-from partialslip.result.points import at_points
 from partialslip.result.state import State
+from partialslip.result.stresses import StressAt
 from partialslip.result.traction import Traction
 from partialslip.shown import Drawn
 
@@ -74,10 +74,11 @@ class Result(Drawn):
     state : State or None
         Loads and tractions at the end of the load path, to continue from.
     surface : SurfaceStress or None
-        sigma_xx along the surfaces, if asked for and known (exact method: fully reversed loads without sliding).
-    stress_at : callable or None
+        sigma_xx along the surfaces, if asked for and known (exact method: where q1 and q2 are).
+    stress_at : StressAt or None
         ``stress_at(x, y) -> (2, 3, ...)``: stresses by load point and component xx, yy, xy, Pa, at points of any
-        shape, m; the lower body is y <= 0. Known where ``surface`` is.
+        shape, m; the lower body is y <= 0. ``stress_at(x, y, phases) -> (s, 3, ...)``: at ``phases`` (s,) of the
+        cycle. Known if asked for, where q1 and q2 are; see :class:`partialslip.result.stresses.StressAt`.
     contact_ends : ((float, float), (float, float)) or None
         Left and right end of the contact at load points 1 and 2, m; None stands for -a and a at both.
     shares : mapping of str to mapping
@@ -114,16 +115,13 @@ class Result(Drawn):
     bodies: tuple[DeformedBody, ...] = ()
     state: State | None = None
     surface: SurfaceStress | None = None
-    stress_at: Callable[[Array, Array], Array] | None = None
+    stress_at: StressAt | None = None
     contact_ends: tuple[tuple[float, float], tuple[float, float]] | None = None
     shares: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     undetermined: Mapping[str, str] = field(default_factory=dict)
     path_dependent: bool = False
     end_slips: tuple[EndSlip, EndSlip] | None = None
     edges: tuple[Array, Array] | tuple[()] = ()
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "stress_at", at_points(self.stress_at))
 
     def __repr__(self) -> str:
         """Method, regime, a, m, n and p0, in a line."""

@@ -6,7 +6,7 @@ from typing import Annotated
 import msgspec
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Indices
 from partialslip.errors import InputError
 from partialslip.scene.limits import ROUGH
 from partialslip.scene.table import Positive, Table
@@ -99,10 +99,34 @@ class Load(Table, frozen=True, kw_only=True):
     def ends(self) -> tuple[int, int]:
         """Indices of load points 1 and 2, the extremes of the cycle in the order of visits: the extremes of Q, or of
         sigma where Q is constant, or of P, or of M, or of sigma_slope."""
-        loads = self._all.T
-        values = next((each for each in loads if np.ptp(each) > 0), loads[0])
+        values = self._leading
         first, second = sorted((int(np.argmin(values)), int(np.argmax(values))))
         return (first, second) if first != second else (0, len(values) - 1)
+
+    @property
+    def progress(self) -> Array:
+        """Share of the way from load point 1 to 2 at the load points of loads in phase, (points,); 0 if no load
+        varies."""
+        values, (first, second) = self._leading, self.ends
+        way: float = values[second] - values[first]
+        result: Array = (values - values[first]) / (way or 1.0)
+        return result
+
+    def stations(self, phases: Array) -> tuple[Indices, Array]:
+        """Index (s,) of the load point that is passed last at ``phases`` (s,) of a cycle, and share (s,) of the way to
+        the next load point. Phase 0 is load point 1, 0.5 load point 2, 1 load point 1 again; load points between them
+        divide the ways into equal parts."""
+        first, second = self.ends
+        count = len(self.points)
+        position = np.interp(phases, [0.0, 0.5, 1.0], [first, second, first + count])
+        passed = np.floor(position).astype(np.int64)
+        return passed % count, position - passed
+
+    @property
+    def _leading(self) -> Array:
+        """Values at the load points of the first load that varies."""
+        loads = self._all.T
+        return next((each for each in loads if np.ptp(each) > 0), loads[0])
 
     @property
     def in_phase(self) -> bool:

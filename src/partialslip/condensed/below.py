@@ -1,0 +1,32 @@
+"""Stresses in a half-plane below tractions on its surface, from Cauchy integrals of the tractions.
+
+Let P = (1/pi) int p dt/(t - z), T the same of q, and z = x + i y with y = -depth. In the lower body
+
+    sigma_xx = Im P + y Re P' - 2 Re T + y Im T',    sigma_yy = Im P - y Re P' - y Im T',
+    sigma_xy = Im T - y Im P' + y Re T'
+
+(Muskhelishvili, Some basic problems of the mathematical theory of elasticity). The upper body is the mirror image of
+the lower body under the opposite q.
+"""
+
+import numpy as np
+
+from partialslip.arrays import Array, Complex
+
+
+def under_pressure(P: Complex, P_z: Complex, y: Array, side: Array) -> Array:
+    """Stresses (3, k) xx, yy, xy due to p, from its Cauchy integral ``P`` (k,) and the derivative ``P_z`` at x + i y,
+    ``y`` < 0, in the lower (``side`` = 1) and the upper body (-1)."""
+    return np.stack([P.imag + y * P_z.real, P.imag - y * P_z.real, -side * y * P_z.imag])
+
+
+def under_shear(T: Complex, T_z: Complex, y: Array, side: Array) -> Array:
+    """Stresses (3, k) due to q, which the lower body exerts; see :func:`under_pressure`."""
+    return np.stack([side * (y * T_z.imag - 2 * T.real), -side * y * T_z.imag, T.imag + y * T_z.real])
+
+
+def under_tension(sigma: Array, slope: float, depth: Array, side: Array) -> Array:
+    """Stresses (3, k) due to the bulk tension ``sigma`` (k,), which varies along x by ``slope``, in the lower body:
+    sigma_xx = s x is in equilibrium with sigma_xy = -s y."""
+    lower = np.where(side > 0, 1.0, 0.0)
+    return np.stack([lower * sigma, 0 * depth, lower * slope * depth])

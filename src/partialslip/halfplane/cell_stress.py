@@ -1,0 +1,145 @@
+"""Stresses of marching: those of the exact pressure, and of shear that is smoothed from the forces on cells."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from partialslip.arrays import Array, Mask
+from partialslip.condensed.below import under_shear
+from partialslip.condensed.history import Steps
+from partialslip.condensed.phases import Phases
+from partialslip.condensed.piecewise import PiecewiseCauchy
+from partialslip.halfplane.contact import Contact, contact
+from partialslip.halfplane.pressing import NormalLoads
+from partialslip.halfplane.stress import Fields, Points, State
+
+_SLIPS = 1e-9  # distance of |q| from f p, relative, at which a cell slips
+_WINDOW = 5  # vertices of the polynomial through the resultants around a vertex
+_LOAD_POINTS = np.array([0.0, 0.5])
+
+
+@dataclass(frozen=True)
+class CellStresses:
+    """Stresses at load steps and between them (:class:`partialslip.condensed.phases.Phases`).
+
+    Parameters
+    ----------
+    f : float
+        Coefficient of friction.
+    frame : Contact
+        Scales the ``vertices``.
+    vertices : (c + 1,) array
+        Ends of the cells.
+    phases : Phases
+    states : tuple of State
+        Contact and bulk tension at each step.
+    steps : Steps
+        Shear forces and friction bounds of cells, in P of the ``frame``.
+    """
+
+    f: float
+    frame: Contact
+    vertices: Array
+    phases: Phases
+    states: tuple[State, ...]
+    steps: Steps
+
+    @classmethod
+    def of(cls, normal: NormalLoads, vertices: Array, steps: Steps) -> "CellStresses":
+        """Stresses of the last cycle in ``steps``."""
+        scene, phases = normal.scene, Phases(normal.scene.load, steps.ways)
+        known: dict[object, Contact] = {}
+        states = []
+        for _, sigma, slope, share, number in phases.loads.tolist():
+            pressed = normal.frame
+            if scene.presses_anew:
+                points = scene.pressing
+                pressing = points[int(number)].towards(points[(int(number) + 1) % len(points)], share)
+                if pressing not in known:
+                    known[pressing] = contact(scene, pressing)
+                pressed = known[pressing]
+            states.append(State(pressed, (), sigma, slope))
+        return cls(scene.friction.f, normal.frame, vertices, phases, tuple(states), steps)
+
+    def inside(self, x: Array, y: Array, phases: Array) -> Array:
+        """Stresses (s, 3, k), Pa, at points (``x``, ``y``), m, (k,) each, and ``phases`` (s,) from 0 to 1."""
+        at = Points.of(x, y)
+        return self.phases.interpolate(lambda steps: self._at(at, steps), phases)
+
+    def surface(self, x: Array) -> Array:
+        """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body (lower, upper) and load point."""
+        sides = (Points(x, 0 * x, side) for side in (np.ones_like(x), -np.ones_like(x)))
+        found = [self.phases.interpolate(lambda steps, at=at: self._at(at, steps), _LOAD_POINTS) for at in sides]  # type: ignore[misc]
+        return np.stack(found)[:, :, 0]
+
+    def _at(self, at: Points, steps: Sequence[int]) -> Array:
+        result = self._pressed.at(at, [self.states[step] for step in steps])
+        T, T_z = self._sheared(at.scaled(self.frame))[:, steps]
+        y = -at.depth / self.frame.a
+        result += np.moveaxis(under_shear(T, T_z, y, at.side), 1, 0)
+        return result
+
+    @cached_property
+    def _pressed(self) -> Fields:
+        return Fields(self.f, self.states[-1:])
+
+    @cached_property
+    def _sheared(self) -> PiecewiseCauchy:
+        places, forces = self.frame.places(self.vertices), self.frame.P / self.frame.a * self.steps.forces
+        bounds = np.broadcast_to(self.steps.bounds, forces.shape) * (self.frame.P / self.frame.a)
+        limits = {state.pressed: self.f * state.pressed.pressure(places) for state in self.states}
+        rows = [
+            smoothed(self.vertices, force, bound, limits[state.pressed])
+            for force, bound, state in zip(forces, bounds, self.states, strict=True)
+        ]
+        return PiecewiseCauchy(self.vertices, np.array(rows))
+
+
+def smoothed(vertices: Array, forces: Array, bounds: Array, limits: Array) -> Array:
+    """Continuous shear traction with given ``forces`` (c,) on the cells between ``vertices`` (c + 1,): coefficients
+    (3, c) of quadratic polynomials, as in :class:`scipy.interpolate.PPoly`.
+
+    At vertices of cells that slip, at which \\|force\\| is the bound in ``bounds`` (c,), \\|q\\| is f p, in ``limits``
+    (c + 1,). Elsewhere q is the derivative of a polynomial through the resultants at the vertices around.
+    """
+    widths, means = np.diff(vertices), forces / np.diff(vertices)
+    slips, open_ = (np.abs(forces) >= (1 - _SLIPS) * bounds) & (bounds > 0), bounds <= 0
+    at = _inner(vertices, forces, ~(slips | open_))
+    ways = np.where(slips, np.sign(forces), 0.0)
+    beside, sum_ = (np.append(each, 0) + np.append(0, each) for each in (slips.astype(float), ways))
+    at = np.where(beside > 0, sum_ / np.maximum(beside, 1) * limits, at)
+    ends = np.append(open_, True) | np.append(True, open_)  # where q ends like a square root
+    at = np.where(ends, 0.0, at)
+    left, right = at[:-1], at[1:]
+    return np.array([3 * (left + right - 2 * means) / widths**2, (6 * means - 4 * left - 2 * right) / widths, left])
+
+
+def _inner(vertices: Array, forces: Array, sticks: Mask) -> Array:
+    """q at the vertices (c + 1,) inside the runs of cells that stick."""
+    resultant = np.append(0.0, np.cumsum(forces))
+    count, numbers = len(forces), np.arange(len(vertices))
+    edges = np.flatnonzero(np.diff(sticks.astype(np.int8), prepend=0, append=0))
+    firsts, lasts = edges[::2], edges[1::2]  # first and last vertex of each run
+    result = np.zeros(count + 1)
+    for first, last in zip(firsts.tolist(), lasts.tolist(), strict=True):
+        size = min(_WINDOW, last - first + 1)
+        inner = numbers[first : last + 1]
+        start = np.clip(inner - size // 2, first, last + 1 - size)
+        window = start[:, None] + np.arange(size)
+        result[first : last + 1] = _slope(vertices[window], resultant[window], vertices[inner])
+    return result
+
+
+def _slope(nodes: Array, values: Array, x: Array) -> Array:
+    """Slopes (k,) at ``x`` (k,), each one of its ``nodes`` (k, n), of the polynomials through ``values`` (k, n)."""
+    apart = nodes[:, :, None] - nodes[:, None, :] + np.eye(nodes.shape[1])
+    weights = 1 / apart.prod(axis=2)
+    step = x[:, None] - nodes
+    here = step == 0
+    own = (weights * here).sum(axis=1)
+    quotient = np.where(here, 0.0, weights / np.where(here, 1.0, step)) / own[:, None]
+    at = (values * here).sum(axis=1)
+    result: Array = (quotient * (values - at[:, None])).sum(axis=1)
+    return result

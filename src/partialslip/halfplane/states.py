@@ -1,0 +1,177 @@
+"""States of a steady cycle by phase, from which stresses follow: contacts and shear tractions in closed form."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.errors import InputError
+from partialslip.halfplane.contact import Contact
+from partialslip.halfplane.levels import Levels
+from partialslip.halfplane.loading import Loading, loading
+from partialslip.halfplane.mean import Path
+from partialslip.halfplane.stress import Fields, Points, Shear, State
+from partialslip.result import StickZone
+from partialslip.scene import Load, Scene
+
+_SLIDING = 1e-9  # |Q|, relative to f P, that is closer to f P slides with q = f p
+_Sum = tuple[tuple[float, Shear], ...]
+
+
+class _Way(Protocol):
+    """A way of the loads."""
+
+    def __call__(self, *, back: bool, share: float) -> tuple[Contact, _Sum]: ...
+
+
+@dataclass(frozen=True)
+class Around:
+    """Stresses around a steady cycle.
+
+    Parameters
+    ----------
+    load : Load
+    fields : Fields
+        Of the states at load points 1 and 2.
+    way : callable
+        ``way(*, back, share)``: the contact at this share of the way from load point 1 to 2 (``back``: from 2 to 1),
+        and the change of q since the beginning of the way.
+    unknown : str
+        Why the states between the load points are not known; empty if they are known.
+    """
+
+    load: Load
+    fields: Fields
+    way: _Way
+    unknown: str = ""
+
+    def inside(self, x: Array, y: Array, phases: Array) -> Array:
+        """Stresses (s, 3, k), Pa, at points (``x``, ``y``), m, (k,) each, and ``phases`` (s,) from 0 to 1.
+
+        Raises
+        ------
+        InputError
+            If the state at a phase has no closed form.
+        """
+        return self.fields.at(Points.of(x, y), [self._state(phase) for phase in phases.tolist()])
+
+    def _state(self, phase: float) -> State:
+        first, second = self.fields.ends
+        if phase in (0.0, 0.5, 1.0):
+            return second if phase == 0.5 else first
+        back, share = self._share(phase)
+        if self.unknown:
+            raise InputError(f"phases: {phase:g} is between load points 1 and 2, where {self.unknown}; use march")
+        begin, end = (second, first) if back else (first, second)
+        pressed, change = self.way(back=back, share=share)
+        sigma, slope = (
+            one + share * (other - one) for one, other in ((begin.sigma, end.sigma), (begin.slope, end.slope))
+        )
+        return State(pressed, _merged((*begin.shears, *change)), sigma, slope)
+
+    def _share(self, phase: float) -> tuple[bool, float]:
+        """Whether the loads go back from load point 2 to 1 at ``phase``, and the share of this way."""
+        back = phase > 0.5
+        first, second = self.load.ends
+        progress = np.roll(self.load.progress, -first)
+        way = np.append(1 - progress[second - first :], 1.0) if back else progress[: second - first + 1]
+        if (np.diff(way) < 0).any():
+            raise InputError(f"phases: {phase:g} is between load points between which the loads turn; use march")
+        position = (2 * phase - back) * (len(way) - 1)
+        return back, float(np.interp(position, np.arange(len(way)), way))
+
+
+def constant(scene: Scene, pressed: Contact, found: Levels) -> Around:
+    """Stresses under constant pressure, between the tractions ``found`` at the load points."""
+    load = scene.load
+    _, sigma, slope = load.along[load.ends[found.known]]
+    known = (1.0, Shear.of(pressed, found.first, sigma, slope))
+    change = Shear.of(pressed, found.cycle, load.dsigma, load.dslope)
+    other = _merged((known, (-2.0 if found.known else 2.0, change)))
+    first, second = (other, (known,)) if found.known else ((known,), other)
+    unknown = "slip reverses" if found.cycle.turns_round else ""
+    fields = Fields(scene.friction.f, (State(pressed, first), State(pressed, second)))
+    return Around(load, fields, _Constant(scene, pressed), unknown)
+
+
+def varying(scene: Scene, end: Contact, loaded: Loading, unknown: str) -> Around:
+    """Stresses under varying pressure, from the first loading to load point 2 in the contact ``end``."""
+    load, way = scene.load, _Varying(scene)
+    _, sigma, slope = load.along[load.ends[1]]
+    second: _Sum = ((1.0, Shear.of(end, loaded, sigma, slope)),)
+    _, change = way(back=False, share=1.0)
+    first = (*second, *((-factor, shear) for factor, shear in change))
+    fields = Fields(scene.friction.f, (State(Path(scene).begin, first), State(end, second)))
+    return Around(load, fields, way, unknown)
+
+
+def without_shear(scene: Scene) -> Around:
+    """Stresses of bodies that are pressed together without any shear traction."""
+    return Around(scene.load, Fields(scene.friction.f, _ends(scene)), _Pressed(scene))
+
+
+def sliding(scene: Scene) -> Around | None:
+    """Stresses at the load points of a contact that slides at both, with q = f p; None where Q is larger, or smaller at
+    a load point: q is then not known."""
+    f, found = scene.friction.f, []
+    for point, state in zip(scene.load.ends, _ends(scene), strict=True):
+        Q, contact = scene.load.points[point][0], state.pressed
+        if abs(abs(Q) - f * contact.P) > _SLIDING * f * contact.P:
+            return None
+        nothing = StickZone(-np.inf, 0.0, 1)
+        shear = Shear(contact, nothing, 1 if Q > 0 else -1, 1, 0.0, 0.0, 0.0)
+        found.append(state._replace(shears=((1.0, shear),)))
+    return Around(scene.load, Fields(f, tuple(found)), _Pressed(scene), "the contact slides")
+
+
+def _ends(scene: Scene) -> tuple[State, State]:
+    """States at load points 1 and 2 without shear traction."""
+    path, load = Path(scene), scene.load
+    contacts = (path.begin, path.at(1.0)) if scene.presses_anew else (path.begin,) * 2
+    first, second = (State(each, (), *load.along[point][1:]) for each, point in zip(contacts, load.ends, strict=True))
+    return first, second
+
+
+@dataclass(frozen=True)
+class _Constant:
+    """Ways under constant pressure."""
+
+    scene: Scene
+    pressed: Contact
+
+    def __call__(self, *, back: bool, share: float) -> tuple[Contact, _Sum]:
+        load, f = self.scene.load, self.scene.friction.f
+        loads = share * load.dQ, share * load.dsigma, share * load.dslope
+        change = loading(self.pressed, f, *loads, bound=2)
+        return self.pressed, ((-2.0 if back else 2.0, Shear.of(self.pressed, change, *loads[1:])),)
+
+
+@dataclass(frozen=True)
+class _Varying:
+    """Ways under varying pressure."""
+
+    scene: Scene
+
+    def __call__(self, *, back: bool, share: float) -> tuple[Contact, _Sum]:
+        path = Path(self.scene, back)
+        now, mean, change = path.stage(share)
+        return now, ((2.0, Shear.of(mean, change, share * path.dsigma, share * path.dslope)),)
+
+
+@dataclass(frozen=True)
+class _Pressed:
+    """Ways without shear."""
+
+    scene: Scene
+
+    def __call__(self, *, back: bool, share: float) -> tuple[Contact, _Sum]:
+        return Path(self.scene, back).at(share), ()
+
+
+def _merged(shears: _Sum) -> _Sum:
+    """Sum of ``shears``, each of which occurs once."""
+    factors: dict[Shear, float] = {}
+    for factor, shear in shears:
+        factors[shear] = factors.get(shear, 0.0) + factor
+    return tuple((factor, shear) for shear, factor in factors.items() if factor)
