@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.fatigue.planes import Critical, OnPlanes, critical_plane, largest, longest_chord, range_of
+from partialslip.fatigue.planes import Critical, Measure, OnPlanes, critical_plane, largest, longest_chord, range_of
 
 
 def with_zz(stress: Array, nu: float, plane: Literal["strain", "stress"] = "strain") -> Array:
@@ -77,13 +77,7 @@ def smith_watson_topper(stress: Array, E: float, nu: float) -> Critical:
     293-298; in fretting: M. P. Szolwinski, T. N. Farris, Mechanics of fretting fatigue crack formation, Wear 198 (1996)
     93-107.
     """
-
-    def measure(at: OnPlanes) -> Array:
-        strain = ((1 + nu) * at.normal - nu * at.trace) / E
-        result: Array = np.maximum(largest(at.normal), 0.0) * range_of(strain) / 2
-        return result
-
-    return critical_plane(stress, measure)
+    return critical_plane(stress, swt_measure(E, nu))
 
 
 def fatemi_socie(stress: Array, E: float, nu: float, k: float, sigma_y: float) -> Critical:
@@ -109,12 +103,7 @@ def fatemi_socie(stress: Array, E: float, nu: float, k: float, sigma_y: float) -
     Fatigue Fract. Eng. Mater. Struct. 11 (1988) 149-165. There the critical plane is that of the largest gamma_a; here
     the plane of the largest parameter is sought, as is usual in fretting.
     """
-    mu = E / (2 * (1 + nu))
-
-    def measure(at: OnPlanes) -> Array:
-        return longest_chord(at.shear) / (2 * mu) * (1 + k / sigma_y * largest(at.normal))
-
-    return critical_plane(stress, measure)
+    return critical_plane(stress, fatemi_socie_measure(E, nu, k, sigma_y))
 
 
 def findley(stress: Array, k: float) -> Critical:
@@ -135,9 +124,31 @@ def findley(stress: Array, k: float) -> Critical:
     W. N. Findley, A theory for the effect of mean stress on fatigue of metals under combined torsion and axial load or
     bending, J. Eng. Ind. 81 (1959) 301-306.
     """
+    return critical_plane(stress, findley_measure(k))
+
+
+def range_measure(at: OnPlanes) -> Array:
+    """Range of the normal stress on planes, Pa, of :func:`principal_range`."""
+    return range_of(at.normal)
+
+
+def swt_measure(E: float, nu: float) -> Measure:
+    """Return sigma_max eps_a on planes, of :func:`smith_watson_topper`."""
 
     def measure(at: OnPlanes) -> Array:
-        result: Array = longest_chord(at.shear) / 2 + k * largest(at.normal)
+        strain = ((1 + nu) * at.normal - nu * at.trace) / E
+        result: Array = np.maximum(largest(at.normal), 0.0) * range_of(strain) / 2
         return result
 
-    return critical_plane(stress, measure)
+    return measure
+
+
+def fatemi_socie_measure(E: float, nu: float, k: float, sigma_y: float) -> Measure:
+    """Return gamma_a (1 + k sigma_max/sigma_y) on planes, of :func:`fatemi_socie`."""
+    mu = E / (2 * (1 + nu))
+    return lambda at: longest_chord(at.shear) / (2 * mu) * (1 + k / sigma_y * largest(at.normal))
+
+
+def findley_measure(k: float) -> Measure:
+    """Return tau_a + k sigma_max on planes, of :func:`findley`."""
+    return lambda at: longest_chord(at.shear) / 2 + k * largest(at.normal)
