@@ -7,7 +7,7 @@ from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.history import certificate, last_cycle_change
 from partialslip.condensed.regime import doubts, steady_state
 from partialslip.plan import Plan
-from partialslip.result import Clock, Result, Slip, Traction
+from partialslip.result import Clock, Result, Slip, StressAt, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene
 from partialslip_fem.displacements import displace_bodies
@@ -16,6 +16,9 @@ from partialslip_fem.fields import along_surfaces, deformed, edges_near_contact
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
 from partialslip_fem.problem import Problem, rescaled
 from partialslip_fem.recovery import Pair
+from partialslip_fem.stresses import BodyStresses
+
+_SLIDES = "q1 and q2 are not known: the contact slides"
 
 
 def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock: Clock) -> Result:
@@ -43,7 +46,9 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
         q1, q2, dq = stress * at1(x), stress * at2(x), PPoly(at2.c - at1.c, at2.x)
 
     made = _factorizations(solution)
-    displaced = displace_bodies(solution, problem) if plan.needs("subsurface") else ()
+    inside = plan.needs("subsurface")
+    displaced = displace_bodies(solution, problem) if inside else ()
+    known_inside = inside and not scene.slides
     restored = _factorizations(solution) - made
     extra = {"back_solves": len(displaced), "factorizations": adapted.factorizations + restored}
 
@@ -98,6 +103,8 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
         end_slips=found.slips,
         contact_ends=((left1 * L + origin, right1 * L + origin), (left2 * L + origin, right2 * L + origin)),
         state=_state(scene, problem, solution),
+        stress_at=StressAt(BodyStresses.of(scene, problem, solution).inside) if known_inside else None,
+        undetermined={"stresses": _SLIDES} if inside and not known_inside else {},
         surface=along_surfaces(displaced, solution.contact_ends, L, stress, origin) if displaced else None,
         edges=edges_near_contact(solution, L, origin),
     )

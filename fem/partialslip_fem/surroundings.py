@@ -14,7 +14,7 @@ import skfem
 
 from partialslip.arrays import Array, Complex
 from partialslip_fem.bodies import Grading, block_of
-from partialslip_fem.elasticity import ELEMENTS, body, facets_of, triangles_of
+from partialslip_fem.elasticity import ELEMENTS, Body, body, facets_of, triangles_of
 from partialslip_fem.factor import Backend, factor
 from partialslip_fem.mortar import shape_functions
 from partialslip_fem.problem import Part
@@ -63,21 +63,8 @@ def surroundings(
     size, corners, facets = sizes
     grading = Grading((-reach, reach), {0.0: size}, _GROWTH, None, facets, corners)
     mesh = part.mesh or block_of(part, 0.0, grading)
-    own = body(mesh, part.kappa, order, part.compliance, part.held, part.pulled)
-    nodes = own.points.shape[1]
-    z = own.points[0] + 1j * own.points[1]
+    own, known = left_over(part, mesh, order, places, backend)
     origins = _on_face(part, places)
-    known = np.zeros((2 * nodes, 2 * len(places) + 1))
-    along_y = own.held >= nodes
-    held = _flamant(part, z[own.held % nodes], origins)  # (2, 2, h, l)
-    known[own.held, :-1] = -np.where(along_y[:, None], held[1], held[0]).transpose(1, 0, 2).reshape(len(own.held), -1)
-    load = np.zeros_like(known)
-    load[:, :-1] = _left_over(part, mesh, order, places)
-    if own.pull is not None:
-        load[:, -1] = own.pull
-    free = np.setdiff1d(np.arange(2 * nodes), own.held)
-    load -= own.stiffness @ known
-    known[free] = factor(own.stiffness, free[:-1], free[-1:], backend).back_substitute(load[free])
     at, values = shape_functions(own, points)
     moved = np.einsum("kj,ckjm->ckm", values, known[own.contact[:, at]])
     forced = moved[..., :-1].reshape(2, len(points), 2, len(places)).transpose(0, 2, 1, 3)
@@ -87,6 +74,27 @@ def surroundings(
     off_line = _flamant(part, _on_face(part, points), origins)
     on_line = _flamant(part, points.astype(complex), places.astype(complex))
     return Surroundings(forced + off_line - on_line, stretched)
+
+
+def left_over(part: Part, mesh: Mesh, order: int, places: Array, backend: Backend) -> tuple[Body, Array]:
+    """The body ``part`` on ``mesh``, and displacements (2 N, 2 l + 1) of its nodes, less those of Flamant's solutions:
+    under unit forces at ``places`` (l,) along x, then along y; and those under a unit tension at its end, if it is
+    pulled there."""
+    own = body(mesh, part.kappa, order, part.compliance, part.held, part.pulled)
+    nodes = own.points.shape[1]
+    z = own.points[0] + 1j * own.points[1]
+    known = np.zeros((2 * nodes, 2 * len(places) + 1))
+    along_y = own.held >= nodes
+    held = _flamant(part, z[own.held % nodes], _on_face(part, places))  # (2, 2, h, l)
+    known[own.held, :-1] = -np.where(along_y[:, None], held[1], held[0]).transpose(1, 0, 2).reshape(len(own.held), -1)
+    load = np.zeros_like(known)
+    load[:, :-1] = _tractions_left(part, mesh, order, places)
+    if own.pull is not None:
+        load[:, -1] = own.pull
+    free = np.setdiff1d(np.arange(2 * nodes), own.held)
+    load -= own.stiffness @ known
+    known[free] = factor(own.stiffness, free[:-1], free[-1:], backend).back_substitute(load[free])
+    return own, known
 
 
 def _flamant(part: Part, z: Complex, origins: Complex) -> Array:
@@ -103,7 +111,7 @@ def _flamant(part: Part, z: Complex, origins: Complex) -> Array:
     return np.array([w.real, w.imag])
 
 
-def _left_over(part: Part, mesh: Mesh, order: int, places: Array) -> Array:
+def _tractions_left(part: Part, mesh: Mesh, order: int, places: Array) -> Array:
     """Nodal forces (2 N, 2 l) of the tractions with which Flamant's solutions for forces at ``places`` load the body's
     boundary, reversed. Forces on nodes that are held do not count.
 

@@ -1,0 +1,128 @@
+"""Stresses at any points of the bodies, in SI units: of half-planes under the recovered tractions, and remainders."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.interpolate import PPoly
+
+from partialslip.arrays import Array
+from partialslip.condensed.below import under_pressure, under_shear, under_tension
+from partialslip.condensed.path import lower_strain
+from partialslip.condensed.phases import Phases
+from partialslip.condensed.piecewise import PiecewiseCauchy
+from partialslip.scene import Scene
+from partialslip_fem.factor import default_backend
+from partialslip_fem.mesh_solution import MeshSolution
+from partialslip_fem.problem import Part, Problem, parts_of
+from partialslip_fem.recovery import traction
+from partialslip_fem.remainder import Remainder
+from partialslip_fem.surroundings import height
+
+_DEPTH = 1e-30  # of points on the surface, scaled
+
+
+@dataclass(frozen=True)
+class BodyStresses:
+    """Stresses at load steps and between them (:class:`partialslip.condensed.phases.Phases`).
+
+    Parameters
+    ----------
+    scene : Scene
+    phases : Phases
+    tractions : PPoly
+        Pressures at the steps, then shears, (2 s) in the last axis; scaled.
+    contact : (float, float)
+        Ends of all that is ever in contact, scaled.
+    origin : float
+        Origin of the scaled x, scaled.
+    width : float or None
+        Half-width of clamped blocks that stand for half-planes, scaled; None if there are none.
+    """
+
+    scene: Scene
+    phases: Phases
+    tractions: PPoly
+    contact: tuple[float, float]
+    origin: float
+    width: float | None
+
+    @classmethod
+    def of(cls, scene: Scene, problem: Problem, solution: MeshSolution) -> "BodyStresses":
+        """Stresses of both bodies in ``solution`` of ``problem``, the scaled ``scene``."""
+        phases, shears, normals = _steps(scene, problem, solution)
+        both = [traction(solution.lower, each) for each in (*normals, *shears)]
+        clamped = problem.far_field == "box" and not all(part.finite for part in problem.parts)
+        return cls(
+            scene,
+            phases,
+            PPoly(np.stack([each.c for each in both], axis=2), both[0].x),
+            solution.reach,
+            problem.origin,
+            float(solution.bodies[0].mesh.points[:, 0].max()) if clamped else None,
+        )
+
+    def inside(self, x: Array, y: Array, phases: Array) -> Array:
+        """Stresses (s, 3, k), Pa, at points (``x``, ``y``), m, (k,) each, and ``phases`` (s,) from 0 to 1."""
+        return self.phases.interpolate(lambda steps: self._at(x, y, list(steps)), phases)
+
+    def _at(self, x: Array, y: Array, steps: list[int]) -> Array:
+        result = np.empty((len(steps), 3, len(x)))
+        for body, here in enumerate((y <= 0, y > 0)):
+            if here.any():
+                result[..., here] = self._in_body(body, x[here], np.abs(y[here]), steps)
+        return result
+
+    def _in_body(self, body: int, x: Array, depth: Array, steps: list[int]) -> Array:
+        part, remainder, side = self._parts[body], self._remainders[body], 1.0 - 2.0 * body
+        length, stress = self.scene.length, self.scene.P / self.scene.length
+        along, deep = x / length - self.origin, depth / length
+        # where bodies touch, a round face is drawn flat
+        touches = (along >= self.contact[0]) & (along <= self.contact[1])
+        deep = np.where(touches, np.maximum(deep, -height(part, along)), deep)
+        value, slope = (np.array_split(each, 2) for each in self._cauchy(along - 1j * np.maximum(deep, _DEPTH)))
+        (P, T), (P_z, T_z) = ([each[steps] for each in pair] for pair in (value, slope))
+        sides = np.full_like(x, side)
+        found = stress * np.moveaxis(under_pressure(P, P_z, -deep, sides) + under_shear(T, T_z, -deep, sides), 1, 0)
+        if remainder:
+            found += stress * remainder.stresses(along, -deep, steps) * np.array([1.0, 1.0, side])[:, None]
+        if side > 0 and not part.pulled:
+            for row, (_, sigma, sigma_slope, *_) in zip(found, self.phases.loads[steps].tolist(), strict=True):
+                row += under_tension(sigma + sigma_slope * x, sigma_slope, depth, sides)
+        return found
+
+    @cached_property
+    def _cauchy(self) -> PiecewiseCauchy:
+        return PiecewiseCauchy(self.tractions.x, np.moveaxis(self.tractions.c, 2, 0))
+
+    @cached_property
+    def _parts(self) -> tuple[Part, Part]:
+        return parts_of(self.scene, self.scene.length)
+
+    @cached_property
+    def _remainders(self) -> tuple[Remainder | None, ...]:
+        strains = np.array([lower_strain(self.scene, sigma) for sigma in self.phases.loads[:, 1]])
+        fem = self.scene.fem
+        return tuple(
+            Remainder.of(
+                part, self.width or 0.0, fem.order, self.tractions, way, strains, fem.factor or default_backend()
+            )
+            if part.finite or self.width
+            else None
+            for part, way in zip(self._parts, (1, -1), strict=True)
+        )
+
+
+def _steps(scene: Scene, problem: Problem, solution: MeshSolution) -> tuple[Phases, list[Array], list[Array]]:
+    """Load steps, and the forces along x and across on the nodes of the contact line at these steps."""
+    history, load = solution.history, scene.load
+    if history:
+        steps = history.around
+        shears = [solution.on_line(each) for each in steps.forces]
+        bounds = np.broadcast_to(steps.bounds, steps.forces.shape)
+        return Phases(load, steps.ways), shears, [solution.on_line(each) / problem.f for each in bounds]
+    second = solution.pressing.x
+    first = second if solution.first is None else solution.first
+    # between the load points the pressure was not solved for
+    normals = [first + share * (second - first) for share in load.progress.tolist()]
+    return Phases(load, ((1.0,),) * len(normals)), [0 * second] * len(normals), normals
