@@ -33,7 +33,7 @@ class Spot:
         m; the depth is positive in either body.
     value : float
     angle, tilt : float
-        Normal of the critical plane: angle from the x axis in the xy plane, and from this plane, rad; NaN without plane.
+        Normal of the critical plane: angle from the x axis in the xy plane, and from this plane, rad; NaN without.
     """
 
     x: float
@@ -112,12 +112,27 @@ class Assessment:
         return notebook_html(self)
 
     def stress(self, x: Array, depth: Array, phases: int | None = None) -> Array:
-        """Stress path (phases, 4, ...), Pa, components xx, yy, xy, zz, at points ``x`` and ``depth``, m, of any common
-        shape; default: the phases of the assessment."""
+        """Return the stress path (phases, 4, ...), Pa, components xx, yy, xy and zz.
+
+        Parameters
+        ----------
+        x, depth : arrays
+            Points, m, of any common shape.
+        phases : int, optional
+            Number of load points around the cycle; default: that of the assessment.
+        """
         return stress_path(self.scene, self.result, self.body, phases or self.phases, x, depth)
 
     def at(self, name: str, x: Array, depth: Array) -> Critical:
-        """Criterion ``name`` at points ``x`` and ``depth``, m, of any common shape."""
+        """Return a criterion at points.
+
+        Parameters
+        ----------
+        name : str
+            Of the criterion.
+        x, depth : arrays
+            Points, m, of any common shape.
+        """
         return self.ratings[name].criterion.at(self.stress(x, depth))
 
 
@@ -135,9 +150,7 @@ def stress_path(scene: Scene, result: Result, body: str, phases: int, x: Array, 
     return with_zz(stress, elastic(scene, body).nu, scene.material.plane)
 
 
-def assess(
-    scene: Scene, result: Result, criteria: Iterable[str] | None = None, *, body: str = "lower"
-) -> Assessment:
+def assess(scene: Scene, result: Result, criteria: Iterable[str] | None = None, *, body: str = "lower") -> Assessment:
     """Assess a solved scene by fatigue criteria.
 
     The load points around the cycle are doubled until the largest value at the surface settles. The largest values are
@@ -168,7 +181,7 @@ def assess(
         )
     ruiz_asked = RUIZ in names and result.slip is not None and bool(result.slip.slip.any())
     found = [criterion(scene, name, body) for name in names if name != RUIZ]
-    x = surface_points(_rough(scene, result), result.a)
+    x = surface_points(rough_points(scene, result), result.a)
     most, notes = _phases_known(result, x)
     path = partial(stress_path, scene, result, body)
     phases, changes = _settled(found, path, x, most)
@@ -191,9 +204,9 @@ def assess(
     )
 
 
-def _rough(scene: Scene, result: Result) -> Array:
-    """Points of the surface where stresses may have cusps, m: ends of the contact and of the stick zone, and kinks of
-    the profile."""
+def rough_points(scene: Scene, result: Result) -> Array:
+    """Return the points of the surface where stresses may have cusps, m: ends of the contact and of the stick zone,
+    and kinks of the profile."""
     ends = np.ravel(result.ends)
     stick = [] if result.m is None or result.n is None else [-result.m, result.n]
     inside = [x for x in (*stick, *scene.profile.kinks) if ends.min() < x < ends.max()]
@@ -212,21 +225,21 @@ def _phases_known(result: Result, x: Array) -> tuple[int, tuple[str, ...]]:
 
 def _settled(found: Sequence[Criterion], path: "partial[Array]", x: Array, most: int) -> tuple[int, list[float]]:
     """Number of load points around the cycle at which the largest values along the surface settle, and their relative
-    changes."""
-    if not found:
-        return min(_FEWEST, most), []
+    changes over half as many."""
+    phases, change = min(_FEWEST, most), np.full(len(found), np.nan)
 
-    def largest(phases: int) -> Array:
-        stress = path(phases, x, np.zeros(1))
+    def largest(stress: Array) -> Array:
         return np.array([np.nanmax(each.at(stress).value) for each in found])
 
-    phases = min(_FEWEST, most)
-    before, change = largest(phases), np.full(len(found), np.nan)
     while 2 * phases <= most and not (change <= SETTLED).all():
         phases *= 2
-        now = largest(phases)
-        change = np.abs(now - before) / np.where(now == 0, 1.0, np.abs(now))
-        before = now
+        stress = path(phases, x, np.zeros(1))
+        # every other load point, with one half or the other of those between load points 1 and 2
+        one = np.arange(0, phases, 2)
+        other = np.unique([0, phases // 2, *range(1, phases, 2)])
+        now = largest(stress)
+        size = np.where(now == 0, 1.0, np.abs(now))
+        change = np.maximum(*(np.abs(now - largest(stress[half])) / size for half in (one, other)))
     return phases, change.tolist()
 
 
@@ -237,7 +250,7 @@ def _rated(
     distance: float | None,
     change: float,
 ) -> Rating:
-    """What a criterion finds, with the stress paths ``known`` on a grid: x (k,), depth (l,), and stress (s, 4, k, l)."""
+    """What a criterion finds, with stress paths ``known`` on a grid: x (k,), depth (l,), and stress (s, 4, k, l)."""
     x, depth, stress = known
 
     def values(x: Array, depth: Array) -> Array:

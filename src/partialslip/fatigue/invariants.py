@@ -7,7 +7,7 @@ import itertools
 
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Indices
 
 _SLACK = 1e-12  # of the radius: a point this far outside lies on the sphere
 _MOST = 100  # steps; each makes the sphere larger, a few are enough
@@ -65,7 +65,7 @@ def crossland(stress: Array, alpha: float) -> Array:
 
 
 def _split(stress: Array) -> tuple[Array, Array]:
-    """Hydrostatic stress (s, ...) and deviator (3, s, ...), in coordinates in which s : s is the square of the length."""
+    """Hydrostatic stress (s, ...), and deviator (3, s, ...) in coordinates in which s : s is its square."""
     xx, yy, xy, zz = np.moveaxis(stress, 1, 0)
     pressure = (xx + yy + zz) / 3
     return pressure, np.stack([(xx - yy) / np.sqrt(2), np.sqrt(1.5) * (zz - pressure), np.sqrt(2) * xy])
@@ -105,7 +105,7 @@ def smallest_sphere(path: Array) -> tuple[Array, Array]:
     return centre.reshape(3, 1, *shape), radius.reshape(shape)
 
 
-def _around_five(corners: Array) -> tuple[Array, Array, Array]:
+def _around_five(corners: Array) -> tuple[Array, Array, Indices]:
     """Centre (3, n), radius (n,) and the numbers (4, n) of the points touched of the smallest sphere around ``corners``
     (3, 5, n) that touches the first.
 
@@ -135,10 +135,11 @@ def _distances(points: Array, centre: Array) -> Array:
     return result
 
 
-def _farthest(points: Array, centre: Array) -> Array:
-    return _distances(points, centre[:, None]).argmax(axis=0)
+def _farthest(points: Array, centre: Array) -> Indices:
+    result: Indices = _distances(points, centre[:, None]).argmax(axis=0)
+    return result
 
 
-def _taken(points: Array, number: Array) -> Array:
+def _taken(points: Array, number: Indices) -> Array:
     """The points (3, n) of ``number`` (n,) of each path of ``points`` (3, s, n)."""
     return np.take_along_axis(points, number[None, None], axis=1)[:, 0]

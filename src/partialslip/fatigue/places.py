@@ -14,17 +14,18 @@ _NODES = 24  # of Gauss
 Values = Callable[[Array, Array], Array]
 
 
-def surface_points(breaks: Array, a: float) -> Array:
-    """Return points x, m, along the surface, dense near ``breaks`` (b,), m, and up to two half-widths ``a`` beyond."""
+def surface_points(breaks: Array, a: float, between: int = _BETWEEN) -> Array:
+    """Return points x, m, along the surface, dense near ``breaks`` (b,), m, and up to two half-widths ``a`` beyond;
+    ``between`` intervals from one break to the next."""
     ends = np.concatenate([[breaks[0] - _BEYOND * a], breaks, [breaks[-1] + _BEYOND * a]])
     ends = ends[np.append(True, np.diff(ends) > 1e-9 * a)]
-    share = (1 - np.cos(np.linspace(0, np.pi, _BETWEEN + 1))) / 2
+    share = (1 - np.cos(np.linspace(0, np.pi, between + 1))) / 2
     return np.unique(np.concatenate([ends[:-1, None] + np.diff(ends)[:, None] * share]).ravel())
 
 
-def depths(a: float) -> Array:
-    """Return depths, m, from 0 to two half-widths ``a``, dense near the surface."""
-    return _DEEP * a * np.linspace(0, 1, _LEVELS + 1) ** 2
+def depths(a: float, levels: int = _LEVELS) -> Array:
+    """Return depths, m, from 0 to two half-widths ``a``, dense near the surface, in ``levels`` intervals."""
+    return _DEEP * a * np.linspace(0, 1, levels + 1) ** 2
 
 
 def largest_at(function: Values, x: Array, depth: Array, values: Array) -> tuple[float, float]:

@@ -1,12 +1,12 @@
 """The critical plane: the plane through a point on which a measure of the stress path is largest.
 
 The normal of a plane is (cos tilt cos angle, cos tilt sin angle, sin tilt). As sigma_xz = sigma_yz = 0, planes with
-tilts of opposite sign have equal measures, and the measure is stationary across tilt = 0. A plane with tilt may still be
-critical: sigma_zz is not zero in plane strain, and the shear on planes across the xy plane is not in plane stress.
+tilts of opposite sign have equal measures, and the measure is stationary across tilt = 0. A plane with tilt may still
+be critical: sigma_zz is not zero in plane strain, and in plane stress the shear across the xy plane is not.
 
-Sampled planes alone would be off by the square of their spacing. The measure is the largest of smooth functions, one for
-each choice of load points, and a local maximum of the largest is a local maximum of one of them. Newton's method from
-the best sampled planes therefore finds the maximum to rounding.
+Sampled planes alone would be off by the square of their spacing. The measure is the largest of smooth functions, one
+for each choice of load points, and a local maximum of the largest is a local maximum of one of them. Newton's method
+from the best sampled planes therefore finds the maximum to rounding.
 """
 
 import functools
@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array, Mask
+from partialslip.arrays import Array, Indices, Mask
 
 ANGLES, TILTS = 36, 5  # sampled planes: 5 degrees apart in the xy plane, 22.5 degrees across
 _STARTS = 3  # sampled planes from which the maximum is sought
@@ -183,7 +183,7 @@ def _starts(stress: Array, measure: Measure) -> tuple[Array, Array]:
     return np.concatenate([angle, near_angle]), np.concatenate([tilt, near_tilt])
 
 
-def _climb(stress: Array, measure: Measure, point: Array, angle: Array, tilt: Array) -> tuple[Array, Array, Array]:
+def _climb(stress: Array, measure: Measure, point: Indices, angle: Array, tilt: Array) -> tuple[Array, Array, Array]:
     """Climb to maxima of ``measure`` from several planes at each point, all arrays (starts, n), by Newton's method on
     stencils of 3 x 3 planes, which shrink where the maximum is within."""
     shape, point, angle, tilt = angle.shape, point.ravel(), angle.ravel(), tilt.ravel()

@@ -37,8 +37,8 @@ def ruiz(result: Result, sigma: Array) -> Ruiz:
     """Return Ruiz's parameters F1 and F2 of a result with slip.
 
     sigma_T is the largest tangential stress sigma_xx of the surface during the cycle (0 under compression), tau the
-    amplitude \\|q2 - q1\\|/2 of the shear traction and delta the amplitude of slip, half of its change from load point 1
-    to 2.
+    amplitude \\|q2 - q1\\|/2 of the shear traction, and delta the amplitude of slip, half of its change between load
+    points 1 and 2.
 
     Parameters
     ----------
@@ -58,6 +58,4 @@ def ruiz(result: Result, sigma: Array) -> Ruiz:
     work = np.abs(result.traction.at(x)[1]) / 2 * np.abs(result.slip.slip) / 2
     product = tension * work
     most, both = int(work.argmax()), int(product.argmax())
-    return Ruiz(
-        float(tension.max() * work[most]), float(product[both]), float(x[most]), float(x[both]), x, product
-    )
+    return Ruiz(float(tension.max() * work[most]), float(product[both]), float(x[most]), float(x[both]), x, product)

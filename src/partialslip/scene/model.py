@@ -53,8 +53,8 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     ranges and raise InputError with the same one line. A scene is immutable: :meth:`replace` makes a changed one.
 
     ``name`` (letters, digits, ".", "_" and "-"), ``title``, and the tables ``material``, ``profile``, ``load``,
-    ``friction``, ``bodies``, ``fem``, ``effects`` and ``fatigue``. All numbers are in SI units. ``shown_in``: units of tables,
-    reports and CSV files, and of tables to score.
+    ``friction``, ``bodies``, ``fem``, ``effects`` and ``fatigue``. All numbers are in SI units. ``shown_in``: units of
+    tables, reports and CSV files, and of tables to score.
     """
 
     name: Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*\Z", max_length=100)]
@@ -140,7 +140,9 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         """Name and title, then a line for each table that is not the default."""
         title = f"{self.name}: {self.title}" if self.title else self.name
         entries = (getattr(self, key) for key in self.__struct_fields__)
-        tables = (each for each in entries if isinstance(each, Table) and each not in (Bodies(), Fem(), Effects(), Fatigue()))
+        tables = (
+            each for each in entries if isinstance(each, Table) and each not in (Bodies(), Fem(), Effects(), Fatigue())
+        )
         return "\n  ".join([f"Scene {title}", *map(short, tables)])
 
     def replace(self, changes: Mapping[str, Any] | None = None, /, **tables: Any) -> "Scene":
