@@ -34,7 +34,17 @@ def principal_range(stress: Array) -> Critical:
     """Largest range of the normal stress on any plane, Pa: the largest principal stress range.
 
     max over planes n and load points i, j of n . (sigma_i - sigma_j) . n, which is the largest principal value of all
-    differences of two stresses: a closed form without search.
+    differences of two stresses: a closed form without search (Rayleigh's quotient).
+
+    Parameters
+    ----------
+    stress : (s, 4, ...) array
+        Pa.
+
+    References
+    ----------
+    As used with critical distances: D. Taylor, Geometrical effects in fatigue: a unifying theoretical model, Int. J.
+    Fatigue 21 (1999) 413-420.
     """
     value, angle, tilt = (np.zeros(stress.shape[2:]) for _ in range(3))
     for lag in range(1, len(stress) // 2 + 1):
