@@ -23,7 +23,7 @@ from partialslip_fem.surroundings import left_over
 from partialslip_meshes import Mesh
 
 _PLACES = 24  # forces that stand for the tractions far from the contact
-_SIZE, _GROWTH, _CORNERS, _FACETS = 0.1, 0.2, 1e-7, 1e-5  # of the mesh, in the smallest half-width or height
+_SIZE, _GROWTH, _CORNERS, _FACETS = 0.1, 0.4, 1e-7, 1e-5  # of the mesh, in the smallest half-width or height
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(_PLACES // 2 + 4)
 
 
@@ -40,6 +40,8 @@ class Remainder:
         Displacements of all nodes.
     weights : (s, r) array
         Of the fields, by state.
+    face : (2, n) array
+        Nodes of the side with the contact line, ascending in x.
     """
 
     part: Part
@@ -47,6 +49,7 @@ class Remainder:
     order: int
     fields: Array
     weights: Array
+    face: Array
 
     @classmethod
     def of(
@@ -74,13 +77,15 @@ class Remainder:
         reach = max(-left, right)
         grading = Grading((-reach, reach), {0.0: _SIZE * smallest}, _GROWTH, None, _FACETS, _CORNERS)
         mesh = part.mesh or block_of(part, width, grading)
-        _, known = left_over(part, mesh, order, places, backend)
+        own, known = left_over(part, mesh, order, places, backend)
         normal, shear = np.array_split(_forces(tractions), 2)
         weights = np.concatenate([-way * shear, -normal, 4 / part.compliance * strains[:, None]], axis=1)
-        return cls(part, mesh, order, known.T.reshape(2 * _PLACES + 1, 2, -1), weights)
+        fields = known.T.reshape(2 * _PLACES + 1, 2, -1)
+        return cls(part, mesh, order, fields, weights, own.points[:, own.face])
 
     def stresses(self, x: Array, y: Array, states: list[int]) -> Array:
-        """Stresses (s, 3, k) at points below the contact line, in ``states``; NaN outside the mesh."""
+        """Stresses (s, 3, k) at points below the face, in ``states``; NaN outside the mesh."""
+        y = np.minimum(y, np.interp(x, *self.face))  # sides of elements are straight
         cells, local = self._locator(np.column_stack([x, y]))
         known = cells >= 0
         result = np.full((len(states), 3, len(x)), np.nan)

@@ -19,7 +19,40 @@ from partialslip_fem.recovery import traction
 from partialslip_fem.remainder import Remainder
 from partialslip_fem.surroundings import height
 
-_DEPTH = 1e-30  # of points on the surface, scaled
+_SURFACE = 1e-30  # depth of points on a flat surface, scaled
+_BELOW = 1e-13  # depth of points on a round face below the polygon of its cells, scaled
+_ROUNDING = 1e-9  # part of the depth of a face
+
+
+class Line:
+    """The contact line of a body and the ``tractions`` on it: pressures in s states, then shears, (2 s) in the last
+    axis. ``part`` tells whether it is round; the body above is mirrored (``side`` = -1). Scaled."""
+
+    def __init__(self, tractions: PPoly, part: Part, side: float) -> None:
+        self._side, self._x, self._round = side, tractions.x, part.face is not None
+        self._height, rows = height(part, tractions.x), np.moveaxis(tractions.c, 2, 0)
+        if self._round:  # tractions times the height
+            slopes = np.diff(self._height) / np.diff(self._x)
+            raised = np.zeros((len(rows), rows.shape[1] + 1, rows.shape[2]))
+            raised[:, 1:] = self._height[:-1] * rows
+            raised[:, :-1] += slopes * rows
+            rows = np.concatenate([np.pad(rows, ((0, 0), (1, 0), (0, 0))), raised])
+        self._cauchy = PiecewiseCauchy(self._x + 1j * self._height if self._round else self._x, rows)
+
+    def stresses(self, x: Array, depth: Array, states: list[int]) -> Array:
+        """Stresses (s, 3, k) of the tractions in ``states``, as on a half-plane, at points at ``depth`` below y = 0."""
+        side = np.full_like(x, self._side)
+        lowest = -np.interp(x, self._x, self._height) + _BELOW if self._round else _SURFACE
+        value, slope = self._cauchy(x - 1j * np.maximum(depth, lowest))
+        count = len(value) // (4 if self._round else 2)
+        (P, T), (yP_z, yT_z) = (
+            (each[:count][states], each[count : 2 * count][states]) for each in (value, -depth * slope)
+        )
+        if self._round:
+            yP_z, yT_z = (
+                each - slope[number * count : (number + 1) * count][states] for each, number in ((yP_z, 2), (yT_z, 3))
+            )
+        return np.moveaxis(under_pressure(P, yP_z, side) + under_shear(T, yT_z, side), 1, 0)
 
 
 @dataclass(frozen=True)
@@ -75,25 +108,24 @@ class BodyStresses:
 
     def _in_body(self, body: int, x: Array, depth: Array, steps: list[int]) -> Array:
         part, remainder, side = self._parts[body], self._remainders[body], 1.0 - 2.0 * body
-        length, stress = self.scene.length, self.scene.P / self.scene.length
-        along, deep = x / length - self.origin, depth / length
+        along, deep = x / self.scene.length - self.origin, depth / self.scene.length
+        face = -height(part, along)
         # where bodies touch, a round face is drawn flat
         touches = (along >= self.contact[0]) & (along <= self.contact[1])
-        deep = np.where(touches, np.maximum(deep, -height(part, along)), deep)
-        value, slope = (np.array_split(each, 2) for each in self._cauchy(along - 1j * np.maximum(deep, _DEPTH)))
-        (P, T), (P_z, T_z) = ([each[steps] for each in pair] for pair in (value, slope))
-        sides = np.full_like(x, side)
-        found = stress * np.moveaxis(under_pressure(P, P_z, -deep, sides) + under_shear(T, T_z, -deep, sides), 1, 0)
+        found = self._lines[body].stresses(along, np.maximum(deep, face), steps)
         if remainder:
-            found += stress * remainder.stresses(along, -deep, steps) * np.array([1.0, 1.0, side])[:, None]
+            rest = remainder.stresses(along, -np.maximum(deep, face), steps)
+            found += rest * np.array([1.0, 1.0, side])[:, None]
+        found[..., (deep < (1 - _ROUNDING) * face) & ~touches] = np.nan
+        found *= self.scene.P / self.scene.length
         if side > 0 and not part.pulled:
-            for row, (_, sigma, sigma_slope, *_) in zip(found, self.phases.loads[steps].tolist(), strict=True):
-                row += under_tension(sigma + sigma_slope * x, sigma_slope, depth, sides)
+            for row, (_, sigma, slope, *_) in zip(found, self.phases.loads[steps].tolist(), strict=True):
+                row += under_tension(sigma + slope * x, slope, depth, np.ones_like(x))
         return found
 
     @cached_property
-    def _cauchy(self) -> PiecewiseCauchy:
-        return PiecewiseCauchy(self.tractions.x, np.moveaxis(self.tractions.c, 2, 0))
+    def _lines(self) -> tuple[Line, ...]:
+        return tuple(Line(self.tractions, part, side) for part, side in zip(self._parts, (1.0, -1.0), strict=True))
 
     @cached_property
     def _parts(self) -> tuple[Part, Part]:

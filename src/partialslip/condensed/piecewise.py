@@ -18,20 +18,22 @@ _AT_ONCE = 2**20  # pairs of points in memory
 
 
 class PiecewiseCauchy:
-    """(1/pi) int g(t)/(t - z) dt of piecewise polynomials g, and the derivatives of these integrals.
+    """(1/pi) int g(t)/(t - z) dt of piecewise polynomials g, and the derivatives of these integrals; where the cells lie
+    on a polygon y = h(x), with t + i h(t) for t in the denominator.
 
     Parameters
     ----------
-    vertices : (c + 1,) array
-        Ends of the cells, ascending.
+    vertices : (c + 1,) real or complex array
+        Ends of the cells, ascending in x.
     coefficients : (r, k + 1, c) array
         Of r functions on each cell, in powers of the distance from the cell's left end, the highest power first, as in
         :class:`scipy.interpolate.PPoly`.
     """
 
-    def __init__(self, vertices: Array, coefficients: Array) -> None:
+    def __init__(self, vertices: Array | Complex, coefficients: Array) -> None:
         self._middle, self._half = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices) / 2
-        self._local = _about_the_middle(coefficients, self._half)
+        self._width = self._half.real
+        self._local = _about_the_middle(coefficients, self._width)
         first = np.arange(0, len(self._half), _TOGETHER)
         self._first = first
         low, high = vertices[first], vertices[np.append(first[1:], len(self._half))]
@@ -61,12 +63,12 @@ class PiecewiseCauchy:
         result /= np.pi
         return result
 
-    def _at_nodes(self) -> Array:
+    def _at_nodes(self) -> Array | Complex:
         """Forces (r, groups, nodes) with the moments of the polynomials of each group."""
         degree = self._local.shape[1] - 1
         s, weights = np.polynomial.legendre.leggauss((_COUNT + degree) // 2 + 1)
         values = np.einsum("rkc,ks->rcs", self._local, s ** np.arange(degree + 1)[:, None]) * weights
-        values = values * self._half[:, None]
+        values = values * self._width[:, None]
         group = np.arange(len(self._half)) // _TOGETHER
         place = (self._middle[:, None] + self._half[:, None] * s - self._centre[group][:, None]) / self._reach[group][
             :, None
@@ -74,7 +76,7 @@ class PiecewiseCauchy:
         legendre = np.polynomial.legendre.legvander(place, _COUNT - 1)
         moments = np.add.reduceat(np.einsum("rcs,csk->rck", values, legendre), self._first, axis=1)
         back = np.polynomial.legendre.legvander(_NODES, _COUNT - 1) * (np.arange(_COUNT) + 0.5)
-        result: Array = (moments @ back.T) * _WEIGHTS
+        result: Array | Complex = (moments @ back.T) * _WEIGHTS
         return result
 
     def _closed(self, z: Complex, cell: Indices) -> tuple[Complex, Complex]:
@@ -91,7 +93,8 @@ class PiecewiseCauchy:
         for power in range(c.shape[1] - 1, -1, -1):  # Horner's rule, with derivatives
             g_z, g = g_z * zeta + g, g * zeta + c[:, power]
             rest_z, rest = rest_z * zeta + rest, rest * zeta + inner[:, power]
-        return g * logarithm + rest, (g_z * logarithm + g * 2 / (zeta**2 - 1) + rest_z) / half
+        along = self._width[cell] / half  # dx along the cell
+        return (g * logarithm + rest) * along, (g_z * logarithm + g * 2 / (zeta**2 - 1) + rest_z) * along / half
 
 
 def _about_the_middle(coefficients: Array, half: Array) -> Array:

@@ -75,7 +75,7 @@ class Shear:
         y = -at.depth / self.contact.a
         sticks = (y == 0) & (np.abs(at.x - self.stick.centre) <= self.stick.half_width)
         tension = self.sigma + self.slope * at.x
-        found = unit * under_shear(T, T_z, y, at.side)
+        found = unit * under_shear(T, y * T_z, at.side)
         # no relative strain in the stick zone: the bodies share the tension
         found[0] = np.where(sticks, -at.side * tension / 2, found[0])
         result: Array = found + under_tension(tension, self.slope, at.depth, at.side)
@@ -146,7 +146,7 @@ class Fields:
                     integrals[cauchy] = cauchy(at.scaled(contact))
                 value, slope = integrals[cauchy][:, row]
                 if isinstance(of, Contact):
-                    made[of] = of.p0 * under_pressure(value, slope, -at.depth / of.a, at.side)
+                    made[of] = of.p0 * under_pressure(value, -at.depth / of.a * slope, at.side)
                 else:
                     made[of] = of.stresses(self.f * contact.p0, value, slope, at)
             return made[of]
