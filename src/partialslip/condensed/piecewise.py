@@ -18,8 +18,9 @@ _AT_ONCE = 2**20  # pairs of points in memory
 
 
 class PiecewiseCauchy:
-    """(1/pi) int g(t)/(t - z) dt of piecewise polynomials g, and the derivatives of these integrals; where the cells lie
-    on a polygon y = h(x), with t + i h(t) for t in the denominator.
+    """(1/pi) int g(t)/(t - z) dt of piecewise polynomials g, and the derivatives of these integrals.
+
+    Where the cells lie on a polygon y = h(x), t + i h(t) stands for t in the denominator.
 
     Parameters
     ----------
@@ -31,7 +32,7 @@ class PiecewiseCauchy:
     """
 
     def __init__(self, vertices: Array | Complex, coefficients: Array) -> None:
-        self._middle, self._half = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices) / 2
+        self._ends, self._middle, self._half = vertices, (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices) / 2
         self._width = self._half.real
         self._local = _about_the_middle(coefficients, self._width)
         first = np.arange(0, len(self._half), _TOGETHER)
@@ -51,7 +52,7 @@ class PiecewiseCauchy:
             near = np.abs(zeta - 1) + np.abs(zeta + 1) < _NEAR
             pole = 1 / (nodes.ravel() - z[part, None]).reshape(len(part), groups, _COUNT)
             pole[near] = 0.0
-            pole = pole.reshape(len(part), -1)
+            pole = pole.reshape(len(part), nodes.size)
             result[0, :, part], result[1, :, part] = pole @ forces, pole**2 @ forces
             point, group = np.nonzero(near)
             for offset in range(_TOGETHER):
@@ -87,14 +88,18 @@ class PiecewiseCauchy:
         half = self._half[cell]
         zeta = (z - self._middle[cell]) / half
         c = self._local[:, :, cell]
-        logarithm = np.log((zeta - 1) / (zeta + 1))
+        # distances from vertices, which neighbours share, to the last digit
+        low, high = z - self._ends[cell], z - self._ends[cell + 1]
+        logarithm = np.log(high / low)
         g, g_z, rest, rest_z = (np.zeros((len(c), len(z)), complex) for _ in range(4))
         inner = _divided(c)
         for power in range(c.shape[1] - 1, -1, -1):  # Horner's rule, with derivatives
             g_z, g = g_z * zeta + g, g * zeta + c[:, power]
             rest_z, rest = rest_z * zeta + rest, rest * zeta + inner[:, power]
         along = self._width[cell] / half  # dx along the cell
-        return (g * logarithm + rest) * along, (g_z * logarithm + g * 2 / (zeta**2 - 1) + rest_z) * along / half
+        return (g * logarithm + rest) * along, (
+            g_z * logarithm + g * (1 / high - 1 / low) * half + rest_z
+        ) * along / half
 
 
 def _about_the_middle(coefficients: Array, half: Array) -> Array:

@@ -13,7 +13,7 @@ from partialslip.condensed.phases import Phases
 from partialslip.condensed.piecewise import PiecewiseCauchy
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.pressing import NormalLoads
-from partialslip.halfplane.stress import Fields, Points, State
+from partialslip.halfplane.stress import Fields, Points, SlipZones, State
 
 _SLIPS = 1e-9  # distance of |q| from f p, relative, at which a cell slips
 _WINDOW = 5  # vertices of the polynomial through the resultants around a vertex
@@ -51,8 +51,10 @@ class CellStresses:
         """Stresses of the last cycle in ``steps``."""
         scene, phases = normal.scene, Phases(normal.scene.load, steps.ways)
         known: dict[object, Contact] = {}
-        states = []
-        for _, sigma, slope, share, number in phases.loads.tolist():
+        states, bounds = [], np.broadcast_to(steps.bounds, steps.forces.shape)
+        for (_, sigma, slope, share, number), force, bound in zip(
+            phases.loads.tolist(), steps.forces, bounds, strict=True
+        ):
             pressed = normal.frame
             if scene.presses_anew:
                 points = scene.pressing
@@ -60,7 +62,11 @@ class CellStresses:
                 if pressing not in known:
                     known[pressing] = contact(scene, pressing)
                 pressed = known[pressing]
-            states.append(State(pressed, (), sigma, slope))
+            first, last = _end_runs(force, bound)
+            inner = pressed.scaled(normal.frame.places(vertices[[first, last]])).tolist()
+            signs = int(np.sign(force[first - 1])), int(np.sign(force[last % len(force)]))
+            zones = SlipZones(pressed, inner[0], inner[1], signs)
+            states.append(State(pressed, ((1.0, zones),), sigma, slope))
         return cls(scene.friction.f, normal.frame, vertices, phases, tuple(states), steps)
 
     def inside(self, x: Array, y: Array, phases: Array) -> Array:
@@ -96,23 +102,45 @@ class CellStresses:
         return PiecewiseCauchy(self.vertices, np.array(rows))
 
 
+def _end_runs(forces: Array, bounds: Array) -> tuple[int, int]:
+    """Vertices at which the cells end that slip, one way each, beside the left and the right end of the contact."""
+    ways = _ways(forces, bounds)
+    on = np.flatnonzero(bounds > 0)
+    low, high = int(on[0]), int(on[-1]) + 1
+    other = np.flatnonzero(ways[low:high] != ways[low]) if ways[low] else np.zeros(1, np.int64)
+    first = low + int(other[0]) if len(other) else high
+    back = ways[first:high][::-1]
+    other = np.flatnonzero(back != ways[high - 1]) if ways[high - 1] else np.zeros(1, np.int64)
+    return first, high - int(other[0]) if len(other) else first
+
+
+def _ways(forces: Array, bounds: Array) -> Array:
+    r"""Sign of the ``forces`` (c,) on cells that slip, at which \|force\| is the bound; 0 on others."""
+    slips = (np.abs(forces) >= (1 - _SLIPS) * bounds) & (bounds > 0)
+    return np.where(slips, np.sign(forces), 0.0)
+
+
 def smoothed(vertices: Array, forces: Array, bounds: Array, limits: Array) -> Array:
     """Continuous shear traction with given ``forces`` (c,) on the cells between ``vertices`` (c + 1,): coefficients
     (3, c) of quadratic polynomials, as in :class:`scipy.interpolate.PPoly`.
 
-    At vertices of cells that slip, at which \\|force\\| is the bound in ``bounds`` (c,), \\|q\\| is f p, in ``limits``
-    (c + 1,). Elsewhere q is the derivative of a polynomial through the resultants at the vertices around.
+    Next to cells that slip, q is f p in size, in ``limits`` (c + 1,). Elsewhere q is the derivative of a polynomial
+    through the resultants at the vertices around. Cells that slip beside the ends of the contact are left out.
     """
     widths, means = np.diff(vertices), forces / np.diff(vertices)
-    slips, open_ = (np.abs(forces) >= (1 - _SLIPS) * bounds) & (bounds > 0), bounds <= 0
-    at = _inner(vertices, forces, ~(slips | open_))
-    ways = np.where(slips, np.sign(forces), 0.0)
-    beside, sum_ = (np.append(each, 0) + np.append(0, each) for each in (slips.astype(float), ways))
+    ways, open_ = _ways(forces, bounds), bounds <= 0
+    at = _inner(vertices, forces, (ways == 0) & ~open_)
+    beside, sum_ = (np.append(each, 0) + np.append(0, each) for each in (np.abs(ways), ways))
     at = np.where(beside > 0, sum_ / np.maximum(beside, 1) * limits, at)
     ends = np.append(open_, True) | np.append(True, open_)  # where q ends like a square root
     at = np.where(ends, 0.0, at)
     left, right = at[:-1], at[1:]
-    return np.array([3 * (left + right - 2 * means) / widths**2, (6 * means - 4 * left - 2 * right) / widths, left])
+    first, last = _end_runs(forces, bounds)
+    left_out = (np.arange(len(forces)) < first) | (np.arange(len(forces)) >= last)
+    quadratics = np.array(
+        [3 * (left + right - 2 * means) / widths**2, (6 * means - 4 * left - 2 * right) / widths, left]
+    )
+    return np.where(left_out, 0.0, quadratics)
 
 
 def _inner(vertices: Array, forces: Array, sticks: Mask) -> Array:

@@ -28,7 +28,8 @@ from partialslip.halfplane.cell_stress import CellStresses
 from partialslip.halfplane.cells import compliance, graded
 from partialslip.halfplane.pressing import NormalLoads
 from partialslip.halfplane.remarks import no_stresses
-from partialslip.halfplane.states import sliding, without_shear
+from partialslip.halfplane.states import Around, sliding, without_shear
+from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tractions import CellTractions
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, StressAt, Traction
@@ -149,12 +150,15 @@ def _with_stresses(found: Result, normal: NormalLoads, level: _Level) -> Result:
     """Result with stresses, where q1 and q2 are known."""
     scene = normal.scene
     if level.history:
-        stresses = CellStresses.of(normal, level.vertices, level.history.around)
-        return replace(found, stress_at=StressAt(stresses.inside))
-    pressed = sliding(scene) if scene.slides else without_shear(scene)
-    if not pressed:
+        stresses: CellStresses | Around | None = CellStresses.of(normal, level.vertices, level.history.around)
+    else:
+        stresses = sliding(scene) if scene.slides else without_shear(scene)
+    if not stresses:
         return replace(found, undetermined=no_stresses("the contact slides"))
-    return replace(found, stress_at=StressAt(pressed.inside))
+    far = normal.frame.places([-BEYOND, BEYOND])
+    breaks = np.unique([*far, *normal.frame.places([*normal.ends, *level.zone])])
+    surface = along_surface(stresses.surface, breaks)
+    return replace(found, surface=surface, stress_at=StressAt(stresses.inside))
 
 
 def _accuracy(scene: Scene) -> float:

@@ -71,7 +71,7 @@ def solve(
     far = abs(pressed.centre) + BEYOND * a
     inside = plan.needs("subsurface")
     stress = _stresses(scene, pressed, found) if inside else None
-    surface = along_surface(stress.fields.surface, np.concatenate([[-far], breaks, [far]])) if stress else None
+    surface = along_surface(stress.surface, np.concatenate([[-far], breaks, [far]])) if stress else None
     slips = cycle and not cycle.nothing
     why = undetermined(regime, turns, found) | (no_stresses(found) if inside and not stress else {})
     table = table_error(scene, pressed, cycle)

@@ -11,12 +11,12 @@ from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.levels import Levels
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.mean import Path
-from partialslip.halfplane.stress import Fields, Points, Shear, State
+from partialslip.halfplane.stress import Fields, Points, Shear, SlipZones, State
 from partialslip.result import StickZone
 from partialslip.scene import Load, Scene
 
 _SLIDING = 1e-9  # |Q|, relative to f P, that is closer to f P slides with q = f p
-_Sum = tuple[tuple[float, Shear], ...]
+_Sum = tuple[tuple[float, Shear | SlipZones], ...]
 
 
 class _Way(Protocol):
@@ -55,6 +55,10 @@ class Around:
             If the state at a phase has no closed form.
         """
         return self.fields.at(Points.of(x, y), [self._state(phase) for phase in phases.tolist()])
+
+    def surface(self, x: Array) -> Array:
+        """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body (lower, upper) and load point."""
+        return self.fields.surface(x)
 
     def _state(self, phase: float) -> State:
         first, second = self.fields.ends
@@ -171,7 +175,7 @@ class _Pressed:
 
 def _merged(shears: _Sum) -> _Sum:
     """Sum of ``shears``, each of which occurs once."""
-    factors: dict[Shear, float] = {}
+    factors: dict[Shear | SlipZones, float] = {}
     for factor, shear in shears:
         factors[shear] = factors.get(shear, 0.0) + factor
     return tuple((factor, shear) for shear, factor in factors.items() if factor)

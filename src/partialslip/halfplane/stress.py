@@ -82,6 +82,34 @@ class Shear:
         return result
 
 
+@dataclass(frozen=True)
+class SlipZones:
+    """Shear traction f p beside the ends of a contact, in the directions ``signs``: up to ``left`` and from ``right``
+    on, scaled; none between them."""
+
+    contact: Contact
+    left: float
+    right: float
+    signs: tuple[int, int]
+
+    @property
+    def breaks(self) -> list[float]:
+        """Inner ends of the zones, scaled."""
+        return [self.left, self.right]
+
+    def traction(self, x: Array) -> Array:
+        """q at ``x`` (scaled), in f p0."""
+        sign = np.where(x < self.left, self.signs[0], np.where(x > self.right, self.signs[1], 0))
+        return sign * self.contact.shape.pressure(x)
+
+    def stresses(self, unit: float, T: Complex, T_z: Complex, at: "Points") -> Array:
+        """Stresses (3, k), Pa, at points, from the Cauchy integrals of q in ``unit``."""
+        return unit * under_shear(T, -at.depth / self.contact.a * T_z, at.side)
+
+
+_Acting = Contact | Shear | SlipZones
+
+
 class Points(NamedTuple):
     """Points ``x`` (k,), m, at ``depth`` (k,), m, in the lower (``side`` = 1) or the upper body (-1)."""
 
@@ -105,7 +133,7 @@ class State(NamedTuple):
     under f p, and of the bulk tension ``sigma`` (Pa) and its ``slope`` (Pa/m) that act without friction."""
 
     pressed: Contact
-    shears: tuple[tuple[float, Shear], ...] = ()
+    shears: tuple[tuple[float, Shear | SlipZones], ...] = ()
     sigma: float = 0.0
     slope: float = 0.0
 
@@ -126,7 +154,7 @@ class Fields:
 
     f: float
     ends: tuple[State, ...]
-    _known: dict[Contact | Shear, tuple[Cauchy, int]] = field(default_factory=dict, repr=False, compare=False)
+    _known: dict[_Acting, tuple[Cauchy, int]] = field(default_factory=dict, repr=False, compare=False)
 
     def surface(self, x: Array) -> Array:
         """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body (lower, upper) and load point."""
@@ -135,10 +163,10 @@ class Fields:
 
     def at(self, at: "Points", states: Sequence[State]) -> Array:
         """sigma_xx, sigma_yy and sigma_xy (Pa) at k points: (s, 3, k), by state."""
-        made: dict[Contact | Shear, Array] = {}
+        made: dict[_Acting, Array] = {}
         integrals: dict[Cauchy, Complex] = {}
 
-        def stresses(of: Contact | Shear) -> Array:
+        def stresses(of: _Acting) -> Array:
             if of not in made:
                 contact = of if isinstance(of, Contact) else of.contact
                 cauchy, row = self._cauchy(of)
@@ -160,7 +188,7 @@ class Fields:
                 found += under_tension(state.sigma + state.slope * at.x, state.slope, at.depth, at.side)
         return result
 
-    def _cauchy(self, of: Contact | Shear) -> tuple[Cauchy, int]:
+    def _cauchy(self, of: _Acting) -> tuple[Cauchy, int]:
         """Cauchy integrals of p/p0 or q/(f p0), lengths scaled by a, and the row of these integrals."""
         if not self._known:
             self._add(*dict.fromkeys(each for state in self.ends for each in _summands(state)))
@@ -168,12 +196,12 @@ class Fields:
             self._add(of)
         return self._known[of]
 
-    def _add(self, *all_: Contact | Shear) -> None:
-        groups: dict[Contact, list[Contact | Shear]] = {}
+    def _add(self, *all_: _Acting) -> None:
+        groups: dict[Contact, list[_Acting]] = {}
         for each in all_:
             groups.setdefault(each if isinstance(each, Contact) else each.contact, []).append(each)
         for contact, group in groups.items():
-            ends = [place for each in group if isinstance(each, Shear) for place in each.breaks]
+            ends = [place for each in group if not isinstance(each, Contact) for place in each.breaks]
             inner = np.sort([place for place in (*contact.shape.kinks, *ends) if abs(place) < 1 - _APART])
             inner = inner[np.diff(inner, prepend=-1.0) > _APART]
             rows = [each.shape.pressure if isinstance(each, Contact) else each.traction for each in group]
@@ -184,7 +212,7 @@ class Fields:
             self._known.update((each, (cauchy, row)) for row, each in enumerate(group))
 
 
-def _summands(state: State) -> list[Contact | Shear]:
+def _summands(state: State) -> list[_Acting]:
     return [state.pressed, *(shear for _, shear in state.shears)]
 
 

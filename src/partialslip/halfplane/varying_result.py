@@ -108,7 +108,7 @@ def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Resu
         limits=_limits(scene, cycle) if cycle else {},
         certificate=cycle.change.certificate if cycle and cycle.change else {},
         notes=remarks(regime, turns, why, _SLIDES, _RATCHETS),
-        surface=along_surface(stress.fields.surface, np.sort([*far, *breaks])) if stress else None,
+        surface=along_surface(stress.surface, np.sort([*far, *breaks])) if stress else None,
         stress_at=StressAt(stress.inside) if stress else None,
         undetermined=why,
         path_dependent=turns,
