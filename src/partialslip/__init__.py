@@ -10,6 +10,7 @@ Solving
     run(scene)                          exact and fem, compared: a Run; run["fem"] is a Result
     run(scene, "exact")                 one method of exact, march, fem and equivalent
     sweep(scene, {"friction.f": [...]}) many points, as a data frame
+    assess(scene, run["exact"])         fatigue criteria: an Assessment
     characterise(scene)                 what the size of its bodies adds to half-planes: a Rig
     plan(scene)                         the effects that the scene calls for
     compare(result, reference, ...)     a Comparison of two results
@@ -43,6 +44,8 @@ if TYPE_CHECKING:
     from partialslip.errors import InputError as InputError
     from partialslip.errors import PartialslipError as PartialslipError
     from partialslip.export import export as export
+    from partialslip.fatigue import Assessment as Assessment
+    from partialslip.fatigue import assess as assess
     from partialslip.judge import Comparison as Comparison
     from partialslip.judge import Outcome as Outcome
     from partialslip.judge import Verdict as Verdict
@@ -72,6 +75,7 @@ if TYPE_CHECKING:
 # Where each name is defined: modules are imported when a name is used first, so that the command line starts fast.
 _HOMES = {
     "Allowance": "allowance",
+    "Assessment": "fatigue",
     "Comparison": "judge",
     "InputError": "errors",
     "Outcome": "judge",
@@ -85,6 +89,7 @@ _HOMES = {
     "State": "result.state",
     "Traction": "result",
     "Verdict": "judge",
+    "assess": "fatigue",
     "characterise": "run",
     "compare": "judge",
     "export": "export",

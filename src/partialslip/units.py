@@ -9,9 +9,9 @@ from typing import Literal, TypeVar, get_args
 from partialslip.arrays import Array
 
 System = Literal["SI", "N-mm"]
-Dimension = Literal["m", "Pa", "Pa/m", "N/m", "N", "J/m", "1"]
-"""A dimension by its SI unit: length, stress, stress over length, force, moment and energy per unit depth, and pure
-numbers."""
+Dimension = Literal["m", "Pa", "Pa/m", "Pa^2 m", "N/m", "N", "J/m", "1"]
+"""A dimension by its SI unit: length, stress, stress over length, stress squared times length, force, moment and energy
+per unit depth, and pure numbers."""
 
 _DIMENSIONS: tuple[Dimension, ...] = get_args(Dimension)
 _T = TypeVar("_T", float, Array)
@@ -92,11 +92,21 @@ class Units:
 
 def _newton(name: str, words: str, length: str, stress: str, energy: str, power: int) -> Units:
     """Make a consistent system of N and the unit ``length``, 10**power m."""
-    sizes = {"m": power, "Pa": -2 * power, "Pa/m": -3 * power, "N/m": -power, "N": 0, "J/m": 0, "1": 0}
+    sizes = {
+        "m": power,
+        "Pa": -2 * power,
+        "Pa/m": -3 * power,
+        "Pa^2 m": -3 * power,
+        "N/m": -power,
+        "N": 0,
+        "J/m": 0,
+        "1": 0,
+    }
     labels = {
         "m": length,
         "Pa": stress,
         "Pa/m": f"{stress}/{length}",
+        "Pa^2 m": f"{'(' + stress + ')' if '/' in stress else stress}^2 {length}",
         "N/m": f"N/{length}",
         "N": "N",
         "J/m": energy,

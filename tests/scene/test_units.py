@@ -44,7 +44,10 @@ TWINS = {
         profile.crown = 3.3                            | 3300
         load.P = 135750.0                              | 135.75
         load.Q = [-13.1e3, 38.75e3]                    | [-13.1, 38.75]
-        load.sigma_slope = [-2.3e9, 1.7e9]             | [-2.3, 1.7]""",
+        load.sigma_slope = [-2.3e9, 1.7e9]             | [-2.3, 1.7]
+        fatigue.sigma_y = 330e6                        | 330
+        fatigue.distance = 50e-6                       | 0.05
+        fatigue.sigma_upper = [-1e6, 1e6]              | [-1, 1]""",
     "half-width, own materials": """
         material.upper = {E = 210e9, nu = 0.3}         | {E = 210e3, nu = 0.3}
         material.lower = {E = 7.3e9, nu = 0.3}         | {E = 7300, nu = 0.3}

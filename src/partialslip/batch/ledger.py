@@ -141,9 +141,10 @@ def key_of(data: Mapping[str, Any]) -> str:
 def scene_content(scene: Scene) -> dict[str, Any]:
     """Return ``scene`` as plain data, with checksums of its mesh files (None for a file that cannot be read).
 
-    The units in which the scene is shown are left out: they change no result, and entries are in SI units.
+    The units in which the scene is shown and the constants of fatigue criteria are left out: they change no result, and
+    entries are in SI units.
     """
     files = [body.mesh for _, body in scene.bodies if body.mesh is not None]
     content = msgspec.to_builtins(scene)
-    del content["shown_in"]
+    del content["shown_in"], content["fatigue"]
     return {**content, "mesh files": {file: checksum([Path(file)]) for file in files}}

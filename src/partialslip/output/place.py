@@ -21,7 +21,7 @@ from partialslip.output.lock import FolderInUseError, locked
 
 NAME = ".partialslip"
 # Files of results: a folder that holds one of them, but no request, was written by an earlier version or copied.
-RESULTS = ("results.json", "report.html", "ledger.jsonl", "effects.json", "map.csv", "page.html")
+RESULTS = ("results.json", "report.html", "ledger.jsonl", "effects.json", "fatigue.json", "map.csv", "page.html")
 _TRIES, _PAUSE = 20, 0.1  # s: the holder of a lock writes the request at once
 _LONGEST, _MOST = 24, 3  # characters of a setting, and number of settings, in a message
 

@@ -20,5 +20,6 @@ from partialslip.scene.profiles import Profile as Profile
 from partialslip.scene.profiles import Tabulated as Tabulated
 from partialslip.scene.settings import WIDTHS as WIDTHS
 from partialslip.scene.settings import Effects as Effects
+from partialslip.scene.settings import Fatigue as Fatigue
 from partialslip.scene.settings import Fem as Fem
 from partialslip.scene.table import Table as Table

@@ -32,6 +32,13 @@ DIMENSIONS: dict[str, Dimension] = {
     "fem.width": "1",
     "fem.lower_size": "1",
     "fem.size": "1",
+    "fatigue.sigma_y": "Pa",
+    "fatigue.k_fatemi_socie": "1",
+    "fatigue.k_findley": "1",
+    "fatigue.alpha_dang_van": "1",
+    "fatigue.alpha_crossland": "1",
+    "fatigue.distance": "m",
+    "fatigue.sigma_upper": "Pa",
 }
 
 

@@ -16,7 +16,7 @@ from partialslip.scene.limits import LARGEST, NO_TEXT, SMALLEST, STEEPEST
 from partialslip.scene.loads import Load
 from partialslip.scene.materials import Material
 from partialslip.scene.profiles import FlatRounded, Hertz, Profile
-from partialslip.scene.settings import Effects, Fem
+from partialslip.scene.settings import Effects, Fatigue, Fem
 from partialslip.scene.table import Table
 from partialslip.shown import Notebook, short
 from partialslip.units import UNITS, System, Units
@@ -53,8 +53,8 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     ranges and raise InputError with the same one line. A scene is immutable: :meth:`replace` makes a changed one.
 
     ``name`` (letters, digits, ".", "_" and "-"), ``title``, and the tables ``material``, ``profile``, ``load``,
-    ``friction``, ``bodies``, ``fem`` and ``effects``. All numbers are in SI units. ``shown_in``: units of tables,
-    reports and CSV files, and of tables to score.
+    ``friction``, ``bodies``, ``fem``, ``effects`` and ``fatigue``. All numbers are in SI units. ``shown_in``: units of
+    tables, reports and CSV files, and of tables to score.
     """
 
     name: Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*\Z", max_length=100)]
@@ -66,6 +66,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     bodies: Bodies = Bodies()
     fem: Fem = Fem()
     effects: Effects = Effects()
+    fatigue: Fatigue = Fatigue()
     shown_in: System = "SI"
 
     def __post_init__(self) -> None:
@@ -86,6 +87,10 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         if self.finite and any(self.load.sigma_slope):
             raise InputError(
                 f"load.sigma_slope = {list(self.load.sigma_slope)}: must be 0 or left out with finite bodies"
+            )
+        if self.finite and self.fatigue.sigma_upper is not None:
+            raise InputError(
+                f"fatigue.sigma_upper = {list(self.fatigue.sigma_upper)}: must be left out with finite bodies"
             )
         if self.bodies.pad and isinstance(self.profile, FlatRounded) and self.profile.crown is not None:
             raise InputError(f"profile.crown = {self.profile.crown}: must be left out with a pad, {self.bodies.pad}")
@@ -135,7 +140,9 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         """Name and title, then a line for each table that is not the default."""
         title = f"{self.name}: {self.title}" if self.title else self.name
         entries = (getattr(self, key) for key in self.__struct_fields__)
-        tables = (each for each in entries if isinstance(each, Table) and each not in (Bodies(), Fem(), Effects()))
+        tables = (
+            each for each in entries if isinstance(each, Table) and each not in (Bodies(), Fem(), Effects(), Fatigue())
+        )
         return "\n  ".join([f"Scene {title}", *map(short, tables)])
 
     def replace(self, changes: Mapping[str, Any] | None = None, /, **tables: Any) -> "Scene":

@@ -1,10 +1,10 @@
-"""Settings of the methods in a scene: finite elements, and forced effects."""
+"""Settings in a scene: of finite elements, forced effects, and constants of fatigue criteria."""
 
 from typing import Annotated, Literal
 
 import msgspec
 
-from partialslip.scene.table import Table
+from partialslip.scene.table import Positive, Table
 
 WIDTHS = {"half-plane": 16.0, "box": 4096.0}  # default half-width of a block, in contact half-widths
 
@@ -48,3 +48,24 @@ class Effects(Table, frozen=True, kw_only=True, rename="kebab"):
     finite_size: bool | None = None
     far_field: bool | None = None
     subsurface: bool | None = None
+
+
+_Influence = Annotated[float, msgspec.Meta(ge=0)]
+
+
+class Fatigue(Table, frozen=True, kw_only=True):
+    """Constants of fatigue criteria (:func:`partialslip.assess`), which change no solution. None has a default.
+
+    ``sigma_y``: yield stress, Pa. ``k_fatemi_socie``, ``k_findley``, ``alpha_dang_van``, ``alpha_crossland``: influence
+    of the normal or hydrostatic stress in the criterion. ``distance``: depth over which stresses are averaged, m.
+    ``sigma_upper``: tension at load points 1 and 2, Pa, of the upper body of half-planes, which the lower body carries
+    besides ``load.sigma``.
+    """
+
+    sigma_y: Positive | None = None
+    k_fatemi_socie: _Influence | None = None
+    k_findley: _Influence | None = None
+    alpha_dang_van: _Influence | None = None
+    alpha_crossland: _Influence | None = None
+    distance: Positive | None = None
+    sigma_upper: tuple[float, float] | None = None

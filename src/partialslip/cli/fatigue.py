@@ -1,0 +1,113 @@
+"""partialslip fatigue: assess a scene by fatigue criteria."""
+
+import argparse
+from typing import TYPE_CHECKING
+
+import partialslip
+from partialslip.cli.common import (
+    add_force,
+    add_pdf,
+    add_scene,
+    check_folder,
+    check_report,
+    print_written,
+    results_folder,
+    write_study,
+)
+from partialslip.errors import InputError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from partialslip.cli.common import Commands
+    from partialslip.fatigue import Assessment
+
+_METHODS = ("exact", "march", "fem")
+
+
+def add(commands: "Commands") -> None:
+    """Add the command to the parser of ``commands``."""
+    fatigue = commands.add_parser(
+        "fatigue",
+        help="assess a scene by fatigue criteria",
+        description="Evaluate fatigue criteria from the stresses of a scene: largest values at the surface and inside, "
+        "critical planes, averages over a distance, and asymptotes at the ends of the contact. The table fatigue of "
+        "the scene holds the constants of the criteria.",
+        examples=[
+            "partialslip fatigue fretting-aluminium",
+            "partialslip fatigue fretting-aluminium --criterion swt --distance 50e-6",
+            "partialslip fatigue my-scene.toml --criterion findley,ruiz --set fatigue.k_findley=0.3 --method fem",
+        ],
+    )
+    add_scene(fatigue)
+    fatigue.add_argument("--criterion", metavar="CRITERIA",
+                         help="of principal, swt, fatemi-socie, findley, dang-van, crossland and ruiz, separated by "
+                         "commas (default: all whose constants the scene has)")  # fmt: skip
+    fatigue.add_argument("--distance", metavar="LENGTH",
+                         help="depth over which stresses are averaged, in the scene's unit of length, as "
+                         "fatigue.distance")  # fmt: skip
+    fatigue.add_argument("--method", choices=_METHODS, default="exact", metavar="METHOD",
+                         help="exact, march or fem (default: exact)")  # fmt: skip
+    fatigue.add_argument("--body", choices=("lower", "upper"), default="lower", metavar="BODY",
+                         help="lower or upper (default: lower)")  # fmt: skip
+    fatigue.add_argument("-o", "--out", metavar="DIR", help="folder for the files (default: results/NAME-fatigue)")
+    add_force(fatigue)
+    add_pdf(fatigue)
+    fatigue.set_defaults(command=_fatigue)
+
+
+def _fatigue(options: argparse.Namespace) -> int:
+    check_folder(options.out)
+    check_report(options)
+    if options.distance is not None:
+        options.overrides.append(f"fatigue.distance={options.distance}")
+    scene = partialslip.load_scene(options.scene, options.overrides)
+
+    from partialslip.cli.consoles import output, working
+    from partialslip.fatigue import assess
+    from partialslip.fatigue.named import chosen
+    from partialslip.fatigue.page import sections, write_assessment
+
+    names = None if options.criterion is None else [name.strip() for name in options.criterion.split(",")]
+    try:
+        names = chosen(scene, names)  # before anything is solved
+    except InputError as error:
+        raise InputError(f"{options.scene}: {error}") from None
+    name = f"{scene.name}-fatigue"
+    settings = {"criterion": names, "fatigue": scene_constants(scene), "distance": None}
+    with results_folder(options, "fatigue", name, scene, **settings) as (folder, passed), working(name) as tell:
+        result = partialslip.run(scene, options.method, subsurface=True, progress=tell)[options.method]
+        tell("criteria")
+        found = assess(scene, result, names, body=options.body)
+        files = write_assessment(found, folder)
+        files += write_study(options, folder, f"{scene.name}: fatigue", scene, sections(found))
+    _print(found, console := output())
+    print_written(files, console, passed)
+    return 0
+
+
+def scene_constants(scene: "partialslip.Scene") -> dict[str, object]:
+    """Return the table fatigue of ``scene`` as plain data."""
+    import msgspec
+
+    constants: dict[str, object] = msgspec.to_builtins(scene.fatigue)
+    return {key: value for key, value in constants.items() if value is not None}
+
+
+def _print(found: "Assessment", console: "Console") -> None:
+    """Print the tables of an assessment."""
+    from partialslip.fatigue import tables
+    from partialslip.output.tables import print_table
+
+    console.print(tables.heading(found), style="bold", soft_wrap=True, markup=False)
+    if found.ratings:
+        print_table(console, tables.RATINGS, tables.rating_rows(found), words=(0, 1))
+    if rows := tables.average_rows(found):
+        distance = found.scene.units.length(found.scene.fatigue.distance or 0.0)
+        console.print(f"Averaged over {distance} from the surface:", markup=False)
+        print_table(console, tables.AVERAGES, rows, words=(0, 1))
+    if found.edges:
+        console.print("Ends of the contact, K_N and K_S in Pa/m^0.5, K_T in Pa m^0.5:", markup=False)
+        print_table(console, tables.EDGES, tables.edge_rows(found))
+    for line in tables.notes(found):
+        console.print(line, soft_wrap=True, markup=False)

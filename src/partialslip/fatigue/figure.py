@@ -1,0 +1,143 @@
+"""Figures of an assessment, readable in black and white: stress fields, criteria, and planes."""
+
+from itertools import cycle
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.fatigue.assessment import Assessment
+from partialslip.fatigue.planes import stresses_on
+from partialslip.fatigue.tables import curve
+from partialslip.output.svg import svg
+from partialslip.report.amounts import scale
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_WIDE, _DEEP = 2.0, 1.2  # half-width and depth of the stress fields, in a
+_COLUMNS, _ROWS = 97, 28  # points of a field in each body
+_LEVELS = 10  # of contours
+_LINES = (("-", "black"), ("--", "black"), (":", "black"), ("-", "0.55"), ("--", "0.55"), ("-.", "black"))
+_COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_xy")
+
+
+def stress_svg(found: Assessment) -> str:
+    """Return the stress fields in both bodies at load points 1 and 2 as SVG: filled contours, negative ones dashed."""
+    result, a = found.result, found.result.a
+    assert result.stress_at
+    middle = float(np.mean(result.ends))
+    x = middle + a * np.linspace(-_WIDE, _WIDE, _COLUMNS)
+    depth = _DEEP * a * np.linspace(0, 1, _ROWS) ** 1.5
+    fields = [(y, np.asarray(result.stress_at(x, y[:, None]))) for y in (-depth, depth + 1e-30 * a)]
+    largest = max(float(np.nanmax(np.abs(field))) for _, field in fields)
+    exponent, unit = scale(largest, "Pa", found.scene.units)
+
+    def draw(figure: "Figure") -> None:
+        grid = figure.subplots(3, 2, sharex=True, sharey=True)
+        for component, row in enumerate(grid):
+            low, high = (
+                extreme([float(which(field[:, component])) for _, field in fields]) / 10.0**exponent
+                for extreme, which in ((min, np.nanmin), (max, np.nanmax))
+            )
+            levels = _round_levels(low, high)
+            for point, axes in enumerate(row):
+                for y, field in fields:
+                    values = np.ma.masked_invalid(field[point, component] / 10.0**exponent)
+                    axes.contourf(x / a, y / a, values, levels, cmap="Greys_r", extend="both")
+                    lines = axes.contour(x / a, y / a, values, levels, colors="black", linewidths=0.5)
+                    axes.clabel(lines, lines.levels[::2], fontsize=6, fmt="%g")
+                _outline(axes, found)
+                axes.set(xlim=(x[0] / a, x[-1] / a), ylim=(-_DEEP, _DEEP), aspect="equal")
+                axes.set_title(f"{_COMPONENTS[component]}, {unit}, load point {point + 1}", fontsize=9, loc="left")
+            row[0].set_ylabel("y/a")
+        for axes in grid[-1]:
+            axes.set_xlabel("x/a")
+
+    return svg(draw, (8.6, 8.0))
+
+
+def _round_levels(low: float, high: float) -> Array:
+    """Levels of contours: round numbers within the range of the values."""
+    from matplotlib.ticker import MaxNLocator
+
+    return np.asarray(MaxNLocator(_LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high))
+
+
+def _outline(axes: "Axes", found: Assessment) -> None:
+    """Draw the contact, the surfaces and the sides of finite bodies."""
+    a = found.result.a
+    left, right = (end / a for end in found.result.ends[1])
+    axes.plot([left, right], [0, 0], color="black", lw=2.4, solid_capstyle="butt")
+    for way, body in ((-1.0, found.scene.bodies.lower), (1.0, found.scene.bodies.upper)):
+        half = 1e3 if body is None or body.width is None else body.width / 2 / a
+        deep = 1e3 if body is None or body.height is None else body.height / a
+        x = np.linspace(-min(half, 2 * _WIDE), min(half, 2 * _WIDE), 201)
+        face = found.scene.profile.face_at(a * x) / a if body is not None and body.kind == "pad" else 0 * x
+        axes.plot(x, way * face, color="black", lw=0.8)
+        if half < 1e3:
+            for side in (-half, half):
+                axes.plot([side, side], [way * float(face[-1]), way * deep], color="black", lw=0.8)
+            axes.plot([-half, half], [way * deep] * 2, color="black", lw=0.8)
+
+
+def criteria_svg(found: Assessment) -> str:
+    """Return the criteria along the surface and over the depth as SVG, each over its largest value at the surface."""
+    a = found.result.a
+
+    def draw(figure: "Figure") -> None:
+        along, below = figure.subplots(1, 2, sharey=True, width_ratios=(3, 2))
+        for axes, kind in ((along, "surface"), (below, "depth")):
+            x, depth, values = curve(found, kind)
+            at = (x if kind == "surface" else depth) / a
+            for (name, each), (line, color) in zip(values.items(), cycle(_LINES)):
+                axes.plot(
+                    at, each / (found.ratings[name].surface.value or 1.0), ls=line, color=color, lw=1.2, label=name
+                )
+            axes.axhline(0, color="0.7", lw=0.6, zorder=0)
+        for end in found.result.ends[1]:
+            along.axvline(end / a, color="0.8", lw=0.6, zorder=0)
+        if distance := found.scene.fatigue.distance:
+            below.axvline(distance / a, color="0.5", lw=0.8, ls=":")
+            below.annotate(
+                "distance", (distance / a, 1.02), xycoords=("data", "axes fraction"), fontsize=8, ha="center"
+            )
+        place = next(iter(found.ratings.values())).surface.x / a
+        along.set(
+            xlabel="x/a, along the surface", ylabel="criterion over its largest at the surface", ylim=(None, 1.05)
+        )
+        below.set(xlabel=f"depth/a, at x = {place:.4g} a")
+        along.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False, fontsize=9, handlelength=1.8,
+                     columnspacing=1.2, borderaxespad=0.2)  # fmt: skip
+
+    return svg(draw, (8.2, 4.0))
+
+
+def planes_svg(found: Assessment) -> str:
+    """Return polar plots of the critical plane as SVG: each criterion over the angle of the plane's normal in the xy
+    plane, at the place where it is largest at the surface. Empty without criteria of planes."""
+    rated = {name: rating for name, rating in found.ratings.items() if rating.criterion.measure}
+    if not rated:
+        return ""
+    angle = np.linspace(0, 2 * np.pi, 721)
+
+    def draw(figure: "Figure") -> None:
+        grid = np.ravel(figure.subplots(1, len(rated), subplot_kw={"projection": "polar"}))
+        for axes, (name, rating) in zip(grid, rated.items(), strict=True):
+            at, measure = rating.surface, rating.criterion.measure
+            assert measure
+            stress = found.stress(np.array([at.x]), np.array([at.depth]))
+            values = measure(stresses_on(stress, angle, np.zeros_like(angle))) / (at.value or 1.0)
+            axes.plot(angle, np.maximum(values, 0.0), color="black", lw=1.2)
+            normal = at.angle + np.pi * np.arange(2)
+            axes.plot(normal, [1.0, 1.0], color="black", lw=0.8, ls="--")
+            axes.plot(normal + np.pi / 2, [1.0, 1.0], color="0.5", lw=2.0)
+            out = f", tilt {np.degrees(at.tilt):.1f}°" if at.tilt > 1e-3 else ""
+            axes.set_title(f"{name}\nnormal at {np.degrees(at.angle):.1f}°{out}", fontsize=9)
+            axes.set(rticks=[0.5, 1.0], ylim=(0, 1.08))
+            axes.set_yticklabels([])
+            axes.set_thetagrids(np.arange(0, 360, 45))
+            axes.tick_params(labelsize=7)
+
+    return svg(draw, (2.1 * len(rated) + 0.4, 2.9))

@@ -1,0 +1,111 @@
+"""The criteria by name, with the constants of a scene."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.errors import InputError
+from partialslip.fatigue.criteria import (
+    fatemi_socie_measure,
+    findley_measure,
+    principal_range,
+    range_measure,
+    swt_measure,
+)
+from partialslip.fatigue.invariants import crossland, dang_van
+from partialslip.fatigue.planes import Critical, Measure, critical_plane
+from partialslip.scene import Elastic, Scene
+from partialslip.units import Dimension
+
+#: Keys of the table fatigue that each criterion needs, by name.
+NEEDS: dict[str, tuple[str, ...]] = {
+    "principal": (),
+    "swt": (),
+    "fatemi-socie": ("k_fatemi_socie", "sigma_y"),
+    "findley": ("k_findley",),
+    "dang-van": ("alpha_dang_van",),
+    "crossland": ("alpha_crossland",),
+    "ruiz": (),
+}
+RUIZ = "ruiz"  # of the surface, with slip: not a function of the stress path
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """A criterion with its constants.
+
+    Parameters
+    ----------
+    name : str
+    of : Dimension
+        Of its values.
+    at : callable
+        ``at(stress) -> Critical`` of stress paths (s, 4, ...), Pa. Without planes the angle and the tilt are NaN.
+    measure : callable or None
+        The measure on a plane; None for criteria of invariants.
+    """
+
+    name: str
+    of: Dimension
+    at: Callable[[Array], Critical]
+    measure: Measure | None = None
+
+
+def chosen(scene: Scene, names: Iterable[str] | None) -> list[str]:
+    """Return the names of the criteria to assess: ``names``, or all whose constants the scene has.
+
+    Raises
+    ------
+    InputError
+        If a criterion is unknown, or a constant of a named criterion is missing.
+    """
+    if names is None:
+        return [name for name in NEEDS if not _missing(scene, name)]
+    found = list(dict.fromkeys(names))
+    for name in found:
+        if name not in NEEDS:
+            raise InputError(f"criterion {name!r}: must be of {', '.join(NEEDS)}")
+        if missing := _missing(scene, name):
+            raise InputError(f"fatigue.{missing[0]}: missing; the criterion {name} needs it")
+    return found
+
+
+def _missing(scene: Scene, name: str) -> list[str]:
+    return [key for key in NEEDS[name] if getattr(scene.fatigue, key) is None]
+
+
+def criterion(scene: Scene, name: str, body: str) -> Criterion:
+    """Return the criterion ``name``, except ruiz, with the constants of ``scene``, for the ``body`` lower or upper."""
+    constants = {key: getattr(scene.fatigue, key) for key in NEEDS[name]}
+    own = elastic(scene, body)
+    if name == "principal":
+        return Criterion(name, "Pa", principal_range, range_measure)
+    if name == "dang-van":
+        return Criterion(name, "Pa", _without_plane(partial(dang_van, alpha=constants["alpha_dang_van"])))
+    if name == "crossland":
+        return Criterion(name, "Pa", _without_plane(partial(crossland, alpha=constants["alpha_crossland"])))
+    if name == "swt":
+        measure = swt_measure(own.E, own.nu)
+    elif name == "fatemi-socie":
+        measure = fatemi_socie_measure(own.E, own.nu, constants["k_fatemi_socie"], constants["sigma_y"])
+    else:
+        measure = findley_measure(constants["k_findley"])
+    return Criterion(name, "1" if name == "fatemi-socie" else "Pa", partial(critical_plane, measure=measure), measure)
+
+
+def elastic(scene: Scene, body: str) -> Elastic:
+    """Return E and nu of the ``body`` lower or upper."""
+    tables = dict(scene.material)
+    return tables.get(f"material.{body}") or tables["material"]
+
+
+def _without_plane(function: Callable[[Array], Array]) -> Callable[[Array], Critical]:
+    def at(stress: Array) -> Critical:
+        value = function(stress)
+        nowhere = np.full_like(value, np.nan)
+        return Critical(value, nowhere, nowhere)
+
+    return at

@@ -1,0 +1,185 @@
+"""Assessments of solved scenes: places, averages, load points around the cycle, the upper body and what is missing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip.errors import InputError
+from partialslip.fatigue.places import averaged, largest_at
+from partialslip.result.stresses import StressAt
+
+CONSTANTS = {
+    "k_findley": 0.3,
+    "k_fatemi_socie": 1.0,
+    "sigma_y": 330e6,
+    "alpha_dang_van": 0.3,
+    "alpha_crossland": 0.3,
+    "distance": 50e-6,
+}
+SCENE = partialslip.load_scene("fretting-aluminium").replace(fatigue=CONSTANTS)
+RESULT = partialslip.run(SCENE, "exact", subsurface=True)["exact"]
+FOUND = partialslip.assess(SCENE, RESULT)
+
+
+def test_the_trailing_edge_is_the_hot_spot():
+    """All criteria find the end of the contact; sigma_xx there ranges over twice its largest value, Q and sigma being
+    fully reversed."""
+    assert set(FOUND.ratings) == {"principal", "swt", "fatemi-socie", "findley", "dang-van", "crossland"}
+    for rating in FOUND.ratings.values():
+        assert (rating.surface.x, rating.surface.depth) == (RESULT.a, 0.0)
+        assert rating.peak == rating.surface
+        assert rating.change < 1e-10  # the extremes are those of the load points
+    largest = RESULT.surface.largest[1]
+    assert FOUND.ratings["principal"].surface.value == pytest.approx(2 * largest, rel=1e-9)
+    swt = largest**2 * (1 - SCENE.material.nu**2) / SCENE.material.E  # plane strain
+    assert FOUND.ratings["swt"].surface.value == pytest.approx(swt, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", FOUND.ratings)
+def test_no_point_of_the_body_is_worse(name):
+    rng = np.random.default_rng(1)
+    x, depth = RESULT.a * rng.uniform(-3, 3, 1000), 2 * RESULT.a * rng.uniform(0, 1, 1000) ** 3
+    assert FOUND.at(name, x, depth).value.max() <= FOUND.ratings[name].peak.value
+
+
+def test_averages_of_a_linear_stress():
+    """Stresses that vary linearly have averages at the centroids: half the distance, and 4 L/(3 pi) of a half disc."""
+    distance = 0.3
+
+    def stress(x, depth):
+        return np.stack([1.0 + 2.0 * depth + 0.0 * x] * 4)[None]
+
+    for over, depth in (("point", distance), ("line", distance / 2), ("area", 4 * distance / (3 * np.pi))):
+        assert averaged(stress, 0.7, distance, over) == pytest.approx(np.full((1, 4), 1 + 2 * depth), rel=1e-13)
+
+
+def test_averages_lie_between_the_peak_and_the_depth():
+    for rating in FOUND.ratings.values():
+        point, line, area = (rating.averages[over].value for over in ("point", "line", "area"))
+        assert point < area < line < rating.surface.value
+
+
+def test_the_largest_is_found_between_the_points():
+    x, depth = np.linspace(-1, 1, 8), np.linspace(0, 1, 6)
+
+    def hill(x, depth):
+        return -((x - 0.123) ** 2) - (depth - 0.456) ** 2 - (x - 0.123) * (depth - 0.456)
+
+    assert largest_at(hill, x, depth, hill(x[:, None], depth)) == pytest.approx((0.123, 0.456), abs=1e-4)
+
+
+def test_load_points_are_added_until_the_criterion_settles():
+    """A stress that is largest between the load points."""
+
+    def pulse(x, _, phases):
+        sigma = 1e8 * np.sin(np.pi * (phases - 0.13)) ** 2
+        return sigma[:, None, None] * np.stack([1 + 0 * x, 0 * x, 0 * x])
+
+    found = partialslip.assess(SCENE, replace(RESULT, stress_at=StressAt(pulse)), ["principal"])
+    rating = found.ratings["principal"]
+    assert found.phases == 64
+    assert 1e-6 < rating.change < 1e-2
+    assert rating.surface.value == pytest.approx(1e8, rel=4 * rating.change)
+
+
+def test_where_only_the_load_points_are_known_it_says_so():
+    def unknown(x, _, phases):
+        if not np.isin(phases, (0, 0.5)).all():
+            raise InputError("phases: 0.25 is between load points 1 and 2, where nobody knows; use march")
+        return np.ones((len(phases), 3, len(x)))
+
+    found = partialslip.assess(SCENE, replace(RESULT, stress_at=StressAt(unknown)), ["swt"])
+    assert found.phases == 2
+    assert found.notes == ("load points 1 and 2 only: phases: 0.25 is between load points 1 and 2, where nobody knows; "
+                           "use march",)  # fmt: skip
+
+
+def test_the_upper_body_mirrors_the_lower_one_without_tension():
+    scene = SCENE.replace(load={"sigma": [0, 0]})
+    result = partialslip.run(scene, "exact", subsurface=True)["exact"]
+    lower, upper = (partialslip.assess(scene, result, ["swt"], body=body) for body in ("lower", "upper"))
+    assert upper.ratings["swt"].surface.value == pytest.approx(lower.ratings["swt"].surface.value, rel=1e-12)
+
+
+def test_the_tension_of_the_upper_body_adds_to_both():
+    scene = SCENE.replace(fatigue={"sigma_upper": [-1e7, 2e7]})
+    for body in ("lower", "upper"):
+        one, other = (partialslip.assess(each, RESULT, ["principal"], body=body) for each in (SCENE, scene))
+        x, depth = np.array([2 * RESULT.a]), np.array([RESULT.a])
+        difference = other.stress(x, depth, 4) - one.stress(x, depth, 4)
+        assert difference[:, 0, 0] == pytest.approx([-1e7, 0.5e7, 2e7, 0.5e7])
+        assert difference[:, 3, 0] == pytest.approx(SCENE.material.nu * difference[:, 0, 0])
+
+
+def test_ruiz():
+    """F2 is at most F1, and both scale with the slip."""
+    found = FOUND.ruiz
+    assert found.F2 > 0
+    assert found.F1 > found.F2
+    assert abs(found.x2) < RESULT.a
+    x = np.array([found.x2])
+    tension = RESULT.stress_at(x, 0 * x)[:, 0, 0].max()
+    slip = np.interp(found.x2, RESULT.slip.x, RESULT.slip.slip)
+    work = SCENE.friction.f * RESULT.traction.at(found.x2)[0] * abs(slip) / 2  # q = f p where it slips
+    assert found.F2 == pytest.approx(tension * work, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("scene", "criteria", "line"),
+    [
+        (SCENE, ["miner"],
+         "criterion 'miner': must be of principal, swt, fatemi-socie, findley, dang-van, crossland, ruiz"),
+        (SCENE.replace(fatigue={"k_findley": None}), ["findley"],
+         "fatigue.k_findley: missing; the criterion findley needs it"),
+        (SCENE.replace(fatigue={"sigma_y": None}), ["fatemi-socie"],
+         "fatigue.sigma_y: missing; the criterion fatemi-socie needs it"),
+    ],
+)  # fmt: skip
+def test_what_is_missing_is_said_in_one_line(scene, criteria, line):
+    with pytest.raises(InputError) as error:
+        partialslip.assess(scene, RESULT, criteria)
+    assert str(error.value) == line
+
+
+def test_criteria_without_constants_are_left_out():
+    found = partialslip.assess(SCENE.replace(fatigue=dict.fromkeys(CONSTANTS)), RESULT)
+    assert list(found.ratings) == ["principal", "swt"]
+    assert not found.ratings["swt"].averages
+
+
+def test_a_result_without_stresses_is_refused():
+    with pytest.raises(InputError, match="exact: stresses are not known"):
+        partialslip.assess(SCENE, replace(RESULT, stress_at=None))
+    with pytest.raises(InputError, match="body 'left': must be of lower, upper"):
+        partialslip.assess(SCENE, RESULT, body="left")
+
+
+def test_mirrored_scenes_have_mirrored_hot_spots():
+    scene = SCENE.replace(load={"sigma": [-each for each in SCENE.load.sigma]})
+    result = partialslip.run(scene, "exact", subsurface=True)["exact"]
+    found = partialslip.assess(scene, result, ["swt", "findley", "dang-van"])
+    for name, rating in found.ratings.items():
+        assert rating.surface.value == pytest.approx(FOUND.ratings[name].surface.value, rel=1e-9)
+        assert rating.surface.x == pytest.approx(-FOUND.ratings[name].surface.x)
+        assert rating.averages["area"].value == pytest.approx(FOUND.ratings[name].averages["area"].value, rel=1e-9)
+
+
+def test_other_units_change_nothing():
+    """The same mechanics a thousand times as large in stress and length."""
+    size = {"material": {"E": 72.1e12}, "load": {"P": SCENE.P * 1e3, "Q": [-38.75e6, 38.75e6], "sigma": [-1e11, 1e11]}}
+    constants = {"sigma_y": 330e9}
+    scene = SCENE.replace(**size, fatigue=constants)
+    result = partialslip.run(scene, "exact", subsurface=True)["exact"]
+    found = partialslip.assess(scene, result, ["swt", "fatemi-socie", "crossland"])
+    for name, rating in found.ratings.items():
+        factor = 1.0 if name == "fatemi-socie" else 1e3
+        assert rating.surface.value == pytest.approx(factor * FOUND.ratings[name].surface.value, rel=1e-9)
+
+
+def test_notebooks_show_tables_and_curves():
+    html = FOUND._repr_html_()
+    assert html.count("<tr") >= 7
+    assert "<svg" in html
+    assert repr(FOUND).splitlines()[1].startswith("  principal: 6.91494e+08 at x = 1 a")

@@ -1,0 +1,75 @@
+"""Asymptotes at the ends of the contact against closed forms, and the slip zones that they predict."""
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip.fatigue import edges
+
+SHEAR = "hertz-shear"
+
+
+def solved(name, *overrides, method="exact"):
+    scene = partialslip.load_scene(name, overrides)
+    return scene, partialslip.run(scene, method)[method]
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_hertz(side):
+    """K_N = p0 sqrt(2/a), K_T = (dQ/pi +- a dsigma/4)/sqrt(2 a), and f p - |dq|/2 = f sqrt((x + m)(n - x))/(A R)."""
+    scene, result = solved("hertz-small-tension")
+    a, way, f = result.a, (-1, 1)[side], scene.friction.f
+    edge = edges(scene, result)[side]
+    assert edge.K_N.value == pytest.approx(result.p0 * np.sqrt(2 / a), rel=1e-10)
+    K_T = (scene.load.dQ / np.pi + way * a * scene.load.dsigma / 4) / np.sqrt(2 * a)
+    assert edge.K_T.value == pytest.approx(K_T, rel=1e-14)
+    stick = f * result.p0 / a * np.sqrt(result.m + result.n)
+    assert edge.K_S.value == pytest.approx(stick, rel=1e-9)
+    for coefficient in (edge.K_N, edge.K_S):
+        assert coefficient.error < 1e-7 * coefficient.value
+
+
+@pytest.mark.parametrize(("method", "bar"), [("march", 1e-3), ("exact", 1e-10)])
+def test_every_method(method, bar):
+    scene, result = solved("hertz-small-tension", "fem.accuracy=1e-4", method=method)
+    for edge in edges(scene, result):
+        off = abs(edge.K_N.value - result.p0 * np.sqrt(2 / result.a))
+        assert off < bar * edge.K_N.value
+        assert off < 10 * edge.K_N.error + 1e-10 * edge.K_N.value  # the estimate tells the error
+
+
+def test_the_adhered_solution_gives_K_T():
+    """Of a contact with so much friction that next to nothing slips. A slip zone c changes K_T by about c/a."""
+    scene, result = solved("hertz-small-tension")
+    rough, adhered = solved("hertz-small-tension", "friction.f=1000")
+    for edge, closed in zip(edges(scene, result, adhered), edges(scene, result), strict=True):
+        slip = (2 * adhered.a - adhered.m - adhered.n) / adhered.a
+        assert edge.K_T.value == pytest.approx(closed.K_T.value, rel=2 * slip)
+        assert slip < 5e-4
+    assert edges(rough, adhered)[1].predicted < 1e-3 * result.a
+
+
+def test_small_slip_zones_are_predicted():
+    """Cattaneo: 1 - c/a = 1 - sqrt(1 - Q/(f P)) = Q/(2 f P) + Q^2/(8 (f P)^2) + ...: off by a quarter of itself."""
+    for share in (0.01, 0.02, 0.04):
+        scene = partialslip.load_scene(SHEAR)
+        Q = share * scene.friction.f * scene.P
+        scene = scene.replace(load={"Q": [-Q, Q]})
+        result = partialslip.run(scene, "exact")["exact"]
+        for edge in edges(scene, result):
+            assert edge.predicted == pytest.approx(share / 2 * result.a, rel=1e-9)
+            assert edge.found / edge.predicted - 1 == pytest.approx(share / 4, rel=0.05)
+
+
+def test_tension_along_x():
+    """K_T of a tension that varies along x, by the adhered solution: friction of 1000."""
+    scene, result = solved(SHEAR, "load.sigma_slope=[-1e11,1e11]", "friction.f=1000")
+    slip = (2 * result.a - result.m - result.n) / result.a
+    for edge, other in zip(edges(scene, result, result), edges(scene, result), strict=True):
+        assert edge.K_T.value == pytest.approx(other.K_T.value, rel=2 * slip)
+        assert slip < 1e-3
+
+
+def test_varying_pressure_has_no_single_end():
+    scene = partialslip.load_scene(SHEAR, ["load.Q=[-1e5,1e5]"]).replace(load={"P": [6e5, 7e5], "p0": None})
+    assert edges(scene, partialslip.run(scene, "march")["march"]) == ()
