@@ -1,6 +1,6 @@
 """Keywords and data lines common to the input decks of Abaqus and CalculiX."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -127,9 +127,10 @@ class Frame:
     along_x, along_y : (k,) int array
         Numbers of the nodes that move together along x, and along y; Q and P act on the first.
     turn : int, optional
-        Number of the node whose displacement along x is the frame's angle times a length, ``arm``.
+        Number of the node whose displacement along x is the frame's angle times ``arm``, where the frame turns about
+        the origin. The first nodes of the frame are then a node at the origin.
     arm : float
-    arms : (k,), (k,) float arrays, optional
+    arms : two of (k,) float array, optional
         y of the nodes ``along_x`` and x of the nodes ``along_y``, where the frame turns.
     """
 
@@ -141,24 +142,12 @@ class Frame:
 
     def lines(self) -> list[str]:
         """Equations that make the nodes move as the frame."""
-        if self.arms is None or self.turn is None:
-            return [*self._tied(self.along_x, 1), *self._tied(self.along_y, 2)]
+        if self.arms is None:
+            return [*_tied(self.along_x, 1), *_tied(self.along_y, 2)]
         ys, xs = self.arms
-        node = [
-            "** displacement along x of this node: angle of the frame times a",
-            f"*NODE, NSET=TURN\n{self.turn}, 0., 0., 0.",
-        ]
-        return [*node, *self._turned(self.along_x, 1, ys[0] - ys), *self._turned(self.along_y, 2, xs - xs[0])]
-
-    def moment(self, step: Step) -> float:
-        """Force on the node ``turn`` per unit depth: P acts at x = M/P, Q at y = 0."""
-        assert self.arms
-        ys, xs = self.arms
-        return float(-step.M + xs[0] * step.P - ys[0] * step.Q) / self.arm
-
-    def _tied(self, nodes: Indices, component: int) -> list[str]:
-        first, *others = nodes.tolist()
-        return [f"*EQUATION\n2\n{other}, {component}, 1., {first}, {component}, -1." for other in others]
+        origin = [f"*NODE, NSET=FRAME\n{self.along_x[0]}, 0., 0., 0.", f"*NODE, NSET=TURN\n{self.turn}, 0., 0., 0."]
+        note = "** displacement of TURN along x: angle of the frame times the expected a"
+        return [*origin, note, *self._turned(self.along_x, 1, -ys), *self._turned(self.along_y, 2, xs)]
 
     def _turned(self, nodes: Indices, component: int, arms: Array) -> list[str]:
         first, *others = nodes.tolist()
@@ -168,15 +157,21 @@ class Frame:
         ]
 
 
+def _tied(nodes: Indices, component: int) -> list[str]:
+    """Equations that make all ``nodes`` move like the first."""
+    first, *others = nodes.tolist()
+    return [f"*EQUATION\n2\n{other}, {component}, 1., {first}, {component}, -1." for other in others]
+
+
 def frame_of(model: Model, start: int, sheets: int = 1) -> Frame:
     """Frame of the upper body of ``model``, whose first node has the number ``start``, in so many ``sheets``."""
-    part = model.parts[1]
-    points, (along_x, along_y) = part.mesh.points, part.held_nodes
-    rigid = Frame(sheeted(along_x, len(points), sheets) + start, sheeted(along_y, len(points), sheets) + start)
+    points, held = model.parts[1].mesh.points, model.parts[1].held_nodes
+    along_x, along_y = (sheeted(nodes, len(points), sheets) + start for nodes in held)
     if not model.turns:
-        return rigid
-    arms = np.tile(points[along_x, 1], sheets), np.tile(points[along_y, 0], sheets)
-    return replace(rigid, turn=start + sheets * len(points), arm=model.a, arms=arms)
+        return Frame(along_x, along_y)
+    origin = start + sheets * len(points)
+    ys, xs = (np.append(0.0, np.tile(points[nodes, 1 - i], sheets)) for i, nodes in enumerate(held))
+    return Frame(np.append(origin, along_x), np.append(origin, along_y), origin + 1, model.a, (ys, xs))
 
 
 def load_step(
@@ -215,7 +210,7 @@ def load_step(
     lines += ["*CLOAD, OP=NEW", f"{frame.along_y[0]}, 2, {-step.P * depth:.12e}"]
     lines += [f"{frame.along_x[0]}, 1, {-step.Q * depth:.12e}"] * (number > 0)
     if frame.turn is not None:
-        lines += [f"{frame.turn}, 1, {frame.moment(step) * depth:.12e}"]
+        lines += [f"{frame.turn}, 1, {-step.M / frame.arm * depth:.12e}"]
     pull = lower.pull * (step.sigma * depth / sheets)
     return lines + [
         f"{node + sheet * count + start}, 1, {pull[node]:.12e}"
