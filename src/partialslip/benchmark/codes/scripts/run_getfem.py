@@ -152,7 +152,7 @@ class Contact:
         state = model.from_variables()
         names = ("loads", "strain")
         before = [model.variable(name) for name in names]
-        for name, value in zip(names, (loads / units, [loads[2] * told["strain"] * self.E / told["p0"]])):
+        for name, value in zip(names, (loads / units, [loads[2] * told["strain"] * self.E / told["p0"]]), strict=True):
             model.set_variable(name, value)
         try:
             converged = model.solve("max_res", 1e-9, "max_iter", 100, "lsearch", "simplest", "alpha min", 0.8)[1]
@@ -163,7 +163,7 @@ class Contact:
                 model.set_variable(kept, model.variable(name))
             return True
         model.to_variables(state)
-        for name, value in zip(names, before):
+        for name, value in zip(names, before, strict=True):
             model.set_variable(name, value)
         halfway = (before[0] * units + loads) / 2
         return bool(bisections) and self.reach(halfway, bisections - 1) and self.reach(loads, bisections - 1)
