@@ -40,7 +40,7 @@ CODES: dict[str, Code] = {
     "equivalent": Own("equivalent", {}),
     "calculix-mortar": Calculix(0.05, False),
     "calculix-penalty": Calculix(0.05, True),
-    "kratos": Kratos(0.05, 4),
+    "kratos": Kratos(0.1, 8),
     "getfem": GetFEM(0.05),
     "getfem-graded": GetFEM(0.05, 0.003),
 }
