@@ -112,15 +112,15 @@ def test_tractions_of_any_code_make_an_answer(tmp_path):
 
 def test_what_was_finished_before_an_interruption_is_kept(tmp_path, monkeypatch):
     two = {number: each for number, each in read_problems().items() if number in ("PS-01", "PS-02")}
-    true, asked = Own.answer, []
+    true, asked = Own.solve, []
 
-    def interrupted(code, problem):
-        asked.append(problem.number)
+    def interrupted(code, scene):
+        asked.append(scene.name.upper())
         if asked == ["PS-01", "PS-02"]:
             raise KeyboardInterrupt
-        return true(code, problem)
+        return true(code, scene)
 
-    monkeypatch.setattr(Own, "answer", interrupted)
+    monkeypatch.setattr(Own, "solve", interrupted)
     with pytest.raises(KeyboardInterrupt):
         answers("exact", two, folder=tmp_path)
     found = answers("exact", two, folder=tmp_path)
