@@ -47,15 +47,14 @@ class GetFEM:
     def solve(self, scene: Scene) -> Solved | None:
         """Solve ``scene``; None if its meshes cannot be made."""
         scene = gradual(scene)
-        try:
-            outlined(scene)
-        except InputError:
-            return None
         ends: tuple[float, ...] = ()
         cpu_s = memory_mb = 0.0
         for fine in (None, self.fine) if self.fine else (None,):
             with tempfile.TemporaryDirectory() as folder:
-                parameters = _written(scene, Path(folder), self.size, ends, fine) | {"order": self.order}
+                try:
+                    parameters = _written(scene, Path(folder), self.size, ends, fine) | {"order": self.order}
+                except InputError:
+                    return None
                 found = solved(HOST, scene, parameters, Path(folder))
             cpu_s, memory_mb = cpu_s + (found.cpu_s or 0.0), max(memory_mb, found.memory_mb or 0.0)
             if not found.result:
