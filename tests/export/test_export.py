@@ -15,7 +15,7 @@ import varying as closed_form
 from partialslip import load_scene
 from partialslip.cli import main
 from partialslip.errors import InputError
-from partialslip.export import FORMATS, export
+from partialslip.export import FORMATS, export, parts
 from partialslip.export import model as models
 from partialslip.export.calculix import deck_units
 from partialslip.export.model import modelled
@@ -421,6 +421,14 @@ def test_finite_and_unlike_bodies_carry_the_loads(overrides, tmp_path):
             assert {round(points[node, 0], 9) for node in held[1]} == {-0.03}
             assert {round(points[node, 1], 9) for node in held[2]} == {-0.01}
             assert not any(moved.values())
+
+
+@pytest.mark.fault
+def test_a_pull_that_is_left_out_is_seen(tmp_path, monkeypatch):
+    """The specimen is not pulled: no force on the lower body."""
+    monkeypatch.setattr(parts.Part, "pull", property(lambda part: np.zeros(len(part.mesh.points))))
+    with pytest.raises(AssertionError):
+        test_finite_and_unlike_bodies_carry_the_loads(PULLED, tmp_path)
 
 
 def test_a_clamped_block_in_tension_is_in_uniform_tension():
