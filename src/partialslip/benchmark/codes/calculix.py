@@ -38,7 +38,8 @@ class Calculix:
     def settings(self) -> str:
         """Settings in words."""
         kind = "penalty" if self.penalty else "mortar"
-        return f"{kind} contact, elements of {self.size:g} a along the contact, bodies {_STIFFER:g} times stiffer"
+        elements = f"elements of {self.size:g} a along the contact, growing by {_GROWTH:g}"
+        return f"{kind} contact, {elements}, bodies {_STIFFER:g} times stiffer"
 
     def solve(self, scene: Scene) -> Solved | None:
         """Solve ``scene``; None if there is no deck for it."""
