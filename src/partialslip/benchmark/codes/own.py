@@ -4,11 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import partialslip
-from partialslip.benchmark.measured import answer_of
-from partialslip.benchmark.problem import Problem
-from partialslip.benchmark.submission import Answer
+from partialslip.benchmark.codes.solved import Solved
 from partialslip.errors import PartialslipError
 from partialslip.run import run
+from partialslip.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -28,12 +27,13 @@ class Own:
         """Settings in words."""
         return ", ".join(f"{key} {value:g}" for key, value in self.fem.items())
 
-    def answer(self, problem: Problem) -> Answer | None:
-        """Answer to ``problem``; None if the method does not offer it."""
-        if problem.scene.finite and self.method in ("exact", "march"):  # half-planes
+    def solve(self, scene: Scene) -> Solved | None:
+        """Solve ``scene``; None if the method does not offer it."""
+        if scene.finite and self.method in ("exact", "march"):  # half-planes
             return None
         try:
-            result = run(problem.scene.replace(fem=dict(self.fem)), self.method)[self.method]
+            result = run(scene.replace(fem=dict(self.fem)), self.method)[self.method]
         except PartialslipError:
             return None
-        return answer_of(problem, result, result.counts.get("dofs") or result.counts.get("cells"))
+        unknowns = result.counts.get("dofs") or result.counts.get("cells")
+        return Solved(result, "", unknowns, result.cost.cpu_s, result.cost.peak_rss_mb)
