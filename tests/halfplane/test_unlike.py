@@ -70,7 +70,7 @@ def coarse():
 
 
 @pytest.fixture(scope="module")
-def sheared(coarse):
+def sheared():
     return solved()
 
 
