@@ -252,13 +252,14 @@ def _similar(
     return Pressed(*_certified([last]), 2 + 2 * _TIMES, errors, stages.growth, f)
 
 
-def stuck_together(C: Relative, f: float) -> tuple[Array, Array]:
-    """Normal and tangential forces (n,) under a flat punch with the force 1 that covers all nodes, with friction."""
+def punched(C: Relative, f: float, sides: Sides) -> tuple[Array, Array]:
+    """Normal and tangential forces (n,) under a flat punch with the force 1 that covers all nodes, with friction; from
+    the guess that nodes slip under q = ``sides`` f p (n,)."""
     assert C.xx is not None
     assert C.xy is not None
     zero = np.zeros(len(C.yy))
-    apart = resting(zero), resting(zero)
-    p, q = _solve(_Step(C.xx, C.yy, C.xy, C.opening, f, 1.0, zero, 0.0, zero), [apart])
+    guess = replace(resting(zero), x=zero + 1 / len(zero)), replace(resting(zero), rest=-sides.astype(float))
+    p, q = _solve(_Step(C.xx, C.yy, C.xy, C.opening, f, 1.0, zero, 0.0, zero), [guess])
     return p.x, q.x
 
 

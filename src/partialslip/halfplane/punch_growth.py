@@ -11,13 +11,13 @@ from scipy.optimize import brentq
 from scipy.special import ellipk, ellipkm1
 
 from partialslip.arrays import Array
-from partialslip.condensed.coupled import Relative, stuck_together
+from partialslip.condensed.coupled import Relative, punched
 from partialslip.condensed.ends import stick_zone
 from partialslip.halfplane.cells import compliance, graded
 
 _END, _GROWTH = 1e-8, 0.05  # size of cells at the punch's ends; growth
-_AT_STICK = 0.02  # size of cells at the stick zone's ends, in their distance from the punch's ends
-_TIMES = 2  # meshes: the first is refined at Goodman's stick zone
+_AT_STICK = (0.02, 0.002)  # sizes of cells at the stick zone's ends, in their distance from the punch's ends: the first
+# mesh is refined at Goodman's stick zone, the second at that of the first
 
 
 def relative(vertices: Array, beta: float, opening: bool = True) -> Relative:
@@ -59,14 +59,15 @@ class PunchGrowth:
     def of(cls, beta: float, f: float, opening: bool = True) -> "PunchGrowth":
         """Solve the punch for Dundurs' ``beta`` and the coefficient of friction ``f``."""
         c = goodman_stick_zone(f / abs(beta))
-        for _ in range(_TIMES):
+        for size in _AT_STICK:
             beside = max(1 - c, _END)
             points = np.array([-1.0, -c, c, 1.0]) if beside > _END and c > _END else np.array([-1.0, 1.0])
             sizes = np.full(len(points), _END)
-            sizes[1:-1] = _AT_STICK * min(beside, c)
+            sizes[1:-1] = size * min(beside, c)
             vertices = graded(points, sizes, _GROWTH)
-            p, q = stuck_together(relative(vertices, beta, opening), f)
             middles = (vertices[1:] + vertices[:-1]) / 2
+            sides = np.sign(beta * middles) * (np.abs(middles) > c)
+            p, q = punched(relative(vertices, beta, opening), f, sides.astype(np.int8))
             c = stick_zone(middles, f * p, 2 * q, vertices, lambda forces: forces).right
         right = vertices[1:] > 0
         clipped = np.concatenate([[0.0], vertices[1:][right]])

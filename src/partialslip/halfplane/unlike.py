@@ -156,6 +156,7 @@ class _Problem:
             a = max(level.a)
             fine, inner = apart(level.fine, _SMALLEST * a), [*level.kinks]
         inner += [(kink - self.scene.origin) / self.scene.length for kink in self.scene.profile.kinks]
+        inner += [0.0] if self.punch else []  # where the surfaces touch first, p and q are not smooth
         ends = np.sort(fine)
         gaps = np.diff(ends)
         gap = np.minimum(np.append(gaps, np.inf), np.append(np.inf, gaps)) / a
