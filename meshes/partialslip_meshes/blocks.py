@@ -12,6 +12,8 @@ from partialslip_meshes.mesh import Mesh, QuadMesh
 _NOTCH_SIZE = 0.02  # element size in the notch between block and holder, in the block's half-width
 
 Corner = Literal["foot", "shoulder", "notch"]
+Face = Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]]
+Meshed = tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], dict[str, npt.NDArray[np.int64]], float]
 
 
 def block(
@@ -22,7 +24,7 @@ def block(
     height: float | None = None,
     along: float | None = None,
     holder: tuple[float, float] | None = None,
-    face: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]] | None = None,
+    face: Face | None = None,
     facets: float | None = None,
     corners: Mapping[Corner, float] | None = None,
 ) -> Mesh:
@@ -62,25 +64,49 @@ def block(
     PartialslipError
         If gmsh cannot make the mesh, or the gmsh process dies twice.
     """
+    outline = (width, contact, sizes, growth, height, along, holder, face, facets, corners)
+    return Mesh(*_outlined(3, *outline))
+
+
+def quad_block(
+    width: float,
+    contact: tuple[float, float],
+    sizes: Mapping[float, float],
+    growth: float,
+    along: float | None = None,
+    height: float | None = None,
+    holder: tuple[float, float] | None = None,
+    face: Face | None = None,
+    corners: Mapping[Corner, float] | None = None,
+) -> QuadMesh:
+    """Mesh the block [-width, width] x [-height, 0] with quadrilaterals. Arguments and errors as for :func:`block`."""
+    outline = (width, contact, sizes, growth, height, along, holder, face, None, corners)
+    return QuadMesh(*_outlined(4, *outline)[:3])
+
+
+def _outlined(
+    nodes: int,
+    width: float,
+    contact: tuple[float, float],
+    sizes: Mapping[float, float],
+    growth: float,
+    height: float | None,
+    along: float | None,
+    holder: tuple[float, float] | None,
+    face: Face | None,
+    facets: float | None,
+    corners: Mapping[Corner, float] | None,
+) -> Meshed:
+    """Mesh the block of :func:`block` with elements of so many ``nodes``."""
     height = width if height is None else height
     at_corners: dict[Corner, float] = {"notch": _NOTCH_SIZE * width} if holder else {}
     at_corners.update(corners or {})
     outline = {"width": width, "height": height, "holder": holder, "facets": facets, "at_corners": at_corners}
-    points, triangles, lines, cpu_s = _made(3, contact, sizes, growth, along, **outline)
+    points, elements, lines, cpu_s = _made(nodes, contact, sizes, growth, along, **outline)
     if face:
         x, y = points.T
         points[:, 1] -= face(np.clip(x, -width, width)) * np.maximum(1 + y / height, 0.0)
-    return Mesh(points, triangles, lines, cpu_s)
-
-
-def quad_block(width: float, contact: tuple[float, float], sizes: Mapping[float, float], growth: float,
-               along: float | None = None) -> QuadMesh:  # fmt: skip
-    """Mesh the block [-width, width] x [-width, 0] with quadrilaterals.
-
-    ``width``, ``contact``, ``sizes``, ``growth``, ``along`` and errors as for :func:`block`.
-    """
-    outline: dict[str, Any] = {"width": width, "height": width, "holder": None, "facets": None, "at_corners": {}}
-    return QuadMesh(*_made(4, contact, sizes, growth, along, **outline)[:3])
+    return points, elements, lines, cpu_s
 
 
 def _made(
@@ -90,7 +116,7 @@ def _made(
     growth: float,
     along: float | None,
     **outline: Any,
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], dict[str, npt.NDArray[np.int64]], float]:
+) -> Meshed:
     """Points, elements with so many ``corners``, named lines, and CPU seconds of a mesh; nodes are numbered from 0."""
     request = {"contact": contact, "sizes": [*sizes.items()], "growth": growth, "along": along, **outline}
     head, (tags, coordinates, elements, *lines) = ask({"corners": corners, **request})

@@ -1,6 +1,6 @@
 """Input deck for Abaqus/Standard: plane strain, depth 1, so that forces are per unit depth."""
 
-from partialslip.export.deck import bodies, heading, load_step, tied
+from partialslip.export.deck import FRAME, bodies, frame_of, heading, load_step
 from partialslip.export.model import Model
 from partialslip.scene import Scene
 
@@ -31,8 +31,8 @@ def abaqus_deck(scene: Scene, model: Model) -> list[str]:
         lines += ["*FRICTION, LAGRANGE", f"{model.f:.12e}"]
     lines += ["*CONTACT PAIR, INTERACTION=INTERFACE, TYPE=SURFACE TO SURFACE, SMALL SLIDING"]
     lines += ["LOWER_FACE, UPPER_FACE"]  # slave, master
-    held, frame = model.parts[0].outer + lower, model.parts[1].outer + upper
-    lines += ["** the upper body's outer boundary is a rigid frame, moved by its first node", *tied(frame)]
+    frame = frame_of(model, upper)
+    lines += [f"** {FRAME}", *frame.lines()]
     for number in range(len(model.steps)):
-        lines += [*load_step(model, number, int(frame[0]), held, 1.0), _RESULTS]
+        lines += [*load_step(model, number, frame, lower, 1, 1.0), _RESULTS]
     return lines

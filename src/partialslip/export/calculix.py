@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from partialslip.export.deck import bodies, heading, load_step, sheeted, tied
+from partialslip.export.deck import FRAME, bodies, frame_of, heading, load_step
 from partialslip.export.model import Model
 from partialslip.scene import Scene
 from partialslip.units import SYSTEMS, Units
@@ -55,13 +55,11 @@ def calculix_deck(scene: Scene, model: Model, contact: Contact = "mortar") -> li
         f"** partialslip score {scene.name} JOB.frd: the names of the materials tell the units",
     ]
     blocks, starts = bodies(model, "C3D8", "", thickness, f"_{units.identifier}")
-    held, frame = (
-        sheeted(part.outer, len(part.mesh.points), 2) + start for part, start in zip(model.parts, starts, strict=True)
-    )
+    frame = frame_of(model, starts[1], 2)
     lines += [*blocks, *_contact(model, contact)]
-    lines += ["** the upper body's outer boundary is a rigid frame, moved by its first node", *tied(frame)]
+    lines += [f"** {FRAME}", *frame.lines()]
     for number in range(len(model.steps)):
-        lines += load_step(model, number, int(frame[0]), held, thickness, "LOWER, 3, 3\nUPPER, 3, 3")
+        lines += load_step(model, number, frame, starts[0], 2, thickness, "LOWER, 3, 3\nUPPER, 3, 3")
         lines += [_RESULTS]
     return lines
 

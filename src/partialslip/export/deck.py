@@ -1,9 +1,12 @@
 """Keywords and data lines common to the input decks of Abaqus and CalculiX."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from partialslip.arrays import Array, Indices
-from partialslip.export.model import Model, Step
+from partialslip.export.model import Model
+from partialslip.export.path import Step
 from partialslip.scene import Scene
 
 
@@ -18,12 +21,13 @@ def heading(scene: Scene, model: Model, what: str) -> list[str]:
 
     def loads(step: Step) -> str:
         pressed = f"P = {shown(step.P, 'N/m', 10)}, " if varies else ""
+        pressed += f"M = {shown(step.M, 'N', 10)}, " if model.turns else ""
         return f"{pressed}Q = {shown(step.Q, 'N/m', 10)}, sigma = {shown(step.sigma, 'Pa', 10)}"
 
     lines = [
         f"** {scene.name}: {what}, written by partialslip export",
         f"** expected a = {shown(a, 'm')}; f = {model.f:g}, P = {shown(scene.P, 'N/m', 10)}{where}",
-        f"** elements of {model.size / a:g} a along the contact, blocks {model.width:g} a wide on either side",
+        f"** elements of {model.size / a:g} a along the contact{_wide(scene, model)}",
     ]
     if model.stiffer != 1:
         lines += [
@@ -32,6 +36,13 @@ def heading(scene: Scene, model: Model, what: str) -> list[str]:
         ]
     lines += ["** q acts along x from the lower on the upper body: positive Q and sigma add up at x = a"]
     return lines + [f"** step {number}: {step.name}: {loads(step)}" for number, step in enumerate(model.steps, start=1)]
+
+
+def _wide(scene: Scene, model: Model) -> str:
+    """What a heading says of the blocks that stand for half-planes, if there are any."""
+    if scene.bodies.lower and scene.bodies.upper:
+        return ""
+    return f", blocks {model.width:g} a wide on either side"
 
 
 def bodies(
@@ -104,15 +115,68 @@ def members(name: str, numbers: Indices) -> list[str]:
     return [f"*NSET, NSET={name}", *(", ".join(map(str, listed[i : i + 12])) for i in range(0, len(listed), 12))]
 
 
-def tied(nodes: Indices) -> list[str]:
+FRAME = "the upper body's outer boundary is a rigid frame, moved by its first node"
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Rigid frame that moves the upper body.
+
+    Parameters
+    ----------
+    along_x, along_y : (k,) int array
+        Numbers of the nodes that move together along x, and along y; Q and P act on the first.
+    turn : int, optional
+        Number of the node whose displacement along x is the frame's angle times ``arm``, where the frame turns about
+        the origin. The first nodes of the frame are then a node at the origin.
+    arm : float
+    arms : two of (k,) float array, optional
+        y of the nodes ``along_x`` and x of the nodes ``along_y``, where the frame turns.
+    """
+
+    along_x: Indices
+    along_y: Indices
+    turn: int | None = None
+    arm: float = 1.0
+    arms: tuple[Array, Array] | None = None
+
+    def lines(self) -> list[str]:
+        """Equations that make the nodes move as the frame."""
+        if self.arms is None:
+            return [*_tied(self.along_x, 1), *_tied(self.along_y, 2)]
+        ys, xs = self.arms
+        origin = [f"*NODE, NSET=FRAME\n{self.along_x[0]}, 0., 0., 0.", f"*NODE, NSET=TURN\n{self.turn}, 0., 0., 0."]
+        note = "** displacement of TURN along x: angle of the frame times the expected a"
+        return [*origin, note, *self._turned(self.along_x, 1, -ys), *self._turned(self.along_y, 2, xs)]
+
+    def _turned(self, nodes: Indices, component: int, arms: Array) -> list[str]:
+        first, *others = nodes.tolist()
+        return [
+            f"*EQUATION\n3\n{other}, {component}, 1., {first}, {component}, -1., {self.turn}, 1, {-by / self.arm:.12e}"
+            for other, by in zip(others, arms[1:].tolist(), strict=True)
+        ]
+
+
+def _tied(nodes: Indices, component: int) -> list[str]:
     """Equations that make all ``nodes`` move like the first."""
     first, *others = nodes.tolist()
-    return [
-        f"*EQUATION\n2\n{other}, {component}, 1., {first}, {component}, -1." for component in (1, 2) for other in others
-    ]
+    return [f"*EQUATION\n2\n{other}, {component}, 1., {first}, {component}, -1." for other in others]
 
 
-def load_step(model: Model, number: int, frame: int, held: Indices, depth: float, also: str = "") -> list[str]:
+def frame_of(model: Model, start: int, sheets: int = 1) -> Frame:
+    """Frame of the upper body of ``model``, whose first node has the number ``start``, in so many ``sheets``."""
+    points, held = model.parts[1].mesh.points, model.parts[1].held_nodes
+    along_x, along_y = (sheeted(nodes, len(points), sheets) + start for nodes in held)
+    if not model.turns:
+        return Frame(along_x, along_y)
+    origin = start + sheets * len(points)
+    ys, xs = (np.append(0.0, np.tile(points[nodes, 1 - i], sheets)) for i, nodes in enumerate(held))
+    return Frame(np.append(origin, along_x), np.append(origin, along_y), origin + 1, model.a, (ys, xs))
+
+
+def load_step(
+    model: Model, number: int, frame: Frame, start: int, sheets: int, depth: float, also: str = ""
+) -> list[str]:
     """Lines of a load step up to its loads.
 
     Parameters
@@ -120,23 +184,36 @@ def load_step(model: Model, number: int, frame: int, held: Indices, depth: float
     model : Model
     number : int
         Index of the step.
-    frame : int
-        Node that moves the upper body's outer boundary.
-    held : (k,) int array
-        Nodes of the lower body's outer boundary, sheet by sheet.
+    frame : Frame
+        Frame that moves the upper body.
+    start : int
+        Number of the lower body's first node.
+    sheets : int
+        Number of plane meshes of a body.
     depth : float
         Factor of forces per unit depth.
     also : str
         Further boundary conditions.
     """
-    step = model.steps[number]
-    increment = 1.0 if number == 0 else 1.0 / model.substeps
-    bulk = model.bulk(step)
+    step, lower = model.steps[number], model.parts[0]
+    increment = 1.0 / step.increments
     lines = [f"** {step.name}", "*STEP, INC=1000", "*STATIC", f"{increment:.6g}, 1., 1e-5, {increment:.6g}"]
     lines += ["*BOUNDARY, OP=NEW"] + [also] * bool(also)
-    for node, (along, across) in zip(held.tolist(), np.tile(bulk, (len(held) // len(bulk), 1)).tolist(), strict=True):
-        lines += [f"{node}, 1, 1, {along:.12e}", f"{node}, 2, 2, {across:.12e}"]
-    if number == 0 or not model.f:  # without contact or friction nothing else holds the upper body along x
-        lines += [f"{frame}, 1, 1"]
-    lines += ["*CLOAD, OP=NEW", f"{frame}, 2, {-step.P * depth:.12e}"]
-    return lines + [f"{frame}, 1, {-step.Q * depth:.12e}"] * (number > 0)
+    held, count = [np.isin(lower.outer, nodes).tolist() for nodes in lower.held_nodes], len(lower.mesh.points)
+    moved = list(zip(lower.outer.tolist(), *held, model.bulk(step).tolist(), strict=True))
+    for sheet in range(sheets):
+        for node, along_x, along_y, (along, across) in moved:
+            named = node + sheet * count + start
+            lines += [f"{named}, 1, 1, {along:.12e}"] * along_x + [f"{named}, 2, 2, {across:.12e}"] * along_y
+    if step.guided:
+        lines += [f"{frame.along_x[0]}, 1, 1"]
+    lines += ["*CLOAD, OP=NEW", f"{frame.along_y[0]}, 2, {-step.P * depth:.12e}"]
+    lines += [f"{frame.along_x[0]}, 1, {-step.Q * depth:.12e}"] * (number > 0)
+    if frame.turn is not None:
+        lines += [f"{frame.turn}, 1, {-step.M / frame.arm * depth:.12e}"]
+    pull = lower.pull * (step.sigma * depth / sheets)
+    return lines + [
+        f"{node + sheet * count + start}, 1, {pull[node]:.12e}"
+        for sheet in range(sheets)
+        for node in np.flatnonzero(pull).tolist()
+    ]

@@ -1,69 +1,33 @@
-"""A scene as a finite-element model for any code: two meshed blocks, materials, and load steps.
+"""A scene as a finite-element model for any code: two meshed bodies, materials, and load steps.
 
-The blocks stand for half-planes, as with ``fem.far_field = "box"``. The outer boundary of the upper block moves as a
-rigid frame, on which P and Q act. The outer boundary of the lower block has the displacements of the bulk tension.
+Half-planes are large blocks, as with ``fem.far_field = "box"``, held all around; finite bodies are held as their
+supports say. What is held of the upper body moves as a rigid frame, on which P and Q act; it turns only where the
+pressure has a moment. What is held of the lower body has the displacements of the bulk tension.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
+from partialslip.export.parts import Part, flat_parts
+from partialslip.export.path import TOUCH, Step, slips_under_pressure, steps_of
 from partialslip.halfplane.contact import contact
-from partialslip.scene import Constants, Scene
+from partialslip.scene import Pressing, Scene
 from partialslip.units import Units
 
 if TYPE_CHECKING:
     from partialslip_meshes import QuadMesh
 
 SIZE, GROWTH = 0.05, 0.1
-Indices = npt.NDArray[np.int64]
 
 _REACH = 1.2  # half-width of the contact line, in the half-width of the largest contact
+_FILLS = 0.95  # largest contact line, in the width of a finite body
 _OVERLAP = 0.25  # initial overlap of the bodies, in the gap at the end of the smallest contact
 _WIDE = 50.0  # half-width of the blocks in a, times the square root of the smallest element in a
-
-
-class Step(NamedTuple):
-    """Loads at the end of the load step ``name``: ``P``, ``Q`` (N/m) and ``sigma`` (Pa)."""
-
-    name: str
-    P: float
-    Q: float
-    sigma: float
-
-
-@dataclass(frozen=True)
-class Part:
-    """A body in plane strain: ``name``, ``mesh`` (m), Young's modulus ``E`` (Pa) and Poisson's ratio ``nu``."""
-
-    name: str
-    mesh: "QuadMesh"
-    E: float
-    nu: float
-
-    @property
-    def outer(self) -> Indices:
-        """Indices of the nodes of the outer boundary, ascending."""
-        return np.unique(np.vstack([self.mesh.lines[line] for line in ("back", "left", "right")]))
-
-    @property
-    def contact(self) -> Indices:
-        """Indices of the nodes of the contact line, ascending."""
-        return np.unique(self.mesh.lines["contact"])
-
-    @property
-    def face(self) -> tuple[Indices, Indices]:
-        """Elements on the contact line, and the side of each on the line: side k goes from corner k to the next."""
-        sides = np.sort(np.stack([self.mesh.quads, np.roll(self.mesh.quads, -1, axis=1)], axis=-1), axis=-1)
-        count = len(self.mesh.points)
-        line = np.sort(self.mesh.lines["contact"], axis=1) @ [count, 1]
-        elements, side = np.nonzero(np.isin(sides @ [count, 1], line))
-        return elements, side
 
 
 @dataclass(frozen=True)
@@ -80,38 +44,38 @@ class Model:
         Coefficient of friction.
     steps : tuple of Step
         Load steps.
-    substeps : int
-        Increments of each step except the first.
     a : float
         Expected contact half-width at the load point with the larger P, m.
     size : float
         Element size along the contact line, m.
     width : float
-        Half-width of the blocks, in ``a``.
+        Half-width of the blocks that stand for half-planes, in ``a``.
     stiffer : float
         Stiffness of the bodies, in the scene's.
+    turns : bool
+        Whether the upper body turns, as the pressure has a moment.
     """
 
     name: str
     parts: tuple[Part, Part]
     f: float
     steps: tuple[Step, ...]
-    substeps: int
     a: float
     size: float
     width: float
     stiffer: float
+    turns: bool
 
     @property
     def presses_anew(self) -> bool:
-        """Whether P varies."""
-        return len({step.P for step in self.steps}) > 1
+        """Whether P or its moment varies after the pressing."""
+        loads = [(step.P, step.M) for step in self.steps if step.name != "touch"]
+        return len(set(loads)) > 1
 
     def bulk(self, step: Step) -> Array:
         """Displacements of the lower body's outer nodes under the bulk tension of ``step``, (k, 2), m."""
         lower = self.parts[0]
-        strain = (1 + lower.nu) / lower.E * step.sigma * np.array([1 - lower.nu, -lower.nu])
-        moved: Array = lower.mesh.points[lower.outer] * strain
+        moved: Array = lower.mesh.points[lower.outer] * (lower.strained * step.sigma)
         return moved
 
     def in_units(self, units: Units) -> "Model":
@@ -122,9 +86,44 @@ class Model:
             return replace(part, mesh=replace(part.mesh, points=of(part.mesh.points, "m")), E=of(part.E, "Pa"))
 
         lower, upper = self.parts
-        steps = (Step(name, of(P, "N/m"), of(Q, "N/m"), of(sigma, "Pa")) for name, P, Q, sigma in self.steps)
+        steps = (
+            step._replace(P=of(step.P, "N/m"), Q=of(step.Q, "N/m"), sigma=of(step.sigma, "Pa"), M=of(step.M, "N"))
+            for step in self.steps
+        )
         parts = converted(lower), converted(upper)
         return replace(self, parts=parts, steps=tuple(steps), a=of(self.a, "m"), size=of(self.size, "m"))
+
+
+@dataclass(frozen=True)
+class Outline:
+    """What the meshes of a scene resolve, in the expected contact half-width ``a`` (m): half-width ``reach`` of the
+    contact line, half-width ``width`` of blocks that stand for half-planes, element size by point (``sizes``), element
+    size ``along`` the line, and that half-width of the ``least`` contact of the path."""
+
+    a: float
+    reach: float
+    width: float
+    sizes: dict[float, float]
+    along: float
+    least: float
+
+
+def outlined(
+    scene: Scene, size: float = SIZE, width: float | None = None, ends: Sequence[float] = (), fine: float | None = None
+) -> Outline:
+    """Outline of the meshes of ``scene``; parameters and errors as for :func:`modelled`."""
+    _check(scene)
+    a, least, farthest = _half_widths(scene)
+    size, fine = size * (least / a), (size / 10 if fine is None else fine) * (least / a)
+    limits = [_FILLS / 2 * body.width / a for _, body in scene.bodies if body.width]
+    reach = min([_REACH * (farthest / a), *limits])
+    if reach * a <= farthest:
+        name = min(((body.width or 0.0, name) for name, body in scene.bodies))[1]
+        raise InputError(f"{name}.width: must be wider than the contact, which fills more than {_FILLS:.0%} of it")
+    kinks = [kink / a for kink in scene.profile.kinks if abs(kink) < reach * a]
+    points = dict.fromkeys([*ends, *kinks], fine)
+    wide = width if width is not None else _WIDE / min([size, *points.values()]) ** 0.5
+    return Outline(a, reach, wide, points, size, least / a)
 
 
 def modelled(
@@ -141,12 +140,11 @@ def modelled(
     Parameters
     ----------
     scene : Scene
-        Of half-planes.
     size : float
         Element size along the contact line, in the contact half-width; if P varies, in that of the smallest contact.
     width : float, optional
-        Half-width and height of the blocks, in a. The error of q due to the blocks is about 10 (a/width)^2, relative.
-        The default makes this error small beside the error of the elements.
+        Half-width and height of the blocks that stand for half-planes, in a. The error of q due to the blocks is about
+        10 (a/width)^2, relative. The default makes this error small beside the error of the elements.
     growth : float
         Element size gained per unit of distance from the contact.
     stiffer : float
@@ -160,36 +158,32 @@ def modelled(
     Raises
     ------
     InputError
-        If the bodies are of finite size, the pressure is not even, or the loads make the contact slide.
+        If the gap is not even, a body has a mesh of its own or is too narrow, the tension varies along x, or the loads
+        make the contact slide.
     """
-    if scene.finite:
-        raise InputError("bodies: must be left out to export; only half-planes can be exported")
-    scene.require_even("to export")
-    f = scene.friction.f
-    if scene.slides or (f == 0 and scene.load.dsigma):
-        raise InputError(f"load.Q: must be within {_bound(scene)}; beyond it the contact slides and has no equilibrium")
-    a, least, most = _half_widths(scene)
-    size, fine = size * (least / a), (size / 10 if fine is None else fine) * (least / a)
-    reach = _REACH * (most / a)
-    kinks = [kink / a for kink in scene.profile.kinks if abs(kink) < reach * a]
-    points = dict.fromkeys([*ends, *kinks], fine)
-    wide = width if width is not None else _WIDE / min([size, *points.values()]) ** 0.5
-
-    from partialslip_meshes import quad_block
-
-    def mesh(fineness: float) -> "QuadMesh":
-        sizes = {x: least * fineness for x, least in points.items()}
-        scaled = quad_block(wide, (-reach, reach), sizes, growth * fineness, size * fineness)
-        return replace(scaled, points=scaled.points * a)
-
-    overlap = _OVERLAP * float(scene.profile.gap_at(np.array(least)))
-    meshes = mesh(scene.fem.lower_size), _upper(mesh(1.0), scene, reach * a, overlap, stiffer)
-    constants = map(_in_plane_strain, scene.material.bodies)
-    lower, upper = (
-        Part(name, each, stiffer * E, nu)
-        for name, each, (E, nu) in zip(("lower", "upper"), meshes, constants, strict=True)
+    line = outlined(scene, size, width, ends, fine)
+    a, reach = line.a, line.reach
+    lower, upper = flat_parts(scene, a, reach, line.width, line.sizes, growth, line.along, stiffer)
+    touching = line.least * a * (TOUCH**0.5 if slips_under_pressure(scene) else 1)
+    overlap = _OVERLAP * float(scene.gap_at(np.array(touching)))
+    upper = replace(upper, mesh=_upper(upper.mesh, scene, reach * a, overlap, stiffer))
+    turns = any(M for _, M in scene.pressing)
+    return Model(
+        scene.name, (lower, upper), scene.friction.f, _steps(scene), a, line.along * a, line.width, stiffer, turns
     )
-    return Model(scene.name, (lower, upper), f, _steps(scene), scene.load.steps, a, size * a, wide, stiffer)
+
+
+def _check(scene: Scene) -> None:
+    """Raise InputError if ``scene`` cannot be exported."""
+    if not scene.profile.even:
+        raise InputError("profile.x: must begin at 0 to export; only even gaps")
+    if any(scene.load.sigma_slope):
+        raise InputError(f"load.sigma_slope = {list(scene.load.sigma_slope)}: must be 0 or left out to export")
+    if scene.meshed:
+        name = next(name for name, body in scene.bodies if body.mesh is not None)
+        raise InputError(f"{name}.mesh: must be left out to export; give width and height")
+    if scene.slides or (scene.friction.f == 0 and scene.load.dsigma):
+        raise InputError(f"load.Q: must be within {_bound(scene)}; beyond it the contact slides and has no equilibrium")
 
 
 def _bound(scene: Scene) -> str:
@@ -202,42 +196,39 @@ def _bound(scene: Scene) -> str:
 
 
 def _half_widths(scene: Scene) -> tuple[float, float, float]:
-    """Contact half-width a of ``scene``, and those of the smallest and the largest contact of the cycle, m."""
-    a, forces = contact(scene).a, [P for P, _ in scene.pressing]
-    least, most = (a if P == scene.P else contact(scene.replace(load={"P": P})).a for P in (min(forces), max(forces)))
-    return a, least, most
+    """Contact half-width a of ``scene``, that of the smallest contact of the path, and the largest distance of a
+    contact's end from x = 0, m."""
+    ends = {pressing: _ends(scene, pressing) for pressing in dict.fromkeys(scene.pressing)}
+    widths = [(right - left) / 2 for left, right in ends.values()]
+    left, right = ends[scene.end_pressing[scene.largest - 1]]
+    return (right - left) / 2, min(widths), max(max(-left, right) for left, right in ends.values())
 
 
-def _in_plane_strain(body: Constants) -> tuple[float, float]:
-    """E (Pa) and nu in plane strain that give the same plane fields as ``body``."""
-    nu = (3 - body.kappa) / 4
-    return 2 * body.mu * (1 + nu), nu
+def _ends(scene: Scene, pressing: Pressing) -> tuple[float, float]:
+    """Ends of the contact under P and M, m; for finite or unlike bodies nearly, without friction."""
+    if scene.material.alike and not scene.finite:
+        return contact(scene, pressing).ends
+    from partialslip.run import run
+
+    still = dict.fromkeys(("Q", "sigma"), (0.0, 0.0))
+    pressed = scene.replace(load={"P": pressing.P, "M": None, "e": None, "a": None, "p0": None, **still},
+                            friction={"f": 0.0}, fem={"accuracy": 1e-2})  # fmt: skip
+    a = run(pressed, "fem")["fem"].a
+    return -a, a
 
 
 def _upper(mesh: "QuadMesh", scene: Scene, reach: float, overlap: float, stiffer: float) -> "QuadMesh":
     """Mirror ``mesh`` and shape its face by the profile, less and less upwards.
 
-    Beyond the contact line, |x| > ``reach`` (m), the gap is constant. The bodies overlap a little at the start, by
-    ``overlap`` (m), so that neither is loose.
+    Beyond the contact line, |x| > ``reach`` (m), what is added is constant. The bodies overlap a little at the start,
+    by ``overlap`` (m), so that neither is loose.
     """
     x, y = mesh.points[:, 0], -mesh.points[:, 1]
-    gap = scene.profile.gap_at(np.clip(x, -reach, reach)) - overlap
+    gap = scene.gap_at(np.clip(x, -reach, reach)) - overlap
     shaped = np.column_stack([x, y + gap / stiffer * (1 - y / y.max())])
     lines = {name: line[:, ::-1] for name, line in mesh.lines.items()}
     return replace(mesh, points=shaped, quads=mesh.quads[:, ::-1], lines=lines)
 
 
 def _steps(scene: Scene) -> tuple[Step, ...]:
-    """Load steps: press, go to the last load point, then through all load points in every cycle."""
-    load = scene.load
-    points = [(P, Q, sigma) for (P, _), (Q, sigma) in zip(scene.pressing, load.points, strict=True)]
-    press = Step("press", points[-1][0], 0.0, 0.0)
-    if not scene.presses_anew and not any(map(any, load.points)):
-        return (press,)
-    visits = [(f"load point {len(points)}, first time", points[-1])]
-    visits += [
-        (f"cycle {cycle}, load point {number}", point)
-        for cycle in range(1, load.cycles + 1)
-        for number, point in enumerate(points, start=1)
-    ]
-    return (press, *(Step(name, *point) for name, point in visits))
+    return steps_of(scene)

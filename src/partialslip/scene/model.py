@@ -218,6 +218,11 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         return len(set(self.pressing)) > 1
 
     @property
+    def only_pressed(self) -> bool:
+        """Whether no load follows the pressing: Q and sigma are zero, and the pressure does not vary."""
+        return not self.presses_anew and not any(map(any, self.load.along))
+
+    @property
     def largest(self) -> int:
         """1 or 2, the load point with the larger P. Its a and p0 are those of the scene; 2 if both are equal."""
         first, second = self.end_pressing

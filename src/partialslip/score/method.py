@@ -66,6 +66,8 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     """
     clock = Clock()
     x, p, dq, f = samples.x, samples.p_mean, samples.dq, scene.friction.f
+    if _pressed(scene) and samples.q2 is not None:
+        dq = 2 * samples.q2  # |q| <= f p, as |dq| <= 2 f p in a cycle
     contacts = _contacts(samples, origin)
     larger = contacts[scene.largest - 1]
     cells, a = samples.cells is not None, (larger.right.x - larger.left.x) / 2
@@ -113,7 +115,7 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
         regime=regime,
         stick_centre=(known[0].x + known[1].x) / 2 if known else None,
         stick_half_width=(known[1].x - known[0].x) / 2 if known else None,
-        traction=_traction(samples, [end for contact in contacts for end in contact.ends]),
+        traction=_traction(samples, [end for contact in contacts for end in contact.ends], scene.load.in_phase),
         cost=clock.cost(),
         settings={
             "read": "means over cells" if cells else "values at points",
@@ -211,6 +213,11 @@ def _stick_zone(x: Array, p: Array, dq: Array, asked: float, p0: float, cells: b
     return SeenStickZone(left, right if right.x > left.x else ZoneEnd(left.x, right.uncertainty), sides)
 
 
+def _pressed(scene: Scene) -> bool:
+    """Whether bodies that are not mirror images were pressed only: the shear traction is that of pressing."""
+    return scene.only_pressed and not scene.mirrored
+
+
 def _regime(
     scene: Scene, stick: SeenStickZone | None, left: ZoneEnd, right: ZoneEnd, slips: bool
 ) -> tuple[Regime, tuple[ZoneEnd, ZoneEnd] | None]:
@@ -221,6 +228,8 @@ def _regime(
         return "stuck", (left, right)
     if stick is None:
         return "sliding", None
+    if _pressed(scene):
+        return "pressing", (stick.left, stick.right)
     ends = (max(stick.left, left), min(stick.right, right))
     if not scene.load.in_phase:
         return "out of phase", ends
@@ -253,9 +262,9 @@ class _PiecewiseConstant:
         return one, other
 
 
-def _traction(samples: Samples, ends: list[float]) -> Traction:
+def _traction(samples: Samples, ends: list[float], in_phase: bool) -> Traction:
     """Tractions as functions of x: constant on cells, or linear between points and zero at the outermost ``ends`` (m)
-    of the contacts."""
+    of the contacts. Out of phase (not ``in_phase``) the largest shear may be at any load point: not at 1 or 2."""
     x, p, dq, p1, cells = samples.x, samples.p, samples.dq, samples.p1, samples.cells
     beyond = [end for end in (min(ends), max(ends)) if not x[0] <= end <= x[-1]]
     breaks = np.union1d(x, beyond) if cells is None else cells
@@ -266,7 +275,9 @@ def _traction(samples: Samples, ends: list[float]) -> Traction:
         return _PiecewiseLinear(breaks, np.array([np.interp(breaks, x, each, left=0.0, right=0.0) for each in columns]))
 
     at, pressures_at = between(p, dq).at, None if p1 is None else between(p1, p).at
-    return Traction(x, p, dq, samples.q1, samples.q2, at, breaks, breaks, p1=p1, pressures_at=pressures_at)
+    q1, q2 = (samples.q1, samples.q2) if in_phase else (None, None)
+    levels_at = None if q1 is None or q2 is None else between(q1, q2).at
+    return Traction(x, p, dq, q1, q2, at, breaks, breaks, levels_at, p1, pressures_at)
 
 
 def _rounded(number: float) -> float:

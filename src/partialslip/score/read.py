@@ -53,7 +53,7 @@ def read(
     """
     origin, suffix = str(file), file.suffix.lower()
     load, anew = scene.load, scene.presses_anew
-    load_points = (*load.ends, len(load.points))
+    load_points = (0, 0, 1) if scene.only_pressed else (*load.ends, len(load.points))
     if at is not None and suffix not in (".frd", ".dat"):
         raise InputError(f"--at {at[0]},{at[1]}: must be left out except for .frd and .dat files")
     if chosen and suffix not in TABLES:

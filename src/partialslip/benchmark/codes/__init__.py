@@ -5,6 +5,8 @@ from pathlib import Path
 from typing import Protocol
 
 from partialslip.benchmark.codes.calculix import Calculix
+from partialslip.benchmark.codes.getfem import GetFEM
+from partialslip.benchmark.codes.kratos import Kratos
 from partialslip.benchmark.codes.own import Own
 from partialslip.benchmark.problem import Problem, read_problems
 from partialslip.benchmark.submission import META, Answer, Meta, Submission, read_submission, write_submission
@@ -38,6 +40,9 @@ CODES: dict[str, Code] = {
     "equivalent": Own("equivalent", {}),
     "calculix-mortar": Calculix(0.05, False),
     "calculix-penalty": Calculix(0.05, True),
+    "kratos": Kratos(0.05, 4),
+    "getfem": GetFEM(0.05),
+    "getfem-graded": GetFEM(0.05, 0.003),
 }
 
 

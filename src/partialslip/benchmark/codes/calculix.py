@@ -1,16 +1,17 @@
 """CalculiX: deck by ``partialslip export``, run by ``ccx``, results read by ``partialslip score``."""
 
-import os
 import re
-import resource
 import shutil
 import subprocess
 import tempfile
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import msgspec
 
+from partialslip.benchmark.codes.gradual import gradual
+from partialslip.benchmark.codes.process import LONGEST, ran
 from partialslip.benchmark.measured import answer_of
 from partialslip.benchmark.problem import Problem
 from partialslip.benchmark.submission import Answer
@@ -20,7 +21,7 @@ from partialslip.score.method import scored
 from partialslip.score.read import read
 
 _STIFFER = 100.0  # half-planes neglect the slopes of the surfaces: these are a hundredth
-_LONGEST = 3600.0  # s
+_GROWTH = 0.2
 _DOFS = re.compile(r"number of equations\s+(\d+)")
 
 
@@ -34,11 +35,7 @@ class Calculix:
     @property
     def version(self) -> str | None:
         """Version of ccx; None if it is not installed."""
-        if not shutil.which("ccx"):
-            return None
-        told = subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False).stdout
-        found = re.search(r"Version\s+(\S+)", told)
-        return found[1] if found else ""
+        return _version(shutil.which("ccx"))
 
     @property
     def settings(self) -> str:
@@ -48,27 +45,42 @@ class Calculix:
 
     def answer(self, problem: Problem) -> Answer | None:
         """Answer to ``problem``; None if there is no deck for it. Without values if CalculiX does not finish."""
+        scene = gradual(problem.scene)
         try:
-            write = export(problem.scene, "calculix", size=self.size, stiffer=_STIFFER, penalty=self.penalty)
+            write = export(scene, "calculix", size=self.size, growth=_GROWTH, stiffer=_STIFFER, penalty=self.penalty)
         except InputError:
             return None
         with tempfile.TemporaryDirectory() as folder:
             deck = Path(folder) / "job.inp"
             write(deck)
-            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            done = ran(["ccx", "job"], deck.parent)
+            counted = _DOFS.search(done.text)
+            answer = Answer({}, done.cpu_s, int(counted[1]) if counted else None, done.memory_mb)
+            if why := _unfinished(done.code, done.text, deck.with_suffix(".sta")):
+                return msgspec.structs.replace(answer, note=why)
             try:
-                alone = os.environ | {"OMP_NUM_THREADS": "1"}
-                done = subprocess.run(["ccx", "job"], cwd=folder, env=alone, capture_output=True, text=True,
-                                      timeout=_LONGEST, check=False)  # fmt: skip
-            except subprocess.TimeoutExpired:
-                return Answer({}, note=f"not finished within {_LONGEST:g} s")
-            after = resource.getrusage(resource.RUSAGE_CHILDREN)
-            spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-            counted = _DOFS.search(done.stdout)
-            try:
-                samples = read(deck.with_suffix(".frd"), problem.scene, (1.0, 1.0, 1.0), 1, None, None)
-                result = scored(problem.scene, samples, "calculix", "job.frd")
+                result = scored(scene, read(deck.with_suffix(".frd"), scene), "calculix", "job.frd")
             except InputError as error:
-                return Answer({}, cpu_s=spent, note=f"no results: {error}")
-        answer = answer_of(problem, result, int(counted[1]) if counted else None)
-        return msgspec.structs.replace(answer, cpu_s=spent, memory_mb=None)
+                return msgspec.structs.replace(answer, note=f"no results: {error}")
+        return msgspec.structs.replace(answer, values=answer_of(problem, result).values)
+
+
+@cache
+def _version(ccx: str | None) -> str | None:
+    if ccx is None:
+        return None
+    told = subprocess.run([ccx, "-v"], capture_output=True, text=True, check=False).stdout
+    found = re.search(r"Version\s+(\S+)", told)
+    return found[1] if found else ""
+
+
+def _unfinished(code: int | None, printed: str, status: Path) -> str:
+    """Why the job did not finish; empty if it did."""
+    if code is None:
+        return f"not finished within {LONGEST:g} s"
+    if code == 0 and "Job finished" in printed:
+        return ""
+    rows = [line.split() for line in status.read_text("utf-8", "replace").splitlines()[2:]] if status.exists() else []
+    where = f" in step {rows[-1][0]}" if rows and rows[-1] else ""
+    errors = [line.strip() for line in printed.splitlines() if "*ERROR" in line]
+    return f"gave up{where}" + (f": {errors[-1]}" if errors else f" with exit code {code}")

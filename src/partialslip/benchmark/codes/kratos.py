@@ -1,0 +1,78 @@
+"""Kratos and its contact application: models by :mod:`partialslip.export`, run by a Python that has them."""
+
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from partialslip.benchmark.codes.gradual import gradual
+from partialslip.benchmark.codes.scripted import Host, of_scene, solved
+from partialslip.benchmark.measured import answer_of
+from partialslip.benchmark.problem import Problem
+from partialslip.benchmark.submission import Answer
+from partialslip.errors import InputError
+from partialslip.export.model import Model, modelled
+
+HOST = Host(
+    "PARTIALSLIP_KRATOS_PYTHON",
+    "from importlib.metadata import version as v; v('KratosLinearSolversApplication'); "
+    "print(v('KratosContactStructuralMechanicsApplication'))",
+    "run_kratos.py",
+)
+_STIFFER = 100.0  # half-planes neglect the slopes of the surfaces: these are a hundredth
+_GROWTH = 0.2
+
+
+@dataclass(frozen=True)
+class Kratos:
+    """Kratos with elements of ``size`` a and at least so many ``increments`` a step."""
+
+    size: float
+    increments: int
+
+    @property
+    def version(self) -> str | None:
+        """Version of the contact application; None if no Python has it."""
+        return HOST.told
+
+    @property
+    def settings(self) -> str:
+        """Settings in words."""
+        kind = f"linear quadrilaterals of {self.size:g} a along the contact, mortar contact, augmented Lagrangian"
+        return f"{kind}, tangent_factor 1, {self.increments} increments a step, bodies {_STIFFER:g} times stiffer"
+
+    def answer(self, problem: Problem) -> Answer | None:
+        """Answer to ``problem``; None if there is no model, or the frame would have to turn. Without values if Kratos
+        does not converge."""
+        scene = gradual(problem.scene)
+        if any(M for _, M in scene.pressing):
+            return None
+        try:
+            made = modelled(scene, self.size, growth=_GROWTH, stiffer=_STIFFER)
+        except InputError:
+            return None
+        steps = [step._replace(increments=max(step.increments, self.increments)) for step in made.steps]
+        with tempfile.TemporaryDirectory() as folder:
+            found = solved(HOST, scene, of_scene(scene, steps) | _told(made), Path(folder))
+        values = answer_of(problem, found.result).values if found.result else {}
+        return Answer(values, found.cpu_s, found.unknowns, found.memory_mb, found.why)
+
+
+def _told(made: Model) -> dict[str, Any]:
+    lower = made.parts[0]
+    return {
+        "a": made.a,
+        "bodies": {
+            part.name: {
+                "points": part.mesh.points.tolist(),
+                "quads": part.mesh.quads.tolist(),
+                "contact": part.mesh.lines["contact"].tolist(),
+                "E": part.E,
+                "nu": part.nu,
+            }
+            for part in made.parts
+        },
+        "held": {part.name: [nodes.tolist() for nodes in part.held_nodes] for part in made.parts},
+        "pull": lower.pull.tolist(),
+        "strained": lower.strained.tolist(),
+    }

@@ -1,0 +1,79 @@
+"""Codes that are Python packages: a script of :mod:`partialslip.benchmark.codes` run by a Python that has the code."""
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from importlib.resources import as_file, files
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from partialslip.benchmark.codes.process import LONGEST, python_with, ran
+from partialslip.errors import InputError
+from partialslip.export.path import Step
+from partialslip.result import Result
+from partialslip.scene import Scene
+from partialslip.score.method import scored
+from partialslip.score.read import read
+
+TABLE = "table.csv"
+
+
+class Host(NamedTuple):
+    """Where a code runs: environment ``variable`` that names a Python, program that prints the ``version``, and the
+    name of the ``script``."""
+
+    variable: str
+    version: str
+    script: str
+
+    @property
+    def told(self) -> str | None:
+        """Version of the code; None if no Python has it."""
+        found = python_with(self.variable, self.version)
+        return found[1] if found else None
+
+
+class Solved(NamedTuple):
+    """``result`` of a run, or ``why`` there is none; its ``unknowns``, CPU seconds and peak memory, MB."""
+
+    result: Result | None
+    why: str
+    unknowns: int | None
+    cpu_s: float
+    memory_mb: float
+
+
+def of_scene(scene: Scene, steps: Sequence[Step]) -> dict[str, Any]:
+    """Parameters of all scripts: friction, steps, numbers of the steps of load points 1 and 2, and the table's name."""
+    first = len(steps) - len(scene.load.points)
+    return {
+        "f": scene.friction.f,
+        "steps": [step._asdict() for step in steps],
+        "points": [-1, -1] if scene.only_pressed else [first + end for end in scene.load.ends],
+        "table": TABLE,
+    }
+
+
+def solved(host: Host, scene: Scene, parameters: Mapping[str, Any], folder: Path) -> Solved:
+    """Run the script of ``host`` with ``parameters`` in ``folder``, and read the tractions of ``scene``."""
+    (folder / "parameters.json").write_text(json.dumps(parameters), "utf-8")
+    python, _ = python_with(host.variable, host.version) or (sys.executable, "")
+    with as_file(files("partialslip.benchmark.codes") / "scripts" / host.script) as script:
+        done = ran([python, str(script), "parameters.json"], folder)
+
+    def failed(why: str, unknowns: int | None = None) -> Solved:
+        return Solved(None, why, unknowns, done.cpu_s, done.memory_mb)
+
+    if done.code is None:
+        return failed(f"not finished within {LONGEST:g} s")
+    last = (done.text.strip().splitlines() or [""])[-1]
+    if done.code or not last.startswith("{"):
+        return failed(f"failed: {last[:200]}")
+    told = json.loads(last)
+    if told["gave_up"]:
+        return failed(f"did not converge in step {told['gave_up']!r}", told["unknowns"])
+    try:
+        result = scored(scene, read(folder / TABLE, scene), "", TABLE)
+    except InputError as error:
+        return failed(f"no results: {error}", told["unknowns"])
+    return Solved(result, "", told["unknowns"], done.cpu_s, done.memory_mb)

@@ -1,0 +1,88 @@
+"""A problem as plain files for any code: meshes of both bodies in four formats, loads and supports, and decks."""
+
+import importlib.util
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from partialslip.benchmark.problem import Problem
+from partialslip.errors import InputError
+from partialslip.export.abaqus import abaqus_deck
+from partialslip.export.calculix import calculix_deck
+from partialslip.export.model import Model, modelled
+from partialslip.output.json import json_text
+
+_FORMATS = (".msh", ".inp", ".vtu")
+_WITH_H5PY = (".med",)
+_SIZE, _GROWTH = 0.05, 0.2  # elements of the meshes, in a
+_STIFFER = 100.0  # decks: half-planes neglect the slopes of the surfaces, which these codes do not
+
+
+def files(problem: Problem) -> dict[str, bytes]:
+    """Files of ``problem`` by name.
+
+    ``model.json``: bodies, supports and load steps in SI units. ``lower`` and ``upper`` with .msh, .inp, .med (if h5py
+    is installed) and .vtu: a body's mesh of quadrilaterals, in m, with the groups contact, face, back, left, right
+    and, if there is a holder, flanks. ``calculix-mortar.inp``, ``calculix-penalty.inp`` and ``abaqus.inp``: decks.
+    None where the problem cannot be exported.
+    """
+    try:
+        made = modelled(problem.scene, _SIZE, growth=_GROWTH)
+        flat = modelled(problem.scene, _SIZE, growth=_GROWTH, stiffer=_STIFFER)
+    except InputError:
+        return {}
+    decks = {
+        "calculix-mortar.inp": calculix_deck(problem.scene, flat, "mortar"),
+        "calculix-penalty.inp": calculix_deck(problem.scene, flat, "penalty"),
+        "abaqus.inp": abaqus_deck(problem.scene, flat),
+    }
+    texts = {"model.json": json_text(_told(made))} | {name: "\n".join(deck) + "\n" for name, deck in decks.items()}
+    return {name: text.encode() for name, text in texts.items()} | _meshes(made)
+
+
+def _told(made: Model) -> dict[str, Any]:
+    """Content of ``model.json``."""
+    bodies = {
+        part.name: {
+            "E": part.E,
+            "nu": part.nu,
+            "held_along_x": part.held[0],
+            "held_along_y": part.held[1],
+            "pulled": part.pulled,
+        }
+        for part in made.parts
+    }
+    lower = made.parts[0]
+    turns = " and turns" if made.turns else " and does not turn"
+    pulled = "sigma is a traction along x on its right side; its held lines do not move"
+    uniform = (
+        "sigma moves its held lines by u = sigma (strains[0] x, strains[1] y), along the held directions, and is a "
+        "traction along x on sides that are free along x"
+    )
+    return {
+        "units": "SI: m, N/m, Pa, N; E and nu are those of plane strain, also where the problem is in plane stress",
+        "f": made.f,
+        "expected_half_width": made.a,
+        "element_size": made.size,
+        "bodies": bodies,
+        "lower_body": pulled if lower.pulled else uniform,
+        "strains": lower.strained.tolist(),
+        "upper_body": f"its held lines are a rigid frame, under P along -y and Q along -x, that moves freely{turns}",
+        "guided": "in a guided step the upper body's frame is held along x",
+        "increments": "least number of equal increments; more are better where the contact grows",
+        "steps": [step._asdict() for step in made.steps],
+    }
+
+
+def _meshes(made: Model) -> dict[str, bytes]:
+    from partialslip_meshes.write import write_body
+
+    formats = _FORMATS + (_WITH_H5PY if importlib.util.find_spec("h5py") else ())
+    found = {}
+    with TemporaryDirectory() as folder:
+        for part in made.parts:
+            for suffix in formats:
+                path = Path(folder) / f"{part.name}{suffix}"
+                write_body(path, part.mesh)
+                found[path.name] = path.read_bytes()
+    return found
