@@ -80,7 +80,7 @@ def _files(problem: Problem) -> dict[str, str]:
     lines = [[key, *(getattr(target, name) for name in columns[1:])] for key, target in problem.targets.items()]
     return {
         "problem.json": json_text(everything),
-        "scene.toml": scene_toml(problem.scene),
+        "scene.toml": scene_toml(problem.scene, _LEFT_OUT),
         "targets.csv": csv_text(columns, lines),
     }
 
@@ -125,6 +125,6 @@ def _data(problem: Problem) -> list[tuple[str, str, str]]:
 
 def _targets(problem: Problem) -> list[tuple[str, ...]]:
     return [
-        (key, each.group, f"{each.value:.12g}", each.unit, f"{each.scale:.6g}", f"{each.uncertainty:.0e}", each.known)
+        (key, each.group, f"{each.value:.12g} {each.unit}", f"{each.scale:.6g}", f"{each.uncertainty:.0e}", each.known)
         for key, each in problem.targets.items()
     ]
