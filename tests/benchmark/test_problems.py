@@ -12,6 +12,7 @@ from partialslip.benchmark.measured import GROUPS, quantities
 from partialslip.benchmark.problem import EDITION, checksum, chosen, read_frozen, texts
 from partialslip.errors import InputError
 from partialslip.run import run
+from partialslip.scene import Effects
 from partialslip.scene.reading import shipped_scenes
 
 PROBLEMS = read_problems()
@@ -28,7 +29,7 @@ def test_no_problem_and_no_target_moves_within_an_edition():
 @pytest.mark.parametrize("number", CLOSED)
 def test_targets_in_closed_form_are_found_again(number):
     problem = PROBLEMS[number]
-    found = quantities(problem.scene, run(problem.scene, "exact", subsurface=problem.stress)["exact"], problem.places)
+    found = quantities(problem.scene, run(problem.scene, "exact")["exact"], problem.places)
     assert found.keys() >= problem.targets.keys()
     for key, target in problem.targets.items():
         assert abs(found[key].value - target.value) <= target.uncertainty * target.scale, key
@@ -76,16 +77,16 @@ def test_symmetric_problems_have_symmetric_stick_zones_and_no_ends_of_their_own(
 def test_a_problem_in_a_shipped_scene_is_kept_once():
     for number, name in (("PS-03", "fretting-aluminium"), ("PS-11", "flat-rounded")):
         ours, theirs = PROBLEMS[number].scene, load_scene(name)
-        assert ours.replace(name=name, title=theirs.title) == theirs
+        assert ours.replace(name=name, title=theirs.title, effects=Effects()) == theirs
     shipped = {each.replace(name="x", title="") for each in map(load_scene, shipped_scenes())}
     texts_of = texts()
     for number, problem in PROBLEMS.items():
-        own = problem.scene.replace(name="x", title="")
+        own = problem.scene.replace(name="x", title="", effects=Effects())
         assert (own in shipped) == ('scene = "' in texts_of[number]), number
 
 
 def test_problems_that_ask_for_stress_say_so():
-    asked = {number for number, problem in PROBLEMS.items() if problem.stress}
+    asked = {number for number, problem in PROBLEMS.items() if problem.scene.effects.subsurface}
     assert {"PS-03", "PS-05"} < asked
     assert asked == {number for number, problem in PROBLEMS.items() if "sigma_xx" in problem.targets}
     assert all("sigma_xx along the surface" in PROBLEMS[number].statement for number in asked)

@@ -5,7 +5,16 @@ import zipfile
 
 import pytest
 
-from partialslip.benchmark import book_zip, read_problems, read_submission, scoreboard, write_submission
+from partialslip.benchmark import (
+    Answer,
+    Meta,
+    Submission,
+    book_zip,
+    read_problems,
+    read_submission,
+    scoreboard,
+    write_submission,
+)
 from partialslip.benchmark.codes import CODES, answers
 from partialslip.benchmark.codes.own import Own
 from partialslip.cli import main
@@ -27,6 +36,13 @@ def test_answers_are_written_and_read_back(tmp_path):
 def test_a_code_that_lacks_something_does_not_offer_it():
     assert answers("equivalent", SOME).answers == {}
     assert scoreboard(SOME, [answers("equivalent", SOME)]).rows[0][1] == "–"
+
+
+def test_a_code_that_tried_and_failed_is_not_one_that_does_not_offer():
+    given = Answer({}, note="did not converge in step 'press'")
+    failed = Submission(Meta("mine", "1"), {"PS-02": given})
+    assert scoreboard(SOME, [failed]).rows[0][1] == "none"
+    assert scoreboard(SOME, [Submission(Meta("mine", "1"), {})]).rows[0][1] == "–"
 
 
 @pytest.mark.parametrize(
@@ -121,15 +137,15 @@ def test_tractions_of_any_code_make_an_answer(tmp_path):
 
 def test_what_was_finished_before_an_interruption_is_kept(tmp_path, monkeypatch):
     two = {number: each for number, each in read_problems().items() if number in ("PS-01", "PS-02")}
-    true, asked = Own.answer, []
+    true, asked = Own.solve, []
 
-    def interrupted(code, problem):
-        asked.append(problem.number)
+    def interrupted(code, scene):
+        asked.append(scene.name.upper())
         if asked == ["PS-01", "PS-02"]:
             raise KeyboardInterrupt
-        return true(code, problem)
+        return true(code, scene)
 
-    monkeypatch.setattr(Own, "answer", interrupted)
+    monkeypatch.setattr(Own, "solve", interrupted)
     with pytest.raises(KeyboardInterrupt):
         answers("exact", two, folder=tmp_path)
     found = answers("exact", two, folder=tmp_path)

@@ -115,7 +115,7 @@ def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: N
 
 
 def _solved(problem: Problem, way: Way) -> Result:
-    return run(problem.scene.replace(way.changes), way.method, subsurface=problem.stress)[way.method]
+    return run(problem.scene.replace(way.changes), way.method)[way.method]
 
 
 def _slip(problem: Problem, a: float) -> dict[str, Quantity]:

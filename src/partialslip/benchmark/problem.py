@@ -61,7 +61,7 @@ class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     sources: tuple[Source, ...] = ()
     places: tuple[Annotated[float, msgspec.Meta(ge=-1, le=1)], ...] = (-0.9, -0.5, 0.0, 0.5, 0.9)
     why: str = ""
-    stress: bool = False
+    stress: bool = False  # whether the largest sigma_xx of the lower surface is a target
 
 
 class Frozen(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -88,8 +88,6 @@ class Problem(msgspec.Struct, frozen=True):
     scene : Scene
     places : tuple of float
         x/a at which tractions are targets; a is the target.
-    stress : bool
-        Whether the largest sigma_xx of the lower surface is a target.
     regime : str
         That of the steady state, in the words of partialslip.
     targets : mapping of str to Target
@@ -102,7 +100,6 @@ class Problem(msgspec.Struct, frozen=True):
     sources: tuple[Source, ...]
     scene: Scene
     places: tuple[float, ...]
-    stress: bool
     regime: str
     targets: Mapping[str, Target]
 
@@ -178,10 +175,10 @@ def read(number: str, text: str, frozen: Frozen | None = None) -> Problem:
     """Problem of the file ``text``, with what is ``frozen`` of it, if anything is."""
     file = msgspec.convert(tomllib.loads(text), _File)
     named = {"name": number.lower(), "title": file.title}
-    if isinstance(file.scene, str):
-        scene = load_scene(file.scene).replace(named)
-    else:
-        scene = parse_scene(named | file.scene)
+    shipped = isinstance(file.scene, str)
+    scene = load_scene(file.scene).replace(named) if shipped else parse_scene(named | file.scene)  # type: ignore[arg-type, operator]
+    if file.stress:
+        scene = scene.replace(effects={"subsurface": True})
     told = file.title, file.statement.strip(), file.why, file.sources
     known = (frozen.regimes.get(number, ""), frozen.targets.get(number, {})) if frozen else ("", {})
-    return Problem(number, *told, scene, file.places, file.stress, *known)
+    return Problem(number, *told, scene, file.places, *known)

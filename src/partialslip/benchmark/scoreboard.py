@@ -35,6 +35,8 @@ def scoreboard(problems: Mapping[str, Problem], submissions: Sequence[Submission
 
 
 def _cell(graded: Graded | None, submission: Submission, number: str) -> str:
+    if number in submission.answers and not submission.answers[number].values:
+        return "none"  # the code tried, and its note says why there are no values
     if graded is None or graded.overall.grade == NOT_OFFERED:
         return "–"
     spent = submission.answers[number].cpu_s

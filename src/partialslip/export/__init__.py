@@ -34,7 +34,7 @@ def export(
     Parameters
     ----------
     scene : Scene
-        Of half-planes of one material.
+        With an even gap.
     to : str
         "calculix", "abaqus" or "gmsh".
     size, width, growth, stiffer, ends, fine

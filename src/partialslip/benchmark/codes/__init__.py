@@ -4,14 +4,19 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Protocol
 
+from msgspec.structs import replace
+
 from partialslip.benchmark.codes.calculix import Calculix
 from partialslip.benchmark.codes.getfem import GetFEM
 from partialslip.benchmark.codes.kratos import Kratos
 from partialslip.benchmark.codes.own import Own
+from partialslip.benchmark.codes.solved import Solved
+from partialslip.benchmark.measured import answer_of
 from partialslip.benchmark.problem import Problem, read_problems
-from partialslip.benchmark.submission import META, Answer, Meta, Submission, read_submission, write_submission
+from partialslip.benchmark.submission import META, Answer, Meta, Rung, Submission, read_submission, write_submission
 from partialslip.errors import InputError
 from partialslip.origin import made_now
+from partialslip.scene import Scene
 
 
 class Code(Protocol):
@@ -25,8 +30,8 @@ class Code(Protocol):
     def settings(self) -> str:
         """Settings in words."""
 
-    def answer(self, problem: Problem) -> Answer | None:
-        """Answer to ``problem``; None if the code does not offer it."""
+    def solve(self, scene: Scene) -> Solved | None:
+        """Solve ``scene``; None if the code does not offer it. A code that fails says why."""
 
 
 CODES: dict[str, Code] = {
@@ -40,7 +45,7 @@ CODES: dict[str, Code] = {
     "equivalent": Own("equivalent", {}),
     "calculix-mortar": Calculix(0.05, False),
     "calculix-penalty": Calculix(0.05, True),
-    "kratos": Kratos(0.05, 4),
+    "kratos": Kratos(0.1, 8),
     "getfem": GetFEM(0.05),
     "getfem-graded": GetFEM(0.05, 0.003),
 }
@@ -86,12 +91,30 @@ def answers(
         write_submission(Submission(meta, found), folder)
     for number, (key, problem) in enumerate(problems.items()):
         progress(number, len(problems), float("nan"))
-        if key not in found and (answer := code.answer(problem)):
+        if key not in found and (answer := _answered(code, problem)):
             found[key] = answer
             if folder:
                 write_submission(Submission(meta, {key: answer}), folder)
     progress(len(problems), len(problems), 0.0)
     return Submission(meta, {key: found[key] for key in problems if key in found})
+
+
+def _answered(code: Code, problem: Problem) -> Answer | None:
+    """Answer of ``code``, on its ladder of meshes if it has one; None if it does not offer the ``problem``."""
+    if not isinstance(code, Own) or not code.sizes:
+        solved = code.solve(problem.scene)
+        return _answer(problem, solved) if solved else None
+    rungs = [each.solve(problem.scene) for each in code.rungs]
+    found = [_answer(problem, each) for each in rungs if each]
+    if len(found) < len(rungs):
+        return None
+    ladder = (Rung(h, each.values, each.cpu_s, each.unknowns) for h, each in zip(code.sizes, found, strict=True))
+    return replace(found[-1], ladder=tuple(ladder))
+
+
+def _answer(problem: Problem, solved: Solved) -> Answer:
+    values = answer_of(problem, solved.result).values if solved.result else {}
+    return Answer(values, solved.cpu_s, solved.unknowns, solved.memory_mb, solved.why)
 
 
 def _kept(meta: Meta, problems: Mapping[str, Problem], folder: Path | None) -> dict[str, Answer]:

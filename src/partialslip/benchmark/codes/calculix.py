@@ -8,15 +8,12 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-import msgspec
-
 from partialslip.benchmark.codes.gradual import gradual
 from partialslip.benchmark.codes.process import LONGEST, ran
-from partialslip.benchmark.measured import answer_of
-from partialslip.benchmark.problem import Problem
-from partialslip.benchmark.submission import Answer
+from partialslip.benchmark.codes.solved import Solved
 from partialslip.errors import InputError
 from partialslip.export import export
+from partialslip.scene import Scene
 from partialslip.score.method import scored
 from partialslip.score.read import read
 
@@ -41,11 +38,12 @@ class Calculix:
     def settings(self) -> str:
         """Settings in words."""
         kind = "penalty" if self.penalty else "mortar"
-        return f"{kind} contact, elements of {self.size:g} a along the contact, bodies {_STIFFER:g} times stiffer"
+        elements = f"elements of {self.size:g} a along the contact, growing by {_GROWTH:g}"
+        return f"{kind} contact, {elements}, bodies {_STIFFER:g} times stiffer"
 
-    def answer(self, problem: Problem) -> Answer | None:
-        """Answer to ``problem``; None if there is no deck for it. Without values if CalculiX does not finish."""
-        scene = gradual(problem.scene)
+    def solve(self, scene: Scene) -> Solved | None:
+        """Solve ``scene``; None if there is no deck for it."""
+        scene = gradual(scene)
         try:
             write = export(scene, "calculix", size=self.size, growth=_GROWTH, stiffer=_STIFFER, penalty=self.penalty)
         except InputError:
@@ -55,14 +53,14 @@ class Calculix:
             write(deck)
             done = ran(["ccx", "job"], deck.parent)
             counted = _DOFS.search(done.text)
-            answer = Answer({}, done.cpu_s, int(counted[1]) if counted else None, done.memory_mb)
+            cost = int(counted[1]) if counted else None, done.cpu_s, done.memory_mb
             if why := _unfinished(done.code, done.text, deck.with_suffix(".sta")):
-                return msgspec.structs.replace(answer, note=why)
+                return Solved(None, why, *cost)
             try:
                 result = scored(scene, read(deck.with_suffix(".frd"), scene), "calculix", "job.frd")
             except InputError as error:
-                return msgspec.structs.replace(answer, note=f"no results: {error}")
-        return msgspec.structs.replace(answer, values=answer_of(problem, result).values)
+                return Solved(None, f"no results: {error}", *cost)
+        return Solved(result, "", *cost)
 
 
 @cache

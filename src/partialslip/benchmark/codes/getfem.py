@@ -10,9 +10,7 @@ import numpy as np
 
 from partialslip.benchmark.codes.gradual import gradual
 from partialslip.benchmark.codes.scripted import Host, of_scene, solved
-from partialslip.benchmark.measured import answer_of
-from partialslip.benchmark.problem import Problem
-from partialslip.benchmark.submission import Answer
+from partialslip.benchmark.codes.solved import Solved
 from partialslip.errors import InputError
 from partialslip.export.model import outlined
 from partialslip.export.parts import flat_parts
@@ -46,25 +44,23 @@ class GetFEM:
         kind = f"Q{self.order} elements of {self.size:g} a along the contact{where}"
         return f"{kind}; linear multipliers, augmented conditions (Alart and Curnier)"
 
-    def answer(self, problem: Problem) -> Answer | None:
-        """Answer to ``problem``; None if its meshes cannot be made. Without values if GetFEM does not converge."""
-        scene = gradual(problem.scene)
-        try:
-            outlined(scene)
-        except InputError:
-            return None
+    def solve(self, scene: Scene) -> Solved | None:
+        """Solve ``scene``; None if its meshes cannot be made."""
+        scene = gradual(scene)
         ends: tuple[float, ...] = ()
         cpu_s = memory_mb = 0.0
         for fine in (None, self.fine) if self.fine else (None,):
             with tempfile.TemporaryDirectory() as folder:
-                parameters = _written(scene, Path(folder), self.size, ends, fine) | {"order": self.order}
+                try:
+                    parameters = _written(scene, Path(folder), self.size, ends, fine) | {"order": self.order}
+                except InputError:
+                    return None
                 found = solved(HOST, scene, parameters, Path(folder))
-            cpu_s, memory_mb = cpu_s + found.cpu_s, max(memory_mb, found.memory_mb)
+            cpu_s, memory_mb = cpu_s + (found.cpu_s or 0.0), max(memory_mb, found.memory_mb or 0.0)
             if not found.result:
-                return Answer({}, cpu_s, found.unknowns, memory_mb, found.why)
+                break
             ends = _ends(found.result)
-        assert found.result
-        return Answer(answer_of(problem, found.result).values, cpu_s, found.unknowns, memory_mb)
+        return found._replace(cpu_s=cpu_s, memory_mb=memory_mb)
 
 
 def _ends(result: Result) -> tuple[float, ...]:

@@ -7,11 +7,10 @@ from typing import Any
 
 from partialslip.benchmark.codes.gradual import gradual
 from partialslip.benchmark.codes.scripted import Host, of_scene, solved
-from partialslip.benchmark.measured import answer_of
-from partialslip.benchmark.problem import Problem
-from partialslip.benchmark.submission import Answer
+from partialslip.benchmark.codes.solved import Solved
 from partialslip.errors import InputError
 from partialslip.export.model import Model, modelled
+from partialslip.scene import Scene
 
 HOST = Host(
     "PARTIALSLIP_KRATOS_PYTHON",
@@ -41,10 +40,9 @@ class Kratos:
         kind = f"linear quadrilaterals of {self.size:g} a along the contact, mortar contact, augmented Lagrangian"
         return f"{kind}, tangent_factor 1, {self.increments} increments a step, bodies {_STIFFER:g} times stiffer"
 
-    def answer(self, problem: Problem) -> Answer | None:
-        """Answer to ``problem``; None if there is no model, or the frame would have to turn. Without values if Kratos
-        does not converge."""
-        scene = gradual(problem.scene)
+    def solve(self, scene: Scene) -> Solved | None:
+        """Solve ``scene``; None if there is no model, or the upper body would have to turn."""
+        scene = gradual(scene)
         if any(M for _, M in scene.pressing):
             return None
         try:
@@ -53,9 +51,7 @@ class Kratos:
             return None
         steps = [step._replace(increments=max(step.increments, self.increments)) for step in made.steps]
         with tempfile.TemporaryDirectory() as folder:
-            found = solved(HOST, scene, of_scene(scene, steps) | _told(made), Path(folder))
-        values = answer_of(problem, found.result).values if found.result else {}
-        return Answer(values, found.cpu_s, found.unknowns, found.memory_mb, found.why)
+            return solved(HOST, scene, of_scene(scene, steps) | _told(made), Path(folder))
 
 
 def _told(made: Model) -> dict[str, Any]:

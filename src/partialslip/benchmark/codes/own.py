@@ -3,24 +3,26 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from msgspec.structs import replace
-
 import partialslip
-from partialslip.benchmark.measured import answer_of
-from partialslip.benchmark.problem import Problem
-from partialslip.benchmark.submission import Answer, Rung
+from partialslip.benchmark.codes.solved import Solved
 from partialslip.errors import PartialslipError
 from partialslip.run import run
+from partialslip.scene import Scene
 
 
 @dataclass(frozen=True)
 class Own:
-    """A ``method`` of partialslip with ``fem`` settings; on a ladder of meshes if there are ``sizes`` of elements, from
-    coarse to fine, in a."""
+    """A ``method`` of partialslip with ``fem`` settings. With a ladder of ``sizes`` of elements, from coarse to fine,
+    in a, each of the ``rungs`` solves on one mesh, and the code itself on the finest."""
 
     method: str
     fem: Mapping[str, float | int]
     sizes: tuple[float, ...] = ()
+
+    @property
+    def rungs(self) -> tuple["Own", ...]:
+        """Codes of one size each, as many as ``sizes``."""
+        return tuple(Own(self.method, {**self.fem, "size": size}) for size in self.sizes)
 
     @property
     def version(self) -> str | None:
@@ -34,19 +36,15 @@ class Own:
         told += ["sizes " + ", ".join(f"{size:g} a" for size in self.sizes)] if self.sizes else []
         return ", ".join(told)
 
-    def answer(self, problem: Problem) -> Answer | None:
-        """Answer to ``problem``; None if the method does not offer it."""
-        if problem.scene.finite and self.method in ("exact", "march"):  # half-planes
+    def solve(self, scene: Scene) -> Solved | None:
+        """Solve ``scene``; None if the method does not offer it."""
+        if self.sizes:
+            return self.rungs[-1].solve(scene)
+        if scene.finite and self.method in ("exact", "march"):  # half-planes
             return None
         try:
-            rungs = [self._solved(problem, {"size": size}) for size in self.sizes]
-            answer = rungs[-1] if rungs else self._solved(problem, {})
+            result = run(scene.replace(fem=dict(self.fem)), self.method)[self.method]
         except PartialslipError:
             return None
-        ladder = (Rung(h, each.values, each.cpu_s, each.unknowns) for h, each in zip(self.sizes, rungs, strict=True))
-        return replace(answer, ladder=tuple(ladder))
-
-    def _solved(self, problem: Problem, more: Mapping[str, float]) -> Answer:
-        scene = problem.scene.replace(fem={**self.fem, **more})
-        result = run(scene, self.method, subsurface=problem.stress)[self.method]
-        return answer_of(problem, result, result.counts.get("dofs") or result.counts.get("cells"))
+        unknowns = result.counts.get("dofs") or result.counts.get("cells")
+        return Solved(result, "", unknowns, result.cost.cpu_s, result.cost.peak_rss_mb)

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from partialslip.benchmark.codes.process import LONGEST, python_with, ran
+from partialslip.benchmark.codes.solved import Solved
 from partialslip.errors import InputError
 from partialslip.export.path import Step
-from partialslip.result import Result
 from partialslip.scene import Scene
 from partialslip.score.method import scored
 from partialslip.score.read import read
@@ -31,16 +31,6 @@ class Host(NamedTuple):
         """Version of the code; None if no Python has it."""
         found = python_with(self.variable, self.version)
         return found[1] if found else None
-
-
-class Solved(NamedTuple):
-    """``result`` of a run, or ``why`` there is none; its ``unknowns``, CPU seconds and peak memory, MB."""
-
-    result: Result | None
-    why: str
-    unknowns: int | None
-    cpu_s: float
-    memory_mb: float
 
 
 def of_scene(scene: Scene, steps: Sequence[Step]) -> dict[str, Any]:
