@@ -5,7 +5,7 @@ from scipy.interpolate import PPoly
 
 from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.history import certificate, last_cycle_change
-from partialslip.condensed.regime import doubts, steady_state
+from partialslip.condensed.regime import doubts, steady_state, unestimated
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, StressAt, Traction
 from partialslip.result.state import State
@@ -95,7 +95,7 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
         shares=shares if estimate else {},
         notes=found.notes
         + _note_on_pieces(solution)
-        + _note_on_steps(solution)
+        + (unestimated(history) if solution.coupled else ())
         + _note_on_the_middle(scene, solution, adapted)
         + _note_on_the_allowance(adapted, scene)
         + doubts(change, estimate, accuracy),
@@ -199,16 +199,6 @@ def _note_on_pieces(solution: MeshSolution) -> tuple[str, ...]:
     if solution.pieces == 1:
         return ()
     return (f"the contact is in {solution.pieces} pieces: a, m and n are of the outermost ends",)
-
-
-def _note_on_steps(solution: MeshSolution) -> tuple[str, ...]:
-    """A note on load steps of coupled bodies: they are as asked for, without error estimate."""
-    if not solution.history or not solution.coupled or not solution.history.path.moves:
-        return ()
-    steps = solution.history.path.substeps
-    return (
-        f"coupled bodies go from load point to load point in {steps} steps (load.steps), whose error is not estimated",
-    )
 
 
 def _note_on_the_middle(scene: Scene, solution: MeshSolution, adapted: Adapted) -> tuple[str, ...]:

@@ -2,17 +2,21 @@
 
 import math
 
+import numpy as np
 import pytest
 
+from partialslip import load_scene
 from partialslip.benchmark import read_problems
 from partialslip.benchmark.freeze import frozen_parts, ways
 from partialslip.benchmark.measured import GROUPS, quantities
 from partialslip.benchmark.problem import EDITION, checksum, chosen, read_frozen, texts
 from partialslip.errors import InputError
 from partialslip.run import run
+from partialslip.scene import Effects
+from partialslip.scene.reading import shipped_scenes
 
 PROBLEMS = read_problems()
-CLOSED = [number for number, problem in PROBLEMS.items() if ways(problem)[0][0] == "exact"]
+CLOSED = [number for number, problem in PROBLEMS.items() if ways(problem)[0].method == "exact"]
 
 
 def test_no_problem_and_no_target_moves_within_an_edition():
@@ -68,3 +72,30 @@ def test_symmetric_problems_have_symmetric_stick_zones_and_no_ends_of_their_own(
             assert abs(m.value - n.value) <= 1.001 * m.uncertainty * m.scale
     assert "left_1" not in PROBLEMS["PS-23"].targets
     assert "left_1" in PROBLEMS["PS-21"].targets
+
+
+def test_a_problem_in_a_shipped_scene_is_kept_once():
+    for number, name in (("PS-03", "fretting-aluminium"), ("PS-11", "flat-rounded")):
+        ours, theirs = PROBLEMS[number].scene, load_scene(name)
+        assert ours.replace(name=name, title=theirs.title, effects=Effects()) == theirs
+    shipped = {each.replace(name="x", title="") for each in map(load_scene, shipped_scenes())}
+    texts_of = texts()
+    for number, problem in PROBLEMS.items():
+        own = problem.scene.replace(name="x", title="", effects=Effects())
+        assert (own in shipped) == ('scene = "' in texts_of[number]), number
+
+
+def test_problems_that_ask_for_stress_say_so():
+    asked = {number for number, problem in PROBLEMS.items() if problem.scene.effects.subsurface}
+    assert {"PS-03", "PS-05"} < asked
+    assert asked == {number for number, problem in PROBLEMS.items() if "sigma_xx" in problem.targets}
+    assert all("sigma_xx along the surface" in PROBLEMS[number].statement for number in asked)
+
+
+def test_the_largest_stress_under_a_cylinder_is_known():
+    """Cattaneo and Mindlin: at the end of the contact f p gives 2 f p0, and the corrective ellipse of half-width c
+    takes 2 f p0 (1 - sqrt(1 - c^2/a^2)) away; c^2/a^2 = 1 - Q/(f P)."""
+    problem = PROBLEMS["PS-02"]
+    f, p0 = problem.scene.friction.f, problem.targets["p_max"].value
+    sheared = problem.scene.load.Q[1] / (f * problem.scene.P)
+    assert problem.targets["sigma_xx"].value == pytest.approx(2 * f * p0 * np.sqrt(sheared), rel=1e-12)

@@ -78,10 +78,16 @@ def test_the_zip_has_all_that_is_needed_and_is_always_the_same(tmp_path):
     assert data == book_zip(SOME)
     (tmp_path / "problems.zip").write_bytes(data)
     with zipfile.ZipFile(tmp_path / "problems.zip") as archive:
-        assert sorted(archive.namelist()) == ["PS-02/problem.json", "PS-02/scene.toml", "PS-02/targets.csv"]
+        names = set(archive.namelist())
+        assert {"README.txt", "PS-02/problem.json", "PS-02/scene.toml", "PS-02/targets.csv"} <= names
+        assert {"PS-02/model.json", "PS-02/lower.msh", "PS-02/upper.inp", "PS-02/calculix-mortar.inp"} <= names
         told = json.loads(archive.read("PS-02/problem.json"))
+        readme = archive.read("README.txt").decode()
     assert told["data"]["load"]["P"] == SOME["PS-02"].scene.load.P
     assert told["targets"]["m"]["value"] == SOME["PS-02"].targets["m"].value
+    for key in {key.partition("@")[0] for problem in read_problems().values() for key in problem.targets}:
+        assert key in readme.replace("@0.5", ""), key  # every key is explained
+    assert max(map(len, readme.splitlines())) <= 120
 
 
 def test_commands(tmp_path, monkeypatch, capsys):
@@ -94,6 +100,9 @@ def test_commands(tmp_path, monkeypatch, capsys):
     page = (tmp_path / "results/benchmark/book.html").read_text("utf-8")
     assert "PS-02 Cattaneo and Mindlin" in page
     assert "partialslip march" in page
+    assert {path.name for path in (tmp_path / "results/benchmark").iterdir()} >= {
+        "book.html", "problems.zip", "badge-partialslip-march.svg",
+    }  # fmt: skip
     assert main(["benchmark", "run", "--code", "ansys"]) == 2
     assert main(["benchmark", "score", "nowhere"]) == 2
     said = capsys.readouterr().err.splitlines()

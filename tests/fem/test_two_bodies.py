@@ -180,7 +180,6 @@ def test_wide_blocks_are_half_planes():
 
 def test_unlike_bodies_have_no_exact_solution():
     scene = load_scene("hertz-large-tension", [COARSE, *STIFF])
-    for method in ("exact", "march"):
-        with pytest.raises(partialslip.InputError, match="the bodies differ"):
-            partialslip.run(scene, [method])
+    with pytest.raises(partialslip.InputError, match="the bodies differ"):
+        partialslip.run(scene, "exact")
     assert list(partialslip.run(scene).results) == ["fem"]

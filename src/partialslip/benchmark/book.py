@@ -3,12 +3,16 @@
 import io
 import zipfile
 from collections.abc import Mapping, Sequence
+from importlib.resources import files as resources
 
 import msgspec
 
 from partialslip.benchmark.grade import LIMITS
+from partialslip.benchmark.ladder import CLIMB_HEADS, climb_rows
+from partialslip.benchmark.neutral import files as model_files
 from partialslip.benchmark.problem import EDITION, Problem, read_frozen
-from partialslip.benchmark.scoreboard import Board
+from partialslip.benchmark.scoreboard import Board, scoreboard
+from partialslip.benchmark.submission import Submission
 from partialslip.origin import Made, origin_lines
 from partialslip.output.csv import csv_text
 from partialslip.output.json import json_text
@@ -19,43 +23,45 @@ from partialslip.scene.writing import scene_tables, scene_toml
 
 _EARLY = (1980, 1, 1, 0, 0, 0)  # date of all files in the zip: the same content gives the same zip
 _LEFT_OUT = ("fem", "effects")  # tables of a scene that are settings of partialslip
-_PLACES = ("a", "m", "n")
+_COLUMNS = 8  # codes side by side in a scoreboard
 
 
-def book_page(problems: Mapping[str, Problem], board: Board | None, made: Made) -> str:
-    """The book as HTML.
-
-    Parameters
-    ----------
-    problems : mapping of str to Problem
-    board : Board or None
-    made : Made
-    """
+def book_page(problems: Mapping[str, Problem], submissions: Sequence[Submission], made: Made) -> str:
+    """The book as HTML: all ``problems`` by number, and a scoreboard of the ``submissions`` if there are any."""
     return render_page(
         "partialslip.benchmark",
         "book.html",
         title=f"Benchmark of frictional contact, edition {EDITION}",
         origin=origin_lines([made]),
         limits=LIMITS,
-        board=board,
+        boards=_boards(problems, submissions),
+        codes=[_code(submission) for submission in submissions],
         overview=[_overview(problem) for problem in problems.values()],
         problems=list(problems.values()),
         sketches={number: sketch_svg(problem.scene) for number, problem in problems.items()},
         data={number: _data(problem) for number, problem in problems.items()},
         targets={number: _targets(problem) for number, problem in problems.items()},
+        ladders={number: _ladders(problem, submissions) for number, problem in problems.items()},
+        climb_heads=("code", *CLIMB_HEADS),
         edition=EDITION,
         checksums=read_frozen().checksums,
     )
 
 
 def book_zip(problems: Mapping[str, Problem]) -> bytes:
-    """The ``problems`` by number as plain data, a zip: for each a JSON file with everything, the scene as TOML, and the
-    targets as CSV."""
+    """The ``problems`` by number as plain data, a zip that stands alone: how to take part, and for each problem a JSON
+    file with everything, the scene as TOML, the targets as CSV, meshes and decks."""
+    readme = (resources("partialslip.benchmark") / "zip_readme.txt").read_text("utf-8")
+    limits = ", ".join(f"{grade} {limit:g}" for grade, limit in LIMITS.items())
+    listed = "\n".join(f"{number}  {problem.title}" for number, problem in problems.items())
+    content = {"README.txt": readme.format(edition=EDITION, limits=limits, problems=listed).encode()}
+    for number, problem in problems.items():
+        own = {name: text.encode() for name, text in _files(problem).items()} | model_files(problem)
+        content |= {f"{number}/{name}": data for name, data in own.items()}
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-        for number, problem in problems.items():
-            for name, text in _files(problem).items():
-                archive.writestr(zipfile.ZipInfo(f"{number}/{name}", _EARLY), text, zipfile.ZIP_DEFLATED)
+        for name, data in content.items():
+            archive.writestr(zipfile.ZipInfo(name, _EARLY), data, zipfile.ZIP_DEFLATED)
     return buffer.getvalue()
 
 
@@ -74,9 +80,31 @@ def _files(problem: Problem) -> dict[str, str]:
     lines = [[key, *(getattr(target, name) for name in columns[1:])] for key, target in problem.targets.items()]
     return {
         "problem.json": json_text(everything),
-        "scene.toml": scene_toml(problem.scene),
+        "scene.toml": scene_toml(problem.scene, _LEFT_OUT),
         "targets.csv": csv_text(columns, lines),
     }
+
+
+def _boards(problems: Mapping[str, Problem], submissions: Sequence[Submission]) -> list[Board]:
+    """Scoreboards of a few codes each, which fit on a page."""
+    count = -(-len(submissions) // _COLUMNS)
+    each = -(-len(submissions) // count) if count else 1
+    return [scoreboard(problems, submissions[first : first + each]) for first in range(0, len(submissions), each)]
+
+
+def _code(submission: Submission) -> tuple[str, ...]:
+    meta = submission.meta
+    return (f"{meta.code} {meta.version}".strip(), meta.settings, meta.machine)
+
+
+def _ladders(problem: Problem, submissions: Sequence[Submission]) -> list[tuple[str, ...]]:
+    """Rows of what ladders of meshes say of ``problem``, with the code in front."""
+    return [
+        (submission.meta.code, *row)
+        for submission in submissions
+        if problem.number in submission.answers
+        for row in climb_rows(problem, submission.answers[problem.number])
+    ]
 
 
 def _overview(problem: Problem) -> Sequence[str]:
@@ -97,6 +125,6 @@ def _data(problem: Problem) -> list[tuple[str, str, str]]:
 
 def _targets(problem: Problem) -> list[tuple[str, ...]]:
     return [
-        (key, each.group, f"{each.value:.12g}", each.unit, f"{each.scale:.6g}", f"{each.uncertainty:.0e}", each.known)
+        (key, each.group, f"{each.value:.12g} {each.unit}", f"{each.scale:.6g}", f"{each.uncertainty:.0e}", each.known)
         for key, each in problem.targets.items()
     ]

@@ -11,7 +11,7 @@ from partialslip.result import Result
 from partialslip.scene import Scene
 from partialslip.units import Dimension
 
-GROUPS = ("contact", "stick", "tractions", "levels", "slip")  # levels: q1 and q2
+GROUPS = ("contact", "stick", "tractions", "levels", "slip", "stress")  # levels: q1 and q2
 
 
 class Quantity(NamedTuple):
@@ -53,8 +53,8 @@ def quantities(scene: Scene, result: Result, places: tuple[float, ...], a: float
     Notes
     -----
     ``a``, ``left``, ``right`` (contact, ends where it is not even), ``m``, ``n``; ``p_max``, ``p@x``, ``dq@x`` and,
-    where determined, ``q1@x`` and ``q2@x`` at x/a; ``slip`` (the largest) and ``dissipated``. A quantity that the
-    method does not determine is not there.
+    where determined, ``q1@x`` and ``q2@x`` at x/a; ``slip`` (the largest) and ``dissipated``; ``sigma_xx`` (the largest
+    of the lower surface, where the result has stresses). A quantity that the method does not determine is not there.
     """
     found = _quantities(scene, result, places, a or result.a)
     return {key: each._replace(value=float(each.value), scale=float(each.scale)) for key, each in found}
@@ -102,3 +102,5 @@ def _quantities(scene: Scene, result: Result, places: tuple[float, ...], a: floa
         if most > 0:
             yield "slip", Quantity(most, "m", most, "slip", "q")
             yield "dissipated", Quantity(result.slip.dissipated, "J/m", result.slip.dissipated, "slip", "q")
+    if result.surface:
+        yield "sigma_xx", Quantity(result.surface.largest[1], "Pa", p0, "stress", "q")

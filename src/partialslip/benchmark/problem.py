@@ -11,12 +11,13 @@ import msgspec
 
 from partialslip.errors import InputError
 from partialslip.scene import Scene
-from partialslip.scene.reading import parse_scene
+from partialslip.scene.reading import load_scene, parse_scene
+from partialslip.scene.writing import scene_tables
 from partialslip.units import Dimension
 
 _PACKAGE = "partialslip.benchmark"
 _TARGETS = "targets.json"
-EDITION = "1.0rc1"
+EDITION = "1.0rc2"
 
 
 class Source(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -42,7 +43,7 @@ class Target(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     known : str
         How the value is known.
     group : str
-        contact, stick, tractions, levels or slip.
+        contact, stick, tractions, levels, slip or stress.
     """
 
     value: float
@@ -56,10 +57,11 @@ class Target(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
 class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     title: str
     statement: str
-    scene: dict[str, Any]
+    scene: dict[str, Any] | str  # tables, or the name of a shipped scene
     sources: tuple[Source, ...] = ()
     places: tuple[Annotated[float, msgspec.Meta(ge=-1, le=1)], ...] = (-0.9, -0.5, 0.0, 0.5, 0.9)
     why: str = ""
+    stress: bool = False  # whether the largest sigma_xx of the lower surface is a target
 
 
 class Frozen(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -163,15 +165,20 @@ def frozen_text(targets: Mapping[str, Mapping[str, Target]], regimes: Mapping[st
 
 
 def checksum(number: str, targets: Mapping[str, Target]) -> str:
-    """Checksum of a problem: its file and its targets."""
-    content = [texts()[number], dict(targets)]
+    """Checksum of a problem: its file, its scene and its targets."""
+    text = texts()[number]
+    content = [text, scene_tables(read(number, text).scene), dict(targets)]
     return hashlib.sha256(msgspec.json.encode(content, order="sorted")).hexdigest()
 
 
 def read(number: str, text: str, frozen: Frozen | None = None) -> Problem:
     """Problem of the file ``text``, with what is ``frozen`` of it, if anything is."""
     file = msgspec.convert(tomllib.loads(text), _File)
-    scene = parse_scene({"name": number.lower(), "title": file.title, **file.scene})
+    named = {"name": number.lower(), "title": file.title}
+    shipped = isinstance(file.scene, str)
+    scene = load_scene(file.scene).replace(named) if shipped else parse_scene(named | file.scene)  # type: ignore[arg-type, operator]
+    if file.stress:
+        scene = scene.replace(effects={"subsurface": True})
     told = file.title, file.statement.strip(), file.why, file.sources
     known = (frozen.regimes.get(number, ""), frozen.targets.get(number, {})) if frozen else ("", {})
     return Problem(number, *told, scene, file.places, *known)

@@ -1,5 +1,6 @@
 """Submissions: what a code found, as a folder of plain files."""
 
+import itertools
 import math
 import os
 import tomllib
@@ -17,6 +18,7 @@ from partialslip.output.files import write_texts
 from partialslip.output.json import json_text
 
 _LARGEST = 2**20  # bytes of a file
+_FEWEST = 3  # meshes of a ladder
 META = "meta.toml"
 
 
@@ -27,6 +29,16 @@ class Meta(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     version: Annotated[str, msgspec.Meta(max_length=60)]
     settings: Annotated[str, msgspec.Meta(max_length=400)] = ""
     machine: Annotated[str, msgspec.Meta(max_length=200)] = ""
+
+
+class Rung(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One mesh of a ladder: size ``h`` of its elements along the contact, in a unit of the code's choice, and what was
+    found on it, as in :class:`Answer`."""
+
+    h: Annotated[float, msgspec.Meta(gt=0)]
+    values: dict[str, float | None]
+    cpu_s: Annotated[float, msgspec.Meta(ge=0)] | None = None
+    unknowns: Annotated[int, msgspec.Meta(ge=0)] | None = None
 
 
 class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -43,6 +55,8 @@ class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         Peak memory.
     note : str
         For the reader.
+    ladder : tuple of Rung
+        Three meshes or more, from coarse to fine; the values of the answer are those of the last one.
     """
 
     values: dict[str, float | None]
@@ -50,6 +64,7 @@ class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     unknowns: Annotated[int, msgspec.Meta(ge=0)] | None = None
     memory_mb: Annotated[float, msgspec.Meta(ge=0)] | None = None
     note: Annotated[str, msgspec.Meta(max_length=1000)] = ""
+    ladder: tuple[Rung, ...] = ()
 
 
 class Submission(msgspec.Struct, frozen=True):
@@ -96,12 +111,34 @@ def _answer(file: Path, targets: Mapping[str, Target]) -> Answer:
         answer = msgspec.json.decode(read_bytes(file, _LARGEST), type=Answer)
     except msgspec.DecodeError as error:
         raise InputError(f"{file}: {error}") from None
-    for key, value in answer.values.items():
-        if key not in targets:
-            raise InputError(f"{file}: values.{key}: no target has this key; known are {', '.join(targets)}")
-        if value is not None and not math.isfinite(value):
-            raise InputError(f"{file}: values.{key} = {value}: must be finite, or null without a value")
+    _check_ladder(file, answer)
+    found = {"values": answer.values} | {
+        f"ladder[{place}].values": rung.values for place, rung in enumerate(answer.ladder)
+    }
+    for name, values in found.items():
+        for key, value in values.items():
+            if key not in targets:
+                raise InputError(f"{file}: {name}.{key}: no target has this key; known are {', '.join(targets)}")
+            if value is not None and not math.isfinite(value):
+                raise InputError(f"{file}: {name}.{key} = {value}: must be finite, or null without a value")
     return answer
+
+
+def _check_ladder(file: Path, answer: Answer) -> None:
+    """Raise InputError if the ladder has one or two meshes, does not go from coarse to fine, or ends elsewhere than the
+    answer."""
+    sizes = [rung.h for rung in answer.ladder]
+    if not sizes:
+        return
+    if len(sizes) < _FEWEST:
+        raise InputError(f"{file}: ladder: must have {_FEWEST} meshes or more, not {len(sizes)}")
+    for place, (before, after) in enumerate(itertools.pairwise(sizes), start=1):
+        if not after < before:
+            raise InputError(
+                f"{file}: ladder[{place}].h = {after}: must be less than {before}, that of the mesh before"
+            )
+    if answer.ladder[-1].values != answer.values:
+        raise InputError(f"{file}: values: must be those of the last mesh of the ladder")
 
 
 def write_answer(number: str, answer: Answer, folder: str | os.PathLike[str]) -> Path:

@@ -64,8 +64,8 @@ def add(commands: "Commands") -> None:
     scores.set_defaults(command=_score)
 
     builds = parts.add_parser("build", help="write the book",
-                              description="Write the book of problems as HTML, and a zip of plain data, with a "
-                              "scoreboard of the given answers.",
+                              description="Write the book of problems as HTML and PDF, a zip of plain data, meshes and "
+                              "decks, and a scoreboard and badges of the given answers.",
                               examples=["partialslip benchmark build",
                                         "partialslip benchmark build my-answers results/benchmark-march"])  # fmt: skip
     builds.add_argument("folders", nargs="*", metavar="FOLDER", help="folders with answers")
@@ -122,10 +122,23 @@ def _read(options: argparse.Namespace) -> int:
 
 
 def _score(options: argparse.Namespace) -> int:
-    from partialslip.benchmark import read_problems, read_submission
+    from partialslip.benchmark import CLIMB_HEADS, climb_rows, read_problems, read_submission
     from partialslip.benchmark.problem import chosen
+    from partialslip.cli.consoles import output
+    from partialslip.output.tables import print_table
 
-    _print_grades(read_submission(options.folder, read_problems()), chosen(options.problems))
+    submission, some = read_submission(options.folder, read_problems()), chosen(options.problems)
+    _print_grades(submission, some)
+    every = len(some) == 1
+    rows = [
+        (number, *row)
+        for number, answer in submission.answers.items()
+        if number in some
+        for row in climb_rows(some[number], answer, every)
+    ]
+    if rows:
+        output().print("ladders: error of the finest mesh, order, and what follows, in the scales of the targets")
+        print_table(output(), ("", *CLIMB_HEADS), rows, words=(0, 1))
     return 0
 
 
@@ -150,23 +163,29 @@ def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> No
 
 
 def _build(options: argparse.Namespace) -> int:
-    from partialslip.benchmark import book_page, book_zip, read_problems, read_submission, scoreboard
+    from partialslip.benchmark import badge, badge_name, book_page, book_zip, read_problems, read_submission
     from partialslip.benchmark.problem import chosen
     from partialslip.cli.common import origin
     from partialslip.cli.consoles import output
-    from partialslip.output.files import write_files
-    from partialslip.output.pdf import write_pdf
+    from partialslip.errors import MissingLibraryError
+    from partialslip.output.files import write_files, write_texts
+    from partialslip.output.pdf import check_pdf, write_pdf
 
     check_folder(options.out)
     check_report(options)
     some = chosen(options.problems)
     submissions = [read_submission(folder, read_problems()) for folder in options.folders]
-    board = scoreboard(some, submissions) if submissions else None
     with results_folder(options, "benchmark", "benchmark", None) as (folder, passed):
-        html, data = book_page(some, board, origin(options)), book_zip(some)
-        writers = {"book.html": lambda path: path.write_text(html, "utf-8"),
-                   "problems.zip": lambda path: path.write_bytes(data)}  # fmt: skip
-        files = write_files(Path(folder), writers)
-        files += write_pdf(html, Path(folder), "book.pdf") if options.pdf else []
+        html, data = book_page(some, submissions, origin(options)), book_zip(some)
+        badges = {badge_name(each): badge(some, each) for each in submissions}
+        files = write_texts(Path(folder), {"book.html": html} | badges)
+        files += write_files(Path(folder), {"problems.zip": lambda path: path.write_bytes(data)})
+        try:
+            check_pdf("book.pdf")
+        except MissingLibraryError:
+            if options.pdf:
+                raise
+        else:
+            files += write_pdf(html, Path(folder), "book.pdf")
     print_written(files, output(), passed)
     return 0

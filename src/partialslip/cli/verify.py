@@ -8,7 +8,7 @@ from partialslip.cli.common import add_force, add_verbose, check_folder, print_w
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
 
-_SUITES = ("quick", "full", "stress")
+_SUITES = ("quick", "full", "book", "stress")
 
 
 def add(commands: "Commands") -> None:
@@ -26,8 +26,8 @@ def add(commands: "Commands") -> None:
         failure="a bar missed",
     )
     verify.add_argument("--suite", choices=_SUITES, default="quick",
-                        help="quick: shipped scenes; full: shipped scenes and hard cases; stress: random scenes "
-                        "(default: quick)")  # fmt: skip
+                        help="quick: shipped scenes; full: shipped scenes and hard cases; book: problems of the "
+                        "benchmark; stress: random scenes (default: quick)")  # fmt: skip
     verify.add_argument("--only", action="append", default=[], metavar="NAME",
                         help="only this case, wildcards * and ?; for random scenes the number; may be "
                         "repeated")  # fmt: skip

@@ -18,12 +18,12 @@ from partialslip.arrays import Array, submatrix
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
 from partialslip.condensed.history import History, certified, follow, resting, still
 from partialslip.condensed.path import Path
-from partialslip.condensed.pressing import Punch
+from partialslip.condensed.pressing import Punch, Stages
 from partialslip.condensed.trail import Trail
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
 _STICKS = 1e-9  # relative tolerance of the friction bound and of lengths
-_LAST, _TIMES = 2.5e-3, 2  # last step of self-similar pressing, in half-widths; iterations of the half-width
+_TIMES = 2  # iterations of the half-width in self-similar pressing
 _FAR = 10.0  # gap, in half-widths, that stays open
 _ENDS = 15.0  # tolerance of q over tolerance of the ends
 _MOST, _WORK = 64, 16_000  # limits of the steps of pressing, and of steps times nodes
@@ -147,14 +147,16 @@ class _Step:
 class Line:
     """Nodes of the contact line: ``x`` (n,), ``weights`` (n,) that turn tractions into forces, and
     ``ends(forces) -> (left, right)``, the ends of the contact under nodal normal forces (n,). ``similar``: whether
-    half-planes are pressed together under a parabolic gap, so that all stages of pressing are similar. ``trail``: where
-    the steps begin, and are to be remembered."""
+    half-planes are pressed together under a parabolic gap, so that all stages of pressing are similar; ``stages`` gives
+    them for a half-width of the contact, if they are known: by default a flat punch on the nodes tells them. ``trail``:
+    where the steps begin, and are to be remembered."""
 
     x: Array
     weights: Array
     ends: Callable[[Array], tuple[float, float]]
     similar: bool
     trail: Trail | None = None
+    stages: Callable[[float], Stages] | None = None
 
 
 @dataclass(frozen=True)
@@ -243,16 +245,30 @@ def _similar(
     for _ in range(_TIMES):
         left, right = line.ends(last[0].x)
         reach = (right - left) / 2
-        flat = np.where(np.abs(line.x) <= reach * (1 + _STICKS), 0.0, _FAR * reach)
-        punch = step(1.0, flat, (resting(0 * gap), resting(0 * gap)))
-        stages = Punch(reach, line.x, line.weights, punch[0].x, punch[1].x)
+        if line.stages:
+            stages = line.stages(reach)
+        else:
+            flat = np.where(np.abs(line.x) <= reach * (1 + _STICKS), 0.0, _FAR * reach)
+            punch = step(1.0, flat, (resting(0 * gap), resting(0 * gap)))
+            stages = Punch(reach, line.x, line.weights, punch[0].x, punch[1].x)
         found = []
-        for size in (_LAST, _LAST / 2):
+        for size in (stages.last, stages.last / 2):
             p, q = stages.stage(1 - size)
             found.append(step(1.0, gap, (replace(last[0], x=p), replace(last[1], x=q))))
         rough, last = found
     errors = {"q": off(last[1].x, rough[1].x), "a": _moved(line, last[0].x, rough[0].x)}
-    return Pressed(*_certified([last]), 2 + 2 * _TIMES, errors, (punch[0].x, punch[1].x), f)
+    return Pressed(*_certified([last]), 2 + 2 * _TIMES, errors, stages.growth, f)
+
+
+def punched(C: Relative, f: float, sides: Sides) -> tuple[Array, Array]:
+    """Normal and tangential forces (n,) under a flat punch with the force 1 that covers all nodes, with friction; from
+    the guess that nodes slip under q = ``sides`` f p (n,)."""
+    assert C.xx is not None
+    assert C.xy is not None
+    zero = np.zeros(len(C.yy))
+    guess = replace(resting(zero), x=zero + 1 / len(zero)), replace(resting(zero), rest=-sides.astype(float))
+    p, q = _solve(_Step(C.xx, C.yy, C.xy, C.opening, f, 1.0, zero, 0.0, zero), [guess])
+    return p.x, q.x
 
 
 def _certified(done: Sequence[tuple[Solution, Solution]]) -> tuple[Solution, Solution]:

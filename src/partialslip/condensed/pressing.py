@@ -12,12 +12,28 @@ conditions of contact and friction, which gives the certificate.
 """
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from partialslip.arrays import Array
 
 _TELLING = 1e-9  # tolerance of lengths, relative to the half-width
+
+
+class Stages(Protocol):
+    """Stages of self-similar pressing: forces under the parabola, and their growth."""
+
+    @property
+    def last(self) -> float:
+        """Last step of pressing, in half-widths."""
+
+    @property
+    def growth(self) -> tuple[Array, Array]:
+        """Nodal forces along y and x (n,) under the flat punch: the increments of pressing."""
+
+    def stage(self, share: float) -> tuple[Array, Array]:
+        """Nodal forces along y and x (n,) under the parabola, pressed up to ``share`` of the half-width."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +46,12 @@ class Punch:
     weights: Array
     normal: Array
     tangential: Array
+    last: float = 2.5e-3
+
+    @property
+    def growth(self) -> tuple[Array, Array]:
+        """Nodal forces along y and x (n,) under the flat punch."""
+        return self.normal, self.tangential
 
     def stage(self, share: float) -> tuple[Array, Array]:
         """Nodal forces along y and x (n,) under the parabola, pressed up to ``share`` of the punch's half-width."""

@@ -78,6 +78,16 @@ def steady_state(
     return SteadyState(regime, (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, notes, slips)
 
 
+def unestimated(history: History | None) -> tuple[str, ...]:
+    """A note on load steps of coupled bodies: they are as asked for, without error estimate."""
+    if not history or not history.path.moves:
+        return ()
+    steps = history.path.substeps
+    return (
+        f"coupled bodies go from load point to load point in {steps} steps (load.steps), whose error is not estimated",
+    )
+
+
 def doubts(change: float | None, errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:
     """Notes on estimated ``errors`` above ``accuracy``, and on a ``change`` of q (in f p0) in the last cycle."""
     notes: tuple[str, ...] = ()

@@ -121,11 +121,15 @@ def flat_parts(
     shapes = parts_of(scene, a)
     constants = map(_in_plane_strain, scene.material.bodies)
     lower, upper = (
-        Part(shape.name, _mesh(shape, a, reach, width, sizes, growth, along), stiffer * E, nu, _held(shape),
-             shape.pulled)
+        Part(shape.name, _mesh(shape, a, reach, width, _times(shape.fineness, sizes), growth, shape.fineness * along),
+             stiffer * E, nu, _held(shape), shape.pulled)
         for shape, (E, nu) in zip(shapes, constants, strict=True)
     )  # fmt: skip
     return lower, upper
+
+
+def _times(fineness: float, sizes: Mapping[float, float]) -> dict[float, float]:
+    return {point: fineness * size for point, size in sizes.items()}
 
 
 def _held(shape: "Shape") -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -92,7 +92,7 @@ def contact(scene: Scene, pressing: Pressing | None = None) -> Contact:
     """
     if not scene.material.alike:
         raise InputError(
-            "material.upper, material.lower: the bodies differ; must be of one material for exact and march, use fem"
+            "material.upper, material.lower: the bodies differ; must be of one material for exact, use march or fem"
         )
     A, profile = scene.material.A, scene.profile
     P, M = pressing or (scene.P, scene.M)

@@ -94,7 +94,7 @@ def solve(
     allowance: Allowance | None = None,
     added: Added | None = None,
 ) -> Result:
-    """Solve ``scene`` by marching through the load history, as two elastically similar half-planes.
+    """Solve ``scene`` by marching through the load history, as two half-planes.
 
     Parameters
     ----------
@@ -112,6 +112,10 @@ def solve(
         ``added(places) -> (c, c)``: what unit shear forces on cells with ends at ``places`` (c + 1,), m, add to the
         mean displacements of the cells of half-planes along x, in A.
     """
+    if not scene.material.alike:
+        from partialslip.halfplane.unlike import solve as solve_unlike
+
+        return solve_unlike(scene, plan, progress, start, allowance)
     clock = Clock(allowance)
     normal = NormalLoads.of(scene)
     path = load_path(scene, plan, start)

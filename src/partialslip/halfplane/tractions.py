@@ -75,3 +75,65 @@ class CellTractions:
         cell = np.clip(np.searchsorted(self.vertices, scaled) - 1, 0, len(self.q1) - 1)
         inside = np.abs(scaled) <= 1
         return np.where(inside, self.q1[cell], 0.0), np.where(inside, self.q2[cell], 0.0)
+
+
+@dataclass(frozen=True)
+class CoupledTractions:
+    """Tractions of marching where pressure, too, is constant on cells: p^2 and q/p, which are smooth, interpolated
+    between the middles of cells.
+
+    Each load point has points, p^2 and q/p at them, (k,); scaled by the ``length``, the ``stress`` and f as given, from
+    ``origin``.
+    """
+
+    points: tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]
+    length: float
+    stress: float
+    origin: float
+
+    @classmethod
+    def of(
+        cls,
+        vertices: Array,
+        ends: tuple[tuple[float, float], tuple[float, float]],
+        normal: tuple[Array, Array],
+        tangential: tuple[Array, Array],
+        length: float,
+        stress: float,
+        origin: float,
+    ) -> "CoupledTractions":
+        """From forces on the cells (c,) between ``vertices`` (c + 1,) and the ``ends`` of the contact, for load points
+        1 and 2."""
+        middles, widths = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices)
+        found = []
+        for (left, right), p, q in zip(ends, normal, tangential, strict=True):
+            on = np.flatnonzero((p > 0) & (middles > left) & (middles < right))
+            x = np.concatenate([[left], middles[on], [right]])
+            ratio = q[on] / p[on]
+            squares = np.concatenate([[0.0], (p[on] / widths[on]) ** 2, [0.0]])
+            found.append((x, squares, np.concatenate([ratio[:1], ratio, ratio[-1:]])))
+        return cls((found[0], found[1]), length, stress, origin)
+
+    def change(self, x: Array) -> tuple[Array, Array]:
+        """p at load point 2 and dq at ``x`` (m), Pa; zero outside the contact."""
+        before, after = self.at_load_points(x)
+        return self.pressures(x)[1], after - before
+
+    def pressures(self, x: Array) -> tuple[Array, Array]:
+        """p at load points 1 and 2 at ``x`` (m), Pa."""
+        first, second = (self._pressure(x, at, squares) for at, squares, _ in self.points)
+        return first, second
+
+    def at_load_points(self, x: Array) -> tuple[Array, Array]:
+        """q1 and q2 at ``x`` (m), Pa; zero outside the contact."""
+        first, second = (
+            self._pressure(x, at, squares) * np.interp(self._scaled(x), at, ratio) for at, squares, ratio in self.points
+        )
+        return first, second
+
+    def _scaled(self, x: Array) -> Array:
+        return (x - self.origin) / self.length
+
+    def _pressure(self, x: Array, at: Array, squares: Array) -> Array:
+        result: Array = self.stress * np.sqrt(np.interp(self._scaled(x), at, squares, left=0.0, right=0.0))
+        return result

@@ -1,6 +1,6 @@
 """Writing scenes as tables and as TOML."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import msgspec
@@ -21,9 +21,10 @@ def scene_tables(scene: Scene) -> dict[str, Any]:
     return {"units": units.name} | (tables if units == SI else converted(tables, units.from_si))
 
 
-def scene_toml(scene: Scene) -> str:
-    """Text of a scene file for ``scene``, in the units in which it is shown, with all settings that are not None."""
-    return tomli_w.dumps(_set(scene_tables(scene)))
+def scene_toml(scene: Scene, without: Collection[str] = ()) -> str:
+    """Text of a scene file for ``scene``, in the units in which it is shown, with all settings that are not None;
+    ``without`` some tables."""
+    return tomli_w.dumps(_set({key: table for key, table in scene_tables(scene).items() if key not in without}))
 
 
 def _set(table: Mapping[str, Any]) -> dict[str, Any]:

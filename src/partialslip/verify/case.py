@@ -60,7 +60,7 @@ class Case:
     name : str
     scene : Scene
     methods : sequence of str
-        Of "exact", "march" and "fem".
+        Of "exact", "march", "fem" and "equivalent".
     bars : mapping of str to Bar
         Unusual bars by method and quantity, for example ``"fem.q"``. Usual bars: the accuracy of the scene, ten times
         the accuracy for p, fifteen times the accuracy for q.

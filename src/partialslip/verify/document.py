@@ -30,6 +30,7 @@ SCOPE = {
     "tension in phase. Each scene is solved by every method.",
     "full": "The shipped scenes and the catalogue of hard cases: scenes on which contact codes fail. Each scene is "
     "solved by the methods that it names.",
+    "book": "The numbered problems of the benchmark. Each is solved by the methods that its targets come from.",
     "stress": "Random scenes of one method. Each can be made again from its number.",
 }
 _LEAST = 1e-18  # smallest certificate in the figure, drawn for a residual of 0

@@ -96,7 +96,8 @@ def verify_suite(
     Parameters
     ----------
     name : str
-        "quick": shipped scenes; "full": shipped scenes and hard cases; "stress": random scenes.
+        "quick": shipped scenes; "full": shipped scenes and hard cases; "book": problems of the benchmark; "stress":
+        random scenes.
     only : sequence of str
         Names of cases, with wildcards * and ?; numbers of random scenes. Default: all cases.
     method, seed, count : optional

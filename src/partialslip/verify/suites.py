@@ -8,11 +8,12 @@ from functools import partial
 from typing import Literal, get_args
 
 from partialslip.errors import InputError
+from partialslip.judge.reference import REFERENCES
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.catalogue import hard_cases, shipped
 from partialslip.verify.stress import stress_case, stress_numbers
 
-Suite = Literal["quick", "full", "stress"]
+Suite = Literal["quick", "full", "book", "stress"]
 SUITES: tuple[Suite, ...] = get_args(Suite)
 
 Maker = Callable[[], Case]
@@ -25,7 +26,7 @@ def suite(name: Suite, only: Sequence[str] = ()) -> Makers:
     Parameters
     ----------
     name : str
-        "quick": shipped scenes; "full": shipped scenes and hard cases.
+        "quick": shipped scenes; "full": shipped scenes and hard cases; "book": problems of the benchmark.
     only : sequence of str
         Names of cases, with wildcards * and ?; default: all cases.
 
@@ -34,7 +35,7 @@ def suite(name: Suite, only: Sequence[str] = ()) -> Makers:
     InputError
         If a name in ``only`` matches no case.
     """
-    cases = [*shipped(), *(hard_cases() if name == "full" else [])]
+    cases = book() if name == "book" else [*shipped(), *(hard_cases() if name == "full" else [])]
     known = {case.name: case for case in cases}
     for pattern in only:
         if not fnmatch.filter(known, pattern):
@@ -43,6 +44,20 @@ def suite(name: Suite, only: Sequence[str] = ()) -> Makers:
             raise InputError(f"--only {pattern!r}: no case of the suite {name}{hint}")
     wanted = [case for case in cases if not only or any(fnmatch.fnmatch(case.name, pattern) for pattern in only)]
     return {case.name: partial(_same, case) for case in wanted}
+
+
+def book() -> list[Case]:
+    """Return the problems of the benchmark as cases, by every method that solves them; the reference is the method
+    that their targets come from."""
+    from partialslip.benchmark import read_problems
+    from partialslip.benchmark.freeze import ways
+
+    cases = []
+    for number, problem in read_problems().items():
+        methods = tuple(dict.fromkeys(way.method for way in ways(problem)))
+        reference = "" if problem.scene.finite else next(known for known in REFERENCES if known in methods)
+        cases.append(Case(number, problem.scene, methods, reference=reference, hard=problem.why))
+    return cases
 
 
 def stress_suite(method: str, seed: int, count: int, only: Sequence[str] = ()) -> Makers:

@@ -4,6 +4,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Protocol
 
+from msgspec.structs import replace
+
 from partialslip.benchmark.codes.calculix import Calculix
 from partialslip.benchmark.codes.getfem import GetFEM
 from partialslip.benchmark.codes.kratos import Kratos
@@ -11,7 +13,7 @@ from partialslip.benchmark.codes.own import Own
 from partialslip.benchmark.codes.solved import Solved
 from partialslip.benchmark.measured import answer_of
 from partialslip.benchmark.problem import Problem, read_problems
-from partialslip.benchmark.submission import META, Answer, Meta, Submission, read_submission, write_submission
+from partialslip.benchmark.submission import META, Answer, Meta, Rung, Submission, read_submission, write_submission
 from partialslip.errors import InputError
 from partialslip.origin import made_now
 from partialslip.scene import Scene
@@ -38,8 +40,8 @@ CODES: dict[str, Code] = {
     "fem-1e-3": Own("fem", {"accuracy": 1e-3}),
     "fem-1e-4": Own("fem", {"accuracy": 1e-4}),
     "fem-1e-5": Own("fem", {"accuracy": 1e-5}),
-    "fem-P1": Own("fem", {"order": 1, "size": 0.01}),
-    "fem-P2": Own("fem", {"order": 2, "size": 0.02}),
+    "fem-P1": Own("fem", {"order": 1}, (0.04, 0.02, 0.01)),
+    "fem-P2": Own("fem", {"order": 2}, (0.08, 0.04, 0.02)),
     "equivalent": Own("equivalent", {}),
     "calculix-mortar": Calculix(0.05, False),
     "calculix-penalty": Calculix(0.05, True),
@@ -89,12 +91,25 @@ def answers(
         write_submission(Submission(meta, found), folder)
     for number, (key, problem) in enumerate(problems.items()):
         progress(number, len(problems), float("nan"))
-        if key not in found and (solved := code.solve(problem.scene)):
-            found[key] = answer = _answer(problem, solved)
+        if key not in found and (answer := _answered(code, problem)):
+            found[key] = answer
             if folder:
                 write_submission(Submission(meta, {key: answer}), folder)
     progress(len(problems), len(problems), 0.0)
     return Submission(meta, {key: found[key] for key in problems if key in found})
+
+
+def _answered(code: Code, problem: Problem) -> Answer | None:
+    """Answer of ``code``, on its ladder of meshes if it has one; None if it does not offer the ``problem``."""
+    if not isinstance(code, Own) or not code.sizes:
+        solved = code.solve(problem.scene)
+        return _answer(problem, solved) if solved else None
+    rungs = [each.solve(problem.scene) for each in code.rungs]
+    found = [_answer(problem, each) for each in rungs if each]
+    if len(found) < len(rungs):
+        return None
+    ladder = (Rung(h, each.values, each.cpu_s, each.unknowns) for h, each in zip(code.sizes, found, strict=True))
+    return replace(found[-1], ladder=tuple(ladder))
 
 
 def _answer(problem: Problem, solved: Solved) -> Answer:

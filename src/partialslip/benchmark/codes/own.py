@@ -12,10 +12,17 @@ from partialslip.scene import Scene
 
 @dataclass(frozen=True)
 class Own:
-    """A ``method`` of partialslip with ``fem`` settings."""
+    """A ``method`` of partialslip with ``fem`` settings. With a ladder of ``sizes`` of elements, from coarse to fine,
+    in a, each of the ``rungs`` solves on one mesh, and the code itself on the finest."""
 
     method: str
     fem: Mapping[str, float | int]
+    sizes: tuple[float, ...] = ()
+
+    @property
+    def rungs(self) -> tuple["Own", ...]:
+        """Codes of one size each, as many as ``sizes``."""
+        return tuple(Own(self.method, {**self.fem, "size": size}) for size in self.sizes)
 
     @property
     def version(self) -> str | None:
@@ -25,10 +32,14 @@ class Own:
     @property
     def settings(self) -> str:
         """Settings in words."""
-        return ", ".join(f"{key} {value:g}" for key, value in self.fem.items())
+        told = [f"{key} {value:g}" for key, value in self.fem.items()]
+        told += ["sizes " + ", ".join(f"{size:g} a" for size in self.sizes)] if self.sizes else []
+        return ", ".join(told)
 
     def solve(self, scene: Scene) -> Solved | None:
         """Solve ``scene``; None if the method does not offer it."""
+        if self.sizes:
+            return self.rungs[-1].solve(scene)
         if scene.finite and self.method in ("exact", "march"):  # half-planes
             return None
         try:

@@ -1,0 +1,398 @@
+"""Marching of half-planes of unlike materials: pressure and shear step by step, on one set of cells.
+
+Pressure moves the surfaces along x and shear opens the gap, by Dundurs' beta. Each step of the load path is solved for
+both together (:mod:`partialslip.condensed.coupled`). Scaled: lengths by sqrt(A R P), forces by P, displacements by A P.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from partialslip.allowance import Allowance
+from partialslip.arrays import Array
+from partialslip.bars import BARS, LEAST_SHEAR
+from partialslip.condensed import coupled
+from partialslip.condensed.bounded import Solution
+from partialslip.condensed.coupled import Pressed
+from partialslip.condensed.ends import StickInterval, apart, kinks, left_end, right_end, stick_zone, within
+from partialslip.condensed.history import History, certificate, last_cycle_change
+from partialslip.condensed.normal import press
+from partialslip.condensed.path import Path, load_path, stretched
+from partialslip.condensed.regime import doubts, steady_state, unestimated
+from partialslip.condensed.step_errors import pressed_together
+from partialslip.halfplane.cells import graded
+from partialslip.halfplane.punch_growth import OnCells, PunchGrowth, relative
+from partialslip.halfplane.tractions import CoupledTractions
+from partialslip.plan import Plan
+from partialslip.result import Clock, Result, Slip, Traction
+from partialslip.result.state import State
+from partialslip.scene import Hertz, Scene
+
+_MESHES = ((1e-2, 0.2), (1e-3, 0.1), (3e-4, 0.05), (1e-4, 0.025))  # (cell size at the ends, in a; growth)
+_INNER = 8.0  # size of cells at kinks over the size at the ends
+_NEAR = 10.0  # cells at ends closer to each other than a/10 are reduced in proportion
+_SMALLEST = 1e-9  # in a: closer ends are merged, and smaller cells are not requested
+_BEYOND, _WIDER = (
+    1.2,
+    1.5,
+)  # extent of the cells, in that of the contact without coupling; factor if it does not do
+_SHARE = 1 / 3  # largest part of the remaining CPU seconds for one mesh
+_ROUNDING = 1e-12
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
+_LEVELS: dict[str, Callable[[History], Array]] = {
+    "q": lambda history: history.change,
+    "q1": lambda history: history.q1,
+    "q2": lambda history: history.q2,
+}
+
+
+def dundurs(scene: Scene) -> float:
+    """Dundurs' beta of the materials of ``scene``: positive where pressure moves the upper surface more than the lower
+    one towards the load."""
+    lower, upper = ((body.kappa - 1) / body.mu for body in scene.material.bodies)
+    beta = (upper - lower) / (4 * scene.material.A)
+    return beta if abs(upper - lower) > _ROUNDING * abs(upper) else 0.0
+
+
+@dataclass(frozen=True)
+class _Level:
+    """Solution on one mesh of cells."""
+
+    vertices: Array
+    pressing: Solution
+    history: History | None
+    pressed: Pressed | None
+    ends: tuple[tuple[float, float], tuple[float, float]]
+    stick: StickInterval | None
+    kinks: tuple[float, ...]
+
+    @property
+    def x(self) -> Array:
+        """Middles of the cells (c,)."""
+        return (self.vertices[1:] + self.vertices[:-1]) / 2
+
+    @property
+    def a(self) -> tuple[float, float]:
+        """Half-widths of the contact at load points 1 and 2."""
+        (left1, right1), (left2, right2) = self.ends
+        return (right1 - left1) / 2, (right2 - left2) / 2
+
+    @property
+    def common(self) -> tuple[float, float]:
+        """Ends of what is in contact at both load points."""
+        (left1, right1), (left2, right2) = self.ends
+        return max(left1, left2), min(right1, right2)
+
+    @property
+    def fine(self) -> list[float]:
+        """Points to refine at: ends of the contact and of the stick zone."""
+        return [*self.ends[1], *self.ends[0], *((self.stick.left, self.stick.right) if self.stick else ())]
+
+
+def solve(
+    scene: Scene,
+    plan: Plan,
+    progress: Callable[[str], None] = lambda _: None,
+    start: State | None = None,
+    allowance: Allowance | None = None,
+) -> Result:
+    """Solve ``scene``, two half-planes of unlike materials, by marching through the load history; SI units.
+
+    Parameters as for :func:`partialslip.halfplane.marching.solve`.
+    """
+    clock = Clock(allowance)
+    path = load_path(scene, plan, start)
+    problem = _Problem.of(scene, plan, start)
+    level: _Level | None = None
+    errors: dict[str, float] = {}
+    shares: dict[str, dict[str, float]] = {}
+    meshes, spent = 0, 0.0
+    for size, growth in _MESHES:
+        if meshes > 1 and spent * 8 > _SHARE * clock.remaining():
+            break
+        began = clock.cost().cpu_s
+        before, level = level, _solve_level(problem, path, level, size, growth, clock)
+        spent, meshes = clock.cost().cpu_s - began, meshes + 1
+        if before:
+            meshed = _mesh_errors(level, before, scene)
+            stepped = _step_errors(level)
+            shares = {"discretisation": meshed} | ({"steps": stepped} if stepped else {})
+            errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
+            progress(f"mesh {meshes}: {len(level.x):,} cells, a known to {errors['a']:.1e}")
+            if all(error <= BARS[key] * scene.fem.accuracy for key, error in meshed.items()):
+                break
+    assert level is not None
+    return _result(problem, level, errors, shares, meshes, clock)
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """What does not depend on the cells: ``beta``, zero without coupling, and the ``punch`` of self-similar
+    pressing."""
+
+    scene: Scene
+    beta: float
+    width: float
+    start: State | None
+    punch: PunchGrowth | None
+
+    @classmethod
+    def of(cls, scene: Scene, plan: Plan, start: State | None) -> "_Problem":
+        coupled_at_all = plan.needs("coupling") and plan.needs("friction")
+        beta = dundurs(scene) if coupled_at_all else 0.0
+        similar = isinstance(scene.profile, Hertz) and not scene.presses_anew and start is None
+        punch = PunchGrowth.of(beta, scene.friction.f) if beta and similar else None
+        return cls(scene, beta, _extent(scene), start, punch)
+
+    def cells(self, level: _Level | None, size: float, growth: float, wider: float) -> Array:
+        """Ends of cells of ``size`` at the ends of the contact and of the stick zone on the previous ``level``."""
+        far = _BEYOND * wider * self.width
+        if level is None:
+            fine, inner, a = [-self.width, self.width], list[float](), self.width
+        else:
+            a = max(level.a)
+            fine, inner = apart(level.fine, _SMALLEST * a), [*level.kinks]
+        inner += [(kink - self.scene.origin) / self.scene.length for kink in self.scene.profile.kinks]
+        inner += [0.0] if self.punch else []  # where the surfaces touch first, p and q are not smooth
+        ends = np.sort(fine)
+        gaps = np.diff(ends)
+        gap = np.minimum(np.append(gaps, np.inf), np.append(np.inf, gaps)) / a
+        sizes = np.maximum(size * np.minimum(_NEAR * gap, 1.0), _SMALLEST) * a
+        others = [kink for kink in apart([*fine, *inner], _INNER * size * a)[len(fine) :] if abs(kink) < far]
+        points = np.concatenate([ends, others, [-far, far]])
+        wide = growth * (far - self.width)
+        every = np.concatenate([sizes, np.full(len(others), _INNER * size * a), [wide, wide]])
+        order = np.argsort(points)
+        return graded(points[order], every[order], growth)
+
+
+def _extent(scene: Scene) -> float:
+    """Largest distance of the contact's ends from x = 0 without coupling."""
+    from msgspec.structs import replace as changed
+
+    from partialslip.halfplane.pressing import NormalLoads
+    from partialslip.scene.materials import Material
+
+    alike = changed(scene, material=Material(E=4 / scene.material.A, nu=0.0))
+    found = NormalLoads.of(alike).frame.ends
+    return max(abs(end) for end in found) / scene.length
+
+
+def _solve_level(
+    problem: _Problem, path: Path | None, before: _Level | None, size: float, growth: float, clock: Clock
+) -> _Level:
+    wider = 1.0
+    while True:
+        vertices = problem.cells(before, size, growth, wider)
+        found = _solve_on(problem, path, vertices, clock)
+        touching = [found.pressing.x] + ([found.history.bound] if found.history else [])
+        if not any(forces[0] or forces[-1] for forces in touching):
+            return found
+        wider *= _WIDER
+
+
+def _solve_on(problem: _Problem, path: Path | None, vertices: Array, clock: Clock) -> _Level:
+    scene = problem.scene
+    x, widths, L = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices), scene.length
+    with clock.phase("compliance"):
+        C = relative(vertices, problem.beta)
+    with clock.phase("contact"):
+        points = (x[:, None] + widths[:, None] / 2 * _NODES) * L + scene.origin
+        gap = scene.gap_at(points) @ (_WEIGHTS / 2) / (scene.material.A * scene.P)
+
+        def ends(forces: Array) -> tuple[float, float]:
+            return left_end(vertices, forces, x[forces > 0]), right_end(vertices, forces, x[forces > 0])
+
+        if not path:
+            pressing, _ = press(C.yy, gap, 1.0)
+            return _Level(vertices, pressing, None, None, (ends(pressing.x),) * 2, None, ())
+        begins = None
+        if problem.start:
+            places = vertices * L + scene.origin
+            begins, shear = (_on_cells(each, places) / scene.P for each in (problem.start.p, problem.start.q))
+            path = replace(path, before=shear)
+        stages = partial(OnCells, problem.punch, vertices) if problem.punch else None
+        line = coupled.Line(x, widths, ends, problem.punch is not None, stages)
+        moved = stretched(x, scene.origin / L)
+        stretch, near = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
+        history, pressing, first = coupled.march(C, gap, stretch, moved[1], scene.friction.f, path, begins, line, near)
+        at_points = tuple(ends(bound) for bound in history.bounds)
+        level = _Level(vertices, pressing, history, first, at_points, None, ())  # type: ignore[arg-type]
+        return replace(level, stick=_stick_zone(level), kinks=_kinks(level))
+
+
+def _stick_zone(level: _Level) -> StickInterval:
+    history, still = level.history, level.pressed is not None
+    assert history
+    on = np.flatnonzero(history.bound > 0)
+    bound, change = history.bound[on], history.change[on]
+    if still and not history.path.moves:
+        assert level.pressed
+        p, q = level.pressed.growth
+        bound, change = level.pressed.f * np.maximum(p[on], 0.0), 2 * q[on]
+
+    def forces(values: Array) -> Array:
+        every = np.zeros(len(level.x))
+        every[on] = values
+        return every
+
+    stick = stick_zone(level.x[on], bound, change, level.vertices, forces)
+    if history.path.presses_anew:
+        return within(stick, level.common, level.vertices)
+    left, right = level.common
+    return replace(stick, left=max(stick.left, left), right=min(stick.right, right))
+
+
+def _kinks(level: _Level) -> tuple[float, ...]:
+    assert level.history
+    found: list[float] = []
+    for q, bound in level.history.visited:
+        on = np.flatnonzero(bound > 0)
+
+        def forces(values: Array, on: Any = on) -> Array:
+            every = np.zeros(len(level.x))
+            every[on] = values
+            return every
+
+        found += kinks(level.x[on], bound[on], q[on], level.vertices, forces)
+    left, right = level.common
+    return tuple(kink for kink in found if left < kink < right)
+
+
+def _on_cells(traction: Any, places: Array) -> Array:
+    """Forces (c,) of a piecewise ``traction`` on the cells between ``places`` (c + 1,), m."""
+    resultant, known = traction.antiderivative(), traction.x
+    result: Array = np.diff(resultant(np.clip(places, known[0], known[-1])))
+    return result
+
+
+def _mesh_errors(level: _Level, before: _Level, scene: Scene) -> dict[str, float]:
+    """Errors of the ends (in a), and of p, q, q1 and q2 (relative L2 of cell means), from the change since the mesh
+    ``before``: cells are three times smaller, and errors of first order in them would be half of the change."""
+    a = level.a[scene.largest - 1]
+    errors = {"a": abs(a - before.a[scene.largest - 1]) / a}
+    for side, key in enumerate(("left", "right")):
+        errors[key] = max(abs(one[side] - other[side]) for one, other in zip(level.ends, before.ends, strict=True)) / a
+    errors["p"] = _apart(level, level.pressing.x, before, before.pressing.x, 0.0)
+    if level.stick and before.stick:
+        errors["m"] = abs(level.stick.left - before.stick.left) / a
+        errors["n"] = abs(level.stick.right - before.stick.right) / a
+    if level.history and before.history:
+        least = LEAST_SHEAR * _norm(before, before.history.bound)
+        errors |= {
+            key: _apart(level, of(level.history), before, of(before.history), least) for key, of in _LEVELS.items()
+        }
+    return {key: error / 2 for key, error in errors.items()}
+
+
+def _norm(level: _Level, forces: Array) -> float:
+    return float(np.linalg.norm(forces / np.sqrt(np.diff(level.vertices))))
+
+
+def _apart(level: _Level, forces: Array, before: _Level, others: Array, least: float) -> float:
+    """Relative L2 difference of the means over the cells of the level ``before``."""
+    resultant = np.concatenate([[0.0], np.cumsum(forces)])
+    known = np.diff(np.interp(before.vertices, level.vertices, resultant))
+    size = max(_norm(before, known), least)
+    return _norm(before, others - known) / size if size > 0 else 0.0
+
+
+def _step_errors(level: _Level) -> dict[str, float]:
+    """Errors of the steps of pressing."""
+    if not level.history or not level.pressed:
+        return {}
+    return pressed_together(level.history, level.pressed, np.diff(level.vertices), np.arange(len(level.x)))
+
+
+def _result(
+    problem: _Problem,
+    level: _Level,
+    errors: dict[str, float],
+    shares: dict[str, dict[str, float]],
+    meshes: int,
+    clock: Clock,
+) -> Result:
+    scene, beta, history = problem.scene, problem.beta, level.history
+    P, L, f = scene.P, scene.length, scene.friction.f
+    widths, stress, unit = np.diff(level.vertices), scene.P / scene.length, scene.material.A * scene.P
+    a = level.a[scene.largest - 1]
+    p0 = 2 / np.pi / a
+    pressing = level.pressing
+    certified = {"kkt": float((pressing.residual / widths).max() / p0), "equilibrium": pressing.imbalance}
+    change = None
+    if history:
+        own = certificate(history, widths, f, p0)
+        certified = {key: max(own[key], certified[key]) for key in own}
+        change = last_cycle_change(history, widths, f, p0)
+    pushed = bool(history and not history.path.moves and level.pressed and level.pressed.slipped())
+    anew = level.common if scene.presses_anew else None
+    found = steady_state(scene, history, level.stick, a, pushed, level.x, anew)
+    known = history is not None and found.centre is not None
+    forces = (history.bounds[0] / f, history.bounds[1] / f) if history else (pressing.x, pressing.x)
+    shear = (history.q1, history.q2) if history else (0 * level.x, 0 * level.x)
+    tractions = CoupledTractions.of(level.vertices, level.ends, forces, shear, L, stress, scene.origin)
+    on = np.flatnonzero((forces[0] > 0) | (forces[1] > 0))
+    x = level.x[on] * L + scene.origin
+    cells = level.vertices[on[0] : on[-1] + 2] * L + scene.origin
+    (p1, p2), (q1, q2) = ([stress * each[on] / widths[on] for each in pair] for pair in (forces, shear))
+    steps = history.path.most_steps if history else 0
+    return Result(
+        method="march",
+        a=a * L,
+        p0=p0 * stress,
+        regime=found.regime,
+        stick_centre=None if found.centre is None else found.centre * L + scene.origin,
+        stick_half_width=None if found.half_width is None else found.half_width * L,
+        traction=Traction(
+            x=x,
+            p=p2,
+            dq=q2 - q1,
+            q1=q1 if known else None,
+            q2=q2 if known else None,
+            at=tractions.change,
+            breaks=np.unique([*level.fine, *level.kinks]) * L + scene.origin,
+            cells=cells,
+            levels_at=tractions.at_load_points if known else None,
+            p1=p1 if history else None,
+            pressures_at=tractions.pressures if history else None,
+        ),
+        cost=clock.cost(),
+        state=_state(scene, level) if history else None,
+        slip=Slip(x, history.slip[on] * unit, history.dissipated * unit * P) if history else None,
+        settings={
+            "model": "two half-planes, cells of constant pressure and shear",
+            "accuracy": scene.fem.accuracy,
+        },
+        counts={
+            "cells": len(level.x),
+            "tangential_unknowns": len(level.x) if history else 0,
+            "cycles": history.cycles if history else 0,
+            "load_steps": history.load_steps if history else 0,
+            "steps": steps,
+            "friction_iterations": pressing.changes if history else 0,
+            "opposing_nodes": history.opposing if history else 0,
+            "meshes": meshes,
+            "iterations": pressing.iterations + (history.iterations if history else 0),
+        },
+        certificate=certified,
+        last_cycle_change=change,
+        estimate=errors,
+        shares=shares,
+        notes=found.notes + (unestimated(history) if beta else ()) + doubts(change, errors, scene.fem.accuracy),
+        contact_ends=tuple((left * L + scene.origin, right * L + scene.origin) for left, right in level.ends),  # type: ignore[arg-type]
+        end_slips=found.slips,
+    )
+
+
+def _state(scene: Scene, level: _Level) -> State:
+    """State at the end of the path of the loads."""
+    from scipy.interpolate import PPoly
+
+    assert level.history
+    places = level.vertices * scene.length + scene.origin
+    shear, bound = level.history.end
+    p, q = (PPoly((scene.P / np.diff(places) * each)[None], places) for each in (bound / scene.friction.f, shear))
+    return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q, scene.load.along[-1][2])

@@ -1,0 +1,106 @@
+"""Ladders of meshes: order, extrapolation and index of values whose error is known; badges."""
+
+import json
+import re
+import xml.etree.ElementTree as ET
+
+import msgspec
+import pytest
+
+from partialslip.benchmark import Answer, Meta, Rung, Submission, badge, badge_name, climbs, read_problems
+from partialslip.benchmark.codes import answers
+from partialslip.benchmark.submission import read_submission, write_submission
+from partialslip.errors import InputError
+
+PROBLEM = read_problems()["PS-02"]
+SIZES = (0.04, 0.02, 0.01)
+
+
+def ladder(sizes=SIZES, **errors):
+    """Answer whose values are off by these functions of h, in the scale of the target."""
+    rungs = tuple(
+        Rung(h, {key: PROBLEM.targets[key].value + of(h) * PROBLEM.targets[key].scale for key, of in errors.items()})
+        for h in sizes
+    )
+    return Answer(rungs[-1].values, ladder=rungs)
+
+
+def climb(key, answer):
+    return next(each for each in climbs(PROBLEM, answer) if each.key == key)
+
+
+@pytest.mark.parametrize("order", [0.5, 1.0, 1.5, 2.0, 4.0])
+def test_a_power_law_is_found_and_extrapolated(order):
+    found = climb("m", ladder(m=lambda h: 3 * h**order))
+    assert found.order == pytest.approx(order, rel=1e-6)
+    assert found.error == pytest.approx(3 * 0.01**order, rel=1e-9)
+    assert found.left < 1e-6 * found.error + 1e-12
+    assert found.gci == pytest.approx(1.25 * found.error, rel=1e-6)
+    assert found.extrapolated == pytest.approx(PROBLEM.targets["m"].value, rel=1e-12)
+
+
+def test_the_index_covers_the_error_of_two_terms():
+    found = climb("a", ladder(a=lambda h: h + 4 * h**2))
+    assert 1 < found.order < 1.2
+    assert found.error < found.gci < 1.4 * found.error
+    assert found.left == pytest.approx(0.0104 - 0.0112**2 / (0.0248 - 0.0112))  # Aitken's formula for these errors
+
+
+def test_what_has_no_order_says_why():
+    assert climb("m", ladder(m=lambda h: {0.04: 1e-2, 0.02: -1e-3, 0.01: 1e-3}[h])).why == "not monotone"
+    assert climb("m", ladder(m=lambda h: {0.04: 0.0, 0.02: 1e-3, 0.01: 5e-3}[h])).why == "not monotone"  # diverges
+    assert climb("m", ladder(m=lambda _: 1e-3)).why == "not monotone"
+    assert climb("m", ladder(sizes=(0.04, 0.03, 0.01), m=lambda h: h)).why == "no constant ratio"
+    assert climb("n", ladder(m=lambda h: h)).why == "not given"
+    assert climbs(PROBLEM, Answer({})) == []
+
+
+def test_the_last_three_of_more_meshes_count():
+    assert climb("m", ladder(sizes=(0.5, 0.04, 0.02, 0.01), m=lambda h: h**2)).order == pytest.approx(2)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"ladder": [{"h": 1, "values": {}}, {"h": 0.5, "values": {}}]}, "ladder: must have 3 meshes or more, not 2"),
+        ({"ladder": [{"h": h, "values": {}} for h in (1, 2, 3)]}, r"ladder\[1\].h = 2.0: must be less than 1.0"),
+        ({"ladder": [{"h": h, "values": {"a": 1.0}} for h in (3, 2, 1)]}, "values: must be those of the last mesh"),
+        ({"ladder": [{"h": -1, "values": {}}] * 3}, "Expected `float` > 0"),
+        (
+            {"ladder": [{"h": 3, "values": {"b": 1}}, {"h": 2, "values": {}}, {"h": 1, "values": {}}]},
+            r"ladder\[0\].values.b: no target has this key",
+        ),
+    ],
+)
+def test_a_ladder_that_is_none_is_said_to_be(change, said, tmp_path):
+    (tmp_path / "meta.toml").write_text('code = "mine"\nversion = "1"\n', "utf-8")
+    (tmp_path / "PS-02.json").write_text(json.dumps({"values": {}} | change), "utf-8")
+    with pytest.raises(InputError, match=said):
+        read_submission(tmp_path, {"PS-02": PROBLEM})
+
+
+def test_linear_elements_answer_on_a_ladder(tmp_path):
+    found = answers("fem-P1", {"PS-02": PROBLEM})
+    answer = found.answers["PS-02"]
+    assert [rung.h for rung in answer.ladder] == [0.04, 0.02, 0.01]
+    assert [rung.unknowns for rung in answer.ladder] == sorted(rung.unknowns for rung in answer.ladder)
+    write_submission(found, tmp_path)
+    assert read_submission(tmp_path, read_problems()) == found
+
+
+def test_a_badge_tells_the_worst_grades_and_fits_its_text():
+    good = {key: target.value for key, target in PROBLEM.targets.items()}
+    off = good | {"m": good["m"] + 2e-3 * PROBLEM.targets["m"].scale}
+    submission = Submission(Meta("My code, v2", "1"), {"PS-02": Answer(off)})
+    assert badge_name(submission) == "badge-my-code-v2.svg"
+    drawn = ET.fromstring(badge({"PS-02": PROBLEM}, submission))
+    texts = [each for each in drawn.iter() if each.tag.endswith("text")]
+    told = [each.text for each in texts]
+    assert told[1:] == ["My code, v2: 1 of 1", "contact A", "stick C", "tractions A", "levels A", "slip A", "stress A"]
+    widths = [float(each.get("width")) for each in drawn.iter() if each.tag.endswith("rect")]
+    assert float(drawn.get("width")) == pytest.approx(sum(widths))
+    for text, width in zip(texts, widths, strict=True):
+        assert float(text.get("textLength")) == pytest.approx(width - 12)
+    strange = msgspec.structs.replace(submission, meta=Meta("<&>", "1"))
+    assert badge_name(strange) == "badge-code.svg"
+    assert not re.search(r"<&>", badge({"PS-02": PROBLEM}, strange))

@@ -1,0 +1,149 @@
+"""March of unlike half-planes: Spence's solutions, invariances, and finite elements."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip import load_scene
+from partialslip.condensed import coupled
+from partialslip.halfplane import unlike
+from partialslip.halfplane.punch_growth import PunchGrowth, goodman_stick_zone, relative
+from partialslip.halfplane.unlike import dundurs
+
+STEEL = ("material.upper.E=210e9", "material.upper.nu=0.3", "load.cycles=2")
+SHEARED = ("fem.accuracy=1e-2", *STEEL)
+
+
+def solved(*overrides, name="hertz-shear", method="march"):
+    return partialslip.run(load_scene(name, [*SHEARED, *overrides]), method)[method]
+
+
+def stick_zone(beta, f, opening):
+    punch = PunchGrowth.of(beta, f, opening)
+    slips = np.abs(punch.tangential) >= (1 - 1e-9) * f * punch.normal
+    return punch.vertices[:-1][slips].min()  # a cell's end: cells there are 2 % of the zones
+
+
+@pytest.mark.parametrize("f", [0.05, 0.1, 0.2, 0.3])
+def test_punch_with_goodmans_coupling_sticks_as_spence_says(f):
+    """K(c)/K'(c) = f/beta, beta = 1/7 (Spence 1975)."""
+    c = goodman_stick_zone(7 * f)
+    assert stick_zone(1 / 7, f, False) == pytest.approx(c, abs=0.02 * min(c, 1 - c))
+
+
+@pytest.mark.parametrize(("f", "c"), [(0.1, 0.3945), (0.3, 0.9862)])
+def test_punch_with_all_of_the_coupling(f, c):
+    """The same stick zones as of finite elements (tests/fem/test_pressing.py)."""
+    assert stick_zone(1 / 7, f, True) == pytest.approx(c, abs=0.02 * min(c, 1 - c))
+
+
+def test_stages_of_pressing_bear_their_load():
+    """The resultants of the stage are those of its tractions, and the sums are P and zero."""
+    punch = PunchGrowth.of(-0.1, 0.2)
+    x = np.linspace(-1.1, 1.1, 45)
+    for normal, tangential in (punch.stage(x), punch.resultants(x)):
+        assert (normal[0], normal[-1]) == pytest.approx((1, 0), abs=1e-12)
+        assert (tangential[0], tangential[-1]) == pytest.approx((0, 0), abs=1e-12)
+        assert normal + normal[::-1] == pytest.approx(1, abs=1e-12)
+        assert tangential == pytest.approx(tangential[::-1], abs=1e-12)
+    first, h = int(np.searchsorted(punch.vertices, 0.5)), 1e-5
+    at, inverse = punch.vertices[first], 1 / punch.vertices[first:]
+    normal, _ = punch.stage(np.array([at - h, at + h]))
+    traction = 2 * at * (punch.normal[first:] @ -np.diff(inverse))  # 2 x times the integral of p_flat(s)/s^2
+    assert (normal[0] - normal[1]) / (2 * h) == pytest.approx(traction, rel=1e-3)
+
+
+def test_compliance_of_unlike_half_planes_is_reciprocal():
+    C = relative(np.array([-1.0, -0.4, 0.1, 0.2, 1.0]), 0.2)
+    assert C.opening == pytest.approx(C.xy.T)
+    assert C.xy[0] == pytest.approx([0, 0.1, 0.1, 0.1])  # right of the first cell: pressure there drags it to the right
+
+
+@pytest.fixture(autouse=True, scope="module")
+def coarse():
+    """Two meshes: what is tested does not need more."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(unlike, "_MESHES", unlike._MESHES[:2])
+        yield
+
+
+@pytest.fixture(scope="module")
+def sheared():
+    return solved()
+
+
+def test_finite_elements_agree(sheared):
+    scene = load_scene("hertz-shear", [*SHEARED, "fem.accuracy=1e-3"])
+    run = partialslip.run(scene, ["march", "fem"])
+    assert run.passed
+    errors = {verdict.quantity: verdict.error for verdict in run.comparisons["fem"].verdicts}
+    assert max(errors[key] for key in ("a", "m", "n", "left_1", "right_2")) < 2e-4
+    assert max(errors[key] for key in ("p", "q")) < 1e-3
+    for key in ("a", "m", "n"):
+        assert getattr(sheared, key) == pytest.approx(getattr(run["march"], key), abs=1e-2 * sheared.a)
+
+
+def test_every_step_is_certified(sheared):
+    assert max(sheared.certificate.values()) < 1e-10
+    x = np.array(sheared.traction.cells)
+    p, q = (np.diff(x) @ values for values in (sheared.traction.p, sheared.traction.q2))
+    scene = load_scene("hertz-shear", SHEARED)
+    assert (p, q) == pytest.approx((scene.P, scene.load.Q[1]), rel=1e-9)
+
+
+def test_mirror_image(sheared):
+    """Q turned round: all is the mirror image, load points as they are."""
+    scene = load_scene("hertz-shear", SHEARED)
+    turned = solved(f"load.Q={[-Q for Q in scene.load.Q]}")
+    assert (turned.a, turned.m, turned.n) == pytest.approx((sheared.a, sheared.n, sheared.m), abs=1e-9 * sheared.a)
+    assert turned.traction.q2[::-1] == pytest.approx(-sheared.traction.q2, abs=1e-8 * sheared.p0)
+    assert turned.traction.p[::-1] == pytest.approx(sheared.traction.p, abs=1e-8 * sheared.p0)
+
+
+def test_swap_of_bodies(sheared):
+    """Upside down: the bodies are swapped, and what one did to the other along x changes sign."""
+    scene = load_scene("hertz-shear", SHEARED)
+    E, nu = scene.material.E, scene.material.nu
+    swapped = solved(
+        "material.E=210e9", "material.nu=0.3", f"material.upper.E={E}", f"material.upper.nu={nu}",
+        f"load.Q={[-Q for Q in scene.load.Q]}",
+    )  # fmt: skip
+    assert (swapped.a, swapped.m, swapped.n) == pytest.approx((sheared.a, sheared.m, sheared.n), abs=1e-9 * sheared.a)
+    assert swapped.traction.q2 == pytest.approx(-sheared.traction.q2, abs=1e-8 * sheared.p0)
+
+
+def test_where_beta_vanishes_the_closed_form_holds():
+    nu, other = 0.3, 0.2
+    E = 200e9 * (1 + other) / (1 + nu) * (1 - 2 * other) / (1 - 2 * nu)
+    materials = ("material.E=200e9", f"material.nu={nu}", f"material.upper.E={E}", f"material.upper.nu={other}")
+    scene = load_scene("hertz-shear", [*SHEARED, *materials, "load.Q=[-5e4, 5e4]"])
+    assert dundurs(scene) == pytest.approx(0, abs=1e-15)
+    found = partialslip.run(scene, "march")["march"]
+    a = np.sqrt(2 * scene.material.A * scene.profile.R * scene.P / np.pi)
+    stick = a * np.sqrt(1 - scene.load.Q[1] / (scene.friction.f * scene.P))
+    assert (found.a, found.m, found.n) == pytest.approx((a, stick, stick), abs=1e-3 * a)
+
+
+def test_stages_of_pressing_agree_with_pressing_step_by_step(monkeypatch):
+    """Self-similar pressing against steps of all of P, which are of first order."""
+    scene = load_scene("hertz-shear", [*SHEARED, "load.Q=[0, 0]", "friction.f=0.1", "fem.accuracy=1e-5"])
+    at_once = partialslip.run(scene, "march")["march"]
+    monkeypatch.setattr(unlike, "PunchGrowth", SimpleNamespace(of=lambda *_: None))
+    x, off = np.array([0.3, 0.6, 0.8]) * at_once.a, []
+    for most in (8, 32):
+        monkeypatch.setattr(coupled, "_MOST", most)
+        stepped = partialslip.run(scene, "march")["march"]
+        off.append(np.abs(stepped.traction.levels_at(x)[1] - at_once.traction.levels_at(x)[1]).max())
+    assert off[1] < 0.02 * np.abs(at_once.traction.q2).max()
+    assert off[1] < off[0] / 2
+
+
+@pytest.mark.fault
+def test_coupling_of_the_wrong_sign_is_seen(monkeypatch, sheared):
+    """Deliberate fault: pressure drags the surfaces the other way."""
+    right = unlike.dundurs
+    monkeypatch.setattr(unlike, "dundurs", lambda scene: -right(scene))
+    wrong = solved()
+    assert np.abs(wrong.traction.q2 - sheared.traction.q2).max() > 1e-2 * sheared.p0
