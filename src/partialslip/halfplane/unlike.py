@@ -215,7 +215,7 @@ def _solve_on(problem: _Problem, path: Path | None, vertices: Array, clock: Cloc
             begins, shear = (_on_cells(each, places) / scene.P for each in (problem.start.p, problem.start.q))
             path = replace(path, before=shear)
         stages = partial(OnCells, problem.punch, vertices) if problem.punch else None
-        line = coupled.Line(x, widths, ends, problem.punch is not None, stages)
+        line = coupled.Line(x, widths, ends, problem.punch is not None, stages=stages)
         moved = stretched(x, scene.origin / L)
         stretch, near = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
         history, pressing, first = coupled.march(C, gap, stretch, moved[1], scene.friction.f, path, begins, line, near)
