@@ -47,7 +47,8 @@ Smith-Watson-Topper (SWT) and Fatemi-Socie (FS) with k = 1 and sigma_y = 330 MPa
 
 What most codes report is the stress in the elements. The table has the relative error of the largest value at the
 centroids of the triangles, and of the average by area over the triangles whose centroid is in the half disc. The
-meshes are uniform along the contact (`fem.size`) and coarsen away from it.
+meshes are uniform along the contact and coarsen away from it. The size is `fem.size`; linear elements of this size are
+half as long as quadratic ones, so that both have about as many nodes.
 
 {elements}
 
@@ -66,8 +67,8 @@ of the values at x = a on the surface, and of the averages, on the same meshes.
 
 The asymptotes at the edge predict a slip zone of K_T/(f K_N) in a cycle ([how](howto/fatigue.md)). The figure compares
 it with the exact one under Q alone, `hertz-shear`, and under Q and a tension in proportion, `hertz-small-tension`, at
-the edge where both add up. The prediction is 2.5 % too short at a tenth of the sliding load; it is {half:.0f} % too short
-at half of it. In the limit it is half of the exact length.
+the edge where both add up. Under Q alone the prediction is 2.5 % too short at a tenth of the sliding load and
+{half:.0f} % at half of it. In the limit it is half of the exact length.
 
 ![Predicted and exact length of the slip zone over the load](fatigue/slip-zones.svg)
 """
@@ -162,7 +163,7 @@ def convergence_svg(errors: dict[int, list[tuple[Array, Array]]]) -> str:
                 axes.loglog(SIZES, error, line, marker=mark, ms=4, mfc="white", color=color, lw=1.1, label=name)
             h = np.array([SIZES[0], SIZES[-1]])
             axes.loglog(h, 0.9 * (h / h[0]) ** 0.5, ":", color="0.4", lw=0.9, label="square root of the size")
-            axes.set(xlabel="element size/a", title=f"{ORDERS[order]} elements")
+            axes.set(xlabel="fem.size (in a)", title=f"{ORDERS[order]} elements")
             axes.grid(color="0.92", lw=0.6)
         panels[0].set_ylabel("relative error")
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=3, frameon=False,

@@ -9,6 +9,7 @@ from partialslip.fatigue import (
     dang_van,
     fatemi_socie,
     findley,
+    planes,
     principal_range,
     smith_watson_topper,
     with_zz,
@@ -194,6 +195,28 @@ def test_planes_across_the_xy_plane_may_be_critical():
     found = findley(stress, 0.0)
     assert found.value[0] == pytest.approx(1e8 * (1 - 2 * NU) / 4, rel=1e-12)
     assert found.tilt[0] == pytest.approx(np.pi / 4, abs=1e-6)
+
+
+@pytest.mark.fault
+def test_sampled_planes_alone_are_seen(monkeypatch):
+    """Deliberate fault: the largest value over the sampled planes and those beside them, without Newton's method."""
+    stress = paths(3, 20)
+    right = findley(stress, K).value
+    monkeypatch.setattr(planes, "_MOST", 1)
+    monkeypatch.setattr(planes, "_newton", lambda f: (0 * f[0, 0], 0 * f[0, 0]))
+    off = 1 - findley(stress, K).value / right
+    assert off.min() > -1e-12
+    assert off.max() > 1e-5
+
+
+@pytest.mark.fault
+def test_planes_across_the_xy_plane_left_out_are_seen(monkeypatch):
+    """Deliberate fault: normals in the xy plane only, which miss the shear between x and z under pressure."""
+    stress = with_zz(np.array([[[0.0], [0.0], [0.0]], [[-1e8], [-0.8e8], [0.0]]]), NU)
+    right = findley(stress, 0.0).value[0]
+    whole = planes.stresses_on
+    monkeypatch.setattr(planes, "stresses_on", lambda stress, angle, tilt: whole(stress, angle, 0 * tilt))
+    assert findley(stress, 0.0).value[0] < 0.8 * right
 
 
 def test_compression_has_no_swt():

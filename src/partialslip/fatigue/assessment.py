@@ -1,6 +1,6 @@
 """Assess a solved scene: fatigue criteria at the surface, inside the body, and averaged over a distance."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -8,9 +8,9 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.fatigue.criteria import with_zz
+from partialslip.fatigue.cycle import settled, stress_path, unknown_between
 from partialslip.fatigue.edges import Edge, edges
-from partialslip.fatigue.named import RUIZ, Criterion, chosen, criterion, elastic
+from partialslip.fatigue.named import RUIZ, Criterion, chosen, criterion
 from partialslip.fatigue.places import OVER, averaged, depths, largest_at, surface_points
 from partialslip.fatigue.planes import Critical
 from partialslip.fatigue.ruiz import Ruiz, ruiz
@@ -18,9 +18,6 @@ from partialslip.result import Result
 from partialslip.scene import Scene
 
 BODIES = ("lower", "upper")
-_FEWEST, _PHASES = 4, 64  # load points around the cycle: first number, and largest
-SETTLED = 1e-6  # relative change of the largest value at the surface when the load points are doubled
-_ABOVE = 1e-30  # half-widths: points of the upper body's surface, which is not the lower body's
 
 
 @dataclass(frozen=True)
@@ -77,8 +74,8 @@ class Assessment:
     result : Result
     body : str
         "lower" or "upper".
-    phases : int
-        Number of load points around the cycle.
+    phases : (s,) array
+        Load points around the cycle, phases from 0 to 1.
     ratings : dict of str to Rating
         By criterion.
     ruiz : Ruiz or None
@@ -92,7 +89,7 @@ class Assessment:
     scene: Scene
     result: Result
     body: str
-    phases: int
+    phases: Array
     ratings: Mapping[str, Rating]
     ruiz: Ruiz | None = None
     edges: tuple[Edge, Edge] | tuple[()] = ()
@@ -111,17 +108,15 @@ class Assessment:
 
         return notebook_html(self)
 
-    def stress(self, x: Array, depth: Array, phases: int | None = None) -> Array:
-        """Return the stress path (phases, 4, ...), Pa, components xx, yy, xy and zz.
+    def stress(self, x: Array, depth: Array) -> Array:
+        """Return the stress path (s, 4, ...), Pa, at the ``phases``, components xx, yy, xy and zz.
 
         Parameters
         ----------
         x, depth : arrays
             Points, m, of any common shape.
-        phases : int, optional
-            Number of load points around the cycle; default: that of the assessment.
         """
-        return stress_path(self.scene, self.result, self.body, phases or self.phases, x, depth)
+        return stress_path(self.scene, self.result, self.body, self.phases, x, depth)
 
     def at(self, name: str, x: Array, depth: Array) -> Critical:
         """Return a criterion at points.
@@ -134,20 +129,6 @@ class Assessment:
             Points, m, of any common shape.
         """
         return self.ratings[name].criterion.at(self.stress(x, depth))
-
-
-def stress_path(scene: Scene, result: Result, body: str, phases: int, x: Array, depth: Array) -> Array:
-    """Stress path (phases, 4, ...), Pa, of a ``body``, with the tension ``fatigue.sigma_upper``; see
-    :meth:`Assessment.stress`."""
-    assert result.stress_at
-    y = -np.asarray(depth, float) if body == "lower" else np.asarray(depth, float) + _ABOVE * result.a
-    cycle = np.arange(phases) / phases
-    stress = np.array(result.stress_at(x, y, cycle))
-    if scene.fatigue.sigma_upper is not None:
-        first, second = scene.fatigue.sigma_upper
-        tension = first + (second - first) * (1 - np.abs(1 - 2 * cycle))
-        stress[:, 0] += tension.reshape(-1, *[1] * (stress.ndim - 2))
-    return with_zz(stress, elastic(scene, body).nu, scene.material.plane)
 
 
 def assess(scene: Scene, result: Result, criteria: Iterable[str] | None = None, *, body: str = "lower") -> Assessment:
@@ -182,9 +163,9 @@ def assess(scene: Scene, result: Result, criteria: Iterable[str] | None = None, 
     ruiz_asked = RUIZ in names and result.slip is not None and bool(result.slip.slip.any())
     found = [criterion(scene, name, body) for name in names if name != RUIZ]
     x = surface_points(rough_points(scene, result), result.a)
-    most, notes = _phases_known(result, x)
+    unknown = unknown_between(result)
     path = partial(stress_path, scene, result, body)
-    phases, changes = _settled(found, path, x, most)
+    phases, changes = settled(scene.load, found, lambda phases: path(phases, x, np.zeros(1)), not unknown)
     at = partial(path, phases)
     grid = depths(result.a)
     stress = at(x[:, None], grid)
@@ -200,7 +181,7 @@ def assess(scene: Scene, result: Result, criteria: Iterable[str] | None = None, 
         ratings,
         _ruiz(result, at) if ruiz_asked else None,
         edges(scene, result),
-        notes,
+        (f"load points 1 and 2 only: {unknown}",) if unknown else (),
     )
 
 
@@ -211,36 +192,6 @@ def rough_points(scene: Scene, result: Result) -> Array:
     stick = [] if result.m is None or result.n is None else [-result.m, result.n]
     inside = [x for x in (*stick, *scene.profile.kinks) if ends.min() < x < ends.max()]
     return np.unique([*ends, *inside])
-
-
-def _phases_known(result: Result, x: Array) -> tuple[int, tuple[str, ...]]:
-    """Largest number of load points around the cycle at which the method knows stresses, and why not more."""
-    assert result.stress_at
-    try:
-        result.stress_at(x[:1], np.zeros(1), np.arange(_FEWEST) / _FEWEST)
-    except InputError as error:
-        return 2, (f"load points 1 and 2 only: {error}",)
-    return _PHASES, ()
-
-
-def _settled(found: Sequence[Criterion], path: "partial[Array]", x: Array, most: int) -> tuple[int, list[float]]:
-    """Number of load points around the cycle at which the largest values along the surface settle, and their relative
-    changes over half as many."""
-    phases, change = min(_FEWEST, most), np.full(len(found), np.nan)
-
-    def largest(stress: Array) -> Array:
-        return np.array([np.nanmax(each.at(stress).value) for each in found])
-
-    while 2 * phases <= most and not (change <= SETTLED).all():
-        phases *= 2
-        stress = path(phases, x, np.zeros(1))
-        # every other load point, with one half or the other of those between load points 1 and 2
-        one = np.arange(0, phases, 2)
-        other = np.unique([0, phases // 2, *range(1, phases, 2)])
-        now = largest(stress)
-        size = np.where(now == 0, 1.0, np.abs(now))
-        change = np.maximum(*(np.abs(now - largest(stress[half])) / size for half in (one, other)))
-    return phases, change.tolist()
 
 
 def _rated(

@@ -20,7 +20,7 @@ from partialslip.arrays import Array, Indices, Mask
 
 ANGLES, TILTS = 36, 5  # sampled planes: 5 degrees apart in the xy plane, 22.5 degrees across
 _STARTS = 3  # sampled planes from which the maximum is sought
-_EARLY = 2  # steps from all starts; then only those go on that may still win
+_EARLY = 1  # steps from all starts; then only those go on that may still win
 _CLOSE = 0.01  # relative distance from the best within which a start may still win
 _SAME = 0.2  # distance, in spacings of the samples, of starts that climb the same peak
 _MOST, _FINEST = 20, 1e-4  # steps, and size of the last stencil over that of the first
@@ -163,7 +163,8 @@ def _in_block(stress: Array, measure: Measure) -> Array:
 
 
 def _starts(stress: Array, measure: Measure) -> tuple[Array, Array]:
-    """Angles and tilts (_STARTS, n) of the sampled planes with the largest local maxima."""
+    """Angles and tilts (_STARTS + 2, n) of the sampled planes with the largest local maxima, and of two beside the
+    largest."""
     angles, tilts = np.arange(ANGLES) * np.pi / ANGLES, np.linspace(0.0, np.pi / 2, TILTS)
     values = measure(stresses_on(stress[:, :, None, None], angles[:, None, None], tilts[:, None]))
     around = np.pad(values, ((1, 1), (0, 0), (0, 0)), mode="wrap")
@@ -175,12 +176,10 @@ def _starts(stress: Array, measure: Measure) -> tuple[Array, Array]:
     peaks = peaks.reshape(ANGLES * TILTS, -1)
     best = np.argpartition(peaks, -_STARTS, axis=0)[-_STARTS:]
     angle, tilt = angles[best // TILTS], tilts[best % TILTS]
-    # a peak that is narrower than the spacing may hide beside a higher sample
-    beside = [-1, 1, 0, 0], [0, 0, -1, 1]
+    # a peak narrower than the spacing may hide beside the highest sample
     first = np.take_along_axis(best, np.take_along_axis(peaks, best, axis=0).argmax(axis=0)[None], axis=0)
-    near_angle = angles[first // TILTS] + np.pi / ANGLES * np.array(beside[0])[:, None]
-    near_tilt = tilts[first % TILTS] + np.pi / 2 / (TILTS - 1) * np.array(beside[1])[:, None]
-    return np.concatenate([angle, near_angle]), np.concatenate([tilt, near_tilt])
+    beside = angles[first // TILTS] + np.pi / ANGLES * np.array([[-1], [1]])
+    return np.concatenate([angle, beside]), np.concatenate([tilt, tilts[np.repeat(first % TILTS, 2, axis=0)]])
 
 
 def _climb(stress: Array, measure: Measure, point: Indices, angle: Array, tilt: Array) -> tuple[Array, Array, Array]:

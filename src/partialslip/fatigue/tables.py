@@ -26,7 +26,7 @@ def heading(found: Assessment) -> str:
     scene, changes = found.scene, [rating.change for rating in found.ratings.values()]
     settled = not any(math.isnan(change) for change in changes) and bool(changes)
     half = f"; half as many change the criteria by {max(changes):.1e}" if settled else ""
-    return f"{scene.name}, {found.body} body, by {found.result.method}: {found.phases} load points{half}"
+    return f"{scene.name}, {found.body} body, by {found.result.method}: {len(found.phases)} load points{half}"
 
 
 def rating_rows(found: Assessment) -> list[tuple[str, ...]]:
@@ -107,7 +107,7 @@ def record(found: Assessment) -> dict[str, Any]:
         "method": found.result.method,
         "body": found.body,
         "a": found.result.a,
-        "phases": found.phases,
+        "phases": found.phases.tolist(),
         "distance": found.scene.fatigue.distance,
         "criteria": {
             name: {

@@ -159,10 +159,10 @@ def solve(
                 break
     assert level is not None
     found = _result(normal, level, errors, shares, {"meshes": meshes, "iterations": iterations}, clock)
-    return _with_stresses(found, normal, level) if plan.needs("subsurface") else found
+    return _with_stresses(found, normal, level, clock) if plan.needs("subsurface") else found
 
 
-def _with_stresses(found: Result, normal: NormalLoads, level: _Level) -> Result:
+def _with_stresses(found: Result, normal: NormalLoads, level: _Level, clock: Clock) -> Result:
     """Result with stresses, where q1 and q2 are known."""
     scene = normal.scene
     if level.history:
@@ -174,7 +174,7 @@ def _with_stresses(found: Result, normal: NormalLoads, level: _Level) -> Result:
     far = normal.frame.places([-BEYOND, BEYOND])
     breaks = np.unique([*far, *normal.frame.places([*normal.ends, *level.zone])])
     surface = along_surface(stresses.surface, breaks)
-    return replace(found, surface=surface, stress_at=StressAt(stresses.inside))
+    return replace(found, surface=surface, stress_at=StressAt(stresses.inside), cost=clock.cost())
 
 
 def _accuracy(scene: Scene) -> float:

@@ -78,7 +78,7 @@ class Result(Drawn):
     stress_at : StressAt or None
         ``stress_at(x, y) -> (2, 3, ...)``: stresses by load point and component xx, yy, xy, Pa, at points of any
         shape, m; the lower body is y <= 0. ``stress_at(x, y, phases) -> (s, 3, ...)``: at ``phases`` (s,) of the
-        cycle. Known if asked for, where q1 and q2 are; see :class:`partialslip.result.stresses.StressAt`.
+        cycle. Known if asked for, where q1 and q2 are; see :class:`partialslip.result.StressAt`.
     contact_ends : ((float, float), (float, float)) or None
         Left and right end of the contact at load points 1 and 2, m; None stands for -a and a at both.
     shares : mapping of str to mapping
