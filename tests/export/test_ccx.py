@@ -15,7 +15,7 @@ from partialslip.score import score
 from partialslip.score.read import read
 
 STIFFER = 100.0
-UNLIKE = ["material.upper={E=2e11, nu=0.3}", "load.sigma=[0, 0]", "load.Q=[0, 0]"]
+UNLIKE = ["material.upper={E=2e11, nu=0.3}", "load.sigma=[0, 0]", "load.Q=[-1e5, 1e5]"]
 BLOCKS = [f"bodies.{name}={{width=0.016, height=0.008}}" for name in ("lower", "upper")]
 
 
@@ -69,11 +69,12 @@ def test_calculix_runs_varying_p(tmp_path):
 @needs_ccx
 def test_calculix_runs_bodies_of_a_size_and_unlike_ones(tmp_path):
     """Against finite elements: blocks in tension, and unlike half-planes that slip while they are pressed."""
-    for overrides in ([*BLOCKS, "load.cycles=1"], UNLIKE):
+    for overrides in (BLOCKS, UNLIKE):
         scene = load_scene("hertz-small-tension", overrides)
         found = computed(scene, tmp_path, **HOW)
-        assert found.a < 5e-3
-        assert found.p < 0.02
+        # one increment a step: where p depends on q, the path is coarse
+        assert found.a < 0.02
+        assert found.p < 0.03
         assert found.q < 0.05
 
 
