@@ -105,8 +105,8 @@ def test_the_abaqus_deck_runs_in_calculix(tmp_path):
 @needs_ccx
 def test_fault_tension_of_the_wrong_sign(tmp_path, monkeypatch):
     """The deck's tension turned round: the scored result must say so."""
-    true = models._steps
-    monkeypatch.setattr(models, "_steps", lambda scene: tuple(s._replace(sigma=-s.sigma) for s in true(scene)))
+    true = models.steps_of
+    monkeypatch.setattr(models, "steps_of", lambda scene: tuple(s._replace(sigma=-s.sigma) for s in true(scene)))
     found = computed(load_scene("hertz-small-tension"), tmp_path, **HOW)
     assert min(found.m, found.n) > 0.1
     assert found.q > 0.1
