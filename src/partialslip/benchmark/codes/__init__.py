@@ -12,7 +12,7 @@ from partialslip.benchmark.codes.solved import Solved
 from partialslip.benchmark.measured import answer_of
 from partialslip.benchmark.problem import Problem, read_problems
 from partialslip.benchmark.submission import META, Answer, Meta, Submission, read_submission, write_submission
-from partialslip.errors import InputError
+from partialslip.errors import InputError, MissingLibraryError, PartialslipError
 from partialslip.origin import made_now
 from partialslip.scene import Scene
 
@@ -89,12 +89,21 @@ def answers(
         write_submission(Submission(meta, found), folder)
     for number, (key, problem) in enumerate(problems.items()):
         progress(number, len(problems), float("nan"))
-        if key not in found and (solved := code.solve(problem.scene)):
+        if key not in found and (solved := _solved(code, problem.scene)):
             found[key] = answer = _answer(problem, solved)
             if folder:
                 write_submission(Submission(meta, {key: answer}), folder)
     progress(len(problems), len(problems), 0.0)
     return Submission(meta, {key: found[key] for key in problems if key in found})
+
+
+def _solved(code: Code, scene: Scene) -> Solved | None:
+    try:
+        return code.solve(scene)
+    except MissingLibraryError:
+        raise
+    except PartialslipError as error:  # such as a mesh that cannot be made
+        return Solved(None, str(error))
 
 
 def _answer(problem: Problem, solved: Solved) -> Answer:
