@@ -15,7 +15,7 @@ from partialslip.score import score
 from partialslip.score.read import read
 
 STIFFER = 100.0
-UNLIKE = ["material.upper={E=2e11, nu=0.3}", "load.sigma=[0, 0]", "load.Q=[0, 0]"]
+UNLIKE = ["material.upper={E=2e11, nu=0.3}", "load.sigma=[0, 0]", "load.Q=[-1e5, 1e5]"]
 BLOCKS = [f"bodies.{name}={{width=0.016, height=0.008}}" for name in ("lower", "upper")]
 
 
@@ -69,11 +69,12 @@ def test_calculix_runs_varying_p(tmp_path):
 @needs_ccx
 def test_calculix_runs_bodies_of_a_size_and_unlike_ones(tmp_path):
     """Against finite elements: blocks in tension, and unlike half-planes that slip while they are pressed."""
-    for overrides in ([*BLOCKS, "load.cycles=1"], UNLIKE):
+    for overrides in (BLOCKS, UNLIKE):
         scene = load_scene("hertz-small-tension", overrides)
         found = computed(scene, tmp_path, **HOW)
-        assert found.a < 5e-3
-        assert found.p < 0.02
+        # one increment a step: where p depends on q, the path is coarse
+        assert found.a < 0.02
+        assert found.p < 0.03
         assert found.q < 0.05
 
 
@@ -104,8 +105,8 @@ def test_the_abaqus_deck_runs_in_calculix(tmp_path):
 @needs_ccx
 def test_fault_tension_of_the_wrong_sign(tmp_path, monkeypatch):
     """The deck's tension turned round: the scored result must say so."""
-    true = models._steps
-    monkeypatch.setattr(models, "_steps", lambda scene: tuple(s._replace(sigma=-s.sigma) for s in true(scene)))
+    true = models.steps_of
+    monkeypatch.setattr(models, "steps_of", lambda scene: tuple(s._replace(sigma=-s.sigma) for s in true(scene)))
     found = computed(load_scene("hertz-small-tension"), tmp_path, **HOW)
     assert min(found.m, found.n) > 0.1
     assert found.q > 0.1

@@ -179,8 +179,8 @@ def test_each_step_presses_with_p_of_its_load_point(varying, to, tmp_path):
 @pytest.mark.fault
 def test_p_that_stays_is_seen(varying, monkeypatch, tmp_path):
     """P of one load point in all steps."""
-    true = models._steps
-    monkeypatch.setattr(models, "_steps", lambda scene: tuple(s._replace(P=scene.P) for s in true(scene)))
+    true = models.steps_of
+    monkeypatch.setattr(models, "steps_of", lambda scene: tuple(s._replace(P=scene.P) for s in true(scene)))
     assert pressed_with(varying, "abaqus", tmp_path / "deck")[2] == pytest.approx(1.5 * varying.load.P[0])
 
 
