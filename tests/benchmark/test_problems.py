@@ -67,11 +67,14 @@ def test_a_target_is_frozen_again_by_both_ways():
 
 def test_symmetric_problems_have_symmetric_stick_zones_and_no_ends_of_their_own():
     for problem in PROBLEMS.values():
-        if problem.scene.even and not any(sigma for _, sigma in problem.scene.load.points) and "m" in problem.targets:
+        load = problem.scene.load
+        traceless = problem.scene.material.alike or not any(load.Q)  # the first loading of unlike bodies leaves a trace
+        if problem.scene.even and traceless and not any(load.sigma) and "m" in problem.targets:
             m, n = problem.targets["m"], problem.targets["n"]
             assert abs(m.value - n.value) <= 1.001 * m.uncertainty * m.scale
     assert "left_1" not in PROBLEMS["PS-23"].targets
-    assert "left_1" in PROBLEMS["PS-21"].targets
+    assert "left_1" in PROBLEMS["PS-21"].targets  # the contact moves
+    assert "left_1" in PROBLEMS["PS-20"].targets  # the contact grows
 
 
 def test_a_problem_in_a_shipped_scene_is_kept_once():

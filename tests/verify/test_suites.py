@@ -5,6 +5,7 @@ import itertools
 import pytest
 
 from partialslip import InputError, shipped_scenes
+from partialslip.benchmark import read_problems
 from partialslip.verify.hard_cases.catalogue import hard_cases
 from partialslip.verify.random_scenes import kind_of
 from partialslip.verify.stress import stress_numbers
@@ -57,3 +58,15 @@ def test_the_exact_method_is_not_for_loads_out_of_phase():
     exact = list(itertools.takewhile(lambda number: number < 50, stress_numbers("exact")))
     assert exact == [number for number in every if kind_of(number) != "out of phase"]
     assert 0 < len(exact) < 50
+
+
+def test_the_book_is_a_suite_of_the_benchmarks_own_scenes():
+    problems = read_problems()
+    makers = suite("book")
+    assert list(makers) == list(problems)
+    for number, make in makers.items():
+        case = make()
+        assert case.scene is problems[number].scene
+        assert case.reference in (*case.methods, "")
+        assert len(case.methods) > 1
+    assert list(suite("book", ["PS-0?"])) == [number for number in problems if number < "PS-10"]

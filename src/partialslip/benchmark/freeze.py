@@ -19,7 +19,7 @@ from partialslip.scene import Hertz
 _DIGITS = 1e-9  # uncertainty of closed forms, in the scale of the quantity
 _ENDS = ("left_1", "right_1", "left_2", "right_2")
 _NEAR = 1e-3  # another method that is farther off does not check the digits of a closed form
-_EVEN = 1e-4  # of a: nearer to x = 0 the middle of a contact is there
+_EVEN = 1e-4  # of a: nearer to each other places are one
 _FINE = 1e-5  # accuracy asked of march and fem
 _CONSISTENT = 3.0  # difference from a rough method, in its own estimate, that confirms a value
 _STEPS = (16, 64, 256)  # load steps from which slip is extrapolated, where it is of first order in them
@@ -102,12 +102,13 @@ def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: N
         for key, value in values.items()
         if any(key in found for *_, found in checks)  # known in two ways
     }
-    if not _off_middle(values):  # a tells it all
+    if not _has_ends(values):  # a tells it all
         targets = {key: target for key, target in targets.items() if key not in _ENDS}
     scene = problem.scene
     tension = any(sigma or slope for _, sigma, slope in scene.load.along)
-    if scene.even and not tension and scene.material.alike and {"m", "n"} <= targets.keys():
-        # by symmetry m = n: a difference is an error
+    symmetric = scene.even and not tension and (scene.material.alike or not any(scene.load.Q))
+    if symmetric and {"m", "n"} <= targets.keys():
+        # m = n: a difference is an error. The first loading of unlike bodies leaves a trace of its direction
         apart = abs(targets["m"].value - targets["n"].value) / targets["m"].scale
         for key in "mn":
             targets[key] = replace(targets[key], uncertainty=max(apart, targets[key].uncertainty))
@@ -139,12 +140,14 @@ def _of_closed_form(checked: float) -> float:
     return _DIGITS if checked <= _NEAR else checked
 
 
-def _off_middle(values: Found) -> bool:
-    """Whether the middle of the contact is off x = 0 at a load point."""
-    ends = [values[key] for key in _ENDS if key in values]
-    return any(
-        abs(left.value + right.value) > _EVEN * left.scale for left, right in zip(ends[::2], ends[1::2], strict=True)
-    )
+def _has_ends(values: Found) -> bool:
+    """Whether the ends of the contact say more than its half-width: the middle is off x = 0, or the contact is not the
+    same at both load points."""
+    if not all(key in values for key in _ENDS):
+        return False
+    left1, right1, left2, right2 = (values[key].value for key in _ENDS)
+    apart = max(abs(left1 + right1), abs(left2 + right2), abs(left1 - left2), abs(right1 - right2))
+    return apart > _EVEN * values["a"].scale
 
 
 def _target(

@@ -16,8 +16,8 @@ from partialslip.condensed.ends import stick_zone
 from partialslip.halfplane.cells import compliance, graded
 
 _END, _GROWTH = 1e-8, 0.05  # size of cells at the punch's ends; growth
-_AT_STICK = (0.02, 0.002)  # sizes of cells at the stick zone's ends, in their distance from the punch's ends: the first
-# mesh is refined at Goodman's stick zone, the second at that of the first
+_AT_STICK = (0.02, 0.002, 5e-4)  # sizes of cells at the stick zone's ends, in their distance from the punch's ends: the
+# first mesh is refined at Goodman's stick zone, each other at that of the mesh before
 
 
 def relative(vertices: Array, beta: float, opening: bool = True) -> Relative:
@@ -49,11 +49,14 @@ def goodman_stick_zone(ratio: float) -> float:
 @dataclass(frozen=True)
 class PunchGrowth:
     """Tractions under a flat punch with friction, constant on the cells of [0, 1] between ``vertices`` (c + 1,):
-    ``normal`` (c,), which is even, and ``tangential`` (c,), which is odd."""
+    ``normal`` (c,), which is even, and ``tangential`` (c,), which is odd. The part |x| < ``stick`` sticks, known to
+    about ``off``."""
 
     vertices: Array
     normal: Array
     tangential: Array
+    stick: float
+    off: float
 
     @classmethod
     def of(cls, beta: float, f: float, opening: bool = True) -> "PunchGrowth":
@@ -68,11 +71,11 @@ class PunchGrowth:
             middles = (vertices[1:] + vertices[:-1]) / 2
             sides = np.sign(beta * middles) * (np.abs(middles) > c)
             p, q = punched(relative(vertices, beta, opening), f, sides.astype(np.int8))
-            c = stick_zone(middles, f * p, 2 * q, vertices, lambda forces: forces).right
+            before, c = c, stick_zone(middles, f * p, 2 * q, vertices, lambda forces: forces).right
         right = vertices[1:] > 0
         clipped = np.concatenate([[0.0], vertices[1:][right]])
         widths = np.diff(vertices)[right]
-        return cls(clipped, p[right] / widths, q[right] / widths)
+        return cls(clipped, p[right] / widths, q[right] / widths, c, abs(c - before))
 
     def resultants(self, x: Array) -> tuple[Array, Array]:
         """Forces of the punch on the right of ``x`` (k,), along y and x."""

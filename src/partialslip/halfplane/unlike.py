@@ -117,7 +117,7 @@ def solve(
         before, level = level, _solve_level(problem, path, level, size, growth, clock)
         spent, meshes = clock.cost().cpu_s - began, meshes + 1
         if before:
-            meshed = _mesh_errors(level, before, scene)
+            meshed = _mesh_errors(level, before, problem)
             stepped = _step_errors(level)
             shares = {"discretisation": meshed} | ({"steps": stepped} if stepped else {})
             errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
@@ -221,10 +221,10 @@ def _solve_on(problem: _Problem, path: Path | None, vertices: Array, clock: Cloc
         history, pressing, first = coupled.march(C, gap, stretch, moved[1], scene.friction.f, path, begins, line, near)
         at_points = tuple(ends(bound) for bound in history.bounds)
         level = _Level(vertices, pressing, history, first, at_points, None, ())  # type: ignore[arg-type]
-        return replace(level, stick=_stick_zone(level), kinks=_kinks(level))
+        return replace(level, stick=_stick_zone(level, problem.punch), kinks=_kinks(level))
 
 
-def _stick_zone(level: _Level) -> StickInterval:
+def _stick_zone(level: _Level, punch: PunchGrowth | None) -> StickInterval:
     history, still = level.history, level.pressed is not None
     assert history
     on = np.flatnonzero(history.bound > 0)
@@ -243,6 +243,9 @@ def _stick_zone(level: _Level) -> StickInterval:
     if history.path.presses_anew:
         return within(stick, level.common, level.vertices)
     left, right = level.common
+    if punch and not history.path.moves:  # the punch knows it better than the cells
+        reach = punch.stick * (right - left) / 2
+        return replace(stick, left=-reach, right=reach)
     return replace(stick, left=max(stick.left, left), right=min(stick.right, right))
 
 
@@ -269,17 +272,20 @@ def _on_cells(traction: Any, places: Array) -> Array:
     return result
 
 
-def _mesh_errors(level: _Level, before: _Level, scene: Scene) -> dict[str, float]:
+def _mesh_errors(level: _Level, before: _Level, problem: _Problem) -> dict[str, float]:
     """Errors of the ends (in a), and of p, q, q1 and q2 (relative L2 of cell means), from the change since the mesh
     ``before``: cells are three times smaller, and errors of first order in them would be half of the change."""
-    a = level.a[scene.largest - 1]
-    errors = {"a": abs(a - before.a[scene.largest - 1]) / a}
+    largest = problem.scene.largest - 1
+    a = level.a[largest]
+    errors = {"a": abs(a - before.a[largest]) / a}
     for side, key in enumerate(("left", "right")):
         errors[key] = max(abs(one[side] - other[side]) for one, other in zip(level.ends, before.ends, strict=True)) / a
     errors["p"] = _apart(level, level.pressing.x, before, before.pressing.x, 0.0)
     if level.stick and before.stick:
         errors["m"] = abs(level.stick.left - before.stick.left) / a
         errors["n"] = abs(level.stick.right - before.stick.right) / a
+    if problem.punch and level.history and not level.history.path.moves:
+        errors["m"] = errors["n"] = 2 * problem.punch.off
     if level.history and before.history:
         least = LEAST_SHEAR * _norm(before, before.history.bound)
         errors |= {
