@@ -43,7 +43,9 @@ def default_backend() -> Backend:
 
 
 def factor(K: sp.csr_matrix, inner: Indices, last: Indices, backend: Backend) -> Factor:
-    """Factor the rows and columns ``inner`` and ``last`` of ``K``, ``inner`` in an order that reduces fill.
+    """Factor the rows and columns ``inner`` and ``last`` of the stiffness ``K``, ``inner`` in an order that reduces fill.
+
+    Unknowns are the displacements of all nodes along x, then those along y.
 
     Raises
     ------
@@ -81,7 +83,7 @@ class _Cholmod:
     def __init__(self, K: sp.csr_matrix, inner: Indices, last: Indices) -> None:
         self._cvxopt = _import_cvxopt()
         self._n, self.made = len(last), 0
-        self._order = np.asarray(self._cvxopt.amd.order(self._lower(K[inner][:, inner]))).ravel()
+        self._order = self._minimum_degree(K, inner)
         unknowns = np.concatenate([inner[self._order], last])
         # CHOLMOD orders the elimination tree from its leaves to its root. An explicit zero between the last inner
         # unknown and the first of the last unknowns puts the rest of the tree below these.
@@ -106,6 +108,16 @@ class _Cholmod:
         solution = self._cvxopt.matrix(_forth(self._order, load))
         self._cvxopt.cholmod.solve(self._factored, solution)
         return _back(self._order, np.asarray(solution))
+
+    def _minimum_degree(self, K: sp.csr_matrix, inner: Indices) -> Indices:
+        """Order of the unknowns ``inner`` by nodes: both displacements of a node have the same neighbours."""
+        count = K.shape[0] // 2
+        nodes = np.unique(inner % count)
+        rank = np.empty(count, dtype=np.int64)
+        by_degree = np.asarray(self._cvxopt.amd.order(self._lower(K[:count, :count][nodes][:, nodes]))).ravel()
+        rank[nodes[by_degree]] = np.arange(len(nodes))
+        order: Indices = np.argsort(rank[inner % count], kind="stable")
+        return order
 
     def _numeric(self) -> object:
         cholmod, as_it_is = self._cvxopt.cholmod, self._cvxopt.matrix(np.arange(len(self._order) + self._n))
