@@ -43,9 +43,8 @@ def default_backend() -> Backend:
 
 
 def factor(K: sp.csr_matrix, inner: Indices, last: Indices, backend: Backend) -> Factor:
-    """Factor the rows and columns ``inner`` and ``last`` of the stiffness ``K``, ``inner`` in an order that reduces fill.
-
-    Unknowns are the displacements of all nodes along x, then those along y.
+    """Factor the rows and columns ``inner`` and ``last`` of the stiffness ``K``, ``inner`` in an order that reduces
+    fill. Unknowns of K are the displacements of all nodes along x, then those along y.
 
     Raises
     ------
