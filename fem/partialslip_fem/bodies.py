@@ -107,11 +107,14 @@ def key_of(problem: Problem, width: float, grading: Grading) -> tuple[object, ..
 
 def mesh_bodies(problem: Problem, width: float, grading: Grading, clock: Clock) -> list[Mesh]:
     """Mesh every part of ``problem``. ``width`` is the half-width of blocks that stand for half-planes."""
-    meshes = []
+    meshes: list[Mesh] = []
     for part in problem.parts:
         with clock.phase("mesh"):
-            mesh = part.mesh or block_of(part, width, grading)
-        clock.add_meshing(mesh.cpu_s)
+            if meshes and part.meshed_like(problem.parts[0]):
+                mesh = meshes[0]
+            else:
+                mesh = part.mesh or block_of(part, width, grading)
+                clock.add_meshing(mesh.cpu_s)
         meshes.append(mesh)
     return meshes
 

@@ -83,13 +83,16 @@ def relative_compliances(bodies: Sequence[CondensedBody], coupled: bool = True) 
         return Relative(xx + xx.T if sheared else None, yy + yy.T, None)
     upper = bodies[1]
     U, k = upper.condensation.compliance, len(upper.body.x)
-    T = transfer(lower.body, upper.body)
+    matching = np.array_equal(lower.body.x, upper.body.x)
+    T = None if matching else transfer(lower.body, upper.body)
 
     along_x, along_y = 0, len(C) // n - 1
 
     def total(rows: int, columns: int) -> Array:
         of_lower = C[rows * n : rows * n + n, columns * n : columns * n + n]
-        of_upper = T @ U[rows * k : rows * k + k, columns * k : columns * k + k] @ T.T
+        of_upper = U[rows * k : rows * k + k, columns * k : columns * k + k]
+        if T is not None:
+            of_upper = T @ of_upper @ T.T
         return of_lower + of_upper if rows == columns else of_lower - of_upper
 
     yy = total(along_y, along_y)

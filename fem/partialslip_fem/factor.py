@@ -53,7 +53,8 @@ class Held(NamedTuple):
 
 
 def factor(K: sp.csr_matrix, inner: Indices, last: Indices, backend: Backend, held: Held | None = None) -> Factor:
-    """Factor the rows and columns ``inner`` and ``last`` of ``K``, ``inner`` in an order that reduces fill.
+    """Factor the rows and columns ``inner`` and ``last`` of the stiffness ``K``, ``inner`` in an order that reduces
+    fill. Unknowns of K are the displacements of all nodes along x, then those along y.
 
     Raises
     ------
@@ -127,8 +128,7 @@ class _SuperLU:
 class _Cholmod:
     def __init__(self, K: sp.csr_matrix, inner: Indices, last: Indices, held: Held | None) -> None:
         self._cvxopt = _import_cvxopt()
-        order = np.asarray(self._cvxopt.amd.order(self._lower(K[inner][:, inner]))).ravel()
-        self._of = _Matrices(K, inner, order, last, held)
+        self._of = _Matrices(K, inner, self._minimum_degree(K, inner), last, held)
         self._factor: object | None = None
         self.made = 0
 
@@ -154,6 +154,16 @@ class _Cholmod:
         solution = self._cvxopt.matrix(load)
         self._cvxopt.cholmod.solve(self._factor, solution)
         return np.asarray(solution)
+
+    def _minimum_degree(self, K: sp.csr_matrix, inner: Indices) -> Indices:
+        """Order of the unknowns ``inner`` by nodes: both displacements of a node have the same neighbours."""
+        count = K.shape[0] // 2
+        nodes = np.unique(inner % count)
+        rank = np.empty(count, dtype=np.int64)
+        by_degree = np.asarray(self._cvxopt.amd.order(self._lower(K[:count, :count][nodes][:, nodes]))).ravel()
+        rank[nodes[by_degree]] = np.arange(len(nodes))
+        order: Indices = np.argsort(rank[inner % count], kind="stable")
+        return order
 
     def _numeric(self, matrix: sp.spmatrix) -> object:
         cholmod, as_it_is = self._cvxopt.cholmod, self._cvxopt.matrix(np.arange(matrix.shape[0]))

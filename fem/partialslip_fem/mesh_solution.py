@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array, Indices
@@ -85,6 +86,16 @@ class MeshSolution:
         """
         still = self.history is not None and not self.history.path.moves
         return bool(still and self.pressed and self.pressed.slipped())
+
+    def slipping(self, x: Array) -> npt.NDArray[np.int8] | None:
+        """Signs of slip at ``x`` (k,) under loads that grow from nothing, 0 where the surfaces stick; None without
+        friction. Where no node slips, an end of the stick zone is one of the contact, but for rounding."""
+        if not self.stick or not self.history:
+            return None
+        first, last = self.history.slips[[0, -1]]
+        sides = first & (x < self.stick.left), last & (x > self.stick.right)
+        signs: npt.NDArray[np.int8] = np.select(sides, self.stick.signs, 0).astype(np.int8)
+        return signs
 
     @property
     def lower(self) -> Body:

@@ -96,6 +96,10 @@ class Part:
         """Whether the part is a finite body, not a block that stands for a half-plane."""
         return self.extent is not None or self.mesh is not None
 
+    def meshed_like(self, other: "Part") -> bool:
+        """Whether both stand for half-planes with elements of one size: their meshes are the same."""
+        return not self.finite and not other.finite and self.fineness == other.fineness
+
     @property
     def held(self) -> Held:
         """Lines of the mesh that are held along x, and along y."""

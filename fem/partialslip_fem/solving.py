@@ -184,7 +184,7 @@ def _contact_forces(
     if path.before is not None:
         path = replace(path, before=path.before[nodes])
     assert C.xx is not None
-    slipping = before.stick.sides(line.x[nodes]) if before and before.stick else None
+    slipping = before.slipping(line.x[nodes]) if before else None
     tangential, bound = shared.tangential(C.xx, nodes, slipping), problem.f * pressing.x[nodes]
     half_width = float(np.subtract(*contact_ends(line, pressing.x)[::-1])) / 2
 

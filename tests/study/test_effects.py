@@ -85,7 +85,7 @@ def spied(monkeypatch):
 
     spy(condensation, "factor", "factor")
     spy(bodies, "half_plane", "half_plane")
-    spy(solving, "press", "press")
+    spy(bodies, "press", "press")
     spy(solving, "march_refined", "march")
     spy(solving.coupled, "march", "coupled")
     spy(condensation.Condensation, "displace", "displace")

@@ -82,7 +82,7 @@ class Factored:
         """Prepare for ``count`` more programmes."""
         self._programmes += count
         if self._inverse is None and self._programmes > _MANY:
-            self._inverse = _inverse(self.C)
+            self._inverse = inverse(self.C)
             self._uniform = self._inverse.sum(axis=0)
 
     def all_free(self, g: Array) -> Array | None:
@@ -143,7 +143,8 @@ def _cholesky(matrix: Array) -> Array:
     return factor
 
 
-def _inverse(C: Array) -> Array:
+def inverse(C: Array) -> Array:
+    """Inverse of a symmetric positive definite ``C`` (n, n)."""
     half, _ = la.lapack.dpotri(_cholesky(C.copy()), lower=True, overwrite_c=True)
     half = np.tril(half)
     result: Array = half + half.T

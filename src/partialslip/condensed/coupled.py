@@ -9,14 +9,15 @@ along x) and v (opening, along y) under normal forces p and tangential forces q 
 import itertools
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg as la
 
-from partialslip.arrays import Array, submatrix
+from partialslip.arrays import Array, Mask, submatrix
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
 from partialslip.condensed.history import History, certified, follow, resting, still
+from partialslip.condensed.partition import Forces, Inverse, Partition
 from partialslip.condensed.path import Path
 from partialslip.condensed.pressing import Punch, Stages
 from partialslip.condensed.trail import Trail
@@ -28,6 +29,7 @@ _FAR = 10.0  # gap, in half-widths, that stays open
 _ENDS = 15.0  # tolerance of q over tolerance of the ends
 _MOST, _WORK = 64, 16_000  # limits of the steps of pressing, and of steps times nodes
 _PATIENCE = 4  # iterations without progress before the method changes
+_CLOSE = 32  # changes of sides in the last iteration below which rounding errors may matter
 
 
 @dataclass(frozen=True)
@@ -50,11 +52,19 @@ class Relative:
         assert self.xy is not None
         return self.xy.T if self.yx is None else self.yx
 
+    @cached_property
+    def inverse(self) -> Inverse:
+        """Inverse of all of them, with friction and coupling."""
+        assert self.xx is not None
+        assert self.xy is not None
+        return Inverse(self.xx, self.yy, self.xy, self.opening, self.yx is None)
+
 
 @dataclass(frozen=True)
 class _Step:
     """Problem of one load step: p sums to ``P`` over the ``gap`` (n,) before loading, q sums to ``Q``, and nodes that
-    stick have the relative displacement ``kept`` (n,) along x, up to a rigid shift."""
+    stick have the relative displacement ``kept`` (n,) along x, up to a rigid shift. ``inverse`` is that of the
+    compliances, where many steps share it."""
 
     xx: Array
     yy: Array
@@ -65,6 +75,7 @@ class _Step:
     gap: Array
     Q: float
     kept: Array
+    inverse: Inverse | None = None
 
     def sweep(self, p: Solution, q: Solution) -> tuple[Solution, Solution]:
         """One fixed-point iteration: solve for p with the old q, then for q with the new p; both problems are
@@ -82,18 +93,23 @@ class _Step:
     def newton(self, p: Solution, q: Solution) -> tuple[Solution, Solution] | None:
         """Solve for p and q together, iterating on the partition from that of ``p`` and ``q``; None if that fails."""
         touch, slip = p.x > 0, q.sides * (p.x > 0)
-        fewest, chances, iteration = 2 * len(touch), _PATIENCE, 0
+        fewest, chances, iteration, refined = 2 * len(touch), _PATIENCE, 0, False
         while chances > 0:
             iteration += 1
             if not (touch & (slip == 0)).any():
                 return None
-            p_new, q_new, opening, rest, scale = self._linear_solve(touch, slip)
+            p_new, q_new, opening, rest, scale = self._linear_solve(touch, slip, refined)
             noise = _ROUNDING * scale
             pushed = p_new - opening / np.diag(self.yy)
             augmented, bound = q_new - rest / np.diag(self.xx), self.f * p_new
             touches = pushed > noise[0]
-            slips = touches * ((augmented > bound + noise[1]).astype(np.int8) - (augmented < -bound - noise[1]))
+            slips = (augmented > bound + noise[1]).astype(np.int8) - (augmented < -bound - noise[1])
+            # nodes on the bound to rounding, where the loads return to an earlier state, go on as they are
+            slips = touches * np.where((slip != 0) & (slip * augmented > bound - noise[1]), slip, slips)
             if np.array_equal(touches, touch) and np.array_equal(slips, slip):
+                if not refined:
+                    refined, iteration = True, iteration - 1
+                    continue
                 zero = np.zeros(len(self.gap))
                 p_off, q_off = (abs(float(x.sum()) - total) for x, total in ((p_new, self.P), (q_new, self.Q)))
                 p_in, q_in = np.maximum(p_new, 0.0), np.clip(q_new, -bound, bound)
@@ -106,33 +122,24 @@ class _Step:
                 )
             wrong = int((touches != touch).sum() + (slips != slip).sum())
             chances = _PATIENCE if wrong < fewest else chances - 1
-            touch, slip, fewest = touches, slips, min(wrong, fewest)
+            touch, slip, fewest, refined = touches, slips, min(wrong, fewest), wrong <= _CLOSE
         return None
 
-    def _linear_solve(self, touch: npt.NDArray[np.bool_], slip: Sides) -> tuple[Array, ...]:
+    def _linear_solve(self, touch: Mask, slip: Sides, refined: bool) -> tuple[Array, ...]:
         """p and q of one partition: nodes that ``touch`` have no gap, nodes that stick keep their displacement, and
-        q = ``slip`` f p at nodes that slip. Also the opening, the slip, and the scale (2, n) of rounding errors."""
-        on, sticks = np.flatnonzero(touch), np.flatnonzero(touch & (slip == 0))
-        i, end = len(on), len(on) + len(sticks)
-        dragged = self.f * slip[on]
-        matrix, right = np.zeros((end + 2, end + 2)), np.zeros(end + 2)
-        matrix[:i, :i] = submatrix(self.yy, on, on) + submatrix(self.yx, on, on) * dragged
-        matrix[:i, i:end] = submatrix(self.yx, on, sticks)
-        matrix[i:end, :i] = submatrix(self.xx, sticks, on) * dragged + submatrix(self.xy, sticks, on)
-        matrix[i:end, i:end] = submatrix(self.xx, sticks, sticks)
-        matrix[:i, -2] = matrix[i:end, -1] = -1  # rigid shifts
-        matrix[-2, :i] = 1
-        matrix[-1, :i], matrix[-1, i:end] = dragged, 1
-        right[:i], right[i:end], right[-2:] = -self.gap[on], self.kept[sticks], (self.P, self.Q)
-        factors = la.lu_factor(matrix, check_finite=False)
-        solution = la.lu_solve(factors, right, check_finite=False)
-        solution += la.lu_solve(factors, right - matrix @ solution, check_finite=False)
-        p, q, (approach, shift) = np.zeros(len(self.gap)), np.zeros(len(self.gap)), solution[-2:]
-        p[on] = solution[:i]
-        q[on] = dragged * p[on]
-        q[sticks] = solution[i:end]
-        opening = self.yy @ p + self.yx @ q + self.gap - approach
-        rest = self.xx @ q + self.xy @ p - self.kept - shift
+        q = ``slip`` f p at nodes that slip; ``refined`` to rounding. Also the opening, the slip, and the scale (2, n)
+        of rounding errors."""
+        solve, load = self._solver(touch, slip), np.stack([-self.gap, self.kept])
+        totals = np.array([self.P, self.Q])
+        found = solve(load, totals)
+        opening, rest = self._off(found)
+        if refined:
+            sticks = touch & (slip == 0)
+            left = -np.stack([np.where(touch, opening, 0.0), np.where(sticks, rest, 0.0)])
+            change = solve(left, totals - [found.p.sum(), found.q.sum()])
+            found = Forces(*(each + more for each, more in zip(found, change, strict=True)))
+            opening, rest = self._off(found)
+        p, q, (approach, shift) = found
         total = np.abs(p).sum() + np.abs(q).sum()
         scale = total + np.stack(
             [
@@ -141,6 +148,39 @@ class _Step:
             ]
         )
         return p, q, opening, rest, scale
+
+    def _off(self, found: Forces) -> tuple[Array, Array]:
+        """Opening of the gap and slip under the forces."""
+        p, q, (approach, shift) = found
+        return self.yy @ p + self.yx @ q + self.gap - approach, self.xx @ q + self.xy @ p - self.kept - shift
+
+    def _solver(self, touch: Mask, slip: Sides) -> Callable[[Array, Array], Forces]:
+        """What solves the linear system of one partition: by the inverse, if that leaves fewer unknowns."""
+        opens, slips = np.count_nonzero(~touch), np.count_nonzero(slip)
+        if self.inverse and 2 * opens + slips < len(touch):
+            return Partition(self.inverse, touch, slip, self.f).solve
+        on, sticks = np.flatnonzero(touch), np.flatnonzero(touch & (slip == 0))
+        i, end = len(on), len(on) + len(sticks)
+        dragged = self.f * slip[on]
+        matrix = np.zeros((end + 2, end + 2))
+        matrix[:i, :i] = submatrix(self.yy, on, on) + submatrix(self.yx, on, on) * dragged
+        matrix[:i, i:end] = submatrix(self.yx, on, sticks)
+        matrix[i:end, :i] = submatrix(self.xx, sticks, on) * dragged + submatrix(self.xy, sticks, on)
+        matrix[i:end, i:end] = submatrix(self.xx, sticks, sticks)
+        matrix[:i, -2] = matrix[i:end, -1] = -1  # rigid shifts
+        matrix[-2, :i] = 1
+        matrix[-1, :i], matrix[-1, i:end] = dragged, 1
+        factors = la.lu_factor(matrix, overwrite_a=True, check_finite=False)
+
+        def solve(load: Array, totals: Array) -> Forces:
+            solution = la.lu_solve(factors, np.concatenate([load[0][on], load[1][sticks], totals]), check_finite=False)
+            p, q = np.zeros(len(touch)), np.zeros(len(touch))
+            p[on] = solution[:i]
+            q[on] = dragged * p[on]
+            q[sticks] = solution[i:end]
+            return Forces(p, q, solution[-2:])
+
+        return solve
 
 
 @dataclass(frozen=True)
@@ -198,7 +238,7 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
 
     def step(P: float, gap: Array, before: tuple[Solution, Solution]) -> tuple[Solution, Solution]:
         kept = xx @ before[1].x + xy @ before[0].x
-        this = _Step(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept)
+        this = _Step(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept, C.inverse)
         return _solve_near(this, [before], trail, ("pressing", next(number)))
 
     def steps(count: int) -> list[tuple[Solution, Solution]]:
@@ -334,7 +374,7 @@ def march(
         kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0] + change[2] * bent
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the previous step, and this step of the previous cycle
         P = float(load[3]) if path.presses_anew else 1.0
-        this = _Step(xx, C.yy, xy, full.opening, f, P, gap, Q, kept)
+        this = _Step(xx, C.yy, xy, full.opening, f, P, gap, Q, kept, full.inverse)
         normal, sheared = _solve_near(this, starts, line.trail if line is not None else None, ("path", len(done)))
         done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
         return sheared, f * normal.x

@@ -32,10 +32,6 @@ class StickInterval:
     right: float
     signs: tuple[int, int]
 
-    def sides(self, x: Array) -> npt.NDArray[np.int8]:
-        """Sides of nodes at ``x`` (n,) under a change of the loads from no shear: signs of slip, 0 where they stick."""
-        return np.where(x < self.left, self.signs[0], np.where(x > self.right, self.signs[1], 0)).astype(np.int8)
-
 
 def stick_zone(
     x: Array, bound: Array, change: Array, vertices: Array, cell_forces: Callable[[Array], Array]

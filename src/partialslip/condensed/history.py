@@ -130,11 +130,15 @@ class History:
         return 0 if self.path.half else len(self.points) // len(self.path.cycle)
 
     @property
+    def slips(self) -> Mask:
+        """Nodes that slip from load point 1 to 2, (n,)."""
+        slips: Mask = np.abs(self.change) >= (2 - _SLIPS) * self.bound
+        return slips
+
+    @property
     def opposing(self) -> int:
         """Number of nodes that slip in the less frequent direction from load point 1 to 2."""
-        held = self.bound > 0
-        slips = np.abs(self.change[held]) >= (2 - _SLIPS) * self.bound[held]
-        ways = np.sign(self.change[held][slips])
+        ways = np.sign(self.change[self.slips & (self.bound > 0)])
         return int(min((ways > 0).sum(), (ways < 0).sum()))
 
     @property

@@ -127,7 +127,7 @@ def solve(
     stepped: dict[str, float] = {}
     meshes, iterations, spent = 0, 0, 0.0
     # a path out of phase takes more than one coarse mesh to find its stick zone
-    coarse = 2 if path and not path.in_phase else 1
+    coarse = 2 if path and not path.in_phase and len(_MESHES) > 1 else 1
     for size, growth in (*_MESHES[:1] * coarse, *_MESHES[1:]):
         cells = _cells(ends, inner, level, size, growth)
         if level and level.history:
