@@ -42,8 +42,9 @@ class Line:
     def stresses(self, x: Array, depth: Array, states: list[int]) -> Array:
         """Stresses (s, 3, k) of the tractions in ``states``, as on a half-plane, at points at ``depth`` below y = 0."""
         side = np.full_like(x, self._side)
-        lowest = -np.interp(x, self._x, self._height) + _BELOW if self._round else _SURFACE
-        value, slope = self._cauchy(x - 1j * np.maximum(depth, lowest))
+        if self._round:
+            depth = np.maximum(depth, _BELOW - np.interp(x, self._x, self._height))
+        value, slope = self._cauchy(x - 1j * np.maximum(depth, _SURFACE))
         count = len(value) // (4 if self._round else 2)
         (P, T), (yP_z, yT_z) = (
             (each[:count][states], each[count : 2 * count][states]) for each in (value, -depth * slope)

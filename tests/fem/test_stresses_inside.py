@@ -86,7 +86,9 @@ def off_the_elements(fem):
 
 def test_a_clamped_block_that_stands_for_a_half_plane():
     """Clamping changes stresses near the contact by P over its width: the remainder follows it."""
-    _, results = solved("hertz-shear", "fem.far_field='box'", "fem.width=100", "fem.accuracy=1e-5", methods=["exact", "fem"])
+    _, results = solved(
+        "hertz-shear", "fem.far_field='box'", "fem.width=100", "fem.accuracy=1e-5", methods=["exact", "fem"]
+    )
     exact, fem = results["exact"], results["fem"]
     x, y = places(exact, 300)
     assert apart(fem.stress_at(x, y), exact.stress_at(x, y), exact)[0] > 1e-3
@@ -132,6 +134,17 @@ def test_half_a_turn_swaps_the_bodies():
     x, y = places(one, 200)
     whole, _ = apart(other.stress_at(-x, -y), one.stress_at(x, y), one)
     assert whole < 2e-3
+
+
+def test_units():
+    """Lengths and loads per length times 3: the same stresses."""
+    scene = load_scene("hertz-small-tension", ["fem.accuracy=1e-2", *BLOCKS])
+    size = {name: {"kind": "block", "width": 3 * WIDE, "height": 0.03} for name in ("lower", "upper")}
+    load = {"P": 3 * scene.P, "p0": None, "Q": [3 * Q for Q in scene.load.Q]}
+    other = scene.replace(profile={"R": 3 * scene.profile.R}, load=load, bodies=size)
+    one, other = (partialslip.run(each, "fem", subsurface=True)["fem"] for each in (scene, other))
+    x, y = places(one, 200)
+    assert other.stress_at(3 * x, 3 * y) == pytest.approx(one.stress_at(x, y), rel=0, abs=1e-9 * one.p0)
 
 
 # bodies of a size
