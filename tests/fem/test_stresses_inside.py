@@ -86,7 +86,9 @@ def off_the_elements(fem):
 
 def test_a_clamped_block_that_stands_for_a_half_plane():
     """Clamping changes stresses near the contact by P over its width: the remainder follows it."""
-    _, results = solved("hertz-shear", "fem.far_field='box'", "fem.width=100", "fem.accuracy=1e-5", methods=["exact", "fem"])
+    _, results = solved(
+        "hertz-shear", "fem.far_field='box'", "fem.width=100", "fem.accuracy=1e-5", methods=["exact", "fem"]
+    )
     exact, fem = results["exact"], results["fem"]
     x, y = places(exact, 300)
     assert apart(fem.stress_at(x, y), exact.stress_at(x, y), exact)[0] > 1e-3
