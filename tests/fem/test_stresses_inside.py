@@ -136,6 +136,17 @@ def test_half_a_turn_swaps_the_bodies():
     assert whole < 2e-3
 
 
+def test_units():
+    """Lengths and loads per length times 3: the same stresses."""
+    scene = load_scene("hertz-small-tension", ["fem.accuracy=1e-2", *BLOCKS])
+    size = {name: {"kind": "block", "width": 3 * WIDE, "height": 0.03} for name in ("lower", "upper")}
+    load = {"P": 3 * scene.P, "p0": None, "Q": [3 * Q for Q in scene.load.Q]}
+    other = scene.replace(profile={"R": 3 * scene.profile.R}, load=load, bodies=size)
+    one, other = (partialslip.run(each, "fem", subsurface=True)["fem"] for each in (scene, other))
+    x, y = places(one, 200)
+    assert other.stress_at(3 * x, 3 * y) == pytest.approx(one.stress_at(x, y), rel=0, abs=1e-9 * one.p0)
+
+
 # bodies of a size
 
 

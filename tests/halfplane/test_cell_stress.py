@@ -101,6 +101,14 @@ def test_out_of_phase():
         assert (np.abs(found[2]) <= -scene.friction.f * found[1] + 2e-3 * march.p0).all()
 
 
+def test_mirrored():
+    scene = load_scene("hertz-large-tension", ["load.sigma=[-1e8, 2e8]", "load.cycles=3", "fem.accuracy=1e-2"])
+    (one,), (other,) = solved(scene, "march"), solved(scene.replace(load={"Q": [-Q for Q in scene.load.Q]}), "march")
+    x, y = places(one, 200)
+    mirrored = other.stress_at(-x, y) * np.array([[1], [1], [-1]])
+    assert mirrored == pytest.approx(one.stress_at(x, y), rel=0, abs=1e-9 * one.p0)
+
+
 def test_sliding_and_what_was_not_asked_for():
     sliding = load_scene("hertz-shear", ["load.Q=[-4e5, 4e5]"])
     (march,) = solved(sliding, "march")

@@ -10,7 +10,7 @@ import numpy as np
 
 from partialslip.arrays import Array, Complex, Indices
 
-_TOGETHER = 8  # cells of a group
+_TOGETHER = 32  # cells of a group, divided by the degree: closed forms lose digits at some cells' distance
 _COUNT = 16  # nodes of a group
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(_COUNT)
 _NEAR = 6.0  # |zeta - 1| + |zeta + 1| up to which moments of degree 15 do not suffice
@@ -35,7 +35,8 @@ class PiecewiseCauchy:
         self._ends, self._middle, self._half = vertices, (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices) / 2
         self._width = self._half.real
         self._local = _about_the_middle(coefficients, self._width)
-        first = np.arange(0, len(self._half), _TOGETHER)
+        self._together = _TOGETHER // max(coefficients.shape[1] - 1, 2)
+        first = np.arange(0, len(self._half), self._together)
         self._first = first
         low, high = vertices[first], vertices[np.append(first[1:], len(self._half))]
         self._centre, self._reach = (low + high) / 2, (high - low) / 2
@@ -53,10 +54,11 @@ class PiecewiseCauchy:
             pole = 1 / (nodes.ravel() - z[part, None]).reshape(len(part), groups, _COUNT)
             pole[near] = 0.0
             pole = pole.reshape(len(part), nodes.size)
-            result[0, :, part], result[1, :, part] = pole @ forces, pole**2 @ forces
+            result[0, :, part] = pole @ forces
+            result[1, :, part] = np.multiply(pole, pole, out=pole) @ forces
             point, group = np.nonzero(near)
-            for offset in range(_TOGETHER):
-                cell = group * _TOGETHER + offset
+            for offset in range(self._together):
+                cell = group * self._together + offset
                 there = cell < len(self._half)
                 value, slope = self._closed(z[part[point[there]]], cell[there])
                 for order, of in enumerate((value, slope)):
@@ -70,7 +72,7 @@ class PiecewiseCauchy:
         s, weights = np.polynomial.legendre.leggauss((_COUNT + degree) // 2 + 1)
         values = np.einsum("rkc,ks->rcs", self._local, s ** np.arange(degree + 1)[:, None]) * weights
         values = values * self._width[:, None]
-        group = np.arange(len(self._half)) // _TOGETHER
+        group = np.arange(len(self._half)) // self._together
         place = (self._middle[:, None] + self._half[:, None] * s - self._centre[group][:, None]) / self._reach[group][
             :, None
         ]

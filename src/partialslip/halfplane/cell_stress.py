@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -34,7 +34,7 @@ class CellStresses:
         Ends of the cells.
     phases : Phases
     states : tuple of State
-        Contact and bulk tension at each step.
+        Contact, shear of the cells that slip beside its ends, and bulk tension at each step.
     steps : Steps
         Shear forces and friction bounds of cells, in P of the ``frame``.
     """
@@ -71,14 +71,12 @@ class CellStresses:
 
     def inside(self, x: Array, y: Array, phases: Array) -> Array:
         """Stresses (s, 3, k), Pa, at points (``x``, ``y``), m, (k,) each, and ``phases`` (s,) from 0 to 1."""
-        at = Points.of(x, y)
-        return self.phases.interpolate(lambda steps: self._at(at, steps), phases)
+        return self.phases.interpolate(partial(self._at, Points.of(x, y)), phases)
 
     def surface(self, x: Array) -> Array:
         """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body (lower, upper) and load point."""
         sides = (Points(x, 0 * x, side) for side in (np.ones_like(x), -np.ones_like(x)))
-        found = [self.phases.interpolate(lambda steps, at=at: self._at(at, steps), _LOAD_POINTS) for at in sides]  # type: ignore[misc]
-        return np.stack(found)[:, :, 0]
+        return np.stack([self.phases.interpolate(partial(self._at, at), _LOAD_POINTS)[:, 0] for at in sides])
 
     def _at(self, at: Points, steps: Sequence[int]) -> Array:
         result = self._pressed.at(at, [self.states[step] for step in steps])
