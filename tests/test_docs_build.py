@@ -27,6 +27,7 @@ TABLES = {
     "bodies": [bodies.Bodies, bodies.Body, bodies.Holder],
     "fem": [scene.Fem],
     "effects": [scene.Effects],
+    "fatigue": [scene.Fatigue],
 }
 
 
@@ -72,14 +73,25 @@ def test_formulas_are_markup(built):
 def test_every_command_is_in_the_reference(built, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "100")
     text = page(built, "reference/commands")
-    for command in ("run", "map", "page", "verify", "study cost", "study size", "score", "export", "completion"):
+    for command in (
+        "run",
+        "map",
+        "page",
+        "fatigue",
+        "verify",
+        "study cost",
+        "study size",
+        "score",
+        "export",
+        "completion",
+    ):
         assert main([*command.split(), "--help"]) == 0
         assert f'id="partialslip-{command.replace(" ", "-")}"' in text
         options = re.findall(r"--[a-z][\w-]+", capsys.readouterr().out)
         assert [option for option in options if option not in text] == []
 
 
-@pytest.mark.parametrize("name", ["", ".halfplane", ".score", ".export", ".verify"])
+@pytest.mark.parametrize("name", ["", ".halfplane", ".fatigue", ".score", ".export", ".verify"])
 def test_all_that_is_handed_out_is_in_the_reference(built, name):
     module = importlib.import_module(f"partialslip{name}")
     source, text = Path(module.__file__).read_text("utf-8"), page(built, "reference/api")
@@ -91,8 +103,8 @@ def test_all_that_is_handed_out_is_in_the_reference(built, name):
         if f" as {each}\n" in source or value.__module__ == module.__name__
     ]
     assert handed
-    home = "partialslip" if name in (".score", ".export") else module.__name__
-    assert [each for each in handed if f'id="{home}.{each}"' not in text] == []
+    homes = ["partialslip"] if name in (".score", ".export") else ["partialslip", module.__name__]
+    assert [each for each in handed if not any(f'id="{home}.{each}"' in text for home in homes)] == []
 
 
 def rows(heading):
@@ -113,7 +125,9 @@ def test_scene_file_reference_is_what_is_read(heading):
         info = msgspec.inspect.type_info(kind)
         listed = {key: row for key, row in table.items() if not (key == "kind" and info.tag_field)}
         inner = (
-            {"material", "profile", "load", "friction", "bodies", "fem", "effects"} if kind is scene.Scene else set()
+            {"material", "profile", "load", "friction", "bodies", "fem", "effects", "fatigue"}
+            if kind is scene.Scene
+            else set()
         )
         assert listed.keys() == {field.encode_name for field in info.fields} - inner
         for field in info.fields:

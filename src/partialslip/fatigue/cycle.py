@@ -21,8 +21,10 @@ def stress_path(scene: Scene, result: Result, body: str, phases: Array, x: Array
     """Return the stress path (s, 4, ...), Pa, of a ``body`` at ``phases`` (s,) of the cycle, with the tension
     ``fatigue.sigma_upper``; see :meth:`partialslip.Assessment.stress`."""
     assert result.stress_at
-    y = -np.asarray(depth, float) if body == "lower" else np.asarray(depth, float) + _ABOVE * result.a
-    stress = np.array(result.stress_at(x, y, phases))
+    own = scene.bodies.lower if body == "lower" else scene.bodies.upper
+    round_face = own is not None and own.kind == "pad" and bool(result.bodies)  # half-planes have none
+    below = depth + (scene.gap_at(x) if round_face else 0.0)
+    stress = np.array(result.stress_at(x, -below if body == "lower" else below + _ABOVE * result.a, phases))
     if scene.fatigue.sigma_upper is not None:
         tension = np.interp(phases, [0.0, 0.5, 1.0], [*scene.fatigue.sigma_upper, scene.fatigue.sigma_upper[0]])
         stress[:, 0] += tension.reshape(-1, *[1] * (stress.ndim - 2))

@@ -39,7 +39,8 @@ def sections(found: Assessment) -> list[Section]:
             "Criteria",
             [tables.heading(found) + ".", *(f"{line}." for line in tables.notes(found))],
             criteria_svg(found) if found.ratings else "",
-            "Criteria along the surface and over the depth.",
+            "Criteria along the surface and over the depth. In a slip zone the curves have teeth: the stress peaks "
+            "where the stick zone ends at one of the load points. With more load points the tips become the curve.",
             tables.RATINGS,
             tables.rating_rows(found),
             (1,),
