@@ -1,9 +1,10 @@
 """Regenerate the page of the scoreboard: python docs/scoreboard.py writes scoreboard.md from benchmarks/submissions."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from textwrap import fill
 
-from partialslip.benchmark import read_problems, read_submission, scoreboard
+from partialslip.benchmark import Problem, Submission, read_problems, read_submission, scoreboard
 from partialslip.benchmark.problem import EDITION
 
 DOCS = Path(__file__).parent
@@ -16,8 +17,6 @@ Grades of codes on the [problems of the benchmark](howto/benchmark.md), edition 
 1e-4) to E (beyond 5e-2), with CPU seconds in brackets. A dash: the code does not offer the problem, or one of the
 targets, or there was no time to run it. *none*: the code did not converge; the note in its answer tells where. The
 answers are in `benchmarks/submissions`; they were measured on one machine, which other work shared.
-
-{codes}
 
 """
 
@@ -59,17 +58,24 @@ def page() -> str:
     """Content of the page."""
     problems = read_problems()
     found = [read_submission(folder, problems) for folder in sorted(SUBMISSIONS.iterdir())]
-    board = scoreboard(problems, found)
-    letters = [chr(ord("a") + number) for number in range(len(found))]
+    own = [each for each in found if each.meta.code.startswith("partialslip ")]
+    others = [each for each in found if each not in own]
+    tables = [_table(problems, own, "a"), _table(problems, others, chr(ord("a") + len(own)))]
+    return _HEAD.format(edition=EDITION) + "\n".join(tables) + _WRONG
+
+
+def _table(problems: Mapping[str, Problem], found: Sequence[Submission], first: str) -> str:
+    """List of codes, with letters from ``first``, and table of their grades."""
+    letters = [chr(ord(first) + number) for number in range(len(found))]
     told = (
         f"- **{letter}**: {each.meta.code} {each.meta.version}"
         + (f"; {each.meta.settings}" if each.meta.settings else "")
         for letter, each in zip(letters, found, strict=True)
     )
-    codes = "\n".join(fill(line, 120, subsequent_indent="  ", break_on_hyphens=False) for line in told)
+    codes = [fill(line, 120, subsequent_indent="  ", break_on_hyphens=False) for line in told]
     lines = ["| | " + " | ".join(letters) + " |", "|---|" + "---|" * len(letters)]
-    lines += [f"| {row[0]} | " + " | ".join(row[1:]) + " |" for row in board.rows]
-    return _HEAD.format(edition=EDITION, codes=codes) + "\n".join(lines) + "\n" + _WRONG
+    lines += [f"| {row[0]} | " + " | ".join(row[1:]) + " |" for row in scoreboard(problems, found).rows]
+    return "\n".join([*codes, "", *lines]) + "\n"
 
 
 if __name__ == "__main__":
