@@ -40,4 +40,6 @@ def _cell(graded: Graded | None, submission: Submission, number: str) -> str:
     if graded is None or graded.overall.grade == NOT_OFFERED:
         return "–"
     spent = submission.answers[number].cpu_s
-    return graded.overall.grade + (f" ({spent:.2g} s)" if spent is not None else "")
+    if spent is None:
+        return graded.overall.grade
+    return f"{graded.overall.grade} ({spent:{'.2g' if spent < 100 else '.0f'}} s)"

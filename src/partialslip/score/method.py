@@ -77,7 +77,7 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     first, last = min(contact.first for contact in contacts), max(contact.last for contact in contacts)
     inside = slice(first, last + 1)
     slips = f > 0 and bool(np.abs(dq).max() > max(ZERO_LEVEL * p0, NOISE_FACTOR * noise(dq, x)))
-    stick = _stick_zone(x[inside], p[inside], dq[inside], f, p0, cells) if slips else None
+    stick = _stick_zone(x[inside], p[inside], dq[inside], f, p0, cells, _pressed(scene)) if slips else None
     # a point that is out of contact at a load point does not stick
     both = max(contact.left for contact in contacts), min(contact.right for contact in contacts)
     regime, ends = _regime(scene, stick, *both, slips)
@@ -191,8 +191,15 @@ def _widths(samples: Samples) -> Array:
     return widths
 
 
-def _stick_zone(x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool) -> SeenStickZone | None:
-    """Stick zone from 2 f p - |dq| at the points in contact, ``p`` being the mean pressure; None if nothing sticks."""
+def _stick_zone(
+    x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool, pressed: bool
+) -> SeenStickZone | None:
+    """Stick zone from 2 f p - |dq| at the points in contact, ``p`` being the mean pressure; None if nothing sticks.
+
+    The room 2 f p - |dq| grows from the ends of the stick zone like a square root. Where the bodies were only
+    ``pressed`` it is the sum over all stages of pressing, and grows with the power 3/2: its cube root like a square
+    root.
+    """
     sides = frictions(p, dq, asked)
     slacks = [2 * side.uncertainty * p for side in sides]
     room = 2 * min(side.f for side in sides) * p - np.abs(dq)
@@ -208,6 +215,11 @@ def _stick_zone(x: Array, p: Array, dq: Array, asked: float, p0: float, cells: b
     )
     rooms = [2 * side.f * p - side.sign * dq for side in sides]
     told = [least if side.seen else 0.0 for least, side in zip(hidden, sides, strict=True)]
+    if pressed:
+        scale = 2 * asked * p0
+        rooms = [scale * np.cbrt(room / scale) for room in rooms]
+        told = [scale * float(np.cbrt(least / scale)) for least in told]
+        slacks = [np.zeros_like(slack) for slack in slacks]  # f is the scene's
     left = left_end(x, rooms[0], first, last, cells=cells, slack=slacks[0], least=told[0])
     right = right_end(x, rooms[1], last, first, cells=cells, slack=slacks[1], least=told[1])
     return SeenStickZone(left, right if right.x > left.x else ZoneEnd(left.x, right.uncertainty), sides)
