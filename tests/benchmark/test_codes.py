@@ -13,9 +13,10 @@ from partialslip.benchmark.codes.getfem import HOST as GETFEM
 from partialslip.benchmark.codes.getfem import GetFEM
 from partialslip.benchmark.codes.kratos import HOST as KRATOS
 from partialslip.benchmark.codes.kratos import Kratos
+from partialslip.benchmark.codes.own import Own
 from partialslip.benchmark.codes.process import python_with
 from partialslip.benchmark.submission import read_submission
-from partialslip.errors import InputError
+from partialslip.errors import InputError, PartialslipError
 from partialslip.run import run
 
 PROBLEMS = read_problems()
@@ -150,6 +151,20 @@ def test_calculix_that_gives_up_answers_with_a_note(does, said, tmp_path, monkey
     assert found.meta.version == "9.9"
     assert found.answers["PS-02"].note.startswith(said)
     assert not found.answers["PS-02"].values
+
+
+def test_a_mesh_that_cannot_be_made_stops_no_other_problem(monkeypatch):
+    true, two = Own.solve, {number: PROBLEMS[number] for number in ("PS-01", "PS-02")}
+
+    def solve(code, scene):
+        if scene.name == "ps-01":
+            raise PartialslipError("gmsh cannot make the mesh: too coarse")
+        return true(code, scene)
+
+    monkeypatch.setattr(Own, "solve", solve)
+    found = answers("exact", two).answers
+    assert found["PS-01"].note == "gmsh cannot make the mesh: too coarse"
+    assert graded(two["PS-02"], found["PS-02"]).overall.grade == "A"
 
 
 def test_a_scene_that_cannot_be_exported_is_not_offered():

@@ -1,8 +1,6 @@
-"""Exported decks and meshes: what is in them is the scene. With CalculiX at hand (slow): what it makes of them, too."""
+"""Exported decks and meshes: what is in them is the scene."""
 
 import os
-import shutil
-import subprocess
 from dataclasses import replace
 from itertools import pairwise
 
@@ -10,62 +8,21 @@ import meshio
 import msgspec
 import numpy as np
 import pytest
-import varying as closed_form
+from decks import COARSE, UNIT, Deck, deck_equations, places
 
 from partialslip import load_scene
 from partialslip.cli import main
 from partialslip.errors import InputError
-from partialslip.export import FORMATS, export, parts
+from partialslip.export import FORMATS, export
 from partialslip.export import model as models
 from partialslip.export.calculix import deck_units
 from partialslip.export.model import modelled
-from partialslip.judge import compare
-from partialslip.score import score
-from partialslip.score.read import read
 from partialslip.units import N_MM, N_UM, SI
 
 SCENE, SIZE, GROWTH, STIFFER = "hertz-large-tension", 0.1, 0.4, 100.0
-UNIT = 1e-6  # of length in CalculiX's deck, a = 1 mm
 # corners of the sides of a brick, in the numbering of Abaqus and CalculiX
 BRICK = {"S3": (0, 4, 5, 1), "S4": (1, 5, 6, 2), "S5": (2, 6, 7, 3), "S6": (3, 7, 4, 0)}
 SQUARE = {"S1": (0, 1), "S2": (1, 2), "S3": (2, 3), "S4": (3, 0)}
-
-
-class Deck:
-    """Keyword blocks of an input deck, in order: the keyword with its parameters, and its lines of fields."""
-
-    def __init__(self, path):
-        self.blocks = []
-        for line in path.read_text("ascii").splitlines():
-            if line.startswith("**"):
-                continue
-            assert all(len(word) <= 20 for word in line.split(",") if not line.startswith("*"))
-            if line.startswith("*"):
-                self.blocks.append((line, []))
-            else:
-                self.blocks[-1][1].append([word.strip() for word in line.split(",")])
-
-    def rows(self, start):
-        return [row for keyword, rows in self.blocks if keyword.startswith(start) for row in rows]
-
-    def table(self, start, kind=float):
-        return np.array(self.rows(start), dtype=kind)
-
-    def members(self, name):
-        return np.concatenate([np.array(row, dtype=int) for row in self.rows(f"*NSET, NSET={name}")])
-
-    def steps(self):
-        """Of each step the last displacements and forces put on nodes, by (node, component)."""
-        steps = []
-        for keyword, rows in self.blocks:
-            if keyword.startswith("*STEP"):
-                steps.append(({}, {}))
-            elif keyword.startswith("*BOUNDARY"):
-                put = [row for row in rows if row[0].isdigit()]
-                steps[-1][0].update({(int(row[0]), int(row[1])): float((*row, "0")[3]) for row in put})
-            elif keyword.startswith("*CLOAD"):
-                steps[-1][1].update({(int(row[0]), int(row[1])): float(row[2]) for row in rows})
-        return steps
 
 
 @pytest.fixture(scope="module")
@@ -93,13 +50,6 @@ def deck(request, files):
     if request.param == "calculix":
         return Deck(files["calculix"]), UNIT, SIZE * 1e-3 / UNIT, BRICK
     return Deck(files["abaqus"]), 1.0, 1.0, SQUARE
-
-
-def places(deck):
-    nodes = deck.table("*NODE, NSET=")
-    result = np.full((int(nodes[:, 0].max()) + 1, nodes.shape[1] - 1), np.nan)
-    result[nodes[:, 0].astype(int)] = nodes[:, 1:]
-    return result
 
 
 def test_elements_are_sound(deck):
@@ -200,9 +150,6 @@ def test_without_shear_it_is_pressed_only():
     assert [step.name for step in modelled(scene, 0.5, growth=1.0).steps] == ["press"]
 
 
-COARSE = {"size": 0.5, "growth": 1.0}
-
-
 @pytest.fixture(scope="module")
 def varying(scene):
     """Loads out of phase at three load points, in two cycles; P is largest at the second point."""
@@ -232,8 +179,8 @@ def test_each_step_presses_with_p_of_its_load_point(varying, to, tmp_path):
 @pytest.mark.fault
 def test_p_that_stays_is_seen(varying, monkeypatch, tmp_path):
     """P of one load point in all steps."""
-    true = models._steps
-    monkeypatch.setattr(models, "_steps", lambda scene: tuple(s._replace(P=scene.P) for s in true(scene)))
+    true = models.steps_of
+    monkeypatch.setattr(models, "steps_of", lambda scene: tuple(s._replace(P=scene.P) for s in true(scene)))
     assert pressed_with(varying, "abaqus", tmp_path / "deck")[2] == pytest.approx(1.5 * varying.load.P[0])
 
 
@@ -263,10 +210,6 @@ def test_frame_is_rigid(deck):
         (row[0], row[1]) for keyword, (_, row) in deck_equations(deck) if row[2:] == ["1.", str(first), row[1], "-1."]
     }
     assert tied == {(str(node), component) for node in others for component in "12"}
-
-
-def deck_equations(deck):
-    return [block for block in deck.blocks if block[0] == "*EQUATION"]
 
 
 def test_units_change_nothing(scene, made):
@@ -386,214 +329,3 @@ def test_command(tmp_path, monkeypatch, capsys):
     assert capsys.readouterr().out.splitlines()[-1].startswith(f"written: results{os.sep}{SCENE}-calculix-2.inp (")
     decks = sorted(path.name for path in (tmp_path / "results").iterdir())
     assert decks == [f"{SCENE}-{end}.inp" for end in ("abaqus", "calculix-2", "calculix")]
-
-
-UNLIKE = ["material.upper={E=2e11, nu=0.3}", "load.sigma=[0, 0]"]
-PULLED = ["bodies.upper={kind='pad', width=0.02, height=0.01, holder={width=0.03, height=0.01}}",
-          "bodies.lower={width=0.06, height=0.01, support='roller', pulled=true}"]  # fmt: skip
-BLOCKS = [f"bodies.{name}={{width=0.016, height=0.008}}" for name in ("lower", "upper")]
-BLOCK = ["bodies.lower={width=0.012, height=0.008}"]  # clamped, below a half-plane
-
-
-def total(loads, component):
-    """Sum of the forces of a step along a component."""
-    return sum(force for (_, along), force in loads.items() if along == component)
-
-
-@pytest.mark.parametrize("overrides", [PULLED, BLOCK, UNLIKE])
-def test_finite_and_unlike_bodies_carry_the_loads(overrides, tmp_path):
-    """P and Q on the frame; a pulled body carries sigma times its height, a clamped one is in equilibrium."""
-    scene = load_scene(SCENE, overrides)
-    export(scene, "abaqus", size=0.3, growth=0.2)(tmp_path / "deck")
-    deck = Deck(tmp_path / "deck")
-    points, pulled = places(deck), scene.bodies.lower is not None and scene.bodies.lower.pulled
-    lower = set(deck.members("LOWER_OUTER").tolist()) | set(deck.table("*NODE, NSET=LOWER")[:, 0].astype(int).tolist())
-    for (moved, forces), (Q, sigma) in zip(deck.steps()[-2:], scene.load.points, strict=True):
-        own = {key: force for key, force in forces.items() if key[0] not in lower}
-        pull = {key: force for key, force in forces.items() if key[0] in lower}
-        assert total(own, 2) == pytest.approx(-scene.P, rel=1e-9)
-        assert total(own, 1) == pytest.approx(-Q, rel=1e-9)
-        assert total(pull, 2) == 0
-        height = scene.bodies.lower.height if pulled else 0.0
-        assert total(pull, 1) == pytest.approx(sigma * height, rel=1e-9, abs=1e-6 * scene.P)
-        if pulled:  # held on the left along x, on the back along y, and nowhere else
-            held = {component: {node for node, along in moved if along == component} & lower for component in (1, 2)}
-            assert {round(points[node, 0], 9) for node in held[1]} == {-0.03}
-            assert {round(points[node, 1], 9) for node in held[2]} == {-0.01}
-            assert not any(moved.values())
-
-
-@pytest.mark.fault
-def test_a_pull_that_is_left_out_is_seen(tmp_path, monkeypatch):
-    """The specimen is not pulled: no force on the lower body."""
-    monkeypatch.setattr(parts.Part, "pull", property(lambda part: np.zeros(len(part.mesh.points))))
-    with pytest.raises(AssertionError):
-        test_finite_and_unlike_bodies_carry_the_loads(PULLED, tmp_path)
-
-
-def test_a_clamped_block_in_tension_is_in_uniform_tension():
-    """Displacements of its back and forces on its sides are those of one uniform stress: equilibrium with
-    sigma_xx = sigma at every node, by the stiffness of plane strain."""
-    made = modelled(load_scene(SCENE, BLOCK), 0.5, growth=1.0)
-    lower, step = made.parts[0], made.steps[-1]
-    mesh, (c11, c12) = lower.mesh, lower.E / ((1 + lower.nu) * (1 - 2 * lower.nu)) * np.array([1 - lower.nu, lower.nu])
-    strain = lower.strained * step.sigma
-    assert made.bulk(step) == pytest.approx(mesh.points[lower.outer] * strain)
-    assert c11 * strain[1] + c12 * strain[0] == pytest.approx(0.0, abs=1e-9 * step.sigma)
-    stress = c11 * strain[0] + c12 * strain[1]
-    assert stress == pytest.approx(step.sigma)
-    # traction of this stress on all of the boundary that is not held
-    x = mesh.points[:, 0]
-    right, left = (np.flatnonzero(np.isclose(x, end)) for end in (x.max(), x.min()))
-    height = load_scene(SCENE, BLOCK).bodies.lower.height
-    assert lower.pull[right].sum() == pytest.approx(height)
-    assert lower.pull[left].sum() == pytest.approx(-height)
-    assert np.count_nonzero(lower.pull) == len(right) + len(left)
-
-
-def test_a_pad_is_flat_along_the_contact_and_has_its_shape_beyond():
-    """With stiffer bodies the gap is flatter there, and no other part of the body changes."""
-    scene = load_scene(SCENE, PULLED)
-    for stiffer in (1.0, 100.0):
-        upper = modelled(scene, 0.3, growth=0.2, stiffer=stiffer).parts[1].mesh
-        line, face = (np.unique(upper.lines[name]) for name in ("contact", "face"))
-        x, y = upper.points[line].T
-        assert np.ptp(y - scene.gap_at(x) / stiffer) < 1e-12
-        x, y = upper.points[face].T
-        reach = np.abs(upper.points[line, 0]).max()
-        beyond, end = scene.gap_at(x), scene.gap_at(np.array(reach))
-        assert np.ptp(y - beyond) < 0.1 * end  # the gap at the contact's end, which fades with the depth of the face
-        assert upper.points[:, 1].max() == pytest.approx(0.02, abs=1e-9)
-
-
-def test_where_pressing_slips_it_is_gradual_and_soon_free():
-    steps = modelled(load_scene(SCENE, UNLIKE), 0.5, growth=1.0).steps
-    assert [(step.name, step.guided) for step in steps[:2]] == [("touch", True), ("press", False)]
-    assert steps[0].P < 0.02 * steps[1].P
-    assert steps[1].increments > 8
-
-
-@pytest.mark.parametrize("to", ["calculix", "abaqus"])
-def test_a_frame_turns_about_the_origin_under_the_moment(to, tmp_path):
-    """A rigid rotation of the frame satisfies the equations, and the moment on it is that of P."""
-    scene = load_scene(SCENE, ["load.e=[-1e-4, 1e-4]"])
-    export(scene, to, **COARSE)(tmp_path / "deck")
-    deck = Deck(tmp_path / "deck")
-    (turn,), (frame,) = (deck.rows(f"*NODE, NSET={name}")[0][:1] for name in ("TURN", "FRAME"))
-    deck.blocks = [block for block in deck.blocks if block[0] not in ("*NODE, NSET=TURN", "*NODE, NSET=FRAME")]
-    points, turn, frame = np.vstack([places(deck), np.zeros((2, 3 if to == "calculix" else 2))]), int(turn), int(frame)
-    unit, thickness = (UNIT, np.nanmax(points[:, 2]) * UNIT) if to == "calculix" else (1.0, 1.0)
-    arm, angle = 1e-3 / unit, 1e-3
-    u = np.full((len(points), 2), np.nan)
-    u[:, 0], u[:, 1] = 2.0 - angle * points[:, 1], 3.0 + angle * points[:, 0]
-    u[turn, 0] = angle * arm
-    sums = [
-        sum(float(c) * u[int(node), int(k) - 1] for node, k, c in zip(row[::3], row[1::3], row[2::3], strict=True))
-        for _, (_, row) in deck_equations(deck)
-    ]
-    assert len(sums) == 2 * len(deck.members("UPPER_OUTER"))
-    assert np.abs(sums).max() < 1e-9 * angle * np.nanmax(points)
-    for (_, forces), (P, M) in zip(deck.steps()[-2:], scene.pressing, strict=True):
-        assert forces[turn, 1] * arm * unit / thickness == pytest.approx(-M, rel=1e-9)
-        assert forces[frame, 2] / thickness == pytest.approx(-P, rel=1e-9)
-
-
-def ran(scene, folder, **how):
-    """File of what CalculiX makes of the exported deck."""
-    export(scene, "calculix", **how)(folder / "job.inp")
-    subprocess.run(["ccx", "job"], cwd=folder, check=True, capture_output=True, timeout=600)
-    return folder / "job.frd"
-
-
-def computed(scene, folder, **how):
-    """What CalculiX makes of the exported deck, scored."""
-    file = ran(scene, folder, **how)
-    return score(scene, file).comparisons[file.name]
-
-
-needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed")
-HOW = {"size": 0.05, "growth": 0.2, "stiffer": STIFFER}
-
-
-@pytest.mark.slow
-@needs_ccx
-@pytest.mark.parametrize(
-    ("name", "ends"),
-    [
-        ("hertz-small-tension", ()),
-        ("hertz-large-tension", ()),
-        ("flat-rounded", (-1.0, -0.974, 0.425, 1.0)),  # pressure falls from 2 p0 to nothing within 0.07 a
-    ],
-)
-def test_calculix_runs_it(name, ends, tmp_path):
-    """Elements of 0.05 a: errors of less than half of them in a, m and n, and of a few per cent in tractions."""
-    found = computed(load_scene(name), tmp_path, **HOW, ends=ends)
-    assert max(found.a, found.m, found.n) < 0.02
-    assert found.p < 0.02
-    assert found.q < 0.05
-
-
-@pytest.mark.slow
-@needs_ccx
-def test_calculix_runs_varying_p(tmp_path):
-    """Contacts of 0.8 and 1 mm, elements of 0.04 mm, scored against the closed form at both load points."""
-    scene, file = closed_form.SCENE, ran(closed_form.SCENE, tmp_path, **HOW)
-    found = score(scene, file).results[file.name]
-    errors = compare(found, closed_form.solved(scene), scene, None).errors
-    assert max(errors[key] for key in ("a", "left_1", "right_1", "left_2", "right_2", "m", "n", "p", "p_1")) < 0.02
-    assert errors["q"] < 0.05
-
-
-@pytest.mark.slow
-@needs_ccx
-def test_calculix_runs_bodies_of_a_size_and_unlike_ones(tmp_path):
-    """Against finite elements: blocks in tension, and unlike half-planes that slip while they are pressed."""
-    for overrides in ([*BLOCKS, "load.cycles=1"], [*UNLIKE, "load.Q=[0, 0]"]):
-        scene = load_scene("hertz-small-tension", overrides)
-        found = computed(scene, tmp_path, **HOW)
-        assert found.a < 5e-3
-        assert found.p < 0.02
-        assert found.q < 0.05
-
-
-@needs_ccx
-def test_the_abaqus_deck_runs_in_calculix(tmp_path):
-    """All keywords, but for what each code calls by its own name: output, penalties and the friction's multipliers."""
-    scene = load_scene("hertz-small-tension", [*BLOCKS, "load.Q=[0, 0]"])
-    scene = scene.replace(load={"sigma": (0.0, 0.0)})
-    export(scene, "abaqus", size=0.2, growth=0.5, stiffer=STIFFER)(tmp_path / "deck.inp")
-    E, told = scene.material.E * STIFFER, (tmp_path / "deck.inp").read_text("ascii")
-    for own, other in (
-        ("*CONTACT OUTPUT\nCSTRESS, CDISP, CFORCE", "*CONTACT FILE\nCDIS, CSTR"),
-        ("OVERCLOSURE=HARD, DIRECT", f"OVERCLOSURE=LINEAR\n{1e3 * E / 1e-3:e}"),
-        ("*FRICTION, LAGRANGE\n5.000000000000e-01", f"*FRICTION\n0.5, {1e2 * E / 1e-3:e}"),
-    ):
-        assert own in told
-        told = told.replace(own, other)
-    (tmp_path / "job.inp").write_text(told, "ascii")
-    done = subprocess.run(["ccx", "job"], cwd=tmp_path, check=True, capture_output=True, text=True, timeout=100)
-    assert "Job finished" in done.stdout
-    assert "*ERROR" not in done.stdout
-    found = read(tmp_path / "job.frd", scene)
-    # nodal values of elements of 0.2 a; with 0.1 a the difference is 3 %, with 0.05 a 1.5 %
-    assert (found.p * np.gradient(found.x)).sum() == pytest.approx(scene.P, rel=0.1)
-
-
-@pytest.mark.slow
-@needs_ccx
-def test_fault_tension_of_the_wrong_sign(tmp_path, monkeypatch):
-    """The deck's tension turned round: the scored result must say so."""
-    true = models._steps
-    monkeypatch.setattr(models, "_steps", lambda scene: tuple(s._replace(sigma=-s.sigma) for s in true(scene)))
-    found = computed(load_scene("hertz-small-tension"), tmp_path, **HOW)
-    assert min(found.m, found.n) > 0.1
-    assert found.q > 0.1
-
-
-@pytest.mark.slow
-@needs_ccx
-def test_slopes_are_what_stiffer_bodies_take_away(tmp_path):
-    """With the scene's own stiffness a/R = 0.02, which moves the ends by a fraction of that."""
-    scene = load_scene("hertz-small-tension")
-    flat, sloping = (computed(scene, tmp_path, **HOW | {"stiffer": K}) for K in (100.0, 1.0))
-    assert 5e-4 < abs(sloping.n - flat.n) < 0.02

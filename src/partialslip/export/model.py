@@ -169,7 +169,7 @@ def modelled(
     upper = replace(upper, mesh=_upper(upper.mesh, scene, reach * a, overlap, stiffer))
     turns = any(M for _, M in scene.pressing)
     return Model(
-        scene.name, (lower, upper), scene.friction.f, _steps(scene), a, line.along * a, line.width, stiffer, turns
+        scene.name, (lower, upper), scene.friction.f, steps_of(scene), a, line.along * a, line.width, stiffer, turns
     )
 
 
@@ -228,7 +228,3 @@ def _upper(mesh: "QuadMesh", scene: Scene, reach: float, overlap: float, stiffer
     shaped = np.column_stack([x, y + gap / stiffer * (1 - y / y.max())])
     lines = {name: line[:, ::-1] for name, line in mesh.lines.items()}
     return replace(mesh, points=shaped, quads=mesh.quads[:, ::-1], lines=lines)
-
-
-def _steps(scene: Scene) -> tuple[Step, ...]:
-    return steps_of(scene)

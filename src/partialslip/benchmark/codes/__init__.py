@@ -14,7 +14,7 @@ from partialslip.benchmark.codes.solved import Solved
 from partialslip.benchmark.measured import answer_of
 from partialslip.benchmark.problem import Problem, read_problems
 from partialslip.benchmark.submission import META, Answer, Meta, Rung, Submission, read_submission, write_submission
-from partialslip.errors import InputError
+from partialslip.errors import InputError, MissingLibraryError, PartialslipError
 from partialslip.origin import made_now
 from partialslip.scene import Scene
 
@@ -102,14 +102,23 @@ def answers(
 def _answered(code: Code, problem: Problem) -> Answer | None:
     """Answer of ``code``, on its ladder of meshes if it has one; None if it does not offer the ``problem``."""
     if not isinstance(code, Own) or not code.sizes:
-        solved = code.solve(problem.scene)
+        solved = _solved(code, problem.scene)
         return _answer(problem, solved) if solved else None
-    rungs = [each.solve(problem.scene) for each in code.rungs]
+    rungs = [_solved(each, problem.scene) for each in code.rungs]
     found = [_answer(problem, each) for each in rungs if each]
     if len(found) < len(rungs):
         return None
     ladder = (Rung(h, each.values, each.cpu_s, each.unknowns) for h, each in zip(code.sizes, found, strict=True))
     return replace(found[-1], ladder=tuple(ladder))
+
+
+def _solved(code: Code, scene: Scene) -> Solved | None:
+    try:
+        return code.solve(scene)
+    except MissingLibraryError:
+        raise
+    except PartialslipError as error:  # such as a mesh that cannot be made
+        return Solved(None, str(error))
 
 
 def _answer(problem: Problem, solved: Solved) -> Answer:
