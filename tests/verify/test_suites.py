@@ -66,7 +66,8 @@ def test_the_book_is_a_suite_of_the_benchmarks_own_scenes():
     assert list(makers) == list(problems)
     for number, make in makers.items():
         case = make()
-        assert case.scene is problems[number].scene
+        accuracy = {"accuracy": case.scene.fem.accuracy}
+        assert case.scene == problems[number].scene.replace(fem=accuracy)
         assert case.reference in (*case.methods, "")
         assert len(case.methods) > 1
     assert list(suite("book", ["PS-0?"])) == [number for number in problems if number < "PS-10"]

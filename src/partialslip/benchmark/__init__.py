@@ -8,6 +8,7 @@ from partialslip.benchmark.grade import Graded as Graded
 from partialslip.benchmark.grade import Mark as Mark
 from partialslip.benchmark.grade import graded as graded
 from partialslip.benchmark.ladder import CLIMB_HEADS as CLIMB_HEADS
+from partialslip.benchmark.ladder import Climb as Climb
 from partialslip.benchmark.ladder import climb_rows as climb_rows
 from partialslip.benchmark.ladder import climbs as climbs
 from partialslip.benchmark.problem import Problem as Problem
@@ -27,6 +28,7 @@ __all__ = [
     "CLIMB_HEADS",
     "Answer",
     "Board",
+    "Climb",
     "Graded",
     "Mark",
     "Meta",

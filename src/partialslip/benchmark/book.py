@@ -27,7 +27,8 @@ _COLUMNS = 8  # codes side by side in a scoreboard
 
 
 def book_page(problems: Mapping[str, Problem], submissions: Sequence[Submission], made: Made) -> str:
-    """The book as HTML: all ``problems`` by number, and a scoreboard of the ``submissions`` if there are any."""
+    """The book as HTML: all ``problems`` by number, a scoreboard of the ``submissions`` if there are any, and how it
+    was ``made``."""
     return render_page(
         "partialslip.benchmark",
         "book.html",

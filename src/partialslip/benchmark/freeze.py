@@ -48,10 +48,10 @@ def ways(problem: Problem) -> tuple[Way, ...]:
     march = Way("march", "march", {"fem.accuracy": _FINE})
     fem = Way("fem", "fem", {"fem.accuracy": _FINE})
     if scene.finite:
-        others = {"fem.accuracy": _FINE / 4, "fem.order": 3, "fem.lower_size": 0.8}
+        others = {"fem.accuracy": _FINE / 10, "fem.lower_size": 0.8}
         return (
             Way("fem", "fem", {"fem.accuracy": _FINE / 10}),
-            Way("fem", "fem with other elements, whose nodes do not match", others),
+            Way("fem", "fem on meshes that do not match", others),
             Way("equivalent", "equivalent half-planes", {"fem.accuracy": _FINE}, rough=True),
         )
     if not scene.material.alike:

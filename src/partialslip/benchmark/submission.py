@@ -32,8 +32,8 @@ class Meta(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Rung(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One mesh of a ladder: size ``h`` of its elements along the contact, in a unit of the code's choice, and what was
-    found on it, as in :class:`Answer`."""
+    """One mesh of a ladder: size ``h`` of its elements along the contact, in a unit of the code's choice, and
+    ``values``, ``cpu_s`` and ``unknowns`` as in :class:`Answer`."""
 
     h: Annotated[float, msgspec.Meta(gt=0)]
     values: dict[str, float | None]
