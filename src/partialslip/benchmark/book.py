@@ -10,7 +10,7 @@ import msgspec
 from partialslip.benchmark.grade import LIMITS
 from partialslip.benchmark.ladder import CLIMB_HEADS, climb_rows
 from partialslip.benchmark.neutral import files as model_files
-from partialslip.benchmark.problem import EDITION, Problem, read_frozen
+from partialslip.benchmark.problem import EDITION, SETTINGS, Problem, read_frozen
 from partialslip.benchmark.scoreboard import Board, scoreboard
 from partialslip.benchmark.submission import Submission
 from partialslip.origin import Made, origin_lines
@@ -22,7 +22,6 @@ from partialslip.report.sketch import sketch_svg
 from partialslip.scene.writing import scene_tables, scene_toml
 
 _EARLY = (1980, 1, 1, 0, 0, 0)  # date of all files in the zip: the same content gives the same zip
-_LEFT_OUT = ("fem", "effects")  # tables of a scene that are settings of partialslip
 _COLUMNS = 8  # codes side by side in a scoreboard
 
 
@@ -67,7 +66,7 @@ def book_zip(problems: Mapping[str, Problem]) -> bytes:
 
 
 def _files(problem: Problem) -> dict[str, str]:
-    tables = {key: table for key, table in scene_tables(problem.scene).items() if key not in _LEFT_OUT}
+    tables = {key: table for key, table in scene_tables(problem.scene).items() if key not in SETTINGS}
     everything = {
         "number": problem.number,
         "edition": EDITION,
@@ -81,7 +80,7 @@ def _files(problem: Problem) -> dict[str, str]:
     lines = [[key, *(getattr(target, name) for name in columns[1:])] for key, target in problem.targets.items()]
     return {
         "problem.json": json_text(everything),
-        "scene.toml": scene_toml(problem.scene, _LEFT_OUT),
+        "scene.toml": scene_toml(problem.scene, SETTINGS),
         "targets.csv": csv_text(columns, lines),
     }
 
@@ -119,7 +118,7 @@ def _data(problem: Problem) -> list[tuple[str, str, str]]:
     found, table = [], ""
     for line in rows.settings(problem.scene):
         table = line[0] or table
-        if table not in _LEFT_OUT:
+        if table not in SETTINGS:
             found.append(line)
     return found
 

@@ -12,12 +12,13 @@ import msgspec
 from partialslip.errors import InputError
 from partialslip.scene import Scene
 from partialslip.scene.reading import load_scene, parse_scene
-from partialslip.scene.writing import scene_tables
+from partialslip.scene.writing import scene_toml
 from partialslip.units import Dimension
 
 _PACKAGE = "partialslip.benchmark"
 _TARGETS = "targets.json"
 EDITION = "1.0rc2"
+SETTINGS = ("fem", "effects")  # tables of a scene that are settings of partialslip, no part of a problem
 
 
 class Source(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -167,7 +168,7 @@ def frozen_text(targets: Mapping[str, Mapping[str, Target]], regimes: Mapping[st
 def checksum(number: str, targets: Mapping[str, Target]) -> str:
     """Checksum of a problem: its file, its scene and its targets."""
     text = texts()[number]
-    content = [text, scene_tables(read(number, text).scene), dict(targets)]
+    content = [text, scene_toml(read(number, text).scene, SETTINGS), dict(targets)]
     return hashlib.sha256(msgspec.json.encode(content, order="sorted")).hexdigest()
 
 
