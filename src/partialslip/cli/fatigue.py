@@ -66,7 +66,7 @@ def _fatigue(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import output, working
     from partialslip.fatigue import assess
     from partialslip.fatigue.named import chosen
-    from partialslip.fatigue.page import sections, write_assessment
+    from partialslip.fatigue.page import drawn, sections, write_assessment
 
     names = None if options.criterion is None else [name.strip() for name in options.criterion.split(",")]
     try:
@@ -79,8 +79,10 @@ def _fatigue(options: argparse.Namespace) -> int:
         result = partialslip.run(scene, options.method, subsurface=True, progress=tell)[options.method]
         tell("criteria")
         found = assess(scene, result, names, body=options.body)
-        files = write_assessment(found, folder)
-        files += write_study(options, folder, f"{scene.name}: fatigue", scene, sections(found))
+        tell("figures")
+        figures = drawn(found)
+        files = write_assessment(found, figures, folder)
+        files += write_study(options, folder, f"{scene.name}: fatigue", scene, sections(found, figures))
     _print(found, console := output())
     print_written(files, console, passed)
     return 0

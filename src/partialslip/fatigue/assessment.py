@@ -64,7 +64,7 @@ class Rating:
     change: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # arrays do not compare
 class Assessment:
     """Fatigue criteria of one body of a solved scene (:func:`assess`).
 

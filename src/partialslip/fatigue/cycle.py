@@ -39,6 +39,12 @@ def phases_of(load: Load, parts: int) -> Array:
     return np.interp(places, [first, second, first + count], [0.0, 0.5, 1.0])
 
 
+def dense(load: Load, phases: Array) -> Array:
+    """Return as many phases (s,) as are ever taken, for curves, which bend at each of them in slip zones; ``phases``
+    themselves if they are load points 1 and 2 only."""
+    return phases if len(phases) == len(ENDS) else phases_of(load, max(_MOST // len(load.points), 2))
+
+
 def unknown_between(result: Result) -> str:
     """Return why the stresses between load points 1 and 2 are not known; empty if they are known."""
     assert result.stress_at

@@ -1,5 +1,6 @@
 """Files, report and notebook cells of an assessment."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from partialslip.fatigue import tables
@@ -13,32 +14,37 @@ from partialslip.report.page import Section
 _CURVES = {"surface": "along-surface.csv", "depth": "over-depth.csv"}
 
 
-def write_assessment(found: Assessment, folder: Path) -> list[Path]:
-    """Write fatigue.json, along-surface.csv, over-depth.csv, stresses.svg, criteria.svg and planes.svg into ``folder``.
-    Returns the paths.
+def drawn(found: Assessment) -> dict[str, str]:
+    """Return figures as SVG by the names of their files: stresses.svg, criteria.svg and planes.svg, as far as there
+    is anything to draw."""
+    figures = {
+        "stresses.svg": stress_svg(found),
+        "criteria.svg": criteria_svg(found) if found.ratings else "",
+        "planes.svg": planes_svg(found),
+    }
+    return {name: figure for name, figure in figures.items() if figure}
+
+
+def write_assessment(found: Assessment, figures: Mapping[str, str], folder: Path) -> list[Path]:
+    """Write fatigue.json, along-surface.csv, over-depth.csv and the ``figures`` into ``folder``. Returns the paths.
 
     Raises
     ------
     InputError
         If the folder cannot be written.
     """
-    texts = {"fatigue.json": json_text(tables.record(found)), "stresses.svg": stress_svg(found)}
-    if found.ratings:
-        texts |= {name: tables.curve_csv(found, along) for along, name in _CURVES.items()}
-        texts["criteria.svg"] = criteria_svg(found)
-    if planes := planes_svg(found):
-        texts["planes.svg"] = planes
-    return write_texts(folder, texts)
+    curves = {name: tables.curve_csv(found, along) for along, name in _CURVES.items() if found.ratings}
+    return write_texts(folder, {"fatigue.json": json_text(tables.record(found)), **curves, **figures})
 
 
-def sections(found: Assessment) -> list[Section]:
-    """Return the sections of the report."""
+def sections(found: Assessment, figures: Mapping[str, str]) -> list[Section]:
+    """Return the sections of the report, with the ``figures`` by :func:`drawn`."""
     distance = found.scene.fatigue.distance
     parts = [
         Section(
             "Criteria",
             [tables.heading(found) + ".", *(f"{line}." for line in tables.notes(found))],
-            criteria_svg(found) if found.ratings else "",
+            figures.get("criteria.svg", ""),
             "Criteria along the surface and over the depth. In a slip zone the curves have teeth: the stress peaks "
             "where the stick zone ends at one of the load points. With more load points the tips become the curve.",
             tables.RATINGS,
@@ -50,12 +56,14 @@ def sections(found: Assessment) -> list[Section]:
         length = found.scene.units.length(distance)
         lines = [f"Stresses at a depth of {length}, averaged over a line to this depth, and over a half disc."]
         parts.append(Section("Averages", lines, headings=tables.AVERAGES, rows=tables.average_rows(found), words=(1,)))
-    if planes := planes_svg(found):
+    if planes := figures.get("planes.svg"):
         caption = (
             "Criteria over the angle of the plane's normal; dashed: normal of the critical plane, grey: its trace."
         )
         parts.append(Section("Critical planes", (), planes, caption))
-    parts.append(Section("Stresses", (), stress_svg(found), "Stresses in both bodies; the thick line is the contact."))
+    parts.append(
+        Section("Stresses", (), figures["stresses.svg"], "Stresses in both bodies; the thick line is the contact.")
+    )
     if found.edges:
         lines = ["p = K_N sqrt(d) and adhered dq = K_T/sqrt(d), d from the end; K_S of f p - |dq|/2 in the stick zone."]
         parts.append(Section("Ends of the contact", lines, headings=tables.EDGES, rows=tables.edge_rows(found)))

@@ -2,12 +2,14 @@
 
 import math
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.fatigue.assessment import Assessment, Rating, Spot, rough_points
+from partialslip.fatigue.cycle import dense, stress_path
 from partialslip.fatigue.edges import Coefficient
 from partialslip.fatigue.places import OVER, depths, surface_points
 from partialslip.output.csv import csv_text
@@ -125,6 +127,7 @@ def record(found: Assessment) -> dict[str, Any]:
     }
 
 
+@lru_cache(maxsize=2)  # figure and file show the same
 def curve(found: Assessment, along: str) -> tuple[Array, Array, dict[str, Array]]:
     """Return points x and depth, m, and the values of each criterion, along the "surface" or over the "depth" below the
     point where the first criterion is largest at the surface."""
@@ -134,7 +137,7 @@ def curve(found: Assessment, along: str) -> tuple[Array, Array, dict[str, Array]
     else:
         depth = depths(found.result.a, _CURVE)
         x = np.full_like(depth, next(iter(found.ratings.values())).surface.x)
-    stress = found.stress(x, depth)
+    stress = stress_path(found.scene, found.result, found.body, dense(found.scene.load, found.phases), x, depth)
     return x, depth, {name: rating.criterion.at(stress).value for name, rating in found.ratings.items()}
 
 
