@@ -137,7 +137,9 @@ def _score(options: argparse.Namespace) -> int:
         for row in climb_rows(some[number], answer, every)
     ]
     if rows:
-        output().print("ladders: error of the finest mesh, order, and what follows, in the scales of the targets")
+        output().print(
+            "ladders: error of the finest mesh, order, and what follows, in the scales of the targets", soft_wrap=True
+        )
         print_table(output(), ("", *CLIMB_HEADS), rows, words=(0, 1))
     return 0
 
