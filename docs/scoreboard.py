@@ -45,8 +45,8 @@ an error of 1 to 2 % is that of the elements.
 - **Kratos, mortar contact.** Pressure and first loading are right. When the load turns round, the state of nodes
   beside the stick zone goes wrong without a message, and the result depends on the increments: in PS-05 dq is off by
   0.8, 0.09 and 0.02 of 2 f p0 with 8, 16 and 32 increments a step. Kratos' own factor of the tangential penalty
-  (tangent_factor = 0.025) makes this worse; the adapter takes 1. With tension (PS-03, PS-06, PS-23), near sliding (PS-08)
-  and at nu = 0.4999 (PS-14) Newton's method does not converge. The adapter does not turn bodies (PS-21).
+  (tangent_factor = 0.025) makes this worse; the adapter takes 1. With tension (PS-03, PS-06, PS-23), near sliding
+  (PS-08) and at nu = 0.4999 (PS-14) Newton's method does not converge. The adapter does not turn bodies (PS-21).
 - **partialslip.** Linear and quadratic elements of one size (P1, P2) lose a grade or two where the contact has
   corners (PS-10, PS-11) and where nu = 0.4999 (PS-14). The marching method has the exact pressure, so its errors are
   those of q alone.
