@@ -33,12 +33,11 @@ an error of 1 to 2 % is that of the elements.
   by 0.27 at x = -0.9 a in PS-07. With the table of PS-12, p wiggles by 5 % along the contact and a is 2.4 % too wide,
   without a message, while GetFEM finds a to 1e-3 on the same mesh. At nu = 0.4999 (PS-14) nodal pressures scatter so
   much that no contact can be told. In PS-06 and PS-17, both of large tension, increments are cut until it gives up.
-  Varying P (PS-19, PS-20), a contact that rocks (PS-21) and unlike materials (PS-25) work, with 8 to 16 increments a
-  step.
-- **CalculiX, mortar contact.** It converges where penalties give up, costs less, and is right to about an element: a
-  to 1e-3, q where it does not fall steeply to 1 %. Next to a stick zone of 1e-4 a (PS-07) no element is small enough.
-  It is wrong without a message if a is less than 100 units of length ([calculix](howto/calculix.md)): the deck has
-  the unit that it needs.
+  Varying P (PS-19, PS-20), a contact that rocks (PS-21), blocks (PS-23) and unlike materials (PS-25) work.
+- **CalculiX, mortar contact.** It converges where penalties give up (PS-06, PS-17), costs less, and is right to about
+  an element: a to 1e-3, q where it does not fall steeply to 1 %. Next to a stick zone of 1e-4 a (PS-07) no element is
+  small enough. It is wrong without a message if a is less than 100 units of length ([calculix](howto/calculix.md)):
+  the deck has the unit that it needs.
 - **GetFEM.** It solved every problem that was tried, from one script. On uniform meshes the grade is that of the last
   element in the contact: p at 0.9 a is off by 1.5 %. At the corners of the flat (PS-10, PS-11), where elements are
   fine, the linear multipliers overshoot and p_max is 7 % too large. At nu = 0.4999 (PS-14) m is off by 0.16 a. Meshes
@@ -46,8 +45,8 @@ an error of 1 to 2 % is that of the elements.
 - **Kratos, mortar contact.** Pressure and first loading are right. When the load turns round, the state of nodes
   beside the stick zone goes wrong without a message, and the result depends on the increments: in PS-05 dq is off by
   0.8, 0.09 and 0.02 of 2 f p0 with 8, 16 and 32 increments a step. Kratos' own factor of the tangential penalty
-  (tangent_factor = 0.025) makes this worse; the adapter takes 1. With tension (PS-03, PS-06), near sliding (PS-08)
-  and at nu = 0.4999 (PS-14) Newton's method does not converge. The adapter does not turn bodies (PS-21).
+  (tangent_factor = 0.025) makes this worse; the adapter takes 1. With tension (PS-03, PS-06, PS-23), near sliding
+  (PS-08) and at nu = 0.4999 (PS-14) Newton's method does not converge. The adapter does not turn bodies (PS-21).
 - **partialslip.** Linear and quadratic elements of one size (P1, P2) lose a grade or two where the contact has
   corners (PS-10, PS-11) and where nu = 0.4999 (PS-14). The marching method has the exact pressure, so its errors are
   those of q alone.
