@@ -24,7 +24,6 @@ from partialslip_fem.problem import Problem
 _CALMER = (0.4, 0.85)  # smallest and largest factor of the growth after a mesh whose error is too large
 _WAITS = 2  # meshes in a row without an estimate of the error away from the ends, after a first one
 _KINK_SLACK = 1.5  # of the element size that a kink needs: the mesh is refined at kinks where it is coarser than this
-_BESIDE = 8.0  # elements of the contact line, at the least, beside the contact
 _MOVES = 0.1  # of the half-width: the same where the contact depends on the loads of the cycle
 _MOST_UNKNOWNS = 200_000  # on a mesh from which no finer one is made
 _CHOICES = 13  # accuracies tried, from the one asked for to the loosest, when an allowance does not suffice
@@ -212,7 +211,7 @@ class _Refinement:
     def _grading(self, growth: float, coarsest: float) -> Grading:
         """Grading to the zone ends of the present solution, to the profile's kinks, and to kinks of q1 and q2."""
         solution, a = self.solution, self.solution.half_width
-        margin = max(2 * self.finer, _BESIDE) * self.size * a  # for the error of the present ends
+        margin = 2 * self.finer * self.size * a
         if solution.most is not None or solution.coupled:
             margin += _MOVES * a  # of the ends, on the way from load point to load point
         leftmost, rightmost = solution.reach
