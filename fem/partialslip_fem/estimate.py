@@ -32,7 +32,7 @@ _SHEARS = ("q", "q1", "q2")
 KEYS = (*END_KEYS, "p", *_SHEARS)
 
 # Safety factors on errors away from the ends (measured: benchmarks/estimates.py).
-_SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.9, "n": 1.9, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
+_SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 2.4, "n": 2.4, "p": 3.3, "q": 2.0, "q1": 2.0, "q2": 2.0}
 _LEAST_OF_A = 1 / 3  # of the error of a: least error of any end
 _NARROW = 0.1  # of the norm of f p: shear with a smaller norm is confined to narrow strips
 

@@ -24,15 +24,16 @@ FINEST = 1e-7  # smallest: with smaller elements rounding errors dominate (bench
 COARSEST = 0.005  # largest on a mesh whose errors are estimated; coarser meshes only locate the ends
 FINER = 16.0  # largest ratio of these sizes from mesh to mesh
 
-# Growth of the elements away from the ends: errors there are about (growth/2.4)^(2 order)
+# Growth of the elements away from the ends: errors there are about (growth/2.8)^(2 order)
 # (compare benchmarks/accuracy.py orders).
-_SMOOTH = 2.4
+_SMOOTH = 2.8
 _LARGEST_GROWTH = 0.7
 _STEEPEST = 0.5  # largest growth near the ends of zones, where it may be larger than elsewhere
 
 # Shares of the accuracy asked for.
 AIM = 0.5  # error that meshes are designed for: estimates are right within a factor of two (benchmarks/estimates.py)
 BAR = 0.9  # largest estimate that is accepted
+_AWAY_SHARE = 0.15  # of AIM: error away from the ends if the growth were the same everywhere
 _END_SHARE = 0.33  # of AIM: largest error due to the elements at the ends
 _FACET_SHARE = 0.25  # largest distance of a round face from the elements, and error of the ends due to it
 _CORNER_ERROR = 10.0  # largest change of the contact due to elements at corners, as a multiple of the accuracy ...
@@ -85,7 +86,7 @@ class Goal:
             accuracy=accuracy,
             bar=BAR * accuracy,
             end_error=_END_SHARE * AIM * accuracy,
-            growth=growth_for(AIM * accuracy / 2, problem.order),
+            growth=growth_for(_AWAY_SHARE * AIM * accuracy, problem.order),
             facet_error=_FACET_SHARE * accuracy if any(part.face for part in problem.parts) else 0.0,
             corner_error=corner_error,
             tilts={key: share * corner_error * tilting for key, share in _TILTS.items()},

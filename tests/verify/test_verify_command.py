@@ -262,7 +262,7 @@ def test_suites():
         f"near-{what}-1e-{power}" for what in ("sliding", "stuck") for power in (3, 6, 9)
     }
     assert all(full[name]().name == name for name in full)
-    assert command._SUITES == ("quick", "full", "stress")
+    assert command._SUITES == ("quick", "full", "book", "stress")
 
 
 def test_a_random_scene_is_its_seed_and_number():

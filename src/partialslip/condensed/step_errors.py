@@ -14,12 +14,12 @@ from partialslip.condensed.history import History
 Errors = dict[str, float]
 Indices = npt.NDArray[np.int64]
 
-_NOTHING = 0.05
+_NOTHING = 0.01
 _SHEARS = ("change", "q1", "q2")
 
 
 def steps_matter(errors: Mapping[str, float], accuracy: float) -> bool:
-    """Whether any error of the load steps is more than a twentieth of what ``accuracy`` (of a) allows."""
+    """Whether any error of the load steps is more than a hundredth of what ``accuracy`` (of a) allows."""
     return any(error > _NOTHING * BARS[key] * accuracy for key, error in errors.items())
 
 
