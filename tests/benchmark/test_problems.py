@@ -12,7 +12,7 @@ from partialslip.benchmark.measured import GROUPS, quantities
 from partialslip.benchmark.problem import EDITION, checksum, chosen, read_frozen, texts
 from partialslip.errors import InputError
 from partialslip.run import run
-from partialslip.scene import Effects
+from partialslip.scene import Effects, Fatigue
 from partialslip.scene.reading import shipped_scenes
 
 PROBLEMS = read_problems()
@@ -80,11 +80,11 @@ def test_symmetric_problems_have_symmetric_stick_zones_and_no_ends_of_their_own(
 def test_a_problem_in_a_shipped_scene_is_kept_once():
     for number, name in (("PS-03", "fretting-aluminium"), ("PS-11", "flat-rounded")):
         ours, theirs = PROBLEMS[number].scene, load_scene(name)
-        assert ours.replace(name=name, title=theirs.title, effects=Effects()) == theirs
+        assert ours.replace(name=name, title=theirs.title, effects=Effects(), fatigue=Fatigue()) == theirs
     shipped = {each.replace(name="x", title="") for each in map(load_scene, shipped_scenes())}
     texts_of = texts()
     for number, problem in PROBLEMS.items():
-        own = problem.scene.replace(name="x", title="", effects=Effects())
+        own = problem.scene.replace(name="x", title="", effects=Effects(), fatigue=Fatigue())
         assert (own in shipped) == ('scene = "' in texts_of[number]), number
 
 

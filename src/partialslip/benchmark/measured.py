@@ -7,6 +7,7 @@ import numpy as np
 
 from partialslip.benchmark.problem import Problem
 from partialslip.benchmark.submission import Answer
+from partialslip.fatigue import assess
 from partialslip.result import Result
 from partialslip.scene import Scene
 from partialslip.units import Dimension
@@ -54,7 +55,9 @@ def quantities(scene: Scene, result: Result, places: tuple[float, ...], a: float
     -----
     ``a``, ``left``, ``right`` (contact, ends where it is not even), ``m``, ``n``; ``p_max``, ``p@x``, ``dq@x`` and,
     where determined, ``q1@x`` and ``q2@x`` at x/a; ``slip`` (the largest) and ``dissipated``; ``sigma_xx`` (the largest
-    of the lower surface, where the result has stresses). A quantity that the method does not determine is not there.
+    of the lower surface, where the result has stresses); ``swt`` and ``swt_line`` (the largest Smith-Watson-Topper
+    parameter of the lower surface, and that of stresses averaged below it). A quantity that the method does not
+    determine is not there.
     """
     found = _quantities(scene, result, places, a or result.a)
     return {key: each._replace(value=float(each.value), scale=float(each.scale)) for key, each in found}
@@ -104,3 +107,7 @@ def _quantities(scene: Scene, result: Result, places: tuple[float, ...], a: floa
             yield "dissipated", Quantity(result.slip.dissipated, "J/m", result.slip.dissipated, "slip", "q")
     if result.surface:
         yield "sigma_xx", Quantity(result.surface.largest[1], "Pa", p0, "stress", "q")
+    if result.stress_at and scene.fatigue.distance:
+        rating = assess(scene, result, ["swt"]).ratings["swt"]
+        for key, spot in (("swt", rating.surface), ("swt_line", rating.averages["line"])):
+            yield key, Quantity(spot.value, "Pa", spot.value, "stress", "q")

@@ -63,6 +63,7 @@ class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     places: tuple[Annotated[float, msgspec.Meta(ge=-1, le=1)], ...] = (-0.9, -0.5, 0.0, 0.5, 0.9)
     why: str = ""
     stress: bool = False  # whether the largest sigma_xx of the lower surface is a target
+    swt_over: float | None = None  # m: SWT is a target, at the surface and averaged over this depth
 
 
 class Frozen(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -179,7 +180,7 @@ def read(number: str, text: str, frozen: Frozen | None = None) -> Problem:
     shipped = isinstance(file.scene, str)
     scene = load_scene(file.scene).replace(named) if shipped else parse_scene(named | file.scene)  # type: ignore[arg-type, operator]
     if file.stress:
-        scene = scene.replace(effects={"subsurface": True})
+        scene = scene.replace(effects={"subsurface": True}, fatigue={"distance": file.swt_over})
     told = file.title, file.statement.strip(), file.why, file.sources
     known = (frozen.regimes.get(number, ""), frozen.targets.get(number, {})) if frozen else ("", {})
     return Problem(number, *told, scene, file.places, *known)
