@@ -24,7 +24,6 @@ from partialslip_fem.problem import Problem
 _CALMER = (0.4, 0.85)  # smallest and largest factor of the growth after a mesh whose error is too large
 _WAITS = 2  # meshes in a row without an estimate of the error away from the ends, after a first one
 _KINK_SLACK = 1.5  # of the element size that a kink needs: the mesh is refined at kinks where it is coarser than this
-_MOVES = 0.1  # of the half-width: the same where the contact depends on the loads of the cycle
 _MOST_UNKNOWNS = 200_000  # on a mesh from which no finer one is made
 _CHOICES = 13  # accuracies tried, from the one asked for to the loosest, when an allowance does not suffice
 _WORTH = 1.2  # of the unknowns of the present mesh: a mesh with fewer is not worth solving on
@@ -86,6 +85,7 @@ class _Refinement:
         self.goal = Goal.at(accuracy, problem)
         self.size, self.finer, self.least = FIRST_SIZE, goals.FINER, self.goal.growth
         self.size_goal = 0.0
+        self.eased = False  # whether the present mesh grows faster near the ends
         self.block_width = 0.0  # width of the blocks of the present mesh
         self.errors, self.end_errors = dict[str, float](), dict[str, float]()
         self.largest_end_element = np.inf
@@ -158,6 +158,7 @@ class _Refinement:
         self.size, growth, self.finer = course(self.size, self.finer, self.size_goal, self.least, problem.order)[0]
         coarsest = max(part.fineness for part in problem.parts)  # sizes are those of the coarsest body
         grading = self._grading(growth, coarsest)
+        self.eased = grading.eased is not None and grading.eased.steepest > grading.growth
         self.block_width = self.width * a
         expected = None
         if self.expense.limited:
@@ -211,9 +212,7 @@ class _Refinement:
     def _grading(self, growth: float, coarsest: float) -> Grading:
         """Grading to the zone ends of the present solution, to the profile's kinks, and to kinks of q1 and q2."""
         solution, a = self.solution, self.solution.half_width
-        margin = 2 * self.finer * self.size * a
-        if solution.most is not None or solution.coupled:
-            margin += _MOVES * a  # of the ends, on the way from load point to load point
+        margin = (0.1 + 2 * self.finer * self.size) * a  # for safety, and for the error of the present ends
         leftmost, rightmost = solution.reach
         contact = (max(leftmost - margin, -self.limit), min(rightmost + margin, self.limit))
         kinks = [kink for kink in self.problem.kinks if contact[0] < kink < contact[1]]  # others are not in contact
@@ -262,7 +261,7 @@ class _Refinement:
         """
         other = estimate.neighbour(self.solution, self.problem, self.block_width, self.clock)
         self.factored, self.iterations = self.factored + other.factored, self.iterations + other.iterations
-        smooth = estimate.smooth_errors(self.solution, other)
+        smooth = estimate.smooth_errors(self.solution, other, self.eased)
         self.errors = estimate.together(self.solution, smooth, self.end_errors)
         return smooth
 

@@ -28,12 +28,14 @@ FINER = 16.0  # largest ratio of these sizes from mesh to mesh
 # (compare benchmarks/accuracy.py orders).
 _SMOOTH = 2.8
 _LARGEST_GROWTH = 0.7
+_EASED = (4,)  # orders whose elements grow faster near the ends of zones than elsewhere
 _STEEPEST = 0.5  # largest growth near the ends of zones, where it may be larger than elsewhere
 
 # Shares of the accuracy asked for.
 AIM = 0.5  # error that meshes are designed for: estimates are right within a factor of two (benchmarks/estimates.py)
 BAR = 0.9  # largest estimate that is accepted
-_AWAY_SHARE = 0.15  # of AIM: error away from the ends if the growth were the same everywhere
+_AWAY_SHARE = 0.5  # of AIM: error away from the ends ...
+_EASED_SHARE = 0.1  # ... and the same if elements grow faster near the ends, which adds to it
 _END_SHARE = 0.33  # of AIM: largest error due to the elements at the ends
 _FACET_SHARE = 0.25  # largest distance of a round face from the elements, and error of the ends due to it
 _CORNER_ERROR = 10.0  # largest change of the contact due to elements at corners, as a multiple of the accuracy ...
@@ -86,7 +88,7 @@ class Goal:
             accuracy=accuracy,
             bar=BAR * accuracy,
             end_error=_END_SHARE * AIM * accuracy,
-            growth=growth_for(_AWAY_SHARE * AIM * accuracy, problem.order),
+            growth=_growth(AIM * accuracy, problem.order),
             facet_error=_FACET_SHARE * accuracy if any(part.face for part in problem.parts) else 0.0,
             corner_error=corner_error,
             tilts={key: share * corner_error * tilting for key, share in _TILTS.items()},
@@ -149,11 +151,20 @@ def growth_for(error: float, order: int) -> float:
     return float(min(_SMOOTH * error ** (0.5 / order), _LARGEST_GROWTH))
 
 
-def eased(half_width: float, order: int) -> Eased:
-    """How much faster elements of ``order`` grow near the ends of zones in a contact of that ``half_width``.
+def _growth(error: float, order: int) -> float:
+    """Growth far from the ends for a sum of errors of about ``error``."""
+    growth = growth_for(_AWAY_SHARE * error, order)
+    return growth_for(_EASED_SHARE * error, order) if order in _EASED and growth < _STEEPEST else growth
+
+
+def eased(half_width: float, order: int) -> Eased | None:
+    """How much faster elements of ``order`` grow near the ends of zones in a contact of that ``half_width``; None if
+    they do not.
 
     An end depends on elements of the size h at the distance r from it like (h/r)^(2 order) r^2.
     """
+    if order not in _EASED:
+        return None
     return Eased(_STEEPEST, half_width, 1 / order)
 
 
