@@ -108,7 +108,8 @@ class _SuperLU:
         of, first = self._of, len(self._of.order)
         found = self._numeric(of.bordered)
         place = found.perm_c[first:]  # the last unknowns are last in the factor, but perhaps in another order
-        if place.min() < first or not np.array_equal(found.perm_r, found.perm_c):
+        kept = place.min() >= first and place[: of.n].max() < first + of.n
+        if not kept or not np.array_equal(found.perm_r, found.perm_c):
             raise AssertionError("the factor must keep the last unknowns last and its pivots on the diagonal")
         upper = found.U[first:, first:].toarray()
         lower = (upper / np.sqrt(np.diag(upper))[:, None]).T  # S = L D L^T, and U = D L^T
