@@ -50,6 +50,7 @@ class Condensation:
         self._far = far_field.along_y if far_field and not shear else far_field
         fields = Held(held, self._far.fields) if self._far else None
         self._factor: Factor | None = factor(body.stiffness, np.flatnonzero(inner), contact, backend, fields)
+        # before take_inverse_of_schur, which may use the factor up
         self.pulled: Array | None = None
         if body.pull is not None:
             self.pulled = np.zeros(len(body.pull))

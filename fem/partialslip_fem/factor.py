@@ -106,7 +106,7 @@ class _SuperLU:
 
     def take_inverse_of_schur(self) -> tuple[Array, Array]:
         of, first = self._of, len(self._of.order)
-        found = self._numeric(of.bordered)
+        found = self._numeric(of.bordered) if of.k else self._plain()
         place = found.perm_c[first:]  # the last unknowns are last in the factor, but perhaps in another order
         kept = place.min() >= first and place[: of.n].max() < first + of.n
         if not kept or not np.array_equal(found.perm_r, found.perm_c):
@@ -118,8 +118,11 @@ class _SuperLU:
         return inverse[np.ix_(at, at)], under[at]
 
     def back_substitute(self, load: Array) -> Array:
+        return self._of.solved(self._plain().solve, load)
+
+    def _plain(self) -> spla.SuperLU:
         self._factor = self._factor or self._numeric(self._of.plain)
-        return self._of.solved(self._factor.solve, load)
+        return self._factor
 
     def _numeric(self, matrix: sp.spmatrix) -> spla.SuperLU:
         self.made += 1
@@ -136,20 +139,26 @@ class _Cholmod:
     def take_inverse_of_schur(self) -> tuple[Array, Array]:
         of, first = self._of, len(self._of.order)
         count = of.n + of.k
-        found = self._numeric(of.bordered)
+        found = self._numeric(of.bordered) if of.k else self._plain()
         place = self._cvxopt.matrix(np.arange(first + count, dtype=float))
         self._cvxopt.cholmod.solve(found, place, sys=7)  # permutes into the factor's order
         if not np.array_equal(np.asarray(place).ravel()[first:], np.arange(first, first + count)):
             raise AssertionError("the factor must keep the last unknowns last")
         starts, rows, values = (np.asarray(part).ravel() for part in self._cvxopt.cholmod.getfactor(found).CCS)
+        if not of.k:
+            self._factor = None  # getfactor has converted it
         lower = np.zeros((count, count), order="F")
         kept = slice(starts[first], None)
         lower[rows[kept] - first, np.repeat(np.arange(count), np.diff(starts[first:]))] = values[kept]
         return of.taken(lower)
 
     def back_substitute(self, load: Array) -> Array:
-        self._factor = self._factor or self._numeric(self._of.plain)
+        self._plain()
         return self._of.solved(self._solve, load)
+
+    def _plain(self) -> object:
+        self._factor = self._factor or self._numeric(self._of.plain)
+        return self._factor
 
     def _solve(self, load: Array) -> Array:
         solution = self._cvxopt.matrix(load)

@@ -88,6 +88,15 @@ def test_one_factorisation(half, monkeypatch):
     assert len(calls) == 2
 
 
+@pytest.mark.parametrize(("backend", "more"), [("superlu", 0), ("cholmod", 1)])
+def test_without_a_far_field_one_factor_serves_all(half, backend, more):
+    """SuperLU's factor also displaces all nodes; CHOLMOD's is used up where the compliance is read off."""
+    condensed = Condensation(half, backend=backend)
+    assert condensed.factorizations == 1
+    condensed.displace(np.zeros((half.contact.size, 1)))
+    assert condensed.factorizations == 1 + more
+
+
 @pytest.mark.parametrize("backend", ["superlu", "cholmod"])
 def test_far_field_moves_the_contact_line_as_it_moves_all_nodes(half, backend):
     """By two ways: the border of the factor, and back substitution under given displacements."""
