@@ -19,6 +19,7 @@ from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_
 from partialslip_fem.goals import Goal, course, gaps, reached, worst
 from partialslip_fem.mesh_solution import Adapted
 from partialslip_fem.problem import Problem
+from partialslip_meshes import in_effect
 
 # These constants change the cost of a run, not its error estimates.
 _CALMER = (0.4, 0.85)  # smallest and largest factor of the growth after a mesh whose error is too large
@@ -158,7 +159,7 @@ class _Refinement:
         self.size, growth, self.finer = course(self.size, self.finer, self.size_goal, self.least, problem.order)[0]
         coarsest = max(part.fineness for part in problem.parts)  # sizes are those of the coarsest body
         grading = self._grading(growth, coarsest)
-        self.eased = grading.eased is not None and grading.eased.steepest > grading.growth
+        self.eased = in_effect(grading.eased, grading.growth) is not None
         self.block_width = self.width * a
         expected = None
         if self.expense.limited:

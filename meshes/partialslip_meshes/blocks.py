@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from partialslip_meshes.gmsh import ask
 from partialslip_meshes.mesh import Mesh, QuadMesh
-from partialslip_meshes.sizes import Eased, formula
+from partialslip_meshes.sizes import Eased, formula, in_effect
 
 # Squares of the largest ratio of neighbours on a line: gmsh's own, and one above all that the sizes ask for
 _SMOOTH, _UNSMOOTHED = 1.8, 4.0
@@ -128,7 +128,7 @@ def _made(
 ) -> Meshed:
     """Points, elements with so many ``corners``, named lines, and CPU seconds of a mesh; nodes are numbered from 0."""
     formulas = [(x, formula(size, growth, eased)) for x, size in sizes.items()]
-    outline["smooth"] = _UNSMOOTHED if eased and eased.steepest > growth else _SMOOTH
+    outline["smooth"] = _UNSMOOTHED if in_effect(eased, growth) else _SMOOTH
     request = {"contact": contact, "sizes": formulas, "growth": growth, "along": along, **outline}
     head, (tags, coordinates, elements, *lines) = ask({"corners": corners, **request})
     named = np.frombuffer(tags, dtype=np.uint64).astype(np.int64)

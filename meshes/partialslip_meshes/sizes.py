@@ -29,9 +29,15 @@ class Eased(NamedTuple):
     power: float
 
 
+def in_effect(eased: Eased | None, growth: float) -> Eased | None:
+    """``eased``, if it is steeper than the ``growth`` far away."""
+    return eased if eased is not None and eased.steepest > growth else None
+
+
 def size_at(size: _Array, growth: float, distance: _Array, eased: Eased | None = None) -> _Array:
     """Element size at a ``distance`` from points with element ``size`` there, as :func:`formula`; arrays broadcast."""
-    if eased is None or eased.steepest <= growth:
+    eased = in_effect(eased, growth)
+    if eased is None:
         return size + growth * distance
     far = (distance / (distance + eased.within)) ** eased.power
     result: _Array = size + distance / (1 / eased.steepest + (1 / growth - 1 / eased.steepest) * far)
@@ -41,7 +47,8 @@ def size_at(size: _Array, growth: float, distance: _Array, eased: Eased | None =
 def formula(size: float, growth: float, eased: Eased | None = None) -> str:
     """The element size as a formula of gmsh; it has F for the distance."""
     size, growth = float(size), float(growth)
-    if eased is None or eased.steepest <= growth:
+    eased = in_effect(eased, growth)
+    if eased is None:
         return f"{size!r} + {growth!r} * F"
     steepest, within, power = map(float, eased)
     far = f"(F / (F + {within!r}))^{power!r}"
