@@ -16,6 +16,7 @@ from partialslip.benchmark.codes.kratos import Kratos
 from partialslip.benchmark.codes.own import Own
 from partialslip.benchmark.codes.process import python_with
 from partialslip.benchmark.submission import read_submission
+from partialslip.cli import main
 from partialslip.errors import InputError, PartialslipError
 from partialslip.run import run
 
@@ -189,3 +190,9 @@ def test_codes_that_are_installed_come_near(name, code, most, monkeypatch):
     errors = graded(problem, answer).errors
     assert {"a", "m", "n"} <= errors.keys()
     assert max(errors.values()) < most
+
+
+def test_the_help_names_all_codes(capsys):
+    assert main(["benchmark", "run", "--help"]) == 0
+    said = capsys.readouterr().out.replace("-\n", "-").split("examples:")[0]
+    assert set(CODES) <= {word.strip(",.") for word in said.split()}

@@ -14,8 +14,8 @@ from partialslip.output.json import json_text
 
 _FORMATS = (".msh", ".inp", ".vtu")
 _WITH_H5PY = (".med",)
-_SIZE, _GROWTH = 0.05, 0.2  # elements of the meshes, in a
-_STIFFER = 100.0  # decks: half-planes neglect the slopes of the surfaces, which these codes do not
+_SIZE, GROWTH = 0.05, 0.2  # elements of the meshes, in a
+STIFFER = 100.0  # decks: half-planes neglect the slopes of the surfaces; those of such bodies are a hundredth
 
 
 def files(problem: Problem) -> dict[str, bytes]:
@@ -27,8 +27,8 @@ def files(problem: Problem) -> dict[str, bytes]:
     None where the problem cannot be exported.
     """
     try:
-        made = modelled(problem.scene, _SIZE, growth=_GROWTH)
-        flat = modelled(problem.scene, _SIZE, growth=_GROWTH, stiffer=_STIFFER)
+        made = modelled(problem.scene, _SIZE, growth=GROWTH)
+        flat = modelled(problem.scene, _SIZE, growth=GROWTH, stiffer=STIFFER)
     except InputError:
         return {}
     decks = {

@@ -11,14 +11,13 @@ from pathlib import Path
 from partialslip.benchmark.codes.gradual import gradual
 from partialslip.benchmark.codes.process import LONGEST, ran
 from partialslip.benchmark.codes.solved import Solved
+from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError
 from partialslip.export import export
 from partialslip.scene import Scene
 from partialslip.score.method import scored
 from partialslip.score.read import read
 
-_STIFFER = 100.0  # half-planes neglect the slopes of the surfaces: these are a hundredth
-_GROWTH = 0.2
 _DOFS = re.compile(r"number of equations\s+(\d+)")
 
 
@@ -38,14 +37,14 @@ class Calculix:
     def settings(self) -> str:
         """Settings in words."""
         kind = "penalty" if self.penalty else "mortar"
-        elements = f"elements of {self.size:g} a along the contact, growing by {_GROWTH:g}"
-        return f"{kind} contact, {elements}, bodies {_STIFFER:g} times stiffer"
+        elements = f"elements of {self.size:g} a along the contact, growing by {GROWTH:g}"
+        return f"{kind} contact, {elements}, bodies {STIFFER:g} times stiffer"
 
     def solve(self, scene: Scene) -> Solved | None:
         """Solve ``scene``; None if there is no deck for it."""
         scene = gradual(scene)
         try:
-            write = export(scene, "calculix", size=self.size, growth=_GROWTH, stiffer=_STIFFER, penalty=self.penalty)
+            write = export(scene, "calculix", size=self.size, growth=GROWTH, stiffer=STIFFER, penalty=self.penalty)
         except InputError:
             return None
         with tempfile.TemporaryDirectory() as folder:

@@ -11,6 +11,7 @@ import numpy as np
 from partialslip.benchmark.codes.gradual import gradual
 from partialslip.benchmark.codes.scripted import Host, of_scene, solved
 from partialslip.benchmark.codes.solved import Solved
+from partialslip.benchmark.neutral import GROWTH
 from partialslip.errors import InputError
 from partialslip.export.model import outlined
 from partialslip.export.parts import flat_parts
@@ -19,7 +20,6 @@ from partialslip.result import Result
 from partialslip.scene import Scene
 
 HOST = Host("PARTIALSLIP_GETFEM_PYTHON", "import getfem; print(getfem.getfem_env('version'))", "run_getfem.py")
-_GROWTH = 0.2
 _POINTS = 4001  # of the table of the gap
 
 
@@ -76,7 +76,7 @@ def _written(scene: Scene, folder: Path, size: float, ends: Sequence[float], fin
     from partialslip_meshes.write import write_body
 
     line, steps, bodies = outlined(scene, size, None, ends, fine), steps_of(scene), {}
-    parts = flat_parts(scene, line.a, line.reach, line.width, line.sizes, _GROWTH, line.along)
+    parts = flat_parts(scene, line.a, line.reach, line.width, line.sizes, GROWTH, line.along)
     for part in parts:
         write_body(folder / f"{part.name}.msh", part.mesh)
         bodies[part.name] = {

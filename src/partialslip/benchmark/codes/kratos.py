@@ -8,6 +8,7 @@ from typing import Any
 from partialslip.benchmark.codes.gradual import gradual
 from partialslip.benchmark.codes.scripted import Host, of_scene, solved
 from partialslip.benchmark.codes.solved import Solved
+from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError
 from partialslip.export.model import Model, modelled
 from partialslip.scene import Scene
@@ -18,8 +19,6 @@ HOST = Host(
     "print(v('KratosContactStructuralMechanicsApplication'))",
     "run_kratos.py",
 )
-_STIFFER = 100.0  # half-planes neglect the slopes of the surfaces: these are a hundredth
-_GROWTH = 0.2
 
 
 @dataclass(frozen=True)
@@ -38,7 +37,7 @@ class Kratos:
     def settings(self) -> str:
         """Settings in words."""
         kind = f"linear quadrilaterals of {self.size:g} a along the contact, mortar contact, augmented Lagrangian"
-        return f"{kind}, tangent_factor 1, {self.increments} increments a step, bodies {_STIFFER:g} times stiffer"
+        return f"{kind}, tangent_factor 1, {self.increments} increments a step, bodies {STIFFER:g} times stiffer"
 
     def solve(self, scene: Scene) -> Solved | None:
         """Solve ``scene``; None if there is no model, or the upper body would have to turn."""
@@ -46,7 +45,7 @@ class Kratos:
         if any(M for _, M in scene.pressing):
             return None
         try:
-            made = modelled(scene, self.size, growth=_GROWTH, stiffer=_STIFFER)
+            made = modelled(scene, self.size, growth=GROWTH, stiffer=STIFFER)
         except InputError:
             return None
         steps = [step._replace(increments=max(step.increments, self.increments)) for step in made.steps]
