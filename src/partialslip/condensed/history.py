@@ -152,6 +152,13 @@ class History:
         return sum(step.changes for step in self.points)
 
 
+SHEARS: dict[str, Callable[[History], Array]] = {
+    "q": lambda history: history.change,
+    "q1": lambda history: history.q1,
+    "q2": lambda history: history.q2,
+}
+
+
 class Steps(NamedTuple):
     """Load steps of a cycle: the ways to each load point, as ascending fractions up to 1, and the states at the ends of
     the steps, in turn: tangential ``forces`` (s, n), and ``bounds`` (s, n), f times the normal forces; (1, n) where

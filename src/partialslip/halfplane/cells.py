@@ -3,6 +3,7 @@
 import itertools
 
 import numpy as np
+from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
 from partialslip.halfplane.shape import Shape
@@ -33,6 +34,27 @@ def _growing(size: float, growth: float, distance: float) -> Array:
     count = max(int(np.ceil(reach / growth)), 1) if distance > 0 else 0
     result: Array = size / growth * np.expm1(np.linspace(0, reach, count + 1))
     return result
+
+
+def on_cells(traction: PPoly, places: Array) -> Array:
+    """Forces (c,) of a piecewise ``traction`` on the cells between ``places`` (c + 1,); none beyond its ends."""
+    resultant, known = traction.antiderivative(), traction.x
+    result: Array = np.diff(resultant(np.clip(places, known[0], known[-1])))
+    return result
+
+
+def norm_parts(vertices: Array, loads: Array, cells: Array) -> Array:
+    """Parts (c,) of the L2 norm of the means over ``cells`` (c + 1,) of forces ``loads`` (n,) between ``vertices``
+    (n + 1,)."""
+    resultant = np.concatenate([[0.0], np.cumsum(loads)])
+    result: Array = np.diff(np.interp(cells, vertices, resultant)) / np.sqrt(np.diff(cells))
+    return result
+
+
+def relative_change(found: Array, others: Array, least: float) -> float:
+    """L2 distance of two traction's :func:`norm_parts`, relative to the norm of ``found`` or to the ``least`` one."""
+    size = max(float(np.linalg.norm(found)), least)
+    return float(np.linalg.norm(others - found)) / size if size > 0 else 0.0
 
 
 def forces(shape: Shape, vertices: Array) -> Array:

@@ -18,19 +18,20 @@ from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.condensed import varying
 from partialslip.condensed.ends import StickInterval, apart, finest, kinks, stick_zone, within
-from partialslip.condensed.history import History, certificate, last_cycle_change
+from partialslip.condensed.history import SHEARS, History, certificate, last_cycle_change
 from partialslip.condensed.path import Path, load_path, stretched
 from partialslip.condensed.regime import doubts, steady_state
 from partialslip.condensed.step_errors import halved, steps_matter
 from partialslip.condensed.steps import MOST, follow_refined, march_refined
 from partialslip.condensed.threads import one_thread
 from partialslip.halfplane.cell_stress import CellStresses
-from partialslip.halfplane.cells import compliance, graded
+from partialslip.halfplane.cells import compliance, graded, norm_parts, on_cells, relative_change
 from partialslip.halfplane.pressing import NormalLoads
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding, without_shear
 from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tractions import CellTractions
+from partialslip.halfplane.unlike import solve as solve_unlike
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, StressAt, Traction
 from partialslip.result.state import State
@@ -47,11 +48,6 @@ _WORK = 5e11  # limit of cells^3 times load steps of a mesh
 # Errors of m and n, as parts of the change from mesh to mesh and of growth^3
 _MOVED, _CUBIC = 0.1, 0.15
 _CHANGED = (0.4, 0.35)  # errors of q, q1 and q2 as parts of the change to the second mesh and to later meshes
-_SHEARS: dict[str, Callable[[History], Array]] = {
-    "q": lambda history: history.change,
-    "q1": lambda history: history.q1,
-    "q2": lambda history: history.q2,
-}
 _JUDGED = ("m", "n", "q", "q1", "q2")
 Added = Callable[[Array], Array]
 
@@ -113,8 +109,6 @@ def solve(
         mean displacements of the cells of half-planes along x, in A.
     """
     if not scene.material.alike:
-        from partialslip.halfplane.unlike import solve as solve_unlike
-
         return solve_unlike(scene, plan, progress, start, allowance)
     clock = Clock(allowance)
     normal = NormalLoads.of(scene)
@@ -216,9 +210,7 @@ def _solve_level(
         return _Level(vertices, normal.forces(normal.second, vertices), None, None)
     x = (vertices[1:] + vertices[:-1]) / 2
     if start:
-        resultant, known = start.q.antiderivative(), start.q.x
-        before = np.diff(resultant(np.clip(frame.centre + vertices * frame.a, known[0], known[-1]))) / scene.P
-        path = replace(path, before=before)
+        path = replace(path, before=on_cells(start.q, frame.places(vertices)) / scene.P)
     with clock.phase("compliance"):
         normally = compliance(vertices / 2)  # scaling lengths adds a rigid shift only
         tangential = normally + added(frame.places(vertices)) if added else normally
@@ -230,12 +222,12 @@ def _solve_level(
                 return stick_zone(x, of.bound, of.change, vertices, lambda values: values)
             on = np.flatnonzero(of.bound > 0)
 
-            def on_cells(values: Array) -> Array:
+            def spread(values: Array) -> Array:
                 every = np.zeros(len(x))
                 every[on] = values
                 return every
 
-            return within(stick_zone(x[on], of.bound[on], of.change[on], vertices, on_cells), normal.common, vertices)
+            return within(stick_zone(x[on], of.bound[on], of.change[on], vertices, spread), normal.common, vertices)
 
         def errors(of: History, finer: History) -> dict[str, float]:
             return halved(of, finer, (zone(of), zone(finer)), np.diff(vertices), normal.largest.a / frame.a)
@@ -277,7 +269,7 @@ def _mesh_errors(normal: NormalLoads, level: _Level, before: _Level, growth: flo
     between = _CUBIC * growth**3 * np.minimum(_NEAR * gap, 1.0)
     known = np.maximum(unseen, np.maximum(_MOVED * moved, between)) * (normal.frame.a / normal.largest.a)
     return dict(zip("mn", known.tolist(), strict=True)) | {
-        key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices) for key, of in _SHEARS.items()
+        key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices) for key, of in SHEARS.items()
     }
 
 
@@ -286,14 +278,9 @@ def _apart(level: _Level, of: Callable[[History], Array], other: History, cells:
     ``of`` the level and of the other history."""
     assert level.history
 
-    def means(forces: Array) -> Array:
-        resultant = np.concatenate([[0.0], np.cumsum(forces)])
-        result: Array = np.diff(np.interp(cells, level.vertices, resultant)) / np.sqrt(np.diff(cells))
-        return result
-
-    known = means(of(level.history))
-    size = max(np.linalg.norm(known), LEAST_SHEAR * np.linalg.norm(means(level.history.bound)))
-    return float(np.linalg.norm(of(other) / np.sqrt(np.diff(cells)) - known) / size) if size > 0 else 0.0
+    known, bound = (norm_parts(level.vertices, each, cells) for each in (of(level.history), level.history.bound))
+    others = norm_parts(cells, of(other), cells)
+    return relative_change(known, others, LEAST_SHEAR * float(np.linalg.norm(bound)))
 
 
 def _result(

@@ -10,6 +10,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace as changed
+from scipy.interpolate import PPoly
 
 from partialslip.allowance import Allowance
 from partialslip.arrays import Array
@@ -18,35 +20,30 @@ from partialslip.condensed import coupled
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.ends import StickInterval, apart, kinks, left_end, right_end, stick_zone, within
-from partialslip.condensed.history import History, certificate, last_cycle_change
+from partialslip.condensed.history import SHEARS, History, certificate, last_cycle_change
 from partialslip.condensed.normal import press
 from partialslip.condensed.path import Path, load_path, stretched
 from partialslip.condensed.regime import doubts, steady_state, unestimated
 from partialslip.condensed.step_errors import pressed_together
-from partialslip.halfplane.cells import graded
+from partialslip.halfplane.cells import graded, norm_parts, on_cells, relative_change
+from partialslip.halfplane.pressing import NormalLoads
 from partialslip.halfplane.punch_growth import OnCells, PunchGrowth, relative
 from partialslip.halfplane.tractions import CoupledTractions
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, Traction
 from partialslip.result.state import State
 from partialslip.scene import Hertz, Scene
+from partialslip.scene.materials import Material
 
 _MESHES = ((1e-2, 0.2), (1e-3, 0.1), (3e-4, 0.05), (1e-4, 0.025))  # (cell size at the ends, in a; growth)
 _INNER = 8.0  # size of cells at kinks over the size at the ends
 _NEAR = 10.0  # cells at ends closer to each other than a/10 are reduced in proportion
 _SMALLEST = 1e-9  # in a: closer ends are merged, and smaller cells are not requested
-_BEYOND, _WIDER = (
-    1.2,
-    1.5,
-)  # extent of the cells, in that of the contact without coupling; factor if it does not do
+_BEYOND = 1.2  # extent of the cells, in that of the contact without coupling ...
+_WIDER = 1.5  # ... and how many times wider they are made where they do not enclose the contact
 _SHARE = 1 / 3  # largest part of the remaining CPU seconds for one mesh
 _ROUNDING = 1e-12
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
-_LEVELS: dict[str, Callable[[History], Array]] = {
-    "q": lambda history: history.change,
-    "q1": lambda history: history.q1,
-    "q2": lambda history: history.q2,
-}
 
 
 def dundurs(scene: Scene) -> float:
@@ -171,11 +168,6 @@ class _Problem:
 
 def _extent(scene: Scene) -> float:
     """Largest distance of the contact's ends from x = 0 without coupling."""
-    from msgspec.structs import replace as changed
-
-    from partialslip.halfplane.pressing import NormalLoads
-    from partialslip.scene.materials import Material
-
     alike = changed(scene, material=Material(E=4 / scene.material.A, nu=0.0))
     found = NormalLoads.of(alike).frame.ends
     return max(abs(end) for end in found) / scene.length
@@ -212,7 +204,7 @@ def _solve_on(problem: _Problem, path: Path | None, vertices: Array, clock: Cloc
         begins = None
         if problem.start:
             places = vertices * L + scene.origin
-            begins, shear = (_on_cells(each, places) / scene.P for each in (problem.start.p, problem.start.q))
+            begins, shear = (on_cells(each, places) / scene.P for each in (problem.start.p, problem.start.q))
             path = replace(path, before=shear)
         stages = partial(OnCells, problem.punch, vertices) if problem.punch else None
         line = coupled.Line(x, widths, ends, problem.punch is not None, stages=stages)
@@ -265,13 +257,6 @@ def _kinks(level: _Level) -> tuple[float, ...]:
     return tuple(kink for kink in found if left < kink < right)
 
 
-def _on_cells(traction: Any, places: Array) -> Array:
-    """Forces (c,) of a piecewise ``traction`` on the cells between ``places`` (c + 1,), m."""
-    resultant, known = traction.antiderivative(), traction.x
-    result: Array = np.diff(resultant(np.clip(places, known[0], known[-1])))
-    return result
-
-
 def _mesh_errors(level: _Level, before: _Level, problem: _Problem) -> dict[str, float]:
     """Errors of the ends (in a), and of p, q, q1 and q2 (relative L2 of cell means), from the change since the mesh
     ``before``: cells are three times smaller, and errors of first order in them would be half of the change."""
@@ -280,30 +265,29 @@ def _mesh_errors(level: _Level, before: _Level, problem: _Problem) -> dict[str, 
     errors = {"a": abs(a - before.a[largest]) / a}
     for side, key in enumerate(("left", "right")):
         errors[key] = max(abs(one[side] - other[side]) for one, other in zip(level.ends, before.ends, strict=True)) / a
-    errors["p"] = _apart(level, level.pressing.x, before, before.pressing.x, 0.0)
+    errors["p"] = _apart(level, level.pressing.x, before, before.pressing.x, 0 * before.x)
     if level.stick and before.stick:
         errors["m"] = abs(level.stick.left - before.stick.left) / a
         errors["n"] = abs(level.stick.right - before.stick.right) / a
     if problem.punch and level.history and not level.history.path.moves:
         errors["m"] = errors["n"] = 2 * problem.punch.off
     if level.history and before.history:
-        least = LEAST_SHEAR * _norm(before, before.history.bound)
+        bound = before.history.bound
         errors |= {
-            key: _apart(level, of(level.history), before, of(before.history), least) for key, of in _LEVELS.items()
+            key: _apart(level, of(level.history), before, of(before.history), bound) for key, of in SHEARS.items()
         }
     return {key: error / 2 for key, error in errors.items()}
 
 
-def _norm(level: _Level, forces: Array) -> float:
-    return float(np.linalg.norm(forces / np.sqrt(np.diff(level.vertices))))
-
-
-def _apart(level: _Level, forces: Array, before: _Level, others: Array, least: float) -> float:
-    """Relative L2 difference of the means over the cells of the level ``before``."""
-    resultant = np.concatenate([[0.0], np.cumsum(forces)])
-    known = np.diff(np.interp(before.vertices, level.vertices, resultant))
-    size = max(_norm(before, known), least)
-    return _norm(before, others - known) / size if size > 0 else 0.0
+def _apart(level: _Level, forces: Array, before: _Level, others: Array, bound: Array) -> float:
+    """Relative L2 difference of the means over the cells of the level ``before`` of ``forces`` and ``others``; shear is
+    not less than a part of ``bound``."""
+    cells = before.vertices
+    found, other, held = (
+        norm_parts(level.vertices, forces, cells),
+        *(norm_parts(cells, x, cells) for x in (others, bound)),
+    )
+    return relative_change(found, other, LEAST_SHEAR * float(np.linalg.norm(held)))
 
 
 def _step_errors(level: _Level) -> dict[str, float]:
@@ -395,8 +379,6 @@ def _result(
 
 def _state(scene: Scene, level: _Level) -> State:
     """State at the end of the path of the loads."""
-    from scipy.interpolate import PPoly
-
     assert level.history
     places = level.vertices * scene.length + scene.origin
     shear, bound = level.history.end
