@@ -153,6 +153,9 @@ def test_criteria_without_constants_are_left_out():
 def test_a_result_without_stresses_is_refused():
     with pytest.raises(InputError, match="exact: stresses are not known"):
         partialslip.assess(SCENE, replace(RESULT, stress_at=None))
+    slides = SCENE.replace(friction={"f": 0.2})
+    with pytest.raises(InputError, match="exact: stresses are not known; q1 and q2 are not known"):
+        partialslip.assess(slides, partialslip.run(slides, "exact", subsurface=True)["exact"])
     with pytest.raises(InputError, match="body 'left': must be of lower, upper"):
         partialslip.assess(SCENE, RESULT, body="left")
 

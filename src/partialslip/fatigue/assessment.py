@@ -157,9 +157,8 @@ def assess(scene: Scene, result: Result, criteria: Iterable[str] | None = None, 
     if body not in BODIES:
         raise InputError(f"body {body!r}: must be of {', '.join(BODIES)}")
     if result.stress_at is None:
-        raise InputError(
-            f"{result.method}: stresses are not known; run the scene with subsurface=True, or by another method"
-        )
+        why = result.undetermined.get("stresses", "run the scene with subsurface=True, or by another method")
+        raise InputError(f"{result.method}: stresses are not known; {why}")
     ruiz_asked = RUIZ in names and result.slip is not None and bool(result.slip.slip.any())
     found = [criterion(scene, name, body) for name in names if name != RUIZ]
     x = surface_points(rough_points(scene, result), result.a)
