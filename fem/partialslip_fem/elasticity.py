@@ -1,7 +1,8 @@
 """The elastic body: triangles of order 1 to 4 in scikit-fem, scaled by a pair's compliance A."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache, partial
 
 import numpy as np
 import numpy.typing as npt
@@ -9,9 +10,17 @@ import scipy.sparse as sp
 import skfem
 
 from partialslip.arrays import Array
+from partialslip_fem.elements import Lagrange
 from partialslip_meshes import Mesh
 
-ELEMENTS = {1: skfem.ElementTriP1, 2: skfem.ElementTriP2, 3: skfem.ElementTriP3, 4: skfem.ElementTriP4}
+ELEMENTS: dict[int, Callable[[], skfem.Element]] = {
+    1: skfem.ElementTriP1,
+    2: skfem.ElementTriP2,
+    3: skfem.ElementTriP3,
+    4: skfem.ElementTriP4,
+    5: partial(Lagrange, 5),
+    6: partial(Lagrange, 6),
+}
 Indices = npt.NDArray[np.int64]
 
 
@@ -76,26 +85,6 @@ class Body:
         return result
 
 
-@skfem.BilinearForm
-def _xx(u, v, _):  # type: ignore[no-untyped-def]
-    return u.grad[0] * v.grad[0]
-
-
-@skfem.BilinearForm
-def _xy(u, v, _):  # type: ignore[no-untyped-def]
-    return u.grad[1] * v.grad[0]
-
-
-@skfem.BilinearForm
-def _yy(u, v, _):  # type: ignore[no-untyped-def]
-    return u.grad[1] * v.grad[1]
-
-
-@skfem.BilinearForm
-def _product(u, v, w):  # type: ignore[no-untyped-def]
-    return u * v * np.abs(w.n[1])
-
-
 @skfem.LinearForm
 def _tension(v, w):  # type: ignore[no-untyped-def]
     return v * w.n[0]
@@ -126,8 +115,7 @@ def body(
         Whether to assemble the nodal forces of a tension on the right side.
     """
     triangles, element = triangles_of(mesh), ELEMENTS[order]()
-    # gradients are of order - 1, and straight triangles have constant Jacobians: this quadrature is exact
-    basis = skfem.Basis(triangles, element, intorder=2 * (order - 1))
+    basis = skfem.Basis(triangles, element, intorder=1)  # for the numbers of unknowns only
     both = np.array([[0], [basis.N]])
 
     def on(lines: Indices) -> Indices:
@@ -138,7 +126,6 @@ def body(
     line = mesh.lines["contact"]
     contact, face = on(line), on(np.concatenate([line, mesh.lines.get("face", line)]))
     along_x, along_y = (on(np.concatenate([mesh.lines[name] for name in names])) for names in held)
-    along = skfem.FacetBasis(triangles, element, facets=facets_of(triangles, line))
     pull = None
     if pulled:
         end = skfem.FacetBasis(triangles, element, facets=facets_of(triangles, mesh.lines["right"]))
@@ -149,7 +136,7 @@ def body(
         compliance=compliance,
         stiffness=_stiffness(basis, kappa, compliance),
         x=basis.doflocs[0, contact],
-        mass=_product.assemble(along)[contact][:, contact],
+        mass=_mass(basis.doflocs[0, contact], order),
         contact=contact + both,
         held=np.concatenate([along_x, basis.N + along_y]),
         vertices=basis.nodal_dofs[0] + both,
@@ -172,14 +159,54 @@ def triangles_of(mesh: Mesh) -> skfem.MeshTri:
 
 
 def _stiffness(basis: skfem.Basis, kappa: float, compliance: float) -> sp.csr_matrix:
-    """Stiffness of plane isotropic elasticity, from scalar forms: far cheaper than vector elements."""
+    """Stiffness of plane isotropic elasticity. Derivatives are constant multiples of those in the reference triangle,
+    as triangles are straight: the products are integrated there, once."""
     mu = (kappa + 1) / (2 * compliance)
     lam = mu * (3 - kappa) / (kappa - 1)
-    xx, xy, yy = (form.assemble(basis) for form in (_xx, _xy, _yy))
-    across = lam * xy + mu * xy.T
-    return sp.block_array(
-        [[(lam + 2 * mu) * xx + mu * yy, across], [across.T, (lam + 2 * mu) * yy + mu * xx]], format="csr"
-    )
+    inverse, area = basis.mapping.invA, np.abs(basis.mapping.detA)
+    reference = _reference(basis.elem.maxdeg)
+    count, size = inverse.shape[2], basis.Nbfun
+    rows = np.repeat(basis.element_dofs.T, size, axis=1).ravel()
+    columns = np.tile(basis.element_dofs.T, size).ravel()
+
+    def block(*parts: tuple[float, int, int]) -> sp.csr_matrix:
+        """Sum of factor times the integral of d_i v d_j u, for the ``parts`` (factor, i, j)."""
+        weights = sum(factor * np.einsum("ce,de->ecd", inverse[:, i], inverse[:, j]) for factor, i, j in parts)
+        values = (weights * area[:, None, None]).reshape(count, 4) @ reference
+        return sp.coo_matrix((values.ravel(), (rows, columns)), (basis.N, basis.N)).tocsr()
+
+    across = block((lam, 0, 1), (mu, 1, 0))
+    along_x, along_y = (block((lam + 2 * mu, i, i), (mu, 1 - i, 1 - i)) for i in (0, 1))
+    under = sp.hstack([across.T.tocsr(), along_y], format="csr")
+    return sp.vstack([sp.hstack([along_x, across], format="csr"), under], format="csr")
+
+
+@lru_cache
+def _reference(order: int) -> Array:
+    """Integrals of d_c v d_d u over the reference triangle by (c, d), (4, k^2), of all pairs (v, u) of its k shape
+    functions."""
+    basis = skfem.Basis(skfem.MeshTri.init_refdom(), ELEMENTS[order](), intorder=2 * (order - 1))
+    gradients = np.array([field.grad[:, 0] for (field,) in basis.basis])
+    integrals = np.einsum("icq,jdq,q->cdij", gradients, gradients, basis.dx[0])
+    return np.ascontiguousarray(integrals.reshape(4, -1))
+
+
+@lru_cache
+def _along(order: int) -> Array:
+    """Integrals of the products of the shape functions of an edge of the length 1, (order + 1, order + 1)."""
+    points, weights = np.polynomial.legendre.leggauss(order + 1)
+    places = np.linspace(-1, 1, order + 1)
+    values = np.vander(points, order + 1) @ np.linalg.inv(np.vander(places, order + 1))
+    result: Array = values.T @ (values * weights[:, None] / 2)
+    return result
+
+
+def _mass(x: Array, order: int) -> sp.csr_matrix:
+    """Integrals over x of products of the shape functions of the nodes ``x`` (n,) of a line, (n, n)."""
+    cells = order * np.arange((len(x) - 1) // order)[:, None] + np.arange(order + 1)
+    values = np.diff(x[::order])[:, None, None] * _along(order)
+    where = (np.broadcast_to(index, values.shape).ravel() for index in (cells[:, :, None], cells[:, None, :]))
+    return sp.coo_matrix((values.ravel(), tuple(where)), (len(x), len(x))).tocsr()
 
 
 def facets_of(triangles: skfem.MeshTri, lines: Indices) -> Indices:

@@ -25,7 +25,7 @@ from partialslip_fem.problem import Problem
 from partialslip_fem.solving import solve_on_meshes
 
 # The order below costs least, but P2 and P1 lock towards nu = 0.5, so that their differences are no errors.
-NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3}
+NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3, 6: 5}
 
 END_KEYS = ("a", "left", "right", "m", "n")
 _SHEARS = ("q", "q1", "q2")
@@ -39,7 +39,7 @@ _NARROW = 0.1  # of the norm of f p: shear with a smaller norm is confined to na
 
 # Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.
 # Error of an end of the contact, in the size of the element that the end lies in, by order.
-AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002}
+AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002, 5: 0.002, 6: 0.002}
 # Factors of (element size / gap)^2 in the error of an end of the stick zone: gap to the other end of the stick zone,
 # and to the nearest other end or kink.
 _FIT = np.array([8.0, 2.0])

@@ -28,8 +28,8 @@ FINER = 16.0  # largest ratio of these sizes from mesh to mesh
 # (compare benchmarks/accuracy.py orders).
 _SMOOTH = 2.8
 _LARGEST_GROWTH = 0.7
-_EASED = (4,)  # orders whose elements grow faster near the ends of zones than elsewhere
-_STEEPEST = 0.5  # largest growth near the ends of zones, where it may be larger than elsewhere
+_EASED = (4, 6)  # orders whose elements grow faster near the ends of zones than elsewhere
+_STEEPEST = 1.0  # largest growth near the ends of zones, where it may be larger than elsewhere
 
 # Shares of the accuracy asked for.
 AIM = 0.5  # error that meshes are designed for: estimates are right within a factor of two (benchmarks/estimates.py)

@@ -21,7 +21,7 @@ class Fem(Table, frozen=True, kw_only=True):
     """
 
     accuracy: Annotated[float, msgspec.Meta(ge=1e-9, le=0.1)] = 2e-5
-    order: Literal[1, 2, 3, 4] = 4
+    order: Literal[1, 2, 3, 4, 6] = 4
     far_field: Literal["half-plane", "box"] = "half-plane"
     width: Annotated[float, msgspec.Meta(ge=4, le=1e6)] | None = None
     lower_size: Annotated[float, msgspec.Meta(ge=0.1, le=10)] = 1.0
