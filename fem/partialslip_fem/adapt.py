@@ -156,7 +156,12 @@ class _Refinement:
         """Make the next mesh, solve on it, and choose the load steps on the first mesh that is fine enough."""
         problem, a = self.problem, self.solution.half_width
         self.size_goal = self.goal.element_size(self.solution, problem)
-        self.size, growth, self.finer = course(self.size, self.finer, self.size_goal, self.least, problem.order)[0]
+        ahead = course(self.size, self.finer, self.size_goal, self.least, problem.order)
+        if len(ahead) > 1 and problem.order > goals.ON_THE_WAY:
+            problem = replace(problem, order=goals.ON_THE_WAY)
+            least = goals.growth_at(self.goal.accuracy, problem.order)
+            ahead = course(self.size, self.finer, self.size_goal, least, problem.order)
+        self.size, growth, self.finer = ahead[0]
         coarsest = max(part.fineness for part in problem.parts)  # sizes are those of the coarsest body
         grading = self._grading(growth, coarsest)
         self.eased = in_effect(grading.eased, grading.growth) is not None
@@ -179,8 +184,10 @@ class _Refinement:
         self.iterations += solution.iterations
         if not solution.enclosed and max(-solution.reach[0], solution.reach[1]) >= self.limit:
             raise too_narrow(self.problem)
+        in_coarsest = coarsest / problem.parts[0].fineness / a
         at_ends, at_kinks = (
-            grading.at(points) * coarsest / a for points in (solution.zone_ends, np.array(solution.kinks))
+            solution.element_sizes(points) * in_coarsest
+            for points in (solution.zone_ends, np.array(solution.kinks))
         )
         self.largest_end_element = at_ends.max()
         self.errors = self.end_errors = self._errors_of_ends(at_ends, at_kinks)
@@ -189,6 +196,8 @@ class _Refinement:
         """Estimate the error away from the ends, if the error of the ends is small enough or no smaller one is to
         come."""
         self.error, self.calmer = np.inf, 1.0
+        if self.solution.lower.order < self.problem.order:
+            return  # a mesh on the way
         self.waited = self.waited + 1 if self.error_before < np.inf else 0
         if (
             (self.located and worst(self.end_errors) <= self.bar)

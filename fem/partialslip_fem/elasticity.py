@@ -1,8 +1,8 @@
-"""The elastic body: triangles of order 1 to 4 in scikit-fem, scaled by a pair's compliance A."""
+"""The elastic body: triangles in scikit-fem, scaled by a pair's compliance A."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -10,17 +10,9 @@ import scipy.sparse as sp
 import skfem
 
 from partialslip.arrays import Array
-from partialslip_fem.elements import Lagrange
+from partialslip_fem.elements import ELEMENTS, shapes
 from partialslip_meshes import Mesh
 
-ELEMENTS: dict[int, Callable[[], skfem.Element]] = {
-    1: skfem.ElementTriP1,
-    2: skfem.ElementTriP2,
-    3: skfem.ElementTriP3,
-    4: skfem.ElementTriP4,
-    5: partial(Lagrange, 5),
-    6: partial(Lagrange, 6),
-}
 Indices = npt.NDArray[np.int64]
 
 
@@ -37,10 +29,10 @@ class Body:
     stiffness : (2 N, 2 N) sparse matrix
         Degrees of freedom are the displacements of all nodes along x, then those along y.
     x : (n,) array
-        Nodes on the contact line, ascending; between two vertices lie ``order`` - 1 evenly spaced nodes.
+        Nodes on the contact line, ascending; between two vertices lie the nodes of :func:`partialslip_fem.elements.nodes`.
     mass : (n, n) sparse matrix
-        Integrals over x of products of the contact line's shape functions. The row sums are the closed Newton-Cotes
-        weights, positive up to order 4, so that nodal forces have the signs of tractions.
+        Integrals over x of products of the contact line's shape functions. The row sums are the weights of
+        Newton and Cotes, positive up to order 4, or of Lobatto, so that nodal forces have the signs of tractions.
     contact, vertices : (2, n), (2, v) int arrays
         Degrees of freedom, along x and along y, of the contact line and the mesh's points.
     held : (k,) int array
@@ -195,8 +187,7 @@ def _reference(order: int) -> Array:
 def _along(order: int) -> Array:
     """Integrals of the products of the shape functions of an edge of the length 1, (order + 1, order + 1)."""
     points, weights = np.polynomial.legendre.leggauss(order + 1)
-    places = np.linspace(-1, 1, order + 1)
-    values = np.vander(points, order + 1) @ np.linalg.inv(np.vander(places, order + 1))
+    values = shapes(order, (1 + points) / 2)
     result: Array = values.T @ (values * weights[:, None] / 2)
     return result
 

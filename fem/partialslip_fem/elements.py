@@ -1,20 +1,23 @@
-"""Triangles of any order in scikit-fem, with evenly spaced nodes."""
+"""Triangles for scikit-fem, of the orders that it has and of higher ones."""
 
-from functools import lru_cache
+from collections.abc import Callable
+from functools import lru_cache, partial
 
 import numpy as np
 import skfem
-from numpy.polynomial import Polynomial
+from numpy.polynomial import Legendre, Polynomial
 from skfem.refdom import RefTri
 
 from partialslip.arrays import Array
 
+_EVEN = 4  # highest order with evenly spaced nodes on the edges
 
-class Lagrange(skfem.ElementH1):
-    """Lagrange's polynomials of a given order on evenly spaced nodes.
 
-    The node at the barycentric coordinates (i, j, l)/k has the shape function P_i P_j P_l, where P_i is the polynomial
-    of degree i in its coordinate that is zero at 0, 1/k ... (i - 1)/k and one at i/k (Silvester 1969).
+class _Lobatto(skfem.ElementH1):
+    """Lagrange's polynomials of the given ``order`` on nodes that are Lobatto's on the edges.
+
+    With evenly spaced nodes of a high order, forces on nodes may have other signs than the traction that they stand
+    for. Nodes inside follow from those of the edges (Blyth and Pozrikidis 2006).
     """
 
     nodal_dofs = 1
@@ -27,20 +30,51 @@ class Lagrange(skfem.ElementH1):
         along = range(1, k)
         edges = [[(i, 0) for i in along], [(k - i, i) for i in along], [(0, i) for i in along]]
         inside = [(i, j) for j in along for i in range(1, k - j)]
-        self._places = [(0, 0), (k, 0), (0, k), *sum(edges, []), *inside]
-        self.doflocs = np.array(self._places) / k
-        zeros = [Polynomial([1.0])]
-        for i in along:
-            zeros.append(zeros[-1] * Polynomial([1 - i, k]) / i)
-        zeros.append(zeros[-1] * Polynomial([1 - k, k]) / k)
-        self._in_one = [(each, each.deriv()) for each in zeros]
+        places = np.array([(0, 0), (k, 0), (0, k), *sum(edges, []), *inside])
+        self._degrees = np.column_stack([places, k - places.sum(axis=1)])
+        spaced = nodes(k)[self._degrees]
+        self.doflocs = ((1 + 3 * spaced - spaced.sum(axis=1, keepdims=True)) / 3)[:, :2]
+        # On evenly spaced nodes, that at the barycentric coordinates (i, j, l)/k has the shape function P_i P_j P_l,
+        # where P_i is of degree i in its coordinate, zero at 0, 1/k ... (i - 1)/k and one at i/k (Silvester 1969).
+        even = [Polynomial([1.0])]
+        for i in range(1, k + 1):
+            even.append(even[-1] * Polynomial([1 - i, k]) / i)
+        self._even = [(each, each.deriv()) for each in even]
+        self._shapes = np.linalg.inv(self._products(self.doflocs.T)[0]).T
 
     def lbasis(self, X: Array, i: int) -> tuple[Array, Array]:
         """Shape function ``i`` at the points ``X`` (2, ...), and its gradient, (2, ...)."""
-        along_x, along_y = self._places[i]
-        last = self.maxdeg - along_x - along_y
+        values, gradients = self._products(X)
+        return np.tensordot(self._shapes[:, i], values, 1), np.tensordot(self._shapes[:, i], gradients, (0, 1))
+
+    def _products(self, X: Array) -> tuple[Array, Array]:
+        """Shape functions of the evenly spaced nodes at ``X`` (2, ...), (n, ...), and their gradients, (2, n, ...)."""
         (p, dp), (q, dq), (r, dr) = (
-            tuple(polynomial(at) for polynomial in self._in_one[degree])
-            for degree, at in ((along_x, X[0]), (along_y, X[1]), (last, 1 - X[0] - X[1]))
+            tuple(np.array([each[way](at) for each in self._even])[degrees] for way in (0, 1))
+            for at, degrees in zip((*X, 1 - X[0] - X[1]), self._degrees.T, strict=True)
         )
         return p * q * r, np.array([dp * q * r - p * q * dr, p * dq * r - p * q * dr])
+
+
+ELEMENTS: dict[int, Callable[[], skfem.Element]] = {
+    1: skfem.ElementTriP1,
+    2: skfem.ElementTriP2,
+    3: skfem.ElementTriP3,
+    4: skfem.ElementTriP4,
+    5: partial(_Lobatto, 5),
+    6: partial(_Lobatto, 6),
+}
+
+
+@lru_cache
+def nodes(order: int) -> Array:
+    """Nodes of an edge of elements of ``order``, from 0 to 1, (order + 1,)."""
+    if order <= _EVEN:
+        return np.linspace(0, 1, order + 1)
+    inner = Legendre.basis(order).deriv().roots()
+    return (1 + np.array([-1.0, *inner, 1.0])) / 2
+
+
+def shapes(order: int, x: Array) -> Array:
+    """Shape functions of the nodes of an edge at ``x`` (n,) in [0, 1], (n, order + 1)."""
+    return np.vander(x, order + 1) @ np.linalg.inv(np.vander(nodes(order)))

@@ -39,7 +39,7 @@ _NARROW = 0.1  # of the norm of f p: shear with a smaller norm is confined to na
 
 # Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.
 # Error of an end of the contact, in the size of the element that the end lies in, by order.
-AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002, 5: 0.002, 6: 0.002}
+AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002, 6: 0.001}
 # Factors of (element size / gap)^2 in the error of an end of the stick zone: gap to the other end of the stick zone,
 # and to the nearest other end or kink.
 _FIT = np.array([8.0, 2.0])

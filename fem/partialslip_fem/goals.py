@@ -22,12 +22,13 @@ from partialslip_meshes import Eased
 # Bounds on element sizes at the ends of zones, in contact half-widths.
 FINEST = 1e-7  # smallest: with smaller elements rounding errors dominate (benchmarks/accuracy.py floor)
 COARSEST = 0.005  # largest on a mesh whose errors are estimated; coarser meshes only locate the ends
-FINER = 16.0  # largest ratio of these sizes from mesh to mesh
+FINER = 64.0  # largest ratio of these sizes from mesh to mesh
 
 # Growth of the elements away from the ends: errors there are about (growth/2.8)^(2 order)
 # (compare benchmarks/accuracy.py orders).
 _SMOOTH = 2.8
 _LARGEST_GROWTH = 0.7
+ON_THE_WAY = 4  # largest order on meshes before that with the element size of the goal
 _EASED = (4, 6)  # orders whose elements grow faster near the ends of zones than elsewhere
 _STEEPEST = 1.0  # largest growth near the ends of zones, where it may be larger than elsewhere
 
@@ -49,6 +50,7 @@ _SWEPT = (0.2, 8e-3, 0.1)  # element size, and bar of q, for which it suffices; 
 # stick zone by the square of that size.
 PASSING = 20.0
 
+_KNOWN = 0.3  # error away from the ends on the way to smaller elements there, in the next mesh's element size
 _REACHED = 1.01  # element sizes within this factor of the goal count as having reached it
 
 
@@ -88,7 +90,7 @@ class Goal:
             accuracy=accuracy,
             bar=BAR * accuracy,
             end_error=_END_SHARE * AIM * accuracy,
-            growth=_growth(AIM * accuracy, problem.order),
+            growth=growth_at(accuracy, problem.order),
             facet_error=_FACET_SHARE * accuracy if any(part.face for part in problem.parts) else 0.0,
             corner_error=corner_error,
             tilts={key: share * corner_error * tilting for key, share in _TILTS.items()},
@@ -131,7 +133,7 @@ def course(size: float, finer: float, goal: float, least: float, order: int) -> 
     finer : float
         Refinement of the next mesh, if ``size`` has reached ``goal``; otherwise equal steps of at most ``FINER``.
     least : float
-        Growth of the last mesh; the growth of the meshes before follows from their element size.
+        Growth of the last mesh; the growth of the meshes before follows from the element size of the next one.
     order : int
         Polynomial order of the elements.
     """
@@ -140,7 +142,7 @@ def course(size: float, finer: float, goal: float, least: float, order: int) -> 
     meshes = []
     while True:
         size = max(size / finer, FINEST)
-        growth = max(least, growth_for(size, order)) if not reached(size, goal) else least
+        growth = least if reached(size, goal) else max(least, growth_for(_KNOWN * size / finer, order))
         meshes.append(NextMesh(size, growth, finer))
         if size <= max(_REACHED * goal, FINEST):
             return meshes
@@ -151,10 +153,10 @@ def growth_for(error: float, order: int) -> float:
     return float(min(_SMOOTH * error ** (0.5 / order), _LARGEST_GROWTH))
 
 
-def _growth(error: float, order: int) -> float:
-    """Growth far from the ends for a sum of errors of about ``error``."""
-    growth = growth_for(_AWAY_SHARE * error, order)
-    return growth_for(_EASED_SHARE * error, order) if order in _EASED and growth < _STEEPEST else growth
+def growth_at(accuracy: float, order: int) -> float:
+    """Growth of elements of ``order`` far from the ends for an ``accuracy``."""
+    growth = growth_for(_AWAY_SHARE * AIM * accuracy, order)
+    return growth_for(_EASED_SHARE * AIM * accuracy, order) if order in _EASED and growth < _STEEPEST else growth
 
 
 def eased(half_width: float, order: int) -> Eased | None:

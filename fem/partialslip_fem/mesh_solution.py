@@ -114,6 +114,14 @@ class MeshSolution:
         stick = (self.stick.left, self.stick.right) if self.stick else ()
         return np.array([self.left, self.right, *stick, *self.ends_at_1])
 
+    def element_sizes(self, points: Array) -> Array:
+        """Sizes of the elements of the contact line that ``points`` (k,) lie in, (k,): each the largest of an element
+        and its two neighbours, which matter where elements grow fast."""
+        vertices = self.lower.x[:: self.lower.order]
+        cells = np.searchsorted(vertices, points)[:, None] + np.arange(-2, 1)
+        sizes: Array = np.diff(vertices)[np.clip(cells, 0, len(vertices) - 2)].max(axis=1)
+        return sizes
+
     @property
     def contact_end_places(self) -> tuple[list[int], list[int]]:
         """Indices in ``zone_ends`` of the left and of the right ends of the contact."""

@@ -7,6 +7,7 @@ from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array, Indices
 from partialslip_fem.elasticity import Body
+from partialslip_fem.elements import shapes
 from partialslip_fem.recovery import inside
 
 
@@ -54,6 +55,6 @@ def shape_functions(body: Body, x: Array) -> tuple[Indices, Array]:
     k, vertices = body.order, body.x[:: body.order]
     cell = np.clip(np.searchsorted(vertices, x, "right") - 1, 0, len(vertices) - 2)
     local = (x - vertices[cell]) / np.diff(vertices)[cell]
-    values = np.vander(local, k + 1) @ np.linalg.inv(np.vander(np.linspace(0, 1, k + 1)))
+    values = shapes(k, local)
     nodes: Indices = k * cell[:, None] + np.arange(k + 1)
     return nodes, values

@@ -225,7 +225,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         f=scene.friction.f,
         path=load_path(scene, plan, start),
         parts=parts[:1] if scene.fem.lower_size == 1 and not plan.needs("coupling") and scene.mirrored else parts,
-        order=scene.fem.order,
+        order=scene.fem.elements,
         far_field=scene.fem.far_field,
         backend=scene.fem.factor or default_backend(),
         start=tuple(rescaled(q, L / P, 1 / L, -origin / L) for q in (start.p, start.q)) if start else None,

@@ -8,6 +8,7 @@ from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
 from partialslip_fem.elasticity import Body
+from partialslip_fem.elements import nodes
 
 
 def traction(body: Body, forces: Array) -> PPoly:
@@ -23,7 +24,7 @@ def polynomials(x: Array, values: Array, order: int) -> PPoly:
     """Piecewise polynomials of ``order`` through ``values`` at ``x``, (n,) each; every ``order``-th x is a vertex."""
     k, vertices = order, x[::order]
     cells = np.lib.stride_tricks.sliding_window_view(values, k + 1)[::k]
-    coefficients = np.linalg.solve(np.vander(np.linspace(0, 1, k + 1)), cells.T)
+    coefficients = np.linalg.solve(np.vander(nodes(k)), cells.T)
     return PPoly(coefficients / np.diff(vertices) ** np.arange(k, -1, -1)[:, None], vertices)
 
 

@@ -138,7 +138,7 @@ class BodyStresses:
         fem = self.scene.fem
         return tuple(
             Remainder.of(
-                part, self.width or 0.0, fem.order, self.tractions, way, strains, fem.factor or default_backend()
+                part, self.width or 0.0, fem.elements, self.tractions, way, strains, fem.factor or default_backend()
             )
             if part.finite or self.width
             else None

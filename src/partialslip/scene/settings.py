@@ -6,6 +6,7 @@ import msgspec
 
 from partialslip.scene.table import Positive, Table
 
+_FINE = 3e-7  # accuracy below which elements of order 6 cost less than those of order 4 (benchmarks/accuracy.py cost)
 WIDTHS = {"half-plane": 16.0, "box": 4096.0}  # default half-width of a block, in contact half-widths
 
 
@@ -13,7 +14,7 @@ class Fem(Table, frozen=True, kw_only=True):
     """Settings of the finite-element method.
 
     ``accuracy``: of a, m and n, as a fraction of a (marching uses it for m and n, too). ``order``: polynomial order of
-    the triangles. ``far_field``: condition on the outer boundary of a block that stands for a half-plane, either the
+    the triangles; default 4, and 6 where meshes are refined to less than 3e-7. ``far_field``: condition on the outer boundary of a block that stands for a half-plane, either the
     displacements of the half-plane under the contact tractions or a clamped ``box``. ``width``: half-width of such a
     block, in contact half-widths. ``lower_size``: element size of the lower body relative to the upper body; the nodes
     of the two bodies match only at 1. ``size``: element size along the contact, in contact half-widths, of one mesh,
@@ -21,12 +22,17 @@ class Fem(Table, frozen=True, kw_only=True):
     """
 
     accuracy: Annotated[float, msgspec.Meta(ge=1e-9, le=0.1)] = 2e-5
-    order: Literal[1, 2, 3, 4, 6] = 4
+    order: Literal[1, 2, 3, 4, 6] | None = None
     far_field: Literal["half-plane", "box"] = "half-plane"
     width: Annotated[float, msgspec.Meta(ge=4, le=1e6)] | None = None
     lower_size: Annotated[float, msgspec.Meta(ge=0.1, le=10)] = 1.0
     size: Annotated[float, msgspec.Meta(ge=1e-4, le=0.5)] | None = None
     factor: Literal["superlu", "cholmod"] | None = None
+
+    @property
+    def elements(self) -> int:
+        """Order of the elements: the one asked for, or the one that costs least."""
+        return self.order or (6 if self.size is None and self.accuracy < _FINE else 4)
 
 
 class Effects(Table, frozen=True, kw_only=True, rename="kebab"):

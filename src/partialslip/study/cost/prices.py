@@ -189,7 +189,7 @@ def fit(entries: "Iterable[Solved]", overheads: Mapping[str, float], machine: st
             costs = {name: method.cost.cpu_s for name, method in entry.run.methods.items()}
             start = entry.process.cpu_s - sum(costs.values()) if entry.process else 1.0
             digits = math.log10(1 / scene.fem.accuracy)
-            cases.append((scene.fem.order, _kind(scene), _superlu(scene), digits, _bodies(scene), start, costs))
+            cases.append((scene.fem.elements, _kind(scene), _superlu(scene), digits, _bodies(scene), start, costs))
     if len(cases) < 10:
         raise InputError(f"a price list needs at least 10 measured cases of adapted finite elements, not {len(cases)}")
     orders, kinds = sorted({case[0] for case in cases}), sorted({case[1] for case in cases} - {"hertz"})
