@@ -186,8 +186,7 @@ class _Refinement:
             raise too_narrow(self.problem)
         in_coarsest = coarsest / problem.parts[0].fineness / a
         at_ends, at_kinks = (
-            solution.element_sizes(points) * in_coarsest
-            for points in (solution.zone_ends, np.array(solution.kinks))
+            solution.element_sizes(points) * in_coarsest for points in (solution.zone_ends, np.array(solution.kinks))
         )
         self.largest_end_element = at_ends.max()
         self.errors = self.end_errors = self._errors_of_ends(at_ends, at_kinks)

@@ -13,7 +13,7 @@ from partialslip.arrays import Array
 _EVEN = 4  # highest order with evenly spaced nodes on the edges
 
 
-class _Lobatto(skfem.ElementH1):
+class _Lobatto(skfem.ElementH1):  # type: ignore[misc]
     """Lagrange's polynomials of the given ``order`` on nodes that are Lobatto's on the edges.
 
     With evenly spaced nodes of a high order, forces on nodes may have other signs than the traction that they stand
@@ -28,9 +28,9 @@ class _Lobatto(skfem.ElementH1):
         self.facet_dofs, self.interior_dofs = k - 1, (k - 1) * (k - 2) // 2
         self.dofnames = ["u"] * (1 + self.facet_dofs + self.interior_dofs)
         along = range(1, k)
-        edges = [[(i, 0) for i in along], [(k - i, i) for i in along], [(0, i) for i in along]]
+        edges = [(i, 0) for i in along] + [(k - i, i) for i in along] + [(0, i) for i in along]
         inside = [(i, j) for j in along for i in range(1, k - j)]
-        places = np.array([(0, 0), (k, 0), (0, k), *sum(edges, []), *inside])
+        places = np.array([(0, 0), (k, 0), (0, k), *edges, *inside])
         self._degrees = np.column_stack([places, k - places.sum(axis=1)])
         spaced = nodes(k)[self._degrees]
         self.doflocs = ((1 + 3 * spaced - spaced.sum(axis=1, keepdims=True)) / 3)[:, :2]

@@ -15,7 +15,8 @@ from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array, Indices
 from partialslip_fem.bodies import Grading, block_of
-from partialslip_fem.elasticity import ELEMENTS, triangles_of
+from partialslip_fem.elasticity import triangles_of
+from partialslip_fem.elements import ELEMENTS
 from partialslip_fem.factor import Backend
 from partialslip_fem.locate import Locator
 from partialslip_fem.problem import Part

@@ -14,7 +14,8 @@ import skfem
 
 from partialslip.arrays import Array, Complex
 from partialslip_fem.bodies import Grading, block_of
-from partialslip_fem.elasticity import ELEMENTS, Body, body, facets_of, triangles_of
+from partialslip_fem.elasticity import Body, body, facets_of, triangles_of
+from partialslip_fem.elements import ELEMENTS
 from partialslip_fem.factor import Backend, factor
 from partialslip_fem.mortar import shape_functions
 from partialslip_fem.problem import Part

@@ -101,8 +101,8 @@ def test_the_good_scene_is_good(tmp_path, capsys):
         # finite elements
         ("accuracy =", "accuracy = 0", "fem.accuracy = 0: must be >= 1e-09"),
         ("accuracy =", "accuracy = 1", "fem.accuracy = 1: must be <= 0.1"),
-        ("order =", "order = 0", "fem.order = 0: must be one of 1, 2, 3, 4"),
-        ("order =", "order = 5", "fem.order = 5: must be one of 1, 2, 3, 4"),
+        ("order =", "order = 0", "fem.order = 0: must be one of 1, 2, 3, 4, 6"),
+        ("order =", "order = 5", "fem.order = 5: must be one of 1, 2, 3, 4, 6"),
         ("order =", 'order = "4"', "fem.order = '4': must be a whole number, not a string"),
         ("far_field =", 'far_field = "bx"', "fem.far_field = 'bx': must be one of 'half-plane', 'box'"),
         ("width =", "width = 1", "fem.width = 1: must be >= 4"),

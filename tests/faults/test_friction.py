@@ -78,7 +78,7 @@ def test_bound_of_the_pressure_before(monkeypatch, red):
     def beyond():
         """How far nodal forces at load point 2, made again from the tractions, are beyond f times normal ones."""
         scene = partialslip.load_scene(LARGE, [*STIFF, SIZE, "load.cycles=2"])
-        N, _, T = forces(partialslip.run(scene, ["fem"]).results["fem"].traction, scene.fem.order)
+        N, _, T = forces(partialslip.run(scene, ["fem"]).results["fem"].traction, scene.fem.elements)
         return float((np.abs(T) - scene.friction.f * N).max() / (scene.friction.f * scene.P))
 
     assert beyond() <= CERTIFIED

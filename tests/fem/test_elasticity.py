@@ -3,17 +3,21 @@
 import numpy as np
 import pytest
 import scipy.sparse.linalg as spla
+import skfem
+from numpy.polynomial.legendre import legval
+from skfem.models.poisson import laplace
 
 from partialslip_fem import factor
 from partialslip_fem.condensation import Condensation
 from partialslip_fem.elasticity import body
+from partialslip_fem.elements import ELEMENTS, nodes
 from partialslip_fem.farfield import FarField
 from partialslip_meshes import block
 
 SIZES = {-1.0: 0.2, 0.3: 0.1, 1.0: 0.2}
 
 
-@pytest.fixture(scope="module", params=[1, 2, 3, 4])
+@pytest.fixture(scope="module", params=[1, 2, 3, 4, 6])
 def half(request):
     return body(block(5.0, (-1.2, 1.2), SIZES, 0.6), kappa=1.8, order=request.param)
 
@@ -28,23 +32,28 @@ def test_stiffness_is_symmetric(half):
     assert abs(half.stiffness - half.stiffness.T).max() < 1e-12
 
 
-def test_weights_are_the_closed_newton_cotes_ones(half):
+def test_weights_are_those_of_newton_and_cotes_or_of_lobatto(half):
+    """Up to order 4 and beyond."""
     weights = half.weights
     assert weights.sum() == pytest.approx(2.4, rel=1e-13)
     assert (weights > 0).all()
-    inner = {1: [], 2: [4 / 6], 3: [3 / 8, 3 / 8], 4: [32 / 90, 12 / 90, 32 / 90]}[half.order]
+    inner = {1: [], 2: [4 / 6], 3: [3 / 8, 3 / 8], 4: [32 / 90, 12 / 90, 32 / 90]}
     k = half.order
+    lobatto = [1 / (k * (k + 1) * legval(2 * x - 1, [0] * k + [1]) ** 2) for x in nodes(k)[1:-1]]
     lengths = np.diff(half.x[::k])
-    for offset, weight in enumerate(inner, start=1):
+    for offset, weight in enumerate(inner.get(k, lobatto), start=1):
         assert weights[offset::k] == pytest.approx(weight * lengths, rel=1e-12)
 
 
-def test_contact_nodes_are_evenly_spaced_within_cells(half):
+def test_nodes_of_the_contact_line_lie_alike_in_all_cells(half):
+    """Evenly spaced up to order 4."""
     k = half.order
     vertices = half.x[::k]
     assert set(SIZES) <= {round(x, 12) for x in vertices}
-    for offset in range(k):
-        assert half.x[offset::k][: len(vertices) - 1] == pytest.approx(vertices[:-1] + np.diff(vertices) * offset / k)
+    if k <= 4:
+        assert nodes(k) == pytest.approx(np.arange(k + 1) / k)
+    for offset, share in enumerate(nodes(k)[:-1]):
+        assert half.x[offset::k][: len(vertices) - 1] == pytest.approx(vertices[:-1] + np.diff(vertices) * share)
 
 
 @pytest.mark.parametrize("kappa", [1.0004, 1.8, 2.0, 2.9])
@@ -117,3 +126,14 @@ def test_displacements_of_all_nodes_carry_the_contact_forces(half, backend):
     residual[half.contact.ravel()] -= forces
     residual[half.held.ravel()] = 0
     assert np.abs(residual).max() < 1e-10
+
+
+@pytest.mark.parametrize("order", [4, 5, 6])
+def test_harmonic_polynomials_of_the_elements_order_are_exact(order):
+    """No residual inside, on straight triangles of any shape."""
+    mesh = skfem.MeshTri().refined(2)
+    mesh = skfem.MeshTri(mesh.p + 0.1 * np.sin(3 * mesh.p[::-1]), mesh.t)
+    basis = skfem.Basis(mesh, ELEMENTS[order]())
+    free = basis.complement_dofs(basis.get_dofs())
+    harmonic = ((basis.doflocs[0] + 1j * basis.doflocs[1]) ** order).real
+    assert np.abs(laplace.assemble(basis) @ harmonic)[free].max() < 1e-11

@@ -98,7 +98,7 @@ def complaints(scene, result, steps):
     if not steps and result.last_cycle_change is not None:
         yield "nothing was solved"
     # n forces sum to Q but for n roundings, which make the more of a traction the less of the line a node has
-    count, least = len(result.traction.x), np.diff(result.traction.cells).min() / result.a / (scene.fem.order + 1)
+    count, least = len(result.traction.x), np.diff(result.traction.cells).min() / result.a / (scene.fem.elements + 1)
     rounding = 4 * count * np.finfo(float).eps / least
     if not (certificate["kkt"] <= CERTIFIED + rounding and certificate["equilibrium"] <= CERTIFIED):
         yield f"certificate {certificate}"
@@ -109,7 +109,7 @@ def complaints(scene, result, steps):
             yield f"a better answer by {gap}"
     if result.stick_half_width == 0 and not any("smaller than an element" in note for note in result.notes):
         yield "no stick zone, and nothing is said"
-    N, T1, T2 = forces(result.traction, scene.fem.order)
+    N, T1, T2 = forces(result.traction, scene.fem.elements)
     unit = CERTIFIED * f * scene.P
     if abs(N.sum() / scene.P - 1) > CERTIFIED or not (N > -CERTIFIED * scene.P).all():
         yield f"sum of N {N.sum() / scene.P} P, least {N.min() / scene.P}"

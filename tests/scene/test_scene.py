@@ -99,7 +99,7 @@ def test_what_a_scene_leaves_out():
     plain = scene()
     assert (plain.title, plain.material.plane, plain.load.cycles) == ("", "strain", 1)
     assert plain.load.Q == plain.load.sigma == (0.0, 0.0)
-    assert (plain.fem.order, plain.fem.far_field, plain.fem.width) == (4, "half-plane", None)
+    assert (plain.fem.elements, plain.fem.far_field, plain.fem.width) == (4, "half-plane", None)
 
 
 # --- settings changed from outside

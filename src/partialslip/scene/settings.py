@@ -14,11 +14,12 @@ class Fem(Table, frozen=True, kw_only=True):
     """Settings of the finite-element method.
 
     ``accuracy``: of a, m and n, as a fraction of a (marching uses it for m and n, too). ``order``: polynomial order of
-    the triangles; default 4, and 6 where meshes are refined to less than 3e-7. ``far_field``: condition on the outer boundary of a block that stands for a half-plane, either the
-    displacements of the half-plane under the contact tractions or a clamped ``box``. ``width``: half-width of such a
-    block, in contact half-widths. ``lower_size``: element size of the lower body relative to the upper body; the nodes
-    of the two bodies match only at 1. ``size``: element size along the contact, in contact half-widths, of one mesh,
-    instead of refinement to ``accuracy``. ``factor``: solver of the stiffness; default cholmod if cvxopt is installed.
+    the triangles; default 4, and 6 where meshes are refined to less than 3e-7. ``far_field``: condition on the outer
+    boundary of a block that stands for a half-plane, either the displacements of the half-plane under the contact
+    tractions or a clamped ``box``. ``width``: half-width of such a block, in contact half-widths. ``lower_size``:
+    element size of the lower body relative to the upper body; the nodes of the two bodies match only at 1. ``size``:
+    element size along the contact, in contact half-widths, of one mesh, instead of refinement to ``accuracy``.
+    ``factor``: solver of the stiffness; default cholmod if cvxopt is installed.
     """
 
     accuracy: Annotated[float, msgspec.Meta(ge=1e-9, le=0.1)] = 2e-5

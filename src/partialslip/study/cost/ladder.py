@@ -29,6 +29,7 @@ SETTING = (
 )
 KEYS = ("a", "m", "n", "p", "q")
 _ADAPTED: dict[str, tuple[dict[str, Any], tuple[float, ...]]] = {
+    "P6": ({"order": 6}, (1e-6, 1e-7, 1e-8, 1e-9)),
     "P4": ({"order": 4}, (1e-2, 1e-3, 1e-4, 2e-5, 1e-6, 1e-7)),
     "P3": ({"order": 3}, (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)),
     "P2": ({"order": 2}, (1e-2, 1e-3, 1e-4, 1e-5)),
