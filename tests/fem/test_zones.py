@@ -73,8 +73,10 @@ def test_resultant_is_kept(half):
 @pytest.mark.fault
 def test_dividing_by_weights_would_waver(half):
     """Deliberate fault: nodal forces over the integrals of their shape functions, off by h^2 p''."""
-    smooth = np.cos(10 * half.x)
+    smooth = np.cos(2 * half.x)
     load = half.mass @ smooth  # the load of the interpolant: its own recovery is exact
+    if half.order > 4:
+        pytest.skip("Lobatto's weights integrate products of the elements nearly exactly")
     divided = load / half.weights
     inner = np.abs(half.x) < 1
     assert np.abs(traction(half, load)(half.x) - smooth)[inner].max() < 1e-10
