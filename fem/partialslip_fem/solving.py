@@ -19,7 +19,7 @@ from partialslip.condensed.steps import follow_refined, march_refined
 from partialslip.condensed.trail import Trail
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, condense, key_of, mesh_bodies
-from partialslip_fem.contact import CondensedBody, relative_compliances
+from partialslip_fem.contact import CondensedBody
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import nodal_forces
 from partialslip_fem.problem import Problem
@@ -95,11 +95,12 @@ def solve_contact(
     ``factored`` is the number of factorisations made for them; ``clock``, ``steps`` and ``before`` as for
     :func:`mesh_and_solve`; ``shared`` is what earlier solutions on these bodies have found.
     """
+    shared = shared or Shared()
     with clock.phase("condensation"):
-        relative = relative_compliances(bodies, problem.coupled)
+        relative = shared.relative(bodies, problem.coupled)
     with clock.phase("contact"):
         line, both = bodies[0].body, relative.xy is not None
-        forces = _contact_forces(problem, relative, bodies[0], steps, shared or Shared(), before)
+        forces = _contact_forces(problem, relative, bodies[0], steps, shared, before)
         history, nodes, errors = forces.history, forces.nodes, forces.step_errors
         left, right = contact_ends(line, forces.pressing.x)
         ends_at_1: tuple[float, float] | tuple[()] = ()

@@ -9,6 +9,15 @@ Indices = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 
 
+def runs(members: Indices) -> list[slice]:
+    """Slices of consecutive ``members`` (k,) in turn: parts of arrays without a copy."""
+    if not len(members):
+        return []
+    breaks = np.flatnonzero(members[1:] - members[:-1] != 1).tolist()
+    firsts, lasts = [0, *(at + 1 for at in breaks)], [*breaks, len(members) - 1]
+    return [slice(int(members[one]), int(members[two]) + 1) for one, two in zip(firsts, lasts, strict=True)]
+
+
 def submatrix(matrix: Array, rows: Indices, columns: Indices) -> Array:
     """``rows`` and ``columns`` of a ``matrix``, copied: several times faster than by ``np.ix_``."""
     return matrix.take(rows, axis=0).take(columns, axis=1)

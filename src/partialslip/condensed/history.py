@@ -197,6 +197,7 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path, factored:
     sides: list[Sides] = []
     factored = factored or Factored(tangential)
     factored.expect(first + cycle * (0 if path.half else path.cycles))
+    stretched = factored.all_free(stretch.T)
 
     last = np.zeros(len(path.begin))
 
@@ -206,7 +207,8 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path, factored:
         if not change.any():
             sides.append(before.sides)
             return still(before), bound
-        free = tangential @ before.x + change[1] * stretch[0] + change[2] * stretch[1]
+        free = factored.times(before.x) + change[1:3] @ stretch
+        all_free = None if stretched is None else before.x + stretched @ change[1:3]
         near: Sides | None = before.sides
         if len(sides) >= first + cycle:
             near = sides[-cycle]  # this step in the previous cycle
@@ -214,7 +216,7 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path, factored:
             near = factored.near
         elif len(sides) > 1 and before.rest.any():  # not the first step of a way
             near = ahead(sides[-1], sides[-2], float(change @ last / (last @ last)))
-        found = solve_bounded(tangential, free, -bound, bound, Q, near, factored)
+        found = solve_bounded(tangential, free, -bound, bound, Q, near, factored, all_free)
         sides.append(found.sides)
         last = change
         return found, bound
