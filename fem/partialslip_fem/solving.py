@@ -186,7 +186,8 @@ def _contact_forces(
         path = replace(path, before=path.before[nodes])
     assert C.xx is not None
     slipping = before.slipping(line.x[nodes]) if before else None
-    tangential, bound = shared.tangential(C.xx, nodes, slipping), problem.f * pressing.x[nodes]
+    tangential, route = shared.tangential(C.xx, nodes, slipping)
+    bound = problem.f * pressing.x[nodes]
     half_width = float(np.subtract(*contact_ends(line, pressing.x)[::-1])) / 2
 
     def errors(history: History, finer: History) -> step_errors.Errors:
@@ -194,7 +195,7 @@ def _contact_forces(
         return step_errors.halved(history, finer, zones, line.weights[nodes], half_width)
 
     sheared = tangential.C, moved[:, nodes], bound, path, problem.accuracy
-    history, left = march_refined(*sheared, None if steps is None else errors, steps or 0, tangential)
+    history, left = march_refined(*sheared, None if steps is None else errors, steps or 0, tangential, route)
     return _ContactForces(pressing, history, nodes, None, left)
 
 

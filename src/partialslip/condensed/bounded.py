@@ -68,11 +68,11 @@ class Factored:
 
     For many programmes C is inverted, once: a factor of as many members as are held then suffices, if these are fewer
     than the free ones, and r, which is zero at free members, needs no product with C. The last factor and the last
-    product are remembered. ``near`` are sides (n,) to begin with, known from elsewhere.
+    product are remembered.
     """
 
-    def __init__(self, C: Array, near: Sides | None = None) -> None:
-        self.C, self.near = C, near
+    def __init__(self, C: Array) -> None:
+        self.C = C
         self.diagonal = np.diag(C).copy()
         self._inverse: Array | None = None
         self._uniform: Array = np.empty(0)
