@@ -35,6 +35,7 @@ def mesh_and_solve(
     keep: Kept | None = None,
     steps: int | None = None,
     before: MeshSolution | None = None,
+    alone: bool = False,
 ) -> MeshSolution:
     """Mesh the bodies and solve ``problem`` on them.
 
@@ -54,11 +55,14 @@ def mesh_and_solve(
         estimate their errors (:attr:`MeshSolution.step_errors`). By default the path's steps are used.
     before : MeshSolution, optional
         Solution on other meshes: the search for the zones begins at its zones.
+    alone : bool
+        Whether the solution shares nothing but kept bodies with earlier ones, so that it is the same to the last digit:
+        meshes refined by it are then the same, too.
     """
     key = key_of(problem, width, grading)
     if keep and (known := keep.find(key)):
         bodies, shared = known
-        return solve_contact(problem, bodies, 0, clock, steps, shared, before)
+        return solve_contact(problem, bodies, 0, clock, steps, None if alone else shared, before)
     bodies, shared = condense(mesh_bodies(problem, width, grading, clock), problem, width, clock), Shared()
     if keep:
         keep.add(key, bodies, shared)
