@@ -85,7 +85,7 @@ class Factored:
         self._programmes += count
         if self._inverse is None and self._programmes > _MANY:
             self._inverse = inverse(self.C)
-            self._uniform = self._inverse.sum(axis=0)
+            self._uniform = self._refined(self._inverse, np.ones(len(self.C)))
 
     def times(self, x: Array) -> Array:
         """C ``x`` (n,)."""
@@ -100,6 +100,16 @@ class Factored:
     def all_free(self, g: Array) -> Array | None:
         """Solutions of C x = ``g`` (n,) or (n, k), which :meth:`line` can use; None if C has not been inverted."""
         return None if self._inverse is None else self._inverse @ g
+
+    def refined(self, g: Array) -> Array | None:
+        """:meth:`all_free` after a step of iterative refinement, for ``g`` of which many programmes take a share: what
+        they find then seldom needs one."""
+        return None if self._inverse is None else self._refined(self._inverse, g)
+
+    def _refined(self, inverse: Array, g: Array) -> Array:
+        x = inverse @ g
+        result: Array = x + inverse @ (g - self.C @ x)
+        return result
 
     def line(self, free: Mask, g: Array, held: Array, all_free: Array | None) -> Line:
         """Solutions with C x - ``g`` - shift = 0 at the ``free`` members (n,), the others at ``held`` (n,)."""

@@ -209,7 +209,7 @@ def march(
     steps = np.diff(times, prepend=0.0).tolist()
     factored, route = factored or Factored(tangential), route or Route()
     factored.expect(first + cycle * (0 if path.half else path.cycles))
-    stretched = factored.all_free(stretch.T)
+    stretched = factored.refined(stretch.T)
 
     last = np.zeros(len(path.begin))
 
