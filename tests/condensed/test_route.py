@@ -91,3 +91,14 @@ def test_parts_of_matrices_by_runs():
         assert np.array_equal(np.concatenate([np.arange(20)[run] for run in runs(rows)] or [rows]), rows)
         for columns in (rows, np.array([4, 5, 11])):
             assert np.array_equal(submatrix(matrix, rows, columns), matrix[np.ix_(rows, columns)])
+
+
+def test_steps_from_the_displacements_of_another_step_are_noticed(monkeypatch):
+    """Deliberate fault: the remembered product is that of the step before the last one. Every step has its certificate
+    all the same; only another solution shows it."""
+    path, late = along(0.7, 0.3, 4), [np.zeros(N)]
+    true = solved(path)
+    monkeypatch.setattr(Factored, "times", lambda self, x: (late.append(self.C @ x), late[-2])[1])
+    wrong = solved(path)
+    assert max(step.residual.max() for step in wrong.points) < 1e-12
+    assert np.abs(wrong.change - true.change).max() > 1e-3 * BOUND.max()
