@@ -13,7 +13,7 @@ from partialslip.condensed.step_errors import steps_matter
 from partialslip.condensed.steps import MOST
 from partialslip.result import Clock
 from partialslip_fem import estimate, goals, solving
-from partialslip_fem.bodies import Grading
+from partialslip_fem.bodies import Grading, Kept
 from partialslip_fem.expense import Expense, again
 from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_first_mesh, too_narrow
 from partialslip_fem.goals import Goal, course, gaps, reached, worst
@@ -30,7 +30,14 @@ _CHOICES = 13  # accuracies tried, from the one asked for to the loosest, when a
 _WORTH = 1.2  # of the unknowns of the present mesh: a mesh with fewer is not worth solving on
 
 
-def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progress: Callable[[str], None]) -> Adapted:
+def adapt(
+    problem: Problem,
+    accuracy: float,
+    width: float,
+    clock: Clock,
+    progress: Callable[[str], None],
+    keep: Kept | None = None,
+) -> Adapted:
     """Refine until the ends are known to ``accuracy``, by the estimates of :mod:`partialslip_fem.estimate`.
 
     Errors of elements of order k decrease with the 2 k-th power of their growth away from the ends; from them follows
@@ -49,13 +56,15 @@ def adapt(problem: Problem, accuracy: float, width: float, clock: Clock, progres
         Counts the CPU seconds; may have an allowance.
     progress : callable
         Called with one line after each mesh.
+    keep : Kept, optional
+        Condensed bodies of the first mesh, to reuse and to add to.
 
     Raises
     ------
     InputError
         If the contact does not fit on a finite body.
     """
-    refinement = _Refinement(problem, accuracy, width, clock)
+    refinement = _Refinement(problem, accuracy, width, clock, keep)
     while True:
         if settled := refinement.settle():
             return settled
@@ -76,10 +85,10 @@ class _Refinement:
     the last such error.
     """
 
-    def __init__(self, problem: Problem, accuracy: float, width: float, clock: Clock) -> None:
+    def __init__(self, problem: Problem, accuracy: float, width: float, clock: Clock, keep: Kept | None) -> None:
         self.problem, self.width, self.clock = problem, width, clock
         self.expense = Expense(clock, len(problem.parts))
-        self.solution, self.meshes, self.factored = solve_on_first_mesh(problem, width, clock)
+        self.solution, self.meshes, self.factored = solve_on_first_mesh(problem, width, clock, keep, alone=True)
         self.expense.measure(self.solution.dofs)
         self.iterations = self.solution.iterations
         self.limit = contact_line_limit(problem)

@@ -10,11 +10,13 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices, submatrix
 from partialslip.condensed.bounded import Factored, Sides, Solution
+from partialslip.condensed.coupled import Relative
 from partialslip.condensed.normal import press
+from partialslip.condensed.route import Route
 from partialslip.errors import InputError
 from partialslip.result import Clock
 from partialslip_fem.condensation import Condensation
-from partialslip_fem.contact import CondensedBody
+from partialslip_fem.contact import CondensedBody, relative_compliances
 from partialslip_fem.elasticity import body
 from partialslip_fem.farfield import half_plane
 from partialslip_fem.problem import Part, Problem
@@ -25,11 +27,19 @@ _KEPT = 2  # sets of bodies in Kept: those of the first mesh, and of the uniform
 
 
 class Shared:
-    """What solutions on the same bodies share: the last pressing, and factors of the compliance of what touches."""
+    """What solutions on the same bodies share: their relative compliances, the last pressing, and factors of the
+    compliance of what touches."""
 
     def __init__(self) -> None:
+        self._relative: tuple[bool, Relative] | None = None
         self._pressed: tuple[Array, Solution] | None = None
-        self._sheared: tuple[Indices, Factored] | None = None
+        self._sheared: tuple[Indices, Factored, Route] | None = None
+
+    def relative(self, bodies: Sequence[CondensedBody], coupled: bool) -> Relative:
+        """Relative compliances of the ``bodies`` (:func:`partialslip_fem.contact.relative_compliances`)."""
+        if not self._relative or self._relative[0] != coupled:
+            self._relative = coupled, relative_compliances(bodies, coupled)
+        return self._relative[1]
 
     def press(self, normal: Array, gap: Array, arms: Array | None, near: Sides | None) -> Solution:
         """Normal forces (n,), as from :func:`partialslip.condensed.normal.press` under a force of 1; ``near`` are sides
@@ -41,12 +51,12 @@ class Shared:
         self._pressed = key, found
         return found
 
-    def tangential(self, compliance: Array, nodes: Indices, near: Sides | None) -> Factored:
-        """Factors of the ``compliance`` of the ``nodes``, (k, k); ``near`` are sides (k,) to begin with."""
+    def tangential(self, compliance: Array, nodes: Indices, near: Sides | None) -> tuple[Factored, Route]:
+        """Factors of the ``compliance`` of the ``nodes``, (k, k), and the last route of the loads on these nodes;
+        ``near`` are sides (k,) for the first route."""
         if not self._sheared or not np.array_equal(self._sheared[0], nodes):
-            self._sheared = nodes, Factored(submatrix(compliance, nodes, nodes))
-        self._sheared[1].near = near
-        return self._sheared[1]
+            self._sheared = nodes, Factored(submatrix(compliance, nodes, nodes)), Route(near)
+        return self._sheared[1:]
 
 
 class Grading(NamedTuple):

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
+import scipy.sparse.linalg as spla
 import skfem
 
 from partialslip.arrays import Array
@@ -63,6 +64,11 @@ class Body:
         """Length of the contact line per node, (n,): row sums of ``mass``. Traction times weight is the nodal force."""
         result: Array = np.asarray(self.mass.sum(axis=1)).ravel()
         return result
+
+    @cached_property
+    def mass_factor(self) -> spla.SuperLU:
+        """Factor of ``mass``."""
+        return spla.splu(self.mass.tocsc())
 
     @property
     def held_points(self) -> Array:

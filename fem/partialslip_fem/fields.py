@@ -143,9 +143,7 @@ def edges_near_contact(solution: MeshSolution, length: float, origin: float) -> 
     """
     found, middle = [], np.array([(solution.left + solution.right) / 2, 0.0])
     for condensed, way in zip((solution.bodies * 2)[:2], (1, -1), strict=True):
-        mesh = condensed.mesh
-        sides = np.concatenate([mesh.triangles[:, [0, 1]], mesh.triangles[:, [1, 2]], mesh.triangles[:, [2, 0]]])
-        ends = (mesh.points[np.unique(np.sort(sides, axis=1), axis=0)] - middle) / solution.half_width
+        ends = (condensed.mesh.points[condensed.mesh.edges] - middle) / solution.half_width
         low, high = ends.min(axis=1), ends.max(axis=1)
         near = (low[:, 0] < _REACH) & (high[:, 0] > -_REACH) & (high[:, 1] > -_REACH)
         seen = np.hypot(*(ends[:, 1] - ends[:, 0]).T) > _SHORTEST

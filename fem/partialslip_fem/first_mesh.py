@@ -18,7 +18,7 @@ _FILLS = 0.95  # largest contact line, in the width of a finite block: it keeps 
 
 
 def solve_on_first_mesh(
-    problem: Problem, width: float, clock: Clock, keep: Kept | None = None
+    problem: Problem, width: float, clock: Clock, keep: Kept | None = None, alone: bool = False
 ) -> tuple[MeshSolution, int, int]:
     """Double the contact line until it encloses the contact.
 
@@ -27,7 +27,7 @@ def solve_on_first_mesh(
     problem : Problem
     width : float
         Half-width of blocks that stand for half-planes, in half-widths of the contact line.
-    clock, keep
+    clock, keep, alone
         As for :func:`partialslip_fem.solving.mesh_and_solve`.
 
     Returns
@@ -54,7 +54,7 @@ def solve_on_first_mesh(
         reach = min(reach, limit)
         sizes = dict.fromkeys(np.linspace(-reach, reach, _POINTS).tolist(), 2 * FIRST_SIZE * reach)
         grading = Grading((-reach, reach), sizes, _GROWTH)
-        solution = solving.mesh_and_solve(problem, width * reach, grading, clock, keep, steps)
+        solution = solving.mesh_and_solve(problem, width * reach, grading, clock, keep, steps, alone=alone)
         meshes, factored = meshes + 1, factored + solution.factored
         if solution.enclosed:
             return solution, meshes, factored

@@ -49,7 +49,8 @@ def solve(
     start : State, optional
         State at the beginning of the load path; by default bodies without shear.
     keep : Kept, optional
-        Condensed bodies to reuse, and to add the new ones to, where the element size is given.
+        Condensed bodies to reuse, and to add the new ones to: of all meshes where the element size is given, otherwise
+        of the first mesh.
     allowance : Allowance, optional
         CPU seconds that the refinement may take. If they do not suffice for the accuracy of the scene, the best
         accuracy within the allowance is chosen.
@@ -69,7 +70,7 @@ def solve(
     with clock.phase("mesh"):
         problem = scaled(scene, plan, start)
     if scene.fem.size is None and not scene.meshed:
-        adapted = adapt(problem, scene.fem.accuracy, width, clock, progress)
+        adapted = adapt(problem, scene.fem.accuracy, width, clock, progress, None if allowance else keep)
     else:
         adapted = uniform(problem, scene.fem.size, width, clock, keep)
     return to_result(scene, plan, problem, adapted, clock)

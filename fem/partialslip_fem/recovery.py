@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse.linalg as spla
 from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
@@ -17,7 +16,7 @@ def traction(body: Body, forces: Array) -> PPoly:
     Nodal forces are integrals of the traction times shape functions. Dividing by the integrals of the shape functions
     would give an oscillating error of h^2 p''; the mass matrix inverts the integrals and preserves the resultant.
     """
-    return polynomials(body.x, spla.spsolve(body.mass.tocsc(), forces), body.order)
+    return polynomials(body.x, body.mass_factor.solve(forces), body.order)
 
 
 def polynomials(x: Array, values: Array, order: int) -> PPoly:

@@ -19,7 +19,7 @@ from partialslip.condensed.steps import follow_refined, march_refined
 from partialslip.condensed.trail import Trail
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, condense, key_of, mesh_bodies
-from partialslip_fem.contact import CondensedBody, relative_compliances
+from partialslip_fem.contact import CondensedBody
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import nodal_forces
 from partialslip_fem.problem import Problem
@@ -35,6 +35,7 @@ def mesh_and_solve(
     keep: Kept | None = None,
     steps: int | None = None,
     before: MeshSolution | None = None,
+    alone: bool = False,
 ) -> MeshSolution:
     """Mesh the bodies and solve ``problem`` on them.
 
@@ -54,11 +55,14 @@ def mesh_and_solve(
         estimate their errors (:attr:`MeshSolution.step_errors`). By default the path's steps are used.
     before : MeshSolution, optional
         Solution on other meshes: the search for the zones begins at its zones.
+    alone : bool
+        Whether the solution shares nothing but kept bodies with earlier ones, so that it is the same to the last digit:
+        meshes refined by it are then the same, too.
     """
     key = key_of(problem, width, grading)
     if keep and (known := keep.find(key)):
         bodies, shared = known
-        return solve_contact(problem, bodies, 0, clock, steps, shared, before)
+        return solve_contact(problem, bodies, 0, clock, steps, None if alone else shared, before)
     bodies, shared = condense(mesh_bodies(problem, width, grading, clock), problem, width, clock), Shared()
     if keep:
         keep.add(key, bodies, shared)
@@ -95,11 +99,12 @@ def solve_contact(
     ``factored`` is the number of factorisations made for them; ``clock``, ``steps`` and ``before`` as for
     :func:`mesh_and_solve`; ``shared`` is what earlier solutions on these bodies have found.
     """
+    shared = shared or Shared()
     with clock.phase("condensation"):
-        relative = relative_compliances(bodies, problem.coupled)
+        relative = shared.relative(bodies, problem.coupled)
     with clock.phase("contact"):
         line, both = bodies[0].body, relative.xy is not None
-        forces = _contact_forces(problem, relative, bodies[0], steps, shared or Shared(), before)
+        forces = _contact_forces(problem, relative, bodies[0], steps, shared, before)
         history, nodes, errors = forces.history, forces.nodes, forces.step_errors
         left, right = contact_ends(line, forces.pressing.x)
         ends_at_1: tuple[float, float] | tuple[()] = ()
@@ -185,7 +190,8 @@ def _contact_forces(
         path = replace(path, before=path.before[nodes])
     assert C.xx is not None
     slipping = before.slipping(line.x[nodes]) if before else None
-    tangential, bound = shared.tangential(C.xx, nodes, slipping), problem.f * pressing.x[nodes]
+    tangential, route = shared.tangential(C.xx, nodes, slipping)
+    bound = problem.f * pressing.x[nodes]
     half_width = float(np.subtract(*contact_ends(line, pressing.x)[::-1])) / 2
 
     def errors(history: History, finer: History) -> step_errors.Errors:
@@ -193,7 +199,7 @@ def _contact_forces(
         return step_errors.halved(history, finer, zones, line.weights[nodes], half_width)
 
     sheared = tangential.C, moved[:, nodes], bound, path, problem.accuracy
-    history, left = march_refined(*sheared, None if steps is None else errors, steps or 0, tangential)
+    history, left = march_refined(*sheared, None if steps is None else errors, steps or 0, tangential, route)
     return _ContactForces(pressing, history, nodes, None, left)
 
 

@@ -1,5 +1,7 @@
 """Solving on one mesh with a given element size, or on meshes from files: no refinement, no error estimate."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from partialslip.condensed.steps import MOST
@@ -36,7 +38,9 @@ def uniform(problem: Problem, size: float | None, width: float, clock: Clock, ke
     InputError
         If the contact does not fit on a finite body, or has too few elements of a mesh file.
     """
-    solution, meshes, factored = solve_on_first_mesh(problem, width, clock, keep)
+    apart = not (problem.coupled or problem.pressing or problem.meshed)  # friction does not change where the contact is
+    first = replace(problem, path=None, strain=0.0) if apart and problem.path else problem
+    solution, meshes, factored = solve_on_first_mesh(first, width, clock, keep)
     iterations, sizes = solution.iterations, _sizes_in_files(problem, solution)
     if problem.meshed:
         return Adapted(solution, {}, meshes, factored, iterations, width)

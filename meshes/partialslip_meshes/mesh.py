@@ -1,6 +1,7 @@
 """Meshes as plain arrays."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +27,13 @@ class Mesh:
     triangles: npt.NDArray[np.int64]
     lines: dict[str, npt.NDArray[np.int64]]
     cpu_s: float = 0.0
+
+    @cached_property
+    def edges(self) -> npt.NDArray[np.int64]:
+        """Points at the ends of the edges of the triangles, (e, 2), each edge once."""
+        sides = np.sort(np.concatenate([self.triangles[:, [k, k - 1]] for k in range(3)]), axis=1)
+        found = np.unique(sides[:, 0] * len(self.points) + sides[:, 1])
+        return np.stack(np.divmod(found, len(self.points)), axis=1)
 
 
 @dataclass(frozen=True)

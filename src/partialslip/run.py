@@ -191,8 +191,8 @@ def run(
     start : State, optional
         State at the start of the load path (:attr:`Result.state`, :func:`partialslip.load_state`); default: no shear.
     keep : partialslip_fem.Kept, optional
-        Factored meshes shared between runs. With ``fem.size`` given, runs that differ only in loads and friction
-        factor once. Default: nothing is shared.
+        Factored meshes shared between runs. With ``fem.size`` given, runs that differ only in shear, tension and
+        friction factor once; without, they share the first mesh. Default: nothing is shared.
     allowance : Allowance, optional
         CPU seconds that the run may take. Finite elements then stop at the accuracy reached within the allowance,
         ``settings["accuracy"]`` of the result; the bars follow from the accuracy reached.

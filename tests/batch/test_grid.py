@@ -52,6 +52,19 @@ def test_the_grid_is_all_combinations_and_points_may_be_given(solved):
     assert len(solved) == 6  # known in this session
 
 
+def test_points_of_one_geometry_share_their_meshes(solved):
+    """In any order of the points, each geometry is factored once: the first mesh, and the uniform one."""
+    block = {"width": 8e-3, "height": 8e-3}
+    rough = SCENE.replace(fem={"size": 0.1, "order": 2}, bodies={"lower": block, "upper": block})
+    heights = [6e-3, 7e-3, 8e-3]
+    points = [{"friction.f": f, **{f"bodies.{body}.height": height for body in ("lower", "upper")}}
+              for f in F[1:].tolist() for height in heights]  # fmt: skip
+    table = partialslip.sweep(rough, points, "fem", cores=1)
+    assert table["bodies.lower.height"].tolist() == heights * 3
+    assert table["factorizations"].tolist() == [2, 2, 2, 0, 0, 0, 0, 0, 0]
+    assert len(solved) == 9
+
+
 def test_a_sweep_that_was_stopped_goes_on(solved, tmp_path):
     """Ctrl-C after two points: both are in the file, and the next call solves the other two."""
 

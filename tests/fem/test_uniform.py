@@ -5,7 +5,8 @@ import pytest
 
 import partialslip
 from partialslip import InputError, load_scene
-from partialslip_fem import Kept, condensation
+from partialslip.condensed import bounded
+from partialslip_fem import Kept, condensation, solving
 
 
 def solved(*overrides, name="hertz-large-tension", keep=None):
@@ -44,6 +45,31 @@ def test_factored_once_for_all_loads(monkeypatch):
     afresh = solved(*scenes[-1])[0]
     assert afresh.counts["factorizations"] == 2
     assert (afresh.a, afresh.m, afresh.n) == (results[-1].a, results[-1].m, results[-1].n)
+
+
+def test_inverted_once_for_all_loads(monkeypatch):
+    """The dense inverse of what is in contact serves all loads, and friction is solved on the uniform mesh only."""
+    inverted, marched, true = [], [], bounded.inverse
+    monkeypatch.setattr(bounded, "inverse", lambda C: inverted.append(len(C)) or true(C))
+    march = solving.march_refined
+    monkeypatch.setattr(solving, "march_refined", lambda C, *rest: marched.append(len(C)) or march(C, *rest))
+    keep, settings = Kept(), ("fem.size=0.04", "load.sigma=[-2e8, 2e8]")
+    for share in np.linspace(0.1, 1.0, 16).tolist():
+        fem, _ = solved(*settings, f"load.Q=[{-9e4 * share}, {9e4 * share}]", keep=keep)
+    assert set(marched) == {fem.counts["contact_nodes"]}
+    assert len(marched) == 16
+    assert inverted.count(fem.counts["contact_nodes"]) == 1
+
+
+def test_adapted_meshes_share_the_first_one():
+    """To the last digit, as meshes are refined by what is found on it."""
+    keep = Kept()
+    loads = [("fem.accuracy=1e-3", f"load.Q=[{-Q}, {Q}]") for Q in (5e4, 9e4)]
+    first, kept = (solved(*each, keep=keep)[0] for each in loads)
+    afresh = solved(*loads[1])[0]
+    assert kept.counts["factorizations"] == afresh.counts["factorizations"] - 1
+    assert (kept.a, kept.m, kept.n, kept.estimate) == (afresh.a, afresh.m, afresh.n, afresh.estimate)
+    assert first.m != kept.m
 
 
 def test_another_material_is_another_factorisation():

@@ -75,7 +75,8 @@ def sweep(
         ``march.``) of other methods, with ``fem.error.*`` against the reference. With ``check`` the columns without a
         prefix stay those of the method asked for, and ``error.*`` are its errors against fem. ``outcome``: passed,
         missed or not judged; ``failure``: why the point could not be solved, empty if it was. Errors and estimates of
-        a, m and n are fractions of a, those of p and q are relative L2. Values that do not exist are NaN or None.
+        a, m and n are fractions of a, those of p and q are relative L2. ``fem.factorizations``: 0 where a point
+        found its meshes factored by another point. Values that do not exist are NaN or None.
 
     Raises
     ------
@@ -145,9 +146,13 @@ def _job(scene: Scene, methods: list[str] | None, point: Mapping[str, Any]) -> J
 
 
 def _geometry(task: Task) -> str:
-    """Sort key of a ``task``: by equivalent, points of one geometry follow each other, as few rigs are kept."""
+    """Sort key of a ``task``: points of one geometry, by fem also under one P, follow each other, as few rigs and few
+    meshes are kept."""
     scene, methods = task.argument.scene, task.argument.methods
-    return str((scene.bodies, scene.material, scene.profile)) if "equivalent" in methods else ""
+    if not {"equivalent", "fem"} & {*methods}:
+        return ""
+    geometry = scene.bodies, scene.material, scene.profile
+    return str((*geometry, scene.fem, scene.pressing) if "fem" in methods else geometry)
 
 
 def _row(point: Mapping[str, Any], solved: Solved, first: str | None = None) -> dict[str, Any]:
@@ -170,6 +175,8 @@ def _columns(run: Record, first: str | None) -> dict[str, Any]:
             columns |= {f"{own}error.{key}": errors.get(key) for key in _QUANTITIES}
         columns |= {f"{own}estimate.{key}": result.estimate[key] for key in _QUANTITIES if key in result.estimate}
         columns[f"{own}cpu_s"] = result.cost.cpu_s
+        if "factorizations" in result.counts:
+            columns[f"{own}factorizations"] = result.counts["factorizations"]
     return columns
 
 

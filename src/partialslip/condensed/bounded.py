@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Indices, Mask, submatrix
+from partialslip.arrays import Array, Indices, Mask, runs, submatrix
 
 Sides = npt.NDArray[np.int8]
 
@@ -55,27 +55,29 @@ def spread(values: Array, where: Indices, count: int) -> Array:
 
 
 class Line(NamedTuple):
-    """Solutions of one active set, by the rigid shift: ``at(shift)`` is x (n,), with the sum ``total`` + ``slope``
-    shift."""
+    """Solutions of one active set, by the rigid shift: ``at(shift)`` is x (n,) and r = C x - g - shift (n,); x has the
+    sum ``total`` + ``slope`` shift."""
 
     total: float
     slope: float
-    at: Callable[[float], Array]
+    at: Callable[[float], tuple[Array, Array]]
 
 
 class Factored:
     """Symmetric positive definite ``C`` (n, n) with factors of its parts, for all programmes with the same C.
 
     For many programmes C is inverted, once: a factor of as many members as are held then suffices, if these are fewer
-    than the free ones. The last factor is remembered. ``near`` are sides (n,) to begin with, known from elsewhere.
+    than the free ones, and r, which is zero at free members, needs no product with C. The last factor and the last
+    product are remembered.
     """
 
-    def __init__(self, C: Array, near: Sides | None = None) -> None:
-        self.C, self.near = C, near
+    def __init__(self, C: Array) -> None:
+        self.C = C
         self.diagonal = np.diag(C).copy()
         self._inverse: Array | None = None
         self._uniform: Array = np.empty(0)
         self._last: tuple[Array, Indices] | None = None
+        self._product: tuple[Array, Array] | None = None
         self._programmes = 0
 
     def expect(self, count: int) -> None:
@@ -83,11 +85,31 @@ class Factored:
         self._programmes += count
         if self._inverse is None and self._programmes > _MANY:
             self._inverse = inverse(self.C)
-            self._uniform = self._inverse.sum(axis=0)
+            self._uniform = self._refined(self._inverse, np.ones(len(self.C)))
+
+    def times(self, x: Array) -> Array:
+        """C ``x`` (n,)."""
+        if self._product is None or self._product[0] is not x:
+            self._product = x, self.C @ x
+        return self._product[1]
+
+    def remember(self, x: Array, product: Array) -> None:
+        """Remember the ``product`` (n,) of C and ``x`` (n,): a load step begins with the forces of the step before."""
+        self._product = x, product
 
     def all_free(self, g: Array) -> Array | None:
-        """Solution (n,) of C x = ``g``, which :meth:`line` can use; None if C has not been inverted."""
+        """Solutions of C x = ``g`` (n,) or (n, k), which :meth:`line` can use; None if C has not been inverted."""
         return None if self._inverse is None else self._inverse @ g
+
+    def refined(self, g: Array) -> Array | None:
+        """:meth:`all_free` after a step of iterative refinement, for ``g`` of which many programmes take a share: what
+        they find then seldom needs one."""
+        return None if self._inverse is None else self._refined(self._inverse, g)
+
+    def _refined(self, inverse: Array, g: Array) -> Array:
+        x = inverse @ g
+        result: Array = x + inverse @ (g - self.C @ x)
+        return result
 
     def line(self, free: Mask, g: Array, held: Array, all_free: Array | None) -> Line:
         """Solutions with C x - ``g`` - shift = 0 at the ``free`` members (n,), the others at ``held`` (n,)."""
@@ -99,22 +121,24 @@ class Factored:
         if len(others):
             first, by = self._back(K, others, (held - all_free)[others], -uniform)
 
-        def at(shift: float) -> Array:
-            forces = np.zeros(len(free))
-            forces[others] = first + shift * by
-            x: Array = all_free + shift * self._uniform + K @ forces
+        def at(shift: float) -> tuple[Array, Array]:
+            r = np.zeros(len(free))
+            r[others] = first + shift * by
+            x: Array = all_free + shift * self._uniform
+            for run in runs(others):
+                x += r[run] @ K[run]
             x[others] = held[others]
-            return x
+            return x, r
 
         return Line(float(all_free.sum() + uniform @ first), float(self._uniform.sum() + uniform @ by), at)
 
     def _line_of_free(self, members: Indices, g: Array, held: Array) -> Line:
         first, by = self._back(self.C, members, (g - self.C @ held)[members], np.ones(len(members)))
 
-        def at(shift: float) -> Array:
+        def at(shift: float) -> tuple[Array, Array]:
             x = held.copy()
             x[members] = first + shift * by
-            return x
+            return x, self.C @ x - g - shift
 
         return Line(float(held.sum() + first.sum()), float(by.sum()), at)
 
@@ -160,6 +184,7 @@ def solve_bounded(
     total: float,
     start: Sides | None = None,
     factored: Factored | None = None,
+    all_free: Array | None = None,
 ) -> Solution:
     """Minimise x.C x/2 - g.x over lower <= x <= upper with sum(x) = total.
 
@@ -182,8 +207,11 @@ def solve_bounded(
         Initial active set, from a similar problem (:attr:`Solution.sides`); default: all members are free.
     factored : Factored, optional
         Factors of ``C`` to use and to add to; default: none are known.
+    all_free : (n,) array, optional
+        Solution of C x = g, where it is known; default: found where C has been inverted.
     """
-    pivoting = _BlockPivoting(factored or Factored(C), g, lower, upper, start)
+    factored = factored or Factored(C)
+    pivoting = _BlockPivoting(factored, g, lower, upper, start, all_free)
     low, high, shift = -np.inf, np.inf, pivoting.settle(total)
     while True:
         x, r, slope = pivoting.solve(shift)
@@ -198,10 +226,11 @@ def solve_bounded(
         if following in (low, high, shift) or not np.isfinite(following):
             break  # the sum cannot come closer to the total in this arithmetic
         shift = following
-    x, r = pivoting.refined(x, r, shift, total)
+    x, r, shift = pivoting.refined(x, shift, total)
     found, x = x, np.clip(x, lower, upper)  # removes rounding errors; the residual below includes the clip
     if not np.array_equal(x, found):
         r = r + C @ (x - found)
+    factored.remember(x, r + g + shift)
     residual = np.abs(x - np.clip(x - r / pivoting.diagonal, lower, upper))
     rest = np.clip(r, np.where(x < upper, 0.0, -np.inf), np.where(x > lower, 0.0, np.inf))
     return Solution(x, rest, residual, abs(float(x.sum()) - total), pivoting.iterations, pivoting.changes)
@@ -217,10 +246,18 @@ class _BlockPivoting:
     the remaining residual is rounding.
     """
 
-    def __init__(self, factored: Factored, g: Array, lower: Array, upper: Array, start: Sides | None) -> None:
+    def __init__(
+        self,
+        factored: Factored,
+        g: Array,
+        lower: Array,
+        upper: Array,
+        start: Sides | None,
+        all_free: Array | None = None,
+    ) -> None:
         self._factored, self._C, self.diagonal = factored, factored.C, factored.diagonal
         self._g, self._lower, self._upper = g, lower, upper
-        self._all_free = factored.all_free(g)
+        self._all_free = factored.all_free(g) if all_free is None else all_free
         self._side = np.zeros(len(g), dtype=np.int8)  # -1 at the lower bound, 0 free, +1 at the upper
         if start is not None and (start == 0).any():
             self._side[:] = start
@@ -273,15 +310,17 @@ class _BlockPivoting:
                 return self._descend(x, shift)
             self._turn(wanted)
 
-    def refined(self, x: Array, r: Array, shift: float, total: float) -> tuple[Array, Array]:
-        """x and r after a step of iterative refinement, where an inverse has left more than a factor leaves."""
-        if self._all_free is None or not (free := self._side == 0).any():
-            return x, r
+    def refined(self, x: Array, shift: float, total: float) -> tuple[Array, Array, float]:
+        """x, r and the shift after a step of iterative refinement, where an inverse has left more than rounding."""
+        r = self._C @ x - self._g - shift
+        free = self._side == 0
+        if self._all_free is None or not (np.abs(r) > self._noise(x, shift))[free].any():
+            return x, r, shift
         off = np.where(free, -r, 0.0)
         line = self._factored.line(free, off, 0 * x, self._factored.all_free(off))
         change = (total - float(x.sum()) - line.total) / line.slope
-        x = x + line.at(change)
-        return x, self._C @ x - self._g - (shift + change)
+        x = x + line.at(change)[0]
+        return x, self._C @ x - self._g - (shift + change), shift + change
 
     def _descend(self, x: Array, shift: float) -> tuple[Array, Array, float]:
         """The same as :meth:`solve` by projected Newton steps, beginning near ``x``.
@@ -291,7 +330,8 @@ class _BlockPivoting:
         """
         at = np.clip(x, self._lower, self._upper)
         while True:
-            r, sides = self._conditions(at, shift)
+            r = self._C @ at - self._g - shift
+            sides = self._wanted(at, r, shift)
             self._change(sides)
             slope = self._solutions().slope
             x, new, wanted = self._at(shift)
@@ -311,13 +351,13 @@ class _BlockPivoting:
                 return at, r, slope
             at = at + step
 
-    def _conditions(self, x: Array, shift: float) -> tuple[Array, Sides]:
-        """r, and the sides that x and r require, within rounding."""
-        r = self._C @ x - self._g - shift
+    def _wanted(self, x: Array, r: Array, shift: float) -> Sides:
+        """The sides that x and r require, within rounding."""
         noise = self._noise(x, shift) / self.diagonal
         augmented = x - r / self.diagonal
         above, below = augmented > self._upper + noise, augmented < self._lower - noise
-        return r, above.astype(np.int8) - below
+        sides: Sides = above.astype(np.int8) - below
+        return sides
 
     def _noise(self, x: Array, shift: float) -> Array:
         """Rounding error of r."""
@@ -336,8 +376,8 @@ class _BlockPivoting:
     def _at(self, shift: float) -> tuple[Array, Array, Sides]:
         """x of the present sides at the ``shift``, r, and the sides that they require."""
         if self._tried is None or self._tried[0] != shift:
-            x = self._solutions().at(shift)
-            self._tried = shift, x, *self._conditions(x, shift)
+            x, r = self._solutions().at(shift)
+            self._tried = shift, x, r, self._wanted(x, r, shift)
         return self._tried[1:]
 
     def _solutions(self) -> Line:
@@ -349,6 +389,6 @@ class _BlockPivoting:
             self._line = (
                 self._factored.line(free, self._g, held, self._all_free)
                 if free.any()
-                else Line(float(held.sum()), 0.0, lambda _: held)
+                else Line(float(held.sum()), 0.0, lambda shift: (held, self._C @ held - self._g - shift))
             )
         return self._line

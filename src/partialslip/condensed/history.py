@@ -13,6 +13,7 @@ import numpy.typing as npt
 from partialslip.arrays import Array, Mask
 from partialslip.condensed.bounded import Factored, Sides, Solution, solve_bounded
 from partialslip.condensed.path import Path
+from partialslip.condensed.route import Route, ahead
 
 STEADY = 1e-6  # change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
 _REPEATS = 1e-13  # change of a node's q in a cycle, relative to the sum of |q|, that is rounding
@@ -173,7 +174,14 @@ class Steps(NamedTuple):
         return self._replace(forces=self.forces[:, nodes], bounds=self.bounds[:, nodes])
 
 
-def march(tangential: Array, stretch: Array, bound: Array, path: Path, factored: Factored | None = None) -> History:
+def march(
+    tangential: Array,
+    stretch: Array,
+    bound: Array,
+    path: Path,
+    factored: Factored | None = None,
+    route: Route | None = None,
+) -> History:
     """Follow the path at constant pressure; every step has a certificate.
 
     A step is a convex problem: nodes that stick keep the relative displacement, so that C (T - T_before) equals the
@@ -190,13 +198,18 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path, factored:
         f times the normal forces.
     path : Path
     factored : Factored, optional
-        Factors of ``tangential`` to use and to add to; if one step suffices, it begins with the sides in it.
+        Factors of ``tangential`` to use and to add to.
+    route : Route, optional
+        Where steps begin, and to be kept in it; default: nothing is known.
     """
     first, *ways = (len(way) for way in path.fractions)
     cycle = sum(ways)
     sides: list[Sides] = []
-    factored = factored or Factored(tangential)
+    times = path.times
+    steps = np.diff(times, prepend=0.0).tolist()
+    factored, route = factored or Factored(tangential), route or Route()
     factored.expect(first + cycle * (0 if path.half else path.cycles))
+    stretched = factored.refined(stretch.T)
 
     last = np.zeros(len(path.begin))
 
@@ -206,32 +219,24 @@ def march(tangential: Array, stretch: Array, bound: Array, path: Path, factored:
         if not change.any():
             sides.append(before.sides)
             return still(before), bound
-        free = tangential @ before.x + change[1] * stretch[0] + change[2] * stretch[1]
-        near: Sides | None = before.sides
+        free = factored.times(before.x) + change[1:3] @ stretch
+        all_free = None if stretched is None else before.x + stretched @ change[1:3]
         if len(sides) >= first + cycle:
             near = sides[-cycle]  # this step in the previous cycle
-        elif path.half and first == 1:
-            near = factored.near
+        elif (known := route.at(path, times[len(sides)], steps[len(sides)])) is not None:
+            near = known
         elif len(sides) > 1 and before.rest.any():  # not the first step of a way
             near = ahead(sides[-1], sides[-2], float(change @ last / (last @ last)))
-        found = solve_bounded(tangential, free, -bound, bound, Q, near, factored)
+        else:
+            near = before.sides
+        found = solve_bounded(tangential, free, -bound, bound, Q, near, factored, all_free)
         sides.append(found.sides)
         last = change
         return found, bound
 
-    return follow(path, advance, resting(0 * bound if path.before is None else path.before))
-
-
-def ahead(sides: Sides, earlier: Sides, times: float) -> Sides:
-    """Sides after a step if the ends of slip zones go on moving, ``times`` as far as in the step from the ``earlier``
-    sides to these ``sides``, (n,) each; the same ``sides`` if slip zones have come or gone."""
-    ends, before = (np.flatnonzero(np.diff(each)) + 1 for each in (sides, earlier))
-    runs, runs_before = (each[np.append(0, at)] for each, at in ((sides, ends), (earlier, before)))
-    if not np.array_equal(runs, runs_before):
-        return sides
-    moved = np.maximum.accumulate(np.clip(np.rint(ends + times * (ends - before)), 0, len(sides)).astype(np.int64))
-    result: Sides = np.repeat(runs, np.diff(moved, prepend=0, append=len(sides)))
-    return result
+    history = follow(path, advance, resting(0 * bound if path.before is None else path.before))
+    route.keep(path, sides[: first + cycle])
+    return history
 
 
 Advance = Callable[[Solution, Array, Array], tuple[Solution, Array]]

@@ -44,6 +44,12 @@ class Path:
         return self.ways or (equal,) * (1 + len(self.cycle))
 
     @property
+    def times(self) -> list[float]:
+        """Times at which the steps of the first loading and of the first cycle end: ways done, and the fraction of the
+        next."""
+        return [number + fraction for number, way in enumerate(self.fractions) for fraction in way]
+
+    @property
     def halved(self) -> "Path":
         """Path with every step halved."""
         middles = (

@@ -10,9 +10,10 @@ import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.bars import BARS
-from partialslip.condensed.bounded import Factored, solve_bounded
+from partialslip.condensed.bounded import Factored, Sides, solve_bounded
 from partialslip.condensed.history import History, march
 from partialslip.condensed.path import Path
+from partialslip.condensed.route import Route
 from partialslip.condensed.step_errors import Errors
 
 _GROUPS, _HALVINGS, _SOLVES = 64, 6, 400  # groups of nodes on which steps are chosen; limits of halvings and of solves
@@ -35,13 +36,14 @@ def march_refined(
     errors: Callable[[History, History], Errors] | None = None,
     most: int = MOST,
     factored: Factored | None = None,
+    route: Route | None = None,
 ) -> tuple[History, Errors]:
     """:func:`partialslip.condensed.history.march`, at constant pressure, with steps refined as by
     :func:`follow_refined`."""
-    problem, known = (tangential, stretch, bound), factored or Factored(tangential)
+    problem, known = (tangential, stretch, bound), (factored or Factored(tangential), route or Route())
 
     def along(path: Path) -> History:
-        return march(*problem, path, known)
+        return march(*problem, path, *known)
 
     return follow_refined(along, partial(refined, *problem), path, accuracy, errors, most)
 
@@ -159,6 +161,7 @@ class _Coarse:
         self._factored = Factored(self._C)
         self._factored.expect(_SOLVES)
         self._stretch = [self.sums(share * each) for each in stretch]
+        self._sides: Sides | None = None  # of the step before: where the next step begins
         self._near, self._solves = max(accuracy, _TELLING) * float(self._bound.sum()), 0
 
     def sums(self, forces: Array) -> Array:
@@ -177,10 +180,11 @@ class _Coarse:
         for number in range(substeps):
             stops = [(number + part) / substeps for part in (_TRIED if substeps < _MANY else (0, 1 / 2, 1))]
             loads = [load + stop * (end - load) for stop in stops]
-            whole = self._step(q, loads[0], loads[-1])
             tried = [q]
+            self._sides = None
             for start, stop in itertools.pairwise(loads):
                 tried.append(self._step(tried[-1], start, stop))
+            whole = self._step(q, loads[0], loads[-1])
             if self.same(tried[-1], whole):
                 fractions.append(stops[-1])
                 q = whole
@@ -194,6 +198,7 @@ class _Coarse:
     def _halve(self, q: Array, load: Array, end: Array, whole: Array, depth: int) -> tuple[list[float], Array]:
         """Fractions and forces for one step, halved until halving changes nothing; ``whole``: forces after one step."""
         middle = (load + end) / 2
+        self._sides = None
         first = self._step(q, load, middle)
         second = self._step(first, middle, end)
         if depth == 0 or self._solves > _SOLVES or self.same(second, whole):
@@ -205,7 +210,10 @@ class _Coarse:
     def _step(self, q: Array, load: Array, end: Array) -> Array:
         self._solves += 1
         free = self._C @ q + (end[1] - load[1]) * self._stretch[0] + (end[2] - load[2]) * self._stretch[1]
-        return solve_bounded(self._C, free, -self._bound, self._bound, float(end[0]), None, self._factored).x
+        bounds = -self._bound, self._bound
+        found = solve_bounded(self._C, free, *bounds, float(end[0]), self._sides, self._factored)
+        self._sides = found.sides
+        return found.x
 
 
 def _groups(count: int) -> npt.NDArray[np.int64]:

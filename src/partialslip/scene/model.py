@@ -216,8 +216,8 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     @property
     def end_pressing(self) -> tuple[Pressing, Pressing]:
         """P and M at load points 1 and 2."""
-        first, second = self.load.ends
-        return self.pressing[first], self.pressing[second]
+        (first, second), pressing = self.load.ends, self.pressing
+        return pressing[first], pressing[second]
 
     @property
     def presses_anew(self) -> bool:
@@ -238,7 +238,8 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     @property
     def P(self) -> float:
         """Normal force at the load point :attr:`largest`, N/m; for Hertz P = pi a^2/(2 A R) and p0 = a/(A R)."""
-        return self.end_pressing[self.largest - 1].P
+        first, second = self.end_pressing
+        return max(first.P, second.P)
 
     @property
     def M(self) -> float | None:
