@@ -1,4 +1,4 @@
-"""Systems of all partitions of nodes from one inverse, against their direct solutions."""
+"""Systems of all partitions of nodes from one factor, against their direct solutions."""
 
 from dataclasses import replace
 
@@ -19,7 +19,7 @@ def step():
     alike = 3 - np.log((x[:, None] - x) ** 2 + 1e-3) / 2 + 1e-2 * np.eye(N)
     coupling = 0.05 * np.tanh(20 * (x[:, None] - x))
     C = Relative(alike, alike, coupling)
-    return _Step(alike, alike, coupling, C.opening, 0.3, 1.0, 3 * x**2, 0.1, 0.2 * x, C.inverse)
+    return _Step(alike, alike, coupling, C.opening, 0.3, 1.0, 3 * x**2, 0.1, 0.2 * x, C.factors)
 
 
 def partition(random, opens):
@@ -30,10 +30,10 @@ def partition(random, opens):
 
 @pytest.mark.parametrize("opens", [0, 5, 14])
 def test_any_partition(step, opens):
-    """The forces of a partition by the inverse are those of the direct solution, and meet its conditions."""
+    """The forces of a partition by the factor are those of the direct solution, and meet its conditions."""
     touch, slip = partition(np.random.default_rng(opens), opens)
     p, q, opening, rest, scale = step._linear_solve(touch, slip, True)
-    direct = replace(step, inverse=None)._linear_solve(touch, slip, True)
+    direct = replace(step, factors=None)._linear_solve(touch, slip, True)
     assert p == pytest.approx(direct[0], abs=1e-12)
     assert q == pytest.approx(direct[1], abs=1e-12)
     assert np.abs(opening[touch]).max() <= 1e-14 * scale.max() * np.diag(step.yy).max()
@@ -47,7 +47,7 @@ def test_a_step_and_the_same_step_at_other_nodes(step):
     """The answer does not depend on the way to it, and one linear system suffices from the answer at these nodes."""
     zero = resting(np.zeros(N))
     p, q = _solve(step, [(zero, zero)])
-    for other in _solve(replace(step, inverse=None), [(zero, zero)]), _solve(step, [(p, q)]):
+    for other in _solve(replace(step, factors=None), [(zero, zero)]), _solve(step, [(p, q)]):
         assert other[0].x == pytest.approx(p.x, abs=1e-12)
         assert other[1].x == pytest.approx(q.x, abs=1e-12)
     assert p.residual.max() <= 1e-13

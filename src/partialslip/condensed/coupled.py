@@ -17,14 +17,15 @@ import scipy.linalg as la
 from partialslip.arrays import Array, Mask, submatrix
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
 from partialslip.condensed.history import History, certified, follow, resting, still
-from partialslip.condensed.partition import Forces, Inverse, Partition
+from partialslip.condensed.partition import Factors, Forces
 from partialslip.condensed.path import Path
-from partialslip.condensed.pressing import Punch, Stages
+from partialslip.condensed.pressing import Punches, Stages
 from partialslip.condensed.trail import Trail
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
 _STICKS = 1e-9  # relative tolerance of the friction bound and of lengths
 _TIMES = 2  # iterations of the half-width in self-similar pressing
+_PUNCHES = np.array([1.0, 0.6, 0.3, 0.8])  # half-widths of flat punches, in that of the contact, as far as needed
 _FAR = 10.0  # gap, in half-widths, that stays open
 _ENDS = 15.0  # tolerance of q over tolerance of the ends
 _MOST, _WORK = 64, 16_000  # limits of the steps of pressing, and of steps times nodes
@@ -53,18 +54,16 @@ class Relative:
         return self.xy.T if self.yx is None else self.yx
 
     @cached_property
-    def inverse(self) -> Inverse:
-        """Inverse of all of them, with friction and coupling."""
-        assert self.xx is not None
-        assert self.xy is not None
-        return Inverse(self.xx, self.yy, self.xy, self.opening, self.yx is None)
+    def factors(self) -> Factors | None:
+        """Factors of all of them, with friction and coupling; None if they are not symmetric."""
+        return Factors(self) if self.yx is None else None
 
 
 @dataclass(frozen=True)
 class _Step:
     """Problem of one load step: p sums to ``P`` over the ``gap`` (n,) before loading, q sums to ``Q``, and nodes that
-    stick have the relative displacement ``kept`` (n,) along x, up to a rigid shift. ``inverse`` is that of the
-    compliances, where many steps share it."""
+    stick have the relative displacement ``kept`` (n,) along x, up to a rigid shift. ``factors`` are those of the
+    compliances, which many steps share."""
 
     xx: Array
     yy: Array
@@ -75,7 +74,7 @@ class _Step:
     gap: Array
     Q: float
     kept: Array
-    inverse: Inverse | None = None
+    factors: Factors | None = None
 
     def sweep(self, p: Solution, q: Solution) -> tuple[Solution, Solution]:
         """One fixed-point iteration: solve for p with the old q, then for q with the new p; both problems are
@@ -155,10 +154,9 @@ class _Step:
         return self.yy @ p + self.yx @ q + self.gap - approach, self.xx @ q + self.xy @ p - self.kept - shift
 
     def _solver(self, touch: Mask, slip: Sides) -> Callable[[Array, Array], Forces]:
-        """What solves the linear system of one partition: by the inverse, if that leaves fewer unknowns."""
-        opens, slips = np.count_nonzero(~touch), np.count_nonzero(slip)
-        if self.inverse and 2 * opens + slips < len(touch):
-            return Partition(self.inverse, touch, slip, self.f).solve
+        """What solves the linear system of one partition."""
+        if self.factors and (partition := self.factors.partition(touch, slip, self.f)):
+            return partition.solve
         on, sticks = np.flatnonzero(touch), np.flatnonzero(touch & (slip == 0))
         i, end = len(on), len(on) + len(sticks)
         dragged = self.f * slip[on]
@@ -195,6 +193,7 @@ class Line:
     weights: Array
     ends: Callable[[Array], tuple[float, float]]
     similar: bool
+    sized: bool = False
     trail: Trail | None = None
     stages: Callable[[float], Stages] | None = None
 
@@ -238,7 +237,7 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
 
     def step(P: float, gap: Array, before: tuple[Solution, Solution]) -> tuple[Solution, Solution]:
         kept = xx @ before[1].x + xy @ before[0].x
-        this = _Step(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept, C.inverse)
+        this = _Step(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept, C.factors)
         return _solve_near(this, [before], trail, ("pressing", next(number)))
 
     def steps(count: int) -> list[tuple[Solution, Solution]]:
@@ -254,7 +253,7 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
         return float(np.sqrt(norm @ (q - other) ** 2 / size)) if size > 0 else 0.0
 
     if line is not None and line.similar:
-        return _similar(gap, f, line, steps(1)[-1], step, off)
+        return _similar(gap, f, line, steps(1)[-1], step, off, accuracy)
     last, count = steps(least), least
     while True:
         before, last, count = last, steps(2 * count), 2 * count
@@ -280,23 +279,43 @@ def _similar(
     last: tuple[Solution, Solution],
     step: Callable[[float, Array, tuple[Solution, Solution]], tuple[Solution, Solution]],
     off: Callable[[Array, Array], float],
+    accuracy: float,
 ) -> Pressed:
-    """Press self-similarly, with last steps of two sizes; the difference is the error estimate."""
+    """Press self-similarly, with last steps of two sizes; the difference is the error estimate. With it goes, for
+    bodies of a size, the change due to the last punch: punches are added until it is less than ``accuracy``."""
+    flats, punching, steps = 1, 0.0, 1
+    apart = resting(0 * gap), resting(0 * gap)
+
+    def punched(half_widths: Array, pressing: Array) -> Punches:
+        under = []
+        for half_width in half_widths:
+            flat = np.where(np.abs(line.x) <= half_width * (1 + _STICKS), 0.0, _FAR * half_width)
+            under.append(step(1.0, flat, apart))
+        normal, tangential = (np.array([each.x for each in along]) for along in zip(*under, strict=True))
+        return Punches(half_widths, line.x, line.weights, normal, tangential, pressing)
+
     for _ in range(_TIMES):
         left, right = line.ends(last[0].x)
-        reach = (right - left) / 2
+        reach, pressing = (right - left) / 2, last[0].x
+        stages: Stages
         if line.stages:
             stages = line.stages(reach)
+        elif line.sized:
+            while True:
+                stages = punched(reach * _PUNCHES[: flats + 1], pressing)
+                punching = off(stages.stage(1.0)[1], stages.fewer.stage(1.0)[1])
+                steps += flats + 1
+                if punching <= accuracy or flats + 1 == len(_PUNCHES):
+                    break
+                flats += 1
         else:
-            flat = np.where(np.abs(line.x) <= reach * (1 + _STICKS), 0.0, _FAR * reach)
-            punch = step(1.0, flat, (resting(0 * gap), resting(0 * gap)))
-            stages = Punch(reach, line.x, line.weights, punch[0].x, punch[1].x)
+            stages = punched(np.array([reach]), pressing)
         found = []
         for size in (stages.last, stages.last / 2):
             p, q = stages.stage(1 - size)
             found.append(step(1.0, gap, (replace(last[0], x=p), replace(last[1], x=q))))
         rough, last = found
-    errors = {"q": off(last[1].x, rough[1].x), "a": _moved(line, last[0].x, rough[0].x)}
+    errors = {"q": off(last[1].x, rough[1].x) + punching, "a": _moved(line, last[0].x, rough[0].x)}
     return Pressed(*_certified([last]), 2 + 2 * _TIMES, errors, stages.growth, f)
 
 
@@ -374,7 +393,7 @@ def march(
         kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0] + change[2] * bent
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the previous step, and this step of the previous cycle
         P = float(load[3]) if path.presses_anew else 1.0
-        this = _Step(xx, C.yy, xy, full.opening, f, P, gap, Q, kept, full.inverse)
+        this = _Step(xx, C.yy, xy, full.opening, f, P, gap, Q, kept, full.factors)
         normal, sheared = _solve_near(this, starts, line.trail if line is not None else None, ("path", len(done)))
         done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
         return sheared, f * normal.x
