@@ -14,9 +14,9 @@ import scipy.linalg as la
 from partialslip.arrays import Array, Indices, Mask, submatrix
 from partialslip.condensed.bounded import Sides
 
-_CORE = 0.4  # of the touching nodes: if fewer stick in one piece, a factor does not pay
-_USED = 0.7  # of the sticking piece: a factor whose first nodes cover less of it is a poor one
-_POOR = 2  # partitions that a poor factor does not serve before another one is made
+_KEPT = 2  # factors
+_PAYS = 0.7  # of the unknowns without a factor: a system with more is better solved directly
+_COST = 6.0  # of a factor of n nodes, as a multiple of the cost of a system of n unknowns
 _ROOM = 1.05  # nodes in a factor, relative to those that it is made for
 _SLACK = 0.3  # of the nodes that are not eliminated: so many that stick may be among them
 
@@ -41,28 +41,31 @@ class Forces(NamedTuple):
 
 
 class Factors:
-    """The factor of the compliances ``C`` that serves the latest partitions."""
+    """Factors of the compliances ``C``, made where they save more than they cost: when systems that an earlier one with
+    other nodes in the middle would have made smaller have cost as much. ``made`` counts them."""
 
     def __init__(self, C: Compliances) -> None:
-        self._C, self._poor = C, 0
-        self._nested: Nested | None = None
+        self._C, self._kept = C, list[Nested]()
+        self._missed = 0.0
         self.made = 0
 
     def partition(self, touch: Mask, slip: Sides, f: float) -> "Partition | None":
-        """The linear system of nodes (n,) that ``touch``, and slip where ``slip`` is the sign of q, with the coefficient
-        of friction ``f``; None if it is better solved directly."""
-        first, last = _longest(touch & (slip == 0))
-        if last - first < _CORE * np.count_nonzero(touch):
+        """The linear system of nodes (n,) that ``touch``, and slip where ``slip`` is the sign of q, with the friction
+        ``f``; None if it is better solved directly."""
+        sticks, count = touch & (slip == 0), int(np.count_nonzero(touch))
+        every = count + int(np.count_nonzero(sticks))
+        first, last = _longest(sticks)
+        best = max(self._kept, key=lambda each: each.core(sticks), default=None)
+        left = every - 2 * best.core(sticks) if best else every
+        self._missed += left**3 - (every - 2 * (last - first)) ** 3
+        if self._missed > _COST * count**3 or not best:
+            self._missed, left = 0.0, every - 2 * (last - first)
+            best = Nested(self._C, (first + last - 1) // 2)
+            self._kept = [*self._kept[-_KEPT + 1 :], best]
+        if left > _PAYS * every:
             return None
-        nested = self._nested
-        if nested is None or nested.core(touch, slip) < _USED * (last - first):
-            self._poor += 1
-            if nested is not None and self._poor <= _POOR:
-                return None
-            self._nested, self._poor = Nested(self._C, (first + last - 1) // 2), 0
-        assert self._nested
-        self.made += self._nested.reach(touch)
-        return Partition(self._nested, touch, slip, f)
+        self.made += best.reach(touch)
+        return Partition(best, touch, slip, f)
 
 
 class Nested:
@@ -75,47 +78,52 @@ class Nested:
         self.L, self.by_rigid = np.empty((0, 0)), np.empty((0, 2))
         self._tail: tuple[int, Array] = 0, np.empty((0, 0))
 
-    def core(self, touch: Mask, slip: Sides) -> int:
-        """Number of the first nodes that all touch and stick."""
-        return _leading((touch & (slip == 0))[self.order])
+    def core(self, sticks: Mask) -> int:
+        """Number of the first nodes that all stick, of those that do, (n,)."""
+        return _leading(sticks[self.order])
 
     def reach(self, touch: Mask) -> bool:
         """Include all nodes that ``touch`` (n,); whether this took a new factor."""
         count = int(np.flatnonzero(touch[self.order])[-1]) + 1
         if 2 * count <= len(self.L):
             return False
-        C, count = self._C, min(int(_ROOM * count) + 2, len(touch))
-        assert C.xx is not None
-        assert C.xy is not None
-        at = self.order[:count]
-        whole = np.empty((2 * count, 2 * count), order="F")
-        whole[::2, ::2], whole[1::2, 1::2] = submatrix(C.yy, at, at), submatrix(C.xx, at, at)
-        whole[1::2, ::2] = submatrix(C.xy, at, at)
-        whole[::2, 1::2] = whole[1::2, ::2].T
-        self.L, failed = la.lapack.dpotrf(whole, lower=True, clean=True, overwrite_a=True)
+        known, count = len(self.L) // 2, min(int(_ROOM * count) + 2, len(touch))
+        rows = self._rows(known, count)
+        L, end = np.zeros((2 * count, 2 * count), order="F"), 2 * known
+        L[:end, :end] = self.L
+        if known:  # the rows of the nodes that are new
+            L[end:, :end] = la.blas.dtrsm(1.0, self.L, rows[:, :end], side=True, lower=True, trans_a=True)
+            rows = rows[:, end:] - L[end:, :end] @ L[end:, :end].T
+        L[end:, end:], failed = la.lapack.dpotrf(rows, lower=True, clean=True)
         if failed:
-            raise la.LinAlgError(f"the leading minor {failed} of the compliances is not positive")
+            raise la.LinAlgError(f"the leading minor {end + failed} of the compliances is not positive")
         rigid = np.zeros((2 * count, 2), order="F")
         rigid[::2, 0] = rigid[1::2, 1] = 1
-        self.by_rigid, self._tail = self.forward(rigid), (0, np.empty((0, 0)))
+        self.L, self.by_rigid = L, la.blas.dtrsm(1.0, L, rigid, lower=True)
         return True
 
-    def forward(self, load: Array) -> Array:
-        """L^-1 ``load``, (m, k)."""
-        result: Array = la.blas.dtrsm(1.0, self.L, load, lower=True)
-        return result
+    def _rows(self, first: int, count: int) -> Array:
+        """Rows of the compliances of the nodes from the ``first`` in their order to the one before ``count``."""
+        C, at = self._C, self.order[:count]
+        assert C.xx is not None
+        assert C.xy is not None
+        rows = np.empty((2 * (count - first), 2 * count), order="F")
+        rows[::2, ::2], rows[1::2, 1::2] = (submatrix(each, at[first:], at) for each in (C.yy, C.xx))
+        rows[1::2, ::2], rows[::2, 1::2] = submatrix(C.xy, at[first:], at), submatrix(C.xy, at, at[first:]).T
+        return rows
 
-    def backward(self, load: Array) -> Array:
-        """L^-T ``load``, (m,)."""
-        result: Array = la.blas.dtrsv(self.L, load, lower=True, trans=1)
+    def solved(self, load: Array, transposed: bool = False) -> Array:
+        """L^-1 ``load``, or L^-T ``load``, (m,), of the first nodes if ``load`` ends or begins to vanish after them."""
+        result: Array = la.blas.dtrsv(self.L, load, lower=True, trans=transposed)
         return result
 
     def tail(self, core: int, count: int) -> tuple[int, Array]:
-        """How many of the first ``core`` nodes are eliminated, and the compliances of those that follow."""
+        """How many of the first ``core`` nodes are eliminated, and the compliances of those that follow, up to
+        ``count`` nodes at least."""
         begin, matrix = self._tail
-        if not begin <= core <= begin + _SLACK * (count - begin) or not len(matrix):
+        if not begin <= core <= begin + _SLACK * (count - begin) or len(matrix) < 2 * (count - begin):
             begin = max(core - int(_SLACK / 3 * (count - core)) - 1, 0)
-            rows = self.L[2 * begin :, 2 * begin :]
+            rows = self.L[2 * begin : 2 * count, 2 * begin : 2 * count]
             self._tail = begin, rows @ rows.T
         return self._tail
 
@@ -125,10 +133,10 @@ class Partition:
     the coefficient of friction ``f``."""
 
     def __init__(self, by: Nested, touch: Mask, slip: Sides, f: float) -> None:
-        order = by.order[: len(by.L) // 2]
+        order = by.order[: int(np.flatnonzero(touch[by.order])[-1]) + 1]
         touches, slips = touch[order], slip[order]
         self._by, self._n, self._order = by, len(touch), order
-        self._begin, matrix = by.tail(by.core(touch, slip), len(order))
+        self._begin, matrix = by.tail(by.core(touch & (slip == 0)), len(order))
         on = np.flatnonzero(touches[self._begin :])
         self._drag = f * slips[self._begin :][on]
         sticks = on[self._drag == 0]
@@ -141,24 +149,27 @@ class Partition:
 
     def solve(self, load: Array, totals: Array) -> Forces:
         """Forces for the displacements ``load`` (2, n), along y and x, that sum to ``totals`` (2,)."""
-        by, cut = self._by, 2 * self._begin
-        given = np.empty((len(by.L), 3), order="F")
-        given[:, 0], given[:, 1:] = by.forward(load[:, self._order].T.reshape(-1, 1))[:, 0], by.by_rigid
-        last = by.L[cut:, cut:] @ given[cut:]
+        by, cut, end = self._by, 2 * self._begin, 2 * len(self._order)
+        loaded, given = np.zeros(len(by.L)), np.empty((end, 3))
+        loaded[:end] = load[:, self._order].T.ravel()
+        given[:, 0], given[:, 1:] = by.solved(loaded)[:end], by.by_rigid[:end]
+        last = by.L[cut:end, cut:end] @ given[cut:]
         forces = np.zeros((len(last), 3))
         if self._factors:
             found = la.lu_solve(self._factors, last[self._rows], check_finite=False)
             pressed = found[: len(self._along_y)]
             forces[self._along_y], forces[self._all_x] = pressed, self._drag[:, None] * pressed
             forces[self._along_x] = found[len(self._along_y) :]
-        first = given[:cut] - by.L[cut:, :cut].T @ forces
+        first = given[:cut] - by.L[cut:end, :cut].T @ forces
         sums = by.by_rigid[:cut].T @ first + np.stack([forces[::2].sum(axis=0), forces[1::2].sum(axis=0)])
         rigid = np.linalg.solve(sums[:, 1:], totals - sums[:, 0])
         weights = np.append(1.0, rigid)
-        every = by.backward(np.concatenate([first @ weights, np.zeros(len(last))]))
-        every[cut:] = forces @ weights
+        every = np.zeros(len(by.L))
+        every[:cut] = first @ weights
+        every = by.solved(every, transposed=True)
+        every[cut:end] = forces @ weights
         p, q = np.zeros(self._n), np.zeros(self._n)
-        p[self._order], q[self._order] = every[::2], every[1::2]
+        p[self._order], q[self._order] = every[:end:2], every[1:end:2]
         return Forces(p, q, rigid)
 
 
