@@ -96,6 +96,11 @@ class Part:
         """Whether the part is a finite body, not a block that stands for a half-plane."""
         return self.extent is not None or self.mesh is not None
 
+    @property
+    def even(self) -> bool:
+        """Whether the part is sure to be a mirror image of itself."""
+        return not self.mesh and (not self.pulled or self.support == "clamped")
+
     def meshed_like(self, other: "Part") -> bool:
         """Whether both stand for half-planes with elements of one size: their meshes are the same."""
         return not self.finite and not other.finite and self.fineness == other.fineness
@@ -164,6 +169,8 @@ class Problem:
         Bulk strain of the lower surface at load point 2. Used only without a ``path``.
     similar : bool
         Whether the contact keeps its shape while it grows, as in Hertz contact of half-planes.
+    nearly_similar : bool
+        The same in bodies of a size, which are mirror images of themselves: it nearly keeps its shape.
     accuracy : float
         Accuracy asked for: error of the contact's ends, in its half-width.
     turns : bool
@@ -189,6 +196,7 @@ class Problem:
     inside: bool = True
     strain: float = 0.0
     similar: bool = False
+    nearly_similar: bool = False
     accuracy: float = 1e-3
     turns: bool = False
     origin: float = 0.0
@@ -219,6 +227,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
     """
     P, A, L, origin = scene.P, scene.material.A, scene.length, scene.origin
     parts = parts_of(scene, L)
+    parabolic = isinstance(scene.profile, Hertz) and scene.even and not scene.presses_anew
     return Problem(
         gap=lambda x: scene.gap_at(x * L + origin) / (A * P),
         kinks=tuple((kink - origin) / L for kink in scene.profile.kinks),
@@ -232,7 +241,8 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
         strain=lower_strain(scene, scene.load.points[scene.load.ends[1]][1]),
-        similar=isinstance(scene.profile, Hertz) and not scene.finite and scene.even and not scene.presses_anew,
+        similar=parabolic and not scene.finite,
+        nearly_similar=parabolic and scene.finite and all(part.even for part in parts),
         accuracy=scene.fem.accuracy,
         turns=plan.needs("moment"),
         origin=origin / L,

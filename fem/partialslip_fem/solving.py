@@ -170,7 +170,8 @@ def _contact_forces(
     if path and C.xy is not None:
         trail = Trail(line.x, before.trail if before else None)
         ends = partial(contact_ends, line)
-        along = coupled.Line(line.x, line.weights, ends, problem.similar, trail=trail)
+        reach = before.half_width if before else None
+        along = coupled.Line(line.x, line.weights, ends, problem.similar, problem.nearly_similar, reach, trail)
         near = BARS["q"] * problem.accuracy
         history, pressing, first = coupled.march(C, gap, stretch, moved[1], problem.f, path, pressed, along, near)
         nodes = np.flatnonzero(history.bound > 0)

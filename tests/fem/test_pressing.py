@@ -15,7 +15,7 @@ from scipy.special import ellipk, ellipkm1
 import partialslip
 from partialslip import plan
 from partialslip.condensed import coupled
-from partialslip.condensed.pressing import Punch
+from partialslip.condensed.pressing import Punch, Punches
 from partialslip_fem import solve, solving
 
 BETA = 1 / 7
@@ -128,3 +128,61 @@ def test_pressing_begins_on_a_mesh_with_hardly_a_node_in_the_contact():
     found = partialslip.run(scene(0.2).replace(fem={"order": 1, "size": 0.1}), "fem")["fem"]
     assert found.regime == "pressing"
     assert found.m == pytest.approx(found.n, abs=0.05 * found.a)
+
+
+@pytest.mark.parametrize("stick", [1.0, 0.8])
+def test_displacements_under_punches_add_up_to_those_under_a_parabola(stick):
+    """What a punch closes beside it on half-planes, arccosh(x/s), integrated with 2 s ds, is x^2, the gap; so integrate
+    displacements 1 - (c s/x)^2 beyond a stick zone of c s."""
+    half_widths, x = np.array([1.0, 0.5, 0.25]), np.linspace(-1.25, 1.25, 1001)
+    under = []
+    for half_width in half_widths:
+        t = np.abs(x) / half_width
+        moved = np.sign(x) * np.maximum(1 - (stick / np.maximum(t, 1e-9)) ** 2, 0.0)
+        under.append((t <= 1 + 1e-9, t <= stick + 1e-9, moved, -np.arccosh(np.maximum(t, 1.0))))
+    punches = Punches.of(half_widths, x, under)
+    assert punches.stick == pytest.approx(stick, abs=0.01)
+    share = 0.9
+    top = np.minimum(share, np.abs(x) / stick)  # of the half-widths at which x still slips
+    with np.errstate(divide="ignore", invalid="ignore"):
+        expected = np.sign(x) * (top**2 - (stick * top**2 / x) ** 2 / 2)
+    inside = (np.abs(x) < 1) & (x != 0)
+    for count in (1, 2, 3):
+        kept = punches.kept(x**2, 1.0, share, count)
+        assert kept[inside] == pytest.approx(expected[inside], abs=(0.3, 5e-3, 5e-4)[count - 1])
+
+
+def blocks(size):
+    return {"bodies": {side: {"kind": "block", "width": size, "height": size} for side in ("upper", "lower")}}
+
+
+@pytest.mark.parametrize("f", [0.1, 0.3])
+def test_large_blocks_are_pressed_like_half_planes(f):
+    """Blocks of 200 contact widths on elements of one size, against half-planes on cells of their own (march)."""
+    of = scene(f).replace(fem={"size": 0.04, "accuracy": 1e-3})
+    found = partialslip.run(of.replace(**blocks(2.0)), "fem")["fem"]
+    march = partialslip.run(of.replace(fem={"accuracy": 1e-2}), "march")["march"]
+    assert found.counts["pressing_steps"] == 5
+    assert found.a == pytest.approx(march.a, rel=1e-3)
+    assert found.m / found.a == pytest.approx(march.m / march.a, abs=0.02)  # half an element
+    x = np.linspace(-0.95, 0.95, 191)
+    q, expected = (each.traction.levels_at(x * each.a)[1] for each in (found, march))
+    assert np.linalg.norm(q - expected) < 0.02 * np.linalg.norm(expected)
+
+
+def test_blocks_are_pressed_as_step_by_step(monkeypatch):
+    """The small last step after what flat punches tell, against steps of all of P, which converge towards it."""
+    of = scene(0.2).replace(fem={"size": 0.04}, **blocks(20e-3))
+    found = partialslip.run(of, "fem")["fem"]
+    assert found.certificate["kkt"] < 1e-10
+    monkeypatch.setattr(coupled, "_nearly_similar", lambda *_: None)
+    off = []
+    for most in (8, 32):
+        monkeypatch.setattr(coupled, "_MOST", most)
+        stepped = partialslip.run(of, "fem")["fem"]
+        change = found.traction.q2 - np.interp(found.traction.x, stepped.traction.x, stepped.traction.q2)
+        off.append(np.linalg.norm(change) / np.linalg.norm(found.traction.q2))
+    assert stepped.estimate["q2"] > 3 * found.estimate["q2"]
+    assert off[1] < 0.1
+    assert off[1] < off[0] / 1.5
+    assert stepped.counts["normal_solves"] > 2 * found.counts["normal_solves"]

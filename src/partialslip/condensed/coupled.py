@@ -17,19 +17,27 @@ import scipy.linalg as la
 from partialslip.arrays import Array, Mask, submatrix
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
 from partialslip.condensed.history import History, certified, follow, resting, still
-from partialslip.condensed.partition import Forces, Inverse, Partition
+from partialslip.condensed.partition import Factors, Forces
 from partialslip.condensed.path import Path
-from partialslip.condensed.pressing import Punch, Stages
+from partialslip.condensed.pressing import Punch, Punches, Stages
 from partialslip.condensed.trail import Trail
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
 _STICKS = 1e-9  # relative tolerance of the friction bound and of lengths
 _TIMES = 2  # iterations of the half-width in self-similar pressing
+_PUNCHES = np.array([1.0, 0.5, 0.25])  # half-widths of flat punches on bodies of a size, in that of the contact
+_ROUGH = 0.1  # largest error of q for which these are used
+_SETTLED = 1e-3  # error of the half-width of the largest punch that is left
 _FAR = 10.0  # gap, in half-widths, that stays open
 _ENDS = 15.0  # tolerance of q over tolerance of the ends
 _MOST, _WORK = 64, 16_000  # limits of the steps of pressing, and of steps times nodes
 _PATIENCE = 4  # iterations without progress before the method changes
 _CLOSE = 32  # changes of sides in the last iteration below which rounding errors may matter
+
+
+Pair = tuple[Solution, Solution]
+_Press = Callable[..., Pair]  # one step: force, gap, kept, where to begin, and its key
+_Solver = Callable[[Array, Array], Forces]  # forces for the displacements (2, n) that sum to the totals (2,)
 
 
 @dataclass(frozen=True)
@@ -52,19 +60,23 @@ class Relative:
         assert self.xy is not None
         return self.xy.T if self.yx is None else self.yx
 
-    @cached_property
-    def inverse(self) -> Inverse:
-        """Inverse of all of them, with friction and coupling."""
+    def moved(self, p: Array, q: Array) -> tuple[Array, Array]:
+        """Relative displacements (n,) along x, and opening along y, under the forces ``p`` and ``q`` (n,)."""
         assert self.xx is not None
         assert self.xy is not None
-        return Inverse(self.xx, self.yy, self.xy, self.opening, self.yx is None)
+        return self.xx @ q + self.xy @ p, self.yy @ p + self.opening @ q
+
+    @cached_property
+    def factors(self) -> Factors | None:
+        """Factors of all of them, with friction and coupling; None if they are not symmetric."""
+        return Factors(self) if self.yx is None else None
 
 
 @dataclass(frozen=True)
 class _Step:
     """Problem of one load step: p sums to ``P`` over the ``gap`` (n,) before loading, q sums to ``Q``, and nodes that
-    stick have the relative displacement ``kept`` (n,) along x, up to a rigid shift. ``inverse`` is that of the
-    compliances, where many steps share it."""
+    stick have the relative displacement ``kept`` (n,) along x, up to a rigid shift. ``factors`` are those of the
+    compliances, which many steps share."""
 
     xx: Array
     yy: Array
@@ -75,7 +87,7 @@ class _Step:
     gap: Array
     Q: float
     kept: Array
-    inverse: Inverse | None = None
+    factors: Factors | None = None
 
     def sweep(self, p: Solution, q: Solution) -> tuple[Solution, Solution]:
         """One fixed-point iteration: solve for p with the old q, then for q with the new p; both problems are
@@ -94,11 +106,15 @@ class _Step:
         """Solve for p and q together, iterating on the partition from that of ``p`` and ``q``; None if that fails."""
         touch, slip = p.x > 0, q.sides * (p.x > 0)
         fewest, chances, iteration, refined = 2 * len(touch), _PATIENCE, 0, False
+        solver, found = None, None
         while chances > 0:
             iteration += 1
             if not (touch & (slip == 0)).any():
                 return None
-            p_new, q_new, opening, rest, scale = self._linear_solve(touch, slip, refined)
+            solver = solver or self._solver(touch, slip)
+            found = self._linear_solve(solver, touch, slip, refined, found)
+            opening, rest = self._off(found)
+            scale, (p_new, q_new, _) = self._scale(found), found
             noise = _ROUNDING * scale
             pushed = p_new - opening / np.diag(self.yy)
             augmented, bound = q_new - rest / np.diag(self.xx), self.f * p_new
@@ -123,42 +139,45 @@ class _Step:
             wrong = int((touches != touch).sum() + (slips != slip).sum())
             chances = _PATIENCE if wrong < fewest else chances - 1
             touch, slip, fewest, refined = touches, slips, min(wrong, fewest), wrong <= _CLOSE
+            solver = found = None
         return None
 
-    def _linear_solve(self, touch: Mask, slip: Sides, refined: bool) -> tuple[Array, ...]:
-        """p and q of one partition: nodes that ``touch`` have no gap, nodes that stick keep their displacement, and
-        q = ``slip`` f p at nodes that slip; ``refined`` to rounding. Also the opening, the slip, and the scale (2, n)
-        of rounding errors."""
-        solve, load = self._solver(touch, slip), np.stack([-self.gap, self.kept])
+    def _linear_solve(
+        self, solve: _Solver, touch: Mask, slip: Sides, refined: bool, found: Forces | None = None
+    ) -> Forces:
+        """Forces of one partition, whose linear system ``solve`` solves: nodes that ``touch`` have no gap, nodes that
+        stick keep their displacement, and q = ``slip`` f p at nodes that slip; ``refined`` to rounding, from those that
+        were ``found``."""
         totals = np.array([self.P, self.Q])
-        found = solve(load, totals)
+        found = found or solve(np.stack([-self.gap, self.kept]), totals)
+        if not refined:
+            return found
         opening, rest = self._off(found)
-        if refined:
-            sticks = touch & (slip == 0)
-            left = -np.stack([np.where(touch, opening, 0.0), np.where(sticks, rest, 0.0)])
-            change = solve(left, totals - [found.p.sum(), found.q.sum()])
-            found = Forces(*(each + more for each, more in zip(found, change, strict=True)))
-            opening, rest = self._off(found)
+        sticks = touch & (slip == 0)
+        left = -np.stack([np.where(touch, opening, 0.0), np.where(sticks, rest, 0.0)])
+        change = solve(left, totals - [found.p.sum(), found.q.sum()])
+        return Forces(*(each + more for each, more in zip(found, change, strict=True)))
+
+    def _scale(self, found: Forces) -> Array:
+        """Scale (2, n) of rounding errors of the forces."""
         p, q, (approach, shift) = found
-        total = np.abs(p).sum() + np.abs(q).sum()
-        scale = total + np.stack(
+        result: Array = (np.abs(p).sum() + np.abs(q).sum()) + np.stack(
             [
                 (np.abs(self.gap) + abs(approach)) / np.diag(self.yy),
                 (np.abs(self.kept) + abs(shift)) / np.diag(self.xx),
             ]
         )
-        return p, q, opening, rest, scale
+        return result
 
     def _off(self, found: Forces) -> tuple[Array, Array]:
         """Opening of the gap and slip under the forces."""
         p, q, (approach, shift) = found
         return self.yy @ p + self.yx @ q + self.gap - approach, self.xx @ q + self.xy @ p - self.kept - shift
 
-    def _solver(self, touch: Mask, slip: Sides) -> Callable[[Array, Array], Forces]:
-        """What solves the linear system of one partition: by the inverse, if that leaves fewer unknowns."""
-        opens, slips = np.count_nonzero(~touch), np.count_nonzero(slip)
-        if self.inverse and 2 * opens + slips < len(touch):
-            return Partition(self.inverse, touch, slip, self.f).solve
+    def _solver(self, touch: Mask, slip: Sides) -> _Solver:
+        """What solves the linear system of one partition."""
+        if self.factors and (partition := self.factors.partition(touch, slip, self.f)):
+            return partition.solve
         on, sticks = np.flatnonzero(touch), np.flatnonzero(touch & (slip == 0))
         i, end = len(on), len(on) + len(sticks)
         dragged = self.f * slip[on]
@@ -188,13 +207,16 @@ class Line:
     """Nodes of the contact line: ``x`` (n,), ``weights`` (n,) that turn tractions into forces, and
     ``ends(forces) -> (left, right)``, the ends of the contact under nodal normal forces (n,). ``similar``: whether
     half-planes are pressed together under a parabolic gap, so that all stages of pressing are similar; ``stages`` gives
-    them for a half-width of the contact, if they are known: by default a flat punch on the nodes tells them. ``trail``:
-    where the steps begin, and are to be remembered."""
+    them for a half-width of the contact, if they are known: by default a flat punch on the nodes tells them.
+    ``nearly_similar``: the same of bodies of a size; ``near`` is about the half-width of the contact, if it is known.
+    ``trail``: where the steps begin, and are to be remembered."""
 
     x: Array
     weights: Array
     ends: Callable[[Array], tuple[float, float]]
     similar: bool
+    nearly_similar: bool = False
+    near: float | None = None
     trail: Trail | None = None
     stages: Callable[[float], Stages] | None = None
 
@@ -221,8 +243,8 @@ class Pressed:
 def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accuracy: float, P: float = 1.0) -> Pressed:
     """Press the bodies together under a force from 0 to ``P``, with friction and without Q.
 
-    Nodes that stick keep their displacement. Half-planes under a parabolic gap are pressed in one small step from an
-    earlier stage, known from the flat punch (:mod:`partialslip.condensed.pressing`). Other bodies are pressed in at
+    Nodes that stick keep their displacement. Under a parabolic gap bodies are pressed in one small step from an
+    earlier stage, known from flat punches (:mod:`partialslip.condensed.pressing`). Others are pressed in at
     least ``least`` steps, doubled until q changes by less than ``accuracy`` (relative L2) or the limit is reached.
 
     ``C`` are the compliances, ``gap`` (n,) the gap before loading, ``f`` the coefficient of friction, ``line`` the
@@ -236,15 +258,14 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
     trail = line.trail if line is not None else None
     number = itertools.count()
 
-    def step(P: float, gap: Array, before: tuple[Solution, Solution]) -> tuple[Solution, Solution]:
-        kept = xx @ before[1].x + xy @ before[0].x
-        this = _Step(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept, C.inverse)
-        return _solve_near(this, [before], trail, ("pressing", next(number)))
+    def step(P: float, gap: Array, kept: Array, before: Pair, key: Hashable = None) -> Pair:
+        this = _Step(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept, C.factors)
+        return _solve_near(this, [before], trail, ("pressing", key or next(number)))
 
-    def steps(count: int) -> list[tuple[Solution, Solution]]:
+    def steps(count: int) -> list[Pair]:
         found = [apart]
         for force in np.linspace(0, P, count + 1)[1:].tolist():
-            found.append(step(force, gap, found[-1]))
+            found.append(step(force, gap, C.moved(found[-1][0].x, found[-1][1].x)[0], found[-1]))
         return found
 
     norm = 1 / line.weights if line is not None else np.ones(len(gap))
@@ -254,7 +275,13 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
         return float(np.sqrt(norm @ (q - other) ** 2 / size)) if size > 0 else 0.0
 
     if line is not None and line.similar:
-        return _similar(gap, f, line, steps(1)[-1], step, off)
+        return _similar(C, gap, f, line, steps(1)[-1], step, off)
+    if line is not None and line.nearly_similar:
+        if not (reach := line.near):
+            left, right = line.ends(steps(1)[-1][0].x)
+            reach = (right - left) / 2
+        if found := _nearly_similar(C, gap, f, line, reach, step, off):
+            return found
     last, count = steps(least), least
     while True:
         before, last, count = last, steps(2 * count), 2 * count
@@ -274,11 +301,12 @@ def _moved(line: Line, forces: Array, others: Array) -> float:
 
 
 def _similar(
+    C: Relative,
     gap: Array,
     f: float,
     line: Line,
-    last: tuple[Solution, Solution],
-    step: Callable[[float, Array, tuple[Solution, Solution]], tuple[Solution, Solution]],
+    last: Pair,
+    step: _Press,
     off: Callable[[Array, Array], float],
 ) -> Pressed:
     """Press self-similarly, with last steps of two sizes; the difference is the error estimate."""
@@ -289,15 +317,51 @@ def _similar(
             stages = line.stages(reach)
         else:
             flat = np.where(np.abs(line.x) <= reach * (1 + _STICKS), 0.0, _FAR * reach)
-            punch = step(1.0, flat, (resting(0 * gap), resting(0 * gap)))
+            punch = step(1.0, flat, 0 * gap, (resting(0 * gap), resting(0 * gap)))
             stages = Punch(reach, line.x, line.weights, punch[0].x, punch[1].x)
         found = []
         for size in (stages.last, stages.last / 2):
             p, q = stages.stage(1 - size)
-            found.append(step(1.0, gap, (replace(last[0], x=p), replace(last[1], x=q))))
+            found.append(step(1.0, gap, C.moved(p, q)[0], (replace(last[0], x=p), replace(last[1], x=q))))
         rough, last = found
     errors = {"q": off(last[1].x, rough[1].x), "a": _moved(line, last[0].x, rough[0].x)}
     return Pressed(*_certified([last]), 2 + 2 * _TIMES, errors, stages.growth, f)
+
+
+def _nearly_similar(
+    C: Relative,
+    gap: Array,
+    f: float,
+    line: Line,
+    reach: float,
+    step: _Press,
+    off: Callable[[Array, Array], float],
+) -> Pressed | None:
+    """Press bodies of a size, whose contact has about the half-width ``reach``, with all punches and half of the last
+    step after all but one and the whole last step. The difference is the error estimate; None if it is large."""
+    none, half_widths = resting(0 * gap), reach * _PUNCHES
+
+    def punch(half_width: float, key: float) -> Pair:
+        flat = np.where(np.abs(line.x) <= half_width * (1 + _STICKS), 0.0, _FAR * half_width)
+        return step(1.0, flat, none.x, (replace(none, x=1 - np.sign(flat)), none), ("punch", key))
+
+    under = [punch(half_width, key) for key, half_width in enumerate(half_widths.tolist())]
+    known = [(p.x > 0, (p.x > 0) & (q.sides == 0), *C.moved(p.x, q.x)) for p, q in under]
+    if not all(sticks.any() for _, sticks, _, _ in known):
+        return None
+    punches, found = Punches.of(half_widths, line.x, known), under[:1]
+    for count, size in ((len(under) - 1, punches.last), (len(under), punches.last / 2)):
+        kept = punches.kept(gap, reach, 1 - size, count)
+        found.append(step(1.0, gap, kept, found[-1], ("last", count)))
+        left, right = line.ends(found[-1][0].x)
+        reach = (right - left) / 2
+    growing, rough, last = found
+    errors = {"q": off(last[1].x, rough[1].x), "a": _moved(line, last[0].x, rough[0].x)}
+    if errors["q"] > _ROUGH:
+        return None
+    if abs(reach / half_widths[0] - 1) > _SETTLED:
+        growing = punch(reach, -1)
+    return Pressed(*_certified([last]), len(under) + 2, errors, (growing[0].x, growing[1].x), f)
 
 
 def punched(C: Relative, f: float, sides: Sides) -> tuple[Array, Array]:
@@ -374,7 +438,7 @@ def march(
         kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0] + change[2] * bent
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the previous step, and this step of the previous cycle
         P = float(load[3]) if path.presses_anew else 1.0
-        this = _Step(xx, C.yy, xy, full.opening, f, P, gap, Q, kept, full.inverse)
+        this = _Step(xx, C.yy, xy, full.opening, f, P, gap, Q, kept, full.factors)
         normal, sheared = _solve_near(this, starts, line.trail if line is not None else None, ("path", len(done)))
         done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
         return sheared, f * normal.x

@@ -1,18 +1,35 @@
-"""Linear systems of all partitions of nodes into open, slipping and sticking ones, from one inverse.
+"""Linear systems of all partitions of nodes into open, slipping and sticking ones, from one factor of the compliances.
 
-Forces z = (p, q) under the displacements g that the contact has to undo, and reactions r at nodes that do not:
-C z = g + r, with r along y at open nodes and along x at open and slipping nodes. As many conditions determine r: open
-nodes have no forces, and q = f p, or -f p, at slipping nodes. With the inverse of C the system is of their number only,
-where the forces themselves are of the number of touching and of sticking nodes.
+Most nodes stick in the middle of the contact. With these nodes first, and the others by their distance from them, one
+Cholesky factor C = L L^T serves all partitions: the first nodes stick in each of them and are eliminated, and what they
+leave of the compliances of the others is the product of the last rows of L. Systems are of the others only. Those of
+fewer nodes, in a contact that grows, are leading parts of the same factor.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Mask, submatrix
-from partialslip.condensed.bounded import Sides, inverse
+from partialslip.arrays import Array, Indices, Mask, submatrix
+from partialslip.condensed.bounded import Sides
+
+_KEPT = 2  # factors
+_PAYS = 0.7  # of the unknowns without a factor: a system with more is better solved directly
+_COST = 6.0  # of a factor of n nodes, as a multiple of the cost of a system of n unknowns
+_ROOM = 1.05  # nodes in a factor, relative to those that it is made for
+_SLACK = 0.3  # of the nodes that are not eliminated: so many that stick may be among them
+
+
+class Compliances(Protocol):
+    """Relative compliances (n, n), symmetric together (:class:`partialslip.condensed.coupled.Relative`)."""
+
+    @property
+    def xx(self) -> Array | None: ...
+    @property
+    def yy(self) -> Array: ...
+    @property
+    def xy(self) -> Array | None: ...
 
 
 class Forces(NamedTuple):
@@ -23,63 +40,148 @@ class Forces(NamedTuple):
     rigid: Array
 
 
-class Inverse:
-    """Inverse of the compliances ``yy``, ``xx``, ``xy`` and ``yx`` (n, n) of
-    :class:`partialslip.condensed.coupled.Relative`, ``symmetric`` or not."""
+class Factors:
+    """Factors of the compliances ``C``, made where they save more than they cost: when systems that an earlier one with
+    other nodes in the middle would have made smaller have cost as much. ``made`` counts them."""
 
-    def __init__(self, xx: Array, yy: Array, xy: Array, yx: Array, symmetric: bool) -> None:
-        whole, n = np.block([[yy, yx], [xy, xx]]), len(yy)
-        self.matrix = inverse(whole) if symmetric else la.inv(whole, check_finite=False)
-        self.under_rigid = np.stack([self.matrix[:, :n].sum(axis=1), self.matrix[:, n:].sum(axis=1)], axis=1)
-        self.sums = np.stack([self.matrix[:n].sum(axis=0), self.matrix[n:].sum(axis=0)])
+    def __init__(self, C: Compliances) -> None:
+        self._C, self._kept = C, list[Nested]()
+        self._missed = 0.0
+        self.made = 0
+
+    def partition(self, touch: Mask, slip: Sides, f: float) -> "Partition | None":
+        """The linear system of nodes (n,) that ``touch``, and slip where ``slip`` is the sign of q, with the friction
+        ``f``; None if it is better solved directly."""
+        sticks, count = touch & (slip == 0), int(np.count_nonzero(touch))
+        every = count + int(np.count_nonzero(sticks))
+        first, last = _longest(sticks)
+        best = max(self._kept, key=lambda each: each.core(sticks), default=None)
+        left = every - 2 * best.core(sticks) if best else every
+        self._missed += left**3 - (every - 2 * (last - first)) ** 3
+        if self._missed > _COST * count**3 or not best:
+            self._missed, left = 0.0, every - 2 * (last - first)
+            best = Nested(self._C, (first + last - 1) // 2)
+            self._kept = [*self._kept[-_KEPT + 1 :], best]
+        if left > _PAYS * every:
+            return None
+        self.made += best.reach(touch)
+        return Partition(best, touch, slip, f)
+
+
+class Nested:
+    """Cholesky factor ``L`` of the compliances ``C`` of the nodes nearest to the node ``middle``, by their distance
+    from it, y and x of each node in turn."""
+
+    def __init__(self, C: Compliances, middle: int) -> None:
+        self._C, n = C, len(C.yy)
+        self.order: Indices = np.argsort(np.abs(np.arange(n) - middle), kind="stable")
+        self.L, self.by_rigid = np.empty((0, 0)), np.empty((0, 2))
+        self._tail: tuple[int, Array] = 0, np.empty((0, 0))
+
+    def core(self, sticks: Mask) -> int:
+        """Number of the first nodes that all stick, of those that do, (n,)."""
+        return _leading(sticks[self.order])
+
+    def reach(self, touch: Mask) -> bool:
+        """Include all nodes that ``touch`` (n,); whether this took a new factor."""
+        count = int(np.flatnonzero(touch[self.order])[-1]) + 1
+        if 2 * count <= len(self.L):
+            return False
+        known, count = len(self.L) // 2, min(int(_ROOM * count) + 2, len(touch))
+        rows = self._rows(known, count)
+        L, end = np.zeros((2 * count, 2 * count), order="F"), 2 * known
+        L[:end, :end] = self.L
+        if known:  # the rows of the nodes that are new
+            L[end:, :end] = la.blas.dtrsm(1.0, self.L, rows[:, :end], side=True, lower=True, trans_a=True)
+            rows = rows[:, end:] - L[end:, :end] @ L[end:, :end].T
+        L[end:, end:], failed = la.lapack.dpotrf(rows, lower=True, clean=True)
+        if failed:
+            raise la.LinAlgError(f"the leading minor {end + failed} of the compliances is not positive")
+        rigid = np.zeros((2 * count, 2), order="F")
+        rigid[::2, 0] = rigid[1::2, 1] = 1
+        self.L, self.by_rigid = L, la.blas.dtrsm(1.0, L, rigid, lower=True)
+        return True
+
+    def _rows(self, first: int, count: int) -> Array:
+        """Rows of the compliances of the nodes from the ``first`` in their order to the one before ``count``."""
+        C, at = self._C, self.order[:count]
+        assert C.xx is not None
+        assert C.xy is not None
+        rows = np.empty((2 * (count - first), 2 * count), order="F")
+        rows[::2, ::2], rows[1::2, 1::2] = (submatrix(each, at[first:], at) for each in (C.yy, C.xx))
+        rows[1::2, ::2], rows[::2, 1::2] = submatrix(C.xy, at[first:], at), submatrix(C.xy, at, at[first:]).T
+        return rows
+
+    def solved(self, load: Array, transposed: bool = False) -> Array:
+        """L^-1 ``load``, or L^-T ``load``, (m,), of the first nodes if ``load`` ends or begins to vanish after them."""
+        result: Array = la.blas.dtrsv(self.L, load, lower=True, trans=transposed)
+        return result
+
+    def tail(self, core: int, count: int) -> tuple[int, Array]:
+        """How many of the first ``core`` nodes are eliminated, and the compliances of those that follow, up to
+        ``count`` nodes at least."""
+        begin, matrix = self._tail
+        if not begin <= core <= begin + _SLACK * (count - begin) or len(matrix) < 2 * (count - begin):
+            begin = max(core - int(_SLACK / 3 * (count - core)) - 1, 0)
+            rows = self.L[2 * begin : 2 * count, 2 * begin : 2 * count]
+            self._tail = begin, rows @ rows.T
+        return self._tail
 
 
 class Partition:
-    """The linear system of one partition.
+    """The linear system of nodes (n,) that ``touch``, and slip where ``slip`` is the sign of q; ``by`` a factor, with
+    the coefficient of friction ``f``."""
 
-    Parameters
-    ----------
-    by : Inverse
-    touch : (n,) bool array
-        Nodes that touch.
-    slip : (n,) int8 array
-        Sign of q at nodes that slip; 0 at others.
-    f : float
-        Coefficient of friction.
-    """
-
-    def __init__(self, by: Inverse, touch: Mask, slip: Sides, f: float) -> None:
-        n = len(touch)
-        self._by, self._open, self._slipping = by, np.flatnonzero(~touch), np.flatnonzero(touch & (slip != 0))
-        self._drag = f * slip[self._slipping]
-        self._held = np.concatenate([self._open, n + self._open, n + self._slipping])
-        matrix = submatrix(by.matrix, self._held, self._held)
-        matrix[2 * len(self._open) :] -= self._drag[:, None] * submatrix(by.matrix, self._slipping, self._held)
-        self._factors = la.lu_factor(matrix, overwrite_a=True, check_finite=False) if len(self._held) else None
-        self._by_rigid = self._reactions(by.under_rigid)
-        of_rigid = np.stack([by.under_rigid[:n].sum(axis=0), by.under_rigid[n:].sum(axis=0)])
-        self._totals = of_rigid + by.sums[:, self._held] @ self._by_rigid
+    def __init__(self, by: Nested, touch: Mask, slip: Sides, f: float) -> None:
+        order = by.order[: int(np.flatnonzero(touch[by.order])[-1]) + 1]
+        touches, slips = touch[order], slip[order]
+        self._by, self._n, self._order = by, len(touch), order
+        self._begin, matrix = by.tail(by.core(touch & (slip == 0)), len(order))
+        on = np.flatnonzero(touches[self._begin :])
+        self._drag = f * slips[self._begin :][on]
+        sticks = on[self._drag == 0]
+        self._along_y, self._along_x, self._all_x = 2 * on, 2 * sticks + 1, 2 * on + 1
+        self._rows = np.concatenate([self._along_y, self._along_x])
+        rows = matrix.take(self._rows, axis=0)
+        left = rows.take(self._along_y, axis=1) + rows.take(self._all_x, axis=1) * self._drag
+        system = np.concatenate([left, rows.take(self._along_x, axis=1)], axis=1)
+        self._factors = la.lu_factor(system, overwrite_a=True, check_finite=False) if len(on) else None
 
     def solve(self, load: Array, totals: Array) -> Forces:
         """Forces for the displacements ``load`` (2, n), along y and x, that sum to ``totals`` (2,)."""
-        n = load.shape[1]
-        free = self._by.matrix @ load.ravel()
-        first = self._reactions(free)
-        missing = totals - free.reshape(2, n).sum(axis=1) - self._by.sums[:, self._held] @ first
-        rigid = np.linalg.solve(self._totals, missing)
-        reactions = np.zeros(2 * n)
-        reactions[self._held] = first + self._by_rigid @ rigid
-        p, q = (free + self._by.under_rigid @ rigid + self._by.matrix @ reactions).reshape(2, n)
-        p[self._open] = q[self._open] = 0.0
-        q[self._slipping] = self._drag * p[self._slipping]
+        by, cut, end = self._by, 2 * self._begin, 2 * len(self._order)
+        loaded, given = np.zeros(len(by.L)), np.empty((end, 3))
+        loaded[:end] = load[:, self._order].T.ravel()
+        given[:, 0], given[:, 1:] = by.solved(loaded)[:end], by.by_rigid[:end]
+        last = by.L[cut:end, cut:end] @ given[cut:]
+        forces = np.zeros((len(last), 3))
+        if self._factors:
+            found = la.lu_solve(self._factors, last[self._rows], check_finite=False)
+            pressed = found[: len(self._along_y)]
+            forces[self._along_y], forces[self._all_x] = pressed, self._drag[:, None] * pressed
+            forces[self._along_x] = found[len(self._along_y) :]
+        first = given[:cut] - by.L[cut:end, :cut].T @ forces
+        sums = by.by_rigid[:cut].T @ first + np.stack([forces[::2].sum(axis=0), forces[1::2].sum(axis=0)])
+        rigid = np.linalg.solve(sums[:, 1:], totals - sums[:, 0])
+        weights = np.append(1.0, rigid)
+        every = np.zeros(len(by.L))
+        every[:cut] = first @ weights
+        every = by.solved(every, transposed=True)
+        every[cut:end] = forces @ weights
+        p, q = np.zeros(self._n), np.zeros(self._n)
+        p[self._order], q[self._order] = every[:end:2], every[1:end:2]
         return Forces(p, q, rigid)
 
-    def _reactions(self, forces: Array) -> Array:
-        """Reactions (m,) or (m, k) that make the ``forces`` (2 n,) or (2 n, k) meet the conditions of the partition."""
-        if not self._factors:
-            return forces[:0]
-        at, slipping, n = self._open, self._slipping, len(forces) // 2
-        drag = self._drag.reshape(-1, *(1,) * (forces.ndim - 1))
-        off = np.concatenate([forces[at], forces[n + at], forces[n + slipping] - drag * forces[slipping]])
-        result: Array = -la.lu_solve(self._factors, off, check_finite=False)
-        return result
+
+def _leading(mask: Mask) -> int:
+    """Number of leading true values."""
+    return len(mask) if mask.all() else int(np.argmin(mask))
+
+
+def _longest(mask: Mask) -> tuple[int, int]:
+    """The longest run of true values, from the first index up to the other."""
+    ends = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]))).reshape(-1, 2)
+    if not len(ends):
+        return 0, 0
+    first, last = ends[np.argmax(ends[:, 1] - ends[:, 0])]
+    return int(first), int(last)

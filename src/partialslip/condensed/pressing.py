@@ -9,16 +9,30 @@ tractions under flat punches,
 
 and the problem of one punch determines all stages. One small last step from an earlier stage is then solved with all
 conditions of contact and friction, which gives the certificate.
+
+In bodies of a size the stages are nearly similar: what a punch does at x/s depends on (s/W)^2, W being the size. What
+counts of an earlier stage are the displacements at which points stick,
+
+    u(x) = int_0^a u_flat(x/s; s) P'(s) ds,
+
+which vanish where they stick under the punch. A few punches suffice, between which u_flat is interpolated. P'(s)
+follows from the gap, which the displacements along y close in the same way.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Mask
 
 _TELLING = 1e-9  # tolerance of lengths, relative to the half-width
+_POINTS, _WEIGHTS = (np.polynomial.legendre.leggauss(16) + np.array([[1.0], [0.0]])) / 2
+_NEAR, _SOME = 1.05, 64  # nodes that matter, in half-widths of the contact; how many are enough for the gap
+_FAR = np.geomspace(1.01, 1e3, 40)  # beyond the last node, in its distance
+_CLOSED = 0.98  # nodes that are certainly closed, in half-widths of the contact
+_INNER = 0.8  # the same, where the slope at the last node begins
 
 
 class Stages(Protocol):
@@ -90,3 +104,89 @@ class Punch:
         middle, known = np.abs(scaled) <= _TELLING, np.abs(scaled) > _TELLING
         result[middle] = np.interp(scaled[middle], scaled[known], result[known])
         return result
+
+
+@dataclass(frozen=True)
+class Punches:
+    """Displacements under flat punches with the force 1, in bodies of a size.
+
+    Parameters
+    ----------
+    half_widths : (k,) array
+        Descending.
+    x : (n,) array
+        Nodes, ascending.
+    along, opening : (k, n) arrays
+        Relative displacements along x, and opening of the gap, less the rigid motion: zero where nodes stick or touch.
+    stick : float
+        Smallest half-width of a stick zone, in that of its punch.
+    """
+
+    half_widths: Array
+    x: Array
+    along: Array
+    opening: Array
+    stick: float
+    last = 2.5e-3  # last step of pressing, in half-widths
+
+    @classmethod
+    def of(cls, half_widths: Array, x: Array, under: Sequence[tuple[Mask, Mask, Array, Array]]) -> "Punches":
+        """Punches with these ``half_widths`` (k,), descending, at the nodes ``x`` (n,), ascending; ``under`` each the
+        nodes that touch and those that stick, and the relative displacements along x and y, (n,) each."""
+        along = [np.where(sticks, 0.0, moved - np.median(moved[sticks])) for _, sticks, moved, _ in under]
+        opening = [np.where(touch, 0.0, opened - np.median(opened[touch])) for touch, _, _, opened in under]
+        stick = min(np.abs(x[sticks]).max() / np.abs(x[touch]).max() for touch, sticks, _, _ in under)
+        return cls(half_widths, x, np.array(along), np.array(opening), float(stick))
+
+    def kept(self, gap: Array, reach: float, share: float, count: int) -> Array:
+        """Relative displacements (n,) under the ``gap`` (n,), pressed up to ``share`` of the half-width ``reach``, from
+        the first ``count`` punches."""
+        near = np.flatnonzero(np.abs(self.x) < _NEAR * reach)
+        closed = near[np.abs(self.x[near]) < _CLOSED * reach]
+        some = closed[:: max(len(closed) // _SOME, 1)]
+        under = self._sums(self._tables(self.opening[:count], np.log), self.x[some], reach, 1.0)
+        grown = np.linalg.lstsq(under.T, gap[closed].min() - gap[some], rcond=None)[0]
+        along = self._tables(self.along[:count], lambda ratio: (1 - ratio**-2) / 2)
+        found = grown @ self._sums(along, self.x[near], reach, share)
+        result: Array = np.interp(self.x, self.x[near], found)
+        return result
+
+    def _sums(self, tables: list[tuple[Array, Array]], x: Array, reach: float, share: float) -> Array:
+        """Integrals at ``x`` (m,) over half-widths s up to ``share``, of what the ``tables`` tell of the first punches,
+        for P'(s) like s and, with more than one punch, s^3: (1 or 2, m); lengths in ``reach``.
+
+        Displacements are square roots beside the ends of a punch, which cancel with s = |x| (1 - v^2), and slip ends at
+        the stick zone.
+        """
+        ends, sign = np.abs(x)[:, None] / reach, np.sign(x)[:, None]
+        begins = np.sqrt(np.maximum(1 - share / np.maximum(ends, _TELLING), 0.0))
+        v = begins + (1 - begins) * _POINTS
+        past, by_past = ends * (1 - v**2), 2 * ends * v * (1 - begins) * _WEIGHTS
+        wide = np.maximum(np.minimum(share, ends / self.stick) - ends, 0.0)
+        s = np.hstack([past, ends + wide * _POINTS**2])
+        by = np.hstack([by_past, wide * 2 * _POINTS * _WEIGHTS])
+        at = sign * ends / np.maximum(s, _TELLING)
+        places, total = (self.half_widths[: len(tables)] / reach) ** 2, np.zeros_like(s)
+        for number, table in enumerate(tables):
+            others = np.delete(places, number)
+            total += np.interp(at, *table) * np.prod((s[..., None] ** 2 - others) / (places[number] - others), axis=-1)
+        return np.array([(total * s**power * by).sum(axis=-1) for power in (1, 3)[: len(tables)]])
+
+    def _tables(self, of: Array, far: Callable[[Array], Array]) -> list[tuple[Array, Array]]:
+        """Abscissae x/s and values of what is known ``of`` the first punches, (k, n). Beyond the nodes a larger punch
+        goes on like the next smaller one, and the smallest like ``far`` of the distance: the field of a line load."""
+        found: list[tuple[Array, Array]] = []
+        for half_width, values in zip(self.half_widths[: len(of)][::-1], of[::-1], strict=True):
+            at = self.x / half_width
+            places, beyond = [at], [values]
+            for end, side in ((0, -1), (-1, 1)):
+                if found:
+                    past = side * found[-1][0] > side * at[end]
+                    more, known = found[-1][0][past], found[-1][1][past] - np.interp(at[end], *found[-1])
+                else:
+                    slope = (values[end] - np.interp(_INNER * at[end], at, values)) / -far(np.array(_INNER))
+                    more, known = at[end] * _FAR[::side], slope * far(_FAR[::side])
+                places.insert(len(places) * (side > 0), more)
+                beyond.insert(len(beyond) * (side > 0), known + values[end])
+            found.append((np.concatenate(places), np.concatenate(beyond)))
+        return found[::-1]
