@@ -160,8 +160,8 @@ class Problem:
         Whether p moves the surfaces along x and q moves them along y.
     inside : bool
         Whether displacements inside the bodies are needed.
-    strain : float
-        Bulk strain of the lower surface at load point 2. Used only without a ``path``.
+    strains : two of (float, float)
+        Bulk strain of the lower surface at load points 1 and 2, at the scene's x = 0, and its slope along x.
     similar : bool
         Whether the contact keeps its shape while it grows, as in Hertz contact of half-planes.
     accuracy : float
@@ -187,7 +187,7 @@ class Problem:
     start: tuple[PPoly, PPoly] | None = None
     coupled: bool = True
     inside: bool = True
-    strain: float = 0.0
+    strains: tuple[tuple[float, float], ...] = ((0.0, 0.0), (0.0, 0.0))
     similar: bool = False
     accuracy: float = 1e-3
     turns: bool = False
@@ -218,7 +218,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         If a mesh file cannot be read.
     """
     P, A, L, origin = scene.P, scene.material.A, scene.length, scene.origin
-    parts = parts_of(scene, L)
+    parts, at_ends = parts_of(scene, L), [scene.load.along[end] for end in scene.load.ends]
     return Problem(
         gap=lambda x: scene.gap_at(x * L + origin) / (A * P),
         kinks=tuple((kink - origin) / L for kink in scene.profile.kinks),
@@ -231,7 +231,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         start=tuple(rescaled(q, L / P, 1 / L, -origin / L) for q in (start.p, start.q)) if start else None,
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
-        strain=lower_strain(scene, scene.load.points[scene.load.ends[1]][1]),
+        strains=tuple((lower_strain(scene, sigma), lower_strain(scene, slope * L)) for _, sigma, slope in at_ends),
         similar=isinstance(scene.profile, Hertz) and not scene.finite and scene.even and not scene.presses_anew,
         accuracy=scene.fem.accuracy,
         turns=plan.needs("moment"),
