@@ -11,6 +11,7 @@ from partialslip.bars import BARS
 from partialslip.condensed.ends import apart
 from partialslip.condensed.step_errors import steps_matter
 from partialslip.condensed.steps import MOST
+from partialslip.errors import InputError
 from partialslip.result import Clock
 from partialslip_fem import estimate, goals, solving
 from partialslip_fem.bodies import Grading, Kept
@@ -27,6 +28,7 @@ _WAITS = 2  # meshes in a row without an estimate of the error away from the end
 _KINK_SLACK = 1.5  # of the element size that a kink needs: the mesh is refined at kinks where it is coarser than this
 _MOST_UNKNOWNS = 200_000  # on a mesh from which no finer one is made
 _CHOICES = 13  # accuracies tried, from the one asked for to the loosest, when an allowance does not suffice
+_MOST_CUTS = 16  # meshes whose contact line cuts the contact; each one is a tenth of a wider on both sides
 _WORTH = 1.2  # of the unknowns of the present mesh: a mesh with fewer is not worth solving on
 
 
@@ -62,7 +64,7 @@ def adapt(
     Raises
     ------
     InputError
-        If the contact does not fit on a finite body.
+        If the contact does not fit on a finite body, or wider and wider contact lines do not enclose it.
     """
     refinement = _Refinement(problem, accuracy, width, clock, keep)
     while True:
@@ -73,7 +75,8 @@ def adapt(
         progress(refinement.message())
         if refinement.finished:
             refinement.check_steps()
-            return refinement.adapted(max(refinement.goal.accuracy, refinement.error / goals.BAR))
+            if refinement.solution.enclosed:  # finer steps may lead to a wider contact
+                return refinement.adapted(max(refinement.goal.accuracy, refinement.error / goals.BAR))
         refinement.plan_next_mesh()
 
 
@@ -101,7 +104,7 @@ class _Refinement:
         self.largest_end_element = np.inf
         self.error, self.error_before, self.calmer = np.inf, np.inf, 1.0
         self.step_errors: Mapping[str, float] | None = None  # None until the steps are chosen
-        self.waited = 0
+        self.waited = self.cuts = 0
 
     @property
     def located(self) -> bool:
@@ -115,10 +118,12 @@ class _Refinement:
 
     @property
     def finished(self) -> bool:
-        """Whether the present solution is accurate enough, or a finer mesh would not improve it."""
+        """Whether the present solution is accurate enough, or a finer mesh would not improve it; never where the
+        contact line cuts the contact."""
         accurate = self.located and self.error <= self.bar
         stagnates = self.error_before / 2 < self.error < np.inf
-        return accurate or stagnates or self.solution.dofs > _MOST_UNKNOWNS * self.calmer**2
+        large = self.solution.dofs > _MOST_UNKNOWNS * self.calmer**2
+        return self.solution.enclosed and (accurate or stagnates or large)
 
     def message(self) -> str:
         """One line on the present mesh."""
@@ -202,12 +207,12 @@ class _Refinement:
 
     def estimate_errors(self) -> None:
         """Estimate the error away from the ends, if the error of the ends is small enough or no smaller one is to
-        come."""
+        come. A contact that is cut is not the one whose errors count."""
         self.error, self.calmer = np.inf, 1.0
         if self.solution.lower.order < self.problem.order:
             return  # a mesh on the way
         self.waited = self.waited + 1 if self.error_before < np.inf else 0
-        if (
+        if self.solution.enclosed and (
             (self.located and worst(self.end_errors) <= self.bar)
             or self.size <= goals.FINEST
             or self.solution.dofs > _MOST_UNKNOWNS
@@ -221,7 +226,16 @@ class _Refinement:
             self.waited = 0
 
     def plan_next_mesh(self) -> None:
-        """Choose refinement and growth of the next mesh from the errors of the present solution."""
+        """Choose refinement and growth of the next mesh from the errors of the present solution.
+
+        Raises InputError if too many contact lines cut the contact.
+        """
+        self.cuts += not self.solution.enclosed
+        if self.cuts > _MOST_CUTS:
+            raise InputError(
+                f"fem.accuracy = {self.problem.accuracy:g}: must be replaced by fem.size, or use march: the contact "
+                f"reaches the ends of {self.cuts} contact lines"
+            )
         if reached(self.size, self.size_goal):
             self.finer = min(max(3 * worst(self.end_errors) / self.bar, 1.0), goals.FINER)
         if self.error < np.inf:

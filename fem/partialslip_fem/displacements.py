@@ -47,7 +47,7 @@ def displace_bodies(solution: MeshSolution, problem: Problem) -> tuple[Displaced
     first = solution.pressing.x if solution.first is None else solution.first
     loads = loads or [(0 * line.x, first), (0 * line.x, solution.pressing.x)]
     pressures = tuple(traction(line, normal) for _, normal in loads)
-    strains = np.array([history.path.cycle[end][1:3] for end in history.path.ends] if history else np.zeros((2, 2)))
+    strains = np.array(problem.strains)
     displaced = []
     for condensed, part, way in zip((solution.bodies * 2)[:2], (problem.parts * 2)[:2], (1, -1), strict=True):
         # q acts in the opposite direction on the lower body

@@ -165,8 +165,8 @@ class Problem:
         Whether p moves the surfaces along x and q moves them along y.
     inside : bool
         Whether displacements inside the bodies are needed.
-    strain : float
-        Bulk strain of the lower surface at load point 2. Used only without a ``path``.
+    strains : two of (float, float)
+        Bulk strain of the lower surface at load points 1 and 2, at the scene's x = 0, and its slope along x.
     similar : bool
         Whether the contact keeps its shape while it grows, as in Hertz contact of half-planes.
     nearly_similar : bool
@@ -194,7 +194,7 @@ class Problem:
     start: tuple[PPoly, PPoly] | None = None
     coupled: bool = True
     inside: bool = True
-    strain: float = 0.0
+    strains: tuple[tuple[float, float], ...] = ((0.0, 0.0), (0.0, 0.0))
     similar: bool = False
     nearly_similar: bool = False
     accuracy: float = 1e-3
@@ -226,7 +226,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         If a mesh file cannot be read.
     """
     P, A, L, origin = scene.P, scene.material.A, scene.length, scene.origin
-    parts = parts_of(scene, L)
+    parts, at_ends = parts_of(scene, L), [scene.load.along[end] for end in scene.load.ends]
     parabolic = isinstance(scene.profile, Hertz) and scene.even and not scene.presses_anew
     return Problem(
         gap=lambda x: scene.gap_at(x * L + origin) / (A * P),
@@ -240,9 +240,8 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         start=tuple(rescaled(q, L / P, 1 / L, -origin / L) for q in (start.p, start.q)) if start else None,
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
-        strain=lower_strain(scene, scene.load.points[scene.load.ends[1]][1]),
-        similar=parabolic and not scene.finite,
-        nearly_similar=parabolic and scene.finite and all(part.even for part in parts),
+    parts, at_ends = parts_of(scene, L), [scene.load.along[end] for end in scene.load.ends]
+    parabolic = isinstance(scene.profile, Hertz) and scene.even and not scene.presses_anew
         accuracy=scene.fem.accuracy,
         turns=plan.needs("moment"),
         origin=origin / L,

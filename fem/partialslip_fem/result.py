@@ -47,8 +47,8 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
 
     made = _factorizations(solution)
     inside = plan.needs("subsurface")
-    displaced = displace_bodies(solution, problem) if inside else ()
     known_inside = inside and not scene.slides
+    displaced = displace_bodies(solution, problem) if known_inside else ()
     restored = _factorizations(solution) - made
     extra = {"back_solves": len(displaced), "factorizations": adapted.factorizations + restored}
 

@@ -177,7 +177,7 @@ def _contact_forces(
         nodes = np.flatnonzero(history.bound > 0)
         most = np.maximum(*history.bounds) / problem.f if problem.pressing else None
         return _ContactForces(pressing, history.of(nodes), nodes, first, most=most, trail=trail)
-    opened = gap if path else gap - problem.strain * stretch[1]
+    opened = gap if path else gap - problem.strains[1][0] * stretch[1]
     arms = line.x if problem.turns else None
     if problem.pressing:
         presses = Presses(C.yy, opened, arms)

@@ -15,10 +15,12 @@ from partialslip.benchmark import (
     scoreboard,
     write_submission,
 )
+from partialslip.benchmark.book import book_page
 from partialslip.benchmark.codes import CODES, answers
 from partialslip.benchmark.codes.own import Own
 from partialslip.cli import main
 from partialslip.errors import InputError
+from partialslip.origin import made_now
 
 SOME = {"PS-02": read_problems()["PS-02"]}
 
@@ -88,6 +90,12 @@ def test_the_zip_has_all_that_is_needed_and_is_always_the_same(tmp_path):
     for key in {key.partition("@")[0] for problem in read_problems().values() for key in problem.targets}:
         assert key in readme.replace("@0.5", ""), key  # every key is explained
     assert max(map(len, readme.splitlines())) <= 120
+
+
+def test_the_page_has_every_problem():
+    problems = read_problems()
+    page = book_page(problems, [], made_now())
+    assert [number for number, problem in problems.items() if f"{number} {problem.title}" not in page] == []
 
 
 def test_commands(tmp_path, monkeypatch, capsys):

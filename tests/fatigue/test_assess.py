@@ -21,28 +21,33 @@ CONSTANTS = {
 }
 SCENE = partialslip.load_scene("fretting-aluminium").replace(fatigue=CONSTANTS)
 RESULT = partialslip.run(SCENE, "exact", subsurface=True)["exact"]
-FOUND = partialslip.assess(SCENE, RESULT)
+CRITERIA = ("principal", "swt", "fatemi-socie", "findley", "dang-van", "crossland")
 
 
-def test_the_trailing_edge_is_the_hot_spot():
+@pytest.fixture(scope="module")
+def assessed():
+    return partialslip.assess(SCENE, RESULT)
+
+
+def test_the_trailing_edge_is_the_hot_spot(assessed):
     """All criteria find the end of the contact; sigma_xx there ranges over twice its largest value, Q and sigma being
     fully reversed."""
-    assert set(FOUND.ratings) == {"principal", "swt", "fatemi-socie", "findley", "dang-van", "crossland"}
-    for rating in FOUND.ratings.values():
+    assert set(assessed.ratings) == set(CRITERIA)
+    for rating in assessed.ratings.values():
         assert (rating.surface.x, rating.surface.depth) == (RESULT.a, 0.0)
         assert rating.peak == rating.surface
         assert rating.change < 1e-10  # the extremes are those of the load points
     largest = RESULT.surface.largest[1]
-    assert FOUND.ratings["principal"].surface.value == pytest.approx(2 * largest, rel=1e-9)
+    assert assessed.ratings["principal"].surface.value == pytest.approx(2 * largest, rel=1e-9)
     swt = largest**2 * (1 - SCENE.material.nu**2) / SCENE.material.E  # plane strain
-    assert FOUND.ratings["swt"].surface.value == pytest.approx(swt, rel=1e-9)
+    assert assessed.ratings["swt"].surface.value == pytest.approx(swt, rel=1e-9)
 
 
-@pytest.mark.parametrize("name", FOUND.ratings)
-def test_no_point_of_the_body_is_worse(name):
+@pytest.mark.parametrize("name", CRITERIA)
+def test_no_point_of_the_body_is_worse(name, assessed):
     rng = np.random.default_rng(1)
     x, depth = RESULT.a * rng.uniform(-3, 3, 1000), 2 * RESULT.a * rng.uniform(0, 1, 1000) ** 3
-    assert FOUND.at(name, x, depth).value.max() <= FOUND.ratings[name].peak.value
+    assert assessed.at(name, x, depth).value.max() <= assessed.ratings[name].peak.value
 
 
 def test_averages_of_a_linear_stress():
@@ -56,8 +61,8 @@ def test_averages_of_a_linear_stress():
         assert averaged(stress, 0.7, distance, over) == pytest.approx(np.full((1, 4), 1 + 2 * depth), rel=1e-13)
 
 
-def test_averages_lie_between_the_peak_and_the_depth():
-    for rating in FOUND.ratings.values():
+def test_averages_lie_between_the_peak_and_the_depth(assessed):
+    for rating in assessed.ratings.values():
         point, line, area = (rating.averages[over].value for over in ("point", "line", "area"))
         assert point < area < line < rating.surface.value
 
@@ -114,9 +119,9 @@ def test_the_tension_of_the_upper_body_adds_to_both():
         assert difference[:, 3, 0] == pytest.approx(SCENE.material.nu * difference[:, 0, 0])
 
 
-def test_ruiz():
+def test_ruiz(assessed):
     """F2 is at most F1, and both scale with the slip."""
-    found = FOUND.ruiz
+    found = assessed.ruiz
     assert found.F2 > 0
     assert found.F1 > found.F2
     assert abs(found.x2) < RESULT.a
@@ -160,17 +165,17 @@ def test_a_result_without_stresses_is_refused():
         partialslip.assess(SCENE, RESULT, body="left")
 
 
-def test_mirrored_scenes_have_mirrored_hot_spots():
+def test_mirrored_scenes_have_mirrored_hot_spots(assessed):
     scene = SCENE.replace(load={"sigma": [-each for each in SCENE.load.sigma]})
     result = partialslip.run(scene, "exact", subsurface=True)["exact"]
     found = partialslip.assess(scene, result, ["swt", "findley", "dang-van"])
     for name, rating in found.ratings.items():
-        assert rating.surface.value == pytest.approx(FOUND.ratings[name].surface.value, rel=1e-9)
-        assert rating.surface.x == pytest.approx(-FOUND.ratings[name].surface.x)
-        assert rating.averages["area"].value == pytest.approx(FOUND.ratings[name].averages["area"].value, rel=1e-9)
+        assert rating.surface.value == pytest.approx(assessed.ratings[name].surface.value, rel=1e-9)
+        assert rating.surface.x == pytest.approx(-assessed.ratings[name].surface.x)
+        assert rating.averages["area"].value == pytest.approx(assessed.ratings[name].averages["area"].value, rel=1e-9)
 
 
-def test_other_units_change_nothing():
+def test_other_units_change_nothing(assessed):
     """The same mechanics a thousand times as large in stress and length."""
     size = {"material": {"E": 72.1e12}, "load": {"P": SCENE.P * 1e3, "Q": [-38.75e6, 38.75e6], "sigma": [-1e11, 1e11]}}
     constants = {"sigma_y": 330e9}
@@ -179,14 +184,14 @@ def test_other_units_change_nothing():
     found = partialslip.assess(scene, result, ["swt", "fatemi-socie", "crossland"])
     for name, rating in found.ratings.items():
         factor = 1.0 if name == "fatemi-socie" else 1e3
-        assert rating.surface.value == pytest.approx(factor * FOUND.ratings[name].surface.value, rel=1e-9)
+        assert rating.surface.value == pytest.approx(factor * assessed.ratings[name].surface.value, rel=1e-9)
 
 
-def test_notebooks_show_tables_and_curves():
-    html = FOUND._repr_html_()
+def test_notebooks_show_tables_and_curves(assessed):
+    html = assessed._repr_html_()
     assert html.count("<tr") >= 7
     assert "<svg" in html
-    assert repr(FOUND).splitlines()[1].startswith("  principal: 6.91494e+08 at x = 1 a")
+    assert repr(assessed).splitlines()[1].startswith("  principal: 6.91494e+08 at x = 1 a")
 
 
 def test_all_load_points_of_the_scene_count():

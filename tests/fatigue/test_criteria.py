@@ -70,9 +70,9 @@ def max_over_pairs(function, count):
 
 
 def brute_force(name, path):
-    """The largest value over planes 0.1 degrees apart in the xy plane and 1 degree across, then by Nelder and Mead."""
+    """The largest value over planes 0.5 degrees apart in the xy plane and 2 degrees across, then by Nelder and Mead."""
     sigma = tensors(path)
-    angles, tilts = np.radians(np.arange(0, 180, 0.1)), np.radians(np.arange(0, 91, 1.0))
+    angles, tilts = np.radians(np.arange(0, 180, 0.5)), np.radians(np.arange(0, 91, 2.0))
     values = on_plane(name, sigma, angles[:, None], tilts[None])
     best = np.unravel_index(values.argmax(), values.shape)
     start = np.array([angles[best[0]], tilts[best[1]]])
@@ -83,7 +83,7 @@ def brute_force(name, path):
         lambda at: -float(on_plane(name, sigma, at[0], at[1])) / size,
         start,
         method="Nelder-Mead",
-        options={"xatol": 1e-9, "fatol": 1e-16, "initial_simplex": start + np.radians([[0, 0], [0.1, 0], [0, 0.5]])},
+        options={"xatol": 1e-9, "fatol": 1e-16, "initial_simplex": start + np.radians([[0, 0], [0.5, 0], [0, 1]])},
     )
     return -polished.fun * size, size
 

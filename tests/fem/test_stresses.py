@@ -58,6 +58,45 @@ def test_stresses_of_the_upper_body_pull_the_other_way(run):
         assert lower + upper == pytest.approx(sigma - 2 * p, abs=2e-3 * result.p0)
 
 
+@pytest.fixture(scope="module")
+def free():
+    """Without friction, under bulk tension that varies along x at load point 2."""
+    loads = "friction.f=0", "load.Q=[0, 0]", "load.sigma=[-2e7, 8e7]", "load.sigma_slope=[0, 1e10]"
+    return compared("hertz-large-tension", *loads, "fem.accuracy=1e-3")
+
+
+def test_without_friction_the_surface_carries_tension_and_pressure(free):
+    """sigma_xx = sigma + slope x - p on the lower surface, -p on the upper one; Hertz: p = p0 sqrt(1 - (x/a)^2)."""
+    fem, exact, bar = free["fem"], free["exact"], free.scene.fem.accuracy * free["exact"].p0
+    x = np.array([-3, -1.2, -0.6, 0, 0.3, 2.5]) * exact.a
+    p = exact.p0 * np.sqrt(np.clip(1 - (x / exact.a) ** 2, 0, None))
+    found, inside = fem.surface.at(x), fem.stress_at(x, 0 * x)
+    for point, (_, sigma, slope) in enumerate(free.scene.load.along):
+        assert found[0, point] == pytest.approx(sigma + slope * x - p, abs=bar)
+        assert found[1, point] == pytest.approx(-p, abs=bar)
+        assert inside[point, 0] == pytest.approx(found[0, point], abs=bar)
+    assert free.comparisons["fem"].errors["surface"] < 10 * free.scene.fem.accuracy
+
+
+def test_without_friction_the_lower_body_is_stretched_and_bent(free):
+    """The pressure is constant: from load point 1 to 2 sigma_xx of the lower body changes by sigma + slope x, and
+    sigma_xy by -slope y, which elements of order 2 represent."""
+    lower, upper = free["fem"].bodies
+    first, second = lower.stresses.values()
+    x, y = lower.points[lower.triangles].mean(axis=1).T
+    slope = free.scene.load.dslope
+    tension = np.stack([free.scene.load.dsigma + slope * x, 0 * x, -slope * y])
+    assert np.abs((second - first).T - tension).max() < 1e-6 * np.abs(tension).max()
+    assert np.ptp(list(upper.stresses.values()), axis=0).max() == 0
+
+
+def test_no_stresses_where_the_contact_slides():
+    """q is not known then, and stresses without it would be wrong."""
+    fem = compared("hertz-large-tension", "load.Q=[-4e5, 4e5]", "fem.accuracy=1e-2")["fem"]
+    assert "slides" in fem.undetermined["stresses"]
+    assert (fem.surface, fem.bodies, fem.stress_at) == (None, (), None)
+
+
 def test_only_where_they_were_asked_for():
     result = partialslip.run(load_scene("hertz-shear", ["fem.accuracy=1e-2"])).results["fem"]
     assert result.surface is None

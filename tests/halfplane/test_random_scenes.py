@@ -3,11 +3,12 @@
 A failure names the number that makes its scene again, by ``of_random_scene`` or ``of_random_pressure``.
 """
 
+import functools
 import itertools
 import math
 import re
 from collections.abc import Callable
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -30,7 +31,8 @@ NARROWEST = 1e-99  # of a: narrower stick zones are not told apart
 TINY, TIGHT, ROUGH = 1e-14, 1e-9, 5e-3  # the last for sums over the points of a result
 
 
-class Answer(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Answer:
     """Result in SI units: ``shear`` and ``tension`` are the changes dQ and dsigma, ``mean`` is the mean of Q,
     ``levels`` are q1 and q2, and ``slips`` are points and the slip there."""
 
@@ -51,6 +53,19 @@ class Answer(NamedTuple):
     levels: tuple[np.ndarray, ...] = ()
     slips: tuple[np.ndarray, np.ndarray] | None = None
     dissipated: float = 0.0
+
+    @functools.cached_property
+    def room(self):
+        """For the mean force, as a fraction of f P: at stages of the way, at the load points only where slip
+        reverses."""
+        f, x, unit = self.f, self.x, self.f * self.pressed.p0
+        cycle = loading(self.pressed, f, self.shear, self.tension, bound=2)
+        y, dq = x / self.pressed.a, self.dq / unit
+        sticks, least = (y > cycle.ends[0]) & (y < cycle.ends[1]), np.abs(dq) / 2
+        for share in np.arange(1, 40) / 40 if cycle.zone.s < 0 and not cycle.turns_round else ():
+            so_far = loading(self.pressed, f, share * self.shear, share * self.tension, bound=2).traction(y)
+            least[sticks] = np.maximum(least, np.abs(so_far - dq / 2))[sticks]
+        return 1 - np.trapezoid(least, y) * 2 / np.pi
 
 
 def pressed_by(random, pressure):
@@ -132,7 +147,7 @@ def regimes(answer):
     beyond, unsure = abs(answer.tension) - turns, TIGHT * turns + TINY * answer.f * answer.pressed.p0
     tensions = {"small tension"} if beyond < unsure else set()
     tensions |= {"large tension"} if beyond > -unsure else set()
-    room = room_of(answer)
+    room = answer.room
     if mean > room - ROUGH and "large tension" in tensions:
         names |= {"ratchets"}
     return names | tensions if mean < room + ROUGH else names
@@ -143,17 +158,6 @@ def loads_at(answer):
     c, centre = answer.half_width / answer.pressed.a, -abs(answer.n - answer.m) / (2 * answer.pressed.a)
     found = answer.pressed.shape.conditions(1 + centre - c, c, 1 if answer.regime == "small tension" else -1)
     return float(found.sf), float(found.Qf)
-
-
-def room_of(answer):
-    """Of the mean force, as a fraction of f P: at stages of the way, at the load points only where slip reverses."""
-    pressed, f, x, unit = answer.pressed, answer.f, answer.x, answer.f * answer.pressed.p0
-    cycle, y, dq = loading(pressed, f, answer.shear, answer.tension, bound=2), x / pressed.a, answer.dq / unit
-    sticks, least = (y > cycle.ends[0]) & (y < cycle.ends[1]), np.abs(dq) / 2
-    for share in np.arange(1, 40) / 40 if cycle.zone.s < 0 and not cycle.turns_round else ():
-        so_far = loading(pressed, f, share * answer.shear, share * answer.tension, bound=2).traction(y)
-        least[sticks] = np.maximum(least, np.abs(so_far - dq / 2))[sticks]
-    return 1 - np.trapezoid(least, y) * 2 / np.pi
 
 
 def complaints(answer):
@@ -172,8 +176,8 @@ def complaints(answer):
         return
     if not (math.isfinite(m) and math.isfinite(n) and -n <= m <= a * (1 + TIGHT) and abs(n) <= a * (1 + TIGHT)):
         yield f"-n <= m <= a, |n| <= a: m = {m / a} a, n = {n / a} a"
-    if "Q_mean" in limits and abs(limits["Q_mean"] / (f * pressed.P) - room_of(answer)) > ROUGH:
-        yield f"room for {limits['Q_mean'] / (f * pressed.P)} f P in place of {room_of(answer)}"
+    if "Q_mean" in limits and abs(limits["Q_mean"] / (f * pressed.P) - answer.room) > ROUGH:
+        yield f"room for {limits['Q_mean'] / (f * pressed.P)} f P in place of {answer.room}"
     if isinstance(pressed.shape, Hertz) and "dsigma_transition" in limits:
         Qf = abs(answer.shear) / (2 * f * pressed.P)
         turns = 8 * Qf / (1 + math.sqrt(1 - Qf))

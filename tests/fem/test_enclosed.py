@@ -1,0 +1,68 @@
+"""Refinement does not end while the contact reaches the last node of the fine contact line, which cuts it off."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip import load_scene
+from partialslip_fem import adapt
+from partialslip_fem.mesh_solution import MeshSolution
+
+# the first mesh of quadratic triangles is too coarse for this material: by its solution the contact is too narrow
+CUT = ["material.nu=-0.84", "material.plane='stress'", "fem.order=2", "fem.far_field='box'", "fem.accuracy=2e-3"]
+
+
+def solved():
+    """Half-width of a Hertz contact, relative to the exact one, less 1; its estimate; the number of meshes."""
+    run = partialslip.run(load_scene("hertz-shear", CUT))
+    fem = run["fem"]
+    return abs(fem.a / run["exact"].a - 1), fem.estimate["a"], fem.counts["meshes"]
+
+
+@pytest.fixture
+def large(monkeypatch):
+    """Every mesh is too large for a finer one."""
+    monkeypatch.setattr(adapt, "_MOST_UNKNOWNS", 0)
+
+
+@pytest.mark.usefixtures("large")
+def test_a_large_mesh_that_cuts_the_contact_is_not_the_last():
+    error, estimate, meshes = solved()
+    assert error < estimate < 5e-3
+    assert meshes > 2
+
+
+@pytest.mark.fault
+@pytest.mark.usefixtures("large")
+def test_a_contact_that_is_cut_off_is_seen(monkeypatch):
+    """Deliberate fault: every contact line is said to enclose the contact."""
+    monkeypatch.setattr(MeshSolution, "enclosed", property(lambda _: True))
+    error, estimate, meshes = solved()
+    assert meshes == 2
+    assert error > 10 * estimate
+
+
+def test_a_contact_that_every_line_cuts_is_refused(monkeypatch):
+    monkeypatch.setattr(adapt, "_MOST_CUTS", 1)  # this scene has two such meshes
+    with pytest.raises(partialslip.InputError, match=r"fem.accuracy = 0.002: must be .* ends of 2 contact lines"):
+        solved()
+
+
+def test_a_contact_that_finer_steps_widen_gets_a_wider_line(monkeypatch):
+    """Steps are halved on the last mesh; here the contact then reaches the ends of its line."""
+    *_, meshes = solved()
+    lines = []
+
+    def wider(refinement):
+        x = refinement.solution.lower.x
+        lines.append(x[-1] - x[0])
+        if len(lines) == 1:
+            refinement.solution = replace(refinement.solution, most=np.ones_like(x))
+
+    monkeypatch.setattr(adapt._Refinement, "check_steps", wider)
+    error, estimate, more = solved()
+    assert error < estimate
+    assert more > meshes
+    assert lines[1] > lines[0]
