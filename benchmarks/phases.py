@@ -3,7 +3,7 @@
 Meshes of ``hertz-large-tension`` by P4, graded to the ends of the zones and growing at different rates beyond; CHOLMOD.
 Prints CPU seconds by phase (medians), their exponents against the unknowns, and peak memory; ``--figure`` draws them.
 The floor is the time that CHOLMOD takes for the numbers alone of one factor of that stiffness, in its own best order,
-with no compliance asked for. The largest mesh takes 10 GB.
+with no compliance asked for. The largest mesh takes 7 GB.
 """
 
 import argparse
@@ -172,7 +172,7 @@ def figure(rows: Sequence[Row]) -> str:
             )  # fmt: skip
             bottom += share
         labels = [f"{row.unknowns:,}\n{total:.2g} s" for row, total in zip(rows, totals, strict=True)]
-        shares.set_xticks(place, labels, fontsize=8)
+        shares.set_xticks(place, labels, fontsize=7)
         shares.set(xlabel="unknowns; CPU s", ylabel="share of the CPU seconds, %", ylim=(0, 100))
         marks = cycle(MARKS)
         unknowns = [row.unknowns for row in rows]
