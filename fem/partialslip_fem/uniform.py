@@ -39,7 +39,7 @@ def uniform(problem: Problem, size: float | None, width: float, clock: Clock, ke
         If the contact does not fit on a finite body, or has too few elements of a mesh file.
     """
     apart = not (problem.coupled or problem.pressing or problem.meshed)  # friction does not change where the contact is
-    first = replace(problem, path=None, strain=0.0) if apart and problem.path else problem
+    first = replace(problem, path=None, strains=((0.0, 0.0), (0.0, 0.0))) if apart and problem.path else problem
     solution, meshes, factored = solve_on_first_mesh(first, width, clock, keep)
     iterations, sizes = solution.iterations, _sizes_in_files(problem, solution)
     if problem.meshed:
