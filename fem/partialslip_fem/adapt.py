@@ -28,7 +28,7 @@ _WAITS = 2  # meshes in a row without an estimate of the error away from the end
 _KINK_SLACK = 1.5  # of the element size that a kink needs: the mesh is refined at kinks where it is coarser than this
 _MOST_UNKNOWNS = 200_000  # on a mesh from which no finer one is made
 _CHOICES = 13  # accuracies tried, from the one asked for to the loosest, when an allowance does not suffice
-_MOST_CUTS = 16  # meshes whose contact line cuts the contact; each one is a tenth of a wider on both sides
+_MOST_CUTS = 16  # meshes whose contact line cuts the contact; the next line is a tenth of a wider on both sides
 _WORTH = 1.2  # of the unknowns of the present mesh: a mesh with fewer is not worth solving on
 
 
@@ -98,6 +98,7 @@ class _Refinement:
         self.goal = Goal.at(accuracy, problem)
         self.size, self.finer, self.least = FIRST_SIZE, goals.FINER, self.goal.growth
         self.size_goal = 0.0
+        self.growth = 0.0  # of the present mesh away from the ends
         self.eased = False  # whether the present mesh grows faster near the ends
         self.block_width = 0.0  # width of the blocks of the present mesh
         self.errors, self.end_errors = dict[str, float](), dict[str, float]()
@@ -175,9 +176,10 @@ class _Refinement:
             problem = replace(problem, order=goals.ON_THE_WAY)
             least = goals.growth_at(self.goal.accuracy, problem.order)
             ahead = course(self.size, self.finer, self.size_goal, least, problem.order)
-        self.size, growth, self.finer = ahead[0]
+        if self.solution.enclosed:
+            self.size, self.growth, self.finer = ahead[0]
         coarsest = max(part.fineness for part in problem.parts)  # sizes are those of the coarsest body
-        grading = self._grading(growth, coarsest)
+        grading = self._grading(self.growth, coarsest)
         self.eased = in_effect(grading.eased, grading.growth) is not None
         self.block_width = self.width * a
         expected = None
