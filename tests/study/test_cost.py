@@ -27,7 +27,7 @@ def point(series, cpu, error, dofs=1000):
 def test_the_ladder_is_of_every_kind():
     cases = cost.ladder(SCENE)
     assert len({case.key for case in cases}) == len(cases)
-    orders = {case.scene.fem.order for case in cases}
+    orders = {case.scene.fem.elements for case in cases}
     assert orders == {1, 2, 3, 4, 6}
     assert {case.scene.fem.far_field for case in cases} == {"half-plane", "box"}
     assert any(case.scene.fem.size for case in cases)
