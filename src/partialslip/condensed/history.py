@@ -220,9 +220,9 @@ def march(
             near = done[-cycle].found.sides  # this step in the previous cycle
         elif (known := route.at(path, times[number], lengths[number])) is not None:
             near = known
-        elif number > 1 and before.rest.any():  # not the first step of a way
+        elif number and before.rest.any():  # not the first step of a way
             last = done[-1].change
-            near = ahead(before.sides, done[-2].found.sides, float(change @ last / (last @ last)))
+            near = ahead(before.sides, done[-1].before.sides, float(change @ last / (last @ last)))
         else:
             near = before.sides
         free = factored.times(before.x) + change[1:3] @ stretch
@@ -230,7 +230,7 @@ def march(
         return solve_bounded(tangential, free, -bound, bound, float(load[0]), near, factored, all_free)
 
     def advance(before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
-        done.append(_Step(before.x, load, change, found(before, load, change)))
+        done.append(_Step(before, load, change, found(before, load, change)))
         return done[-1].found, bound
 
     history = follow(path, advance, resting(0 * bound if path.before is None else path.before))
@@ -239,10 +239,10 @@ def march(
 
 
 class _Step(NamedTuple):
-    """A load step at constant pressure: the forces ``before`` it (n,), the ``load`` after it, its ``change``, and what
-    is ``found``."""
+    """A load step at constant pressure: the solution ``before`` it, the ``load`` after it, its ``change``, and what is
+    ``found``."""
 
-    before: Array
+    before: Solution
     load: Array
     change: Array
     found: Solution
@@ -250,7 +250,7 @@ class _Step(NamedTuple):
     def mirrors(self, before: Solution, load: Array, change: Array) -> bool:
         """Whether another step is this one with all signs turned round, within rounding."""
         opposed = np.array_equal(self.load, -load) and np.array_equal(self.change, -change)
-        return opposed and _same(self.before, -before.x)
+        return opposed and _same(self.before.x, -before.x)
 
     @property
     def mirrored(self) -> Solution:
