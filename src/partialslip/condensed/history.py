@@ -221,7 +221,7 @@ def march(
         elif (turned := path.turned[number]) is not None and (
             not before.rest.any() or np.array_equal(before.sides, -done[turned - 1].found.sides)
         ):
-            near = -done[turned].found.sides  # slip has gone so far as on the way before, backwards
+            near = -done[turned].found.sides  # slip has gone as far as on the way before, backwards
         elif (known := route.at(path, times[number], lengths[number])) is not None:
             near = known
         elif number and before.rest.any():  # not the first step of a way
