@@ -49,9 +49,10 @@ class Route:
 
 
 def ahead(sides: Sides, earlier: Sides, times: float) -> Sides:
-    """Sides after a step if the ends of slip zones go on moving, ``times`` as far as from the ``earlier`` sides to these
-    ``sides``, (n,) each; the same ``sides`` if slip zones have come or gone, except the first ones, which come
-    from the ends of the contact."""
+    """Sides after a step if the ends of slip zones go on moving, ``times`` as far as in the step from the ``earlier``
+    sides to these ``sides``, (n,) each; the same ``sides`` if slip zones have come or gone, but for the first, which
+    come from the ends.
+    """
     ends, before = (np.flatnonzero(np.diff(each)) + 1 for each in (sides, earlier))
     runs, runs_before = (each[np.append(0, at)] for each, at in ((sides, ends), (earlier, before)))
     if not earlier.any() and np.count_nonzero(runs == 0) == 1:
