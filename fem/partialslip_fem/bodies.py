@@ -16,7 +16,7 @@ from partialslip.condensed.route import Route
 from partialslip.errors import InputError
 from partialslip.result import Clock
 from partialslip_fem.condensation import Condensation
-from partialslip_fem.contact import CondensedBody, relative_compliances
+from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import body
 from partialslip_fem.farfield import half_plane
 from partialslip_fem.problem import Part, Problem
@@ -27,19 +27,13 @@ _KEPT = 2  # sets of bodies in Kept: those of the first mesh, and of the uniform
 
 
 class Shared:
-    """What solutions on the same bodies share: their relative compliances, the last pressing, and factors of the
-    compliance of what touches."""
+    """What solutions on the same bodies share: the last pressing, factors of the compliance of what touches, and their
+    ``relative`` compliances, by whether p and q are coupled."""
 
     def __init__(self) -> None:
-        self._relative: tuple[bool, Relative] | None = None
+        self.relative: dict[bool, Relative] = {}
         self._pressed: tuple[Array, Solution] | None = None
         self._sheared: tuple[Indices, Factored, Route] | None = None
-
-    def relative(self, bodies: Sequence[CondensedBody], coupled: bool) -> Relative:
-        """Relative compliances of the ``bodies`` (:func:`partialslip_fem.contact.relative_compliances`)."""
-        if not self._relative or self._relative[0] != coupled:
-            self._relative = coupled, relative_compliances(bodies, coupled)
-        return self._relative[1]
 
     def press(self, normal: Array, gap: Array, arms: Array | None, near: Sides | None) -> Solution:
         """Normal forces (n,), as from :func:`partialslip.condensed.normal.press` under a force of 1; ``near`` are sides

@@ -19,7 +19,7 @@ from partialslip.condensed.steps import follow_refined, march_refined
 from partialslip.condensed.trail import Trail
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, condense, key_of, mesh_bodies
-from partialslip_fem.contact import CondensedBody
+from partialslip_fem.contact import CondensedBody, relative_compliances
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import nodal_forces
 from partialslip_fem.problem import Problem
@@ -101,7 +101,9 @@ def solve_contact(
     """
     shared = shared or Shared()
     with clock.phase("condensation"):
-        relative = shared.relative(bodies, problem.coupled)
+        if problem.coupled not in shared.relative:
+            shared.relative[problem.coupled] = relative_compliances(bodies, problem.coupled)
+        relative = shared.relative[problem.coupled]
     with clock.phase("contact"):
         line, both = bodies[0].body, relative.xy is not None
         forces = _contact_forces(problem, relative, bodies[0], steps, shared, before)

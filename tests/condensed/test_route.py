@@ -19,9 +19,9 @@ BOUND = np.sqrt(1 - X**2) / np.sqrt(1 - X**2).sum()
 STRETCH = np.array([X, X**2 / 2])
 
 
-def along(Q, strain, steps):
-    """Path there and back to a shear and a tension, in equal steps."""
-    return Path(((-Q, -strain, 0.0), (Q, strain, 0.0)), (0, 1), True, 1, steps)
+def along(Q, strain, steps, back=-0.9):
+    """Path to a shear and a tension, ``back`` times as far and to them once more, in equal steps."""
+    return Path(((back * Q, back * strain, 0.0), (Q, strain, 0.0)), (0, 1), True, 1, steps)
 
 
 def close(one, other):
@@ -43,10 +43,11 @@ def test_finer_steps_begin_at_those_of_the_coarser():
 
 
 def test_the_same_path_once_more_takes_one_solve_a_step():
+    """But for the step in which slip no longer goes as far as on the way before."""
     factored, route, path = Factored(C), Route(), along(0.7, 0.3, 8)
     first, again = (solved(path, factored, route) for _ in range(2))
     close(first, again)
-    assert again.iterations == again.load_steps == 24
+    assert again.iterations <= again.load_steps + 1 == 25
 
 
 @pytest.mark.parametrize("others", [(0.72, 0.31), (-0.7, 0.3), (0.05, 0.0)])
@@ -57,8 +58,19 @@ def test_other_loads_before_change_nothing(others):
     close(solved(along(0.7, 0.3, 4), factored, route), solved(along(0.7, 0.3, 4)))
 
 
+def test_the_way_back_is_the_mirror_image_of_the_way(monkeypatch):
+    """Where the loads are fully reversed and the first loading leads to the cycle: it is not solved."""
+    path = along(0.7, 0.3, 8, back=-1.0)
+    mirrored = solved(path)
+    monkeypatch.setattr(history._Step, "mirrors", lambda *_: False)
+    plain = solved(path)
+    close(mirrored, plain)
+    assert mirrored.points[2].iterations == 0 < mirrored.points[1].iterations == plain.points[1].iterations
+    assert mirrored.load_steps == plain.load_steps
+
+
 def test_half_a_cycle_begins_with_the_zone_known_from_elsewhere():
-    path = replace(along(0.6, 0.1, 1), half=True)
+    path = replace(along(0.6, 0.1, 1, back=-1.0), half=True)
     cold = solved(path)
     warm = solved(path, None, Route(cold.points[0].sides))
     close(cold, warm)
@@ -80,7 +92,7 @@ def test_steps_on_an_inverse_multiply_by_the_compliance_once_or_twice(monkeypatc
     factored.C = C.view(Counted)
     monkeypatch.setattr(history, "solve_bounded", lambda _, *rest: bounded.solve_bounded(factored.C, *rest))
     found = solved(along(0.7, 0.3, 16), factored)
-    assert found.iterations > 2 * found.load_steps
+    assert found.iterations > found.load_steps
     assert found.load_steps < Counted.products <= 2 * found.load_steps + 1
 
 

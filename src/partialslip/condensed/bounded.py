@@ -314,7 +314,7 @@ class _BlockPivoting:
         """x, r and the shift after a step of iterative refinement, where an inverse has left more than rounding."""
         r = self._C @ x - self._g - shift
         free = self._side == 0
-        if self._all_free is None or not (np.abs(r) > self._noise(x, shift))[free].any():
+        if self._all_free is None or not (2 * np.abs(r) > self._noise(x, shift))[free].any():
             return x, r, shift
         off = np.where(free, -r, 0.0)
         line = self._factored.line(free, off, 0 * x, self._factored.all_free(off))

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.arrays import Array, Mask
-from partialslip.condensed.bounded import Factored, Sides, Solution, solve_bounded
+from partialslip.condensed.bounded import Factored, Solution, solve_bounded
 from partialslip.condensed.path import Path
 from partialslip.condensed.route import Route, ahead
 
@@ -203,40 +203,68 @@ def march(
         Where steps begin, and to be kept in it; default: nothing is known.
     """
     first, *ways = (len(way) for way in path.fractions)
-    cycle = sum(ways)
-    sides: list[Sides] = []
-    times = path.times
-    steps = np.diff(times, prepend=0.0).tolist()
+    cycle, times = sum(ways), path.times
+    lengths = np.diff(times, prepend=0.0).tolist()
+    done: list[_Step] = []
     factored, route = factored or Factored(tangential), route or Route()
     factored.expect(first + cycle * (0 if path.half else path.cycles))
     stretched = factored.refined(stretch.T)
 
-    last = np.zeros(len(path.begin))
-
-    def advance(before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
-        nonlocal last
-        Q = float(load[0])
+    def found(before: Solution, load: Array, change: Array) -> Solution:
+        number = len(done)
         if not change.any():
-            sides.append(before.sides)
-            return still(before), bound
-        free = factored.times(before.x) + change[1:3] @ stretch
-        all_free = None if stretched is None else before.x + stretched @ change[1:3]
-        if len(sides) >= first + cycle:
-            near = sides[-cycle]  # this step in the previous cycle
-        elif (known := route.at(path, times[len(sides)], steps[len(sides)])) is not None:
+            return still(before)
+        if number >= cycle // 2 and (opposite := done[-(cycle // 2)]).mirrors(before, load, change):
+            return opposite.mirrored
+        if number >= first + cycle:
+            near = done[-cycle].found.sides  # this step in the previous cycle
+        elif (turned := path.turned[number]) is not None and (
+            not before.rest.any() or np.array_equal(before.sides, -done[turned - 1].found.sides)
+        ):
+            near = -done[turned].found.sides  # slip has gone as far as on the way before, backwards
+        elif (known := route.at(path, times[number], lengths[number])) is not None:
             near = known
-        elif len(sides) > 1 and before.rest.any():  # not the first step of a way
-            near = ahead(sides[-1], sides[-2], float(change @ last / (last @ last)))
+        elif number and before.rest.any():  # not the first step of a way
+            last = done[-1].change
+            near = ahead(before.sides, done[-1].before.sides, float(change @ last / (last @ last)))
         else:
             near = before.sides
-        found = solve_bounded(tangential, free, -bound, bound, Q, near, factored, all_free)
-        sides.append(found.sides)
-        last = change
-        return found, bound
+        free = factored.times(before.x) + change[1:3] @ stretch
+        all_free = None if stretched is None else before.x + stretched @ change[1:3]
+        return solve_bounded(tangential, free, -bound, bound, float(load[0]), near, factored, all_free)
+
+    def advance(before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
+        done.append(_Step(before, load, change, found(before, load, change)))
+        return done[-1].found, bound
 
     history = follow(path, advance, resting(0 * bound if path.before is None else path.before))
-    route.keep(path, sides[: first + cycle])
+    route.keep(path, [step.found.sides for step in done[: first + cycle]])
     return history
+
+
+class _Step(NamedTuple):
+    """A load step at constant pressure: the solution ``before`` it, the ``load`` after it, its ``change``, and what is
+    ``found``."""
+
+    before: Solution
+    load: Array
+    change: Array
+    found: Solution
+
+    def mirrors(self, before: Solution, load: Array, change: Array) -> bool:
+        """Whether another step is this one with all signs turned round, within rounding."""
+        opposed = np.array_equal(self.load, -load) and np.array_equal(self.change, -change)
+        return opposed and _same(self.before.x, -before.x)
+
+    @property
+    def mirrored(self) -> Solution:
+        """What the step with all signs turned round leads to."""
+        return replace(self.found, x=-self.found.x, rest=-self.found.rest, iterations=0, changes=0)
+
+
+def _same(forces: Array, others: Array) -> bool:
+    """Whether ``forces`` (n,) are the ``others``, within rounding."""
+    return bool(np.abs(forces - others).max() <= _REPEATS * np.abs(forces).sum())
 
 
 Advance = Callable[[Solution, Array, Array], tuple[Solution, Array]]
@@ -274,7 +302,7 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
             went.append(_go(advance, points[-1], np.array(start), np.array(end), fractions))
             points.append(certified([step for step, _ in went[-1]]))
             taken += len(fractions)
-        if np.abs(points[-1].x - points[-1 - len(went)].x).max() <= _REPEATS * np.abs(points[-1].x).sum():
+        if _same(points[-1].x, points[-1 - len(went)].x):
             break
     steps = [step for way in went for step, _ in way]
     ends = [way[-1] for way in went]

@@ -2,6 +2,7 @@
 
 import itertools
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -48,6 +49,18 @@ class Path:
         """Times at which the steps of the first loading and of the first cycle end: ways done, and the fraction of the
         next."""
         return [number + fraction for number, way in enumerate(self.fractions) for fraction in way]
+
+    @cached_property
+    def turned(self) -> list[int | None]:
+        """For each of these steps the step at the same fraction of the way before; None for others and on the first
+        way."""
+        ways = [(), *self.fractions]
+        firsts = np.cumsum([len(way) for way in ways]).tolist()
+        return [
+            first - len(way) + step if way == before else None
+            for first, (before, way) in zip(firsts, itertools.pairwise(ways), strict=False)
+            for step in range(len(way))
+        ]
 
     @property
     def halved(self) -> "Path":

@@ -38,21 +38,26 @@ class Route:
         if after == len(self._times):
             return None
         known, same, way = self._times[after], self._loads == (path.begin, path.cycle), math.ceil(time - _SAME) - 1
-        begins, met = time - step <= way + _SAME, known <= time + _SAME
-        if (met and same) or (begins and (met or same)):
-            return self._sides[after]
-        before = self._times[after - 1] if after else 0.0
-        if not same or before <= way + _SAME or known - before > _WIDE * step:
+        sides, begins = self._sides[after], time - step <= way + _SAME
+        if known <= time + _SAME:
+            return sides if same or begins else None
+        before = max(self._times[after - 1] if after else 0.0, float(way))
+        if not same or not (begins or known - before <= _WIDE * step):
             return None
-        return ahead(self._sides[after], self._sides[after - 1], (time - known) / (known - before))
+        earlier = self._sides[after - 1] if before > way + _SAME else 0 * sides
+        return ahead(sides, earlier, (time - known) / (known - before))
 
 
 def ahead(sides: Sides, earlier: Sides, times: float) -> Sides:
     """Sides after a step if the ends of slip zones go on moving, ``times`` as far as in the step from the ``earlier``
-    sides to these ``sides``, (n,) each; the same ``sides`` if slip zones have come or gone."""
+    sides to these ``sides``, (n,) each; the same ``sides`` if slip zones have come or gone, but for the first, which
+    come from the ends.
+    """
     ends, before = (np.flatnonzero(np.diff(each)) + 1 for each in (sides, earlier))
     runs, runs_before = (each[np.append(0, at)] for each, at in ((sides, ends), (earlier, before)))
-    if not np.array_equal(runs, runs_before):
+    if not earlier.any() and np.count_nonzero(runs == 0) == 1:
+        before = np.where(runs[1:] == 0, 0, len(sides))
+    elif not np.array_equal(runs, runs_before):
         return sides
     moved = np.maximum.accumulate(np.clip(np.rint(ends + times * (ends - before)), 0, len(sides)).astype(np.int64))
     result: Sides = np.repeat(runs, np.diff(moved, prepend=0, append=len(sides)))
