@@ -156,9 +156,10 @@ def blocks(size):
     return {"bodies": {side: {"kind": "block", "width": size, "height": size} for side in ("upper", "lower")}}
 
 
-@pytest.mark.parametrize("f", [0.1, 0.3])
-def test_large_blocks_are_pressed_like_half_planes(f):
-    """Blocks of 200 contact widths on elements of one size, against half-planes on cells of their own (march)."""
+@pytest.mark.parametrize(("f", "error"), [(0.1, 0.01), (0.3, 0.03)])
+def test_large_blocks_are_pressed_like_half_planes(f, error):
+    """Blocks of 200 contact widths on elements of one size, against half-planes on cells of their own (march). With the
+    larger f the slip zone is narrower than an element."""
     of = scene(f).replace(fem={"size": 0.04, "accuracy": 1e-3})
     found = partialslip.run(of.replace(**blocks(2.0)), "fem")["fem"]
     march = partialslip.run(of.replace(fem={"accuracy": 1e-2}), "march")["march"]
@@ -167,7 +168,7 @@ def test_large_blocks_are_pressed_like_half_planes(f):
     assert found.m / found.a == pytest.approx(march.m / march.a, abs=0.02)  # half an element
     x = np.linspace(-0.95, 0.95, 191)
     q, expected = (each.traction.levels_at(x * each.a)[1] for each in (found, march))
-    assert np.linalg.norm(q - expected) < 0.02 * np.linalg.norm(expected)
+    assert np.linalg.norm(q - expected) < error * np.linalg.norm(expected)
 
 
 def test_blocks_are_pressed_as_step_by_step(monkeypatch):

@@ -31,6 +31,7 @@ _SETTLED = 1e-3  # error of the half-width of the largest punch that is left
 _FAR = 10.0  # gap, in half-widths, that stays open
 _ENDS = 15.0  # tolerance of q over tolerance of the ends
 _MOST, _WORK = 64, 16_000  # limits of the steps of pressing, and of steps times nodes
+_ANEW = "anew"  # key of steps that do not begin where others did
 _PATIENCE = 4  # iterations without progress before the method changes
 _CLOSE = 32  # changes of sides in the last iteration below which rounding errors may matter
 
@@ -260,7 +261,7 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
 
     def step(P: float, gap: Array, kept: Array, before: Pair, key: Hashable = None) -> Pair:
         this = _Step(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept, C.factors)
-        return _solve_near(this, [before], trail, ("pressing", key or next(number)))
+        return _solve_near(this, [before], trail if key != _ANEW else None, ("pressing", key or next(number)))
 
     def steps(count: int) -> list[Pair]:
         found = [apart]
@@ -341,11 +342,16 @@ def _nearly_similar(
     step after all but one and the whole last step. The difference is the error estimate; None if it is large."""
     none, half_widths = resting(0 * gap), reach * _PUNCHES
 
-    def punch(half_width: float, key: float) -> Pair:
-        flat = np.where(np.abs(line.x) <= half_width * (1 + _STICKS), 0.0, _FAR * half_width)
-        return step(1.0, flat, none.x, (replace(none, x=1 - np.sign(flat)), none), ("punch", key))
+    def punch(half_width: float, like: Pair, wider: float) -> Pair:
+        """The punch, from one that is so many times ``wider``."""
+        covered, nearest = np.abs(line.x) <= half_width * (1 + _STICKS), np.searchsorted(middles, line.x * wider)
+        guess = replace(none, x=covered.astype(float)), replace(none, rest=like[1].rest[nearest] * covered)
+        return step(1.0, np.where(covered, 0.0, _FAR * half_width), none.x, guess, _ANEW)
 
-    under = [punch(half_width, key) for key, half_width in enumerate(half_widths.tolist())]
+    middles, under = (line.x[1:] + line.x[:-1]) / 2, [(none, none)]
+    for half_width, wider in zip(half_widths.tolist(), (1.0, *_PUNCHES[:-1] / _PUNCHES[1:]), strict=True):
+        under.append(punch(half_width, under[-1], wider))
+    under = under[1:]
     known = [(p.x > 0, (p.x > 0) & (q.sides == 0), *C.moved(p.x, q.x)) for p, q in under]
     if not all(sticks.any() for _, sticks, _, _ in known):
         return None
@@ -360,7 +366,7 @@ def _nearly_similar(
     if errors["q"] > _ROUGH:
         return None
     if abs(reach / half_widths[0] - 1) > _SETTLED:
-        growing = punch(reach, -1)
+        growing = punch(reach, growing, half_widths[0] / reach)
     return Pressed(*_certified([last]), len(under) + 2, errors, (growing[0].x, growing[1].x), f)
 
 

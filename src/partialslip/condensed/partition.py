@@ -17,6 +17,7 @@ from partialslip.condensed.bounded import Sides
 _KEPT = 2  # factors
 _PAYS = 0.7  # of the unknowns without a factor: a system with more is better solved directly
 _COST = 6.0  # of a factor of n nodes, as a multiple of the cost of a system of n unknowns
+_EVEN = 0.45  # of the nodes that stick: so many on the shorter side of the middle are about half of them
 _ROOM = 1.05  # nodes in a factor, relative to those that it is made for
 _SLACK = 0.3  # of the nodes that are not eliminated: so many that stick may be among them
 
@@ -60,7 +61,7 @@ class Factors:
         self._missed += left**3 - (every - 2 * (last - first)) ** 3
         if self._missed > _COST * count**3 or not best:
             self._missed, left = 0.0, every - 2 * (last - first)
-            best = Nested(self._C, (first + last - 1) // 2)
+            best = Nested(self._C, _middle(touch, first, last))
             self._kept = [*self._kept[-_KEPT + 1 :], best]
         if left > _PAYS * every:
             return None
@@ -171,6 +172,14 @@ class Partition:
         p, q = np.zeros(self._n), np.zeros(self._n)
         p[self._order], q[self._order] = every[:end:2], every[1:end:2]
         return Forces(p, q, rigid)
+
+
+def _middle(touch: Mask, first: int, last: int) -> int:
+    """The node in the middle of those that ``touch`` (n,), if those that stick, from the ``first`` up to the ``last``,
+    reach about as far on both sides of it; otherwise the one in the middle of these."""
+    ends = np.flatnonzero(touch)[[0, -1]]
+    middle = int(ends.sum()) // 2
+    return middle if min(middle - first, last - 1 - middle) > _EVEN * (last - first) else (first + last - 1) // 2
 
 
 def _leading(mask: Mask) -> int:
