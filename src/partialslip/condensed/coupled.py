@@ -17,7 +17,7 @@ import scipy.linalg as la
 from partialslip.arrays import Array, Mask, submatrix
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
 from partialslip.condensed.history import History, certified, follow, resting, still
-from partialslip.condensed.partition import Factors, Forces
+from partialslip.condensed.partition import Factors, Forces, longest
 from partialslip.condensed.path import Path
 from partialslip.condensed.pressing import Punch, Punches, Stages
 from partialslip.condensed.trail import Trail
@@ -90,6 +90,11 @@ class _Step:
     kept: Array
     factors: Factors | None = None
 
+    @cached_property
+    def _load(self) -> Array:
+        """Displacements (2, n) of nodes that touch and stick, along y and x."""
+        return np.stack([-self.gap, self.kept])
+
     def sweep(self, p: Solution, q: Solution) -> tuple[Solution, Solution]:
         """One fixed-point iteration: solve for p with the old q, then for q with the new p; both problems are
         convex."""
@@ -114,7 +119,7 @@ class _Step:
                 return None
             solver = solver or self._solver(touch, slip)
             found = self._linear_solve(solver, touch, slip, refined, found)
-            opening, rest = self._off(found)
+            opening, rest = self._off(found, (0, 0) if refined else longest(touch & (slip == 0)))
             scale, (p_new, q_new, _) = self._scale(found), found
             noise = _ROUNDING * scale
             pushed = p_new - opening / np.diag(self.yy)
@@ -150,7 +155,7 @@ class _Step:
         stick keep their displacement, and q = ``slip`` f p at nodes that slip; ``refined`` to rounding, from those that
         were ``found``."""
         totals = np.array([self.P, self.Q])
-        found = found or solve(np.stack([-self.gap, self.kept]), totals)
+        found = found or solve(self._load, totals)
         if not refined:
             return found
         opening, rest = self._off(found)
@@ -170,10 +175,15 @@ class _Step:
         )
         return result
 
-    def _off(self, found: Forces) -> tuple[Array, Array]:
-        """Opening of the gap and slip under the forces."""
+    def _off(self, found: Forces, but: tuple[int, int] = (0, 0)) -> Array:
+        """Opening of the gap, and slip, under the forces, (2, n). Nodes from the first up to the second of ``but``,
+        which are known to touch and to stick, are left out."""
         p, q, (approach, shift) = found
-        return self.yy @ p + self.yx @ q + self.gap - approach, self.xx @ q + self.xy @ p - self.kept - shift
+        result = np.zeros((2, len(p)))
+        for rows in (slice(0, but[0]), slice(but[1], None)):
+            result[0, rows] = self.yy[rows] @ p + self.yx[rows] @ q + self.gap[rows] - approach
+            result[1, rows] = self.xx[rows] @ q + self.xy[rows] @ p - self.kept[rows] - shift
+        return result
 
     def _solver(self, touch: Mask, slip: Sides) -> _Solver:
         """What solves the linear system of one partition."""
