@@ -187,3 +187,16 @@ def test_blocks_are_pressed_as_step_by_step(monkeypatch):
     assert off[1] < 0.1
     assert off[1] < off[0] / 1.5
     assert stepped.counts["normal_solves"] > 2 * found.counts["normal_solves"]
+
+
+@pytest.mark.fault
+def test_one_punch_for_all_sizes_is_seen(monkeypatch):
+    """Deliberate fault: what smaller punches do is taken from the largest one, beyond whose ends there are few nodes."""
+    of = scene(0.2).replace(fem={"size": 0.04}, **blocks(2.0))
+    right = partialslip.run(of, "fem")["fem"]
+    true = Punches.kept
+    monkeypatch.setattr(Punches, "kept", lambda self, gap, reach, share, _: true(self, gap, reach, share, 1))
+    wrong = partialslip.run(of, "fem")["fem"]
+    x = np.linspace(-0.95, 0.95, 191)
+    q, other = (each.traction.levels_at(x * each.a)[1] for each in (right, wrong))
+    assert np.linalg.norm(other - q) > 0.05 * np.linalg.norm(q)
