@@ -191,7 +191,7 @@ def test_blocks_are_pressed_as_step_by_step(monkeypatch):
 
 @pytest.mark.fault
 def test_one_punch_for_all_sizes_is_seen(monkeypatch):
-    """Deliberate fault: what smaller punches do is taken from the largest one, beyond whose ends there are few nodes."""
+    """Deliberate fault: what smaller punches do is taken from the largest, beyond whose ends are few nodes."""
     of = scene(0.2).replace(fem={"size": 0.04}, **blocks(2.0))
     right = partialslip.run(of, "fem")["fem"]
     true = Punches.kept
