@@ -33,7 +33,7 @@ _ENDS = 15.0  # tolerance of q over tolerance of the ends
 _MOST, _WORK = 64, 16_000  # limits of the steps of pressing, and of steps times nodes
 _ANEW = "anew"  # key of steps that do not begin where others did
 _PATIENCE = 4  # iterations without progress before the method changes
-_CLOSE = 32  # changes of sides in the last iteration below which rounding errors may matter
+_CLOSE = 32  # changes of sides in an iteration without progress below which rounding errors may matter
 
 
 Pair = tuple[Solution, Solution]
@@ -144,7 +144,8 @@ class _Step:
                 )
             wrong = int((touches != touch).sum() + (slips != slip).sum())
             chances = _PATIENCE if wrong < fewest else chances - 1
-            touch, slip, fewest, refined = touches, slips, min(wrong, fewest), wrong <= _CLOSE
+            touch, slip, fewest = touches, slips, min(wrong, fewest)
+            refined = wrong <= _CLOSE and chances < _PATIENCE
             solver = found = None
         return None
 
