@@ -313,13 +313,7 @@ def _moved(line: Line, forces: Array, others: Array) -> float:
 
 
 def _similar(
-    C: Relative,
-    gap: Array,
-    f: float,
-    line: Line,
-    last: Pair,
-    step: _Press,
-    off: Callable[[Array, Array], float],
+    C: Relative, gap: Array, f: float, line: Line, last: Pair, step: _Press, off: Callable[[Array, Array], float]
 ) -> Pressed:
     """Press self-similarly, with last steps of two sizes; the difference is the error estimate."""
     for _ in range(_TIMES):
@@ -341,13 +335,7 @@ def _similar(
 
 
 def _nearly_similar(
-    C: Relative,
-    gap: Array,
-    f: float,
-    line: Line,
-    reach: float,
-    step: _Press,
-    off: Callable[[Array, Array], float],
+    C: Relative, gap: Array, f: float, line: Line, reach: float, step: _Press, off: Callable[[Array, Array], float]
 ) -> Pressed | None:
     """Press bodies of a size, whose contact has about the half-width ``reach``, with all punches and half of the last
     step after all but one and the whole last step. The difference is the error estimate; None if it is large."""
