@@ -170,7 +170,8 @@ class Problem:
     similar : bool
         Whether the contact keeps its shape while it grows, as in Hertz contact of half-planes.
     nearly_similar : bool
-        The same in bodies of a size, which are mirror images of themselves: it nearly keeps its shape.
+        The same in bodies of a size, which are mirror images of themselves, on elements of one size: the contact
+        nearly keeps its shape, and elements are as fine for what it was when it was small.
     accuracy : float
         Accuracy asked for: error of the contact's ends, in its half-width.
     turns : bool
@@ -242,7 +243,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         inside=plan.needs("subsurface"),
         strains=tuple((lower_strain(scene, sigma), lower_strain(scene, slope * L)) for _, sigma, slope in at_ends),
         similar=parabolic and not scene.finite,
-        nearly_similar=parabolic and scene.finite and all(part.even for part in parts),
+        nearly_similar=parabolic and scene.finite and scene.fem.size is not None and all(part.even for part in parts),
         accuracy=scene.fem.accuracy,
         turns=plan.needs("moment"),
         origin=origin / L,

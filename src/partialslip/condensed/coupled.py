@@ -17,7 +17,7 @@ import scipy.linalg as la
 from partialslip.arrays import Array, Mask, submatrix
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
 from partialslip.condensed.history import History, certified, follow, resting, still
-from partialslip.condensed.partition import Factors, Forces
+from partialslip.condensed.partition import Factors, Forces, longest
 from partialslip.condensed.path import Path
 from partialslip.condensed.pressing import Punch, Punches, Stages
 from partialslip.condensed.trail import Trail
@@ -31,8 +31,9 @@ _SETTLED = 1e-3  # error of the half-width of the largest punch that is left
 _FAR = 10.0  # gap, in half-widths, that stays open
 _ENDS = 15.0  # tolerance of q over tolerance of the ends
 _MOST, _WORK = 64, 16_000  # limits of the steps of pressing, and of steps times nodes
+_ANEW = "anew"  # key of steps that do not begin where others did
 _PATIENCE = 4  # iterations without progress before the method changes
-_CLOSE = 32  # changes of sides in the last iteration below which rounding errors may matter
+_CLOSE = 32  # changes of sides in an iteration without progress below which rounding errors may matter
 
 
 Pair = tuple[Solution, Solution]
@@ -89,6 +90,11 @@ class _Step:
     kept: Array
     factors: Factors | None = None
 
+    @cached_property
+    def _load(self) -> Array:
+        """Displacements (2, n) of nodes that touch and stick, along y and x."""
+        return np.stack([-self.gap, self.kept])
+
     def sweep(self, p: Solution, q: Solution) -> tuple[Solution, Solution]:
         """One fixed-point iteration: solve for p with the old q, then for q with the new p; both problems are
         convex."""
@@ -113,7 +119,7 @@ class _Step:
                 return None
             solver = solver or self._solver(touch, slip)
             found = self._linear_solve(solver, touch, slip, refined, found)
-            opening, rest = self._off(found)
+            opening, rest = self._off(found, (0, 0) if refined else longest(touch & (slip == 0)))
             scale, (p_new, q_new, _) = self._scale(found), found
             noise = _ROUNDING * scale
             pushed = p_new - opening / np.diag(self.yy)
@@ -138,7 +144,8 @@ class _Step:
                 )
             wrong = int((touches != touch).sum() + (slips != slip).sum())
             chances = _PATIENCE if wrong < fewest else chances - 1
-            touch, slip, fewest, refined = touches, slips, min(wrong, fewest), wrong <= _CLOSE
+            touch, slip, fewest = touches, slips, min(wrong, fewest)
+            refined = wrong <= _CLOSE and chances < _PATIENCE
             solver = found = None
         return None
 
@@ -149,7 +156,7 @@ class _Step:
         stick keep their displacement, and q = ``slip`` f p at nodes that slip; ``refined`` to rounding, from those that
         were ``found``."""
         totals = np.array([self.P, self.Q])
-        found = found or solve(np.stack([-self.gap, self.kept]), totals)
+        found = found or solve(self._load, totals)
         if not refined:
             return found
         opening, rest = self._off(found)
@@ -169,10 +176,15 @@ class _Step:
         )
         return result
 
-    def _off(self, found: Forces) -> tuple[Array, Array]:
-        """Opening of the gap and slip under the forces."""
+    def _off(self, found: Forces, but: tuple[int, int] = (0, 0)) -> Array:
+        """Opening of the gap, and slip, under the forces, (2, n). Nodes from the first up to the second of ``but``,
+        which are known to touch and to stick, are left out."""
         p, q, (approach, shift) = found
-        return self.yy @ p + self.yx @ q + self.gap - approach, self.xx @ q + self.xy @ p - self.kept - shift
+        result = np.zeros((2, len(p)))
+        for rows in (slice(0, but[0]), slice(but[1], None)):
+            result[0, rows] = self.yy[rows] @ p + self.yx[rows] @ q + self.gap[rows] - approach
+            result[1, rows] = self.xx[rows] @ q + self.xy[rows] @ p - self.kept[rows] - shift
+        return result
 
     def _solver(self, touch: Mask, slip: Sides) -> _Solver:
         """What solves the linear system of one partition."""
@@ -260,7 +272,7 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
 
     def step(P: float, gap: Array, kept: Array, before: Pair, key: Hashable = None) -> Pair:
         this = _Step(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept, C.factors)
-        return _solve_near(this, [before], trail, ("pressing", key or next(number)))
+        return _solve_near(this, [before], trail if key != _ANEW else None, ("pressing", key or next(number)))
 
     def steps(count: int) -> list[Pair]:
         found = [apart]
@@ -301,13 +313,7 @@ def _moved(line: Line, forces: Array, others: Array) -> float:
 
 
 def _similar(
-    C: Relative,
-    gap: Array,
-    f: float,
-    line: Line,
-    last: Pair,
-    step: _Press,
-    off: Callable[[Array, Array], float],
+    C: Relative, gap: Array, f: float, line: Line, last: Pair, step: _Press, off: Callable[[Array, Array], float]
 ) -> Pressed:
     """Press self-similarly, with last steps of two sizes; the difference is the error estimate."""
     for _ in range(_TIMES):
@@ -329,23 +335,22 @@ def _similar(
 
 
 def _nearly_similar(
-    C: Relative,
-    gap: Array,
-    f: float,
-    line: Line,
-    reach: float,
-    step: _Press,
-    off: Callable[[Array, Array], float],
+    C: Relative, gap: Array, f: float, line: Line, reach: float, step: _Press, off: Callable[[Array, Array], float]
 ) -> Pressed | None:
     """Press bodies of a size, whose contact has about the half-width ``reach``, with all punches and half of the last
     step after all but one and the whole last step. The difference is the error estimate; None if it is large."""
     none, half_widths = resting(0 * gap), reach * _PUNCHES
 
-    def punch(half_width: float, key: float) -> Pair:
-        flat = np.where(np.abs(line.x) <= half_width * (1 + _STICKS), 0.0, _FAR * half_width)
-        return step(1.0, flat, none.x, (replace(none, x=1 - np.sign(flat)), none), ("punch", key))
+    def punch(half_width: float, like: Pair, wider: float) -> Pair:
+        """The punch, from one that is so many times ``wider``."""
+        covered, nearest = np.abs(line.x) <= half_width * (1 + _STICKS), np.searchsorted(middles, line.x * wider)
+        guess = replace(none, x=covered.astype(float)), replace(none, rest=like[1].rest[nearest] * covered)
+        return step(1.0, np.where(covered, 0.0, _FAR * half_width), none.x, guess, _ANEW)
 
-    under = [punch(half_width, key) for key, half_width in enumerate(half_widths.tolist())]
+    middles, under = (line.x[1:] + line.x[:-1]) / 2, [(none, none)]
+    for half_width, wider in zip(half_widths.tolist(), (1.0, *_PUNCHES[:-1] / _PUNCHES[1:]), strict=True):
+        under.append(punch(half_width, under[-1], wider))
+    under = under[1:]
     known = [(p.x > 0, (p.x > 0) & (q.sides == 0), *C.moved(p.x, q.x)) for p, q in under]
     if not all(sticks.any() for _, sticks, _, _ in known):
         return None
@@ -360,7 +365,7 @@ def _nearly_similar(
     if errors["q"] > _ROUGH:
         return None
     if abs(reach / half_widths[0] - 1) > _SETTLED:
-        growing = punch(reach, -1)
+        growing = punch(reach, growing, half_widths[0] / reach)
     return Pressed(*_certified([last]), len(under) + 2, errors, (growing[0].x, growing[1].x), f)
 
 

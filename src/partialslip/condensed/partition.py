@@ -17,6 +17,7 @@ from partialslip.condensed.bounded import Sides
 _KEPT = 2  # factors
 _PAYS = 0.7  # of the unknowns without a factor: a system with more is better solved directly
 _COST = 6.0  # of a factor of n nodes, as a multiple of the cost of a system of n unknowns
+_EVEN = 0.45  # of the nodes that stick: so many on the shorter side of the middle are about half of them
 _ROOM = 1.05  # nodes in a factor, relative to those that it is made for
 _SLACK = 0.3  # of the nodes that are not eliminated: so many that stick may be among them
 
@@ -54,13 +55,13 @@ class Factors:
         ``f``; None if it is better solved directly."""
         sticks, count = touch & (slip == 0), int(np.count_nonzero(touch))
         every = count + int(np.count_nonzero(sticks))
-        first, last = _longest(sticks)
+        first, last = longest(sticks)
         best = max(self._kept, key=lambda each: each.core(sticks), default=None)
         left = every - 2 * best.core(sticks) if best else every
         self._missed += left**3 - (every - 2 * (last - first)) ** 3
         if self._missed > _COST * count**3 or not best:
             self._missed, left = 0.0, every - 2 * (last - first)
-            best = Nested(self._C, (first + last - 1) // 2)
+            best = Nested(self._C, _middle(touch, first, last))
             self._kept = [*self._kept[-_KEPT + 1 :], best]
         if left > _PAYS * every:
             return None
@@ -77,6 +78,7 @@ class Nested:
         self.order: Indices = np.argsort(np.abs(np.arange(n) - middle), kind="stable")
         self.L, self.by_rigid = np.empty((0, 0)), np.empty((0, 2))
         self._tail: tuple[int, Array] = 0, np.empty((0, 0))
+        self._loaded: tuple[Array, Array] = np.empty((2, 0)), np.empty(0)
 
     def core(self, sticks: Mask) -> int:
         """Number of the first nodes that all stick, of those that do, (n,)."""
@@ -112,9 +114,16 @@ class Nested:
         rows[1::2, ::2], rows[::2, 1::2] = submatrix(C.xy, at[first:], at), submatrix(C.xy, at, at[first:]).T
         return rows
 
-    def solved(self, load: Array, transposed: bool = False) -> Array:
-        """L^-1 ``load``, or L^-T ``load``, (m,), of the first nodes if ``load`` ends or begins to vanish after them."""
-        result: Array = la.blas.dtrsv(self.L, load, lower=True, trans=transposed)
+    def loaded(self, load: Array) -> Array:
+        """L^-1 of the displacements ``load`` (2, n) of the first nodes, (m,); that of the last load is remembered."""
+        if self._loaded[0] is not load or len(self._loaded[1]) != len(self.L):
+            given = load[:, self.order[: len(self.L) // 2]].T.ravel()
+            self._loaded = load, la.blas.dtrsv(self.L, given, lower=True)
+        return self._loaded[1]
+
+    def transposed(self, forces: Array) -> Array:
+        """L^-T ``forces``, (m,)."""
+        result: Array = la.blas.dtrsv(self.L, forces, lower=True, trans=True)
         return result
 
     def tail(self, core: int, count: int) -> tuple[int, Array]:
@@ -150,9 +159,7 @@ class Partition:
     def solve(self, load: Array, totals: Array) -> Forces:
         """Forces for the displacements ``load`` (2, n), along y and x, that sum to ``totals`` (2,)."""
         by, cut, end = self._by, 2 * self._begin, 2 * len(self._order)
-        loaded, given = np.zeros(len(by.L)), np.empty((end, 3))
-        loaded[:end] = load[:, self._order].T.ravel()
-        given[:, 0], given[:, 1:] = by.solved(loaded)[:end], by.by_rigid[:end]
+        given = np.column_stack([by.loaded(load)[:end], by.by_rigid[:end]])
         last = by.L[cut:end, cut:end] @ given[cut:]
         forces = np.zeros((len(last), 3))
         if self._factors:
@@ -166,11 +173,19 @@ class Partition:
         weights = np.append(1.0, rigid)
         every = np.zeros(len(by.L))
         every[:cut] = first @ weights
-        every = by.solved(every, transposed=True)
+        every = by.transposed(every)
         every[cut:end] = forces @ weights
         p, q = np.zeros(self._n), np.zeros(self._n)
         p[self._order], q[self._order] = every[:end:2], every[1:end:2]
         return Forces(p, q, rigid)
+
+
+def _middle(touch: Mask, first: int, last: int) -> int:
+    """The node in the middle of those that ``touch`` (n,), if those that stick, from the ``first`` up to the ``last``,
+    reach about as far on both sides of it; otherwise the one in the middle of these."""
+    ends = np.flatnonzero(touch)[[0, -1]]
+    middle = int(ends.sum()) // 2
+    return middle if min(middle - first, last - 1 - middle) > _EVEN * (last - first) else (first + last - 1) // 2
 
 
 def _leading(mask: Mask) -> int:
@@ -178,7 +193,7 @@ def _leading(mask: Mask) -> int:
     return len(mask) if mask.all() else int(np.argmin(mask))
 
 
-def _longest(mask: Mask) -> tuple[int, int]:
+def longest(mask: Mask) -> tuple[int, int]:
     """The longest run of true values, from the first index up to the other."""
     ends = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]))).reshape(-1, 2)
     if not len(ends):
