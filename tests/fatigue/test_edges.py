@@ -71,5 +71,7 @@ def test_tension_along_x():
 
 
 def test_varying_pressure_has_no_single_end():
-    scene = partialslip.load_scene(SHEAR, ["load.Q=[-1e5,1e5]", "fem.accuracy=1e-2"]).replace(load={"P": [6e5, 7e5], "p0": None})
+    scene = partialslip.load_scene(SHEAR, ["load.Q=[-1e5,1e5]", "fem.accuracy=1e-2"]).replace(
+        load={"P": [6e5, 7e5], "p0": None}
+    )
     assert edges(scene, partialslip.run(scene, "march")["march"]) == ()
