@@ -4,14 +4,40 @@ Rounding decides which of two equal edges gmsh cuts, so that its meshes differ a
 own factors are 1e-9 and 1. The second one changes which triangles there are; the first one hardly ever does.
 
 Tests run side by side, one on each core: linear algebra on one thread each, as in a run.
+
+More than half of all meshes of the tests have been made before: they are remembered, but for tests of meshing itself.
 """
 
+import functools
 import os
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # is read when NumPy and SciPy are imported
 
-from partialslip_meshes import gmsh
+import pytest
+
+from partialslip_meshes import blocks, gmsh
 
 _FACTORS = {"MESH_RANDOM_FACTOR": "RandomFactor", "MESH_SIZE_FACTOR": "MeshSizeFactor"}
 
 gmsh.OPTIONS.update({option: float(os.environ[name]) for name, option in _FACTORS.items() if name in os.environ})
+
+_MESHING = ("meshes", "test_threads.py", "test_cost.py", "test_interrupted.py")  # these make all of theirs
+
+
+class _Request(dict):
+    """A request for a mesh that can be looked up: the same request and options give the same mesh."""
+
+    def __hash__(self):
+        return hash(repr(self))
+
+
+@functools.lru_cache(maxsize=128)
+def _made(request, options):
+    del options
+    return gmsh.ask(request)
+
+
+@pytest.fixture(autouse=True)
+def _remembered_meshes(request, monkeypatch):
+    if not set(request.path.parts).intersection(_MESHING):
+        monkeypatch.setattr(blocks, "ask", lambda each: _made(_Request(each), repr(gmsh.OPTIONS)))

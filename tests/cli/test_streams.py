@@ -126,7 +126,9 @@ def started(folder, *arguments):
     return process
 
 
-def test_the_second_in_a_folder_is_told(tmp_path):
+def test_the_second_in_a_folder_is_told(tmp_path, monkeypatch, capsys):
+    """The first is a process of its own, and the second is this one."""
+    monkeypatch.chdir(tmp_path)
     first = started(tmp_path, *VERIFY, "--processes", "1")
     try:
         other = (*EXACT, "--out", "out")
@@ -135,14 +137,15 @@ def test_the_second_in_a_folder_is_told(tmp_path):
             (other, "holds verify"),
             ((*other, "--force"), rf"process {first.pid} on \S+ is writing there"),
         ):
-            code, out, said = partialslip(tmp_path, *arguments)
-            assert (code, out) == (2, b"")
-            assert re.fullmatch(rf"partialslip: --out out: {says}: .*\n", said)
+            assert main(list(arguments)) == 2
+            printed = capsys.readouterr()
+            assert printed.out == ""
+            assert re.fullmatch(rf"partialslip: --out out: {says}: .*\n", printed.err)
     finally:
         first.kill()
         first.communicate()
     assert (tmp_path / "out" / NAME).exists()  # a killed command leaves the file, but no lock
-    assert partialslip(tmp_path, *other, "--force")[0] == 0
+    assert main([*other, "--force"]) == 0
     assert not (tmp_path / "out" / NAME).exists()
 
 

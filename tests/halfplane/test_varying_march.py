@@ -209,7 +209,7 @@ def test_slip_that_begins_in_the_wrong_direction_is_known():
         "profile": {"kind": "flat-rounded", "R": 1.0, "b": 0.6077},
         "friction": {"f": 1.0},
         "load": load | {"cycles": 10},
-        "fem": {"accuracy": 2e-4},
+        "fem": {"accuracy": 5e-4},
     })  # fmt: skip
     found = run(scene, ["exact", "march"])
     exact, march = found["exact"], found["march"]
