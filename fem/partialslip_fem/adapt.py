@@ -20,7 +20,6 @@ from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_
 from partialslip_fem.goals import Goal, course, gaps, reached, worst
 from partialslip_fem.mesh_solution import Adapted
 from partialslip_fem.problem import Problem
-from partialslip_meshes import in_effect
 
 # These constants change the cost of a run, not its error estimates.
 _CALMER = (0.4, 0.85)  # smallest and largest factor of the growth after a mesh whose error is too large
@@ -28,7 +27,7 @@ _WAITS = 2  # meshes in a row without an estimate of the error away from the end
 _KINK_SLACK = 1.5  # of the element size that a kink needs: the mesh is refined at kinks where it is coarser than this
 _MOST_UNKNOWNS = 200_000  # on a mesh from which no finer one is made
 _CHOICES = 13  # accuracies tried, from the one asked for to the loosest, when an allowance does not suffice
-_MOST_CUTS = 16  # meshes whose contact line cuts the contact; each one is a tenth of a wider on both sides
+_MOST_CUTS = 16  # meshes whose contact line cuts the contact; the next line is a tenth of a wider on both sides
 _WORTH = 1.2  # of the unknowns of the present mesh: a mesh with fewer is not worth solving on
 
 
@@ -98,6 +97,7 @@ class _Refinement:
         self.goal = Goal.at(accuracy, problem)
         self.size, self.finer, self.least = FIRST_SIZE, goals.FINER, self.goal.growth
         self.size_goal = 0.0
+        self.growth = 0.0  # of the present mesh away from the ends
         self.eased = False  # whether the present mesh grows faster near the ends
         self.block_width = 0.0  # width of the blocks of the present mesh
         self.errors, self.end_errors = dict[str, float](), dict[str, float]()
@@ -175,10 +175,11 @@ class _Refinement:
             problem = replace(problem, order=goals.ON_THE_WAY)
             least = goals.growth_at(self.goal.accuracy, problem.order)
             ahead = course(self.size, self.finer, self.size_goal, least, problem.order)
-        self.size, growth, self.finer = ahead[0]
+        if self.solution.enclosed:
+            self.size, self.growth, self.finer = ahead[0]
         coarsest = max(part.fineness for part in problem.parts)  # sizes are those of the coarsest body
-        grading = self._grading(growth, coarsest)
-        self.eased = in_effect(grading.eased, grading.growth) is not None
+        grading = self._grading(problem.order, self.growth, coarsest)
+        self.eased = grading.eased is not None
         self.block_width = self.width * a
         expected = None
         if self.expense.limited:
@@ -202,7 +203,7 @@ class _Refinement:
         at_ends, at_kinks = (
             solution.element_sizes(points) * in_coarsest for points in (solution.zone_ends, np.array(solution.kinks))
         )
-        self.largest_end_element = at_ends.max()
+        self.largest_end_element = grading.at(solution.zone_ends).max() * coarsest / a
         self.errors = self.end_errors = self._errors_of_ends(at_ends, at_kinks)
 
     def estimate_errors(self) -> None:
@@ -241,7 +242,7 @@ class _Refinement:
         if self.error < np.inf:
             self.error_before, self.least = self.error, self.least * self.calmer
 
-    def _grading(self, growth: float, coarsest: float) -> Grading:
+    def _grading(self, order: int, growth: float, coarsest: float) -> Grading:
         """Grading to the zone ends of the present solution, to the profile's kinks, and to kinks of q1 and q2."""
         solution, a = self.solution, self.solution.half_width
         margin = (0.1 + 2 * self.finer * self.size) * a  # for safety, and for the error of the present ends
@@ -251,7 +252,7 @@ class _Refinement:
         points = apart([*solution.zone_ends.tolist(), *kinks], self.size * a)
         sizes = dict.fromkeys(points, self.size * a / coarsest)
         at_kinks = np.clip(estimate.kink_sizes(solution, self.goal.end_error * BARS["q1"]), self.size, None)
-        goal, eased = self.goal, goals.eased(a, self.problem.order)
+        goal, eased = self.goal, goals.eased(a, order, growth)
         grading = Grading(contact, sizes, growth / coarsest, None, goal.facet_error, goal.corner_error, eased)
         for kink, needed in zip(solution.kinks, at_kinks.tolist(), strict=True):
             if grading.at(np.array([kink]))[0] > _KINK_SLACK * needed * a / coarsest:
@@ -308,7 +309,7 @@ class _Refinement:
         once_more = again(order, estimate.NEIGHBOUR[order]) + problem.inside
         best: Goal = self.goal
         asked = self.goal.accuracy
-        ends, eased = solution.zone_ends.tolist(), goals.eased(a, order)
+        ends = solution.zone_ends.tolist()
         for accuracy in np.geomspace(asked, max(goals.LOOSEST, asked), _CHOICES).tolist():
             best = self.goal if accuracy == asked else Goal.at(accuracy, problem)
             size_goal = best.element_size(solution, problem)
@@ -316,7 +317,12 @@ class _Refinement:
             meshes = course(self.size, finer, size_goal, self.least * best.growth / self.goal.growth, order)
             unknowns = [
                 self.expense.unknowns(
-                    Grading((-a, a), dict.fromkeys(ends, mesh.size * a), mesh.growth, eased=eased),
+                    Grading(
+                        (-a, a),
+                        dict.fromkeys(ends, mesh.size * a),
+                        mesh.growth,
+                        eased=goals.eased(a, order, mesh.growth),
+                    ),
                     order,
                     self.width * a,
                 )

@@ -22,7 +22,8 @@ from partialslip_meshes import Eased
 # Bounds on element sizes at the ends of zones, in contact half-widths.
 FINEST = 1e-7  # smallest: with smaller elements rounding errors dominate (benchmarks/accuracy.py floor)
 COARSEST = 0.005  # largest on a mesh whose errors are estimated; coarser meshes only locate the ends
-FINER = 64.0  # largest ratio of these sizes from mesh to mesh
+
+FINER = 16.0  # largest ratio of these sizes from mesh to mesh
 
 # Growth of the elements away from the ends: errors there are about (growth/2.8)^(2 order)
 # (compare benchmarks/accuracy.py orders).
@@ -30,6 +31,7 @@ _SMOOTH = 2.8
 _LARGEST_GROWTH = 0.7
 ON_THE_WAY = 4  # largest order on meshes before that with the element size of the goal
 _EASED = (4, 6)  # orders whose elements grow faster near the ends of zones than elsewhere
+_EASED_BELOW = 0.62  # growth far away from which on it is the same near the ends
 _STEEPEST = 1.0  # largest growth near the ends of zones, where it may be larger than elsewhere
 
 # Shares of the accuracy asked for.
@@ -155,17 +157,17 @@ def growth_for(error: float, order: int) -> float:
 
 def growth_at(accuracy: float, order: int) -> float:
     """Growth of elements of ``order`` far from the ends for an ``accuracy``."""
-    growth = growth_for(_AWAY_SHARE * AIM * accuracy, order)
-    return growth_for(_EASED_SHARE * AIM * accuracy, order) if order in _EASED and growth < _STEEPEST else growth
+    eased = growth_for(_EASED_SHARE * AIM * accuracy, order)
+    return eased if order in _EASED and eased < _EASED_BELOW else growth_for(_AWAY_SHARE * AIM * accuracy, order)
 
 
-def eased(half_width: float, order: int) -> Eased | None:
-    """How much faster elements of ``order`` grow near the ends of zones in a contact of that ``half_width``; None if
-    they do not.
+def eased(half_width: float, order: int, growth: float) -> Eased | None:
+    """How much faster elements of ``order`` grow near the ends of zones in a contact of that ``half_width`` than with
+    the ``growth`` far away; None if they do not.
 
     An end depends on elements of the size h at the distance r from it like (h/r)^(2 order) r^2.
     """
-    if order not in _EASED:
+    if order not in _EASED or growth >= _EASED_BELOW:
         return None
     return Eased(_STEEPEST, half_width, 1 / order)
 

@@ -115,11 +115,11 @@ class MeshSolution:
         return np.array([self.left, self.right, *stick, *self.ends_at_1])
 
     def element_sizes(self, points: Array) -> Array:
-        """Sizes of the elements of the contact line that ``points`` (k,) lie in, (k,): each the largest of an element
+        """Sizes of the elements of the contact line that ``points`` (k,) lie in, (k,): each the mean of an element
         and its two neighbours, which matter where elements grow fast."""
         vertices = self.lower.x[:: self.lower.order]
         cells = np.searchsorted(vertices, points)[:, None] + np.arange(-2, 1)
-        sizes: Array = np.diff(vertices)[np.clip(cells, 0, len(vertices) - 2)].max(axis=1)
+        sizes: Array = np.diff(vertices)[np.clip(cells, 0, len(vertices) - 2)].mean(axis=1)
         return sizes
 
     @property
