@@ -31,7 +31,7 @@ _SMOOTH = 2.8
 _LARGEST_GROWTH = 0.7
 ON_THE_WAY = 4  # largest order on meshes before that with the element size of the goal
 _EASED = (4, 6)  # orders whose elements grow faster near the ends of zones than elsewhere
-_EASED_BELOW = 0.62  # growth far away from which on it is the same near the ends
+_EASED_BELOW = 0.55  # growth far away from which on it is the same near the ends
 _STEEPEST = 1.0  # largest growth near the ends of zones, where it may be larger than elsewhere
 
 # Shares of the accuracy asked for.
