@@ -339,6 +339,7 @@ def _nearly_similar(
 ) -> Pressed | None:
     """Press bodies of a size, whose contact has about the half-width ``reach``, with all punches and half of the last
     step after all but one and the whole last step. The difference is the error estimate; None if it is large."""
+    reach = float(f"{reach:.2g}")  # so that the error of another mesh, from which it may be, does not matter
     none, half_widths = resting(0 * gap), reach * _PUNCHES
 
     def punch(half_width: float, like: Pair, wider: float) -> Pair:

@@ -143,7 +143,8 @@ class Punches:
         the first ``count`` punches."""
         near = np.flatnonzero(np.abs(self.x) < _NEAR * reach)
         closed = near[np.abs(self.x[near]) < _CLOSED * reach]
-        some = closed[:: max(len(closed) // _SOME, 1)]
+        half = np.arange(0, (len(closed) + 1) // 2, max(len(closed) // _SOME, 1))
+        some = closed[np.concatenate([half, -1 - half])]  # mirror images of each other, as far as nodes are
         under = self._sums(self._tables(self.opening[:count], np.log), self.x[some], reach, 1.0)
         grown = np.linalg.lstsq(under.T, gap[closed].min() - gap[some], rcond=None)[0]
         along = self._tables(self.along[:count], lambda ratio: (1 - ratio**-2) / 2)
