@@ -22,7 +22,7 @@ from accuracy import random_scene
 import partialslip
 from partialslip.batch.job import Job, Solved, solve_apart
 from partialslip.batch.ledger import Ledger, key_of
-from partialslip.study import prices
+from partialslip.study.cost import prices
 
 # accuracies by order and factorisation
 LADDER = {

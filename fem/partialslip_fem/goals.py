@@ -30,15 +30,15 @@ FINER = 16.0  # largest ratio of these sizes from mesh to mesh
 _SMOOTH = 2.8
 _LARGEST_GROWTH = 0.7
 ON_THE_WAY = 4  # largest order on meshes before that with the element size of the goal
-_EASED = (4, 6)  # orders whose elements grow faster near the ends of zones than elsewhere
-_EASED_BELOW = 0.55  # growth far away from which on it is the same near the ends
+_EASED_BELOW = 3e-6  # error away from the ends from which on growth is the same everywhere
 _STEEPEST = 1.0  # largest growth near the ends of zones, where it may be larger than elsewhere
 
 # Shares of the accuracy asked for.
 AIM = 0.5  # error that meshes are designed for: estimates are right within a factor of two (benchmarks/estimates.py)
 BAR = 0.9  # largest estimate that is accepted
 _AWAY_SHARE = 0.5  # of AIM: error away from the ends ...
-_EASED_SHARE = 0.1  # ... and the same if elements grow faster near the ends, which adds to it
+# ... and the same, by order, if elements grow faster near the ends of zones than elsewhere, which adds to it.
+_EASED_SHARE = {4: 0.2, 6: 0.1}
 _END_SHARE = 0.33  # of AIM: largest error due to the elements at the ends
 _FACET_SHARE = 0.25  # largest distance of a round face from the elements, and error of the ends due to it
 _CORNER_ERROR = 10.0  # largest change of the contact due to elements at corners, as a multiple of the accuracy ...
@@ -157,8 +157,11 @@ def growth_for(error: float, order: int) -> float:
 
 def growth_at(accuracy: float, order: int) -> float:
     """Growth of elements of ``order`` far from the ends for an ``accuracy``."""
-    eased = growth_for(_EASED_SHARE * AIM * accuracy, order)
-    return eased if order in _EASED and eased < _EASED_BELOW else growth_for(_AWAY_SHARE * AIM * accuracy, order)
+    if order in _EASED_SHARE:
+        growth = growth_for(_EASED_SHARE[order] * AIM * accuracy, order)
+        if growth < growth_for(_EASED_BELOW, order):
+            return growth
+    return growth_for(_AWAY_SHARE * AIM * accuracy, order)
 
 
 def eased(half_width: float, order: int, growth: float) -> Eased | None:
@@ -167,7 +170,7 @@ def eased(half_width: float, order: int, growth: float) -> Eased | None:
 
     An end depends on elements of the size h at the distance r from it like (h/r)^(2 order) r^2.
     """
-    if order not in _EASED or growth >= _EASED_BELOW:
+    if order not in _EASED_SHARE or growth >= growth_for(_EASED_BELOW, order):
         return None
     return Eased(_STEEPEST, half_width, 1 / order)
 

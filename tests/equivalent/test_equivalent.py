@@ -153,7 +153,7 @@ def errors(scene):
 @pytest.fixture(scope="module")
 def blocks():
     """Errors of mirror images, 4 a and 8 a high."""
-    return [errors(load_scene(SCENE, [*both(2 * W, W), "fem.accuracy=1e-5"])) for W in (4e-3, 8e-3)]
+    return [errors(load_scene(SCENE, [*both(2 * W, W), "fem.accuracy=5e-6"])) for W in (4e-3, 8e-3)]
 
 
 @pytest.mark.parametrize("key", ["m", "n", "p", "q"])

@@ -287,11 +287,12 @@ def common_tension(tension: float, kind: str, *settings: str) -> Apart:
     moved: list[Array] = []
 
     def compliances(halves: tuple[CondensedBody, ...], *rest: Any) -> coupled.Relative:
-        lower, upper = (
-            stretched(half, part.kappa)
-            for half, part in zip(halves, model.scaled(scene, plan(scene)).parts, strict=True)
-        )
-        moved[:] = [lower - transfer(halves[0].body, halves[1].body) @ upper]
+        if len(halves[0].condensation.compliance) > len(halves[0].body.x):  # bodies that are only pressed do not shear
+            lower, upper = (
+                stretched(half, part.kappa)
+                for half, part in zip(halves, model.scaled(scene, plan(scene)).parts, strict=True)
+            )
+            moved[:] = [lower - transfer(halves[0].body, halves[1].body) @ upper]
         return true_compliances(halves, *rest)
 
     def march(C: Any, gap: Array, x: Array, *rest: Any) -> Any:

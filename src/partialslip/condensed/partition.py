@@ -26,11 +26,16 @@ class Compliances(Protocol):
     """Relative compliances (n, n), symmetric together (:class:`partialslip.condensed.coupled.Relative`)."""
 
     @property
-    def xx(self) -> Array | None: ...
+    def xx(self) -> Array | None:
+        """Of displacements along x under forces along x."""
+
     @property
-    def yy(self) -> Array: ...
+    def yy(self) -> Array:
+        """Of displacements along y under forces along y."""
+
     @property
-    def xy(self) -> Array | None: ...
+    def xy(self) -> Array | None:
+        """Of displacements along x under forces along y."""
 
 
 class Forces(NamedTuple):
