@@ -203,6 +203,9 @@ class _Refinement:
         at_ends, at_kinks = (
             solution.element_sizes(points) * in_coarsest for points in (solution.zone_ends, np.array(solution.kinks))
         )
+        if self.eased:  # beside the point that it is graded to, a mesh that grows fast is a poor one
+            beside = np.abs(solution.zone_ends[:, None] - np.array([*grading.sizes])).min(axis=1)
+            at_ends = at_ends * (1 + beside / (self.size * a))
         self.largest_end_element = grading.at(solution.zone_ends).max() * coarsest / a
         self.errors = self.end_errors = self._errors_of_ends(at_ends, at_kinks)
 
