@@ -7,5 +7,4 @@ from partialslip_meshes.mesh import Mesh as Mesh
 from partialslip_meshes.mesh import QuadMesh as QuadMesh
 from partialslip_meshes.read import read as read
 from partialslip_meshes.sizes import Eased as Eased
-from partialslip_meshes.sizes import in_effect as in_effect
 from partialslip_meshes.sizes import size_at as size_at
