@@ -22,7 +22,6 @@ from partialslip_meshes import Eased
 # Bounds on element sizes at the ends of zones, in contact half-widths.
 FINEST = 1e-7  # smallest: with smaller elements rounding errors dominate (benchmarks/accuracy.py floor)
 COARSEST = 0.005  # largest on a mesh whose errors are estimated; coarser meshes only locate the ends
-
 FINER = 16.0  # largest ratio of these sizes from mesh to mesh
 
 # Growth of the elements away from the ends: errors there are about (growth/2.8)^(2 order)
