@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from coulomb import recorded
+from numpy.polynomial import Legendre, legendre
 
 import partialslip
 from partialslip.condensed import history
@@ -17,18 +18,21 @@ from partialslip_fem import goals
 SEED = 13
 CERTIFIED = 1e-10  # in f p0, and in f P
 SAME = 1e-12  # relative: rounding of units
+EVEN = 4  # highest order of elements with evenly spaced nodes
 FINEST = 1e-4  # in a: beyond it a zone that fades away asks for meshes of minutes, not for more of the load steps
 
 
 def contact_line(traction, order):
     """Nodes of the contact line, and its mass matrix, for elements of ``order`` on the cells of a result."""
     k, cells = order, traction.cells
-    local = np.linspace(0, 1, k + 1)
-    at, weights = np.polynomial.legendre.leggauss(k + 1)
-    shapes = np.vander((at + 1) / 2) @ np.linalg.inv(np.vander(local))
+    local = np.linspace(-1, 1, k + 1)
+    if k > EVEN:
+        local[1:-1] = np.sort(Legendre.basis(k).deriv().roots())  # Lobatto's nodes
+    at, weights = legendre.leggauss(k + 1)
+    shapes = legendre.legvander(at, k) @ np.linalg.inv(legendre.legvander(local, k))
     mass = shapes.T @ (weights[:, None] / 2 * shapes)
     sizes = np.diff(cells)
-    nodes = np.append((cells[:-1, None] + sizes[:, None] * local[:-1]).ravel(), cells[-1])
+    nodes = np.append((cells[:-1, None] + sizes[:, None] * (local[:-1] + 1) / 2).ravel(), cells[-1])
     total = np.zeros((len(nodes), len(nodes)))
     rows = k * np.arange(len(sizes))[:, None, None] + np.arange(k + 1)[:, None]
     np.add.at(total, (rows, rows.swapaxes(1, 2)), sizes[:, None, None] * mass)
@@ -40,15 +44,14 @@ def forces(traction, order):
     nodes, mass = contact_line(traction, order)
     inside = np.abs(nodes[:, None] - traction.x).argmin(axis=0)
     outside = np.setdiff1d(np.arange(len(nodes)), inside)
-    N = mass @ traction.at(nodes)[0]
 
-    def shear(q):  # what lies outside carries no force: its tractions follow
+    def of(values):  # what lies outside carries no force: its tractions follow
         line = np.zeros(len(nodes))
-        line[inside] = q
+        line[inside] = values
         line[outside] = np.linalg.solve(mass[np.ix_(outside, outside)], -(mass @ line)[outside])
         return (mass @ line)[inside]
 
-    return N[inside], *(None if q is None else shear(q) for q in (traction.q1, traction.q2))
+    return of(traction.p), *(None if q is None else of(q) for q in (traction.q1, traction.q2))
 
 
 def complaints(scene, result, marches):
