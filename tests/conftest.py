@@ -6,6 +6,8 @@ own factors are 1e-9 and 1. The second one changes which triangles there are; th
 Tests run side by side, one on each core: linear algebra on one thread each, as in a run.
 
 More than half of all meshes of the tests have been made before: they are remembered, but for tests of meshing itself.
+
+Every test that is marked as a deliberate fault fails if the fault does not bite (``tests/faults/biting.py``).
 """
 
 import functools
@@ -14,6 +16,7 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # is read when NumPy and SciPy are imported
 
 import pytest
+from biting import biting
 
 from partialslip_meshes import blocks, gmsh
 
@@ -41,3 +44,12 @@ def _made(request, options):
 def _remembered_meshes(request, monkeypatch):
     if not set(request.path.parts).intersection(_MESHING):
         monkeypatch.setattr(blocks, "ask", lambda each: _made(_Request(each), repr(gmsh.OPTIONS)))
+
+
+@pytest.fixture(autouse=True)
+def _biting(request, _remembered_meshes):
+    if request.node.get_closest_marker("fault"):
+        with biting():
+            yield
+    else:
+        yield
