@@ -10,6 +10,7 @@ from pairs import answer, apart, guise, loads, solved, times
 from test_random_cycles import forces
 
 from partialslip import halfplane, load_scene
+from partialslip.halfplane.cells import on_cells
 from partialslip.halfplane.steady import stick_zone
 
 CLOSED = 1e-10  # residuals of a step, in f p0
@@ -59,7 +60,7 @@ def test_march_closes_every_step_of_any_path(scene):
     sound(result, scene, marches)
     traction, f = result.traction, scene.friction.f
     widths = np.diff(traction.cells)
-    p = result.state.p(traction.x) * widths  # the cells' forces
+    p = on_cells(result.state.p, traction.cells)  # the cells' forces
     for q in (traction.q1, traction.q2):
         assert (np.abs(q * widths) <= f * p + 1e-12 * f * scene.P).all()
     if scene.load.in_phase:

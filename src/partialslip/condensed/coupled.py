@@ -256,9 +256,8 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
     """Press the bodies together under a force from 0 to ``P``, with friction and without Q.
 
     Nodes that stick keep their displacement. Under a parabolic gap bodies are pressed in one small step from an
-    earlier stage, known from flat punches about the parabola's vertex (:mod:`partialslip.condensed.pressing`). Others
-    are pressed in at
-    least ``least`` steps, doubled until q changes by less than ``accuracy`` (relative L2) or the limit is reached.
+    earlier stage, known from flat punches about its vertex (:mod:`partialslip.condensed.pressing`). Others are pressed
+    in at least ``least`` steps, doubled until q changes by less than ``accuracy`` (relative L2), or up to the limit.
 
     ``C`` are the compliances, ``gap`` (n,) the gap before loading, ``f`` the coefficient of friction, ``line`` the
     nodes.
@@ -311,8 +310,7 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
 
 def _vertex(x: Array, gap: Array) -> float:
     """Where a parabolic ``gap`` (n,) at ``x`` (n,) is smallest: there the bodies touch first."""
-    _, slope, curvature = np.polynomial.polynomial.polyfit(x, gap, 2)
-    return float(-slope / (2 * curvature))
+    return float(np.polynomial.Polynomial.fit(x, gap, 2).deriv().roots()[0].real)
 
 
 def _moved(line: Line, forces: Array, others: Array) -> float:
