@@ -30,7 +30,7 @@ def marches_of(scene, method):
 
 @pytest.mark.parametrize(
     "numbers",
-    [(0, 30), pytest.param(range(2 * len(KINDS) * len(PROFILES)), marks=pytest.mark.slow)],
+    [(0, 30), pytest.param(range(len(KINDS) * len(PROFILES)), marks=pytest.mark.slow)],
     ids=["few", "many"],
 )
 def test_march_at_constant_pressure(numbers):

@@ -124,7 +124,7 @@ def trials(numbers):
         goals.FINEST = finest
 
 
-EVERY = range(2 * len(KINDS) * len(PROFILES))  # each kind of loads on each kind of profile, twice
+EVERY = range(len(KINDS) * len(PROFILES))  # each kind of loads on each kind of profile
 
 
 @pytest.mark.parametrize("numbers", [(0, 30), pytest.param(EVERY, marks=pytest.mark.slow)], ids=["few", "many"])
