@@ -152,3 +152,18 @@ def test_independent_of_units(scale):
     scaled = solve_bounded(C * scale, g, -bound / scale, bound / scale, 1.0 / scale)
     assert scaled.x * scale == pytest.approx(base.x, rel=1e-8, abs=1e-12)
     assert scaled.iterations == base.iterations
+
+
+def test_residual_of_a_tiny_member_is_not_the_rounding_of_the_shift():
+    """Close to sliding, one cell of 1e-9 of the contact sticks. A shift of order one has a rounding error that would be
+    1e-7 of this cell's bound."""
+    random = np.random.default_rng(5)
+    C, bound = compliance(30, random), np.full(30, 0.1)
+    bound[0] = 1e-10
+    g = C @ bound
+    g[0] -= 2.5  # the first member to come off its bound
+    total = float(bound.sum()) - 1e-10
+    solution = solve_bounded(C, g, -bound, bound, total)
+    assert np.flatnonzero(solution.sides == 0).tolist() == [0]
+    assert solution.residual[0] <= 1e-9 * bound[0]
+    assert solution.imbalance <= 1e-15
