@@ -5,6 +5,8 @@ own factors are 1e-9 and 1. The second one changes which triangles there are; th
 
 Tests run side by side, one on each core: linear algebra on one thread each, as in a run.
 
+Programs that tests start and stop by Ctrl-C would ignore it if this one did, as background jobs of a shell do.
+
 More than half of all meshes of the tests have been made before: they are remembered, but for tests of meshing itself.
 
 Every test that is marked as a deliberate fault fails if the fault does not bite (``tests/faults/biting.py``).
@@ -12,6 +14,7 @@ Every test that is marked as a deliberate fault fails if the fault does not bite
 
 import functools
 import os
+import signal
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # is read when NumPy and SciPy are imported
 
@@ -19,6 +22,9 @@ import pytest
 from biting import biting
 
 from partialslip_meshes import blocks, gmsh
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 _FACTORS = {"MESH_RANDOM_FACTOR": "RandomFactor", "MESH_SIZE_FACTOR": "MeshSizeFactor"}
 
