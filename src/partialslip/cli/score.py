@@ -94,7 +94,7 @@ def _score(options: argparse.Namespace) -> int:
         raise InputError("FILE: missing: must be a file with tractions; --template prints a table to fill in")
 
     from partialslip.cli.consoles import working
-    from partialslip.judge.reference import reference_for
+    from partialslip.judge.reference import reference
     from partialslip.report import write_run
     from partialslip.score.read import check
 
@@ -102,7 +102,7 @@ def _score(options: argparse.Namespace) -> int:
     check(file)  # before a folder is created
     beside = file.with_suffix(".frd")  # has the mesh of a .dat
     mesh = beside if file.suffix.lower() == ".dat" and beside.is_file() else None
-    known = {"file": file, "mesh": mesh, "factors": factors, "reference": options.reference or reference_for(scene)}
+    known = {"file": file, "mesh": mesh, "factors": factors, "reference": options.reference or reference(scene).method}
     name = f"{scene.name}-{file.stem}"
     with folder_if_wanted(options, "score", name, scene, **known) as (folder, passed), working(scene.name) as tell:
         outcome = partialslip.score(

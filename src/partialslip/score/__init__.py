@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Literal
 
 from partialslip.errors import InputError
-from partialslip.judge.reference import REFERENCES, reference_for
+from partialslip.judge.reference import REFERENCES
+from partialslip.judge.reference import reference as reference_of
 from partialslip.result import Result
 from partialslip.run import Run, compared, run
 from partialslip.scene import Scene
@@ -47,8 +48,7 @@ def score(
     bar : float, optional
         Largest errors of a, m and n, as fractions of a; p and q have 10 and 15 times this bar. By default no bars.
     reference : str, optional
-        Method to compare with. By default exact; march if Q and sigma are out of phase; fem for bodies of different
-        materials or of finite size.
+        Method to compare with; by default the reference (:func:`partialslip.judge.reference.reference`).
     factors : (float, float, float)
         Further factors of x, p and p1 (Fn) and q (Ft), for other units and signs.
     order : int
@@ -70,7 +70,7 @@ def score(
     """
     file = Path(file)
     name = "".join(c if c.isprintable() else "?" for c in file.name)
-    reference = reference_for(scene) if reference is None else reference
+    reference = reference_of(scene).method if reference is None else reference
     if reference not in REFERENCES:
         raise InputError(f"reference {reference!r}: must be one of {', '.join(REFERENCES)}")
     if centre not in ("given", "auto"):
