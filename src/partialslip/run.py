@@ -11,6 +11,7 @@ import numpy.typing as npt
 from msgspec.structs import replace
 
 from partialslip.allowance import Allowance
+from partialslip.bars import LARGEST, Accuracy, Asked, asked
 from partialslip.errors import InputError
 from partialslip.frame import frame
 from partialslip.judge import Comparison, Conclusion, Outcome, Verdict, compare, conditions, of_run
@@ -45,15 +46,15 @@ class Run(Drawn):
         Results by method; also "all effects" if effects of the scene were forced off.
     comparisons : dict of str to Comparison
         Comparisons with the reference, by method; none for the reference.
-    accuracy : float or None
-        The bar for a, m and n, as a fraction of a; None if there are no bars.
+    accuracy : Asked or None
+        The accuracy asked for (:class:`partialslip.bars.Asked`); None if there are no bars.
     """
 
     scene: Scene
     plan: Plan
     results: dict[str, Result]
     comparisons: dict[str, Comparison]
-    accuracy: float | None = None
+    accuracy: Asked | None = None
 
     def __getitem__(self, method: str) -> Result:
         """Return the result of ``method``: ``run["fem"]`` is ``run.results["fem"]``."""
@@ -220,7 +221,8 @@ def run(
     # error measures the effect
     judged = not scene.finite and scene.fem.size is None and not effects.missing
     reached = results["fem"].settings.get("accuracy") if allowance and "fem" in results else None
-    return compared(scene, effects, results, float(reached or scene.fem.accuracy) if judged else None)
+    accuracy = min(float(reached or scene.fem.accuracy), LARGEST)
+    return compared(scene, effects, results, accuracy if judged else None)
 
 
 def _slid(scene: Scene, result: Result) -> Result:
@@ -235,7 +237,7 @@ def _slid(scene: Scene, result: Result) -> Result:
     return dataclasses.replace(result, undetermined={**result.undetermined, **dict.fromkeys(("q", "q1", "q2"), _ONE)})
 
 
-def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: float | None) -> Run:
+def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: Accuracy | None) -> Run:
     """Compare ``results`` of ``scene``, by method, with the reference among them.
 
     Parameters
@@ -243,8 +245,13 @@ def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: flo
     scene : Scene
     plan : Plan
     results : dict of str to Result
-    accuracy : float or None
-        Bar for a, m and n, as a fraction of a; None for no bars.
+    accuracy : float, (float, float, float) or None
+        Bar for a, m and n, as a fraction of a, or bars for contact, stick zone and tractions; None for no bars.
+
+    Raises
+    ------
+    InputError
+        If a number of ``accuracy`` is not above 0 and at most 0.1.
     """
     chosen = reference_among(scene, results)
     comparisons = {
@@ -252,7 +259,7 @@ def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: flo
         for name, result in results.items()
         if chosen and name != chosen
     }
-    return Run(scene, plan, results, comparisons, accuracy)
+    return Run(scene, plan, results, comparisons, asked(accuracy))
 
 
 def characterise(scene: Scene) -> Rig:

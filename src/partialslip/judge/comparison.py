@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.bars import BARS
+from partialslip.bars import Accuracy, asked
 from partialslip.judge.measures import Measure, measures
 from partialslip.judge.outcome import Conclusion, conclude
 from partialslip.judge.reference import reference as reference_of
@@ -137,7 +137,7 @@ def compare(
     result: Result,
     reference: Result,
     scene: Scene,
-    accuracy: float | None,
+    accuracy: Accuracy | None,
     bars: Mapping[str, Bar] | None = None,
 ) -> Comparison:
     """Compare ``result`` with ``reference`` and judge it.
@@ -148,11 +148,17 @@ def compare(
         Results for the same ``scene``.
     scene : Scene
         The loads and the coefficient of friction scale the resultants and the errors of q.
-    accuracy : float or None
+    accuracy : float, (float, float, float) or None
         Bar for a, m, n and the ends of the contact, as a fraction of a. The bar for p and P is 10 times ``accuracy``,
-        for q, q1, q2 and dQ 15 times. With None only the quantities in ``bars`` have a bar.
+        for q, q1, q2 and dQ 15 times, none above 0.1. Three numbers are the bars for contact, stick zone and tractions.
+        With None only the quantities in ``bars`` have a bar.
     bars : mapping of str to Bar, optional
         Bars by quantity that replace the usual ones.
+
+    Raises
+    ------
+    InputError
+        If a number of ``accuracy`` is not above 0 and at most 0.1.
 
     Notes
     -----
@@ -160,7 +166,8 @@ def compare(
     judged.
     """
     own = bars or {}
-    usual = {} if accuracy is None else {key: Bar(share * accuracy) for key, share in BARS.items()}
+    wanted = asked(accuracy)
+    usual = {key: Bar(bar) for key, bar in wanted.bars.items()} if wanted else {}
     applied = {key: _beside(bar, key, reference) for key, bar in {**usual, **own}.items()}
     unknown = reference_of(scene).unknown
     every = measures(result, reference, scene, unknown)

@@ -63,8 +63,8 @@ def _absent(quantity: str, reference: Result, scene: Scene) -> str:
         return ""
     if scene.friction.f == 0 and quantity not in ("q", "q1", "q2"):  # q = 0
         return "there is no friction"
-    if reference.regime == "sliding" and quantity in ("m", "n", "dQ"):  # q = f p
-        return "the contact slides"
+    if reference.regime == "sliding":  # q = f p, where it is known
+        return "the contact slides" if quantity in ("m", "n", "dQ") else reference.undetermined.get("q", "")
     if reference.regime == "ratchets":
         return "the contact ratchets: its steady state is not reached"
     if quantity == "dQ" and not scene.load.in_phase:

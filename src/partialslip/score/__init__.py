@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
+from partialslip.bars import Accuracy, asked
 from partialslip.errors import InputError
 from partialslip.judge.reference import REFERENCES
 from partialslip.judge.reference import reference as reference_of
@@ -20,7 +21,7 @@ def score(
     scene: Scene,
     file: str | Path,
     *,
-    bar: float | None = None,
+    bar: Accuracy | None = None,
     reference: str | None = None,
     factors: tuple[float, float, float] = (1.0, 1.0, 1.0),
     order: int = 1,
@@ -45,8 +46,9 @@ def score(
 
         Numbers are in the units in which the scene is shown (:attr:`Scene.shown_in`), in other units if the table's
         header states them, and in those of the deck if CalculiX ran a deck of :func:`partialslip.export.export`.
-    bar : float, optional
-        Largest errors of a, m and n, as fractions of a; p and q have 10 and 15 times this bar. By default no bars.
+    bar : float or (float, float, float), optional
+        Largest errors of a, m and n, as fractions of a; p and q have 10 and 15 times this bar, none above 0.1. Or one
+        number each for contact, stick zone and tractions. None above 0.1. By default no bars.
     reference : str, optional
         Method to compare with; by default the reference (:func:`partialslip.judge.reference.reference`).
     factors : (float, float, float)
@@ -68,7 +70,7 @@ def score(
     InputError
         If the file cannot be read, or an argument is not allowed.
     """
-    file = Path(file)
+    file, wanted = Path(file), asked(bar)
     name = "".join(c if c.isprintable() else "?" for c in file.name)
     reference = reference_of(scene).method if reference is None else reference
     if reference not in REFERENCES:
@@ -83,7 +85,7 @@ def score(
     result = scored(scene, found, name, str(file))
     outcome = run(scene, [reference], progress=progress)
     return compared(
-        scene, outcome.plan, outcome.results | {name: _read_as(scene, result, outcome.results[reference])}, bar
+        scene, outcome.plan, outcome.results | {name: _read_as(scene, result, outcome.results[reference])}, wanted
     )
 
 
