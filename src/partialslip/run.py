@@ -46,7 +46,7 @@ class Run(Drawn):
         Results by method; also "all effects" if effects of the scene were forced off.
     comparisons : dict of str to Comparison
         Comparisons with the reference, by method; none for the reference.
-    accuracy : Asked or None
+    asked : Asked or None
         The accuracy asked for (:class:`partialslip.bars.Asked`); None if there are no bars.
     """
 
@@ -54,7 +54,7 @@ class Run(Drawn):
     plan: Plan
     results: dict[str, Result]
     comparisons: dict[str, Comparison]
-    accuracy: Asked | None = None
+    asked: Asked | None = None
 
     def __getitem__(self, method: str) -> Result:
         """Return the result of ``method``: ``run["fem"]`` is ``run.results["fem"]``."""
@@ -95,7 +95,12 @@ class Run(Drawn):
     @property
     def judged(self) -> bool:
         """Whether errors have bars."""
-        return self.accuracy is not None
+        return self.asked is not None
+
+    @property
+    def accuracy(self) -> float | None:
+        """The bar for m and n, as a fraction of a; None if there are no bars."""
+        return self.asked.stick if self.asked else None
 
     @property
     def conditions(self) -> dict[str, tuple[Verdict, ...]]:

@@ -116,7 +116,7 @@ def verdict(run: Run) -> str:
     """Return the verdict on the whole ``run`` in one line, with what was asked for."""
     found = run.conclusion
     if found.asked or found.outcome is Outcome.MISSED:
-        wanted = run.accuracy.text if run.accuracy else ""
+        wanted = run.asked.text if run.asked else ""
         nothing = next((each.regime for each in run.results.values() if each.m is None), "")
         if found.outcome is Outcome.PASSED:
             return ", ".join(filter(None, [found.text, nothing])) + f": {wanted}"
