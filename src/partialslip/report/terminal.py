@@ -33,7 +33,7 @@ def print_run(run: Run, console: Console, *, verbose: bool = False, lines: Seque
     compared = bool(run.comparisons)
     for name, comparison in run.comparisons.items():
         errors = [(*row, f"{bar} {word}".strip()) for *row, bar, word in rows.error_rows(comparison, every=verbose)]
-        print_table(console, rows.headings(run, name)[:-1], errors, words=(0, 1, 6), gap=2)
+        print_table(console, rows.headings(run, name)[:-1], errors, words=(0, 1, 6))
     if compared:
         console.print(f"units of {rows.units(run)}", markup=False)
     if verbose:
