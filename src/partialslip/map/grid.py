@@ -60,14 +60,17 @@ class Point:
         Absolute values of the scaled loads.
     mirrored : bool
         Whether dQ and dsigma differ in sign; m and n are then swapped on the map.
-    exact : Result
-        Result of the exact method.
+    exact : Result or None
+        Result of the exact method; None if it does not hold.
+    missing : str
+        Why it does not hold.
     """
 
     Qf: float
     sf: float
     mirrored: bool
-    exact: Result
+    exact: Result | None
+    missing: str = ""
 
 
 @dataclass(frozen=True)
@@ -197,12 +200,11 @@ def _point(scene: Scene, pressed: Contact) -> tuple[Point | None, str]:
     load, f = scene.load, scene.friction.f
     if not load.in_phase:
         return None, "Q and sigma are out of phase"
-    if unknown := reference(scene).unknown:
-        return None, unknown["m"]
     exact = run(scene, ["exact"]).results["exact"]
     if exact.regime == "sliding":
         return None, exact.notes[0]
     Qf, sf = abs(load.dQ) / (2 * f * pressed.P), abs(load.dsigma) / (f * pressed.p0)
     if sf > _HIGHEST:
         return None, f"dsigma = {scene.units.labelled(load.dsigma, 'Pa')} is more than {_HIGHEST:g} f p0"
-    return Point(Qf, sf, load.dQ * load.dsigma < 0, exact), ""
+    why = reference(scene).unknown.get("m", "")
+    return Point(Qf, sf, load.dQ * load.dsigma < 0, None if why else exact, why), ""
