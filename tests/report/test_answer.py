@@ -42,7 +42,7 @@ def printed(found, **options):
         (0.888123, 0.0, "0.888123"),
         (0.8881234567, 1e-9, "0.8881235"),
         (0.0, 1e-3, "0.000 +- 0.001"),
-        (1.5, float("inf"), "1.5"),
+        (1.54321, float("nan"), "1.543"),
     ],
 )
 def test_digits_are_those_that_the_error_leaves(value, error, text):

@@ -14,6 +14,8 @@ from partialslip.units import Dimension
 
 _ROUNDING = 1e-9  # of a
 _DIGITS = 7  # significant, of values that are known to rounding
+_ROUGH = 4  # significant, of values whose error is not estimated
+_EXACT = ("exact", "march")  # what these do not estimate (march: the pressure) they know to rounding
 
 
 class _Known(NamedTuple):
@@ -69,10 +71,15 @@ def _contact(run: Run, result: Result) -> Iterator[tuple[str, str]]:
 
 
 def _shears(run: Run) -> Iterator[tuple[str, str]]:
-    """Yield the largest shear at both load points."""
+    """Yield the largest shear at both load points; out of phase, where it may be largest elsewhere, in the cycle."""
     if run.scene.friction.f == 0:
         return
     known = _first(run, lambda result: result.traction.q1 is not None and result.traction.q2 is not None)
+    if known and not run.scene.load.in_phase:
+        traction = known.result.traction
+        largest = max(float(np.abs(q).max()) for q in (traction.q1, traction.q2) if q is not None)
+        yield "largest |q|", _stress(run, largest, known, "q") + _by(known)
+        return
     for key in ("q1", "q2"):
         if not known:
             yield f"largest |{key}|", f"not known: {_why(run, key)}"
@@ -89,19 +96,24 @@ def _stresses(run: Run) -> Iterator[tuple[str, str]]:
     surface = known.result.surface
     exponent, label = _unit(run, known.result.a, "m")
     for point, sigma in enumerate(surface.sigma[0]):
-        index = int(sigma.argmax())
+        index, last = int(sigma.argmax()), len(sigma) - 1
         place = float(surface.x[index])
-        beside = np.abs(surface.x[[max(index - 1, 0), min(index + 1, len(sigma) - 1)]] - place).max()
+        beside = np.abs(surface.x[[max(index - 1, 0), min(index + 1, last)]] - place).max()
         error = _estimate(known.result, "a") * known.result.a if _at_an_end(place, known.result) else float(beside)
-        where = f"at x = {_number(place, error, exponent)} {label}"
+        far = index in (0, last)
+        where = "away from the contact" if far else f"at x = {_number(place, error, exponent)} {label}"
         value = _stress(run, float(sigma.max()), known, f"q{point + 1}")
         yield f"largest sigma_xx, {point + 1}", f"{value} {where}{_by(known)}"
 
 
 def _first(run: Run, knows: Callable[[Result], bool]) -> _Known | None:
-    """Return the first result that ``knows`` a value, the answering one before all others; None if none does."""
-    best = run.answering
-    for name in dict.fromkeys([best, *run.results]):
+    """Return the first result that ``knows`` a value and claims to hold, the answering one before all others; None if
+    none does. Half-planes do not hold for finite bodies."""
+    best, finite = run.answering, run.scene.finite
+    others = [
+        name for name, result in run.results.items() if not (result.path_dependent or (finite and name in _EXACT))
+    ]
+    for name in dict.fromkeys([best, *others]):
         if knows(run.results[name]):
             return _Known(run.results[name], "" if name == best else name)
     return None
@@ -133,8 +145,11 @@ def _stress(run: Run, value: float, known: _Known, key: str) -> str:
 
 
 def _estimate(result: Result, key: str) -> float:
-    """Return the method's own estimate of an error; that of q for q1 and q2 that have none, and 0 without any."""
-    return float(result.estimate.get(key, result.estimate.get("q", 0.0) if key in ("q1", "q2") else 0.0))
+    """Return the method's own estimate of an error, NaN if there is none; that of q for q1 and q2 that have none, and
+    that of a for m and n where all of the contact sticks."""
+    instead = {"q1": "q", "q2": "q"} | ({"m": "a", "n": "a"} if result.regime == "stuck" else {})
+    unknown = 0.0 if result.method in _EXACT else math.nan
+    return float(result.estimate.get(key, result.estimate.get(instead.get(key, key), unknown)))
 
 
 def _unit(run: Run, size: float, of: Dimension) -> tuple[int, str]:
@@ -147,9 +162,11 @@ def _unit(run: Run, size: float, of: Dimension) -> tuple[int, str]:
 
 def _number(value: float, error: float, exponent: int = 0) -> str:
     """Return ``value`` in units of ten to the ``exponent``, with the decimals that the ``error`` leaves, and the error
-    rounded up to one digit."""
+    rounded up to one digit; with few digits if the error is NaN."""
     value, error = value / 10.0**exponent, error / 10.0**exponent
-    if not error or not math.isfinite(error) or error < abs(value) * 10.0**-_DIGITS:
+    if not math.isfinite(error):
+        return f"{value:.{_ROUGH}g}"
+    if error < abs(value) * 10.0**-_DIGITS or not error:
         return f"{value:.{_DIGITS}g}"
     place = math.floor(math.log10(error))
     up = math.ceil(error / 10.0**place - 1e-9)
