@@ -1,6 +1,7 @@
 """A run: solve one scene by one or more methods, and compare each result with the reference."""
 
-from collections.abc import Callable, Iterable, Iterator
+import dataclasses
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -10,13 +11,14 @@ import numpy.typing as npt
 from msgspec.structs import replace
 
 from partialslip.allowance import Allowance
+from partialslip.bars import LARGEST, Accuracy, Asked, asked
 from partialslip.errors import InputError
 from partialslip.frame import frame
-from partialslip.gradual import may_turn_round
-from partialslip.judge import Comparison, Outcome, Verdict, compare, conditions, overall
-from partialslip.judge.reference import ALL_EFFECTS, METHODS, reference_for, reference_of
+from partialslip.judge import Comparison, Conclusion, Outcome, Verdict, compare, conditions, of_run
+from partialslip.judge.reference import ALL_EFFECTS, METHODS, reference, reference_among
 from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
+from partialslip.result.sliding import sliding
 from partialslip.result.state import State
 from partialslip.rig import Rig, key_of, load_rig
 from partialslip.scene import Effects, Scene
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from partialslip_fem import Kept
 
 Progress = Callable[[str], None]
+_ONE = "the contact slides at one of the load points: q at the other is not solved for"
 _KEPT = 8  # rigs kept in a process
 _rigs: dict[str, Rig] = {}
 
@@ -43,15 +46,15 @@ class Run(Drawn):
         Results by method; also "all effects" if effects of the scene were forced off.
     comparisons : dict of str to Comparison
         Comparisons with the reference, by method; none for the reference.
-    accuracy : float or None
-        The bar for a, m and n, as a fraction of a; None if there are no bars.
+    asked : Asked or None
+        The accuracy asked for (:class:`partialslip.bars.Asked`); None if there are no bars.
     """
 
     scene: Scene
     plan: Plan
     results: dict[str, Result]
     comparisons: dict[str, Comparison]
-    accuracy: float | None = None
+    asked: Asked | None = None
 
     def __getitem__(self, method: str) -> Result:
         """Return the result of ``method``: ``run["fem"]`` is ``run.results["fem"]``."""
@@ -74,17 +77,30 @@ class Run(Drawn):
             for name, result in self.results.items()
             for line in (result, *([self.comparisons[name]] if name in self.comparisons else []))
         ]
-        return "\n  ".join([f"Run of {self.scene.name}: {self.outcome}", *map(repr, results)])
+        return "\n  ".join([f"Run of {self.scene.name}: {self.conclusion.text}", *map(repr, results)])
 
     @property
     def reference(self) -> str | None:
-        """Name of the reference method (:func:`partialslip.judge.reference.reference_of`); None without results."""
-        return reference_of(self.results)
+        """Name of the reference (:func:`partialslip.judge.reference.reference_among`); None without results."""
+        return reference_among(self.scene, self.results)
+
+    @property
+    def answering(self) -> str:
+        """Name of the method whose result answers: the reference of the scene if it is among the methods; of finite
+        bodies fem, then equivalent half-planes; else the first."""
+        best = reference(self.scene).method
+        wanted = (best, "equivalent") if self.scene.finite else (best,)
+        return next((name for name in wanted if name in self.results), next(iter(self.results)))
 
     @property
     def judged(self) -> bool:
         """Whether errors have bars."""
-        return self.accuracy is not None
+        return self.asked is not None
+
+    @property
+    def accuracy(self) -> float | None:
+        """The bar for m and n, as a fraction of a; None if there are no bars."""
+        return self.asked.stick if self.asked else None
 
     @property
     def conditions(self) -> dict[str, tuple[Verdict, ...]]:
@@ -92,13 +108,16 @@ class Run(Drawn):
         return {name: conditions(result) for name, result in self.results.items()}
 
     @property
-    def outcome(self) -> Outcome:
-        """Overall outcome (:func:`partialslip.judge.overall`).
+    def conclusion(self) -> Conclusion:
+        """What the verdicts of all methods amount to (:func:`partialslip.judge.of_run`)."""
+        compared = {name: comparison.conclusion for name, comparison in self.comparisons.items()}
+        hold = {name: not result.path_dependent for name, result in self.results.items()}
+        return of_run(compared, self.missed, hold)
 
-        A run without bars or without a comparison is not judged, unless a result misses a condition.
-        """
-        verdicts = [verdict for comparison in self.comparisons.values() for verdict in comparison.verdicts]
-        return overall(verdicts, [verdict for each in self.conditions.values() for verdict in each])
+    @property
+    def outcome(self) -> Outcome:
+        """Overall outcome: passed only if every headline quantity of every method that claims to hold was judged."""
+        return self.conclusion.outcome
 
     @property
     def missed(self) -> tuple[str, ...]:
@@ -113,7 +132,7 @@ class Run(Drawn):
 
     @property
     def passed(self) -> bool:
-        """Whether something was judged and nothing is missed."""
+        """Whether every headline quantity was judged and nothing is missed."""
         return self.outcome is Outcome.PASSED
 
     @property
@@ -146,25 +165,16 @@ class Run(Drawn):
 
 
 def default_methods(scene: Scene) -> tuple[str, ...]:
-    """Return the default methods for ``scene``: fem, and for half-planes the reference method; for a scene with a rig,
-    exact and equivalent.
-
-    Half-planes in which slip reverses between the load points are solved by exact, march and fem.
+    """Return the default methods for ``scene``: fem, and for half-planes the reference
+    (:func:`partialslip.judge.reference.reference`); beside finite bodies half-planes; with a rig exact and equivalent.
     """
     if not scene.material.alike:
         return ("fem",)
     if scene.bodies.equivalent is not None:
         return ("exact", "equivalent")
-    if not scene.load.in_phase:
-        return ("march", "fem")
-    if not scene.finite and may_turn_round(scene):
-        from partialslip.halfplane.method import has_closed_form, path_dependent
-
-        if not has_closed_form(scene):
-            return ("march", "fem")
-        if path_dependent(scene):
-            return ("exact", "march", "fem")
-    return ("exact", "fem")
+    if scene.finite:
+        return ("exact" if scene.load.in_phase else "march", "fem")
+    return (reference(scene).method, "fem")
 
 
 def run(
@@ -172,6 +182,7 @@ def run(
     methods: str | Iterable[str] | None = None,
     *,
     subsurface: bool = False,
+    stresses: bool = False,
     progress: Progress = lambda _: None,
     start: State | None = None,
     keep: "Kept | None" = None,
@@ -185,7 +196,10 @@ def run(
     methods : str or iterable of str, optional
         Of "exact", "march", "fem" and "equivalent", one or several; default: :func:`default_methods`.
     subsurface : bool
-        Whether to compute fields inside the bodies: displacements (fem) and stresses (exact).
+        Whether to compute fields inside the bodies: displacements (fem) and stresses.
+    stresses : bool
+        Whether a method that holds for the scene computes stresses along the surfaces, even if fields inside the bodies
+        are not asked for: exact and march, and fem if neither of these knows them.
     progress : callable
         ``progress(line)``: called from time to time with a line of text.
     start : State, optional
@@ -213,31 +227,60 @@ def run(
     tasks = {name: (name, reduced(scene), effects) for name in chosen}
     if effects.missing:
         whole = replace(scene, effects=Effects())
-        tasks[ALL_EFFECTS] = _reference_for(whole), whole, plan(whole, subsurface=subsurface, start=start is not None)
-    results = {
-        name: _method(method, keep, allowance)(what, its, _told_by(name, progress), start)
-        for name, (method, what, its) in tasks.items()
-    }
+        tasks[ALL_EFFECTS] = reference(whole).method, whole, plan(whole, subsurface=subsurface, start=start is not None)
+    results: dict[str, Result] = {}
+    for name, (method, what, its) in tasks.items():
+        if stresses and _finds_stresses(what, method, results):
+            its = plan(what, subsurface=True, start=start is not None)
+        results[name] = _slid(what, _method(method, keep, allowance)(what, its, _told_by(name, progress), start))
     for result in results.values():
         effects.accept(result.regime)
     # no bars for finite bodies or for a fixed element size: there is no reference; none for effects forced off: the
     # error measures the effect
     judged = not scene.finite and scene.fem.size is None and not effects.missing
     reached = results["fem"].settings.get("accuracy") if allowance and "fem" in results else None
-    return compared(scene, effects, results, float(reached or scene.fem.accuracy) if judged else None)
+    accuracy = min(float(reached or scene.fem.accuracy), LARGEST)
+    return compared(scene, effects, results, accuracy if judged else None)
 
 
-def _reference_for(scene: Scene) -> str:
-    """Return the most accurate method for ``scene``; march where the exact method has no closed form."""
-    name = reference_for(scene)
-    if name == "exact":
-        from partialslip.halfplane.method import has_closed_form
-
-        return name if has_closed_form(scene) else "march"
-    return name
+def _finds_stresses(scene: Scene, method: str, before: Mapping[str, Result]) -> bool:
+    """Return whether ``method`` is to find the stresses of ``scene``, after the results ``before``."""
+    if scene.finite or not scene.material.alike:
+        return method == "fem"
+    return method in ("exact", "march") or not any(result.surface for result in before.values())
 
 
-def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: float | None) -> Run:
+def _slid(scene: Scene, result: Result) -> Result:
+    """Return ``result`` with q = f p if the contact slides, which no method solves for; otherwise as it is.
+
+    Unlike bodies are left out: there shear changes the pressure.
+    """
+    if result.regime != "sliding" or not scene.material.alike:
+        return result
+    if signs := scene.sliding_signs:
+        return dataclasses.replace(result, traction=sliding(result.traction, scene.friction.f, signs))
+    return dataclasses.replace(result, undetermined={**result.undetermined, **dict.fromkeys(("q", "q1", "q2"), _ONE)})
+
+
+def with_stresses(scene: Scene, method: str | None = None, progress: Progress = lambda _: None) -> Result:
+    """Solve ``scene`` with the stresses in the bodies.
+
+    By default the method is the reference (:func:`partialslip.judge.reference.reference`), and march where exact does
+    not know q1 and q2: mean loads, for instance, under which the first cycles lock in what no closed form gives.
+
+    Raises
+    ------
+    InputError
+        As :func:`run`.
+    """
+    chosen = method or reference(scene).method
+    found = run(scene, chosen, subsurface=True, progress=progress)[chosen]
+    if method is None and chosen == "exact" and not found.stress_at and not scene.slides:
+        return run(scene, "march", subsurface=True, progress=progress)["march"]
+    return found
+
+
+def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: Accuracy | None) -> Run:
     """Compare ``results`` of ``scene``, by method, with the reference among them.
 
     Parameters
@@ -245,16 +288,21 @@ def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: flo
     scene : Scene
     plan : Plan
     results : dict of str to Result
-    accuracy : float or None
-        Bar for a, m and n, as a fraction of a; None for no bars.
+    accuracy : float, (float, float, float) or None
+        Bar for a, m and n, as a fraction of a, or bars for contact, stick zone and tractions; None for no bars.
+
+    Raises
+    ------
+    InputError
+        If a number of ``accuracy`` is not above 0 and at most 0.1.
     """
-    reference = reference_of(results)
+    chosen = reference_among(scene, results)
     comparisons = {
-        name: compare(result, results[reference], scene, accuracy)
+        name: compare(result, results[chosen], scene, accuracy)
         for name, result in results.items()
-        if reference and name != reference
+        if chosen and name != chosen
     }
-    return Run(scene, plan, results, comparisons, accuracy)
+    return Run(scene, plan, results, comparisons, asked(accuracy))
 
 
 def characterise(scene: Scene) -> Rig:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.report import rows
+from partialslip.report import answer, rows
 from partialslip.report.files import tractions_csv
 
 matplotlib.use("Agg")
@@ -67,11 +67,13 @@ def test_result(run, name):
 def test_comparison_and_run(run):
     comparison = run.comparisons["fem"]
     alone, whole = Cells(comparison._repr_html_()).rows, Cells(run._repr_html_())
+    first = [["", *line] for line in answer.answers(run)]
     assert alone[1:] == [list(row) for row in rows.error_rows(comparison)]
     labels = [row[0] for row in alone[1:]]
-    assert labels[:5] == ["a, half-width", "left end", "right end", "m, stick from -m", "n, stick to n"]
-    assert {"P, sum of p", "p, pressure", "p, largest", "dQ, sum of dq", "q, shear", "q, largest"} <= set(labels)
-    assert whole.rows[1 : len(alone)] == alone[1:]
+    assert labels[:3] == ["a, half-width", "m, stick zone", "n, stick zone"]
+    assert {"P, sum of p", "p, pressure", "dQ, sum of dq", "q, shear"} <= set(labels)
+    assert [row[-2:] for row in whole.rows[: len(first)]] == [row[-2:] for row in first]
+    assert whole.rows[len(first) + 1 : len(first) + len(alone)] == alone[1:]
     estimate = run.results["fem"].estimate["a"]
     assert alone[1][4:] == [f"{comparison.a:.1e}", f"{estimate:.1e}", "1.0e-02", "ok"]
     assert alone[1][2] == "1.0000000"

@@ -59,8 +59,8 @@ def test_several_origins_share_rows():
 
 
 def test_the_verdict_has_a_box_with_one_method_too(page):
-    assert '<div class="verdict">all bars met</div>' in page
-    assert '<div class="verdict">not judged: nothing to compare with</div>' in page_of(EXACT)
+    assert '<div class="verdict">all bars met: within 0.1 % of a, 1 % of p, 1.5 % of q</div>' in page
+    assert '<div class="verdict">no bars: nothing to compare with</div>' in page_of(EXACT)
     missed = page_of(EXACT, result(a=1.1))
     assert re.search(r'<div class="verdict">missed: fem: a: error 0.1 ', missed)
 

@@ -29,11 +29,13 @@ def test_a_result_in_a_line(run):
 
 def test_a_run_is_its_results_and_comparisons(run):
     lines = repr(run).splitlines()
-    assert lines[0] == "Run of hertz-large-tension: passed"
+    assert lines[0] == "Run of hertz-large-tension: all bars met"
     assert [line.strip() for line in lines[1:]] == [
         repr(run["exact"]), repr(run["march"]), repr(run.comparisons["march"])
     ]  # fmt: skip
-    assert lines[3].startswith(f"  Comparison: passed; errors in a: a 0.0e+00, m {run.comparisons['march'].m:.1e}, n ")
+    assert lines[3].startswith(
+        f"  Comparison: all bars met; errors in a: a 0.0e+00, m {run.comparisons['march'].m:.1e}, n "
+    )
 
 
 def test_scenes_and_plans(run):

@@ -6,7 +6,7 @@ import numpy as np
 
 from partialslip.map.figure import ends_svg, map_svg
 from partialslip.map.grid import StickMap
-from partialslip.map.varying import VaryingMap, VaryingPoint
+from partialslip.map.varying import VaryingMap
 from partialslip.map.varying_figure import varying_svg
 from partialslip.output.csv import csv_text
 from partialslip.output.files import write_texts
@@ -72,12 +72,11 @@ def place(data: StickMap | VaryingMap) -> list[str]:
     finite = ", ".join(key for key, _ in data.scene.bodies)
     left_out = [f"the map shows half-planes: {finite} left out"] if finite else []
     exact = point.exact
-    if isinstance(point, VaryingPoint) and point.missing:
-        return [f"{name}: {point.missing}; must be solved by march", *left_out]
+    if point.missing:
+        return [f"{name}: {point.missing}", *left_out]
     assert exact
     ends = ", ".join(f"{key} = {rows.value(exact, key)}" for key in ("m", "n"))
     reached = ", which are not reached" if exact.regime == "ratchets" else ""
     mirrored = " (dQ and dsigma differ in sign: on the map m and n change places)" if point.mirrored else ""
     limits = rows.limits(exact, data.scene.units)
-    turns = [exact.undetermined["m"]] if "m" in exact.undetermined else []
-    return [f"{name}: {exact.regime}, {ends}{reached}{mirrored}", *filter(None, [limits]), *turns, *left_out]
+    return [f"{name}: {exact.regime}, {ends}{reached}{mirrored}", *filter(None, [limits]), *left_out]

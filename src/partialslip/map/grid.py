@@ -17,6 +17,7 @@ from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zones, transition
+from partialslip.judge.reference import reference
 from partialslip.result import Result, StickZone
 from partialslip.run import run
 from partialslip.scene import Scene
@@ -59,14 +60,17 @@ class Point:
         Absolute values of the scaled loads.
     mirrored : bool
         Whether dQ and dsigma differ in sign; m and n are then swapped on the map.
-    exact : Result
-        Result of the exact method.
+    exact : Result or None
+        Result of the exact method; None if it does not hold.
+    missing : str
+        Why it does not hold.
     """
 
     Qf: float
     sf: float
     mirrored: bool
-    exact: Result
+    exact: Result | None
+    missing: str = ""
 
 
 @dataclass(frozen=True)
@@ -202,4 +206,5 @@ def _point(scene: Scene, pressed: Contact) -> tuple[Point | None, str]:
     Qf, sf = abs(load.dQ) / (2 * f * pressed.P), abs(load.dsigma) / (f * pressed.p0)
     if sf > _HIGHEST:
         return None, f"dsigma = {scene.units.labelled(load.dsigma, 'Pa')} is more than {_HIGHEST:g} f p0"
-    return Point(Qf, sf, load.dQ * load.dsigma < 0, exact), ""
+    why = reference(scene).unknown.get("m", "")
+    return Point(Qf, sf, load.dQ * load.dsigma < 0, None if why else exact, why), ""

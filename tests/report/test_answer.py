@@ -1,0 +1,165 @@
+"""The answer with which a run begins: values in the scene's units, with the digits that are known."""
+
+import re
+from dataclasses import replace
+from io import StringIO
+
+import numpy as np
+import pytest
+from known import EXACT, P0, SCENE, A, C, F, P, result, traction
+from rich.console import Console
+
+from partialslip import load_scene, run
+from partialslip.judge import Outcome
+from partialslip.plan import plan
+from partialslip.report import answer, print_run, rows
+from partialslip.run import compared
+from partialslip.scene import Scene
+
+REVERSES = ["load.Q=[-202151.086544, 202151.086544]", "load.sigma=[-867088938.5947, 867088938.5947]"]
+
+
+def ran(results, scene: Scene = SCENE, accuracy=1e-3):
+    return compared(scene, plan(scene), results, accuracy)
+
+
+def printed(found, **options):
+    console = Console(file=StringIO(), width=80)
+    print_run(found, console, **options)
+    return console.file.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (0.888123, 0.0029, "0.888 +- 0.003"),
+        (0.888123, 0.003, "0.888 +- 0.003"),
+        (0.888123, 0.0031, "0.888 +- 0.004"),
+        (0.888123, 0.0096, "0.89 +- 0.01"),
+        (-0.29701, 2.3e-4, "-0.2970 +- 0.0003"),
+        (123.4, 20.0, "120 +- 20"),
+        (123.4, 300.0, "100 +- 300"),
+        (0.888123, 0.0, "0.888123"),
+        (0.8881234567, 1e-9, "0.8881235"),
+        (0.0, 1e-3, "0.000 +- 0.001"),
+        (1.54321, float("nan"), "1.543"),
+    ],
+)
+def test_digits_are_those_that_the_error_leaves(value, error, text):
+    assert answer._number(value, error) == text
+    shifted = answer._number(value * 1e-3, error * 1e-3, -3)
+    assert shifted == text
+
+
+def test_the_answer_of_the_exact_method():
+    found = dict(answer.answers(ran({"exact": EXACT, "fem": result()})))
+    mm = A * 1e3
+    assert found["stick zone"] == f"[{-C * mm:.7g}, {C * mm:.7g}] mm"
+    assert found["m, n"] == f"{C:.7g} a, {C:.7g} a"
+    assert found["a"] == f"{mm:.7g} mm"
+    assert found["p0"] == f"{P0 / 1e6:.7g} MPa"
+    largest = np.abs(EXACT.traction.q2).max() / 1e6
+    assert found["largest |q1|"] == found["largest |q2|"] == f"{largest:.7g} MPa"
+    assert answer.heading(ran({"exact": EXACT})) == "exact: small tension"
+
+
+def test_what_the_reference_does_not_know_comes_from_another_method():
+    exact = replace(EXACT, traction=traction(levels=False), undetermined={"q1": "why not", "q2": "why not"})
+    found = dict(answer.answers(ran({"exact": exact, "fem": result(estimate={"q1": 1e-4})})))
+    assert re.fullmatch(r"96 \+- 1 MPa \(fem\)|\d+ \+- \d MPa \(fem\)|\d\d\.\d \+- \d\.\d MPa \(fem\)",
+                        found["largest |q1|"])  # fmt: skip
+    assert dict(answer.answers(ran({"exact": exact})))["largest |q1|"] == "not known: why not"
+
+
+def test_the_largest_shear_is_known_to_the_root_of_the_norm():
+    """A square-root kink that is smeared over h: height sqrt(h), share of the L2 norm h."""
+    x = np.linspace(0, 1, 200001)
+    for h in (1e-2, 1e-3, 1e-4):
+        off = np.where(np.abs(x - 0.5) < h / 2, np.sqrt(h), 0.0)
+        assert np.sqrt(np.mean(off**2)) == pytest.approx(h, rel=0.05)
+    found = dict(answer.answers(ran({"fem": result(estimate={"q1": 4e-4, "q2": 0.0})})))
+    value, error = map(float, re.match(r"([\d.]+) \+- ([\d.]+) MPa", found["largest |q1|"]).groups())
+    assert error == pytest.approx(0.02 * value, rel=0.5)
+
+
+def test_without_a_stick_zone_or_friction():
+    sliding = replace(EXACT, regime="sliding", stick_centre=None, stick_half_width=None)
+    assert dict(answer.answers(ran({"exact": sliding})))["stick zone"] == "none"
+    scene = load_scene("hertz-shear", ["friction.f=0", "load.Q=[0.0, 0.0]"])
+    found = dict(answer.answers(run(scene, "exact", stresses=True)))
+    assert not any("q1" in key for key in found)
+
+
+def test_the_largest_tension_and_its_place():
+    """At the trailing end 2 f p0 sqrt(1 - c^2/a^2): full sliding less the corrective ellipse over the stick zone."""
+    text = dict(answer.answers(run(load_scene("hertz-shear"), "exact", stresses=True)))
+    edge = 2 * 200 * 0.6**0.5
+    assert text["largest sigma_xx, 1"] == f"{edge:.7g} MPa at x = -1 mm"
+    assert text["largest sigma_xx, 2"] == f"{edge:.7g} MPa at x = 1 mm"
+
+
+def test_march_alone_and_a_cycle_with_a_mean_give_stresses():
+    text = dict(answer.answers(run(load_scene("hertz-shear", ["fem.accuracy=1e-3"]), "march", stresses=True)))
+    assert "largest sigma_xx, 1" in text
+    # R = 0.1, and the first loading does not settle q: exact knows no stresses, fem does
+    scene = load_scene("hertz-large-tension", ["load.Q=[1e4, 9e4]", "fem.accuracy=1e-2"])
+    found = run(scene, stresses=True)
+    assert found["exact"].surface is None
+    assert dict(answer.answers(found))["largest sigma_xx, 2"].endswith("(fem)")
+
+
+def test_a_reversing_path_says_that_nothing_is_known_to_hold():
+    scene = load_scene("hertz-shear", [*REVERSES, "fem.accuracy=1e-2"])
+    found = run(scene, ["march", "exact"])
+    assert answer.heading(found).startswith("march: large tension; path-dependent: slip reverses")
+    assert rows.verdict(found).startswith("not judged: m, n, q, q1, q2; asked: within 1 % of a, 10 % of p and q")
+
+
+def test_the_answer_comes_first_and_the_verdict_last():
+    text = printed(ran({"exact": EXACT, "fem": result()}))
+    lines = text.splitlines()
+    assert lines[1] == "exact: small tension"
+    assert lines[2].split()[:2] == ["stick", "zone"]
+    assert lines[-1] == "all bars met: within 0.1 % of a, 1 % of p, 1.5 % of q"
+    assert max(len(line.rstrip()) for line in lines) <= 80
+    heading = next(line for line in lines if "estimate" in line)
+    assert re.search(r"error {2,}estimate", heading)
+
+
+def test_rows_that_say_nothing_are_left_out():
+    quantities = [
+        row[0].split(",")[0] for row in rows.error_rows(ran({"exact": EXACT, "fem": result()}).comparisons["fem"])
+    ]
+    assert quantities == ["a", "m", "n", "P", "p", "dQ", "q"]
+    every = rows.error_rows(ran({"exact": EXACT, "fem": result()}).comparisons["fem"], every=True)
+    assert len(every) == 13
+
+
+def test_rows_that_say_something_stay():
+    def left(found, exact=EXACT):
+        return [row[0] for row in rows.error_rows(ran({"exact": exact, "fem": found}).comparisons["fem"])]
+
+    moved = ((-0.9 * A, 1.1 * A),) * 2
+    assert {"left end", "right end"} <= set(left(result(contact_ends=moved), replace(EXACT, contact_ends=moved)))
+    assert "left end" in left(result(contact_ends=((-1.1 * A, A),) * 2))  # missed
+    assert {"q1", "q2"} & set(left(result(of=traction(add=lambda x: 0.1 * (abs(x) < 0.5)))))
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        (["bodies.lower={width=0.02, height=0.01}"], "no bars: finite bodies"),
+        (["material={lower={E=2.1e11, nu=0.3}, upper={E=0.7e11, nu=0.3}}"], "no bars: unlike bodies"),
+        (["fem.size=0.05"], "no bars: the element size was given"),
+    ],
+)
+def test_why_there_are_no_bars(changes, text):
+    scene = load_scene("hertz-shear", [f"load={{P={P}, Q=[{-C * F * P}, {C * F * P}]}}", *changes])
+    found = ran({"exact": EXACT, "fem": result()}, scene, None)
+    assert (rows.verdict(found), found.conclusion.code) == (text, 0)
+    assert found.outcome is Outcome.NOT_JUDGED
+
+
+def test_one_method_has_nothing_to_compare_with():
+    found = ran({"fem": result()})
+    assert (rows.verdict(found), found.conclusion.code) == ("no bars: nothing to compare with", 0)

@@ -1,0 +1,199 @@
+"""Forty tables spoiled on purpose, and the verdicts on them: none passes whose errors are above the bars."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from partialslip import load_scene, run, score
+from partialslip.cli import main
+from partialslip.judge import Outcome
+
+BAR = 1e-3
+SCENES = {
+    "shear": load_scene("hertz-shear"),
+    "small": load_scene("fretting-aluminium"),
+    "large": load_scene("hertz-large-tension"),
+    # slip reverses: Q_f = 0.6434..., s_f = 8.67...
+    "reverses": load_scene("hertz-shear", ["load.Q=[-202151.086544, 202151.086544]",
+                                           "load.sigma=[-867088938.5947, 867088938.5947]"]),
+    "slides": load_scene("hertz-shear", ["load.Q=[-4e5, 4e5]"]),
+    "frictionless": load_scene("hertz-shear", ["friction.f=0", "load.Q=[0.0, 0.0]"]),
+}  # fmt: skip
+
+
+@cache
+def exact(name):
+    return run(SCENES[name], "exact")["exact"]
+
+
+@cache
+def with_friction(name, factor):
+    scene = SCENES[name]
+    return run(scene.replace(friction={"f": factor * scene.friction.f}), "exact")["exact"]
+
+
+def table(name, count=401):
+    """Return x, p and dq of the exact state at evenly spaced points, the ends of the contact among them."""
+    truth = exact(name)
+    x = truth.a * np.linspace(-1, 1, count)
+    return x, *truth.traction.at(x)
+
+
+def clean(name):
+    return table(name)
+
+
+def half_of_P(name):
+    x, p, dq = table(name)
+    return x, p / 2, dq / 2
+
+
+def half_of_p_alone(name):
+    x, p, dq = table(name)
+    return x, p / 2, dq
+
+
+def zero_shear(name):
+    x, p, dq = table(name)
+    return x, p, 0 * dq
+
+
+def half_the_shear(name):
+    x, p, dq = table(name)
+    return x, p, dq / 2
+
+
+def wrong_friction(name):
+    x, p, _ = table(name)
+    return x, p, with_friction(name, 1.1).traction.at(x)[1]
+
+
+def wrong_end(name):
+    x, p, dq = table(name)
+    return x, p, dq[::-1]
+
+
+def wrong_sign(name):
+    x, p, dq = table(name)
+    return x, p, -dq
+
+
+def no_stick_zone(name):
+    x, p, _ = table(name)
+    return x, p, 2 * SCENES[name].friction.f * p
+
+
+def in_proportion(name):
+    """dq in proportion to p, with the right sum: no stick zone."""
+    x, p, dq = table(name)
+    return x, p, p * dq.sum() / p.sum()
+
+
+def shifted(name):
+    x, p, dq = table(name)
+    return x + 0.02 * exact(name).a, p, dq
+
+
+def stretched(name):
+    x, p, dq = table(name)
+    return 1.02 * x, p, dq
+
+
+def scaled(name):
+    x, p, dq = table(name)
+    return x, 1.03 * p, 1.03 * dq
+
+
+def few_points(name):
+    return table(name, 21)
+
+
+def means_for_values(name):
+    """Means over cells, given as values at the middles of the cells."""
+    x, p, dq = table(name, 4001)
+    middles = x[:-1].reshape(100, -1).mean(axis=1) + (x[1] - x[0]) / 2
+    return middles, *((values[1:] + values[:-1]).reshape(100, -1).mean(axis=1) / 2 for values in (p, dq))
+
+
+def little_shear(name):
+    """A sum of dq of 4.7e5 N/m where there is neither friction nor shear force."""
+    x, p, _ = table(name)
+    return x, p, p * 4.7e5 / exact(name).traction.p.max() / exact(name).a / np.pi * 2
+
+
+MISSED, UNJUDGED, ANY = {Outcome.MISSED}, {Outcome.NOT_JUDGED}, {Outcome.MISSED, Outcome.NOT_JUDGED, Outcome.PASSED}
+SPOILED = [
+    *((name, spoil, MISSED) for name in ("shear", "small", "large") for spoil in (
+        half_of_P, half_of_p_alone, zero_shear, half_the_shear, wrong_friction, no_stick_zone, in_proportion, shifted,
+        stretched, scaled)),
+    *((name, wrong_end, MISSED) for name in ("small", "large")), ("shear", wrong_sign, MISSED),
+    *((name, spoil, ANY) for name in ("shear", "small") for spoil in (few_points, means_for_values)),
+    ("reverses", clean, UNJUDGED), ("reverses", in_proportion, UNJUDGED), ("reverses", wrong_end, UNJUDGED),
+    ("reverses", half_of_P, MISSED),
+    ("slides", zero_shear, MISSED), ("slides", half_the_shear, MISSED), ("slides", wrong_sign, MISSED),
+    ("frictionless", little_shear, MISSED), ("frictionless", half_of_P, MISSED),
+]  # fmt: skip
+
+
+def write(folder, columns):
+    path = folder / "table.csv"
+    np.savetxt(path, np.column_stack(columns), delimiter=",", header="x,p,dq", comments="", fmt="%.12g")
+    return path
+
+
+def test_there_are_forty():
+    assert len(SPOILED) >= 40
+
+
+@pytest.mark.parametrize("name", ["shear", "small", "large", "slides", "frictionless"])
+def test_the_table_of_the_exact_solution_passes(name, tmp_path):
+    found = score(SCENES[name], write(tmp_path, clean(name)), bar=BAR)
+    assert found.outcome is Outcome.PASSED, found.conclusion
+
+
+@pytest.mark.parametrize(("name", "spoil", "outcomes"), SPOILED, ids=lambda each: getattr(each, "__name__", None))
+def test_a_spoiled_table_does_not_pass(name, spoil, outcomes, tmp_path):
+    found = score(SCENES[name], write(tmp_path, spoil(name)), bar=BAR)
+    assert found.outcome in outcomes, found.conclusion
+    (comparison,) = found.comparisons.values()
+    if found.outcome is Outcome.PASSED:
+        bars = comparison.bars
+        assert {"a", "m", "n", "p", "q"} <= bars.keys()
+        assert all(comparison.errors[key] <= bar for key, bar in bars.items())
+    if name == "reverses":
+        assert {"m", "n", "q"} <= set(comparison.unjudged)
+
+
+def test_the_command_says_so(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scene = ["--set", "load.Q=[-202151.086544,202151.086544]", "--set",
+             "load.sigma=[-867088938.5947,867088938.5947]"]  # fmt: skip
+    for spoil in (in_proportion, wrong_end):
+        path = write(tmp_path, spoil("reverses"))
+        assert main(["score", "hertz-shear", str(path), *scene, "--bar", "1e-2", "--force"]) == 4
+        assert "\nnot judged: m, n, q" in capsys.readouterr().out
+        assert main(["score", "hertz-shear", str(path), *scene, "--force"]) == 0
+        assert "\nno bars: none were asked for" in capsys.readouterr().out
+    path = write(tmp_path, zero_shear("shear"))
+    assert main(["score", "hertz-shear", str(path), "--bar", "0.1", "--force"]) == 1
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert last.startswith("missed: ")
+    assert "asked: within 10 % of a, 10 % of p and q" in last
+    for bar in ("1e9", "0.11", "0", "nan", "1e-3,1e-3", "1e-3,1e-3,0.2"):
+        assert main(["score", "hertz-shear", str(path), "--bar", bar]) == 2
+        assert "must be one number, or three for contact, stick zone and tractions" in capsys.readouterr().err
+    path = write(tmp_path, clean("shear"))
+    assert main(["score", "hertz-shear", str(path), "--bar", "1e-3,2e-3,1e-2", "--force"]) == 0
+    assert "all bars met: within 0.1 % of a, m and n 0.2 %, 1 % of p and q" in capsys.readouterr().out
+
+
+@pytest.mark.fault
+def test_a_rule_that_any_pass_passes_lets_them_through(tmp_path, monkeypatch):
+    """Deliberate fault: a pass in anything passes all, as it was. A table without a stick zone then passes."""
+    from partialslip.judge import outcome
+
+    path = write(tmp_path, in_proportion("reverses"))
+    assert score(SCENES["reverses"], path, bar=1e-2).outcome is Outcome.NOT_JUDGED
+    monkeypatch.setattr(outcome, "headline", lambda _: ())
+    assert score(SCENES["reverses"], path, bar=1e-2).outcome is Outcome.PASSED
