@@ -166,7 +166,7 @@ def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> No
 
 
 def _build(options: argparse.Namespace) -> int:
-    from partialslip.benchmark import badge, badge_name, book_page, book_zip, read_problems, read_submission
+    from partialslip.benchmark import badge, badge_names, book_page, book_zip, read_problems, read_submission
     from partialslip.benchmark.problem import chosen
     from partialslip.cli.common import origin
     from partialslip.cli.consoles import output
@@ -178,9 +178,10 @@ def _build(options: argparse.Namespace) -> int:
     check_report(options)
     some = chosen(options.problems)
     submissions = [read_submission(folder, read_problems()) for folder in options.folders]
+    names = badge_names(submissions)
     with results_folder(options, "benchmark", "benchmark", None) as (folder, passed):
         html, data = book_page(some, submissions, origin(options)), book_zip(some)
-        badges = {badge_name(each): badge(some, each) for each in submissions}
+        badges = dict(zip(names, map(badge, submissions), strict=True))
         files = write_texts(Path(folder), {"book.html": html} | badges)
         files += write_files(Path(folder), {"problems.zip": lambda path: path.write_bytes(data)})
         try:
