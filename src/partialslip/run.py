@@ -13,7 +13,7 @@ from partialslip.allowance import Allowance
 from partialslip.errors import InputError
 from partialslip.frame import frame
 from partialslip.gradual import may_turn_round
-from partialslip.judge import Comparison, Outcome, Verdict, compare, conditions, overall
+from partialslip.judge import Comparison, Conclusion, Outcome, Verdict, compare, conditions, of_run
 from partialslip.judge.reference import ALL_EFFECTS, METHODS, reference_for, reference_of
 from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
@@ -74,7 +74,7 @@ class Run(Drawn):
             for name, result in self.results.items()
             for line in (result, *([self.comparisons[name]] if name in self.comparisons else []))
         ]
-        return "\n  ".join([f"Run of {self.scene.name}: {self.outcome}", *map(repr, results)])
+        return "\n  ".join([f"Run of {self.scene.name}: {self.conclusion.text}", *map(repr, results)])
 
     @property
     def reference(self) -> str | None:
@@ -92,13 +92,16 @@ class Run(Drawn):
         return {name: conditions(result) for name, result in self.results.items()}
 
     @property
-    def outcome(self) -> Outcome:
-        """Overall outcome (:func:`partialslip.judge.overall`).
+    def conclusion(self) -> Conclusion:
+        """What the verdicts of all methods amount to (:func:`partialslip.judge.of_run`)."""
+        compared = {name: comparison.conclusion for name, comparison in self.comparisons.items()}
+        hold = {name: not result.path_dependent for name, result in self.results.items()}
+        return of_run(compared, self.missed, hold)
 
-        A run without bars or without a comparison is not judged, unless a result misses a condition.
-        """
-        verdicts = [verdict for comparison in self.comparisons.values() for verdict in comparison.verdicts]
-        return overall(verdicts, [verdict for each in self.conditions.values() for verdict in each])
+    @property
+    def outcome(self) -> Outcome:
+        """Overall outcome: passed only if every headline quantity of every method that claims to hold was judged."""
+        return self.conclusion.outcome
 
     @property
     def missed(self) -> tuple[str, ...]:
@@ -113,7 +116,7 @@ class Run(Drawn):
 
     @property
     def passed(self) -> bool:
-        """Whether something was judged and nothing is missed."""
+        """Whether every headline quantity was judged and nothing is missed."""
         return self.outcome is Outcome.PASSED
 
     @property

@@ -11,7 +11,7 @@ from msgspec.structs import replace as changed
 
 from partialslip import compare
 from partialslip.bars import BARS
-from partialslip.judge import NO_BAR, Bar, Outcome, Verdict, conditions, judged, overall
+from partialslip.judge import NO_BAR, Bar, Outcome, Verdict, conditions, judged
 from partialslip.judge.reference import ALL_EFFECTS, REFERENCES
 from partialslip.plan import plan
 from partialslip.result import SurfaceStress
@@ -46,22 +46,6 @@ def ran(results, accuracy=1e-3, scene=SCENE):
 )
 def test_an_error_passes_up_to_its_bar_and_nan_does_not(error, outcome):
     assert judged(error, 1.0) is outcome
-
-
-@pytest.mark.parametrize(
-    ("found", "own", "outcome"),
-    [
-        ([PASSED, NOT_JUDGED], [PASSED], PASSED),
-        ([PASSED, MISSED, NOT_JUDGED], [PASSED], MISSED),
-        ([PASSED], [MISSED], MISSED),
-        ([NOT_JUDGED], [PASSED], NOT_JUDGED),
-        ([NOT_JUDGED], [MISSED], MISSED),
-        ([], [PASSED], NOT_JUDGED),
-        ([], [], NOT_JUDGED),
-    ],
-)
-def test_as_a_whole_one_missed_is_missed_and_nothing_judged_is_not_passed(found, own, outcome):
-    assert overall((Verdict("a", each) for each in found), (Verdict("b", each) for each in own)) is outcome
 
 
 def test_a_verdict_in_words_and_as_data():

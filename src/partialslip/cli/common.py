@@ -189,7 +189,6 @@ def print_outcome(
         What the usual folder holds, if the files are elsewhere.
     """
     from partialslip.cli.consoles import output
-    from partialslip.judge import Outcome
     from partialslip.report import print_run, record
 
     if options.json:
@@ -201,4 +200,4 @@ def print_outcome(
         print_run(outcome, console, verbose=options.verbose, lines=lines, where=where)
         if options.verbose and files:
             print_written(files, console)
-    return 1 if outcome.outcome is Outcome.MISSED else 0
+    return outcome.conclusion.code

@@ -55,7 +55,6 @@ def _verify(options: argparse.Namespace) -> int:
     check_folder(options.out)
 
     from partialslip.cli.consoles import counting, output
-    from partialslip.judge import Outcome
     from partialslip.verify.driver import verify_suite
     from partialslip.verify.entry import TitleBlock
     from partialslip.verify.verdicts import print_verdicts
@@ -86,4 +85,4 @@ def _verify(options: argparse.Namespace) -> int:
     print_written(verified.files, console, verified.passed_over)
     if verified.missing:
         console.print(verified.missing, soft_wrap=True, markup=False)
-    return 1 if verified.outcome is Outcome.MISSED else 0
+    return verified.conclusion.code

@@ -5,6 +5,10 @@ from partialslip.judge.comparison import Comparison as Comparison
 from partialslip.judge.comparison import compare as compare
 from partialslip.judge.means import cell_errors as cell_errors
 from partialslip.judge.means import cell_means as cell_means
+from partialslip.judge.outcome import Conclusion as Conclusion
+from partialslip.judge.outcome import conclude as conclude
+from partialslip.judge.outcome import of_run as of_run
+from partialslip.judge.outcome import together as together
 from partialslip.judge.verdict import NO_BAR as NO_BAR
 from partialslip.judge.verdict import P_BAR as P_BAR
 from partialslip.judge.verdict import Q_BAR as Q_BAR
@@ -13,4 +17,3 @@ from partialslip.judge.verdict import Outcome as Outcome
 from partialslip.judge.verdict import Verdict as Verdict
 from partialslip.judge.verdict import conditions as conditions
 from partialslip.judge.verdict import judged as judged
-from partialslip.judge.verdict import overall as overall

@@ -9,7 +9,8 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.bars import BARS
 from partialslip.judge.measures import Measure, measures
-from partialslip.judge.verdict import NAN, NO_BAR, Bar, Outcome, Verdict, conditions, judged, overall
+from partialslip.judge.outcome import Conclusion, conclude
+from partialslip.judge.verdict import NAN, NO_BAR, Bar, Outcome, Verdict, conditions, judged
 from partialslip.result import Result
 from partialslip.scene import Scene
 from partialslip.shown import Notebook
@@ -68,23 +69,32 @@ class Comparison(Notebook):
             ", ".join(f"{key} {error:.1e}" for key in keys if (error := self.errors.get(key)) is not None)
             for keys in (("a", "m", "n"), ("p", "q"))
         )
-        return f"Comparison: {self.outcome}; errors in a: {lengths}; relative L2: {norms}"
+        return f"Comparison: {self.conclusion.text}; errors in a: {lengths}; relative L2: {norms}"
+
+    @property
+    def conclusion(self) -> Conclusion:
+        """What the verdicts amount to (:func:`partialslip.judge.conclude`)."""
+        return conclude(self.verdicts, self.conditions)
 
     @property
     def outcome(self) -> Outcome:
-        """Passed, missed or not judged, as a whole (:func:`partialslip.judge.overall`)."""
-        return overall(self.verdicts, self.conditions)
+        """Passed, missed or not judged, as a whole."""
+        return self.conclusion.outcome
 
     @property
     def passed(self) -> bool:
-        """Whether something was judged and nothing is missed."""
+        """Whether every headline quantity was judged and nothing is missed."""
         return self.outcome is Outcome.PASSED
 
     @property
     def missed(self) -> tuple[str, ...]:
         """Missed verdicts as text."""
-        every = (*self.verdicts, *self.conditions)
-        return tuple(verdict.text for verdict in every if verdict.outcome is Outcome.MISSED)
+        return self.conclusion.missed
+
+    @property
+    def unjudged(self) -> tuple[str, ...]:
+        """Headline quantities that were not judged."""
+        return self.conclusion.unjudged
 
     @property
     def errors(self) -> dict[str, float | None]:

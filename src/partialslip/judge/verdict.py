@@ -1,7 +1,6 @@
 """Bars and verdicts: a verdict is passed, missed or not judged, for one quantity, with a reason."""
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import NamedTuple, Self, TypeVar
@@ -106,20 +105,6 @@ def _known(value: _Value) -> _Value | None:
 def judged(error: float, bar: float) -> Outcome:
     """Return PASSED if ``error`` <= ``bar``, MISSED otherwise and for NaN."""
     return Outcome.PASSED if error <= bar else Outcome.MISSED
-
-
-def overall(verdicts: Iterable[Verdict], conditions: Iterable[Verdict] = ()) -> Outcome:
-    """Return the overall outcome.
-
-    MISSED if any of ``verdicts`` or ``conditions`` is missed; PASSED if one of ``verdicts`` is passed and none is
-    missed; NOT_JUDGED otherwise. Passed ``conditions`` alone do not pass a result.
-    """
-    verdicts = tuple(verdicts)
-    if any(verdict.outcome is Outcome.MISSED for verdict in (*verdicts, *conditions)):
-        return Outcome.MISSED
-    if any(verdict.outcome is Outcome.PASSED for verdict in verdicts):
-        return Outcome.PASSED
-    return Outcome.NOT_JUDGED
 
 
 def conditions(result: Result) -> tuple[Verdict, ...]:

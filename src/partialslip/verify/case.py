@@ -5,14 +5,14 @@ requirements R1 to R9.
 """
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from partialslip.bars import BARS
-from partialslip.judge import Bar, Outcome, Verdict, compare, conditions
+from partialslip.judge import Bar, Conclusion, Outcome, Verdict, compare, conclude, conditions, together
 from partialslip.judge.reference import reference_of
 from partialslip.plan import plan
 from partialslip.result import Result
@@ -39,6 +39,8 @@ _PART_OF = {
     **dict.fromkeys(("P", "P_1", "M", "M_1", "p_1"), "p"),
     **dict.fromkeys(("dQ", "q1", "q2"), "q"),
 }
+_CONDITIONS = ("finishes", "finite", "certificate")
+_BAR = Bar(1.0)  # stands for the usual bar
 
 
 class Failure(NamedTuple):
@@ -96,6 +98,8 @@ class CaseVerdict(Verdict):
         Linear solves of the active-set iteration, total of the method.
     cpu_s : float
         CPU seconds, total of the method.
+    waived : bool
+        Whether the quantity need not be judged: the case has no bar for it, or the result says that it does not hold.
     """
 
     case: str
@@ -103,6 +107,7 @@ class CaseVerdict(Verdict):
     requirement: str
     iterations: int = 0
     cpu_s: float = 0.0
+    waived: bool = False
 
 
 def requirement_of(quantity: str) -> str:
@@ -140,8 +145,9 @@ def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
         result = found[method]
         if isinstance(result, Failure):
             each: Iterator[Verdict] = iter([Verdict("finishes", Outcome.MISSED, reason=result.error)])
-            iterations, cpu_s = 0, result.cpu_s
+            iterations, cpu_s, waived = 0, result.cpu_s, False
         else:
+            waived = result.path_dependent
             each = _judged(case, method, result, results[judging] if judging and method != judging else None)
             iterations, cpu_s = result.counts.get("iterations", 0), result.cost.cpu_s
         verdicts += [
@@ -152,10 +158,32 @@ def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
                 requirement=f"{number_of(verdict.quantity)}: {REQUIREMENTS[requirement_of(verdict.quantity)]}",
                 iterations=iterations,
                 cpu_s=cpu_s,
+                waived=waived or case.bars.get(f"{method}.{verdict.quantity}", _BAR).value is None,
             )
             for verdict in each
         ]
     return verdicts
+
+
+def whole(verdicts: Iterable[CaseVerdict]) -> Conclusion:
+    """Return what the ``verdicts`` on many cases amount to.
+
+    Each method of each case is judged by itself: with a reference by :func:`partialslip.judge.conclude`, without one by
+    the conditions alone.
+    """
+    groups: dict[tuple[str, str], list[CaseVerdict]] = {}
+    for verdict in verdicts:
+        groups.setdefault((verdict.case, verdict.method), []).append(verdict)
+    compared: list[Conclusion] = []
+    alone: list[Conclusion] = []
+    for some in groups.values():
+        conditions = [verdict for verdict in some if verdict.quantity in _CONDITIONS]
+        quantities = [verdict for verdict in some if verdict.quantity not in _CONDITIONS]
+        waived = {verdict.quantity for verdict in some if verdict.waived}
+        (compared if quantities else alone).append(conclude(quantities, conditions, waived))
+    found = together((*compared, *alone))
+    certified = not compared and bool(alone) and found.outcome is not Outcome.MISSED
+    return replace(found, outcome=Outcome.PASSED, asked=True) if certified else found
 
 
 def _solve(case: Case, method: str) -> Result | Failure:

@@ -13,7 +13,7 @@ from msgspec.structs import replace
 from partialslip.batch.ledger import Ledger, key_of, scene_content
 from partialslip.batch.sweep import Progress, Task, sweep, workers
 from partialslip.errors import InputError, MissingLibraryError
-from partialslip.judge import Outcome, overall
+from partialslip.judge import Conclusion, Outcome
 from partialslip.judge.reference import REFERENCES
 from partialslip.output.files import write_texts
 from partialslip.output.pdf import write_pdf
@@ -26,7 +26,7 @@ from partialslip.report.sketch import sketch_svg
 from partialslip.result import Result
 from partialslip.run import compared
 from partialslip.scene.writing import scene_toml
-from partialslip.verify.case import Case, CaseVerdict, Found, judge_case, solve_case
+from partialslip.verify.case import Case, CaseVerdict, Found, judge_case, solve_case, whole
 from partialslip.verify.document import Account, Study, document, read_study
 from partialslip.verify.entry import Entry, Settings, TitleBlock
 from partialslip.verify.formulas import formulas
@@ -63,13 +63,18 @@ class Verification:
     passed_over: str = ""
 
     @property
+    def conclusion(self) -> Conclusion:
+        """What the verdicts amount to (:func:`partialslip.verify.case.whole`)."""
+        return whole(verdict for some in self.verdicts.values() for verdict in some)
+
+    @property
     def outcome(self) -> Outcome:
-        """Overall outcome (:func:`partialslip.judge.overall`)."""
-        return overall(verdict for some in self.verdicts.values() for verdict in some)
+        """Overall outcome."""
+        return self.conclusion.outcome
 
     @property
     def passed(self) -> bool:
-        """Whether something was judged and nothing is missed."""
+        """Whether every headline quantity of every case was judged and nothing is missed."""
         return self.outcome is Outcome.PASSED
 
 

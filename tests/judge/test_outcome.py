@@ -1,0 +1,130 @@
+"""The rule by which verdicts on quantities become one: passed, missed or not judged. Nothing is solved."""
+
+from dataclasses import replace
+
+import pytest
+from rule import STICKS, asks_every_question, verdicts
+
+from partialslip.bars import BARS
+from partialslip.judge import NO_BAR, Conclusion, Outcome, Verdict, conclude, of_run, together
+from partialslip.judge.outcome import headline
+
+PASSED, MISSED, NOT_JUDGED = Outcome.PASSED, Outcome.MISSED, Outcome.NOT_JUDGED
+SOUND = Verdict("finite", PASSED)
+
+
+@pytest.mark.parametrize(
+    ("regime", "asked"),
+    [
+        *((regime, ("a", "m", "n", "p", "q")) for regime in STICKS),
+        ("sliding", ("regime", "a", "p", "q")),
+        ("frictionless", ("regime", "a", "p", "q")),
+        ("ratchets", ("regime", "a", "p")),
+    ],
+)
+def test_every_regime_has_its_questions(regime, asked):
+    assert headline([Verdict("regime", PASSED, regime, regime)]) == asked
+    assert headline([]) == headline([Verdict("regime", PASSED)]) == ("regime", "a", "m", "n", "p", "q")
+
+
+def test_every_regime_asks_every_question():
+    asks_every_question()
+
+
+@pytest.mark.parametrize("key", ["left", "right", "left_1", "right_1", "left_2", "right_2", "p_1", "q1", "q2"])
+def test_what_only_some_scenes_have_is_asked_where_it_is_known_and_has_a_bar(key):
+    def asked(**changes):
+        return key in headline([*verdicts("small tension"), replace(Verdict(key, NOT_JUDGED, error=0.0), **changes)])
+
+    assert asked()
+    assert asked(error=None, reference=1.0)
+    assert not asked(reason=NO_BAR)
+    assert not asked(error=None)  # neither has it
+    assert key in BARS
+
+
+@pytest.mark.parametrize("key", ["P", "M", "dQ", "p_max", "q_max", "surface"])
+def test_sums_and_largest_values_are_no_headline(key):
+    found = [*verdicts("small tension"), Verdict(key, NOT_JUDGED, error=0.0, reason="why")]
+    assert conclude(found, [SOUND]).outcome is PASSED
+
+
+def test_anything_missed_is_missed_and_said():
+    over = Verdict("dQ", MISSED, error=0.2, bar=0.1)
+    found = conclude([*verdicts("small tension"), over], [replace(SOUND, outcome=MISSED, reason="NaN")])
+    assert (found.outcome, found.code, found.text) == (MISSED, 1, "missed: dQ: error 0.2 > 0.1; finite: NaN")
+    assert found.missed == ("dQ: error 0.2 > 0.1", "finite: NaN")
+    assert conclude(verdicts("small tension"), [replace(SOUND, outcome=MISSED)]).outcome is MISSED
+    assert conclude([], [replace(SOUND, outcome=MISSED)]).outcome is MISSED
+
+
+def test_in_words_and_as_an_exit_code():
+    found = conclude(verdicts("large tension", unjudged=("m", "n", "q", "q1", "q2")), [SOUND])
+    assert (found.outcome, found.code, found.text) == (NOT_JUDGED, 4, "not judged: m, n, q, q1, q2")
+    found = conclude(verdicts("large tension"), [SOUND])
+    assert (found.outcome, found.code, found.text) == (PASSED, 0, "all bars met")
+    found = conclude([replace(each, outcome=NOT_JUDGED, bar=None, reason=NO_BAR) for each in verdicts("sliding")])
+    assert (found.outcome, found.code, found.text, found.asked) == (NOT_JUDGED, 0, "no bars", False)
+    assert (conclude([], [SOUND]).text, conclude([]).code) == ("no bars", 0)
+
+
+def test_a_bar_that_judges_nothing_is_a_bar():
+    found = conclude([Verdict("P", NOT_JUDGED, bar=0.1), Verdict("regime", NOT_JUDGED, "sliding")])
+    assert (found.asked, found.unjudged, found.code) == (True, ("regime", "a", "p", "q"), 4)
+
+
+def test_quantities_may_be_waived():
+    some = verdicts("small tension", unjudged=("m", "q"))
+    assert conclude(some, waived={"m"}).unjudged == ("q",)
+    assert conclude(some, waived={"m", "q"}).outcome is PASSED
+    assert conclude(verdicts("small tension", missed=("m",)), waived={"m"}).outcome is MISSED
+
+
+ALL, SOME, BAD, NONE = (
+    Conclusion(PASSED),
+    Conclusion(NOT_JUDGED, unjudged=("m", "n")),
+    Conclusion(MISSED, missed=("q: error 2 > 1",), unjudged=("n",)),
+    Conclusion(NOT_JUDGED, asked=False),
+)
+
+
+@pytest.mark.parametrize(
+    ("each", "outcome", "unjudged", "asked"),
+    [
+        ([ALL, ALL], PASSED, (), True),
+        ([ALL, NONE], PASSED, (), True),
+        ([ALL, SOME], NOT_JUDGED, ("m", "n"), True),
+        ([SOME, SOME], NOT_JUDGED, ("m", "n"), True),
+        ([ALL, SOME, BAD], MISSED, ("m", "n"), True),
+        ([NONE], NOT_JUDGED, (), False),
+        ([replace(NONE, outcome=MISSED, missed=("x",)), ALL], MISSED, (), True),
+        ([], NOT_JUDGED, (), False),
+    ],
+)
+def test_several_pass_if_all_that_had_bars_pass(each, outcome, unjudged, asked):
+    found = together(each)
+    assert (found.outcome, found.unjudged, found.asked) == (outcome, unjudged, asked)
+    assert found.missed == tuple(text for one in each for text in one.missed)
+
+
+@pytest.mark.parametrize(
+    ("compared", "hold", "outcome"),
+    [
+        ({"fem": ALL}, {"exact": True, "fem": True}, PASSED),
+        ({"fem": ALL, "exact": SOME}, {"march": True, "fem": True, "exact": False}, PASSED),
+        ({"fem": SOME, "exact": SOME}, {"march": True, "fem": True, "exact": False}, NOT_JUDGED),
+        ({"fem": ALL, "march": SOME}, {"exact": True, "fem": True, "march": True}, NOT_JUDGED),
+        ({"fem": ALL, "exact": BAD}, {"march": True, "fem": True, "exact": False}, MISSED),
+        ({"exact": ALL}, {"march": True, "exact": False}, NOT_JUDGED),
+        ({"exact": SOME}, {"march": True, "exact": False}, NOT_JUDGED),
+        ({"fem": NONE}, {"fem": True, "exact": True}, NOT_JUDGED),
+        ({}, {"exact": True}, NOT_JUDGED),
+    ],
+)
+def test_a_run_passes_if_every_result_that_claims_to_hold_passes(compared, hold, outcome):
+    missed = [f"{name}: {text}" for name, each in compared.items() for text in each.missed]
+    found = of_run(compared, missed, hold)
+    assert (found.outcome, found.missed) == (outcome, tuple(missed))
+    assert of_run(compared, [*missed, "exact: finite: NaN"], hold).outcome is MISSED
+    assert found.asked is bool(compared and NONE not in compared.values())
+    assert found.unjudged == (("m", "n") if outcome is NOT_JUDGED and SOME in compared.values() else ())
