@@ -14,15 +14,17 @@ KEY = "sum"
 
 
 def sealed_text(data: object) -> str:
-    """Return ``data``, an object of a type known to msgspec, as indented JSON text with its checksum as the last key."""
+    """Return ``data``, of a type known to msgspec, as indented JSON text with its checksum as the last key."""
     text = json_text(data)
     body = text.rstrip().removesuffix("}").rstrip()
     return f'{body},\n "{KEY}": "{_sum(text)}"\n}}\n'
 
 
 def edited(text: bytes | str, tree: dict[str, Any]) -> bool | None:
-    """Return whether the JSON ``text`` was changed since it was sealed; None if it has no seal. The seal is removed from
-    ``tree``, the same as plain data."""
+    """Return whether the JSON ``text`` was changed since it was sealed; None if it has no seal.
+
+    The seal is removed from ``tree``, the content of the text as plain data.
+    """
     found = tree.pop(KEY, None)
     return None if found is None else found != _sum(text)
 

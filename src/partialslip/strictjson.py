@@ -1,8 +1,8 @@
 """Strict JSON: the one reader of JSON files. Whatever is ambiguous is refused, with a message of one line.
 
-Refused are text that is not UTF-8, a key that stands twice in an object, NaN and Infinity, numbers that double precision
-cannot hold (infinite, or lost to zero), whole numbers of more than 19 digits, unpaired surrogates, nesting that is too
-deep, and values of another type: text is no number.
+Refused are text that is not UTF-8, a key that stands twice in an object, NaN and Infinity, numbers that double
+precision cannot hold (infinite, or lost to zero), whole numbers of more than 19 digits, unpaired surrogates, nesting
+that is too deep, and values of another type: text is no number.
 """
 
 import json
@@ -42,7 +42,7 @@ def parsed(text: bytes | str, told: str) -> Any:
     """Return the JSON ``text`` as dicts, lists, strings, numbers and None. Parameters and errors as for
     :func:`decoded`."""
     try:
-        words = text if isinstance(text, str) else text.decode("utf-8")
+        words = text if isinstance(text, str) else text.decode("utf-8-sig")
         tree = json.loads(
             words, object_pairs_hook=_object, parse_float=_number, parse_int=_whole, parse_constant=_constant
         )

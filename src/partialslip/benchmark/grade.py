@@ -13,7 +13,11 @@ LIMITS = {"A": 1e-4, "B": 1e-3, "C": 1e-2, "D": 5e-2}
 BEYOND = "E"
 NOT_OFFERED, NOT_GRADED = "not offered", "not graded"
 _SURE = 0.2  # largest uncertainty of a target, in the limit of a grade
-HEADLINE = ("contact", "stick", "tractions")  # groups that a problem must have answered in full, and that make the whole
+HEADLINE = (
+    "contact",
+    "stick",
+    "tractions",
+)  # groups that a problem must have answered in full, and that make the whole
 
 
 class Mark(msgspec.Struct, frozen=True):

@@ -1,8 +1,8 @@
 """Standing of a code: how many problems of the whole edition count, and a grade for each group of targets.
 
-A problem counts if every headline target has a value: those of contact, stick and tractions. A group has the worst grade
-of all problems with any value, also of those that do not count, and says how many of them lack a value of the group:
-nothing gets better by leaving values out, by empty answers or by a choice of problems.
+A problem counts if every headline target has a value: those of contact, stick and tractions. A group has the worst
+grade of all problems with any value, also of those that do not count, and says how many of them lack a value of the
+group: nothing gets better by leaving values out, by empty answers or by a choice of problems.
 """
 
 from collections.abc import Mapping

@@ -151,12 +151,12 @@ def check_apart(submissions: Sequence[Submission]) -> None:
             raise InputError(f"code {code!r}: answers twice, with the same version, settings and machine: must differ")
         other = known.setdefault(_seen(code), code)
         if other != code:
-            raise InputError(f"code {ascii(code)} looks like {ascii(other)}: names of codes must look different")
+            raise InputError(f"code {code!a} looks like {other!a}: names of codes must look different")
 
 
 def _seen(text: str) -> str:
-    """Return ``text`` as a reader sees it: without invisible characters, in Latin letters where letters look like these,
-    with single spaces."""
+    """Return ``text`` as a reader sees it: without invisible characters, with single spaces, and with Latin letters for
+    those that look like them."""
     plain = unicodedata.normalize("NFKC", text).translate(_LIKE_LATIN)
     return " ".join("".join(each for each in plain if unicodedata.category(each) != "Cf").split())
 

@@ -201,16 +201,16 @@ def _is_file(path: Path) -> bool:
 
 
 def parse_toml(text: str, origin: str) -> dict[str, Any]:
-    """Return the TOML ``text`` as nested tables. Raises InputError, which begins with the ``origin``, if it is not valid
-    TOML, or nested so deep that reading takes long."""
+    """Return the TOML ``text`` as nested tables. Raises InputError, whose message begins with ``origin``, if it is not
+    valid TOML, or nested so deep that reading takes long."""
     if _DEEP_KEY.search(text):
-        raise InputError(f"{_shown(origin)}: a key of more than 20 parts: at most 20 are allowed")
+        raise InputError(f"{origin}: a key of more than 20 parts: at most 20 are allowed")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{_shown(origin)}: not valid TOML: {error}") from None
+        raise InputError(f"{origin}: not valid TOML: {error}") from None
     except (ValueError, RecursionError):
-        raise InputError(f"{_shown(origin)}: not valid TOML: a number too long, or nested too deep") from None
+        raise InputError(f"{origin}: not valid TOML: a number too long, or nested too deep") from None
 
 
 def _override(data: dict[str, Any], override: str) -> None:
