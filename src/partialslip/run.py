@@ -1,5 +1,6 @@
 """A run: solve one scene by one or more methods, and compare each result with the reference."""
 
+import dataclasses
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
@@ -10,13 +11,14 @@ import numpy.typing as npt
 from msgspec.structs import replace
 
 from partialslip.allowance import Allowance
+from partialslip.bars import LARGEST, Accuracy, Asked, asked
 from partialslip.errors import InputError
 from partialslip.frame import frame
-from partialslip.gradual import may_turn_round
 from partialslip.judge import Comparison, Conclusion, Outcome, Verdict, compare, conditions, of_run
-from partialslip.judge.reference import ALL_EFFECTS, METHODS, reference_for, reference_of
+from partialslip.judge.reference import ALL_EFFECTS, METHODS, reference, reference_among
 from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
+from partialslip.result.sliding import sliding
 from partialslip.result.state import State
 from partialslip.rig import Rig, key_of, load_rig
 from partialslip.scene import Effects, Scene
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from partialslip_fem import Kept
 
 Progress = Callable[[str], None]
+_ONE = "the contact slides at one of the load points: q at the other is not solved for"
 _KEPT = 8  # rigs kept in a process
 _rigs: dict[str, Rig] = {}
 
@@ -43,15 +46,15 @@ class Run(Drawn):
         Results by method; also "all effects" if effects of the scene were forced off.
     comparisons : dict of str to Comparison
         Comparisons with the reference, by method; none for the reference.
-    accuracy : float or None
-        The bar for a, m and n, as a fraction of a; None if there are no bars.
+    accuracy : Asked or None
+        The accuracy asked for (:class:`partialslip.bars.Asked`); None if there are no bars.
     """
 
     scene: Scene
     plan: Plan
     results: dict[str, Result]
     comparisons: dict[str, Comparison]
-    accuracy: float | None = None
+    accuracy: Asked | None = None
 
     def __getitem__(self, method: str) -> Result:
         """Return the result of ``method``: ``run["fem"]`` is ``run.results["fem"]``."""
@@ -78,8 +81,8 @@ class Run(Drawn):
 
     @property
     def reference(self) -> str | None:
-        """Name of the reference method (:func:`partialslip.judge.reference.reference_of`); None without results."""
-        return reference_of(self.results)
+        """Name of the reference (:func:`partialslip.judge.reference.reference_among`); None without results."""
+        return reference_among(self.scene, self.results)
 
     @property
     def judged(self) -> bool:
@@ -149,25 +152,16 @@ class Run(Drawn):
 
 
 def default_methods(scene: Scene) -> tuple[str, ...]:
-    """Return the default methods for ``scene``: fem, and for half-planes the reference method; for a scene with a rig,
-    exact and equivalent.
-
-    Half-planes in which slip reverses between the load points are solved by exact, march and fem.
+    """Return the default methods for ``scene``: fem, and for half-planes the reference
+    (:func:`partialslip.judge.reference.reference`); beside finite bodies half-planes; with a rig exact and equivalent.
     """
     if not scene.material.alike:
         return ("fem",)
     if scene.bodies.equivalent is not None:
         return ("exact", "equivalent")
-    if not scene.load.in_phase:
-        return ("march", "fem")
-    if not scene.finite and may_turn_round(scene):
-        from partialslip.halfplane.method import has_closed_form, path_dependent
-
-        if not has_closed_form(scene):
-            return ("march", "fem")
-        if path_dependent(scene):
-            return ("exact", "march", "fem")
-    return ("exact", "fem")
+    if scene.finite:
+        return ("exact" if scene.load.in_phase else "march", "fem")
+    return (reference(scene).method, "fem")
 
 
 def run(
@@ -216,9 +210,9 @@ def run(
     tasks = {name: (name, reduced(scene), effects) for name in chosen}
     if effects.missing:
         whole = replace(scene, effects=Effects())
-        tasks[ALL_EFFECTS] = _reference_for(whole), whole, plan(whole, subsurface=subsurface, start=start is not None)
+        tasks[ALL_EFFECTS] = reference(whole).method, whole, plan(whole, subsurface=subsurface, start=start is not None)
     results = {
-        name: _method(method, keep, allowance)(what, its, _told_by(name, progress), start)
+        name: _slid(what, _method(method, keep, allowance)(what, its, _told_by(name, progress), start))
         for name, (method, what, its) in tasks.items()
     }
     for result in results.values():
@@ -227,20 +221,23 @@ def run(
     # error measures the effect
     judged = not scene.finite and scene.fem.size is None and not effects.missing
     reached = results["fem"].settings.get("accuracy") if allowance and "fem" in results else None
-    return compared(scene, effects, results, float(reached or scene.fem.accuracy) if judged else None)
+    accuracy = min(float(reached or scene.fem.accuracy), LARGEST)
+    return compared(scene, effects, results, accuracy if judged else None)
 
 
-def _reference_for(scene: Scene) -> str:
-    """Return the most accurate method for ``scene``; march where the exact method has no closed form."""
-    name = reference_for(scene)
-    if name == "exact":
-        from partialslip.halfplane.method import has_closed_form
+def _slid(scene: Scene, result: Result) -> Result:
+    """Return ``result`` with q = f p if the contact slides, which no method solves for; otherwise as it is.
 
-        return name if has_closed_form(scene) else "march"
-    return name
+    Unlike bodies are left out: there shear changes the pressure.
+    """
+    if result.regime != "sliding" or not scene.material.alike:
+        return result
+    if signs := scene.sliding_signs:
+        return dataclasses.replace(result, traction=sliding(result.traction, scene.friction.f, signs))
+    return dataclasses.replace(result, undetermined={**result.undetermined, **dict.fromkeys(("q", "q1", "q2"), _ONE)})
 
 
-def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: float | None) -> Run:
+def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: Accuracy | None) -> Run:
     """Compare ``results`` of ``scene``, by method, with the reference among them.
 
     Parameters
@@ -248,16 +245,21 @@ def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: flo
     scene : Scene
     plan : Plan
     results : dict of str to Result
-    accuracy : float or None
-        Bar for a, m and n, as a fraction of a; None for no bars.
+    accuracy : float, (float, float, float) or None
+        Bar for a, m and n, as a fraction of a, or bars for contact, stick zone and tractions; None for no bars.
+
+    Raises
+    ------
+    InputError
+        If a number of ``accuracy`` is not above 0 and at most 0.1.
     """
-    reference = reference_of(results)
+    chosen = reference_among(scene, results)
     comparisons = {
-        name: compare(result, results[reference], scene, accuracy)
+        name: compare(result, results[chosen], scene, accuracy)
         for name, result in results.items()
-        if reference and name != reference
+        if chosen and name != chosen
     }
-    return Run(scene, plan, results, comparisons, accuracy)
+    return Run(scene, plan, results, comparisons, asked(accuracy))
 
 
 def characterise(scene: Scene) -> Rig:

@@ -18,12 +18,13 @@ if TYPE_CHECKING:
 class _Parser(argparse.ArgumentParser):
     """Parser with one-line errors, without abbreviations, and with examples and exit codes at the end of the help."""
 
-    def __init__(self, examples: Sequence[str] = (), failure: str = "", **settings: Any) -> None:
+    def __init__(self, examples: Sequence[str] = (), failure: str = "", unjudged: str = "", **settings: Any) -> None:
         super().__init__(allow_abbrev=False, **settings)
         codes = [
             "0    success",
             *([f"1    {failure}"] if failure else []),
             "2    bad input, or output that cannot be written",
+            *([f"4    {unjudged}"] if unjudged else []),
             "130  interrupted",
         ]
         self._end = {"examples": examples, "exit codes": codes}
@@ -77,6 +78,7 @@ def parser() -> argparse.ArgumentParser:
             "partialslip run --help",
         ],
         failure="a bar missed, or a case not solved",
+        unjudged="headline quantities not judged",
     )
     root.add_argument("--version", action="version")  # of _Parser.version
     commands = root.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)

@@ -42,6 +42,7 @@ def add(commands: "Commands") -> None:
             "partialslip run fretting-aluminium --set fem.far_field=box --out results/box",
         ],
         failure="a bar or a certificate missed",
+        unjudged="headline quantities not judged",
     )
     add_scene(runs)
     runs.add_argument("--with", dest="methods", metavar="METHODS",

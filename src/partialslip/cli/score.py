@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import partialslip
+from partialslip.bars import LARGEST, Asked, asked
 from partialslip.cli.common import (
     add_force,
     add_pdf,
@@ -39,6 +40,7 @@ def add(commands: "Commands") -> None:
             "partialslip score hertz-shear job.frd --factors 1e-3,1e6,1e6",
         ],
         failure="a bar missed",
+        unjudged="headline quantities not judged, with --bar",
     )
     add_scene(scores)
     scores.add_argument("file", metavar="FILE", nargs="?",
@@ -59,8 +61,9 @@ def add(commands: "Commands") -> None:
     scores.add_argument("--with", dest="reference", metavar="METHOD", choices=["exact", "march", "fem"],
                         help="compare with exact, march or fem (default: the first that solves the scene)")  # fmt: skip
     scores.add_argument("--bar", metavar="FRACTION",
-                        help="largest allowed error of a, m and n, as a fraction of a (p: 10 times, q: 15 times); "
-                        "exit code 1 if missed")  # fmt: skip
+                        help="largest allowed error of a, m and n, as a fraction of a (p: 10 times, q: 15 times, at "
+                        "most 0.1); or three numbers for contact, stick zone and tractions: 1e-3,1e-2,5e-2; none above "
+                        "0.1")  # fmt: skip
     scores.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-FILE)")
     add_force(scores)
     add_pdf(scores)
@@ -74,9 +77,7 @@ def _score(options: argparse.Namespace) -> int:
     check_report(options)
     factors = _numbers(options.factors, float, "--factors", "three numbers, for example 1e-3,1e6,1e6", 3)
     at = () if options.at is None else _numbers(options.at, int, "--at", "two whole numbers, for example 3,4", 2)
-    bar = None if options.bar is None else _numbers(options.bar, float, "--bar", "a number > 0", 1)[0]
-    if bar is not None and not 0 < bar < float("inf"):
-        raise InputError(f"--bar {options.bar}: must be a number > 0")
+    bar = None if options.bar is None else _bar(options.bar)
     if not all(0 < abs(factor) < float("inf") for factor in factors):
         raise InputError(f"--factors {options.factors}: must be finite and not zero")
     if options.order not in ("1", "2"):
@@ -94,7 +95,7 @@ def _score(options: argparse.Namespace) -> int:
         raise InputError("FILE: missing: must be a file with tractions; --template prints a table to fill in")
 
     from partialslip.cli.consoles import working
-    from partialslip.judge.reference import reference_for
+    from partialslip.judge.reference import reference
     from partialslip.report import write_run
     from partialslip.score.read import check
 
@@ -102,7 +103,7 @@ def _score(options: argparse.Namespace) -> int:
     check(file)  # before a folder is created
     beside = file.with_suffix(".frd")  # has the mesh of a .dat
     mesh = beside if file.suffix.lower() == ".dat" and beside.is_file() else None
-    known = {"file": file, "mesh": mesh, "factors": factors, "reference": options.reference or reference_for(scene)}
+    known = {"file": file, "mesh": mesh, "factors": factors, "reference": options.reference or reference(scene).method}
     name = f"{scene.name}-{file.stem}"
     with folder_if_wanted(options, "score", name, scene, **known) as (folder, passed), working(scene.name) as tell:
         outcome = partialslip.score(
@@ -121,6 +122,18 @@ def _score(options: argparse.Namespace) -> int:
     return print_outcome(outcome, options, files, passed=passed)
 
 
+def _bar(text: str) -> Asked:
+    """Parse the value of ``--bar``."""
+    wanted = f"one number, or three for contact, stick zone and tractions, > 0 and <= {LARGEST:g}"
+    numbers = _numbers(text, float, "--bar", wanted, 1, 3)
+    try:
+        found = asked(numbers)
+    except InputError:
+        raise InputError(f"--bar {text}: must be {wanted}") from None
+    assert found
+    return found
+
+
 def _columns(text: str | None) -> dict[str, str] | None:
     """Parse the value of ``--columns``."""
     if text is None:
@@ -131,11 +144,11 @@ def _columns(text: str | None) -> dict[str, str] | None:
     return {name.strip(): made.strip() for name, _, made in pairs}
 
 
-def _numbers(text: str, kind: Callable[[str], _T], option: str, wanted: str, count: int) -> tuple[_T, ...]:
+def _numbers(text: str, kind: Callable[[str], _T], option: str, wanted: str, *counts: int) -> tuple[_T, ...]:
     try:
         numbers = tuple(kind(word) for word in text.split(","))
     except ValueError:
         numbers = ()
-    if len(numbers) != count:
+    if len(numbers) not in counts:
         raise InputError(f"{option} {text}: must be {wanted}")
     return numbers

@@ -24,6 +24,7 @@ def add(commands: "Commands") -> None:
             "partialslip verify --suite stress --count 1000 --seed 0 --method march",
         ],
         failure="a bar missed",
+        unjudged="headline quantities not judged",
     )
     verify.add_argument("--suite", choices=_SUITES, default="quick",
                         help="quick: shipped scenes; full: shipped scenes and hard cases; book: problems of the "

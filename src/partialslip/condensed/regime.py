@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from partialslip.arrays import Array
-from partialslip.bars import BARS
+from partialslip.bars import Asked
 from partialslip.condensed.end_slips import end_slips
 from partialslip.condensed.ends import StickInterval
 from partialslip.condensed.history import STEADY, History
@@ -91,7 +91,8 @@ def unestimated(history: History | None) -> tuple[str, ...]:
 def doubts(change: float | None, errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:
     """Notes on estimated ``errors`` above ``accuracy``, and on a ``change`` of q (in f p0) in the last cycle."""
     notes: tuple[str, ...] = ()
-    if beyond := {key: error for key, error in errors.items() if error > BARS[key] * accuracy}:
+    bars = Asked(accuracy, accuracy).bars
+    if beyond := {key: error for key, error in errors.items() if error > bars[key]}:
         known = ", ".join(f"{key} {error:.1e}" for key, error in beyond.items())
         notes += (f"accuracy {accuracy:g} not reached: estimated errors are {known} (ends in a, tractions relative)",)
     if change is not None and change > max(accuracy, STEADY):

@@ -79,11 +79,11 @@ def _levels(pressed: Contact, f: float, load: Load, cycle: Loading, points: list
         return "mean loads act, and the cycle slips where the first loading sticks; use march"
     before = _before(load, points, known)
     if first.left_end_turns() if not before else cycle.left_end_turns(first.zone.half_width):
-        return f"{PATH_DEPENDENT}during the first loading; the reference is march with refined steps"
+        return f"{PATH_DEPENDENT}during the first loading; use march"
     for point in before:
         earlier = loading(pressed, f, *point, bound=1)
         if earlier.left_end_turns():
-            return f"{PATH_DEPENDENT}during the first loading; the reference is march with refined steps"
+            return f"{PATH_DEPENDENT}during the first loading; use march"
         if not (earlier.ends[0] <= left + _ROUNDING and right - _ROUNDING <= earlier.ends[1]):
             return "mean loads act, and the load point visited first slips where the other sticks; use march"
         x = _PLACES

@@ -10,7 +10,7 @@ def undetermined(regime: Regime, turns: bool, found: object) -> dict[str, str]:
     if regime in ("sliding", "frictionless"):
         return {}
     if turns:
-        reason = f"{PATH_DEPENDENT}between the load points; the reference is march with refined steps"
+        reason = f"{PATH_DEPENDENT}between the load points, and one step does not hold"
         return dict.fromkeys(("m", "n", "q", "q1", "q2"), reason)
     return dict.fromkeys(("q1", "q2"), found) if isinstance(found, str) else {}
 

@@ -166,7 +166,7 @@ def _first_loading(scene: Scene, cycle: Cycle, started: bool) -> Loading | str:
         return "no load acts along x at load point 2, and the cycle slips; use march"
     first = loading(end, f, *loads, bound=1)
     if first.left_end_turns():
-        return f"{PATH_DEPENDENT}during the first loading; the reference is march with refined steps"
+        return f"{PATH_DEPENDENT}during the first loading; use march"
     left, right = end.places(first.ends)
     room = _ROUNDING * end.a
     if not (cycle.stick[0] - room <= left and right <= cycle.stick[1] + room) or first.signs != cycle.change.signs:

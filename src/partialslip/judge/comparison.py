@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.bars import BARS
+from partialslip.bars import Accuracy, asked
 from partialslip.judge.measures import Measure, measures
 from partialslip.judge.outcome import Conclusion, conclude
+from partialslip.judge.reference import reference as reference_of
 from partialslip.judge.verdict import NAN, NO_BAR, Bar, Outcome, Verdict, conditions, judged
 from partialslip.result import Result
 from partialslip.scene import Scene
@@ -136,7 +137,7 @@ def compare(
     result: Result,
     reference: Result,
     scene: Scene,
-    accuracy: float | None,
+    accuracy: Accuracy | None,
     bars: Mapping[str, Bar] | None = None,
 ) -> Comparison:
     """Compare ``result`` with ``reference`` and judge it.
@@ -147,11 +148,17 @@ def compare(
         Results for the same ``scene``.
     scene : Scene
         The loads and the coefficient of friction scale the resultants and the errors of q.
-    accuracy : float or None
+    accuracy : float, (float, float, float) or None
         Bar for a, m, n and the ends of the contact, as a fraction of a. The bar for p and P is 10 times ``accuracy``,
-        for q, q1, q2 and dQ 15 times. With None only the quantities in ``bars`` have a bar.
+        for q, q1, q2 and dQ 15 times, none above 0.1. Three numbers are the bars for contact, stick zone and tractions.
+        With None only the quantities in ``bars`` have a bar.
     bars : mapping of str to Bar, optional
         Bars by quantity that replace the usual ones.
+
+    Raises
+    ------
+    InputError
+        If a number of ``accuracy`` is not above 0 and at most 0.1.
 
     Notes
     -----
@@ -159,11 +166,15 @@ def compare(
     judged.
     """
     own = bars or {}
-    usual = {} if accuracy is None else {key: Bar(share * accuracy) for key, share in BARS.items()}
+    wanted = asked(accuracy)
+    usual = {key: Bar(bar) for key, bar in wanted.bars.items()} if wanted else {}
     applied = {key: _beside(bar, key, reference) for key, bar in {**usual, **own}.items()}
-    verdicts = [decide(each, applied.get(each.quantity), result) for each in measures(result, reference, scene)]
+    unknown = reference_of(scene).unknown
+    every = measures(result, reference, scene, unknown)
+    verdicts = [decide(each, applied.get(each.quantity), result) for each in every]
     nodal = _nodal_errors(result, reference, scene.friction.f)
-    return Comparison((*verdicts, judge_regime(result, reference, scene, applied)), conditions(result), *nodal)
+    regime = judge_regime(result, reference, scene, applied, unknown)
+    return Comparison((*verdicts, regime), conditions(result), *nodal)
 
 
 def _beside(bar: Bar, quantity: str, reference: Result) -> Bar:
@@ -215,12 +226,14 @@ def _decided(measure: Measure, bar: Bar | None) -> tuple[Outcome, str]:
     return judged(measure.error, bar.value), bar.reason
 
 
-def judge_regime(result: Result, reference: Result, scene: Scene, bars: Mapping[str, Bar]) -> Verdict:
+def judge_regime(
+    result: Result, reference: Result, scene: Scene, bars: Mapping[str, Bar], unknown: Mapping[str, str]
+) -> Verdict:
     """Judge the name of the regime of ``result`` against ``reference``, with ``bars`` by quantity.
 
     The regime is not judged in four cases: no quantity has a bar; the slip or stick zone that distinguishes the two
     names is narrower than the bars of m and n; the mean of Q is nearer to its bound, in f P, than these bars in a: the
-    room for it is an integral over the stick zone; the stick zone depends on the load path.
+    room for it is an integral over the stick zone; the stick zone is ``unknown`` (by quantity, why).
     """
     found, true = result.regime, reference.regime
     own = bars.get("regime", Bar(1.0))
@@ -230,18 +243,13 @@ def judge_regime(result: Result, reference: Result, scene: Scene, bars: Mapping[
         outcome, reason = Outcome.NOT_JUDGED, own.reason or NO_BAR
     elif found == true:
         outcome, reason = Outcome.PASSED, ""
-    elif why := _undetermined_regime(result, reference):
-        outcome, reason = Outcome.NOT_JUDGED, why
+    elif "m" in unknown:
+        outcome, reason = Outcome.NOT_JUDGED, unknown["m"]
     elif near := _too_near(result, reference, width * reference.a) or _barely(result, reference, scene, width):
         outcome, reason = Outcome.NOT_JUDGED, near
     else:
         outcome, reason = Outcome.MISSED, f"{found}, not {true}"
     return Verdict("regime", outcome, true, found, reason=reason)
-
-
-def _undetermined_regime(result: Result, reference: Result) -> str:
-    """Return why a path-dependent result leaves the regime undetermined; empty if neither is path-dependent."""
-    return next((f"{each.method}: {each.undetermined['m']}" for each in (reference, result) if each.path_dependent), "")
 
 
 def _too_near(result: Result, reference: Result, width: float) -> str:

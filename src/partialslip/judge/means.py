@@ -38,13 +38,14 @@ def norm_errors(traction: Traction, reference: Traction, f: float, keys: tuple[s
         Coefficient of friction.
     keys : tuple of str
         ``p`` and ``p_1`` (load points 2 and 1): relative to the norm of the quantity; ``q``, ``q1``, ``q2``: relative
-        to the larger of the norm of the quantity and 1e-3 of f p's norm. Zero if both are zero.
+        to the larger of the norm of the quantity and 1e-3 of f p's norm; without friction, where q = 0, relative to
+        the norm of p. Zero if both are zero.
     """
     cells, every = _cells(traction, reference), ("p", *keys)
     widths = np.diff(cells)
     found, true = (means(partial(fields, each, keys=every), cells, each.breaks) for each in (traction, reference))
     off, norms = (np.sqrt(values**2 @ widths) for values in (found - true, true))
-    least = LEAST_SHEAR * f * norms[0]
+    least = LEAST_SHEAR * f * norms[0] if f else norms[0]
     return {
         key: _ratio(error, norm if key.startswith("p") else max(norm, least))
         for key, error, norm in zip(keys, off[1:].tolist(), norms[1:].tolist(), strict=True)

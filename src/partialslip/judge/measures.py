@@ -5,7 +5,7 @@ have an error but no values.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,27 +44,27 @@ class Measure:
     undetermined: str = ""
 
 
-def measures(result: Result, reference: Result, scene: Scene) -> Iterator[Measure]:
+def measures(result: Result, reference: Result, scene: Scene, unknown: Mapping[str, str]) -> Iterator[Measure]:
     """Yield the measures between ``result`` and ``reference`` for the ``scene``.
 
     A quantity that does not exist has no values and no error. An undetermined quantity has values and an error, but
-    is not judged.
+    is not judged; nor is one that is ``unknown`` for the scene (by quantity, why).
     """
     for quantity, scale, true, found, error in _measured(result, reference, scene):
         if absent := _absent(quantity, reference, scene):
             yield Measure(quantity, scale, None, None, None, absent)
         else:
-            yield Measure(quantity, scale, true, found, error, _undetermined(quantity, result, reference))
+            yield Measure(quantity, scale, true, found, error, _undetermined(quantity, result, reference, unknown))
 
 
 def _absent(quantity: str, reference: Result, scene: Scene) -> str:
     """Return why the quantity does not exist; empty if it exists."""
     if quantity not in _SHEAR:
         return ""
-    if scene.friction.f == 0:
+    if scene.friction.f == 0 and quantity not in ("q", "q1", "q2"):  # q = 0
         return "there is no friction"
-    if reference.regime == "sliding":
-        return "the contact slides"
+    if reference.regime == "sliding":  # q = f p, where it is known
+        return "the contact slides" if quantity in ("m", "n", "dQ") else reference.undetermined.get("q", "")
     if reference.regime == "ratchets":
         return "the contact ratchets: its steady state is not reached"
     if quantity == "dQ" and not scene.load.in_phase:
@@ -72,9 +72,11 @@ def _absent(quantity: str, reference: Result, scene: Scene) -> str:
     return ""
 
 
-def _undetermined(quantity: str, result: Result, reference: Result) -> str:
-    """Return which method leaves the quantity undetermined, and why; empty if neither does."""
+def _undetermined(quantity: str, result: Result, reference: Result, unknown: Mapping[str, str]) -> str:
+    """Return why the quantity is ``unknown``, or which method leaves it undetermined and why; empty if it is known."""
     key = "q" if quantity == "q_max" else quantity
+    if key in unknown:
+        return unknown[key]
     calls = (f"{each.method}: {each.undetermined[key]}" for each in (reference, result) if key in each.undetermined)
     return next(calls, "")
 

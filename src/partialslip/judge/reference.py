@@ -1,32 +1,58 @@
-"""Choice of the reference method, with which the other methods are compared."""
+"""The reference of a scene: chosen here and nowhere else, for run, score, verify, fatigue, map and the book."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
-from partialslip.result import Result
+from partialslip.gradual import may_turn_round
+from partialslip.plan import reduced
 from partialslip.scene import Scene
 
 REFERENCES = ("exact", "march", "fem")  # by preference
 METHODS = (*REFERENCES, "equivalent")
 ALL_EFFECTS = "all effects"  # name of the result in which no effect is forced off
 
+_REVERSES = "path-dependent: slip reverses between the load points; no solution is known to hold"
 
-def reference_for(scene: Scene) -> str:
-    """Return the most accurate method for ``scene``.
 
-    Similar half-planes: exact under loads in phase, march under other loads. Finite bodies and unlike materials: fem.
+class Reference(NamedTuple):
+    """The reference of a scene: the ``method`` with which others are compared, and by quantity why no value of any
+    method is known to hold (``unknown``); the errors of these quantities are shown, but not judged."""
+
+    method: str
+    unknown: Mapping[str, str] = {}
+
+
+def reference(scene: Scene) -> Reference:
+    """Return the reference of ``scene``: never a solution that is known not to hold.
+
+    Similar half-planes: exact where the steady state has a closed form, march elsewhere. Where slip reverses between
+    the load points the closed form, which goes there in one step, does not hold, and the steps of march err by an
+    amount that its estimate does not bound: neither is a reference for m, n and the shear. Finite bodies and unlike
+    materials: fem.
     """
     if scene.finite or not scene.material.alike:
-        return "fem"
-    return "exact" if scene.load.in_phase else "march"
+        return Reference("fem")
+    own = reduced(scene)
+    if not own.load.in_phase:
+        return Reference("march")
+    if not may_turn_round(own):
+        return Reference("exact")
+    from partialslip.halfplane.method import has_closed_form, path_dependent
+
+    if not has_closed_form(own):
+        return Reference("march")
+    if path_dependent(own):
+        return Reference("march", dict.fromkeys(("m", "n", "q", "q1", "q2"), _REVERSES))
+    return Reference("exact")
 
 
-def reference_of(results: Mapping[str, Result]) -> str | None:
-    """Return the name of the reference among ``results``; None without results.
+def reference_among(scene: Scene, methods: Iterable[str]) -> str | None:
+    """Return the name of the reference among the ``methods`` that have solved ``scene``; None without methods.
 
-    The reference is the result with all effects, else the first of exact, march, fem and equivalent. March precedes
-    exact if slip reverses between the load points.
+    The reference is the result with all effects, else that of :func:`reference`, else the first of exact, march, fem
+    and equivalent. For finite and for unlike bodies, where nothing is judged, it is the first of these: the errors are
+    what half-planes leave out.
     """
-    known = [name for name in (ALL_EFFECTS, *METHODS) if name in results]
-    if known[:1] == ["exact"] and results["exact"].path_dependent and "march" in known:
-        return "march"
-    return next(iter(known), None)
+    known = set(methods)
+    first = () if scene.finite or not scene.material.alike else (reference(scene).method,)
+    return next((name for name in (ALL_EFFECTS, *first, *METHODS) if name in known), None)

@@ -190,6 +190,15 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         return not self.free and any(abs(Q) >= self.friction.f * P for (Q, _), (P, _) in pairs)
 
     @property
+    def sliding_signs(self) -> tuple[int, int] | None:
+        """Signs of q at load points 1 and 2 of a contact that slides at both; None if it sticks at one of them."""
+        Q1, Q2 = (self.load.points[end][0] for end in self.load.ends)
+        limits = (self.friction.f * P for P, _ in self.end_pressing)
+        if self.free or any(abs(Q) < limit for Q, limit in zip((Q1, Q2), limits, strict=True)):
+            return None
+        return (Q1 > 0) - (Q1 < 0), (Q2 > 0) - (Q2 < 0)
+
+    @property
     def free(self) -> bool:
         """Whether there is neither friction nor shear force: nothing sticks, and the bodies do not slide."""
         return self.friction.f == 0 and not any(Q for Q, _ in self.load.points)

@@ -5,8 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
+from partialslip.bars import Accuracy, asked
 from partialslip.errors import InputError
-from partialslip.judge.reference import REFERENCES, reference_for
+from partialslip.judge.reference import REFERENCES
+from partialslip.judge.reference import reference as reference_of
 from partialslip.result import Result
 from partialslip.run import Run, compared, run
 from partialslip.scene import Scene
@@ -19,7 +21,7 @@ def score(
     scene: Scene,
     file: str | Path,
     *,
-    bar: float | None = None,
+    bar: Accuracy | None = None,
     reference: str | None = None,
     factors: tuple[float, float, float] = (1.0, 1.0, 1.0),
     order: int = 1,
@@ -44,11 +46,11 @@ def score(
 
         Numbers are in the units in which the scene is shown (:attr:`Scene.shown_in`), in other units if the table's
         header states them, and in those of the deck if CalculiX ran a deck of :func:`partialslip.export.export`.
-    bar : float, optional
-        Largest errors of a, m and n, as fractions of a; p and q have 10 and 15 times this bar. By default no bars.
+    bar : float or (float, float, float), optional
+        Largest errors of a, m and n, as fractions of a; p and q have 10 and 15 times this bar, none above 0.1. Or one
+        number each for contact, stick zone and tractions. None above 0.1. By default no bars.
     reference : str, optional
-        Method to compare with. By default exact; march if Q and sigma are out of phase; fem for bodies of different
-        materials or of finite size.
+        Method to compare with; by default the reference (:func:`partialslip.judge.reference.reference`).
     factors : (float, float, float)
         Further factors of x, p and p1 (Fn) and q (Ft), for other units and signs.
     order : int
@@ -68,9 +70,9 @@ def score(
     InputError
         If the file cannot be read, or an argument is not allowed.
     """
-    file = Path(file)
+    file, wanted = Path(file), asked(bar)
     name = "".join(c if c.isprintable() else "?" for c in file.name)
-    reference = reference_for(scene) if reference is None else reference
+    reference = reference_of(scene).method if reference is None else reference
     if reference not in REFERENCES:
         raise InputError(f"reference {reference!r}: must be one of {', '.join(REFERENCES)}")
     if centre not in ("given", "auto"):
@@ -83,7 +85,7 @@ def score(
     result = scored(scene, found, name, str(file))
     outcome = run(scene, [reference], progress=progress)
     return compared(
-        scene, outcome.plan, outcome.results | {name: _read_as(scene, result, outcome.results[reference])}, bar
+        scene, outcome.plan, outcome.results | {name: _read_as(scene, result, outcome.results[reference])}, wanted
     )
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from partialslip.bars import BARS
 from partialslip.judge import Bar, Conclusion, Outcome, Verdict, compare, conclude, conditions, together
-from partialslip.judge.reference import reference_of
+from partialslip.judge.reference import reference_among
 from partialslip.plan import plan
 from partialslip.result import Result
 from partialslip.run import run
@@ -134,12 +134,11 @@ def solve_case(case: Case) -> Found:
 def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
     """Return the verdicts on the results ``found`` for ``case``.
 
-    If the reference fails, the failure is a missed verdict. March replaces exact as the reference where slip reverses
-    between the load points.
+    If the reference fails, the failure is a missed verdict.
     """
     lost = [case.reference] if case.reference and isinstance(found[case.reference], Failure) else []
     results = {method: result for method, result in found.items() if isinstance(result, Result)}
-    judging = reference_of(results) if case.reference and not lost else None
+    judging = reference_among(case.scene, results) if case.reference and not lost else None
     verdicts = []
     for method in dict.fromkeys([*lost, *case.methods]):
         result = found[method]

@@ -4,8 +4,7 @@ and fem are also compared with exact, and fem with march where exact is not the 
 import itertools
 from collections.abc import Iterator
 
-from partialslip.halfplane.method import has_closed_form, path_dependent
-from partialslip.scene import Scene
+from partialslip.judge.reference import reference
 from partialslip.verify.case import Case
 from partialslip.verify.random_scenes import draw, kind_of
 from partialslip.verify.random_varying import draw_varying, varies
@@ -26,15 +25,9 @@ def stress_case(method: str, seed: int, number: int) -> Case:
         kind, scene = draw(seed, number)
         return Case(scene.name, scene, (method,), reference="", hard=kind)
     kind, scene = draw_varying(seed, number)
-    closed = scene.load.in_phase and has_closed_form(scene)
-    if method == "exact" and not closed:
+    best = reference(scene)
+    if method == "exact" and best.method != "exact" and not best.unknown:
         method = "march"
     elif kind_of(number) != "lost digits" and method != "exact":  # whose stick zone may be narrower than any cell
-        reference = "exact" if closed and not _reverses(scene) else "march"
-        return Case(scene.name, scene, (method,), reference="" if reference == method else reference, hard=kind)
+        return Case(scene.name, scene, (method,), reference="" if best.method == method else best.method, hard=kind)
     return Case(scene.name, scene, (method,), reference="", hard=kind)
-
-
-def _reverses(scene: Scene) -> bool:
-    """Whether slip reverses between the load points of ``scene``, which has a closed form."""
-    return scene.friction.f > 0 and not scene.slides and path_dependent(scene)

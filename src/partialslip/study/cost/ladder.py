@@ -15,10 +15,10 @@ from partialslip.batch.job import Job, Solved, solve_apart
 from partialslip.batch.ledger import Ledger
 from partialslip.errors import InputError
 from partialslip.inputfile import read_text
+from partialslip.judge.reference import reference
 from partialslip.plan import plan
 from partialslip.report import Record
 from partialslip.result.record import ResultRecord
-from partialslip.run import default_methods
 from partialslip.scene import Scene
 from partialslip.scene.reading import parse_scene
 from partialslip.strictjson import decoded
@@ -90,8 +90,7 @@ def ladder(scene: Scene) -> list[Job]:
     InputError
         If the exact method cannot solve the scene.
     """
-    reference = default_methods(scene)[0]
-    if reference != "exact" or scene.finite:
+    if reference(scene).method != "exact":
         raise InputError(
             f"{scene.name}: a cost study needs the exact method: half-planes of equal material, loads in phase"
         )
