@@ -14,6 +14,7 @@ from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes
 from partialslip.judge import Comparison, Outcome, Verdict, conclude, of_run
 from partialslip.judge.recorded import conditions_again, judged_again
+from partialslip.judge.reference import reference_among
 from partialslip.origin import Made, versions
 from partialslip.plan import Effect, Plan
 from partialslip.result.record import Number, ResultRecord, number
@@ -158,7 +159,10 @@ class Record(msgspec.Struct, frozen=True):
 
     @property
     def judged_again(self) -> "Record":
-        """The record with outcomes, and what is missed, concluded anew from the numbers of the record."""
+        """The record with outcomes, and what is missed, concluded anew from the numbers of the record.
+
+        Comparisons with a reference that is none for the scene make no run pass.
+        """
         told = {name: each.conditions for name, each in self.comparison.items()}
         known = {name: conditions_again(each, told.get(name, ())) for name, each in self.methods.items()}
         reference = self.methods.get(self.reference or "")
@@ -175,7 +179,8 @@ class Record(msgspec.Struct, frozen=True):
             if verdict.outcome is Outcome.MISSED
         )
         conclusions = {name: conclude(each.verdicts, each.conditions) for name, each in comparison.items()}
-        hold = {name: not each.path_dependent for name, each in self.methods.items()}
+        sound = self.reference == reference_among(self.scene, self.methods)
+        hold = {name: sound and not each.path_dependent for name, each in self.methods.items()}
         whole = of_run(conclusions, missed, hold)
         return replace(self, outcome=whole.outcome, missed=whole.missed, comparison=comparison)
 

@@ -165,6 +165,35 @@ def test_what_was_written_is_what_is_read(file, found):
     assert kept.json == file.read_text("utf-8")
 
 
+SCENES = {
+    "no friction": ("hertz-shear", "friction.f=0", "load.Q=[0,0]"),
+    "sliding": ("hertz-shear", "load.Q=[-3e5,3e5]"),
+    "no stick zone judged": ("hertz-shear", "load={a=2e-3,Q=[-202151.086544,202151.086544],sigma=[-8.67e8,8.67e8]}"),
+    "mean loads": ("hertz-shear", "load.Q=[-1e4,9e4]"),
+    "uneven": ("hertz-shear", "load.M=[0,20]"),
+    "varying P": ("hertz-shear", "load={P=[1.5e5,2e5],Q=[-1e4,1e4],sigma=[0,0]}"),
+    "forced off": ("hertz-large-tension", "effects.tension=false"),
+    "no bars": ("hertz-shear", "fem.size=0.1"),
+}
+
+
+@pytest.mark.parametrize("what", SCENES)
+def test_outcomes_of_all_kinds_of_runs_stay_as_they_are(what, tmp_path):
+    name, *settings = SCENES[what]
+    kept = record(run(load_scene(name, ["fem.accuracy=1e-2", *settings]), ["exact", "march"]))
+    (tmp_path / "results.json").write_text(kept.json, "utf-8")
+    assert load_result(tmp_path / "results.json") == kept
+
+
+def test_a_reference_that_is_none_makes_no_run_pass(file):
+    """Earlier versions took solutions for a reference that do not hold."""
+    changed(
+        file,
+        lambda data: (data.update(reference="march"), data["comparison"].update(exact=data["comparison"]["march"])),
+    )
+    assert load(file).outcome is not Outcome.PASSED
+
+
 def test_an_edited_record_stays_edited(file, tmp_path):
     changed(file, lambda data: data["methods"]["march"].update(p0=1.0))
     again = tmp_path / "again-results.json"
