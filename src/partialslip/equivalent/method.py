@@ -25,7 +25,6 @@ from partialslip.scene import Bodies, FlatRounded, Hertz, Profile, Scene
 
 _KEYS = ("a", "left", "right", "m", "n", "p", "q")
 _PRESSED = "bodies that are not mirror images lock shear in when they are pressed, which is not followed; use fem"
-_EDITED = "the file of bodies.equivalent was edited since partialslip wrote it; the results are those of its numbers"
 _SETTLED, _MOST = 1e-12, 40  # relative change of the data in an iteration; iterations
 _MIXED = 6  # latest iterations that the next one is made of
 _SETTLED_MARCH = 1e-3  # of the accuracy asked for, where each iteration is a march
@@ -92,7 +91,7 @@ def solve(
         settings={"model": "half-planes with the data of the bodies", "solved by": found.method},
         estimate=errors | levels,
         shares=shares,
-        notes=(*([_EDITED] if rig.edited else []), in_words(scene, seen, data), *notes),
+        notes=(*([rig.note] if rig.note else []), in_words(scene, seen, data), *notes),
         undetermined=undetermined,
         surface=None,
         stress_at=None,

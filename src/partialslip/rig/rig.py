@@ -60,6 +60,14 @@ class Rig:
     edited: bool = False
 
     @property
+    def note(self) -> str:
+        """Remark for the reader of a result with an edited rig; empty otherwise."""
+        said = (
+            "the file of bodies.equivalent was edited since partialslip wrote it; the results are those of its numbers"
+        )
+        return said if self.edited else ""
+
+    @property
     def uncoupled(self) -> "Rig":
         """The rig without what p does along x and q along y."""
         terms, rough = (each._replace(xy=0 * each.xy) for each in (self.terms, self.rough))
