@@ -1,7 +1,7 @@
 """A run: solve one scene by one or more methods, and compare each result with the reference."""
 
 import dataclasses
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -83,6 +83,14 @@ class Run(Drawn):
     def reference(self) -> str | None:
         """Name of the reference (:func:`partialslip.judge.reference.reference_among`); None without results."""
         return reference_among(self.scene, self.results)
+
+    @property
+    def answering(self) -> str:
+        """Name of the method whose result answers: the reference of the scene if it is among the methods; of finite
+        bodies fem, then equivalent half-planes; else the first."""
+        best = reference(self.scene).method
+        wanted = (best, "equivalent") if self.scene.finite else (best,)
+        return next((name for name in wanted if name in self.results), next(iter(self.results)))
 
     @property
     def judged(self) -> bool:
@@ -169,6 +177,7 @@ def run(
     methods: str | Iterable[str] | None = None,
     *,
     subsurface: bool = False,
+    stresses: bool = False,
     progress: Progress = lambda _: None,
     start: State | None = None,
     keep: "Kept | None" = None,
@@ -182,7 +191,10 @@ def run(
     methods : str or iterable of str, optional
         Of "exact", "march", "fem" and "equivalent", one or several; default: :func:`default_methods`.
     subsurface : bool
-        Whether to compute fields inside the bodies: displacements (fem) and stresses (exact).
+        Whether to compute fields inside the bodies: displacements (fem) and stresses.
+    stresses : bool
+        Whether a method that holds for the scene computes stresses along the surfaces, even if fields inside the bodies
+        are not asked for: exact and march, and fem if neither of these knows them.
     progress : callable
         ``progress(line)``: called from time to time with a line of text.
     start : State, optional
@@ -211,10 +223,11 @@ def run(
     if effects.missing:
         whole = replace(scene, effects=Effects())
         tasks[ALL_EFFECTS] = reference(whole).method, whole, plan(whole, subsurface=subsurface, start=start is not None)
-    results = {
-        name: _slid(what, _method(method, keep, allowance)(what, its, _told_by(name, progress), start))
-        for name, (method, what, its) in tasks.items()
-    }
+    results: dict[str, Result] = {}
+    for name, (method, what, its) in tasks.items():
+        if stresses and _finds_stresses(what, method, results):
+            its = plan(what, subsurface=True, start=start is not None)
+        results[name] = _slid(what, _method(method, keep, allowance)(what, its, _told_by(name, progress), start))
     for result in results.values():
         effects.accept(result.regime)
     # no bars for finite bodies or for a fixed element size: there is no reference; none for effects forced off: the
@@ -223,6 +236,13 @@ def run(
     reached = results["fem"].settings.get("accuracy") if allowance and "fem" in results else None
     accuracy = min(float(reached or scene.fem.accuracy), LARGEST)
     return compared(scene, effects, results, accuracy if judged else None)
+
+
+def _finds_stresses(scene: Scene, method: str, before: Mapping[str, Result]) -> bool:
+    """Return whether ``method`` is to find the stresses of ``scene``, after the results ``before``."""
+    if scene.finite or not scene.material.alike:
+        return method == "fem"
+    return method in ("exact", "march") or not any(result.surface for result in before.values())
 
 
 def _slid(scene: Scene, result: Result) -> Result:
@@ -235,6 +255,24 @@ def _slid(scene: Scene, result: Result) -> Result:
     if signs := scene.sliding_signs:
         return dataclasses.replace(result, traction=sliding(result.traction, scene.friction.f, signs))
     return dataclasses.replace(result, undetermined={**result.undetermined, **dict.fromkeys(("q", "q1", "q2"), _ONE)})
+
+
+def with_stresses(scene: Scene, method: str | None = None, progress: Progress = lambda _: None) -> Result:
+    """Solve ``scene`` with the stresses in the bodies.
+
+    By default the method is the reference (:func:`partialslip.judge.reference.reference`), and march where exact does
+    not know q1 and q2: mean loads, for instance, under which the first cycles lock in what no closed form gives.
+
+    Raises
+    ------
+    InputError
+        As :func:`run`.
+    """
+    chosen = method or reference(scene).method
+    found = run(scene, chosen, subsurface=True, progress=progress)[chosen]
+    if method is None and chosen == "exact" and not found.stress_at and not scene.slides:
+        return run(scene, "march", subsurface=True, progress=progress)["march"]
+    return found
 
 
 def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: Accuracy | None) -> Run:

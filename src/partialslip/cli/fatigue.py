@@ -46,8 +46,9 @@ def add(commands: "Commands") -> None:
     fatigue.add_argument("--distance", metavar="LENGTH",
                          help="depth over which stresses are averaged, in the scene's unit of length, as "
                          "fatigue.distance")  # fmt: skip
-    fatigue.add_argument("--method", choices=_METHODS, default="exact", metavar="METHOD",
-                         help="exact, march or fem (default: exact)")  # fmt: skip
+    fatigue.add_argument("--method", choices=_METHODS, metavar="METHOD",
+                         help="exact, march or fem (default: the reference of the scene, and march where exact does "
+                         "not know q1 and q2)")  # fmt: skip
     fatigue.add_argument("--body", choices=("lower", "upper"), default="lower", metavar="BODY",
                          help="lower or upper (default: lower)")  # fmt: skip
     fatigue.add_argument("-o", "--out", metavar="DIR", help="folder for the files (default: results/NAME-fatigue)")
@@ -67,6 +68,7 @@ def _fatigue(options: argparse.Namespace) -> int:
     from partialslip.fatigue import assess
     from partialslip.fatigue.named import chosen
     from partialslip.fatigue.page import drawn, sections, write_assessment
+    from partialslip.run import with_stresses
 
     names = None if options.criterion is None else [name.strip() for name in options.criterion.split(",")]
     try:
@@ -76,7 +78,7 @@ def _fatigue(options: argparse.Namespace) -> int:
     name = f"{scene.name}-fatigue"
     settings = {"criterion": names, "fatigue": scene_constants(scene), "distance": None}
     with results_folder(options, "fatigue", name, scene, **settings) as (folder, passed), working(name) as tell:
-        result = partialslip.run(scene, options.method, subsurface=True, progress=tell)[options.method]
+        result = with_stresses(scene, options.method, tell)
         tell("criteria")
         found = assess(scene, result, names, body=options.body)
         tell("figures")

@@ -55,7 +55,7 @@ def add(commands: "Commands") -> None:
                       help="CPU seconds of the whole process, e.g. 5s; fem picks the best accuracy within the budget; "
                       "--set overrides it")  # fmt: skip
     runs.add_argument("--fields", action="store_true",
-                      help="also compare stresses and write surface.csv and bodies.vtu")  # fmt: skip
+                      help="also compare stresses, and write surface.csv and, of fem, bodies.vtu")  # fmt: skip
     runs.add_argument("--start", metavar="FILE",
                       help="start from the state in FILE (see --save) instead of from zero shear")  # fmt: skip
     runs.add_argument("--save", metavar="FILE",
@@ -80,8 +80,8 @@ def _run(options: argparse.Namespace) -> int:
     check_report(options)
     if options.save == "":
         raise InputError("--save '': must name a file")
-    if options.fields and methods and "fem" not in methods:
-        raise InputError("--fields: needs the method fem: add fem to --with")
+    if options.fields and methods == ["equivalent"]:
+        raise InputError("--fields: needs the method exact, march or fem: add one to --with")
     scene = partialslip.load_scene(options.scene, options.overrides)
     start = partialslip.load_state(options.start) if options.start is not None else None
     budget = _budget(options, scene, methods)
@@ -102,7 +102,13 @@ def _run(options: argparse.Namespace) -> int:
             messages().print(f"{price}, predicted", soft_wrap=True, markup=False)
         with working(scene.name) as tell:
             outcome = partialslip.run(
-                scene, methods, subsurface=options.fields, progress=tell, start=start, allowance=allowance
+                scene,
+                methods,
+                subsurface=options.fields,
+                stresses=True,
+                progress=tell,
+                start=start,
+                allowance=allowance,
             )
             files = []
             if options.save is not None:

@@ -15,6 +15,7 @@ from partialslip.fatigue.places import OVER, averaged, depths, largest_at, surfa
 from partialslip.fatigue.planes import Critical
 from partialslip.fatigue.ruiz import Ruiz, ruiz
 from partialslip.result import Result
+from partialslip.run import with_stresses
 from partialslip.scene import Scene
 
 BODIES = ("lower", "upper")
@@ -131,7 +132,9 @@ class Assessment:
         return self.ratings[name].criterion.at(self.stress(x, depth))
 
 
-def assess(scene: Scene, result: Result, criteria: Iterable[str] | None = None, *, body: str = "lower") -> Assessment:
+def assess(
+    scene: Scene, result: Result | None = None, criteria: Iterable[str] | None = None, *, body: str = "lower"
+) -> Assessment:
     """Assess a solved scene by fatigue criteria.
 
     The load points around the cycle are doubled until the largest value at the surface settles. The largest values are
@@ -141,8 +144,9 @@ def assess(scene: Scene, result: Result, criteria: Iterable[str] | None = None, 
     ----------
     scene : Scene
         The table ``fatigue`` holds the constants of the criteria and the distance of averages.
-    result : Result
-        Of ``scene``, with stresses: ``partialslip.run(scene, method, subsurface=True)[method]``.
+    result : Result, optional
+        Of ``scene``, with stresses: ``partialslip.run(scene, method, subsurface=True)[method]``. By default the scene
+        is solved by the method that knows them (:func:`partialslip.run.with_stresses`).
     criteria : iterable of str, optional
         Of principal, swt, fatemi-socie, findley, dang-van, crossland and ruiz. Default: all whose constants the scene
         has.
@@ -156,6 +160,7 @@ def assess(scene: Scene, result: Result, criteria: Iterable[str] | None = None, 
     names = chosen(scene, criteria)
     if body not in BODIES:
         raise InputError(f"body {body!r}: must be of {', '.join(BODIES)}")
+    result = with_stresses(scene) if result is None else result
     if result.stress_at is None:
         why = result.undetermined.get("stresses", "run the scene with subsurface=True, or by another method")
         raise InputError(f"{result.method}: stresses are not known; {why}")

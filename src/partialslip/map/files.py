@@ -73,11 +73,10 @@ def place(data: StickMap | VaryingMap) -> list[str]:
     left_out = [f"the map shows half-planes: {finite} left out"] if finite else []
     exact = point.exact
     if isinstance(point, VaryingPoint) and point.missing:
-        return [f"{name}: {point.missing}; must be solved by march", *left_out]
+        return [f"{name}: {point.missing}", *left_out]
     assert exact
     ends = ", ".join(f"{key} = {rows.value(exact, key)}" for key in ("m", "n"))
     reached = ", which are not reached" if exact.regime == "ratchets" else ""
     mirrored = " (dQ and dsigma differ in sign: on the map m and n change places)" if point.mirrored else ""
     limits = rows.limits(exact, data.scene.units)
-    turns = [exact.undetermined["m"]] if "m" in exact.undetermined else []
-    return [f"{name}: {exact.regime}, {ends}{reached}{mirrored}", *filter(None, [limits]), *turns, *left_out]
+    return [f"{name}: {exact.regime}, {ends}{reached}{mirrored}", *filter(None, [limits]), *left_out]

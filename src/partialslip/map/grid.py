@@ -17,6 +17,7 @@ from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zones, transition
+from partialslip.judge.reference import reference
 from partialslip.result import Result, StickZone
 from partialslip.run import run
 from partialslip.scene import Scene
@@ -196,6 +197,8 @@ def _point(scene: Scene, pressed: Contact) -> tuple[Point | None, str]:
     load, f = scene.load, scene.friction.f
     if not load.in_phase:
         return None, "Q and sigma are out of phase"
+    if unknown := reference(scene).unknown:
+        return None, unknown["m"]
     exact = run(scene, ["exact"]).results["exact"]
     if exact.regime == "sliding":
         return None, exact.notes[0]

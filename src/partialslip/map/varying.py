@@ -18,6 +18,7 @@ from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.mean import Mean
 from partialslip.halfplane.steady import stick_zones
 from partialslip.halfplane.varying import closed_form
+from partialslip.judge.reference import reference
 from partialslip.map.grid import require_friction
 from partialslip.result import Result
 from partialslip.run import run
@@ -42,7 +43,7 @@ class VaryingPoint:
     exact : Result or None
         Result of the exact method; None if there is no closed form.
     missing : str
-        Why there is no closed form.
+        Why there is no closed form that holds.
     """
 
     P_change: float
@@ -175,7 +176,9 @@ def _point(scene: Scene) -> VaryingPoint | None:
     if scene.slides:
         return None
     load, (one, other) = scene.load, (P for P, _ in scene.end_pressing)
-    missing = closed_form(scene)
+    missing = (
+        f"{why}; must be solved by march" if (why := closed_form(scene)) else reference(scene).unknown.get("m", "")
+    )
     exact = None if missing else run(scene, ["exact"]).results["exact"]
     dP, dQ = abs(other - one) / scene.P, abs(load.dQ) / (scene.friction.f * scene.P)
     return VaryingPoint(dP, dQ, load.dQ * load.dsigma < 0, exact, missing)

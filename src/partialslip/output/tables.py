@@ -12,7 +12,11 @@ _NARROW = 60
 
 
 def print_table(
-    console: Console, headings: Sequence[str], rows: Iterable[Sequence[str]], words: Container[int] = (0,)
+    console: Console,
+    headings: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    words: Container[int] = (0,),
+    gap: int = 1,
 ) -> None:
     """Print a table on ``console``.
 
@@ -23,6 +27,8 @@ def print_table(
     rows : iterable of sequences of str
     words : container of int
         Columns of words, left-aligned; all other columns hold numbers, right-aligned.
+    gap : int
+        Spaces between columns; fewer if the table is wider than the terminal.
 
     Notes
     -----
@@ -35,10 +41,11 @@ def print_table(
         table.add_column(Text(heading), justify="left" if number in words else "right", no_wrap=True)
     for row in rows:
         table.add_row(*row)
-    needed = console.measure(table, options=console.options.update(width=_WIDEST)).maximum
-    if needed > console.width:  # narrower gaps
-        table.padding = (0, 0, 0, 0)
+    for spaces in range(gap, -1, -1):
+        table.padding = (0, spaces, 0, 0)
         needed = console.measure(table, options=console.options.update(width=_WIDEST)).maximum
+        if needed <= console.width:
+            break
     if needed > console.width and console.width < _NARROW:
         print_lines(console, [line for row in rows for line in (*zip(headings, row, strict=True), ("", ""))])
         return

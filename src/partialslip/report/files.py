@@ -43,13 +43,14 @@ def write_run(run: Run, folder: Path, made: Made | None = None, *, pdf: bool = F
         "tractions.csv": lambda path: path.write_text(tractions_csv(run), "utf-8"),
         PAGE: lambda path: path.write_text(html, "utf-8"),
     }
-    if bodies := next((result.bodies for result in run.results.values() if result.bodies), None):
+    fields = run.plan.needs("subsurface")
+    if fields and (bodies := next((result.bodies for result in run.results.values() if result.bodies), None)):
         from partialslip_meshes.write import write_msh, write_vtu
 
         meshes = {"mesh.msh": bodies[0]} if run.scene.mirrored else {f"{body.name}.msh": body for body in bodies}
         files |= {name: partial(write_msh, body=body) for name, body in meshes.items()}
         files["bodies.vtu"] = lambda path: write_vtu(path, bodies)
-    if any(result.surface for result in run.results.values()):
+    if fields and any(result.surface for result in run.results.values()):
         files["surface.csv"] = lambda path: path.write_text(surface_csv(run), "utf-8")
     return write_files(folder, files) + (write_pdf(html, folder, PDF) if pdf else [])
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from partialslip.judge import Comparison
 from partialslip.output.template import template
-from partialslip.report import rows
+from partialslip.report import answer, rows
 from partialslip.report.figure import draw_run, draw_tractions
 from partialslip.result import Result
 from partialslip.run import Run
@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
 def html(what: Scene | Result | Comparison | Run) -> str:
     """Return the tables of ``what`` as HTML."""
-    return template("partialslip.report", "notebook.html").render(kind=type(what).__name__, what=what, rows=rows)
+    named = {"kind": type(what).__name__, "what": what, "rows": rows, "answer": answer}
+    return template("partialslip.report", "notebook.html").render(named)
 
 
 def plot(what: Result | Run, axes: "Axes | None" = None) -> "Axes":

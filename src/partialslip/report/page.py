@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from partialslip.origin import Made, origin_lines
 from partialslip.output.page import render_page
-from partialslip.report import rows
+from partialslip.report import answer, rows
 from partialslip.report.amounts import amounts
 from partialslip.report.figure import mesh_svg, traction_svg
 from partialslip.report.profile import profile_svg
@@ -51,6 +51,7 @@ def run_page(run: Run, made: Made) -> str:
         origin=origin_lines([made]),
         run=run,
         rows=rows,
+        answer=answer,
         figure=traction_svg(run),
         amounts=amounts(run.results, run.scene.units),
         mesh=mesh_svg(run),

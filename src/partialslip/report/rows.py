@@ -19,8 +19,8 @@ _MEANING = {
     "a": "a, half-width",
     "left": "left end",
     "right": "right end",
-    "m": "m, stick from -m",
-    "n": "n, stick to n",
+    "m": "m, stick zone",
+    "n": "n, stick zone",
     "P": "P, sum of p",
     "M": "M, moment of p",
     "p": "p, pressure",
@@ -38,6 +38,7 @@ _MEANING = {
 }  # fmt: skip
 _IN_A = ("fem.accuracy", "fem.size", "fem.width")  # settings in contact half-widths
 _WORDS = {Outcome.PASSED: "ok", Outcome.MISSED: "MISSED", Outcome.NOT_JUDGED: "not judged"}
+_EVEN = 1e-4  # of a: a contact whose middle is nearer to x = 0 is even, to the error of elements
 _DIGITS, _MOST = 7, 10  # decimals of values: the usual number, and the largest if the error is smaller
 
 
@@ -46,13 +47,31 @@ def headings(run: Run, name: str) -> list[str]:
     return [{"reference": run.reference or "", "value": name}.get(heading, heading) for heading in HEADINGS]
 
 
-def error_rows(comparison: Comparison) -> list[tuple[str, ...]]:
+def error_rows(comparison: Comparison, *, every: bool = False) -> list[tuple[str, ...]]:
     """Return rows of quantity, unit, reference's value, method's value, error, error estimate, bar and verdict.
 
-    The error is \\|value - reference\\|; norms have no values. Quantities without values and error are left out.
+    The error is \\|value - reference\\|; norms have no values. Quantities without values and error are left out; so
+    are, unless ``every`` one is asked for, those that say nothing more than others (:func:`_telling`).
     """
     shown = [each for each in comparison.verdicts if each.quantity != "regime" and each.known]
+    shown = shown if every else _telling(shown)
     return [(_MEANING.get(each.quantity, each.quantity), *numbers(each), word(each)) for each in shown]
+
+
+def _telling(verdicts: list[Verdict]) -> list[Verdict]:
+    """Return the ``verdicts`` that say something: all missed ones; the ends of the contact only where its middle is off
+    x = 0; shear at the load points only where its errors are not those of q; no quantity without a bar where others
+    have bars."""
+    known = {verdict.quantity: verdict for verdict in verdicts}
+    left, right = (known[key].reference if key in known else None for key in ("left", "right"))
+    told = set()
+    if isinstance(left, float) and isinstance(right, float) and abs(left + right) <= _EVEN:
+        told |= {"left", "right"}
+    if "q" in known:
+        told |= {key for key in ("q1", "q2") if key in known and numbers(known[key]) == numbers(known["q"])}
+    if any(verdict.bar is not None for verdict in verdicts):
+        told |= {verdict.quantity for verdict in verdicts if verdict.reason == NO_BAR}
+    return [each for each in verdicts if each.quantity not in told or each.outcome is Outcome.MISSED]
 
 
 def numbers(verdict: Verdict) -> tuple[str, ...]:
@@ -73,36 +92,45 @@ def word(verdict: Verdict) -> str:
 
 
 def units(run: Run) -> str:
-    """Return the units of the error table in one line: a, p0, f p0 and P of the reference."""
+    """Return the units of the error tables in one line: f p0 and P, and a and p0 if the answer shows others."""
     reference, scene, text = run.results[run.reference or ""], run.scene, run.scene.units.text
-    limit = f", f p0 = {text(scene.friction.f * reference.p0, 'Pa', 6)}" if scene.friction.f else ""
-    a, p0, P = scene.units.length(reference.a), text(reference.p0, "Pa", 6), text(scene.P, "N/m", 6)
-    return f"{run.reference}: a = {a}, p0 = {p0}{limit}; P = {P}"
+    parts = {
+        "a": scene.units.length(reference.a) if run.reference != run.answering else "",
+        "p0": text(reference.p0, "Pa", 6) if run.reference != run.answering else "",
+        "f p0": text(scene.friction.f * reference.p0, "Pa", 6) if scene.friction.f else "",
+        "P": text(scene.P, "N/m", 6),
+    }
+    return f"{run.reference}: " + ", ".join(f"{key} = {size}" for key, size in parts.items() if size)
 
 
 def unjudged(comparison: Comparison) -> list[str]:
-    """Return quantities that usually have a bar but are not judged, one line per reason."""
+    """Return quantities that exist and usually have a bar, but are not judged, one line per reason."""
     reasons: dict[str, list[str]] = {}
     for verdict in comparison.verdicts:
-        if verdict.outcome is Outcome.NOT_JUDGED and verdict.reason != NO_BAR:
+        if verdict.outcome is Outcome.NOT_JUDGED and verdict.reason != NO_BAR and verdict.known:
             reasons.setdefault(verdict.reason, []).append(verdict.quantity)
     return [f"not judged: {', '.join(quantities)}: {reason}" for reason, quantities in reasons.items()]
 
 
 def verdict(run: Run) -> str:
-    """Return the verdict on the whole ``run`` in one line."""
-    if run.outcome is Outcome.MISSED:
-        return "missed: " + "; ".join(run.missed)
-    if run.outcome is Outcome.PASSED:
-        return "all bars met"
-    if not run.comparisons:
-        return "not judged: nothing to compare with"
-    if run.judged:
-        return "not judged: no quantity can be judged"
+    """Return the verdict on the whole ``run`` in one line, with what was asked for."""
+    found = run.conclusion
+    if found.asked or found.outcome is Outcome.MISSED:
+        wanted = run.accuracy.text if run.accuracy else ""
+        nothing = next((each.regime for each in run.results.values() if each.m is None), "")
+        if found.outcome is Outcome.PASSED:
+            return ", ".join(filter(None, [found.text, nothing])) + f": {wanted}"
+        return found.text + (f"; asked: {wanted}" if wanted else "")
     if run.plan.missing:
-        return f"not judged: no bars: forced off: {', '.join(run.plan.missing)}; the errors measure these effects"
-    reasons = {"finite bodies": run.scene.finite, "the element size was given": run.scene.fem.size is not None}
-    return "not judged: no bars: " + next((why for why, applies in reasons.items() if applies), "none were asked for")
+        return f"{found.text}: forced off: {', '.join(run.plan.missing)}; the errors measure these effects"
+    scene = run.scene
+    reasons = {
+        "finite bodies": scene.finite,
+        "unlike bodies": not scene.material.alike,
+        "nothing to compare with": not run.comparisons,
+        "the element size was given": scene.fem.size is not None,
+    }
+    return f"{found.text}: " + next((why for why, applies in reasons.items() if applies), "none were asked for")
 
 
 def effects(plan: Plan) -> list[tuple[str, str, str]]:
@@ -168,18 +196,9 @@ def methods(results: Mapping[str, Result], *, compared: bool = False, units: Uni
     ]
 
 
-def methods_in_short(
-    results: Mapping[str, Result], *, compared: bool = False, units: Units = SI
-) -> list[tuple[str, str]]:
-    """Return pairs of method and regime, CPU seconds and size in one line.
-
-    Unless ``compared`` a second line has the values found: no table shows them.
-    """
-    lines = []
-    for name, result in results.items():
-        lines.append((name, ", ".join([result.regime, *_spent(result)])))
-        lines += [] if compared else [("", found(result, units))]
-    return lines
+def methods_in_short(results: Mapping[str, Result]) -> list[tuple[str, str]]:
+    """Return pairs of method, and regime, CPU seconds and size in one line."""
+    return [(name, ", ".join([result.regime, *_spent(result)])) for name, result in results.items()]
 
 
 def _spent(result: Result) -> list[str]:

@@ -7,18 +7,20 @@ from rich.text import Text
 
 from partialslip.output.tables import print_lines, print_table
 from partialslip.report import rows
+from partialslip.report.answer import answers, heading
 from partialslip.run import Run
 
 
 def print_run(run: Run, console: Console, *, verbose: bool = False, lines: Sequence[str] = (), where: str = "") -> None:
-    """Print ``run``: errors, one line a method, notes, and a last line with the verdict.
+    """Print ``run``: the answer, errors, one line a method, notes, and a last line with the verdict.
 
     Parameters
     ----------
     run : Run
     console : rich Console
     verbose : bool
-        Whether to print everything that is known of each method, and the effects, instead of one line a method.
+        Whether to print all errors, everything that is known of each method, and the effects, instead of one line a
+        method.
     lines : sequence of str
         Lines to print before the last one.
     where : str
@@ -26,16 +28,19 @@ def print_run(run: Run, console: Console, *, verbose: bool = False, lines: Seque
     """
     title = f"{run.scene.name}: {run.scene.title}" if run.scene.title else run.scene.name
     console.print(title, style="bold", markup=False)
+    console.print(heading(run), markup=False)
+    print_lines(console, [("", *line) for line in answers(run)])
     compared = bool(run.comparisons)
-    if compared:
-        console.print(rows.units(run), markup=False)
     for name, comparison in run.comparisons.items():
-        print_table(console, rows.headings(run, name), rows.error_rows(comparison), words=(0, 1, 7))
+        errors = [(*row, f"{bar} {word}".strip()) for *row, bar, word in rows.error_rows(comparison, every=verbose)]
+        print_table(console, rows.headings(run, name)[:-1], errors, words=(0, 1, 6), gap=2)
+    if compared:
+        console.print(f"units of {rows.units(run)}", markup=False)
     if verbose:
-        methods = rows.methods(run.results, compared=compared, units=run.scene.units)
+        methods = rows.methods(run.results, compared=True, units=run.scene.units)
         print_lines(console, [*methods, *rows.effects(run.plan)])
     else:
-        print_lines(console, rows.methods_in_short(run.results, compared=compared, units=run.scene.units))
+        print_lines(console, rows.methods_in_short(run.results))
     notes = [] if verbose else rows.notes(run)
     unjudged = [line for comparison in run.comparisons.values() for line in rows.unjudged(comparison)]
     for line in (*unjudged, *notes):

@@ -1,0 +1,159 @@
+"""The answer of a run: what was asked for, in the scene's units, with the digits that are known."""
+
+import math
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from partialslip.judge.reference import reference
+from partialslip.report.amounts import scale
+from partialslip.result import Result
+from partialslip.run import Run
+from partialslip.units import Dimension
+
+_ROUNDING = 1e-9  # of a
+_DIGITS = 7  # significant, of values that are known to rounding
+
+
+class _Known(NamedTuple):
+    """The ``result`` that a value is taken from, and the name of its ``method`` if it is not the one of the answer."""
+
+    result: Result
+    method: str
+
+
+def heading(run: Run) -> str:
+    """Return the method that answers, the regime, and why the answer is not known to hold, in one line."""
+    name, unknown = run.answering, reference(run.scene).unknown
+    return f"{name}: {run.results[name].regime}" + (f"; {unknown['m']}" if unknown else "")
+
+
+def answers(run: Run) -> list[tuple[str, str]]:
+    """Return pairs of quantity and value of ``run``.
+
+    Quantities are the stick zone, a, p0, and at both load points the largest shear and the largest sigma_xx along the
+    surface of the lower body.
+
+    A value has the digits that the method's own estimate of its error leaves, and the error: ``0.888 +- 0.003``. Values
+    that the answering method does not know come from the first that knows them, which is named.
+    """
+    result = run.results[run.answering]
+    return [*_stick(run, result), *_contact(run, result), *_shears(run), *_stresses(run)]
+
+
+def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
+    if result.m is None or result.n is None:
+        yield "stick zone", "none" + (f": {result.undetermined['m']}" if "m" in result.undetermined else "")
+        return
+    errors = [_estimate(result, key) * result.a for key in "mn"]
+    exponent, label = _unit(run, result.a, "m")
+    ends = [_number(end, error, exponent) for end, error in zip((-result.m, result.n), errors, strict=True)]
+    yield "stick zone", f"[{ends[0]}, {ends[1]}] {label}"
+    shares = [
+        _number(end / result.a, error / result.a) for end, error in zip((result.m, result.n), errors, strict=True)
+    ]
+    yield "m, n", f"{shares[0]} a, {shares[1]} a"
+
+
+def _contact(run: Run, result: Result) -> Iterator[tuple[str, str]]:
+    error = _estimate(result, "a")
+    exponent, label = _unit(run, result.a, "m")
+    yield "a", f"{_number(result.a, error * result.a, exponent)} {label}"
+    if not run.scene.even or run.scene.presses_anew:
+        for point, ends in enumerate(result.ends, start=1):
+            left, right = (_number(end, error * result.a, exponent) for end in ends)
+            yield f"contact, load point {point}", f"[{left}, {right}] {label}"
+    exponent, label = _unit(run, result.p0, "Pa")
+    yield "p0", f"{_number(result.p0, error * result.p0, exponent)} {label}"
+
+
+def _shears(run: Run) -> Iterator[tuple[str, str]]:
+    """Yield the largest shear at both load points."""
+    if run.scene.friction.f == 0:
+        return
+    known = _first(run, lambda result: result.traction.q1 is not None and result.traction.q2 is not None)
+    for key in ("q1", "q2"):
+        if not known:
+            yield f"largest |{key}|", f"not known: {_why(run, key)}"
+            continue
+        q = getattr(known.result.traction, key)
+        yield f"largest |{key}|", _stress(run, float(np.abs(q).max()), known, key) + _by(known)
+
+
+def _stresses(run: Run) -> Iterator[tuple[str, str]]:
+    """Yield the largest sigma_xx along the surface of the lower body, and its place, at both load points."""
+    known = _first(run, lambda result: result.surface is not None)
+    if not known or not known.result.surface:
+        return
+    surface = known.result.surface
+    exponent, label = _unit(run, known.result.a, "m")
+    for point, sigma in enumerate(surface.sigma[0]):
+        index = int(sigma.argmax())
+        place = float(surface.x[index])
+        beside = np.abs(surface.x[[max(index - 1, 0), min(index + 1, len(sigma) - 1)]] - place).max()
+        error = _estimate(known.result, "a") * known.result.a if _at_an_end(place, known.result) else float(beside)
+        where = f"at x = {_number(place, error, exponent)} {label}"
+        value = _stress(run, float(sigma.max()), known, f"q{point + 1}")
+        yield f"largest sigma_xx, {point + 1}", f"{value} {where}{_by(known)}"
+
+
+def _first(run: Run, knows: Callable[[Result], bool]) -> _Known | None:
+    """Return the first result that ``knows`` a value, the answering one before all others; None if none does."""
+    best = run.answering
+    for name in dict.fromkeys([best, *run.results]):
+        if knows(run.results[name]):
+            return _Known(run.results[name], "" if name == best else name)
+    return None
+
+
+def _at_an_end(x: float, result: Result) -> bool:
+    """Return whether ``x``, m, is an end of the contact at a load point."""
+    return bool(np.isclose(x, np.ravel(result.ends), rtol=0.0, atol=_ROUNDING * result.a).any())
+
+
+def _by(known: _Known) -> str:
+    return f" ({known.method})" if known.method else ""
+
+
+def _why(run: Run, key: str) -> str:
+    """Return why no method knows ``key``."""
+    reasons = (result.undetermined[key] for result in run.results.values() if key in result.undetermined)
+    return next(reasons, "no method of this run finds it")
+
+
+def _stress(run: Run, value: float, known: _Known, key: str) -> str:
+    """Return a stress as text.
+
+    Beside an end of the stick zone q has a kink like a square root. An error that is spread over a length h is as high
+    as the square root of h there, and adds h to the norm: the largest value is known to the root of the norm's error.
+    """
+    exponent, label = _unit(run, value, "Pa")
+    return f"{_number(value, math.sqrt(_estimate(known.result, key)) * abs(value), exponent)} {label}"
+
+
+def _estimate(result: Result, key: str) -> float:
+    """Return the method's own estimate of an error; that of q for q1 and q2 that have none, and 0 without any."""
+    return float(result.estimate.get(key, result.estimate.get("q", 0.0) if key in ("q1", "q2") else 0.0))
+
+
+def _unit(run: Run, size: float, of: Dimension) -> tuple[int, str]:
+    """Return exponent of ten and label of the unit for values of about ``size``; lengths in mm from 1e-6 m to 1 m."""
+    units = run.scene.units
+    if of == "m" and 1e-6 <= size < 1 and units.label("m") in ("m", "mm"):
+        return -3, "mm"
+    return scale(abs(size), of, units)
+
+
+def _number(value: float, error: float, exponent: int = 0) -> str:
+    """Return ``value`` in units of ten to the ``exponent``, with the decimals that the ``error`` leaves, and the error
+    rounded up to one digit."""
+    value, error = value / 10.0**exponent, error / 10.0**exponent
+    if not error or not math.isfinite(error) or error < abs(value) * 10.0**-_DIGITS:
+        return f"{value:.{_DIGITS}g}"
+    place = math.floor(math.log10(error))
+    up = math.ceil(error / 10.0**place - 1e-9)
+    if up == 10:
+        up, place = 1, place + 1
+    decimals = max(-place, 0)
+    return f"{round(value, -place):.{decimals}f} +- {up * 10.0**place:.{decimals}f}"
