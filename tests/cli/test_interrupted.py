@@ -73,7 +73,7 @@ def whole(folder):
             assert {line.count(",") for line in path.read_text("utf-8").splitlines()} == {6}
         elif name == "state.npz":
             with np.load(path) as file:
-                assert {"loads", "cells", "p", "q"} == set(file)
+                assert {"loads", "cells", "p", "q", "q_error"} == set(file)
     return [name for name in names if name in FILES], [name for name in names if name not in FILES]
 
 

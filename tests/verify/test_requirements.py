@@ -12,8 +12,8 @@ from partialslip.judge import Bar, Outcome
 from partialslip.run import Run
 from partialslip.verify import REQUIREMENTS, Case, CaseVerdict, judge_case, number_of, requirement_of, run_case
 from partialslip.verify import case as module
-from partialslip.verify.case import Failure, solve_case
-from partialslip.verify.verdicts import nearest, room
+from partialslip.verify.case import Failure, conclusions, solve_case, whole
+from partialslip.verify.verdicts import nearest, print_verdicts, room
 from partialslip_fem import model
 
 NAN = float("nan")
@@ -183,3 +183,44 @@ def test_what_is_not_judged_is_nearer_to_no_bar_than_what_is():
     half = next(each for each in found(result(a=1.0005)) if each.quantity == "a")
     assert half.share == pytest.approx(0.5)
     assert room(half) == (True, pytest.approx(0.5))
+
+
+# what the verdicts amount to
+
+
+def test_a_case_passes_if_every_headline_quantity_was_judged():
+    assert (whole(found(SOUND)).outcome, whole(found(SOUND)).code) == (Outcome.PASSED, 0)
+    unsure = replace(SOUND, undetermined={"m": "why", "n": "why"})
+    left = whole(found(unsure))
+    assert (left.outcome, left.unjudged, left.code) == (Outcome.NOT_JUDGED, ("m", "n"), 4)
+    assert conclusions([*found(SOUND), *found(unsure, replace(CASE, name="other"))]).keys() == {
+        ("made", "fem"), ("other", "fem"),
+    }  # fmt: skip
+    both = whole([*found(SOUND), *found(unsure, replace(CASE, name="other"))])
+    assert (both.outcome, both.unjudged) == (Outcome.NOT_JUDGED, ("m", "n"))
+
+
+def test_what_a_case_has_no_bar_for_need_not_be_judged():
+    free = replace(CASE, bars={"fem.m": Bar(None, "one node"), "fem.n": Bar(None, "one node")})
+    assert whole(found(SOUND, free)).outcome is Outcome.PASSED
+    assert {each.quantity for each in found(SOUND, free) if each.waived} == {"m", "n"}
+    assert not any(each.waived for each in found(SOUND, replace(CASE, bars={"fem.m": Bar(0.5, "coarse")})))
+    turning = replace(SOUND, path_dependent=True, undetermined={"m": "one step"})
+    assert all(each.waived for each in found(turning))
+
+
+def test_without_a_reference_the_conditions_decide():
+    alone = replace(CASE, reference="")
+    assert whole(found(SOUND, alone)).outcome is Outcome.PASSED
+    assert whole(found(replace(SOUND, certificate={"kkt": 1.0}), alone)).outcome is Outcome.MISSED
+    assert whole([]).outcome is Outcome.NOT_JUDGED
+    assert (
+        whole([*found(SOUND, alone), *found(replace(SOUND, undetermined={"m": "why"}))]).outcome is Outcome.NOT_JUDGED
+    )
+
+
+def test_what_was_not_judged_is_printed(capsys):
+    from rich.console import Console
+
+    print_verdicts({"made": found(replace(SOUND, undetermined={"m": "why"}))}, Console())
+    assert "made, fem: not judged: m" in capsys.readouterr().out

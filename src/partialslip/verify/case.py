@@ -164,24 +164,26 @@ def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
     return verdicts
 
 
-def whole(verdicts: Iterable[CaseVerdict]) -> Conclusion:
-    """Return what the ``verdicts`` on many cases amount to.
-
-    Each method of each case is judged by itself: with a reference by :func:`partialslip.judge.conclude`, without one by
-    the conditions alone.
-    """
+def conclusions(verdicts: Iterable[CaseVerdict]) -> dict[tuple[str, str], Conclusion]:
+    """Return what the ``verdicts`` amount to, by case and method (:func:`partialslip.judge.conclude`)."""
     groups: dict[tuple[str, str], list[CaseVerdict]] = {}
     for verdict in verdicts:
         groups.setdefault((verdict.case, verdict.method), []).append(verdict)
-    compared: list[Conclusion] = []
-    alone: list[Conclusion] = []
-    for some in groups.values():
-        conditions = [verdict for verdict in some if verdict.quantity in _CONDITIONS]
-        quantities = [verdict for verdict in some if verdict.quantity not in _CONDITIONS]
-        waived = {verdict.quantity for verdict in some if verdict.waived}
-        (compared if quantities else alone).append(conclude(quantities, conditions, waived))
-    found = together((*compared, *alone))
-    certified = not compared and bool(alone) and found.outcome is not Outcome.MISSED
+    return {
+        group: conclude(
+            [verdict for verdict in some if verdict.quantity not in _CONDITIONS],
+            [verdict for verdict in some if verdict.quantity in _CONDITIONS],
+            {verdict.quantity for verdict in some if verdict.waived},
+        )
+        for group, some in groups.items()
+    }
+
+
+def whole(verdicts: Iterable[CaseVerdict]) -> Conclusion:
+    """Return what the ``verdicts`` on many cases amount to; where no case has a reference, by the conditions alone."""
+    verdicts = tuple(verdicts)
+    found = together(conclusions(verdicts).values())
+    certified = bool(verdicts) and all(verdict.quantity in _CONDITIONS for verdict in verdicts) and not found.missed
     return replace(found, outcome=Outcome.PASSED, asked=True) if certified else found
 
 

@@ -17,7 +17,7 @@ from partialslip.output.json import json_text
 from partialslip.output.tables import print_table
 from partialslip.report import rows
 from partialslip.strictjson import decoded
-from partialslip.verify.case import CaseVerdict
+from partialslip.verify.case import CaseVerdict, conclusions
 from partialslip.verify.entry import Settings
 
 SCHEMA = "partialslip/verify/2"
@@ -107,6 +107,9 @@ def print_verdicts(verdicts: Verdicts, console: Console, every: bool = True) -> 
     listed = every_one(verdicts)
     for verdict in filter(missed, listed):
         console.print(f"missed: {verdict.case}, {verdict.method}: {verdict.text}", soft_wrap=True, markup=False)
+    for (case, method), found in conclusions(listed).items():
+        if found.unjudged and found.outcome is not Outcome.MISSED:
+            console.print(f"{case}, {method}: {found.text}", soft_wrap=True, markup=False)
     if closest:
         most = max(closest, key=lambda row: row.iterations)
         unjudged = sum(verdict.outcome is Outcome.NOT_JUDGED for verdict in listed)
