@@ -94,7 +94,7 @@ class ComparisonRecord(msgspec.Struct, frozen=True):
     def judged_again(
         self, result: ResultRecord, reference: ResultRecord, conditions: tuple[Verdict, ...]
     ) -> "ComparisonRecord":
-        """The record with outcomes concluded anew, for a ``result`` and its ``conditions``."""
+        """The record with outcomes concluded anew, for a ``result``, its ``reference`` and its ``conditions``."""
         verdicts = tuple(judged_again(verdict, result, reference) for verdict in self.verdicts)
         whole = conclude(verdicts, conditions)
         return replace(

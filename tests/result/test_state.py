@@ -35,7 +35,9 @@ def after_a_stop(method):
     stop = [f"load.{key}={[0.4 * value] * 2}" for key, (_, value) in (("Q", scene.load.Q), ("sigma", scene.load.sigma))]
     state = run(load_scene("hertz-large-tension", [*LARGE, *stop]), [method]).results[method].state
     found = run(scene, [method], start=state).results[method]
-    return found, {each.quantity: each.error for each in measures(found, exact, scene, {}) if each.quantity in ("q1", "q2")}
+    return found, {
+        each.quantity: each.error for each in measures(found, exact, scene, {}) if each.quantity in ("q1", "q2")
+    }
 
 
 @pytest.mark.parametrize("method", ["march", "fem"])

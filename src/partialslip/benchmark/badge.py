@@ -28,7 +28,7 @@ class _Cell(NamedTuple):
 
 
 def badge_names(submissions: Sequence[Submission]) -> list[str]:
-    """Return the names of the badges' files, all different.
+    """Return the names of the badges' files of ``submissions``, all different.
 
     A name is made of ASCII letters, digits, dots and hyphens of the code's name. Where several would be alike, each has
     a checksum of code, version, settings and machine.
