@@ -220,7 +220,6 @@ def test_bad_setting(rejected, setting, expected):
         ([*SHIPPED, "--accuracy", "0"], "fem.accuracy = 0.0: must be >= 1e-09"),
         ([*SHIPPED, "--accuracy", "nan"], "fem.accuracy = nan: must be finite"),
         ([*SHIPPED, "--accuracy", ""], "--accuracy '': must be a number"),
-        ([*SHIPPED, "--fields"], "--fields: needs the method fem"),
         ([*SHIPPED, "--out", "bench.toml"], "--out bench.toml: cannot be written"),
         ([*SHIPPED, "--out", "bench.toml/inside"], "--out bench.toml/inside: cannot be written"),
         ([*SHIPPED, "--out", "nul\0"], r"--out nul\x00: cannot be written"),

@@ -7,8 +7,7 @@ from typing import Literal
 
 from partialslip.bars import Accuracy, asked
 from partialslip.errors import InputError
-from partialslip.judge.reference import REFERENCES
-from partialslip.judge.reference import reference as reference_of
+from partialslip.judge import reference as references
 from partialslip.result import Result
 from partialslip.run import Run, compared, run
 from partialslip.scene import Scene
@@ -72,9 +71,9 @@ def score(
     """
     file, wanted = Path(file), asked(bar)
     name = "".join(c if c.isprintable() else "?" for c in file.name)
-    reference = reference_of(scene).method if reference is None else reference
-    if reference not in REFERENCES:
-        raise InputError(f"reference {reference!r}: must be one of {', '.join(REFERENCES)}")
+    reference = references.reference(scene).method if reference is None else reference
+    if reference not in references.REFERENCES:
+        raise InputError(f"reference {reference!r}: must be one of {', '.join(references.REFERENCES)}")
     if centre not in ("given", "auto"):
         raise InputError(f"centre {centre!r}: must be 'given' or 'auto'")
     if centre == "auto" and not scene.even:
