@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 ROOTS = ("partialslip", "partialslip_fem", "partialslip_meshes")
 # What nearly every package uses; its arrows would hide the others.
 EVERYWHERE = {
-    "errors", "inputfile", "arrays", "bars", "frame", "shown", "allowance", "units", "origin", "output", "__main__",
+    "errors", "inputfile", "strictjson", "seal", "arrays", "bars", "frame", "shown", "allowance", "units", "origin",
+    "output", "__main__",
 }  # fmt: skip
 # `shown` asks it what a notebook shows of scenes, results and runs; pyproject.toml declares this import, which goes up.
 NOTEBOOK = "partialslip.report.notebook"

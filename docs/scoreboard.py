@@ -4,7 +4,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from textwrap import fill
 
-from partialslip.benchmark import Problem, Submission, read_problems, read_submission, scoreboard
+from partialslip.benchmark import Problem, Submission, read_problems, read_submission, scoreboard, standing
+from partialslip.benchmark.measured import GROUPS
 from partialslip.benchmark.problem import EDITION
 
 DOCS = Path(__file__).parent
@@ -17,6 +18,10 @@ Grades of codes on the [problems of the benchmark](howto/benchmark.md), edition 
 1e-4) to E (beyond 5e-2), with CPU seconds in brackets. A dash: the code does not offer the problem, or one of the
 targets, or there was no time to run it. *none*: the code did not converge; the note in its answer tells where. The
 answers are in `benchmarks/submissions`; they were measured on one machine, which other work shared.
+
+The last table has, for each code, the number of problems that count (every target of contact, stick and tractions has a
+value), and the worst grade of each group of targets. "1 not offered": one problem with other values lacks values of the
+group.
 
 """
 
@@ -60,7 +65,17 @@ def page() -> str:
     own = [each for each in found if each.meta.code.startswith("partialslip ")]
     others = [each for each in found if each not in own]
     tables = [_table(problems, own, "a"), _table(problems, others, chr(ord("a") + len(own)))]
-    return _HEAD.format(edition=EDITION) + "\n".join(tables) + _WRONG
+    return _HEAD.format(edition=EDITION) + "\n".join([*tables, _standings([*own, *others])]) + _WRONG
+
+
+def _standings(found: Sequence[Submission]) -> str:
+    """Table of how many problems count, and the worst grade of each group."""
+    lines = ["| | counts | " + " | ".join(GROUPS) + " |", "|---|---|" + "---|" * len(GROUPS)]
+    for number, each in enumerate(found):
+        whole = standing(each)
+        cells = [group.text.removeprefix(f"{group.name} ") for group in whole.groups]
+        lines.append(f"| {chr(ord('a') + number)} | {whole.counted} of {whole.of} | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
 
 
 def _table(problems: Mapping[str, Problem], found: Sequence[Submission], first: str) -> str:

@@ -5,17 +5,26 @@ own factors are 1e-9 and 1. The second one changes which triangles there are; th
 
 Tests run side by side, one on each core: linear algebra on one thread each, as in a run.
 
+Programs that tests start and stop by Ctrl-C would ignore it if this one did, as background jobs of a shell do.
+
 More than half of all meshes of the tests have been made before: they are remembered, but for tests of meshing itself.
+
+Every test that is marked as a deliberate fault fails if the fault does not bite (``tests/faults/biting.py``).
 """
 
 import functools
 import os
+import signal
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # is read when NumPy and SciPy are imported
 
 import pytest
+from biting import biting
 
 from partialslip_meshes import blocks, gmsh
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 _FACTORS = {"MESH_RANDOM_FACTOR": "RandomFactor", "MESH_SIZE_FACTOR": "MeshSizeFactor"}
 
@@ -41,3 +50,12 @@ def _made(request, options):
 def _remembered_meshes(request, monkeypatch):
     if not set(request.path.parts).intersection(_MESHING):
         monkeypatch.setattr(blocks, "ask", lambda each: _made(_Request(each), repr(gmsh.OPTIONS)))
+
+
+@pytest.fixture(autouse=True)
+def _biting(request, _remembered_meshes):
+    if request.node.get_closest_marker("fault"):
+        with biting():
+            yield
+    else:
+        yield

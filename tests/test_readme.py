@@ -21,11 +21,12 @@ def blocks(language):
 
 
 def test_two_commands_set_up_one_runs_one_tests():
-    set_up, run, tests = blocks("sh")
+    set_up, run, tests, long_checks = blocks("sh")
     assert len(set_up.strip().splitlines()) == 2
     assert run.strip() == ".venv/bin/partialslip run fretting-aluminium"
     assert tests.strip() == ".venv/bin/python -m pytest -n auto --dist worksteal"
-    assert all(f"<!-- {name} -->\n```sh" in README for name in ("set-up", "run", "tests"))
+    assert long_checks.startswith(f"{tests.strip()} -m slow\n")  # .ci/run takes the commands from these blocks
+    assert all(f"<!-- {name} -->\n```sh" in README for name in ("set-up", "run", "tests", "long checks"))
 
 
 def test_every_library_that_is_needed_is_set_up():

@@ -23,6 +23,7 @@ from partialslip_fem.problem import Problem
 
 # These constants change the cost of a run, not its error estimates.
 _CALMER = (0.4, 0.85)  # smallest and largest factor of the growth after a mesh whose error is too large
+_WANDERING = 1.5, 0.5  # error aimed below, and inverse power of the growth that errors fall with where zone ends wander
 _WAITS = 2  # meshes in a row without an estimate of the error away from the ends, after a first one
 _KINK_SLACK = 1.5  # of the element size that a kink needs: the mesh is refined at kinks where it is coarser than this
 _MOST_UNKNOWNS = 200_000  # on a mesh from which no finer one is made
@@ -225,8 +226,8 @@ class _Refinement:
             smooth = self._estimate_together()
             self.expense.pass_over()  # a second solution is no part of the cost of a mesh
             self.error = worst(self.errors)
-            order = self.problem.order
-            self.calmer = float(np.clip((3 * worst(smooth) / self.bar) ** (-0.5 / order), *_CALMER))
+            times, power = _WANDERING if self.solution.wanders else (3, 0.5 / self.problem.order)
+            self.calmer = float(np.clip((times * worst(smooth) / self.bar) ** -power, *_CALMER))
             self.waited = 0
 
     def plan_next_mesh(self) -> None:
@@ -255,7 +256,7 @@ class _Refinement:
         points = apart([*solution.zone_ends.tolist(), *kinks], self.size * a)
         sizes = dict.fromkeys(points, self.size * a / coarsest)
         at_kinks = np.clip(estimate.kink_sizes(solution, self.goal.end_error * BARS["q1"]), self.size, None)
-        goal, eased = self.goal, goals.eased(a, order, growth)
+        goal, eased = self.goal, goals.eased(solution, self.problem, order, growth)
         grading = Grading(contact, sizes, growth / coarsest, None, goal.facet_error, goal.corner_error, eased)
         for kink, needed in zip(solution.kinks, at_kinks.tolist(), strict=True):
             if grading.at(np.array([kink]))[0] > _KINK_SLACK * needed * a / coarsest:
@@ -324,7 +325,7 @@ class _Refinement:
                         (-a, a),
                         dict.fromkeys(ends, mesh.size * a),
                         mesh.growth,
-                        eased=goals.eased(a, order, mesh.growth),
+                        eased=goals.eased(solution, problem, order, mesh.growth),
                     ),
                     order,
                     self.width * a,

@@ -6,6 +6,9 @@ about one in scaled units. Errors of orders k and k - 1 are therefore r^(2 k) an
 between the two solutions is about the latter. The error of order k is then d^(k/(k-1)). Against the order above, the
 error is d itself. If shear is confined to narrow strips, the prefactor is the norm of the shear.
 
+Where ends of zones wander (:attr:`partialslip_fem.mesh_solution.MeshSolution.wanders`), they leave kinks in q within
+elements. Errors then hardly depend on the order, and the change of m, n and q is itself the error.
+
 At an end tractions are square roots. There the error depends on the element size, not on the order. It also depends on
 the distance to the next end or kink of the profile, as ends of the stick zone are fitted to some elements next to them.
 """
@@ -81,6 +84,8 @@ def smooth_errors(solution: MeshSolution, other: MeshSolution, eased: bool = Fal
         key: safe * _SAFE[key] * change * (change / prefactors.get(key, 1.0)) ** power
         for key, change in changes.items()
     }
+    if solution.wanders:
+        errors |= {key: max(errors[key], changes[key]) for key in ("m", "n", *_SHEARS) if key in changes}
     least = _LEAST_OF_A * errors["a"]  # two solutions may agree at one end by chance
     return {key: max(error, least) if key in END_KEYS else error for key, error in errors.items()}
 

@@ -163,15 +163,23 @@ def growth_at(accuracy: float, order: int) -> float:
     return growth_for(_AWAY_SHARE * AIM * accuracy, order)
 
 
-def eased(half_width: float, order: int, growth: float) -> Eased | None:
-    """How much faster elements of ``order`` grow near the ends of zones in a contact of that ``half_width`` than with
-    the ``growth`` far away; None if they do not.
+def eased(solution: MeshSolution, problem: Problem, order: int, growth: float) -> Eased | None:
+    """How much faster elements of ``order`` grow near the ends of zones than with the ``growth`` far away; None if they
+    do not.
 
-    An end depends on elements of the size h at the distance r from it like (h/r)^(2 order) r^2.
+    An end depends on elements of the size h at the distance r from it like (h/r)^(2 order) r^2, as long as tractions
+    vary over the contact half-width. Beside a kink of the profile they vary over the distance of the kink from the end
+    of the contact: corners of punches carry large parts of p and q. Where zone ends wander, they do not vary smoothly.
     """
-    if order not in _EASED_SHARE or growth >= growth_for(_EASED_BELOW, order):
+    if order not in _EASED_SHARE or growth >= growth_for(_EASED_BELOW, order) or solution.wanders:
         return None
-    return Eased(_STEEPEST, half_width, 1 / order)
+    return Eased(_STEEPEST, min(solution.half_width, _corner(solution, problem)), 1 / order)
+
+
+def _corner(solution: MeshSolution, problem: Problem) -> float:
+    """Least distance of a kink of the profile in the contact from an end of the contact; infinite without kinks."""
+    kinks = np.array([kink for kink in problem.kinks if solution.left < kink < solution.right])
+    return float(np.minimum(kinks - solution.left, solution.right - kinks).min(initial=np.inf))
 
 
 def gaps(solution: MeshSolution, problem: Problem) -> Array:

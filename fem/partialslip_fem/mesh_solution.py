@@ -98,6 +98,15 @@ class MeshSolution:
         return signs
 
     @property
+    def wanders(self) -> bool:
+        """Whether ends of the stick zone move over parts of the contact where no zone ends at a load point: slip
+        reverses on the way, or the loads are out of phase. Kinks of q are locked in there, far from the points that
+        meshes are graded to. Known for constant pressure and bodies that are not coupled."""
+        if not self.history or self.coupled or self.most is not None:
+            return False
+        return self.history.path.most_steps > 1 or not self.history.path.in_phase
+
+    @property
     def lower(self) -> Body:
         """The lower body. Nodal contact forces act on the nodes of the lower contact line."""
         return self.bodies[0].body

@@ -73,7 +73,7 @@ def solve(
         adapted = adapt(problem, scene.fem.accuracy, width, clock, progress, None if allowance else keep)
     else:
         adapted = uniform(problem, scene.fem.size, width, clock, keep)
-    return to_result(scene, plan, problem, adapted, clock)
+    return to_result(scene, plan, problem, adapted, clock, start)
 
 
 def solve_meshed(scene: Scene, plan: Plan, meshes: Sequence[Mesh]) -> Result:

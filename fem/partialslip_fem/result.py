@@ -3,9 +3,11 @@
 import numpy as np
 from scipy.interpolate import PPoly
 
+from partialslip.arrays import Array
 from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.history import certificate, last_cycle_change
 from partialslip.condensed.regime import doubts, steady_state, unestimated
+from partialslip.condensed.restart import begun, known_to
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, StressAt, Traction
 from partialslip.result.state import State
@@ -14,6 +16,7 @@ from partialslip_fem.displacements import displace_bodies
 from partialslip_fem.estimate import rounding_error
 from partialslip_fem.fields import along_surfaces, deformed, edges_near_contact
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
+from partialslip_fem.mortar import nodal_forces
 from partialslip_fem.problem import Problem, rescaled
 from partialslip_fem.recovery import Pair
 from partialslip_fem.stresses import BodyStresses
@@ -21,8 +24,10 @@ from partialslip_fem.stresses import BodyStresses
 _SLIDES = "q1 and q2 are not known: the contact slides"
 
 
-def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock: Clock) -> Result:
-    """Convert the ``adapted`` solution of ``problem``, the scaled ``scene``, to SI units.
+def to_result(
+    scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock: Clock, start: State | None = None
+) -> Result:
+    """Convert the ``adapted`` solution of ``problem``, the scaled ``scene`` from the state ``start``, to SI units.
 
     ``plan`` says whether to solve for displacements inside the bodies; ``clock`` has counted the CPU seconds.
     """
@@ -55,6 +60,14 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
     shares = {"discretisation": adapted.errors, "rounding": dict.fromkeys(adapted.errors, rounding_error(solution))}
     if step_errors := solution.step_errors:
         shares["steps"] = dict(step_errors)
+
+    def forces(state: State) -> Array:
+        p = rescaled(state.p, L / scene.P, 1 / L, -origin / L)
+        return nodal_forces(solution.lower, p)[solution.nodes]
+
+    begins, doubted = begun(adapted.errors, history, weights, problem.f, start, forces)
+    if begins:
+        shares["start"] = begins
     keys = [*adapted.errors, *(key for key in step_errors if key not in adapted.errors)]
     estimate = {key: float(sum(share.get(key, 0.0) for share in shares.values())) for key in keys}
     known = found.centre is not None
@@ -94,6 +107,7 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
         estimate=estimate,
         shares=shares if estimate else {},
         notes=found.notes
+        + doubted
         + _note_on_pieces(solution)
         + (unestimated(history) if solution.coupled else ())
         + _note_on_the_middle(scene, solution, adapted)
@@ -102,7 +116,7 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
         bodies=tuple(deformed(body, L, unit, stress, origin) for body in displaced),
         end_slips=found.slips,
         contact_ends=((left1 * L + origin, right1 * L + origin), (left2 * L + origin, right2 * L + origin)),
-        state=_state(scene, problem, solution),
+        state=_state(scene, problem, solution, estimate if adapted.errors else {}),
         stress_at=StressAt(BodyStresses.of(scene, problem, solution).inside) if known_inside else None,
         undetermined={"stresses": _SLIDES} if inside and not known_inside else {},
         surface=along_surfaces(displaced, solution.contact_ends, L, stress, origin) if displaced else None,
@@ -110,8 +124,8 @@ def to_result(scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, cloc
     )
 
 
-def _state(scene: Scene, problem: Problem, solution: MeshSolution) -> State | None:
-    """Loads and tractions at the end of the load path; None without friction."""
+def _state(scene: Scene, problem: Problem, solution: MeshSolution, errors: dict[str, float]) -> State | None:
+    """Loads and tractions at the end of the load path, None without friction; ``errors`` are the estimated ones."""
     if not solution.history:
         return None
     shear, bound = solution.history.end
@@ -119,7 +133,8 @@ def _state(scene: Scene, problem: Problem, solution: MeshSolution) -> State | No
     L, origin = scene.length, problem.origin * scene.length
     p, q = (rescaled(each, scene.P / L, L, origin) for each in (p, q))
     Q, sigma, slope = scene.load.along[-1]
-    return State(scene.pressing[-1].P, scene.material.A, Q, sigma, p, q, slope)
+    error = known_to(errors, solution.history, solution.lower.weights[solution.nodes], problem.f)
+    return State(scene.pressing[-1].P, scene.material.A, Q, sigma, p, q, slope, error)
 
 
 def _certificate(problem: Problem, solution: MeshSolution, p0: float) -> dict[str, float]:

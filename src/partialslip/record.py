@@ -1,19 +1,27 @@
-"""A run as plain data: the content of ``results.json``. The types here define the schema of the file."""
+"""A run as plain data: the content of ``results.json``. The types here define the schema of the file.
 
+A file is sealed (:mod:`partialslip.seal`), and its outcomes are concluded anew from its numbers when it is read.
+"""
+
+import warnings
 from pathlib import Path
 from typing import Any
 
 import msgspec
+from msgspec.structs import replace
 
 from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes
-from partialslip.judge import Comparison, Outcome, Verdict
+from partialslip.judge import Comparison, Outcome, Verdict, conclude, of_run
+from partialslip.judge.recorded import conditions_again, judged_again
+from partialslip.judge.reference import reference_among
 from partialslip.origin import Made, versions
-from partialslip.output.json import json_text
 from partialslip.plan import Effect, Plan
 from partialslip.result.record import Number, ResultRecord, number
 from partialslip.run import Run
 from partialslip.scene import Scene
+from partialslip.seal import KEY, edited, sealed_text
+from partialslip.strictjson import converted, parsed
 
 SCHEMA = "partialslip/result/3"
 _LARGEST = 500_000_000  # bytes of a results.json to read
@@ -83,6 +91,22 @@ class ComparisonRecord(msgspec.Struct, frozen=True):
             conditions=tuple(verdict.finite for verdict in comparison.conditions),
         )
 
+    def judged_again(
+        self, result: ResultRecord, reference: ResultRecord, conditions: tuple[Verdict, ...]
+    ) -> "ComparisonRecord":
+        """The record with outcomes concluded anew, for a ``result``, its ``reference`` and its ``conditions``."""
+        verdicts = tuple(judged_again(verdict, result, reference) for verdict in self.verdicts)
+        whole = conclude(verdicts, conditions)
+        return replace(
+            self,
+            outcome=whole.outcome,
+            errors={verdict.quantity: verdict.error for verdict in verdicts if verdict.quantity != "regime"},
+            bars={verdict.quantity: verdict.bar for verdict in verdicts if verdict.bar is not None},
+            missed=whole.missed,
+            verdicts=verdicts,
+            conditions=conditions,
+        )
+
 
 class Record(msgspec.Struct, frozen=True):
     """Content of ``results.json``, in SI units.
@@ -107,6 +131,9 @@ class Record(msgspec.Struct, frozen=True):
         Versions of Python and of the packages that compute the results.
     made : Made or None
         Date, command, overrides, commit and machine; None in ledgers, whose entries have their own.
+    edited : bool or None
+        Whether the file that the record was read from was changed since partialslip wrote it; None if the file has no
+        checksum.
     """
 
     schema: str
@@ -119,14 +146,43 @@ class Record(msgspec.Struct, frozen=True):
     comparison: dict[str, ComparisonRecord]
     versions: dict[str, str]
     made: Made | None = None
+    edited: bool | None = False
 
     def __repr__(self) -> str:
-        return f"Record of {self.scene.name}: {self.outcome}; {', '.join(self.methods)}"
+        said = {True: ", edited since it was written", False: "", None: ", without a checksum"}[self.edited]
+        return f"Record of {self.scene.name}{said}: {self.outcome}; {', '.join(self.methods)}"
 
     @property
     def json(self) -> str:
-        """The record as JSON."""
-        return json_text(self)
+        """The record as JSON, with a checksum as its last key, ``sum``."""
+        return sealed_text(self)
+
+    @property
+    def judged_again(self) -> "Record":
+        """The record with outcomes, and what is missed, concluded anew from the numbers of the record.
+
+        Comparisons with a reference that is none for the scene make no run pass.
+        """
+        told = {name: each.conditions for name, each in self.comparison.items()}
+        known = {name: conditions_again(each, told.get(name, ())) for name, each in self.methods.items()}
+        reference = self.methods.get(self.reference or "")
+        comparison = {
+            name: each.judged_again(self.methods[name], reference, known[name])
+            for name, each in self.comparison.items()
+            if reference and name in self.methods
+        }
+        every = {name: (*(comparison[name].verdicts if name in comparison else ()), *known[name]) for name in known}
+        missed = tuple(
+            f"{name}: {verdict.text}"
+            for name, verdicts in every.items()
+            for verdict in verdicts
+            if verdict.outcome is Outcome.MISSED
+        )
+        conclusions = {name: conclude(each.verdicts, each.conditions) for name, each in comparison.items()}
+        sound = self.reference == reference_among(self.scene, self.methods)
+        hold = {name: sound and not each.path_dependent for name, each in self.methods.items()}
+        whole = of_run(conclusions, missed, hold)
+        return replace(self, outcome=whole.outcome, missed=whole.missed, comparison=comparison)
 
 
 def record(run: Run, *, curves: bool = True, made: Made | None = None) -> Record:
@@ -157,19 +213,24 @@ def record(run: Run, *, curves: bool = True, made: Made | None = None) -> Record
 def load_result(path: str | Path) -> Record:
     """Read a ``results.json`` from ``path``.
 
+    Outcomes are concluded anew from the numbers of the file. If the file was edited since partialslip wrote it, a
+    warning says so, and :attr:`Record.edited` is True.
+
     Raises
     ------
     InputError
-        If the file cannot be read, or has another schema than this version writes.
+        If the file cannot be read, is no strict JSON, or has another schema than this version writes.
     """
-    text = read_bytes(path, _LARGEST)
-    try:
-        found = msgspec.json.decode(text, type=_Schema).schema
-        if found != SCHEMA:
-            raise InputError(f"{path}: schema {found!r}: must be {SCHEMA!r}; run the scene again")
-        return msgspec.json.decode(text, type=Record)
-    except (msgspec.DecodeError, msgspec.ValidationError, UnicodeDecodeError, RecursionError) as error:
-        raise InputError(f"{path}: must be a results.json that partialslip has written: {error}") from None
+    text, told = read_bytes(path, _LARGEST), f"{path}: must be a results.json that partialslip has written"
+    tree = parsed(text, told)
+    found = converted(tree, _Schema, told).schema
+    if found != SCHEMA:
+        raise InputError(f"{path}: schema {found!r}: must be {SCHEMA!r}; run the scene again")
+    changed = edited(text, tree)
+    kept = converted(tree, Record, told)
+    if changed or kept.edited:
+        warnings.warn(f"{path}: edited since partialslip wrote it", stacklevel=2)
+    return replace(kept, edited=True if kept.edited else changed).judged_again
 
 
 class _Schema(msgspec.Struct):
@@ -178,4 +239,7 @@ class _Schema(msgspec.Struct):
 
 def schema() -> dict[str, Any]:
     """Return the JSON Schema (draft 2020-12) of ``results.json``."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(Record)}
+    found = {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(Record)}
+    seal = {"type": "string", "description": "Checksum of all other keys; see partialslip.seal."}
+    found["$defs"]["Record"]["properties"][KEY] = seal
+    return found

@@ -268,6 +268,9 @@ STATES = {
     "of another A": lambda s: s | {"loads": s["loads"] * [1, 2, 1, 1]},
     "q beyond the bound": lambda s: s | {"q": s["q"] + 10 * s["p"].max()},
     "elsewhere": lambda s: s | {"cells": s["cells"] + 1.0},
+    "error below zero": lambda s: s | {"q_error": np.float64(-1e-3)},
+    "error that is no number": lambda s: s | {"q_error": np.float64(np.nan)},
+    "errors": lambda s: s | {"q_error": np.full(2, 1e-3)},
     "of another size": lambda s: s | {"cells": s["cells"] * 1e-6},
 }
 

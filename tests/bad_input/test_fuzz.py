@@ -93,6 +93,6 @@ def test_spoiled_files(judged, tmp_path, good, kind):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("seed", range(1, 5))
+@pytest.mark.parametrize("seed", [1, 2])
 def test_many_spoiled_files(judged, tmp_path, good, kind, seed):
     assert spoil(judged, tmp_path, good, kind, 150, seed) > 30

@@ -1,6 +1,7 @@
 """Sweeps on a Dask cluster: what a worker, a scheduler or a package that is missing does."""
 
 import json
+import logging
 import os
 import subprocess
 import sys
@@ -9,6 +10,7 @@ import time
 import pytest
 
 import partialslip
+from partialslip.batch.cluster import _silence
 from partialslip.batch.job import Job
 from partialslip.batch.ledger import Ledger
 from partialslip.batch.sweep import sweep, workers
@@ -58,6 +60,17 @@ def test_no_scheduler_is_one_line(address):
     pytest.importorskip("distributed")
     with pytest.raises(partialslip.InputError, match="--cluster"), workers(address):
         pass
+
+
+@pytest.mark.parametrize("name", ["distributed", "distributed.client", "tornado.application", "asyncio"])
+def test_no_logger_of_dask_speaks_meanwhile(name):
+    """Also a logger with a level of its own, as Dask sets for some."""
+    pytest.importorskip("distributed")
+    logger = logging.getLogger(name)
+    level = logger.level
+    with _silence():
+        assert not logger.isEnabledFor(logging.CRITICAL)
+    assert logger.level == level
 
 
 SWEEP = """

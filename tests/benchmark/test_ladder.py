@@ -1,5 +1,6 @@
 """Ladders of meshes: order, extrapolation and index of values whose error is known; badges."""
 
+import itertools
 import json
 import re
 import xml.etree.ElementTree as ET
@@ -7,7 +8,7 @@ import xml.etree.ElementTree as ET
 import msgspec
 import pytest
 
-from partialslip.benchmark import Answer, Meta, Rung, Submission, badge, badge_name, climbs, read_problems
+from partialslip.benchmark import Answer, Meta, Rung, Submission, badge, badge_names, climbs, read_problems
 from partialslip.benchmark.codes import answers
 from partialslip.benchmark.submission import read_submission, write_submission
 from partialslip.errors import InputError
@@ -55,6 +56,16 @@ def test_what_has_no_order_says_why():
     assert climbs(PROBLEM, Answer({})) == []
 
 
+def test_ladders_of_extreme_numbers_end():
+    """Ratios and differences that overflow, or differ by a rounding only."""
+    numbers = (5e-324, 1e-308, 1.0, 1 + 2e-16, 3 - 4e-16, 1e200, 1e308, -1e308)
+    sizes = [(1e308, 1e-200, 1e-308), (4.0, 2.0, 1.0), (1e300, 1e299, 1e298), (1 + 4e-16, 1 + 2e-16, 1.0)]
+    for h in sizes:
+        for values in itertools.product(numbers, repeat=3):
+            rungs = tuple(Rung(size, {"a": value}) for size, value in zip(h, values, strict=True))
+            climbs(PROBLEM, Answer(rungs[-1].values, ladder=rungs))
+
+
 def test_the_last_three_of_more_meshes_count():
     assert climb("m", ladder(sizes=(0.5, 0.04, 0.02, 0.01), m=lambda h: h**2)).order == pytest.approx(2)
 
@@ -92,8 +103,8 @@ def test_a_badge_tells_the_worst_grades_and_fits_its_text():
     good = {key: target.value for key, target in PROBLEM.targets.items()}
     off = good | {"m": good["m"] + 2e-3 * PROBLEM.targets["m"].scale}
     submission = Submission(Meta("My code, v2", "1"), {"PS-02": Answer(off)})
-    assert badge_name(submission) == "badge-my-code-v2.svg"
-    drawn = ET.fromstring(badge({"PS-02": PROBLEM}, submission))
+    assert badge_names([submission]) == ["badge-my-code-v2.svg"]
+    drawn = ET.fromstring(badge(submission, {"PS-02": PROBLEM}))
     texts = [each for each in drawn.iter() if each.tag.endswith("text")]
     told = [each.text for each in texts]
     assert told[1:] == ["My code, v2: 1 of 1", "contact A", "stick C", "tractions A", "levels A", "slip A", "stress A"]
@@ -102,5 +113,5 @@ def test_a_badge_tells_the_worst_grades_and_fits_its_text():
     for text, width in zip(texts, widths, strict=True):
         assert float(text.get("textLength")) == pytest.approx(width - 12)
     strange = msgspec.structs.replace(submission, meta=Meta("<&>", "1"))
-    assert badge_name(strange) == "badge-code.svg"
-    assert not re.search(r"<&>", badge({"PS-02": PROBLEM}, strange))
+    assert badge_names([strange]) == ["badge-code.svg"]
+    assert not re.search(r"<&>", badge(strange))

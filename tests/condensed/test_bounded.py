@@ -111,6 +111,24 @@ def test_factors_of_earlier_programmes_change_nothing(seed):
         sides = alone.sides
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_members_that_just_touch_a_bound_leave_the_sum(seed):
+    """Two members in five are on the bound without a force that keeps them there, to rounding: the inverse takes half
+    of them beyond it. All that is cut off at the bound must come back elsewhere: it once left a sum off by 3e-12, and
+    a rigid shift of all other members, which looked like slip."""
+    random = np.random.default_rng([3, seed])
+    n = 300
+    C, bound = compliance(n, random), 1 + random.random(n)
+    x = bound * np.where(random.random(n) < 0.4, 1, random.uniform(0.2, 0.9, n))
+    inverted = Factored(C)
+    inverted.expect(1000)
+    solution = solve_bounded(C, C @ x, -bound, bound, float(x.sum()), None, inverted)
+    rounding = n * np.finfo(float).eps  # of a sum
+    assert solution.imbalance <= rounding * x.sum()
+    assert np.abs(solution.rest).max() <= rounding * (C @ x).max()
+    assert solution.x == pytest.approx(x, abs=1e-10)
+
+
 @pytest.mark.parametrize(
     ("earlier", "sides", "times", "expected"),
     [
@@ -134,3 +152,18 @@ def test_independent_of_units(scale):
     scaled = solve_bounded(C * scale, g, -bound / scale, bound / scale, 1.0 / scale)
     assert scaled.x * scale == pytest.approx(base.x, rel=1e-8, abs=1e-12)
     assert scaled.iterations == base.iterations
+
+
+def test_residual_of_a_tiny_member_is_not_the_rounding_of_the_shift():
+    """Close to sliding, one cell of 1e-9 of the contact sticks. A shift of order one has a rounding error that would be
+    1e-7 of this cell's bound."""
+    random = np.random.default_rng(5)
+    C, bound = compliance(30, random), np.full(30, 0.1)
+    bound[0] = 1e-10
+    g = C @ bound
+    g[0] -= 2.5  # the first member to come off its bound
+    total = float(bound.sum()) - 1e-10
+    solution = solve_bounded(C, g, -bound, bound, total)
+    assert np.flatnonzero(solution.sides == 0).tolist() == [0]
+    assert solution.residual[0] <= 1e-9 * bound[0]
+    assert solution.imbalance <= 1e-15

@@ -37,11 +37,17 @@ def sound():
 class Red:
     """Says which check has turned red."""
 
-    def __init__(self, test):
-        self._test = test
+    def __init__(self, test, green):
+        self._test, self._green = test, green
+
+    def passes(self, number, bar):
+        """Without the fault: by the number that the check sees, not above its bar."""
+        assert number <= bar
+        self._green = True
 
     def __call__(self, check, number, bar):
         """By the number that it has seen, above its bar."""
+        assert self._green, "the check must pass without the fault: ask sound or red.passes before"
         assert number > bar
         fault = self._test.removeprefix("test_").replace("_", " ")
         assert TABLE[fault] == (check, pytest.approx(number, rel=0.5), pytest.approx(bar))
@@ -60,4 +66,4 @@ class Red:
 
 @pytest.fixture
 def red(request):
-    return Red(request.node.originalname)
+    return Red(request.node.originalname, green="sound" in request.fixturenames)

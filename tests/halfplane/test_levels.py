@@ -155,3 +155,18 @@ def test_load_points_in_between():
     x = np.linspace(-1, 1, 41)
     direct, detour = of((-0.3, 0.8), (0.0, 0.0)), of((-0.3, 0.8, 0.2), (0.0, 0.0, 0.0))
     np.testing.assert_allclose(detour.at(x), direct.at(x), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("Q", "sigma"), [(1.5e-11, (0.0423775937, 0.0423775936535)), (1e-10, (-0.0283544788136, -0.0283544784257))]
+)
+def test_tractions_are_within_the_bound_in_the_narrowest_slip_zones(Q, sigma):
+    """The cycle slips 1e-11 of the contact, the other way than the first loading there. Without the bound, one of q1
+    and q2 would be three times f p."""
+    found = of((Q, -Q), sigma)
+    ends = np.array(found.cycle.ends)
+    x = np.array([*ends, *((ends + np.sign(ends)) / 2)])
+    p = np.sqrt((1 - x) * (1 + x))
+    assert (np.abs(found.unbounded(x)).max(axis=0) > 2.9 * p).any()
+    for level, sign in zip(found.at(x), np.sign(found.cycle.traction(x)) * [[-1], [1]], strict=True):
+        assert level == pytest.approx(sign * p, rel=1e-12)

@@ -4,7 +4,6 @@ A failure names the number that makes its scene again, by ``of_random_scene`` or
 """
 
 import functools
-import itertools
 import math
 import re
 from collections.abc import Callable
@@ -23,7 +22,6 @@ from partialslip.halfplane.steady import transition
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
 from partialslip.verify.random_scenes import KINDS, PROFILES, changes, draw, kind_of, without_shear
-from partialslip.verify.stress import stress_numbers
 
 PRESSURES = ("quartic", "kinked")
 SEED = 7
@@ -230,16 +228,26 @@ def trials(answered, numbers):
             yield number, kind_of(number), repr(error)
 
 
-@pytest.mark.parametrize("count", [40, pytest.param(7_000, marks=pytest.mark.slow)])
-def test_random_scenes(count):
+def slow(first, end, step=1):
+    return pytest.param(range(first, end, step), marks=pytest.mark.slow)
+
+
+# Of 7,000 scenes the first 1,600 showed all that was wrong once, but for scenes that nearly stick: of these more.
+NEARLY_STUCK = slow(KINDS.index("near-stuck"), 7_500, len(KINDS))
+
+
+@pytest.mark.parametrize(
+    "numbers", [range(43), *(slow(first, first + 320) for first in range(0, 1_600, 320)), NEARLY_STUCK], ids=str
+)
+def test_random_scenes(numbers):
     """Nothing raises, everything is finite, and the paper's inequalities hold."""
-    found = list(trials(of_random_scene, itertools.islice(stress_numbers("exact"), count)))
+    found = list(trials(of_random_scene, (number for number in numbers if kind_of(number) != "out of phase")))
     assert not found, "\n".join(map(str, found))
 
 
-@pytest.mark.parametrize("count", [96, pytest.param(3_000, marks=pytest.mark.slow)])
-def test_random_pressures(count):
-    found = list(trials(of_random_pressure, range(count)))
+@pytest.mark.parametrize("numbers", [range(96), slow(96, 600), slow(600, 1_200)], ids=str)
+def test_random_pressures(numbers):
+    found = list(trials(of_random_pressure, numbers))
     assert not found, "\n".join(map(str, found))
 
 

@@ -3,12 +3,14 @@ finite elements."""
 
 import numpy as np
 import pytest
+from coulomb import recorded
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from pairs import answer, apart, guise, loads, solved, times
 from test_random_cycles import forces
 
 from partialslip import halfplane, load_scene
+from partialslip.halfplane.cells import on_cells
 from partialslip.halfplane.steady import stick_zone
 
 CLOSED = 1e-10  # residuals of a step, in f p0
@@ -39,8 +41,10 @@ def again(scene, *settings):
     return load_scene(scene.name, [*given, *settings])
 
 
-def sound(result, scene, element=0.0):
-    """What must hold of any answer; a coarse mesh has a contact that is off the middle by less than an ``element``."""
+def sound(result, scene, marches, element=0.0):
+    """What must hold of any answer and of all load steps that lead to it; a coarse mesh has a contact that is off the
+    middle by less than an ``element``."""
+    assert not [complaint for march in marches for complaint in march.complaints()]
     unit = scene.material.A * (scene.friction.f * result.p0 * result.a) ** 2
     assert result.certificate["kkt"] <= CLOSED
     assert result.certificate["equilibrium"] <= CLOSED
@@ -51,12 +55,12 @@ def sound(result, scene, element=0.0):
 
 @given(scenes())
 def test_march_closes_every_step_of_any_path(scene):
-    with guise():
+    with guise(), recorded() as marches:
         result = solved("march", scene)
-    sound(result, scene)
+    sound(result, scene, marches)
     traction, f = result.traction, scene.friction.f
     widths = np.diff(traction.cells)
-    p = result.state.p(traction.x) * widths  # the cells' forces
+    p = on_cells(result.state.p, traction.cells)  # the cells' forces
     for q in (traction.q1, traction.q2):
         assert (np.abs(q * widths) <= f * p + 1e-12 * f * scene.P).all()
     if scene.load.in_phase:
@@ -96,8 +100,9 @@ def test_march_does_not_mind_sub_steps_of_proportional_loading(Qf, share, large,
 def test_coarse_finite_elements_close_every_step_of_any_path(scene, mesh):
     order, size = mesh
     scene = again(scene, f"fem.order={order}", f"fem.size={size}")
-    result = solved("fem", scene)
-    sound(result, scene, size)
+    with recorded() as marches:
+        result = solved("fem", scene)
+    sound(result, scene, marches, size)
     N, *T = forces(result.traction, order)
     unit = CLOSED * scene.friction.f * scene.P
     for force in T:

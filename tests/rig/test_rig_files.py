@@ -104,6 +104,57 @@ def test_the_content_of_a_mesh_counts_not_its_name(tmp_path):
     assert key_of(load_scene(SCENE, [f"bodies.lower={{mesh='{second}'}}"])) != one
 
 
+NOTE = "the file of bodies.equivalent was edited since partialslip wrote it; the results are those of its numbers"
+
+
+def test_an_edited_rig_is_said_and_used(file, tmp_path):
+    """It changed the answer in silence."""
+    path, again = tmp_path / "rig.json", tmp_path / "again.json"
+    shutil.copy(file, path)
+    before = run(referring(path), ["equivalent"])["equivalent"]
+    spoiled(lambda data: data.update(sum=data["sum"]))(path)  # written anew by another program
+    assert not load_rig(path).edited
+    spoiled(lambda data: data["terms"]["xx"][1].__setitem__(1, 3 * data["terms"]["xx"][1][1]))(path)
+    after = run(referring(path), ["equivalent"])["equivalent"]
+    assert abs(after.m - before.m) > 1e-4 * before.a
+    assert NOTE not in before.notes
+    assert after.notes[0] == NOTE
+    rig = load_rig(path)
+    assert rig.edited
+    assert rig.uncoupled.edited
+    assert rig.coarser.edited
+    write_rig(rig, again)  # with a checksum of its own
+    assert load_rig(again).edited
+    assert run(referring(again), ["equivalent"])["equivalent"].notes[0] == NOTE
+
+
+@pytest.mark.fault
+@pytest.mark.parametrize("kind", ["terms", "rough"])
+def test_a_changed_digit_of_a_rig_is_seen(file, tmp_path, kind):
+    """Every number, by one part in 1e12."""
+    path = tmp_path / "rig.json"
+    for name, rows in json.loads(file.read_text())[kind].items():
+        for i, j in np.ndindex(np.shape(rows)):
+            if rows[i][j]:
+
+                def change(data, name=name, i=i, j=j):
+                    data[kind][name][i][j] *= 1 + 1e-12
+                    if name in ("xx", "yy"):
+                        data[kind][name][j][i] = data[kind][name][i][j]
+
+                shutil.copy(file, path)
+                spoiled(change)(path)
+                assert load_rig(path).edited
+
+
+def test_rigs_without_a_checksum_are_read(file, tmp_path):
+    """Those of earlier versions."""
+    path = tmp_path / "rig.json"
+    shutil.copy(file, path)
+    spoiled(lambda data: data.pop("sum"))(path)
+    assert not load_rig(path).edited
+
+
 def test_rigs_are_found_beside_the_scene(file, tmp_path, monkeypatch):
     (tmp_path / "scenes").mkdir()
     shutil.copy(file, tmp_path / "scenes" / "rig.json")

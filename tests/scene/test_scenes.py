@@ -6,16 +6,6 @@ import partialslip
 
 BARS = {"a": 2e-5, "m": 2e-5, "n": 2e-5, "p": 2e-4, "q": 3e-4}
 
-# What a run takes with the meshes of one version of gmsh; more by a fifth says that something has become dearer.
-WORK = {
-    "flat-rounded": {"dofs": 12662, "factorizations": 5, "iterations": 50, "meshes": 4},
-    "fretting-aluminium": {"dofs": 10802, "factorizations": 5, "iterations": 43, "meshes": 4},
-    "hertz-large-tension": {"dofs": 8930, "factorizations": 4, "iterations": 33, "meshes": 3},
-    "hertz-shear": {"dofs": 8854, "factorizations": 4, "iterations": 32, "meshes": 3},
-    "hertz-small-tension": {"dofs": 9090, "factorizations": 4, "iterations": 34, "meshes": 3},
-    "yang-laursen": {"dofs": 8910, "factorizations": 4, "iterations": 33, "meshes": 3},
-}
-
 
 def errors(name, *overrides):
     outcome = partialslip.run(partialslip.load_scene(name, overrides))
@@ -32,7 +22,6 @@ def test_shipped_scene(name):
         assert found[key] <= bar
     fem = outcome.results["fem"]
     assert fem.settings["far_field"] == "half-plane"
-    assert {key: count for key, count in WORK[name].items() if fem.counts[key] > 1.2 * count} == {}
     # the method's own estimate is of the size of the true error, or above it
     for key, estimate in fem.estimate.items():
         assert outcome.comparisons["fem"].errors[key] <= max(3 * estimate, 2e-6)

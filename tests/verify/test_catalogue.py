@@ -1,4 +1,4 @@
-"""The catalogue of hard cases: a cheap selection by default, all cases with -m slow."""
+"""The catalogue of hard cases: a cheap selection; ``partialslip verify --suite full`` judges all of them."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -26,9 +26,7 @@ def missed(name, *methods):
     return [(v.method, v.quantity, v.error, v.bar, v.reason) for v in verdicts if v.outcome is Outcome.MISSED]
 
 
-@pytest.mark.parametrize(
-    "name", [name if name in CHEAP else pytest.param(name, marks=pytest.mark.slow) for name in CASES]
-)
+@pytest.mark.parametrize("name", CHEAP)
 def test_hard_case(name):
     assert not missed(name)
 

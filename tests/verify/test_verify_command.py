@@ -24,7 +24,7 @@ from partialslip.run import run
 from partialslip.scene.reading import load_scene
 from partialslip.verify import Case, driver, run_case, stress_suite, suite
 from partialslip.verify.hard_cases.given_meshes import shifted
-from partialslip.verify.random_scenes import KINDS, draw
+from partialslip.verify.random_scenes import KINDS, PROFILES, draw
 from partialslip.verify.stress import stress_numbers
 from partialslip.verify.suites import _same
 from partialslip.verify.verdicts import VerificationRecord
@@ -273,17 +273,23 @@ def test_a_random_scene_is_its_seed_and_number():
     assert all(draw(0, number).scene.load.in_phase for number in numbers)
 
 
-@pytest.mark.parametrize(
-    ("method", "count"),
-    [
-        ("march", 8),
-        ("fem", 2),
-        pytest.param("march", 2000, marks=pytest.mark.slow),
-        pytest.param("fem", 200, marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.parametrize(("method", "count"), [("march", 8), ("fem", 2)])
 def test_random_scenes_have_certificates(method, count):
-    found = [v for make in stress_suite(method, 1, count).values() for v in run_case(make())]
-    assert not [v for v in found if v.outcome is Outcome.MISSED]
-    alone = {v.outcome for v in found if v.quantity in ("finishes", "finite", "certificate")}
+    certified(stress_suite(method, 1, count))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(0, len(KINDS) * len(PROFILES), len(KINDS)))
+@pytest.mark.parametrize(("method", "times"), [("march", 3), ("fem", 1)])
+def test_random_scenes_of_all_kinds_have_certificates(method, times, first):
+    """Each kind of loads on each profile, some times. More draws of one seed have seen nothing more: of 2,000 scenes
+    by march and 200 by finite elements all had their certificates."""
+    numbers = range(times * first, times * (first + len(KINDS)))
+    certified(stress_suite(method, 1, 1, list(map(str, numbers))))
+
+
+def certified(makers):
+    found = [verdict for make in makers.values() for verdict in run_case(make())]
+    assert not [verdict for verdict in found if verdict.outcome is Outcome.MISSED]
+    alone = {verdict.outcome for verdict in found if verdict.quantity in ("finishes", "finite", "certificate")}
     assert alone == {Outcome.PASSED}

@@ -17,6 +17,7 @@ _ANSWERS = 10  # s: timeout of the scheduler
 _PATIENCE = 30  # s: longest time without a worker
 _GO_ON = "run it again to go on"
 _LOGGERS = ("distributed", "tornado", "asyncio")
+_BELOW = tuple(f"{name}." for name in _LOGGERS)
 
 # Evaluated on every worker; must work where partialslip is not installed.
 _ASK = """__import__("importlib.metadata").metadata.version("partialslip") if all(
@@ -136,8 +137,12 @@ def _said(error: BaseException) -> str:
 
 @contextmanager
 def _silence() -> Iterator[None]:
-    """Silence the logs of Dask and the libraries below; errors are reported in one line instead."""
-    loggers = [logging.getLogger(name) for name in _LOGGERS]
+    """Silence the logs of Dask and the libraries below; errors are reported in one line instead.
+
+    Dask gives some loggers levels of their own, such as tornado.application: these ignore the level of their parent.
+    """
+    known = {*_LOGGERS, *(name for name in logging.root.manager.loggerDict if name.startswith(_BELOW))}
+    loggers = [logging.getLogger(name) for name in sorted(known)]
     levels = [logger.level for logger in loggers]
     for logger in loggers:
         logger.setLevel(logging.CRITICAL + 1)

@@ -16,6 +16,7 @@ import msgspec
 from partialslip.errors import InputError
 from partialslip.origin import checksum, made_now, source_checksum
 from partialslip.scene import Scene
+from partialslip.strictjson import decoded
 
 
 class Ledger:
@@ -49,7 +50,7 @@ class Ledger:
             try:
                 entry = _unsealed(line)
                 self._entries[entry["key"]] = entry
-            except ValueError:
+            except (ValueError, KeyError):
                 raise InputError(
                     f"{path}: line {number}: must be an entry of a ledger, unchanged since it was written; remove the "
                     "line to solve the case again"
@@ -119,12 +120,13 @@ def _sealed(entry: str) -> bytes:
 
 
 def _unsealed(line: bytes) -> dict[str, Any]:
-    """Return the entry of a line. Raises ValueError if the checksum of :func:`_sealed` does not match."""
+    """Return the entry of a line. Raises ValueError if the checksum of :func:`_sealed` does not match, or the
+    line is no strict JSON."""
     text, seal, end = line.rpartition(_SEAL)
     text += b"}"
     if not seal or end != _sum(text) + b'"}':
         raise ValueError
-    entry: dict[str, Any] = json.loads(text)
+    entry: dict[str, Any] = decoded(text, dict, "entry")
     return entry
 
 

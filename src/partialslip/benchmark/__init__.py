@@ -1,7 +1,7 @@
 """Numbered problems with frozen targets, for other codes to measure themselves by."""
 
 from partialslip.benchmark.badge import badge as badge
-from partialslip.benchmark.badge import badge_name as badge_name
+from partialslip.benchmark.badge import badge_names as badge_names
 from partialslip.benchmark.book import book_page as book_page
 from partialslip.benchmark.book import book_zip as book_zip
 from partialslip.benchmark.grade import Graded as Graded
@@ -17,6 +17,8 @@ from partialslip.benchmark.problem import Target as Target
 from partialslip.benchmark.problem import read_problems as read_problems
 from partialslip.benchmark.scoreboard import Board as Board
 from partialslip.benchmark.scoreboard import scoreboard as scoreboard
+from partialslip.benchmark.standing import Standing as Standing
+from partialslip.benchmark.standing import standing as standing
 from partialslip.benchmark.submission import Answer as Answer
 from partialslip.benchmark.submission import Meta as Meta
 from partialslip.benchmark.submission import Rung as Rung
@@ -35,10 +37,11 @@ __all__ = [
     "Problem",
     "Rung",
     "Source",
+    "Standing",
     "Submission",
     "Target",
     "badge",
-    "badge_name",
+    "badge_names",
     "book_page",
     "book_zip",
     "climb_rows",
@@ -47,5 +50,6 @@ __all__ = [
     "read_problems",
     "read_submission",
     "scoreboard",
+    "standing",
     "write_submission",
 ]

@@ -1,5 +1,6 @@
 """Grades: how near a code comes to the targets of a problem, from A to D by its worst target, and E beyond."""
 
+import math
 from collections.abc import Mapping
 
 import msgspec
@@ -12,7 +13,11 @@ LIMITS = {"A": 1e-4, "B": 1e-3, "C": 1e-2, "D": 5e-2}
 BEYOND = "E"
 NOT_OFFERED, NOT_GRADED = "not offered", "not graded"
 _SURE = 0.2  # largest uncertainty of a target, in the limit of a grade
-_GRADED = ("contact", "stick", "tractions")  # groups that count for the whole
+HEADLINE = (
+    "contact",
+    "stick",
+    "tractions",
+)  # groups that a problem must have answered in full, and that make the whole
 
 
 class Mark(msgspec.Struct, frozen=True):
@@ -41,20 +46,37 @@ class Graded(msgspec.Struct, frozen=True):
     groups: dict[str, Mark]
     errors: dict[str, float]
 
+    @property
+    def answered(self) -> bool:
+        """Whether there is a value for any target."""
+        return bool(self.errors)
+
+    @property
+    def counts(self) -> bool:
+        """Whether there is a value for every headline target: those of contact, stick and tractions."""
+        return self.overall.grade != NOT_OFFERED
+
+    @property
+    def lacks(self) -> tuple[str, ...]:
+        """For each headline group that is not answered in full, the first target without a value."""
+        return tuple(
+            mark.worst for group, mark in self.groups.items() if group in HEADLINE and mark.grade == NOT_OFFERED
+        )
+
 
 def graded(problem: Problem, answer: Answer) -> Graded:
-    """Grade ``answer`` to ``problem``."""
+    """Grade ``answer`` to ``problem``. A value that is not finite is none."""
     errors = {
         key: abs(value - problem.targets[key].value) / problem.targets[key].scale
         for key, value in answer.values.items()
-        if value is not None
+        if value is not None and math.isfinite(value)
     }
     marks = {}
     for group in GROUPS:
         some = {key: target for key, target in problem.targets.items() if target.group == group}
         if some:
             marks[group] = _mark(some, errors)
-    counted = [marks[group] for group in _GRADED if group in marks]
+    counted = [marks[group] for group in HEADLINE if group in marks]
     return Graded(max(counted, key=lambda mark: (_rank(mark), mark.error or 0.0)), marks, errors)
 
 

@@ -62,7 +62,7 @@ def _climb(problem: Problem, answer: Answer, key: str) -> Climb:
         return abs(value - target.value) / target.scale
 
     ratios = [before.h / after.h for before, after in itertools.pairwise(last)]
-    if abs(ratios[0] / ratios[1] - 1) > _CONSTANT:
+    if not (1 < ratios[1] < math.inf and abs(ratios[0] / ratios[1] - 1) <= _CONSTANT):
         return Climb(key, fine, off(fine), why=NO_RATIO)
     first, second = middle - coarse, fine - middle
     if not (first * second > 0 and abs(second) < abs(first)):
@@ -70,7 +70,7 @@ def _climb(problem: Problem, answer: Answer, key: str) -> Climb:
     order = math.log(first / second) / math.log(ratios[1])
     if order > _HIGHEST:
         return Climb(key, fine, off(fine), why=NOT_MONOTONE)
-    beyond = second / (ratios[1] ** order - 1)
+    beyond = second * second / (first - second)  # second/(ratio^order - 1), which may be a division by zero
     index = _SAFETY * abs(beyond) / target.scale
     return Climb(key, fine, off(fine), order, fine + beyond, off(fine + beyond), index)
 

@@ -1,10 +1,10 @@
 """Submissions: what a code found, as a folder of plain files."""
 
 import itertools
-import math
 import os
-import tomllib
-from collections.abc import Mapping
+import re
+import unicodedata
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -16,19 +16,36 @@ from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes, read_text
 from partialslip.output.files import write_texts
 from partialslip.output.json import json_text
+from partialslip.scene.limits import NO_TEXT
+from partialslip.scene.reading import parse_toml
+from partialslip.strictjson import converted, decoded
 
 _LARGEST = 2**20  # bytes of a file
 _FEWEST = 3  # meshes of a ladder
 META = "meta.toml"
+# Cyrillic and Greek letters that look like Latin ones.
+_LIKE_LATIN = str.maketrans(
+    "\u0430\u0435\u043e\u0440\u0441\u0443\u0445\u0456\u0458\u0455\u04bb\u0501\u051b\u051d\u04cf"
+    "\u0410\u0412\u0415\u041a\u041c\u041d\u041e\u0420\u0421\u0422\u0423\u0425\u0406\u0408\u0405"
+    "\u03bf\u03bd\u03c1\u03b1\u0391\u0392\u0395\u0396\u0397\u0399\u039a\u039c\u039d\u039f\u03a1\u03a4\u03a5\u03a7",
+    "aeopcyxijshdqwl" "ABEKMHOPCTYXIJS" "ovpaABEZHIKMNOPTYX",
+)  # fmt: skip
 
 
 class Meta(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Who found the values: ``code`` and its ``version``, ``machine``, and ``settings`` in words."""
+    """Who found the values: ``code`` and its ``version``, ``machine``, and ``settings`` in words.
+
+    Raises InputError if a text has control characters, line ends or marks of the direction of writing.
+    """
 
     code: Annotated[str, msgspec.Meta(min_length=1, max_length=60)]
     version: Annotated[str, msgspec.Meta(max_length=60)]
     settings: Annotated[str, msgspec.Meta(max_length=400)] = ""
     machine: Annotated[str, msgspec.Meta(max_length=200)] = ""
+
+    def __post_init__(self) -> None:
+        for name in self.__struct_fields__:
+            _check_text(name, getattr(self, name))
 
 
 class Rung(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -66,6 +83,14 @@ class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     note: Annotated[str, msgspec.Meta(max_length=1000)] = ""
     ladder: tuple[Rung, ...] = ()
 
+    def __post_init__(self) -> None:
+        _check_text("note", self.note)
+
+
+def _check_text(name: str, text: str) -> None:
+    if isinstance(text, str) and re.search(f"[{NO_TEXT}]", text):
+        raise InputError(f"{name} = {ascii(text)[:60]}: must be one line of text without control characters")
+
 
 class Submission(msgspec.Struct, frozen=True):
     """A code, ``meta``, and its ``answers`` by number of the problem."""
@@ -91,10 +116,7 @@ def read_submission(folder: str | os.PathLike[str], known: Mapping[str, Problem]
     path = Path(folder)
     if not path.is_dir():
         raise InputError(f"{folder}: must be a folder with {META} and PS-01.json and so on")
-    try:
-        meta = msgspec.convert(tomllib.loads(read_text(path / META, _LARGEST)), Meta)
-    except (msgspec.ValidationError, tomllib.TOMLDecodeError) as error:
-        raise InputError(f"{path / META}: {error}") from None
+    meta = converted(parse_toml(read_text(path / META, _LARGEST), str(path / META)), Meta, str(path / META))
     answers = {}
     for file in sorted(path.glob("*.json")):
         number = file.stem
@@ -107,21 +129,36 @@ def read_submission(folder: str | os.PathLike[str], known: Mapping[str, Problem]
 
 
 def _answer(file: Path, targets: Mapping[str, Target]) -> Answer:
-    try:
-        answer = msgspec.json.decode(read_bytes(file, _LARGEST), type=Answer)
-    except msgspec.DecodeError as error:
-        raise InputError(f"{file}: {error}") from None
+    answer = decoded(read_bytes(file, _LARGEST), Answer, str(file))
     _check_ladder(file, answer)
     found = {"values": answer.values} | {
         f"ladder[{place}].values": rung.values for place, rung in enumerate(answer.ladder)
     }
     for name, values in found.items():
-        for key, value in values.items():
+        for key in values:
             if key not in targets:
                 raise InputError(f"{file}: {name}.{key}: no target has this key; known are {', '.join(targets)}")
-            if value is not None and not math.isfinite(value):
-                raise InputError(f"{file}: {name}.{key} = {value}: must be finite, or null without a value")
     return answer
+
+
+def check_apart(submissions: Sequence[Submission]) -> None:
+    """Raise InputError if readers could not tell two ``submissions`` apart: code, version, settings and machine are the
+    same, or the names of two codes look the same, such as a Latin and a Cyrillic a."""
+    known: dict[str, str] = {}
+    for place, each in enumerate(submissions):
+        code = each.meta.code
+        if any(each.meta == other.meta for other in submissions[:place]):
+            raise InputError(f"code {code!r}: answers twice, with the same version, settings and machine: must differ")
+        other = known.setdefault(_seen(code), code)
+        if other != code:
+            raise InputError(f"code {code!a} looks like {other!a}: names of codes must look different")
+
+
+def _seen(text: str) -> str:
+    """Return ``text`` as a reader sees it: without invisible characters, with single spaces, and with Latin letters for
+    those that look like them."""
+    plain = unicodedata.normalize("NFKC", text).translate(_LIKE_LATIN)
+    return " ".join("".join(each for each in plain if unicodedata.category(each) != "Cf").split())
 
 
 def _check_ladder(file: Path, answer: Answer) -> None:

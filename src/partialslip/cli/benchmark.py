@@ -106,9 +106,9 @@ def _run(options: argparse.Namespace) -> int:
     ):
         found = answers(options.code, some, progress, folder)
     console = output()
-    _print_grades(found, some)
+    code = _print_grades(found, some)
     print_written([folder / META, *(folder / f"{number}.json" for number in found.answers)], console, passed)
-    return 0
+    return code
 
 
 def _read(options: argparse.Namespace) -> int:
@@ -129,7 +129,7 @@ def _score(options: argparse.Namespace) -> int:
     from partialslip.output.tables import print_table
 
     submission, some = read_submission(options.folder, read_problems()), chosen(options.problems)
-    _print_grades(submission, some)
+    code = _print_grades(submission, some)
     every = len(some) == 1
     rows = [
         (number, *row)
@@ -142,31 +142,42 @@ def _score(options: argparse.Namespace) -> int:
             "ladders: error of the finest mesh, order, and what follows, in the scales of the targets", soft_wrap=True
         )
         print_table(output(), ("", *CLIMB_HEADS), rows, words=(0, 1))
-    return 0
+    return code
 
 
-def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> None:
-    """Print the grades of a submission, with the target that decides."""
+def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> int:
+    """Print the grades of a submission, with the target that decides. Returns the exit code: 4 if an answer lacks a
+    headline target."""
     from partialslip.benchmark.measured import GROUPS
     from partialslip.benchmark.scoreboard import grades
+    from partialslip.benchmark.standing import standing
     from partialslip.cli.consoles import output
+    from partialslip.judge.outcome import UNJUDGED
     from partialslip.output.tables import print_table
 
-    table = []
+    table, lacking = [], []
     for number, found in grades(some, submission).items():
         worst, answer = found.overall, submission.answers[number]
         error = "" if worst.error is None else f"{worst.error:.1e}"
         groups = [found.groups[group].grade if group in found.groups else "" for group in GROUPS]
         spent = "" if answer.cpu_s is None else f"{answer.cpu_s:.2g}"
+        if not found.counts:
+            lacking.append(f"{number} ({', '.join(found.lacks) if found.answered else 'no values'})")
         table.append((number, some[number].title, worst.grade, *groups, worst.worst, error, spent))
     console = output()
     console.print(f"{submission.meta.code} {submission.meta.version}", markup=False)
     heads = ("", "problem", "grade", *GROUPS, "worst", "error", "CPU s")
     print_table(console, heads, table, words=range(4 + len(GROUPS)))
+    whole = standing(submission)
+    told = "; ".join(group.text for group in whole.groups)
+    console.print(f"{whole.counted} of {whole.of} problems count: {told}", markup=False, soft_wrap=True)
+    if lacking:
+        console.print(f"not judged: {', '.join(lacking)}", markup=False, soft_wrap=True)
+    return UNJUDGED if lacking else 0
 
 
 def _build(options: argparse.Namespace) -> int:
-    from partialslip.benchmark import badge, badge_name, book_page, book_zip, read_problems, read_submission
+    from partialslip.benchmark import badge, badge_names, book_page, book_zip, read_problems, read_submission
     from partialslip.benchmark.problem import chosen
     from partialslip.cli.common import origin
     from partialslip.cli.consoles import output
@@ -178,9 +189,10 @@ def _build(options: argparse.Namespace) -> int:
     check_report(options)
     some = chosen(options.problems)
     submissions = [read_submission(folder, read_problems()) for folder in options.folders]
+    names = badge_names(submissions)
     with results_folder(options, "benchmark", "benchmark", None) as (folder, passed):
         html, data = book_page(some, submissions, origin(options)), book_zip(some)
-        badges = {badge_name(each): badge(some, each) for each in submissions}
+        badges = dict(zip(names, map(badge, submissions), strict=True))
         files = write_texts(Path(folder), {"book.html": html} | badges)
         files += write_files(Path(folder), {"problems.zip": lambda path: path.write_bytes(data)})
         try:

@@ -57,6 +57,8 @@ def _equivalent(options: argparse.Namespace) -> int:
             {RIG: lambda path: write_rig(rig, path), SCENE: lambda path: path.write_text(scene_toml(named), "utf-8")},
         )
     console = output()
+    if rig.note:
+        console.print(f"{scene.name}: {rig.note}", markup=False)
     console.print(f"{scene.name}: {in_words(scene, found.scene, found.data)}", markup=False)
     _print_shares(shares(rig, scene), console)
     console.print(f"The data hold where |x| <= {scene.units.length(rig.reach)}.", markup=False)

@@ -15,6 +15,7 @@ Sides = npt.NDArray[np.int8]
 _EPS = float(np.finfo(float).eps)
 _HALVINGS = 60  # of a step: the last one is below rounding
 _MANY = 12  # programmes with one C for which inverting it pays
+_REFINEMENTS = 8  # most steps of iterative refinement, in which members may still come to a bound
 _CHANCES = 3  # iterations in which the number of members on a wrong side need not decrease
 
 
@@ -216,7 +217,7 @@ def solve_bounded(
     while True:
         x, r, slope = pivoting.solve(shift)
         excess = float(x.sum() - total)
-        if abs(excess) <= len(x) * _EPS * max(float(np.abs(x).sum()), abs(total)):
+        if abs(excess) <= _rounding(x, total):
             break
         low, high = (shift, high) if excess < 0 else (low, shift)
         step = -excess / slope if slope > 0 else pivoting.to_next_free(r, excess < 0)
@@ -227,13 +228,18 @@ def solve_bounded(
             break  # the sum cannot come closer to the total in this arithmetic
         shift = following
     x, r, shift = pivoting.refined(x, shift, total)
-    found, x = x, np.clip(x, lower, upper)  # removes rounding errors; the residual below includes the clip
-    if not np.array_equal(x, found):
-        r = r + C @ (x - found)
     factored.remember(x, r + g + shift)
-    residual = np.abs(x - np.clip(x - r / pivoting.diagonal, lower, upper))
+    # Any shift certifies x, also the mean that the free members ask for. The shift found has a rounding error, which
+    # is a large traction on cells of 1e-9 of the contact.
+    fit = r - r[pivoting.free].mean() if pivoting.free.any() else r
+    residual = np.abs(x - np.clip(x - fit / pivoting.diagonal, lower, upper))
     rest = np.clip(r, np.where(x < upper, 0.0, -np.inf), np.where(x > lower, 0.0, np.inf))
     return Solution(x, rest, residual, abs(float(x.sum()) - total), pivoting.iterations, pivoting.changes)
+
+
+def _rounding(x: Array, total: float) -> float:
+    """Rounding error of the sum of ``x`` (n,), which is to be ``total``."""
+    return len(x) * _EPS * max(float(np.abs(x).sum()), abs(total))
 
 
 class _BlockPivoting:
@@ -284,6 +290,12 @@ class _BlockPivoting:
                 return shift
             self._turn(wanted)
 
+    @property
+    def free(self) -> Mask:
+        """Members between the bounds, (n,)."""
+        result: Mask = self._side == 0
+        return result
+
     def to_next_free(self, r: Array, more: bool) -> float:
         """With every member at a bound: free the first member that changes as the shift grows (``more``) or falls;
         return the change of the shift up to this point."""
@@ -311,16 +323,28 @@ class _BlockPivoting:
             self._turn(wanted)
 
     def refined(self, x: Array, shift: float, total: float) -> tuple[Array, Array, float]:
-        """x, r and the shift after a step of iterative refinement, where an inverse has left more than rounding."""
-        r = self._C @ x - self._g - shift
-        free = self._side == 0
-        if self._all_free is None or not (2 * np.abs(r) > self._noise(x, shift))[free].any():
-            return x, r, shift
-        off = np.where(free, -r, 0.0)
-        line = self._factored.line(free, off, 0 * x, self._factored.all_free(off))
-        change = (total - float(x.sum()) - line.total) / line.slope
-        x = x + line.at(change)[0]
-        return x, self._C @ x - self._g - (shift + change), shift + change
+        """x within the bounds, r and the shift, after iterative refinement where an inverse has left more than
+        rounding.
+
+        Refinement may take free members beyond a bound that they nearly touch. These stay on the bound, and the others
+        are refined again: otherwise the sum would be off, and a rigid shift of all free members would look like slip.
+        """
+        free, rounds = self._side == 0, 0
+        while True:
+            found, x = x, np.clip(x, self._lower, self._upper)
+            free = free & (x == found)
+            r, missing = self._C @ x - self._g - shift, total - float(x.sum())
+            if self._all_free is None or not free.any() or rounds == _REFINEMENTS:
+                return x, r, shift
+            off = bool((2 * np.abs(r) > self._noise(x, shift))[free].any())
+            if rounds and (np.array_equal(x, found) or not (off or abs(missing) > _rounding(x, total))):
+                return x, r, shift
+            if not rounds and not off:
+                return x, r, shift
+            load = np.where(free, -r, 0.0)
+            line = self._factored.line(free, load, 0 * x, self._factored.all_free(load))
+            change = (missing - line.total) / line.slope
+            x, shift, rounds = x + line.at(change)[0], shift + change, rounds + 1
 
     def _descend(self, x: Array, shift: float) -> tuple[Array, Array, float]:
         """The same as :meth:`solve` by projected Newton steps, beginning near ``x``.

@@ -256,8 +256,8 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
     """Press the bodies together under a force from 0 to ``P``, with friction and without Q.
 
     Nodes that stick keep their displacement. Under a parabolic gap bodies are pressed in one small step from an
-    earlier stage, known from flat punches (:mod:`partialslip.condensed.pressing`). Others are pressed in at
-    least ``least`` steps, doubled until q changes by less than ``accuracy`` (relative L2) or the limit is reached.
+    earlier stage, known from flat punches about its vertex (:mod:`partialslip.condensed.pressing`). Others are pressed
+    in at least ``least`` steps, doubled until q changes by less than ``accuracy`` (relative L2), or up to the limit.
 
     ``C`` are the compliances, ``gap`` (n,) the gap before loading, ``f`` the coefficient of friction, ``line`` the
     nodes.
@@ -286,6 +286,8 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
         size = float(norm @ q**2)
         return float(np.sqrt(norm @ (q - other) ** 2 / size)) if size > 0 else 0.0
 
+    if line is not None and (line.similar or line.nearly_similar):
+        line = replace(line, x=line.x - _vertex(line.x, gap))
     if line is not None and line.similar:
         return _similar(C, gap, f, line, steps(1)[-1], step, off)
     if line is not None and line.nearly_similar:
@@ -304,6 +306,11 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
         reached = errors["q"] <= accuracy and errors.get("a", 0.0) <= accuracy / _ENDS
         if reached or 2 * count > max(_MOST, 2 * least) or 2 * count * len(gap) > _WORK:
             return Pressed(*_certified(last[1:]), count, errors, grown, f)
+
+
+def _vertex(x: Array, gap: Array) -> float:
+    """Where a parabolic ``gap`` (n,) at ``x`` (n,) is smallest: there the bodies touch first."""
+    return float(np.polynomial.Polynomial.fit(x, gap, 2).deriv().roots()[0].real)
 
 
 def _moved(line: Line, forces: Array, others: Array) -> float:

@@ -16,7 +16,9 @@ from partialslip.condensed.path import Path
 from partialslip.condensed.route import Route, ahead
 
 STEADY = 1e-6  # change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
-_REPEATS = 1e-13  # change of a node's q in a cycle, relative to the sum of |q|, that is rounding
+# Differences of a node's q, relative to the sum of |q|, that are rounding: between mirror images, and over a cycle. A
+# cycle that repeats ends the path, and the limit may be ten such changes away.
+_MIRRORED, _REPEATS = 1e-13, 1e-14
 _SLIPS = 1e-9  # distance of |dq| from the bound, relative, at which a node slips
 
 
@@ -254,7 +256,7 @@ class _Step(NamedTuple):
     def mirrors(self, before: Solution, load: Array, change: Array) -> bool:
         """Whether another step is this one with all signs turned round, within rounding."""
         opposed = np.array_equal(self.load, -load) and np.array_equal(self.change, -change)
-        return opposed and _same(self.before.x, -before.x)
+        return opposed and _same(self.before.x, -before.x, _MIRRORED)
 
     @property
     def mirrored(self) -> Solution:
@@ -262,9 +264,9 @@ class _Step(NamedTuple):
         return replace(self.found, x=-self.found.x, rest=-self.found.rest, iterations=0, changes=0)
 
 
-def _same(forces: Array, others: Array) -> bool:
-    """Whether ``forces`` (n,) are the ``others``, within rounding."""
-    return bool(np.abs(forces - others).max() <= _REPEATS * np.abs(forces).sum())
+def _same(forces: Array, others: Array, near: float) -> bool:
+    """Whether ``forces`` (n,) are the ``others``, but for ``near`` of their sum."""
+    return bool(np.abs(forces - others).max() <= near * np.abs(forces).sum())
 
 
 Advance = Callable[[Solution, Array, Array], tuple[Solution, Array]]
@@ -302,7 +304,7 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
             went.append(_go(advance, points[-1], np.array(start), np.array(end), fractions))
             points.append(certified([step for step, _ in went[-1]]))
             taken += len(fractions)
-        if _same(points[-1].x, points[-1 - len(went)].x):
+        if _same(points[-1].x, points[-1 - len(went)].x, _REPEATS):
             break
     steps = [step for way in went for step, _ in way]
     ends = [way[-1] for way in went]

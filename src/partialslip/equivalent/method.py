@@ -91,7 +91,7 @@ def solve(
         settings={"model": "half-planes with the data of the bodies", "solved by": found.method},
         estimate=errors | levels,
         shares=shares,
-        notes=(in_words(scene, seen, data), *notes),
+        notes=(*([rig.note] if rig.note else []), in_words(scene, seen, data), *notes),
         undetermined=undetermined,
         surface=None,
         stress_at=None,

@@ -3,7 +3,7 @@
 import itertools
 
 import numpy as np
-from scipy.interpolate import PPoly
+from scipy.interpolate import PchipInterpolator, PPoly
 
 from partialslip.arrays import Array
 from partialslip.halfplane.shape import Shape
@@ -41,6 +41,16 @@ def on_cells(traction: PPoly, places: Array) -> Array:
     resultant, known = traction.antiderivative(), traction.x
     result: Array = np.diff(resultant(np.clip(places, known[0], known[-1])))
     return result
+
+
+def off_cells(forces: Array, places: Array) -> PPoly:
+    """Traction with given ``forces`` (c,) on the cells between ``places`` (c + 1,): what :func:`on_cells` takes back.
+
+    Within wide cells it is of second order, so that it can be taken to other cells; a constant on each is of first
+    order. It is the slope of the sum of the forces, which cubics between the places follow without overshooting.
+    """
+    resultant = PchipInterpolator(places, np.concatenate([[0.0], np.cumsum(forces)])).derivative()
+    return PPoly(resultant.c, places)
 
 
 def norm_parts(vertices: Array, loads: Array, cells: Array) -> Array:

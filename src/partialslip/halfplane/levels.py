@@ -34,7 +34,19 @@ class Levels:
     known: int
 
     def at(self, x: Array) -> tuple[Array, Array]:
-        """q1 and q2 at ``x``, in f p0."""
+        """q1 and q2 at ``x``, in f p0, within the friction bound.
+
+        Where the cycle slips, the bound alone determines them. The first loading leads to other tractions only in slip
+        zones of the cycle that are narrower than the tolerance: there it may slip the other way.
+        """
+        q1, q2 = self.unbounded(x)
+        mean, change = (q1 + q2) / 2, (q2 - q1) / 2
+        room = np.maximum(self.cycle.shape.pressure(x) - np.abs(change), 0.0)
+        mean = np.clip(mean, -room, room)
+        return mean - change, mean + change
+
+    def unbounded(self, x: Array) -> tuple[Array, Array]:
+        """q1 and q2 at ``x``, in f p0, from the first loading and the change alone."""
         q, dq = self.first.traction(x), self.cycle.traction(x)
         return (q - dq, q) if self.known else (q, q + dq)
 
@@ -108,7 +120,7 @@ def _before(load: Load, points: list[_Point], known: int) -> list[_Point]:
 def _bounded(pressed: Contact, f: float, load: Load, found: Levels) -> bool:
     """Whether |q| <= f p up to the other load point and on the way back; if both ends slip the same way, |q| is largest
     at a load point."""
-    p, (q1, q2) = found.cycle.shape.pressure(_PLACES), found.at(_PLACES)
+    p, (q1, q2) = found.cycle.shape.pressure(_PLACES), found.unbounded(_PLACES)
     so_far = [np.zeros_like(p)]
     if found.cycle.zone.s < 0 or found.cycle.gf:
         changes = load.dQ, load.dsigma, load.dslope

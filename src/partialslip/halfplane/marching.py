@@ -11,7 +11,6 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
-from scipy.interpolate import PPoly
 
 from partialslip.allowance import Allowance
 from partialslip.arrays import Array
@@ -21,11 +20,12 @@ from partialslip.condensed.ends import StickInterval, apart, finest, kinks, stic
 from partialslip.condensed.history import SHEARS, History, certificate, last_cycle_change
 from partialslip.condensed.path import Path, load_path, stretched
 from partialslip.condensed.regime import doubts, steady_state
+from partialslip.condensed.restart import begun, known_to
 from partialslip.condensed.step_errors import halved, steps_matter
 from partialslip.condensed.steps import MOST, follow_refined, march_refined
 from partialslip.condensed.threads import one_thread
 from partialslip.halfplane.cell_stress import CellStresses
-from partialslip.halfplane.cells import compliance, graded, norm_parts, on_cells, relative_change
+from partialslip.halfplane.cells import compliance, graded, norm_parts, off_cells, on_cells, relative_change
 from partialslip.halfplane.pressing import NormalLoads
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding, without_shear
@@ -152,7 +152,16 @@ def solve(
             if all(meshed[key] <= max(most - stepped.get(key, 0.0), most / 2) for key, most in allowed.items()):
                 break
     assert level is not None
-    found = _result(normal, level, errors, shares, {"meshes": meshes, "iterations": iterations}, clock)
+    widths, places = np.diff(level.vertices), normal.frame.places(level.vertices)
+
+    def forces(state: State) -> Array:
+        return on_cells(state.p, places) / scene.P
+
+    known, notes = begun(errors, level.history, widths, scene.friction.f, start, forces)
+    if known:
+        shares["start"] = known
+        errors = {key: error + known.get(key, 0.0) for key, error in errors.items()}
+    found = _result(normal, level, errors, shares, {"meshes": meshes, "iterations": iterations}, clock, notes)
     return _with_stresses(found, normal, level, clock) if plan.needs("subsurface") else found
 
 
@@ -290,6 +299,7 @@ def _result(
     shares: dict[str, dict[str, float]],
     counts: dict[str, int],
     clock: Clock,
+    notes: tuple[str, ...],
 ) -> Result:
     scene, frame, largest = normal.scene, normal.frame, normal.largest
     P, a, widths, history = scene.P, frame.a, np.diff(level.vertices), level.history
@@ -328,7 +338,7 @@ def _result(
             pressures_at=tractions.pressures if anew else None,
         ),
         cost=clock.cost(),
-        state=_state(normal, level, places) if history else None,
+        state=_state(normal, level, places, errors) if history else None,
         slip=Slip(x, history.slip * unit, history.dissipated * unit * P) if history else None,
         settings={"model": "two half-planes, exact pressure, cells of constant shear", "accuracy": _accuracy(scene)},
         counts={
@@ -345,18 +355,19 @@ def _result(
         last_cycle_change=change,
         estimate=errors,
         shares=shares,
-        notes=found.notes + doubts(change, errors, _accuracy(scene)),
+        notes=found.notes + notes + doubts(change, errors, _accuracy(scene)),
         contact_ends=(normal.first.ends, normal.second.ends) if anew or frame.centre else None,
         end_slips=found.slips,
     )
 
 
-def _state(normal: NormalLoads, level: _Level, places: Array) -> State:
-    """State at the end of the path of the loads; ``places`` are the ends of the cells, m."""
+def _state(normal: NormalLoads, level: _Level, places: Array, errors: dict[str, float]) -> State:
+    """State at the end of the path of the loads; ``places`` are the ends of the cells, m; ``errors`` are the estimated
+    ones."""
     assert level.history
     scene = normal.scene
     shear, bound = level.history.end
     pressed = normal.forces(normal.last, level.vertices) if scene.presses_anew else bound / scene.friction.f
-    stress = scene.P / np.diff(places)
-    p, q = (PPoly((stress * forces)[None], places) for forces in (pressed, shear))
-    return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q, scene.load.along[-1][2])
+    p, q = (off_cells(scene.P * forces, places) for forces in (pressed, shear))
+    error = known_to(errors, level.history, np.diff(level.vertices), scene.friction.f)
+    return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q, scene.load.along[-1][2], error)

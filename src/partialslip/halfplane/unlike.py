@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 from msgspec.structs import replace as changed
-from scipy.interpolate import PPoly
 
 from partialslip.allowance import Allowance
 from partialslip.arrays import Array
@@ -24,8 +23,9 @@ from partialslip.condensed.history import SHEARS, History, certificate, last_cyc
 from partialslip.condensed.normal import press
 from partialslip.condensed.path import Path, load_path, stretched
 from partialslip.condensed.regime import doubts, steady_state, unestimated
+from partialslip.condensed.restart import begun, known_to
 from partialslip.condensed.step_errors import pressed_together
-from partialslip.halfplane.cells import graded, norm_parts, on_cells, relative_change
+from partialslip.halfplane.cells import graded, norm_parts, off_cells, on_cells, relative_change
 from partialslip.halfplane.pressing import NormalLoads
 from partialslip.halfplane.punch_growth import OnCells, PunchGrowth, relative
 from partialslip.halfplane.tractions import CoupledTractions
@@ -122,7 +122,16 @@ def solve(
             if all(error <= BARS[key] * scene.fem.accuracy for key, error in meshed.items()):
                 break
     assert level is not None
-    return _result(problem, level, errors, shares, meshes, clock)
+    widths, places = np.diff(level.vertices), level.vertices * scene.length + scene.origin
+
+    def forces(state: State) -> Array:
+        return on_cells(state.p, places) / scene.P
+
+    known, notes = begun(errors, level.history, widths, scene.friction.f, start, forces)
+    if known:
+        shares["start"] = known
+        errors = {key: error + known.get(key, 0.0) for key, error in errors.items()}
+    return _result(problem, level, errors, shares, meshes, clock, notes)
 
 
 @dataclass(frozen=True)
@@ -304,6 +313,7 @@ def _result(
     shares: dict[str, dict[str, float]],
     meshes: int,
     clock: Clock,
+    notes: tuple[str, ...],
 ) -> Result:
     scene, beta, history = problem.scene, problem.beta, level.history
     P, L, f = scene.P, scene.length, scene.friction.f
@@ -350,7 +360,7 @@ def _result(
             pressures_at=tractions.pressures if history else None,
         ),
         cost=clock.cost(),
-        state=_state(scene, level) if history else None,
+        state=_state(scene, level, errors) if history else None,
         slip=Slip(x, history.slip[on] * unit, history.dissipated * unit * P) if history else None,
         settings={
             "model": "two half-planes, cells of constant pressure and shear",
@@ -371,16 +381,17 @@ def _result(
         last_cycle_change=change,
         estimate=errors,
         shares=shares,
-        notes=found.notes + (unestimated(history) if beta else ()) + doubts(change, errors, scene.fem.accuracy),
+        notes=found.notes + notes + (unestimated(history) if beta else ()) + doubts(change, errors, scene.fem.accuracy),
         contact_ends=tuple((left * L + scene.origin, right * L + scene.origin) for left, right in level.ends),  # type: ignore[arg-type]
         end_slips=found.slips,
     )
 
 
-def _state(scene: Scene, level: _Level) -> State:
-    """State at the end of the path of the loads."""
+def _state(scene: Scene, level: _Level, errors: dict[str, float]) -> State:
+    """State at the end of the path of the loads; ``errors`` are the estimated ones."""
     assert level.history
     places = level.vertices * scene.length + scene.origin
     shear, bound = level.history.end
-    p, q = (PPoly((scene.P / np.diff(places) * each)[None], places) for each in (bound / scene.friction.f, shear))
-    return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q, scene.load.along[-1][2])
+    p, q = (off_cells(scene.P * each, places) for each in (bound / scene.friction.f, shear))
+    error = known_to(errors, level.history, np.diff(level.vertices), scene.friction.f)
+    return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q, scene.load.along[-1][2], error)

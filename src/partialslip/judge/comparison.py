@@ -180,10 +180,12 @@ def compare(
 def _beside(bar: Bar, quantity: str, reference: Result) -> Bar:
     """Return the bar plus the error estimate of the ``reference``.
 
-    The estimate's share of a tabulated profile does not count: every method is given the same table.
+    The estimate's shares of a tabulated profile and of the state at the beginning do not count: every method is given
+    the same table and the same state.
     """
     key = quantity.removesuffix("_1").removesuffix("_2")
-    own = reference.estimate.get(key, 0.0) - reference.shares.get("table", {}).get(key, 0.0)
+    given = sum(reference.shares.get(source, {}).get(key, 0.0) for source in ("table", "start"))
+    own = reference.estimate.get(key, 0.0) - given
     if bar.value is None or not own > 0:
         return bar
     if own > bar.value:

@@ -18,6 +18,7 @@ from partialslip.errors import InputError
 from partialslip.inputfile import reason
 from partialslip.output.files import write_files, write_new_file, write_texts
 from partialslip.output.lock import FolderInUseError, locked
+from partialslip.strictjson import decoded
 
 NAME = ".partialslip"
 # Files of results: a folder that holds one of them, but no request, was written by an earlier version or copied.
@@ -183,10 +184,9 @@ def _asked_by_holder(folder: Path, asked: dict[str, Any]) -> str | None:
 def _request(folder: Path) -> dict[str, Any] | None:
     """Return the request that the files in ``folder`` answer; None if there is none."""
     try:
-        found = json.loads((folder / NAME).read_text("utf-8"))
-    except (OSError, ValueError, RecursionError):
+        return decoded((folder / NAME).read_bytes(), dict, NAME)
+    except (OSError, ValueError):  # ValueError: no JSON, or no valid name
         return None
-    return found if isinstance(found, dict) else None
 
 
 def _files(folder: Path) -> dict[str, int]:

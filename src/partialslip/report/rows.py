@@ -115,15 +115,20 @@ def unjudged(comparison: Comparison) -> list[str]:
 
 def verdict(run: Run) -> str:
     """Return the verdict on the whole ``run`` in one line, with what was asked for."""
+    return "; ".join(reversed(verdict_lines(run)))
+
+
+def verdict_lines(run: Run) -> tuple[str, ...]:
+    """Return the verdict on the whole ``run`` as the last of one or two lines; the first of two says what was asked."""
     found = run.conclusion
     if found.asked or found.outcome is Outcome.MISSED:
         wanted = run.asked.text if run.asked else ""
         nothing = next((each.regime for each in run.results.values() if each.m is None), "")
         if found.outcome is Outcome.PASSED:
-            return ", ".join(filter(None, [found.text, nothing])) + f": {wanted}"
-        return found.text + (f"; asked: {wanted}" if wanted else "")
+            return (", ".join(filter(None, [found.text, nothing])) + f": {wanted}",)
+        return (f"asked: {wanted}", found.text) if wanted else (found.text,)
     if run.plan.missing:
-        return f"{found.text}: forced off: {', '.join(run.plan.missing)}; the errors measure these effects"
+        return (f"{found.text}: forced off: {', '.join(run.plan.missing)}; the errors measure these effects",)
     scene = run.scene
     reasons = {
         "finite bodies": scene.finite,
@@ -131,7 +136,7 @@ def verdict(run: Run) -> str:
         "nothing to compare with": not run.comparisons,
         "the element size was given": scene.fem.size is not None,
     }
-    return f"{found.text}: " + next((why for why, applies in reasons.items() if applies), "none were asked for")
+    return (f"{found.text}: " + next((why for why, applies in reasons.items() if applies), "none were asked for"),)
 
 
 def effects(plan: Plan) -> list[tuple[str, str, str]]:

@@ -45,7 +45,7 @@ def print_run(run: Run, console: Console, *, verbose: bool = False, lines: Seque
     unjudged = [line for comparison in run.comparisons.values() for line in rows.unjudged(comparison)]
     for line in (*unjudged, *notes):
         console.print(line, markup=False)
-    for line in lines:
+    *asked, verdict = rows.verdict_lines(run)
+    for line in (*lines, *asked):
         console.print(line, soft_wrap=True, markup=False)
-    verdict = Text.assemble((rows.verdict(run), "bold"), f"; {where}" if where else "")
-    console.print(verdict, soft_wrap=True)
+    console.print(Text.assemble((verdict, "bold"), f"; {where}" if where else ""), soft_wrap=True)

@@ -82,7 +82,7 @@ class Result(Drawn):
     contact_ends : ((float, float), (float, float)) or None
         Left and right end of the contact at load points 1 and 2, m; None stands for -a and a at both.
     shares : mapping of str to mapping
-        Parts of the estimates by source (``discretisation``, ``steps``, ``table``, ``rounding``) and key of
+        Parts of the estimates by source (``discretisation``, ``steps``, ``start``, ``table``, ``rounding``) and key of
         ``estimate``.
     undetermined : mapping of str to str
         By quantity (``m``, ``n``, ``q``, ``q1``, ``q2``), why the value cannot serve as a reference.

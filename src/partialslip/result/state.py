@@ -4,7 +4,7 @@ import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,8 +18,10 @@ if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
 _ARRAYS = ("loads", "cells", "p", "q")
+_ERROR = "q_error"  # files of earlier versions do not have it
 _LARGEST = 100_000_000  # bytes of a file, and of the arrays in it
 _HELD = 1e-6  # tolerance of equilibrium, relative to P
+_TURNED = 1e-3  # tolerance of the moment, relative to P sqrt(A R P): cells of constant pressure have no better one
 _SAME = 1e-9  # relative difference of P and A allowed as rounding
 
 
@@ -39,6 +41,8 @@ class State(Short):
         Tractions, Pa, over the cells of the contact line, m.
     sigma_slope : float
         Slope of the bulk tension along x, Pa/m.
+    q_error : float or None
+        Estimated error of q: its L2 norm, relative to that of p. None where it is not known.
     """
 
     P: float
@@ -48,18 +52,22 @@ class State(Short):
     p: "PPoly"
     q: "PPoly"
     sigma_slope: float = 0.0
+    q_error: float | None = None
 
     def check(self, scene: Scene) -> None:
-        """Raise InputError if ``scene`` cannot continue from this state: P at the last load point, with which the path
-        begins, or the materials differ."""
+        """Raise InputError if ``scene`` cannot continue from this state: P or M at the last load point, with which the
+        path begins, or the materials differ."""
 
-        def check(name: str, mine: float, its: float, shown: Callable[[float], str]) -> None:
-            if abs(mine - its) > _SAME * abs(its):
+        def check(name: str, mine: float, its: float, shown: Callable[[float], str], off: float = 0.0) -> None:
+            if abs(mine - its) > max(_SAME * abs(its), off):
                 raise InputError(
                     f"state: is of {name} = {shown(mine)}; the scene has {shown(its)}; the two must be equal"
                 )
 
         check("P", self.P, scene.pressing[-1].P, lambda P: scene.units.labelled(P, "N/m", 10))
+        if (M := scene.pressing[-1].M) is not None:
+            moment = _moment(self.p)
+            check("M", moment, M, lambda M: scene.units.labelled(M, "N", 10), _TURNED * self.P * scene.length)
         check("A", self.A, scene.material.A, lambda A: f"{A:.10g} 1/Pa")
 
     def save(self, path: Path) -> None:
@@ -67,7 +75,8 @@ class State(Short):
         slope = [self.sigma_slope] if self.sigma_slope else []
         loads = np.array([self.P, self.A, self.Q, self.sigma, *slope])
         with path.open("wb") as file:
-            np.savez(file, loads=loads, cells=self.q.x, p=self.p.c, q=self.q.c)
+            arrays: dict[str, Any] = {"loads": loads, "cells": self.q.x, "p": self.p.c, "q": self.q.c}
+            np.savez(file, **arrays if self.q_error is None else arrays | {_ERROR: self.q_error})
 
 
 def load_state(path: str | Path) -> State:
@@ -83,24 +92,37 @@ def load_state(path: str | Path) -> State:
         with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             if sum(part.file_size for part in file.zip.infolist()) > _LARGEST:
                 raise ValueError
-            arrays = {name: file[name].astype(float, casting="safe") for name in _ARRAYS}
+            there = [*_ARRAYS, *([_ERROR] if _ERROR in file else [])]
+            arrays = {name: file[name].astype(float, casting="safe") for name in there}
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
     except (KeyError, ValueError, EOFError, AttributeError, TypeError, MemoryError, zipfile.BadZipFile):
         raise InputError(f"{path}: not a state that partialslip has saved") from None
     loads, cells, p, q = (arrays[name] for name in _ARRAYS)
-    if not _sound(loads, cells, p, q):
+    known = arrays.get(_ERROR)
+    if not _sound(loads, cells, p, q) or not (known is None or (known.shape == () and 0 <= known < np.inf)):
         raise InputError(f"{path}: not a state that partialslip has saved")
     from scipy.interpolate import PPoly  # takes long to import
 
-    P, A, Q, sigma, *slope = loads.tolist()
-    state = State(P, A, Q, sigma, PPoly(p, cells), PPoly(q, cells), *slope)
+    P, A, Q, sigma, slope = [*loads.tolist(), 0.0][:5]
+    state = State(P, A, Q, sigma, PPoly(p, cells), PPoly(q, cells), slope, None if known is None else float(known))
     held = [float(traction.integrate(cells[0], cells[-1])) for traction in (state.p, state.q)]
     if not np.allclose(held, (P, Q), rtol=0.0, atol=_HELD * abs(P)):
         raise InputError(
             f"{path}: tractions sum to P = {held[0]:g} and Q = {held[1]:g}; must equal the loads, {P:g} and {Q:g}"
         )
     return state
+
+
+def _moment(p: "PPoly") -> float:
+    """Moment int x p dx of the pressure ``p``."""
+    from scipy.interpolate import PPoly  # takes long to import
+
+    left = p.x[:-1]
+    arm = np.zeros((len(p.c) + 1, len(left)))
+    arm[:-1] += p.c
+    arm[1:] += left * p.c
+    return float(PPoly(arm, p.x).integrate(p.x[0], p.x[-1]))
 
 
 def _sound(loads: Array, cells: Array, *coefficients: Array) -> bool:

@@ -1,4 +1,4 @@
-"""Rigs as JSON files."""
+"""Rigs as JSON files, sealed with a checksum (:mod:`partialslip.seal`)."""
 
 import os
 from pathlib import Path
@@ -10,10 +10,11 @@ import numpy as np
 from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes
 from partialslip.output.files import write_texts
-from partialslip.output.json import json_text
 from partialslip.rig.key import key_of
 from partialslip.rig.rig import Rig, Terms
 from partialslip.scene import Scene
+from partialslip.seal import edited, sealed_text
+from partialslip.strictjson import converted, parsed
 
 SCHEMA = "partialslip/rig/1"
 _LARGEST = 2**20  # bytes
@@ -29,12 +30,13 @@ class _Terms(msgspec.Struct, forbid_unknown_fields=True):
     pulled: _Rows
 
 
-class _File(msgspec.Struct, forbid_unknown_fields=True):
+class _File(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
     schema: str
     key: str
     reach: Annotated[float, msgspec.Meta(gt=0)]
     terms: _Terms
     rough: _Terms
+    edited: bool = False  # whether the rig was read from an edited file
 
 
 def write_rig(rig: Rig, path: str | os.PathLike[str]) -> None:
@@ -46,12 +48,13 @@ def write_rig(rig: Rig, path: str | os.PathLike[str]) -> None:
         If the file cannot be written.
     """
     terms, rough = (_Terms(*(each.tolist() for each in terms)) for terms in (rig.terms, rig.rough))
-    data = _File(SCHEMA, rig.key, rig.reach, terms, rough)
-    write_texts(Path(path).parent, {Path(path).name: json_text(data)})
+    data = _File(SCHEMA, rig.key, rig.reach, terms, rough, rig.edited)
+    write_texts(Path(path).parent, {Path(path).name: sealed_text(data)})
 
 
 def load_rig(path: str | os.PathLike[str], scene: Scene | None = None) -> Rig:
-    """Read a rig from ``path``.
+    """Read a rig from ``path``. If the file was edited since partialslip wrote it, :attr:`Rig.edited` is True, and
+    results with the rig have a note.
 
     Parameters
     ----------
@@ -64,10 +67,10 @@ def load_rig(path: str | os.PathLike[str], scene: Scene | None = None) -> Rig:
     InputError
         If the file cannot be read or is not a rig, or is that of other bodies than those of ``scene``.
     """
-    try:
-        found = msgspec.json.decode(read_bytes(path, _LARGEST), type=_File)
-    except (msgspec.MsgspecError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: not a rig: {error}") from None
+    text, told = read_bytes(path, _LARGEST), f"{path}: not a rig"
+    tree = parsed(text, told)
+    changed = isinstance(tree, dict) and bool(edited(text, tree))
+    found = converted(tree, _File, told)
     if found.schema != SCHEMA:
         raise InputError(f"{path}: schema = {found.schema!r}: must be {SCHEMA!r}")
     count = len(found.terms.xx)
@@ -77,7 +80,7 @@ def load_rig(path: str | os.PathLike[str], scene: Scene | None = None) -> Rig:
             f"{path}: this rig has other bodies, supports or materials than {scene.name}; "
             "must be made from them: partialslip equivalent"
         )
-    return Rig(found.key, found.reach, terms, rough)
+    return Rig(found.key, found.reach, terms, rough, changed or found.edited)
 
 
 def _arrays(name: str, found: _Terms, count: int) -> Terms:

@@ -9,7 +9,7 @@ where A is the compliance of the pair and xx, yy and xy are polynomials in x/rea
 loads, friction or, without a pad, on the profile.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -49,22 +49,34 @@ class Rig:
     terms : Terms
     rough : Terms
         The same from a coarser mesh: the difference shows the error.
+    edited : bool
+        Whether the rig is from a file that was changed since partialslip wrote it.
     """
 
     key: str
     reach: float
     terms: Terms
     rough: Terms
+    edited: bool = False
+
+    @property
+    def note(self) -> str:
+        """Remark for the reader of a result with an edited rig; empty otherwise."""
+        said = (
+            "the file of bodies.equivalent was edited since partialslip wrote it; the results are those of its numbers"
+        )
+        return said if self.edited else ""
 
     @property
     def uncoupled(self) -> "Rig":
         """The rig without what p does along x and q along y."""
-        return Rig(self.key, self.reach, *(each._replace(xy=0 * each.xy) for each in (self.terms, self.rough)))
+        terms, rough = (each._replace(xy=0 * each.xy) for each in (self.terms, self.rough))
+        return replace(self, terms=terms, rough=rough)
 
     @property
     def coarser(self) -> "Rig":
         """The rig from the coarser mesh."""
-        return Rig(self.key, self.reach, self.rough, self.rough)
+        return replace(self, terms=self.rough)
 
     def moments(self, x: Array, forces: Array) -> Array:
         """Moments sum (x/reach)^j F_j of ``forces`` (..., n) at ``x`` (n,), (..., k)."""

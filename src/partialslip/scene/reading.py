@@ -62,7 +62,7 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
     InputError
         With one line that names the field, its value and what is allowed.
     """
-    data = _parse(_text(scene), str(scene))
+    data = parse_toml(_text(scene), str(scene))
     for override in overrides:
         _override(data, override)
     _find_files(data, scene)
@@ -200,15 +200,17 @@ def _is_file(path: Path) -> bool:
         return False
 
 
-def _parse(text: str, origin: str) -> dict[str, Any]:
+def parse_toml(text: str, origin: str) -> dict[str, Any]:
+    """Return the TOML ``text`` as nested tables. Raises InputError, whose message begins with ``origin``, if it is not
+    valid TOML, or nested so deep that reading takes long."""
     if _DEEP_KEY.search(text):
-        raise InputError(f"{_shown(origin)}: a key of more than 20 parts: at most 20 are allowed")
+        raise InputError(f"{origin}: a key of more than 20 parts: at most 20 are allowed")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{_shown(origin)}: not valid TOML: {error}") from None
+        raise InputError(f"{origin}: not valid TOML: {error}") from None
     except (ValueError, RecursionError):
-        raise InputError(f"{_shown(origin)}: not valid TOML: a number too long, or nested too deep") from None
+        raise InputError(f"{origin}: not valid TOML: a number too long, or nested too deep") from None
 
 
 def _override(data: dict[str, Any], override: str) -> None:
@@ -223,7 +225,7 @@ def _override(data: dict[str, Any], override: str) -> None:
     if value[:1].isalpha() and value not in ("true", "false", "nan", "inf"):
         parsed: Any = value  # words are a string: fem.far_field=box
     else:
-        read = _parse(f"value = {value}", origin)
+        read = parse_toml(f"value = {value}", origin)
         if list(read) != ["value"] or "\n" in value:
             raise InputError(f"{origin}: must be one value")
         parsed = read["value"]

@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 from rich.console import Console
 
+from partialslip.errors import InputError
 from partialslip.judge import Outcome
 from partialslip.origin import versions
 from partialslip.output.csv import csv_text
@@ -15,6 +16,7 @@ from partialslip.output.files import write_texts
 from partialslip.output.json import json_text
 from partialslip.output.tables import print_table
 from partialslip.report import rows
+from partialslip.strictjson import decoded
 from partialslip.verify.case import CaseVerdict, conclusions
 from partialslip.verify.entry import Settings
 
@@ -86,8 +88,8 @@ def write_verdicts(folder: Path, settings: Settings, verdicts: Verdicts, finishe
 def was_finished(folder: Path) -> bool:
     """Return whether ``folder`` holds the verdicts of a finished run."""
     try:
-        found = msgspec.json.decode((folder / _FILE).read_bytes(), type=_Finished)
-    except (OSError, ValueError, RecursionError):
+        found = decoded((folder / _FILE).read_bytes(), _Finished, _FILE)
+    except (OSError, InputError):
         return False
     return found.schema == SCHEMA and found.finished
 

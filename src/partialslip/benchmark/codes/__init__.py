@@ -14,7 +14,7 @@ from partialslip.benchmark.codes.solved import Solved
 from partialslip.benchmark.measured import answer_of
 from partialslip.benchmark.problem import Problem, read_problems
 from partialslip.benchmark.submission import META, Answer, Meta, Rung, Submission, read_submission, write_submission
-from partialslip.errors import InputError, MissingLibraryError, PartialslipError
+from partialslip.errors import InputError, MissingLibraryError, PartialslipError, one_line
 from partialslip.origin import made_now
 from partialslip.scene import Scene
 
@@ -123,7 +123,7 @@ def _solved(code: Code, scene: Scene) -> Solved | None:
 
 def _answer(problem: Problem, solved: Solved) -> Answer:
     values = answer_of(problem, solved.result).values if solved.result else {}
-    return Answer(values, solved.cpu_s, solved.unknowns, solved.memory_mb, solved.why)
+    return Answer(values, solved.cpu_s, solved.unknowns, solved.memory_mb, one_line(solved.why))
 
 
 def _kept(meta: Meta, problems: Mapping[str, Problem], folder: Path | None) -> dict[str, Answer]:

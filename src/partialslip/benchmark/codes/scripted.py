@@ -7,6 +7,8 @@ from importlib.resources import as_file, files
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import msgspec
+
 from partialslip.benchmark.codes.process import LONGEST, python_with, ran
 from partialslip.benchmark.codes.solved import Solved
 from partialslip.errors import InputError
@@ -14,8 +16,16 @@ from partialslip.export.path import Step
 from partialslip.scene import Scene
 from partialslip.score.method import scored
 from partialslip.score.read import read
+from partialslip.strictjson import decoded
 
 TABLE = "table.csv"
+
+
+class _Told(msgspec.Struct):
+    """Last line that a script prints: the step in which the code gave up, if it did, and the number of unknowns."""
+
+    gave_up: str | None
+    unknowns: int | None
 
 
 class Host(NamedTuple):
@@ -59,11 +69,13 @@ def solved(host: Host, scene: Scene, parameters: Mapping[str, Any], folder: Path
     last = (done.text.strip().splitlines() or [""])[-1]
     if done.code or not last.startswith("{"):
         return failed(f"failed: {last[:200]}")
-    told = json.loads(last)
-    if told["gave_up"]:
-        return failed(f"did not converge in step {told['gave_up']!r}", told["unknowns"])
+    unknowns = None
     try:
+        told = decoded(last, _Told, "last line")
+        unknowns = told.unknowns
+        if told.gave_up:
+            return failed(f"did not converge in step {told.gave_up!r}", unknowns)
         result = scored(scene, read(folder / TABLE, scene), "", TABLE)
     except InputError as error:
-        return failed(f"no results: {error}", told["unknowns"])
-    return Solved(result, "", told["unknowns"], done.cpu_s, done.memory_mb)
+        return failed(f"no results: {error}", unknowns)
+    return Solved(result, "", unknowns, done.cpu_s, done.memory_mb)

@@ -1,6 +1,5 @@
 """Errors against CPU seconds, over a ladder of settings of every method."""
 
-import json
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -22,6 +21,7 @@ from partialslip.report import Record
 from partialslip.result.record import ResultRecord
 from partialslip.scene import Scene
 from partialslip.scene.reading import parse_scene
+from partialslip.strictjson import decoded
 
 SETTING = (
     "setting: accuracy asked of a, m and n, as a fraction of a (adapted meshes, march), or element size h (uniform "
@@ -192,6 +192,24 @@ def _method(run: Record) -> ResultRecord:
     return next((found for name, found in run.methods.items() if name != "exact"), run.methods["exact"])
 
 
+class _Scene(msgspec.Struct):
+    scene: str
+
+
+class _Peer(_Scene):
+    """Result of another code; further keys are allowed."""
+
+    method: str
+    setting: str
+    element_size: float
+    dofs: int
+    errors: dict[str, float | None]
+    cpu_s: float
+    process_cpu_s: float
+    wall_s: float
+    peak_rss_mb: float
+
+
 def read_peers(path: Path, scene: str) -> list[Point]:
     """Read other codes' results for ``scene`` from the file ``path``, one JSON object per line.
 
@@ -209,27 +227,23 @@ def read_peers(path: Path, scene: str) -> list[Point]:
     except InputError as error:
         raise InputError(f"--peers {error}") from None
     for number, line in enumerate(text.splitlines(), start=1):
-        try:
-            data = json.loads(line)
-            if data["scene"] == scene:
-                found.append(
-                    Point(
-                        series=f"{data['method']}, {_short(str(data['setting']))}",
-                        setting=f"h = {float(data['element_size']):g} a",
-                        errors={key: float(data["errors"][key]) for key in KEYS if data["errors"].get(key) is not None},
-                        cpu_s=float(data["cpu_s"]),
-                        process_s=float(data["process_cpu_s"]),
-                        report_s=0.0,
-                        wall_s=float(data["wall_s"]),
-                        peak_rss_mb=float(data["peak_rss_mb"]),
-                        phases={},
-                        counts={"dofs": int(data["dofs"])},
-                    )
+        told = f"--peers {path}: line {number}: must be a JSON result of another code, see benchmarks/peers"
+        if decoded(line, _Scene, told).scene == scene:
+            peer = decoded(line, _Peer, told)
+            found.append(
+                Point(
+                    series=f"{peer.method}, {_short(peer.setting)}",
+                    setting=f"h = {peer.element_size:g} a",
+                    errors={key: off for key in KEYS if (off := peer.errors.get(key)) is not None},
+                    cpu_s=peer.cpu_s,
+                    process_s=peer.process_cpu_s,
+                    report_s=0.0,
+                    wall_s=peer.wall_s,
+                    peak_rss_mb=peer.peak_rss_mb,
+                    phases={},
+                    counts={"dofs": peer.dofs},
                 )
-        except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
-            raise InputError(
-                f"--peers {path}: line {number}: must be a JSON result of another code, see benchmarks/peers ({error})"
-            ) from None
+            )
     return found
 
 

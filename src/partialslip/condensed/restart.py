@@ -1,0 +1,85 @@
+"""What is known of the state in which a path begins, and of the state in which it ends.
+
+What q is off by when a path begins stays where nothing slips, and goes where points slip: under Coulomb friction at
+given pressure two solutions under the same loads never move apart, in the norm of the elastic energy. The error at the
+beginning is therefore added in full to that of the path.
+
+q2 - q1 of a steady cycle, and with it the stick zone, does not depend on where the path began. While q still changes
+from cycle to cycle, about as large a part of the error gets into q2 - q1 as q changes by, in f p0
+(measured: restarts against the whole path). The ends follow as their bars follow that of q.
+"""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.bars import BARS, LEAST_SHEAR
+from partialslip.condensed.history import History, last_cycle_change
+from partialslip.condensed.step_errors import Errors
+from partialslip.result.state import State
+
+_ANOTHER = 0.25  # relative L2 difference of pressures of two contacts; shear of unlike bodies changes p by a tenth
+_UNKNOWN = "the error of the state at the beginning is not known: the estimates leave it out"
+
+
+def begun(
+    errors: Mapping[str, float],
+    history: History | None,
+    weights: Array,
+    f: float,
+    start: State | None,
+    forces: Callable[[State], Array],
+) -> tuple[Errors, tuple[str, ...]]:
+    """Errors of q1, q2 and q (relative L2), m and n (in a) due to that of the state ``start``, and notes on what they
+    leave out.
+
+    Parameters
+    ----------
+    errors : mapping of str to float
+        Estimated errors of the path itself; without any there are no others.
+    history : History or None
+    weights : (n,) array
+        Factors that turn tractions at the nodes of the history into forces.
+    f : float
+        Coefficient of friction.
+    start : State or None
+    forces : callable
+        ``forces(state) -> (n,)``: normal forces of a state on the nodes of the history.
+    """
+    if not (start and history):
+        return {}, ()
+    here, pressed = history.end[1] / f, _norm(history.bound, weights) / f
+    notes: tuple[str, ...] = ()
+    if (other := _norm(forces(start) - here, weights) / _norm(here, weights)) > _ANOTHER:
+        notes = (f"p of the state at the beginning is off by {other:.0%}: it seems to be the state of another contact",)
+    if start.q_error is None:
+        return {}, (*notes, _UNKNOWN) if errors else notes
+    if not errors:
+        return {}, notes
+    norms = _norms(history, weights)
+    shares = {key: start.q_error * pressed / norm for key, norm in norms.items() if norm > 0}
+    if "q" in shares:
+        largest = float((history.bound / weights).max())  # f p0
+        shares["q"] *= min((last_cycle_change(history, weights, f, largest / f) or 0.0), 1.0)
+        shares |= dict.fromkeys("mn", shares["q"] / BARS["q"])
+    return {key: share for key, share in shares.items() if key in errors}, notes
+
+
+def known_to(errors: Mapping[str, float], history: History, weights: Array, f: float) -> float | None:
+    """Error of q at the end of the path, its L2 norm relative to that of p, from all ``errors`` of q1 and q2; None if
+    these are not known. Arguments as for :func:`begun`."""
+    pressed = _norm(history.bound, weights) / f
+    norms = _norms(history, weights)
+    return max((errors[key] * norms[key] / pressed for key in ("q1", "q2") if key in errors), default=None)
+
+
+def _norms(history: History, weights: Array) -> Errors:
+    """L2 norms of q1, q2 and q, as errors are relative to them."""
+    least = LEAST_SHEAR * _norm(history.bound, weights)
+    forces = {"q1": history.q1, "q2": history.q2, "q": history.change / 2}
+    return {key: max(_norm(each, weights), least) for key, each in forces.items()}
+
+
+def _norm(forces: Array, weights: Array) -> float:
+    return float(np.linalg.norm(forces / np.sqrt(weights)))

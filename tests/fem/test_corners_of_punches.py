@@ -1,0 +1,38 @@
+"""Elements grow near the ends of zones as fast as tractions vary there: over a corner, if the punch has one."""
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip.verify.hard_cases.scenes import hard_scene
+from partialslip_fem import goals
+
+FAMILY = 512
+
+
+def compared(scene):
+    outcome = partialslip.run(scene)
+    return outcome.results["fem"].estimate, outcome.comparisons["fem"]
+
+
+def drawn(number):
+    """Corners of 6e-4 to 0.2 of the contact, without slip that reverses."""
+    random = np.random.default_rng([FAMILY, number])
+    Qf, width = float(random.uniform(0.1, 0.85)), 10 ** float(random.uniform(-3.2, -0.7))
+    return hard_scene(f"corner-{number}", Qf, float(random.uniform(0, 3)) * Qf, flat=1 - width)
+
+
+@pytest.mark.parametrize("number", [0, *(pytest.param(number, marks=pytest.mark.slow) for number in range(1, 24))])
+def test_random_corners(number):
+    """No bar is missed, and no error is more than twice the estimate."""
+    estimate, found = compared(drawn(number))
+    assert found.passed, found.missed
+    assert all(error <= 2 * estimate[key] for key, error in found.errors.items() if key in estimate and error)
+
+
+@pytest.mark.fault
+def test_corners_that_meshes_take_for_wide_are_seen(monkeypatch):
+    """Deliberate fault: growth near the ends as where tractions vary over the contact half-width."""
+    scene = hard_scene("sharp-0.99", 0.4, 4.0, flat=0.99)
+    monkeypatch.setattr(goals, "_corner", lambda *_: np.inf)
+    assert "p" in {text.partition(":")[0] for text in compared(scene)[1].missed}
