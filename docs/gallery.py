@@ -5,7 +5,7 @@ import textwrap
 from pathlib import Path
 
 import partialslip
-from partialslip.report import rows
+from partialslip.report import answer, rows
 from partialslip.report.figure import traction_svg
 from partialslip.result import Result
 from partialslip.run import Run
@@ -46,7 +46,7 @@ def main(folder: Path) -> None:
     (folder / "gallery").mkdir(parents=True, exist_ok=True)
     page = _HEAD
     for name, scene in scenes().items():
-        run = partialslip.run(partialslip.load_scene(scene))
+        run = partialslip.run(partialslip.load_scene(scene), stresses=True)
         page += entry(name, scene, run)
         (folder / "gallery" / f"{name}.svg").write_text(traction_svg(run), "utf-8")
     (folder / "gallery.md").write_text(page, "utf-8")
@@ -59,9 +59,10 @@ def scenes() -> dict[str, str]:
 
 
 def entry(name: str, scene: str, run: Run) -> str:
-    """Section of a run: command, errors, limits, slip and figure, in Markdown."""
+    """Section of a run: command, answer, errors, limits, slip and figure, in Markdown."""
     title = run.scene.title.rstrip(".")
-    lines = [rows.units(run), *(table(run, each) for each in run.comparisons)]
+    found = [answer.heading(run), "\n".join(f"- {quantity}: {value}" for quantity, value in answer.answers(run))]
+    lines = [*found, rows.units(run), *(table(run, each) for each in run.comparisons)]
     facts = fact(run.results[run.reference or "fem"])
     return _ENTRY.format(name=name, title=title, scene=scene, table="\n\n".join(lines), facts=facts)
 

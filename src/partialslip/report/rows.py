@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from partialslip.judge import NO_BAR, Comparison, Outcome, Verdict
+from partialslip.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
 from partialslip.plan import Plan
 from partialslip.result import Cost, Result
 from partialslip.run import Run
@@ -70,7 +70,7 @@ def _telling(verdicts: list[Verdict]) -> list[Verdict]:
     if "q" in known:
         told |= {key for key in ("q1", "q2") if key in known and numbers(known[key]) == numbers(known["q"])}
     if any(verdict.bar is not None for verdict in verdicts):
-        told |= {verdict.quantity for verdict in verdicts if verdict.reason == NO_BAR}
+        told |= {verdict.quantity for verdict in verdicts if verdict.reason == NO_BAR or verdict.quantity not in BARS}
     return [each for each in verdicts if each.quantity not in told or each.outcome is Outcome.MISSED]
 
 
@@ -107,7 +107,8 @@ def unjudged(comparison: Comparison) -> list[str]:
     """Return quantities that exist and usually have a bar, but are not judged, one line per reason."""
     reasons: dict[str, list[str]] = {}
     for verdict in comparison.verdicts:
-        if verdict.outcome is Outcome.NOT_JUDGED and verdict.reason != NO_BAR and verdict.known:
+        usual = verdict.quantity in BARS or verdict.quantity == "regime"
+        if verdict.outcome is Outcome.NOT_JUDGED and usual and verdict.reason != NO_BAR and verdict.known:
             reasons.setdefault(verdict.reason, []).append(verdict.quantity)
     return [f"not judged: {', '.join(quantities)}: {reason}" for reason, quantities in reasons.items()]
 
