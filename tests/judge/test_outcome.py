@@ -7,6 +7,7 @@ from rule import STICKS, asks_every_question, verdicts
 
 from partialslip.bars import BARS
 from partialslip.judge import NO_BAR, Conclusion, Outcome, Verdict, conclude, of_run, together
+from partialslip.judge import outcome as module
 from partialslip.judge.outcome import headline
 
 PASSED, MISSED, NOT_JUDGED = Outcome.PASSED, Outcome.MISSED, Outcome.NOT_JUDGED
@@ -126,5 +127,32 @@ def test_a_run_passes_if_every_result_that_claims_to_hold_passes(compared, hold,
     found = of_run(compared, missed, hold)
     assert (found.outcome, found.missed) == (outcome, tuple(missed))
     assert of_run(compared, [*missed, "exact: finite: NaN"], hold).outcome is MISSED
+    if compared == {"exact": ALL}:
+        assert found.text == "not judged: no result beside the reference claims to hold"
     assert found.asked is bool(compared and NONE not in compared.values())
     assert found.unjudged == (("m", "n") if outcome is NOT_JUDGED and SOME in compared.values() else ())
+
+
+def any_passes(_):
+    """Ask for nothing: a pass in anything passes all."""
+    return ()
+
+
+def never_a_regime(_):
+    """Ask for a stick zone's ends only, whatever the regime."""
+    return ("a", "m", "n", "p", "q")
+
+
+def without_levels(verdicts, true=headline):
+    """Forget the shear at the load points."""
+    return tuple(key for key in true(verdicts) if key not in ("q1", "q2"))
+
+
+@pytest.mark.fault
+@pytest.mark.parametrize("fault", [any_passes, never_a_regime, without_levels])
+def test_a_rule_that_forgets_a_question_is_caught(fault, monkeypatch):
+
+    asks_every_question()
+    monkeypatch.setattr(module, "headline", fault)
+    with pytest.raises(AssertionError):
+        asks_every_question()

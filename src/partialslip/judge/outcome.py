@@ -51,7 +51,9 @@ class Conclusion:
             return "missed: " + "; ".join(self.missed)
         if self.outcome is Outcome.PASSED:
             return "all bars met"
-        return f"not judged: {', '.join(self.unjudged)}" if self.asked else "no bars"
+        if not self.asked:
+            return "no bars"
+        return f"not judged: {', '.join(self.unjudged) or 'no result beside the reference claims to hold'}"
 
     @property
     def code(self) -> int:
