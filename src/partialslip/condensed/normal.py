@@ -46,9 +46,9 @@ def press(
         angle = angle + step if low < angle + step < high else (low + high) / 2
         found = solve_bounded(normal, angle * arms - gap, *free, found.sides)
         iterations, changes = iterations + found.iterations, changes + found.changes
-    lever = float(np.abs(arms) @ found.x)
-    imbalance = max(found.imbalance, abs(float(arms @ found.x) - moment) / lever * P)
-    return replace(found, imbalance=imbalance, iterations=iterations, changes=changes), float(angle)
+    off, lever = abs(float(arms @ found.x) - moment), float(np.abs(arms) @ found.x)
+    turned = off / max(lever, abs(moment)) * P if off else 0.0  # a single node below the force has no lever
+    return replace(found, imbalance=max(found.imbalance, turned), iterations=iterations, changes=changes), float(angle)
 
 
 class Presses:

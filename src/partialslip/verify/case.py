@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.bars import BARS
-from partialslip.judge import Bar, Conclusion, Outcome, Verdict, compare, conclude, conditions, together
+from partialslip.judge import NO_BAR, Bar, Conclusion, Outcome, Verdict, compare, conclude, conditions, together
+from partialslip.judge.reference import reference as reference_of
 from partialslip.judge.reference import reference_among
 from partialslip.plan import plan
 from partialslip.result import Result
@@ -99,7 +100,8 @@ class CaseVerdict(Verdict):
     cpu_s : float
         CPU seconds, total of the method.
     waived : bool
-        Whether the quantity need not be judged: the case has no bar for it, or the result says that it does not hold.
+        Whether the quantity need not be judged: there is no bar for it, the result says that it does not hold, or no
+        solution of the scene is known to hold.
     """
 
     case: str
@@ -139,6 +141,7 @@ def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
     lost = [case.reference] if case.reference and isinstance(found[case.reference], Failure) else []
     results = {method: result for method, result in found.items() if isinstance(result, Result)}
     judging = reference_among(case.scene, results) if case.reference and not lost else None
+    unknown = reference_of(case.scene).unknown
     verdicts = []
     for method in dict.fromkeys([*lost, *case.methods]):
         result = found[method]
@@ -157,7 +160,10 @@ def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
                 requirement=f"{number_of(verdict.quantity)}: {REQUIREMENTS[requirement_of(verdict.quantity)]}",
                 iterations=iterations,
                 cpu_s=cpu_s,
-                waived=waived or case.bars.get(f"{method}.{verdict.quantity}", _BAR).value is None,
+                waived=waived
+                or verdict.quantity in unknown
+                or verdict.reason == NO_BAR
+                or case.bars.get(f"{method}.{verdict.quantity}", _BAR).value is None,
             )
             for verdict in each
         ]

@@ -9,7 +9,7 @@ import msgspec
 from rich.console import Console
 
 from partialslip.errors import InputError
-from partialslip.judge import Outcome
+from partialslip.judge import NO_BAR, Outcome
 from partialslip.origin import versions
 from partialslip.output.csv import csv_text
 from partialslip.output.files import write_texts
@@ -110,6 +110,8 @@ def print_verdicts(verdicts: Verdicts, console: Console, every: bool = True) -> 
     for (case, method), found in conclusions(listed).items():
         if found.unjudged and found.outcome is not Outcome.MISSED:
             console.print(f"{case}, {method}: {found.text}", soft_wrap=True, markup=False)
+    for reason, cases in _without_reference(listed).items():
+        console.print(f"m, n and q not judged: {', '.join(cases)}: {reason}", soft_wrap=True, markup=False)
     if closest:
         most = max(closest, key=lambda row: row.iterations)
         unjudged = sum(verdict.outcome is Outcome.NOT_JUDGED for verdict in listed)
@@ -119,6 +121,16 @@ def print_verdicts(verdicts: Verdicts, console: Console, every: bool = True) -> 
             f"{sum(row.cpu_s for row in closest):.1f} CPU s, at most {most.iterations:,} iterations ({most.case})",
             style="bold", soft_wrap=True, markup=False,
         )  # fmt: skip
+
+
+def _without_reference(verdicts: Iterable[CaseVerdict]) -> dict[str, list[str]]:
+    """Cases of which no solution is known to hold for m, by the reason."""
+    found: dict[str, list[str]] = {}
+    for verdict in verdicts:
+        unknown = verdict.waived and verdict.known and verdict.reason not in ("", NO_BAR)
+        if verdict.quantity == "m" and unknown and verdict.outcome is Outcome.NOT_JUDGED:
+            found.setdefault(verdict.reason, []).append(verdict.case)
+    return {reason: [*dict.fromkeys(cases)] for reason, cases in found.items()}
 
 
 def _csv(verdicts: Iterable[CaseVerdict]) -> str:
