@@ -49,7 +49,9 @@ def stick_zone(
     """
     room = np.divide(2 * bound - np.abs(change), bound, out=np.zeros_like(bound), where=bound > 0)
     sticks = _around(int(np.argmax(room)), x, room > _STICKS, vertices)
-    signs = (1 if change[0] > 0 else -1), (1 if change[-1] > 0 else -1)
+    # beside the stick zone, not at the outermost nodes alone: where P varies, q may not change at all there
+    beside = (change[: sticks[0]], change[sticks[-1] + 1 :]) if len(sticks) else (change[:1], change[-1:])
+    signs = _sign(beside[0], change[0]), _sign(beside[1], change[-1])
     if len(sticks) == 0:  # a stick zone smaller than a cell lies where slip changes sign
         turn = int(np.argmax(np.sign(change) != np.sign(change[0])))
         point = float(x[max(turn - 1, 0)] + x[turn]) / 2
@@ -57,6 +59,12 @@ def stick_zone(
     left = left_end(vertices, cell_forces(2 * bound - signs[0] * change), x[sticks])
     right = right_end(vertices, cell_forces(2 * bound - signs[1] * change), x[sticks])
     return StickInterval(left, max(right, left), signs)
+
+
+def _sign(changes: Array, outermost: float) -> int:
+    """Sign of the shear by which q ``changes`` (k,) in a slip zone; of the ``outermost`` change if nothing slips."""
+    total = float(changes.sum()) if len(changes) else outermost
+    return 1 if total > 0 else -1
 
 
 def _around(most: int, x: Array, sticks: npt.NDArray[np.bool_], vertices: Array) -> npt.NDArray[np.int64]:

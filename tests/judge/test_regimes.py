@@ -1,0 +1,92 @@
+"""Where the name of a regime is not judged: zones narrower than the bar, and a mean of Q next to its bound."""
+
+from dataclasses import replace
+
+import pytest
+from known import EXACT, SCENE, SHARE, A, F, P, result
+from msgspec.structs import replace as changed
+
+from partialslip.judge.comparison import _barely, _too_near
+
+NEXT = 1 - 1e-12
+
+
+def zone(left, right, regime):
+    """Return a result with the stick zone [left, right], in a."""
+    return replace(EXACT, regime=regime, stick_centre=(left + right) / 2 * A, stick_half_width=(right - left) / 2 * A)
+
+
+def widths(of):
+    (left, right), _ = of.ends
+    return -of.m - left, right - of.n
+
+
+@pytest.mark.parametrize(
+    ("names", "left", "right", "which", "words"),
+    [
+        (("small tension", "large tension"), -0.9, 0.5, min, "a slip zone is narrower"),
+        (("small tension", "sticking ends"), -0.9, 0.5, min, "a slip zone is narrower"),
+        (("no slip", "large tension"), -0.9, 0.5, min, "a slip zone is narrower"),
+        (("small tension", "stuck"), -0.9, 0.8, max, "both slip zones are narrower"),
+    ],
+)
+def test_a_zone_that_is_as_narrow_as_the_bar_tells_no_regime(names, left, right, which, words):
+    one = zone(left, right, names[0])
+    other = replace(one, regime=names[1])
+    width = which(widths(one))
+    assert _too_near(other, one, width).startswith(words)
+    assert _too_near(one, other, width).startswith(words)
+    assert _too_near(other, one, width * NEXT) == ""
+
+
+@pytest.mark.parametrize("names", [("small tension", "large tension"), ("small tension", "sliding")])
+def test_so_does_a_narrow_stick_zone(names):
+    one = zone(0.1, 0.2, names[0])
+    other = replace(one, regime=names[1])
+    assert _too_near(other, one, one.stick_half_width) == "the stick zone is narrower than the bar"
+    assert _too_near(other, one, one.stick_half_width * NEXT) == ""
+
+
+def test_what_has_no_zone_is_near_to_nothing():
+    for lost in ({"stick_centre": None}, {"stick_half_width": None}):
+        none = replace(EXACT, **lost)
+        assert _too_near(replace(none, regime="sliding"), none, 9.0) == ""
+    assert _too_near(replace(EXACT, regime="ratchets"), replace(EXACT, regime="stuck"), 9 * A) == ""
+    assert _too_near(replace(EXACT, regime="sliding"), zone(-0.9, 0.9, "stuck"), 0.2 * A) == ""
+
+
+LIMIT = F * P
+
+
+def held(mean, **limits):
+    """Return a reference with these limits of the mean of Q and a scene with this mean, N/m."""
+    Q = tuple(mean + way * SHARE * LIMIT for way in (-1, 1))
+    return replace(EXACT, limits=limits), changed(SCENE, load=changed(SCENE.load, Q=Q))
+
+
+@pytest.mark.parametrize(
+    "limits", [{"Q_mean": 0.5 * LIMIT}, {"Q_mean_least": -0.5 * LIMIT, "Q_mean_most": 0.5 * LIMIT}]
+)
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_a_mean_next_to_its_bound_tells_not_whether_it_ratchets(limits, sign):
+    for off, near in ((0.0, True), (0.009, True), (-0.009, True), (0.011, False), (-0.011, False)):
+        reference, scene = held(sign * (0.5 + off) * LIMIT, **limits)
+        found = _barely(result(regime="ratchets"), reference, scene, 0.01)
+        assert bool(found) is near, (off, sign)
+        assert not found or found.startswith("the mean of Q is nearer")
+        assert bool(_barely(result(), replace(reference, regime="ratchets"), scene, 0.01)) is near
+
+
+def test_the_mean_may_be_off_by_just_the_bar():
+    reference, scene = held(0.0, Q_mean=0.25 * LIMIT)
+    assert _barely(result(regime="ratchets"), reference, scene, 0.25)
+    assert not _barely(result(regime="ratchets"), reference, scene, 0.25 * NEXT)
+
+
+def test_only_ratchets_have_a_bound_of_the_mean():
+    reference, scene = held(0.5 * LIMIT, Q_mean=0.5 * LIMIT)
+    assert not _barely(result(), reference, scene, 0.01)
+    assert not _barely(result(regime="ratchets"), replace(reference, regime="sliding"), scene, 0.01)
+    assert not _barely(result(regime="ratchets"), replace(reference, limits={}), scene, 0.01)
+    uneven, scene = held(-0.5 * LIMIT, Q_mean_least=-0.2 * LIMIT, Q_mean_most=0.5 * LIMIT)
+    assert not _barely(result(regime="ratchets"), uneven, scene, 0.01)
