@@ -23,6 +23,14 @@ _PRESSED = {
     for key in ("fem.q1", "fem.q2")
 }
 
+# Problems in which a method knows levels less well than asked for, and says so in its estimate
+_LEVELS = {
+    "PS-19": {
+        key: Bar(5e-3, "cells that come into contact within a load step lock in shear from its end on: first order")
+        for key in ("march.q1", "march.q2")
+    }
+}
+
 Maker = Callable[[], Case]
 Makers = Mapping[str, Maker]
 
@@ -66,7 +74,9 @@ def book() -> list[Case]:
         reference = "" if scene.finite else next(known for known in REFERENCES if known in methods)
         if unlike:  # the load steps of coupled bodies are as asked for
             scene = scene.replace(fem={"accuracy": 1e-3})
-        cases.append(Case(number, scene, methods, _PRESSED if unlike else {}, reference, hard=problem.why))
+        cases.append(
+            Case(number, scene, methods, _PRESSED if unlike else _LEVELS.get(number, {}), reference, hard=problem.why)
+        )
     return cases
 
 
