@@ -68,7 +68,7 @@ def test_slip_while_pressed_is_told(f, c, pressed):
     assert any("stuck since they touched" in note for note in result.notes)
     assert (result.m / result.a, result.n / result.a) == pytest.approx((c, c), abs=1e-3)
     x, p, q = result.traction.x / result.a, result.traction.p, result.traction.q2
-    slips = (np.abs(x) > c + 0.002) & (np.abs(x) < 0.999)
+    slips = (np.abs(x) > c + 0.003) & (np.abs(x) < 0.999)  # nodes of the element at the zone's end may stick
     assert np.abs(q[slips]) == pytest.approx(f * p[slips], rel=0.02)
     assert np.array_equal(np.sign(q[slips]), -np.sign(x[slips])) or np.array_equal(np.sign(q[slips]), np.sign(x[slips]))
     assert max(result.estimate[key] for key in ("a", "m", "n")) <= 1e-3

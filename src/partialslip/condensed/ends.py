@@ -49,9 +49,8 @@ def stick_zone(
     """
     room = np.divide(2 * bound - np.abs(change), bound, out=np.zeros_like(bound), where=bound > 0)
     sticks = _around(int(np.argmax(room)), x, room > _STICKS, vertices)
-    # beside the stick zone, not at the outermost nodes alone: where P varies, q may not change at all there
-    beside = (change[: sticks[0]], change[sticks[-1] + 1 :]) if len(sticks) else (change[:1], change[-1:])
-    signs = _sign(beside[0], change[0]), _sign(beside[1], change[-1])
+    first, last = (sticks[0], sticks[-1] + 1) if len(sticks) else (0, len(x))
+    signs = _sign(change[:first], bound[:first], change[0]), _sign(change[last:][::-1], bound[last:][::-1], change[-1])
     if len(sticks) == 0:  # a stick zone smaller than a cell lies where slip changes sign
         turn = int(np.argmax(np.sign(change) != np.sign(change[0])))
         point = float(x[max(turn - 1, 0)] + x[turn]) / 2
@@ -61,10 +60,12 @@ def stick_zone(
     return StickInterval(left, max(right, left), signs)
 
 
-def _sign(changes: Array, outermost: float) -> int:
-    """Sign of the shear by which q ``changes`` (k,) in a slip zone; of the ``outermost`` change if nothing slips."""
-    total = float(changes.sum()) if len(changes) else outermost
-    return 1 if total > 0 else -1
+def _sign(changes: Array, bounds: Array, outermost: float) -> int:
+    """Sign of the changes of q (k,) in a slip zone, from the end of the contact on: of the first one that is not
+    rounding beside the friction ``bounds`` (k,), as q may not change at all where the contact comes and goes; of the
+    ``outermost`` change if nothing slips."""
+    clear = np.flatnonzero(np.abs(changes) > _STICKS * bounds)
+    return 1 if (changes[clear[0]] if len(clear) else outermost) > 0 else -1
 
 
 def _around(most: int, x: Array, sticks: npt.NDArray[np.bool_], vertices: Array) -> npt.NDArray[np.int64]:
