@@ -1,8 +1,8 @@
 """Drift: a stick zone of constant half-width c moves to the left. Scaled as in :mod:`partialslip.halfplane.shape`.
 
-The rate of q, (dsigma/4) sqrt((2c - u)/u) at the distance u from the right end, vanishes at the left end, where the zone
-takes points back that were on the friction bound. Points leave at the right end. With the travel tau = (e0 - e)/(2c)
-and h = d(lambda)/d(tau), the point that leaves at the travel t satisfies
+The rate of q, (dsigma/4) sqrt((2c - u)/u) at the distance u from the right end, vanishes at the left end, where the
+zone takes points back that were on the friction bound. Points leave at the right end. With the travel
+tau = (e0 - e)/(2c) and h = d(lambda)/d(tau), the point that leaves at the travel t satisfies
 
     (dsigma/4) int_{max(0, t-1)}^t sqrt((1 - u)/u) h(tau) d(tau) = p - q_start,     u = t - tau,
 
@@ -10,7 +10,6 @@ a Volterra equation of Abel's type. h has half-integer powers of tau at 0, and l
 """
 
 import functools
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -134,8 +133,6 @@ def _earlier(length: float, later: float, gap: float) -> Array:
     from_low, from_high, weights = spans(begin, np.full(len(since), length))
     apart = np.maximum(begin - (since + length - 1), 0.0)[:, None] + from_low  # 1 - u
     kernel = weights * np.sqrt(apart / (since[:, None] + from_high)) / length
-    result: Array = np.einsum(
-        "ik,ikj->ij", kernel, _density((begin[:, None] + from_low) / length, from_high / length)
-    )
+    result: Array = np.einsum("ik,ikj->ij", kernel, _density((begin[:, None] + from_low) / length, from_high / length))
     result[begin >= length] = 0.0
     return result

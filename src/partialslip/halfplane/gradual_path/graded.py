@@ -42,7 +42,7 @@ def shares(s: Array) -> tuple[Array, Array]:
 
 def powers(s: Array) -> Array:
     """Chebyshev polynomials on [0, 1] at ``s``, (..., DEGREES)."""
-    return np.polynomial.chebyshev.chebvander(2 * s - 1, DEGREES - 1)
+    return np.asarray(np.polynomial.chebyshev.chebvander(2 * s - 1, DEGREES - 1), dtype=np.float64)
 
 
 NODES = (1 - np.cos(np.pi * (np.arange(DEGREES) + 0.5) / DEGREES)) / 2

@@ -1,5 +1,6 @@
 """Half a cycle under gradual loads, and the steady cycle; scaled as in :mod:`partialslip.halfplane.shape`."""
 
+import itertools
 import math
 from collections.abc import Callable
 from typing import NamedTuple, Protocol
@@ -17,6 +18,10 @@ from partialslip.halfplane.traction import half_range
 
 _CYCLES = 200
 _SETTLED = 1e-13
+
+
+class LostError(ValueError):
+    """The stick zone cannot be followed by retreat and drift alone: a zone inside it slips, too."""
 
 
 class Loads(NamedTuple):
@@ -43,10 +48,18 @@ class Phase(Protocol):
     """A part of the half cycle in which the stick zone moves in one way, between two stages."""
 
     @property
-    def first(self) -> Stage: ...
+    def first(self) -> Stage:
+        """Stage at which the phase begins."""
+        ...
+
     @property
-    def last(self) -> Stage: ...
-    def at(self, progress: float) -> Stage: ...
+    def last(self) -> Stage:
+        """Stage at which the phase ends."""
+        ...
+
+    def at(self, progress: float) -> Stage:
+        """Stage at a ``progress`` within the phase."""
+        ...
 
 
 class Retreating:
@@ -57,12 +70,14 @@ class Retreating:
         self.last = self._stage(progress, zone)
 
     def at(self, progress: float) -> Stage:
+        """Stage at a ``progress`` within the phase."""
         more = progress - self.first.progress
         share = more / (self.last.progress - self.first.progress)
         (left0, right0), (left1, right1) = self.first.zone, self.last.zone
         guess = Zone(left0 + share * (left1 - left0), right0 + share * (right1 - right0))
         zone = self._retreat.zone(more * self._loads.tension, more * self._loads.shear, guess)
-        assert zone
+        if not zone:
+            raise LostError
         return self._stage(progress, zone)
 
     def _stage(self, progress: float, zone: Zone) -> Stage:
@@ -108,6 +123,7 @@ class Drifting:
         return self.travel >= self._most
 
     def at(self, progress: float) -> Stage:
+        """Stage at a ``progress`` within the phase."""
         return self._stage(progress, self._drift.travel(progress - self.first.progress, self._most))
 
     def _stage(self, progress: float, travel: float) -> Stage:
@@ -119,6 +135,7 @@ class Drifting:
 
         def added(part: Part) -> Part:
             def values(from_low: Array, from_high: Array) -> Array:
+                del from_high
                 change = self._drift.accumulated((left0 - part.low - from_low) / width, travel)
                 return change + (part.smooth(part.low + from_low) if part.smooth else 0.0)
 
@@ -126,7 +143,7 @@ class Drifting:
 
         cuts = [left0 - width * each for each in {0.0, *self._breaks, *range(1, 6)} if left < left0 - width * each]
         cuts = sorted(each for each in {left, *cuts, min(left0, right)} if left <= each <= min(left0, right))
-        back = [Part(low, high, -1.0) for low, high in zip(cuts, cuts[1:], strict=False)]
+        back = [Part(low, high, -1.0) for low, high in itertools.pairwise(cuts)]
         parts = [
             Part(-1.0, left, -1.0),
             *(added(part) for part in back),
@@ -164,7 +181,8 @@ class HalfCycle:
                 return start.less(1.0, 1.0 - from_right)
         else:
             centre = retreat.balanced(c, guess.phases[0].last.zone.centre if isinstance(guess, HalfCycle) else guess)
-            assert centre is not None
+            if centre is None:
+                raise LostError
             zone = Zone(centre - c, centre + c)
             progress = retreat.conditions(zone).tension / loads.tension
             self.phases.append(Retreating(loads, begin, -1, progress, zone))
@@ -182,11 +200,13 @@ class HalfCycle:
             near = guess.phases[-1] if isinstance(guess, HalfCycle) else None
             found = retreat.zone(*changes, near.last.zone) if isinstance(near, Retreating) else None
             found = found or retreat.follow(*changes)
-            assert found
+            if not found:
+                raise LostError
             self.phases.append(Retreating(loads, begin, 1, 1.0, found))
 
     @property
     def last(self) -> Stage:
+        """Stage at the end of the half cycle."""
         return self.phases[-1].last
 
     @property
@@ -211,8 +231,21 @@ class HalfCycle:
         return Tractions.of(q.shape, [*q.between(-1.0, low), middle, *q.between(high, 1.0)])
 
 
-def steady(loads: Loads, shape: Shape, report=None) -> HalfCycle:
-    """The steady half cycle."""
+def steady(loads: Loads, shape: Shape) -> HalfCycle:
+    """Return the steady half cycle, to which half cycles tend, where no zone inside the stick zone slips.
+
+    Parameters
+    ----------
+    loads : Loads
+        Loads under which the stick zone drifts: slip turns round on the way.
+    shape : Shape
+        Pressure.
+
+    Raises
+    ------
+    LostError
+        If retreat and drift do not lead to the end of the half cycle.
+    """
     zone = stick_zone(loads.shear / math.pi, loads.tension, shape)
 
     def half(from_low: Array, from_high: Array) -> Array:
@@ -225,16 +258,9 @@ def steady(loads: Loads, shape: Shape, report=None) -> HalfCycle:
     shares = np.append(np.geomspace(1e-4, 0.1, 12), np.linspace(0.1, 1, 64)[1:])
     tried = stick_zones(shares * loads.shear / math.pi, shares * loads.tension, shape)
     narrow = np.flatnonzero(tried.half_width < loads.least)
-    found: HalfCycle | float = float(tried.centre[narrow[0]])
-    last = math.inf
-    for number in range(_CYCLES):
-        found = HalfCycle(loads, start, found)
-        if report:
-            report(found)
-        zone = found.last.zone
-        start = -found.settled
-        change = abs(zone.centre - last)
-        last = zone.centre
-        if change < _SETTLED:
+    found = HalfCycle(loads, start, float(tried.centre[narrow[0]]))
+    for _ in range(_CYCLES):
+        before, found = found.last.zone.centre, HalfCycle(loads, -found.settled, found)
+        if abs(found.last.zone.centre - before) < _SETTLED:
             break
     return found

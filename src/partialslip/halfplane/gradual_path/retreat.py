@@ -32,10 +32,12 @@ class Zone(NamedTuple):
 
     @property
     def centre(self) -> float:
+        """Middle of the zone."""
         return (self.left + self.right) / 2
 
     @property
     def half_width(self) -> float:
+        """Half of the width of the zone."""
         return (self.right - self.left) / 2
 
 
@@ -51,8 +53,9 @@ class Conditions(NamedTuple):
 
 
 class _Side(NamedTuple):
-    """Change of q in the slip zone on one side: ``rule`` of integration, ``distance`` of its points from the stick zone,
-    ``change`` there and ``end``, the change at the end of the stick zone, and the width ``gap`` of the slip zone."""
+    """Change of q in the slip zone on one side: ``rule`` of integration, ``distance`` of its points from the stick
+    zone, ``change`` there and ``end``, the change at the end of the stick zone, and the width ``gap`` of the slip
+    zone."""
 
     rule: Rule
     distance: Array
