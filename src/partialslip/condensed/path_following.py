@@ -1,0 +1,294 @@
+"""Coulomb friction along a straight leg of the load path, exactly in time, event by event.
+
+At constant pressure the rates of all nodes are constant between two events. At an event a node reaches its bound and
+begins to slip; held nodes whose slip would turn round stick again. Each change of a node is a principal pivot
+(:class:`partialslip.condensed.tableau.Tableau`). There are no load steps, and no errors of load steps. This is
+parametric quadratic programming; the rates after an event are found by principal pivoting (Keller, 1973).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from partialslip.arrays import Array, Mask
+from partialslip.condensed.bounded import inverse
+from partialslip.condensed.tableau import Tableau
+from partialslip.errors import PartialslipError
+
+_EPS = float(np.finfo(float).eps)
+_AT = 1e-12  # distance from the bound, relative: a thousand roundings of the forces that many events add up
+_CHECKED = 64  # pivots after which the rates are checked by a product with C, at the cost of one more pivot
+_DRIFT = 1e-11  # error of the rates, relative to their sum, from which on the tableau is set up anew
+_MOST = 50  # pivots per node in a leg: a stick zone that crosses the contact moves each node in and out once
+
+
+@dataclass(frozen=True)
+class Leg:
+    """Tangential forces and slip of n nodes along a leg, on which lambda goes from 0 to 1.
+
+    Parameters
+    ----------
+    forces : (n,) array
+        Tangential forces T at the end.
+    rest : (n,) array
+        C (T - T_start) - g - shift: minus the slip.
+    path : (n,) array
+        Length of the path of slip, \\|slip\\| added up both ways.
+    lowest, highest : (n,) arrays
+        Smallest and largest forces along the leg, its ends included.
+    began, stuck : (n,) arrays
+        lambda at which a node last began to slip, and at which it last began to stick again; nan: never.
+    slips : (n,) bool array
+        Nodes that slip at the end.
+    stages : (s, n) array
+        Forces at the requested stages.
+    residual : (n,) array
+        Errors in units of force: of the displacements, by a product with C, and of the bounds.
+    imbalance : float
+        Distance of the sum of forces from the prescribed one.
+    events, pivots : int
+        Number of instants at which rates changed, and of nodes that changed between sticking and slipping.
+    """
+
+    forces: Array
+    rest: Array
+    path: Array
+    lowest: Array
+    highest: Array
+    began: Array
+    stuck: Array
+    slips: Mask
+    stages: Array
+    residual: Array
+    imbalance: float
+    events: int
+    pivots: int
+
+    @property
+    def slipped(self) -> Array:
+        """Slip along +x and along -x, (2, n)."""
+        result: Array = np.array([self.path - self.rest, self.path + self.rest]) / 2
+        return result
+
+
+class Follower:
+    """Follows straight legs of one contact in turn.
+
+    Parameters
+    ----------
+    C : (n, n) array
+        Relative compliance of the nodes, symmetric positive definite.
+    bound : (n,) array
+        f times the normal forces, > 0, constant.
+    """
+
+    def __init__(self, C: Array, bound: Array) -> None:
+        self._C, self._bound, self._diagonal = C, bound, np.diag(C).copy()
+        self._tableau = Tableau(inverse(C))
+
+    def leg(self, start: Array, g: Array, Q: float, stages: Sequence[float] = ()) -> Leg:
+        """Follow one leg.
+
+        Parameters
+        ----------
+        start : (n,) array
+            Tangential forces at the beginning, |start| <= bound.
+        g : (n,) array
+            Change of the free relative displacements over the leg, up to a rigid shift.
+        Q : float
+            Change of the sum of the forces over the leg.
+        stages : sequence of float
+            Ascending lambda in [0, 1] at which forces are returned.
+
+        Raises
+        ------
+        PartialslipError
+            If nodes change between sticking and slipping again and again, which only rounding errors can cause.
+        """
+        return _Leg(self._C, self._diagonal, self._bound, self._tableau, start, g, Q).followed(stages)
+
+
+class _Leg:
+    """A leg on its way: forces, rates, and which nodes stick.
+
+    ``sides`` (n,) are 1 and -1 at nodes that lie on the upper and the lower bound, 0 between the bounds. Slipping nodes
+    lie on a bound. Of the others, those on a bound have just been released: they may not be pushed beyond it.
+    """
+
+    def __init__(
+        self, C: Array, diagonal: Array, bound: Array, tableau: Tableau, start: Array, g: Array, Q: float
+    ) -> None:
+        self._C, self._diagonal, self._bound, self._tableau = C, diagonal, bound, tableau
+        self._start, self._g, self._Q = start, g, Q
+        count = len(bound)
+        self._forces = start.copy()
+        self._sides = np.where(np.abs(start) >= (1 - _AT) * bound, np.sign(start), 0).astype(np.int8)
+        self._at, self._rest, self._path, self._shift = 0.0, np.zeros(count), np.zeros(count), 0.0
+        self._lowest, self._highest = start.copy(), start.copy()
+        self._began, self._stuck = np.full(count, np.nan), np.full(count, np.nan)
+        self._begin()
+        self._checked = self._tableau.pivots
+        self._pivots = 0
+
+    def followed(self, stages: Sequence[float]) -> Leg:
+        wanted, states, events = [*stages], list[Array](), 0
+        while True:
+            self._settle()
+            if self._tableau.pivots - self._checked >= _CHECKED:
+                self._check()
+            node, step = self._next()
+            rate = self._rate()
+            while wanted and wanted[0] <= self._at + step:
+                states.append(self._forces + (wanted.pop(0) - self._at) * rate)
+            self._advance(rate, step)
+            if node is None:
+                break
+            self._sides[node] = 1 if rate[node] > 0 else -1
+            self._forces[node] = self._sides[node] * self._bound[node]
+            events += 1
+        return self._result(np.array(states).reshape(-1, len(rate)), events)
+
+    def _result(self, stages: Array, events: int) -> Leg:
+        change = self._forces - self._start
+        off = np.abs(self._C @ change - self._g - self._shift - self._rest) / self._diagonal
+        beyond = np.maximum(np.maximum(self._highest, -self._lowest) - self._bound, 0.0)
+        return Leg(
+            forces=self._forces,
+            rest=self._rest,
+            path=self._path,
+            lowest=self._lowest,
+            highest=self._highest,
+            began=self._began,
+            stuck=self._stuck,
+            slips=~self._tableau.sticks,
+            stages=stages,
+            residual=np.maximum(off, beyond),
+            imbalance=abs(float(change.sum()) - self._Q),
+            events=events,
+            pivots=self._pivots,
+        )
+
+    def _begin(self) -> None:
+        """Begin with the nodes that slipped last, or with none: whichever is nearer to the rates of this leg."""
+        tableau = self._tableau
+        slipping = ~tableau.sticks
+        if slipping.any():
+            if not self._sides[slipping].all():
+                tableau.restart(np.flatnonzero(slipping & (self._sides != 0)))
+            self._solve()
+            wrong = np.count_nonzero(self._room() < -self._tolerance())
+            if 2 * wrong <= np.count_nonzero(~tableau.sticks):
+                return
+            tableau.restart(np.empty(0, dtype=np.int64))
+        self._solve()
+
+    def _solve(self) -> None:
+        self._p = self._tableau.solve(self._g, self._Q)
+        self._noise = (
+            16 * _EPS * (float(np.abs(self._rate()).sum()) + (np.abs(self._g) + abs(self._p[-1])) / self._diagonal)
+        )
+
+    def _rate(self) -> Array:
+        """T' (n,)."""
+        result: Array = np.where(self._tableau.sticks, -self._p[:-1], 0.0)
+        return result
+
+    def _room(self) -> Array:
+        """What must not be negative (n,): T' away from the bound at nodes on it that stick, the rate of slip along T at
+        nodes that slip; 0 at the other nodes."""
+        result: Array = np.where(self._tableau.sticks, self._sides, -self._sides) * self._p[:-1]
+        return result
+
+    def _tolerance(self) -> Array:
+        """What of :meth:`_room` cannot be told from zero: rates that change forces by less than ``_AT`` of the bound
+        over the leg, or rounding errors."""
+        result: Array = np.maximum(self._noise, _AT * self._bound) * np.where(self._tableau.sticks, 1.0, self._diagonal)
+        return result
+
+    def _settle(self) -> None:
+        """Find which of the nodes on their bounds slip: no node is pushed beyond its bound, and none slips against its
+        traction."""
+        while True:
+            tolerance = self._tolerance()
+            room = self._room()
+            worst = int(np.argmin(room / tolerance))
+            if room[worst] >= -tolerance[worst]:
+                return
+            self._drive(worst)
+
+    def _drive(self, node: int) -> None:
+        """Change the ``node``, whose rate has the wrong sign, between sticking and slipping.
+
+        Its other rate grows from zero until the wrong one vanishes. Nodes whose rates would get a wrong sign on the way
+        change first. As C is positive definite, this ends.
+        """
+        way, total = -int(self._sides[node]), 0.0
+        while True:
+            column = self._tableau.column(node)
+            room = self._room()
+            falls = -way * np.where(self._tableau.sticks, self._sides, -self._sides) * column[:-1]
+            falls[node] = 0.0
+            blocks = (falls > 0) & (room >= -self._tolerance())
+            steps = np.divide(np.maximum(room, 0.0), falls, out=np.full(len(room), np.inf), where=blocks)
+            first = int(np.argmin(steps))
+            # the last sticking node bears the change of Q: it is relieved by the next one that sticks only
+            last = self._tableau.sticks[node] and np.count_nonzero(self._tableau.sticks) == 1
+            whole = np.inf if last else -self._p[node] / column[node] * way
+            if last and not np.isfinite(steps[first]):
+                raise PartialslipError("friction: the contact slides; |Q| must be less than f P along the leg")
+            if whole <= steps[first]:
+                total += way * whole
+                self._p += way * whole * column
+                self._pivot(node, column, total)
+                return
+            total += way * float(steps[first])
+            self._p += way * float(steps[first]) * column
+            self._pivot(first, self._tableau.column(first), 0.0)
+
+    def _pivot(self, node: int, column: Array, rate: float) -> None:
+        """Let the ``node`` slip at r' = ``rate``, or stick at T' = ``rate``."""
+        began = bool(self._tableau.sticks[node])
+        self._tableau.pivot(node, column)
+        self._p[node] = rate if began else -rate
+        (self._began if began else self._stuck)[node] = self._at
+        self._pivots += 1
+        if self._pivots > _MOST * (len(self._bound) + 1):
+            raise PartialslipError(
+                f"friction: {self._pivots:,} changes between stick and slip of {len(self._bound):,} nodes in one leg, "
+                "without an end; the compliance is ill-conditioned"
+            )
+
+    def _check(self) -> None:
+        """Set the tableau up anew if a product with C shows errors of its rates."""
+        rate, tableau = self._rate(), self._tableau
+        rest = np.where(tableau.sticks, 0.0, self._p[:-1])
+        off = np.abs(self._C @ rate - self._g - self._p[-1] - rest) / self._diagonal
+        if off.max() > _DRIFT * float(np.abs(rate).sum()):
+            tableau.restart(np.flatnonzero(~tableau.sticks))
+            self._solve()
+            self._settle()
+        self._checked = tableau.pivots
+
+    def _next(self) -> tuple[int | None, float]:
+        """The node that reaches its bound next, and the lambda up to there; None if none does in this leg."""
+        rate = self._rate()
+        bound = np.copysign(self._bound, rate)
+        moves = (rate != 0) & (self._sides * rate <= 0)
+        steps = np.divide(bound - self._forces, rate, out=np.full(len(rate), np.inf), where=moves)
+        node = int(np.argmin(steps))
+        left = 1.0 - self._at
+        return (node, max(float(steps[node]), 0.0)) if steps[node] < left else (None, left)
+
+    def _advance(self, rate: Array, step: float) -> None:
+        if step > 0:
+            slip = np.where(self._tableau.sticks, 0.0, step * self._p[:-1])
+            self._forces += step * rate
+            self._rest += slip
+            self._path += np.abs(slip)
+            self._shift += step * float(self._p[-1])
+            np.minimum(self._lowest, self._forces, out=self._lowest)
+            np.maximum(self._highest, self._forces, out=self._highest)
+            self._at += step
+            released = self._tableau.sticks & (self._bound - self._sides * self._forces > _AT * self._bound)
+            self._sides[released] = 0

@@ -1,0 +1,70 @@
+"""Principal pivots of a symmetric compliance: what the nodes answer to a unit force or slip at one node."""
+
+import numpy as np
+import scipy.linalg as la
+
+from partialslip.arrays import Array, Indices, Mask
+
+
+class Tableau:
+    """Linear answers of n nodes, of which some stick, to given rates.
+
+    With the bordered matrix A = [[C, 1], [1, 0]], rates obey A (T', -shift') = (g' + r', Q'). Known are r' = 0 at
+    sticking nodes, T' = 0 at slipping nodes, and Q'. The rows of A that belong to the sticking nodes and to the sum are
+    swept: the symmetric matrix V holds -A_ss^-1, A_ss^-1 A_sh and the Schur complement of A_ss. The unknown rates
+    p = (-T' where nodes stick, r' where they slip, shift') follow from V by a product. A node that changes between
+    sticking and slipping is a pivot: an update of rank one (Cottle, Pang and Stone, 1992, section 2.3).
+
+    Parameters
+    ----------
+    inverse : (n, n) array
+        Inverse of the symmetric positive definite compliance C.
+    """
+
+    def __init__(self, inverse: Array) -> None:
+        count = len(inverse)
+        uniform = inverse.sum(axis=1)
+        total = float(uniform.sum())
+        self._fresh = np.empty((count + 1, count + 1), order="F")
+        self._fresh[:count, :count] = np.multiply.outer(uniform / total, uniform) - inverse
+        self._fresh[count, :count] = self._fresh[:count, count] = -uniform / total
+        self._fresh[count, count] = 1 / total
+        self._V = self._fresh.copy(order="F")
+        self.sticks: Mask = np.ones(count, dtype=bool)
+        self.pivots = 0
+
+    def restart(self, slipping: Indices) -> None:
+        """Let the nodes ``slipping`` slip and all others stick, free of the rounding errors of earlier pivots."""
+        self._V = self._fresh.copy(order="F")
+        self.sticks = np.ones(len(self.sticks), dtype=bool)
+        self.pivots = 0
+        if len(slipping):
+            V, rows = self._V, self._fresh[slipping]
+            solved = np.linalg.solve(rows[:, slipping], rows)
+            V -= rows.T @ solved
+            V[slipping] = -solved
+            V[:, slipping] = -solved.T
+            V[np.ix_(slipping, slipping)] = -np.linalg.inv(rows[:, slipping])
+            self.sticks[slipping] = False
+
+    def column(self, node: int) -> Array:
+        """Change of p (n + 1,) by a unit slip rate r' of the ``node`` if it sticks, or a unit T' if it slips."""
+        result: Array = np.concatenate([self._V[node, :node], self._V[node:, node]])
+        return result
+
+    def pivot(self, node: int, column: Array) -> None:
+        """Let the ``node`` slip if it sticks, and stick if it slips; ``column`` is :meth:`column` of it."""
+        at = column[node]
+        self._V = la.blas.dsyr(-1 / at, column, a=self._V, lower=1, overwrite_a=1)
+        turned = column / (-at if self.sticks[node] else at)
+        turned[node] = -1 / at
+        self._V[node, :node], self._V[node:, node] = turned[:node], turned[node:]
+        self.sticks[node] = not self.sticks[node]
+        self.pivots += 1
+
+    def solve(self, g: Array, Q: float) -> Array:
+        """Unknown rates p (n + 1,) under ``g`` (n,), the rate of the free displacements, and ``Q``, that of the sum."""
+        known = np.append(np.where(self.sticks, g, 0.0), Q)
+        p: Array = la.blas.dsymv(1.0, self._V, known, lower=1)
+        p[:-1] -= np.where(self.sticks, 0.0, g)
+        return p

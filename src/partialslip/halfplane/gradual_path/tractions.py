@@ -1,0 +1,64 @@
+"""A distribution of shear traction: on the friction bound in slip zones, interpolated elsewhere. Scaled as in
+:mod:`partialslip.halfplane.shape`, tractions by f p0."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.halfplane.gradual_path.graded import Smooth
+from partialslip.halfplane.shape import Shape
+
+
+class Part(NamedTuple):
+    """From ``low`` to ``high`` the traction is ``factor`` p plus a ``smooth`` rest: without a rest, the point is on the
+    friction bound."""
+
+    low: float
+    high: float
+    factor: float
+    smooth: Smooth | None = None
+
+
+@dataclass(frozen=True)
+class Tractions:
+    """Shear traction over [-1, 1] in ``parts``, from left to right."""
+
+    shape: Shape
+    parts: tuple[Part, ...]
+
+    @classmethod
+    def of(cls, shape: Shape, parts: Iterable[Part]) -> "Tractions":
+        """Tractions of ``parts``, of which empty ones are dropped."""
+        return cls(shape, tuple(part for part in parts if part.high > part.low))
+
+    @property
+    def breaks(self) -> list[float]:
+        """Places at which parts meet."""
+        return [part.low for part in self.parts[1:]]
+
+    def less(self, factor: float, x: Array) -> Array:
+        """``factor`` p - q at ``x``, without cancellation where q is on the bound."""
+        result = np.zeros_like(x)
+        p = self.shape.pressure(x)
+        which = np.searchsorted(self.breaks, x)
+        for number, part in enumerate(self.parts):
+            here = which == number
+            if here.any():
+                result[here] = (factor - part.factor) * p[here] - (part.smooth(x[here]) if part.smooth else 0.0)
+        return result
+
+    def __call__(self, x: Array) -> Array:
+        """q at ``x``."""
+        return -self.less(0.0, x)
+
+    def __neg__(self) -> "Tractions":
+        negated = (Part(low, high, -factor, None if rest is None else -rest) for low, high, factor, rest in self.parts)
+        return Tractions(self.shape, tuple(negated))
+
+    def between(self, low: float, high: float) -> list[Part]:
+        """Parts between two places."""
+        cut = (part._replace(low=max(part.low, low), high=min(part.high, high)) for part in self.parts)
+        return [part for part in cut if part.high > part.low]
