@@ -235,9 +235,9 @@ def run(
         results[name] = _slid(what, _method(method, keep, allowance)(what, its, _told_by(name, progress), start))
     for result in results.values():
         effects.accept(result.regime)
-    # no bars for finite bodies or for a fixed element size: there is no reference; none for effects forced off: the
-    # error measures the effect
-    judged = not scene.finite and scene.fem.size is None and not effects.missing
+    # no bars for finite and unlike bodies or for a fixed element size: there is no reference; none for effects forced
+    # off: the error measures the effect
+    judged = not scene.finite and scene.material.alike and scene.fem.size is None and not effects.missing
     reached = results["fem"].settings.get("accuracy") if allowance and "fem" in results else None
     accuracy = min(float(reached or scene.fem.accuracy), LARGEST)
     return compared(scene, effects, results, accuracy if judged else None)

@@ -14,7 +14,7 @@ import partialslip
 from partialslip.batch.ledger import scene_content
 from partialslip.cli import main
 from partialslip.errors import InputError
-from partialslip.report import rows
+from partialslip.report import answer, rows
 from partialslip.report.files import surface_csv, tractions_csv
 from partialslip.result.fields import SurfaceStress
 from partialslip.scene import Scene
@@ -319,7 +319,10 @@ def test_the_same_numbers_in_another_system_give_the_same_numbers(kind):
 def test_tables_name_the_units(pair):
     run = pair[1]
     result, units = run.results["exact"], run.scene.units
-    assert rows.units(run) == (f"exact: f p0 = {0.3 * result.p0 / 1e6:.6g} MPa, P = 135.75 N/mm")
+    assert rows.units(run) == f"exact: f p0 = {0.3 * result.p0 / 1e6:.6g} MPa, P = 135.75 N/mm"
+    found = dict(answer.answers(run))
+    assert found["a"] == f"{result.a * 1e3:.7g} mm"
+    assert found["p0"] == f"{result.p0 / 1e6:.7g} MPa"
     facts = rows.facts(result, units=units)
     assert "slides at |Q| = 40.73 N/mm" in facts["limits"]
     assert facts["slip"].endswith(f"{result.slip.dissipated:.5g} N mm/mm dissipated a cycle")

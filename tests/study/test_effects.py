@@ -307,7 +307,7 @@ def test_an_effect_that_matters_is_measured(tmp_path, capsys):
     assert main(["run", *arguments]) == 0
     printed = capsys.readouterr().out
     assert "forced off, though sigma goes between" in " ".join(printed.split())
-    assert "\nno bars: forced off: tension" in printed
+    assert "no bars: forced off: tension" in printed
     assert "all bars met" not in printed
     data = json.loads((tmp_path / "results.json").read_text("utf-8"))
     whole, without = (partialslip.run(load_scene("fretting-aluminium", change), ["exact"]).results["exact"]
