@@ -9,8 +9,9 @@ import time
 import numpy as np
 
 from partialslip.arrays import Array
+from partialslip.condensed.constant import march
 from partialslip.condensed.ends import stick_zone as read_zone
-from partialslip.condensed.history import History, march
+from partialslip.condensed.history import History
 from partialslip.condensed.path import Path
 from partialslip.condensed.threads import one_thread
 from partialslip.halfplane.cells import compliance, forces, graded

@@ -13,7 +13,7 @@ from scipy.optimize import root
 from scipy.special import ellipe, ellipk, elliprf, elliprj
 
 import partialslip
-from partialslip.halfplane import contact, stick_zone
+from partialslip.halfplane import contact, one_step_zone
 
 F = 0.5
 REPEATS = 3
@@ -80,7 +80,7 @@ def timed(pressed, dQ, dsigma):
     times = []
     for _ in range(REPEATS):
         start = time.perf_counter()
-        zones = stick_zone(pressed, F, dQ, dsigma)
+        zones = one_step_zone(pressed, F, dQ, dsigma)
         times.append(time.perf_counter() - start)
     return zones, times
 

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from partialslip.halfplane import Contact, adhered, hysteresis
+from partialslip.halfplane import Contact, adhered, hysteresis, one_step_zone
+from partialslip.halfplane import stick_zone as stick_zone_under
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range
@@ -32,6 +33,7 @@ def main(folder: Path) -> None:
         "large-tension": svg(lambda figure: _tractions(figure, 0.3, 4.0), _SIZE),
         "loop": svg(_loops, _SIZE),
         "ends": ends_svg(stick_map()),
+        "turning": svg(_turning, _SIZE),
     }
     for name, text in figures.items():
         (folder / f"{name}.svg").write_text(text, "utf-8")
@@ -64,6 +66,22 @@ def _tractions(figure: "Figure", Qf: float, sf: float) -> None:
     axes.set(ylabel="q/(f p0)", title=f"ΔQ/(2 f P) = {Qf:g}, Δσ/(f p0) = {sf:g}")
     axes.title.set_fontsize(10)
     _finish(axes)
+
+
+def _turning(figure: "Figure") -> None:
+    """Ends of the stick zone under growing tension: of a single step, and of gradual loads."""
+    panels = figure.subplots(1, 2, sharey=True)
+    for axes, Qf in zip(panels, (0.55, 0.75), strict=True):
+        dQ, sf = Qf * np.pi, np.linspace(0, 8, 81)
+        once, gradual = one_step_zone(_UNIT, 1.0, dQ, sf), stick_zone_under(_UNIT, 1.0, dQ, sf[4::8])
+        axes.plot(sf, once.n, color="black", lw=1, ls="--", label="n/a, one step")
+        axes.plot(sf, -once.m, color="black", lw=1, label="-m/a, one step")
+        axes.plot(sf[4::8], gradual.n, "s", color="black", ms=4, label="n/a, gradual")
+        axes.plot(sf[4::8], -gradual.m, "o", color="black", ms=4, label="-m/a, gradual")
+        axes.set(xlabel="Δσ/(f p0)", title=f"ΔQ/(2 f P) = {Qf:g}", ylim=(-1.05, 1.05))
+        axes.title.set_fontsize(10)
+    panels[0].set_ylabel("x/a")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower left", ncols=4, frameon=False)
 
 
 def _loops(figure: "Figure") -> None:

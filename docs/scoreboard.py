@@ -1,15 +1,24 @@
-"""Regenerate the page of the scoreboard: python docs/scoreboard.py writes scoreboard.md from benchmarks/submissions."""
+"""Regenerate the page of the scoreboard: python docs/scoreboard.py writes scoreboard.md from benchmarks/submissions and
+benchmarks/peers/increments.jsonl."""
 
+import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from textwrap import fill
+from typing import Any
+
+import numpy as np
 
 from partialslip.benchmark import Problem, Submission, read_problems, read_submission, scoreboard, standing
 from partialslip.benchmark.measured import GROUPS
 from partialslip.benchmark.problem import EDITION
+from partialslip.halfplane import contact
+from partialslip.halfplane.turning import half_cycle
 
 DOCS = Path(__file__).parent
 SUBMISSIONS = DOCS.parent / "benchmarks" / "submissions"
+INCREMENTS = DOCS.parent / "benchmarks" / "peers" / "increments.jsonl"
+PLACE = -0.8  # x/a, as in benchmarks/peers/increments.py
 
 _HEAD = """\
 # Scoreboard
@@ -57,6 +66,38 @@ an error of 1 to 2 % is that of the elements.
   those of q alone.
 """
 
+_ROW = "| " + " | ".join(["{}"] * 10) + " |"
+
+_TURNS = """
+## How many increments: PS-27
+
+In PS-27 slip turns round on the way from load point to load point: the stick zone moves to the left and takes points
+back that have slipped ([theory](theory.md), section 7). The state at a load point is that of loads that change
+gradually; one increment from load point to load point has another one. Codes count slip from the start of an increment,
+so the number of increments decides. The elements are those of the table above.
+
+{table}
+
+- **m/a** is read as `partialslip score` reads it, from points at which |dq| begins to leave the friction bound like a
+  square root. At an end that has drifted it does not: 2 f p - |dq| grows like (x + m)^(3/2), and what is there is
+  easily taken for the scatter of a slip zone. The grades above are of this reading.
+- **m/a, drifted** is a straight line through (1 - |dq|/(2 f p))^(2/3) at the points where the bracket is between 0.01
+  and 0.17, extended to zero. A dash: fewer than two points tell. From exact tractions it is 0.01 too large.
+- **room** is 1 - |dq|/(2 f p) at x = -0.8 a, a point that one step lets slip; above 1, dq has the wrong sign. It needs
+  no reading of ends.
+
+**What to learn from it.** With one increment per half cycle, converged and without a message, CalculiX's mortar
+contact and GetFEM find the state of one step: m is 0.71 a where gradual loads have 0.89 a, and no finer mesh mends
+that. With 8 increments the point at -0.8 a sticks again, with three quarters of its room; with 64 the room is right to
+5 %, and m, read for a drifted end, to 0.01 a, which is what this reading allows. n looks right at any number of
+increments, and so gives no warning. Where slip may turn round (large tension with Q_f above 0.57 always does), compare
+8 increments with 64, not with 1, and look at the traction just inside the zone rather than at its end. CalculiX with
+penalties gives up at the third load point whatever the increments, and Kratos with 1 and 8. With 64 Kratos converges,
+on elements twice as wide, to a wrong state, without a message: dq has the wrong sign at -0.8 a.
+
+`python benchmarks/peers/increments.py` measures the rows, for the codes that are installed.
+"""
+
 
 def page() -> str:
     """Content of the page."""
@@ -65,7 +106,44 @@ def page() -> str:
     own = [each for each in found if each.meta.code.startswith("partialslip ")]
     others = [each for each in found if each not in own]
     tables = [_table(problems, own, "a"), _table(problems, others, chr(ord("a") + len(own)))]
-    return _HEAD.format(edition=EDITION) + "\n".join([*tables, _standings([*own, *others])]) + _WRONG
+    runs = [json.loads(line) for line in INCREMENTS.read_text("utf-8").splitlines()]
+    table = _increments(problems["PS-27"], runs)
+    return _HEAD.format(edition=EDITION) + "\n".join([*tables, _standings([*own, *others])]) + _WRONG + table
+
+
+def _increments(problem: Problem, runs: Sequence[Mapping[str, Any]]) -> str:
+    """Table of ``runs`` with a few or many increments, between what is right and what one step gives, and what it
+    says."""
+    scene, targets = problem.scene, problem.targets
+    pressed, f = contact(scene), scene.friction.f
+    found = half_cycle(pressed, f, scene.load.dQ, scene.load.dsigma)
+    m, n = (targets[key].value / targets["a"].value for key in "mn")
+    bound = 2 * np.sqrt(1 - PLACE**2)
+    right, wrong = (1 - abs(float(way.traction(np.array([PLACE]))[0])) / bound for way in (found, found.once))
+    exact = {"m": m, "n": n, "m_drift": m, "room": right}
+    step = {"m": -found.once.zone.left, "n": found.once.zone.right, "m_drift": None, "room": wrong}
+    rows = [("gradual loads, exactly", "", exact), ("one step, exactly", 1, step)]
+    runs = sorted(runs, key=lambda run: (run["code"], run["increments"] or 0))
+    rows += [(run["code"], run["increments"] or "own choice", run) for run in runs]
+    heads = "code", "increments", "m/a", "error", "m/a, drifted", "error", "n/a", "error", "room", "CPU s"
+    lines = [_ROW.format(*heads)]
+    lines.append("|---" * 10 + "|")
+    for name, count, run in rows:
+        if "why" in run:
+            cells = ["*none*", *["–"] * 6]
+        else:
+            ends = (("m", m), ("m_drift", m), ("n", n))
+            cells = [cell for key, value in ends for cell in _end(run.get(key), value)]
+            cells.append(f"{run['room']:.3f}".replace("-0.000", "0.000"))
+        lines.append(_ROW.format(name, count, *cells, f"{run['cpu_s']:.3g}" if "cpu_s" in run else ""))
+    return _TURNS.format(table="\n".join(lines))
+
+
+def _end(found: float | None, value: float) -> tuple[str, str]:
+    """An end that was ``found``, in a, and its error."""
+    if found is None:
+        return "–", "–"
+    return f"{found:.4f}", f"{abs(found - value):.1e}" if found != value else "0"
 
 
 def _standings(found: Sequence[Submission]) -> str:

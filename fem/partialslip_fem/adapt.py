@@ -16,7 +16,7 @@ from partialslip.result import Clock
 from partialslip_fem import estimate, goals, solving
 from partialslip_fem.bodies import Grading, Kept
 from partialslip_fem.expense import Expense, again
-from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_first_mesh, too_narrow
+from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_first_mesh, too_narrow, widened
 from partialslip_fem.goals import Goal, course, gaps, reached, worst
 from partialslip_fem.mesh_solution import Adapted
 from partialslip_fem.problem import Problem
@@ -89,11 +89,12 @@ class _Refinement:
     """
 
     def __init__(self, problem: Problem, accuracy: float, width: float, clock: Clock, keep: Kept | None) -> None:
-        self.problem, self.width, self.clock = problem, width, clock
+        self.problem, self.clock = problem, clock
         self.expense = Expense(clock, len(problem.parts))
         self.solution, self.meshes, self.factored = solve_on_first_mesh(problem, width, clock, keep, alone=True)
         self.expense.measure(self.solution.dofs)
         self.iterations = self.solution.iterations
+        self.asked_width = self.width = width  # of the blocks, in contact half-widths: asked for, and of the next mesh
         self.limit = contact_line_limit(problem)
         self.goal = Goal.at(accuracy, problem)
         self.size, self.finer, self.least = FIRST_SIZE, goals.FINER, self.goal.growth
@@ -181,6 +182,7 @@ class _Refinement:
         coarsest = max(part.fineness for part in problem.parts)  # sizes are those of the coarsest body
         grading = self._grading(problem.order, self.growth, coarsest)
         self.eased = grading.eased is not None
+        self.width = widened(self.asked_width, self.solution)
         self.block_width = self.width * a
         expected = None
         if self.expense.limited:

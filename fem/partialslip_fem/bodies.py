@@ -12,7 +12,6 @@ from partialslip.arrays import Array, Indices, submatrix
 from partialslip.condensed.bounded import Factored, Sides, Solution
 from partialslip.condensed.coupled import Relative
 from partialslip.condensed.normal import press
-from partialslip.condensed.route import Route
 from partialslip.errors import InputError
 from partialslip.result import Clock
 from partialslip_fem.condensation import Condensation
@@ -33,7 +32,7 @@ class Shared:
     def __init__(self) -> None:
         self.relative: dict[bool, Relative] = {}
         self._pressed: tuple[Array, Solution] | None = None
-        self._sheared: tuple[Indices, Factored, Route] | None = None
+        self._sheared: tuple[Indices, Factored] | None = None
 
     def press(self, normal: Array, gap: Array, arms: Array | None, near: Sides | None) -> Solution:
         """Normal forces (n,), as from :func:`partialslip.condensed.normal.press` under a force of 1; ``near`` are sides
@@ -45,12 +44,11 @@ class Shared:
         self._pressed = key, found
         return found
 
-    def tangential(self, compliance: Array, nodes: Indices, near: Sides | None) -> tuple[Factored, Route]:
-        """Factors of the ``compliance`` of the ``nodes``, (k, k), and the last route of the loads on these nodes;
-        ``near`` are sides (k,) for the first route."""
+    def tangential(self, compliance: Array, nodes: Indices) -> Factored:
+        """Factors of the ``compliance`` of the ``nodes``, (k, k)."""
         if not self._sheared or not np.array_equal(self._sheared[0], nodes):
-            self._sheared = nodes, Factored(submatrix(compliance, nodes, nodes)), Route(near)
-        return self._sheared[1:]
+            self._sheared = nodes, Factored(submatrix(compliance, nodes, nodes))
+        return self._sheared[1]
 
 
 class Grading(NamedTuple):

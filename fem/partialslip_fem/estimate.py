@@ -38,6 +38,7 @@ KEYS = (*END_KEYS, "p", *_SHEARS)
 _SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.9, "n": 1.9, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
 _EASED_SAFE = {6: 2.0}  # the same for meshes that grow faster near the ends, by order
 _LEAST_OF_A = 1 / 3  # of the error of a: least error of any end
+_OF_SHEAR = 0.5  # of the change of q: least error of ends of slip that turns round; both solutions share its kinks
 _NARROW = 0.1  # of the norm of f p: shear with a smaller norm is confined to narrow strips
 
 # Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.
@@ -48,6 +49,9 @@ AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002, 6: 0.001}
 _FIT = np.array([8.0, 2.0])
 _STICK = 1.5  # error of an end of the stick zone, in the error of an end of the contact
 _SIDE = 0.5  # largest error of an end due to the fit, in the element size
+# Where slip turns round, ends of the stick zone are known less; at one that moves over nodes that slipped, q is off
+# its bound by little: parts of the element size.
+_TURNED, _CAUGHT_UP = 5.0, 0.3
 _KINK = 0.03  # L2 error of q at a kink, in its strength times the element size
 _STEEP = 0.3  # the same at ends of a narrow slip zone, also times element size / gap
 _SHIFT = 1.5  # L2 error of q due to a shifted kink, in its strength times the shift
@@ -86,6 +90,8 @@ def smooth_errors(solution: MeshSolution, other: MeshSolution, eased: bool = Fal
     }
     if solution.wanders:
         errors |= {key: max(errors[key], changes[key]) for key in ("m", "n", *_SHEARS) if key in changes}
+    if solution.wanders and solution.history and solution.history.turns:
+        errors |= {key: max(errors[key], _OF_SHEAR * changes["q"]) for key in ("m", "n") if key in errors}
     least = _LEAST_OF_A * errors["a"]  # two solutions may agree at one end by chance
     return {key: max(error, least) if key in END_KEYS else error for key, error in errors.items()}
 
@@ -111,6 +117,8 @@ def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Arra
     if solution.stick:
         fit = _FIT[:, None] * np.minimum(sizes / gaps, 1.0) ** 2
         fitted = _STICK * off + np.minimum(fit.sum(axis=0), _SIDE) * sizes
+        if solution.history and solution.history.turns:
+            fitted[2:4] = _TURNED * fitted[2:4] + _CAUGHT_UP * sizes[2:4] * np.array(solution.stick.moved)
         errors |= dict(zip("mn", fitted[2:4].tolist(), strict=True))
     if solution.history:
         half, *both = _norms(solution)

@@ -14,6 +14,7 @@ FIRST_SIZE = 0.1  # element size, in half-widths of the contact line
 _GROWTH = 1.0  # of the first mesh
 _POINTS = 16  # points of that element size, evenly spaced along the contact line
 _WIDER = 8.0  # largest first contact line over the usual one: elements of more than it are wider than the contact
+_BEYOND = 3.9  # smallest half-width of a block, in the largest |x| in contact: less than the smallest `fem.width`
 _FILLS = 0.95  # largest contact line, in the width of a finite block: it keeps off the block's corners
 
 
@@ -61,6 +62,12 @@ def solve_on_first_mesh(
         if reach == limit:
             raise too_narrow(problem)
         reach *= 2
+
+
+def widened(width: float, solution: MeshSolution) -> float:
+    """Half-width of blocks that stand for half-planes, in contact half-widths, for meshes that follow ``solution``:
+    ``width``, or more where a moment moves the contact far from the middle of the blocks."""
+    return max(width, _BEYOND * max(-solution.reach[0], solution.reach[1]) / solution.half_width)
 
 
 def contact_line_limit(problem: Problem) -> float:

@@ -52,6 +52,7 @@ _SWEPT = (0.2, 8e-3, 0.1)  # element size, and bar of q, for which it suffices; 
 PASSING = 20.0
 
 _KNOWN = 0.3  # error away from the ends on the way to smaller elements there, in the next mesh's element size
+_NO_GAP = 1e-100  # distance of zone ends that coincide: element sizes are divided by it
 _REACHED = 1.01  # element sizes within this factor of the goal count as having reached it
 
 
@@ -183,18 +184,20 @@ def _corner(solution: MeshSolution, problem: Problem) -> float:
 
 
 def gaps(solution: MeshSolution, problem: Problem) -> Array:
-    """Distances of each zone end to the zone ends and profile kinks around it, (2, k), in contact half-widths.
+    """Distances of each zone end to the zone ends, profile kinks and points where slip turns round beside it, (2, k),
+    in contact half-widths.
 
     Row 0: from each end of the stick zone to the other end of the stick zone; infinite for other ends. Row 1: to the
     nearest of all other ends and kinks.
     """
-    apart = np.abs(solution.zone_ends[:, None] - np.array([*solution.zone_ends, *problem.kinks]))
+    kinks = [*problem.kinks, *solution.turning]
+    apart = np.abs(solution.zone_ends[:, None] - np.array([*solution.zone_ends, *kinks]))
     np.fill_diagonal(apart, np.inf)
     across = np.full(len(solution.zone_ends), np.inf)
     if solution.stick:
         across[2:4] = apart[2, 3]
         apart[2, 3] = apart[3, 2] = np.inf
-    found: Array = np.maximum([across, apart.min(axis=1)], np.finfo(float).tiny) / solution.half_width
+    found: Array = np.maximum(np.array([across, apart.min(axis=1)]) / solution.half_width, _NO_GAP)
     return found
 
 

@@ -10,7 +10,7 @@ from scipy.interpolate import PPoly
 from partialslip.arrays import Array, Indices
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.coupled import Pressed
-from partialslip.condensed.ends import StickInterval
+from partialslip.condensed.ends import StickInterval, turning_points
 from partialslip.condensed.history import History
 from partialslip.condensed.trail import Trail
 from partialslip_fem.contact import CondensedBody
@@ -104,7 +104,14 @@ class MeshSolution:
         meshes are graded to. Known for constant pressure and bodies that are not coupled."""
         if not self.history or self.coupled or self.most is not None:
             return False
-        return self.history.path.most_steps > 1 or not self.history.path.in_phase
+        return self.history.turns or not self.history.path.in_phase
+
+    @property
+    def turning(self) -> list[float]:
+        """Points where an end of the stick zone turned round: kinks of q beside which its ends are known poorly."""
+        if not self.history or not self.history.turns or self.history.never_slips is None:
+            return []
+        return turning_points(self.lower.x[self.nodes], self.history.never_slips, self.history.slips)
 
     @property
     def lower(self) -> Body:

@@ -191,6 +191,7 @@ def _counts(solution: MeshSolution, adapted: Adapted, extra: dict[str, int]) -> 
         "cycles": history.cycles if history else 0,
         "load_steps": history.load_steps if history else 0,
         "steps": history.path.most_steps if history else 0,
+        "events": history.events if history else 0,
         "pressing_steps": _pressing_steps(solution.pressed),
         "normal_solves": history.load_steps + _pressing_steps(solution.pressed) if history and (both or anew) else 1,
         "normal_iterations": 0 if both else pressing.changes,

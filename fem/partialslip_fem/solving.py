@@ -8,14 +8,14 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices
 from partialslip.bars import BARS
-from partialslip.condensed import coupled, step_errors, varying
+from partialslip.condensed import constant, coupled, step_errors, varying
 from partialslip.condensed.bounded import Solution
 from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.ends import within
 from partialslip.condensed.history import History, certified
 from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path, stretched
-from partialslip.condensed.steps import follow_refined, march_refined
+from partialslip.condensed.steps import follow_refined
 from partialslip.condensed.trail import Trail
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, condense, key_of, mesh_bodies
@@ -193,17 +193,10 @@ def _contact_forces(
         path = replace(path, before=path.before[nodes])
     assert C.xx is not None
     slipping = before.slipping(line.x[nodes]) if before else None
-    tangential, route = shared.tangential(C.xx, nodes, slipping)
-    bound = problem.f * pressing.x[nodes]
-    half_width = float(np.subtract(*contact_ends(line, pressing.x)[::-1])) / 2
-
-    def errors(history: History, finer: History) -> step_errors.Errors:
-        zones = stick_zone_of(line, nodes, history), stick_zone_of(line, nodes, finer)
-        return step_errors.halved(history, finer, zones, line.weights[nodes], half_width)
-
-    sheared = tangential.C, moved[:, nodes], bound, path, problem.accuracy
-    history, left = march_refined(*sheared, None if steps is None else errors, steps or 0, tangential, route)
-    return _ContactForces(pressing, history, nodes, None, left)
+    tangential = shared.tangential(C.xx, nodes)
+    known = tangential.C, moved[:, nodes], problem.f * pressing.x[nodes]
+    history = constant.march(*known, path, tangential, slipping, problem.order)
+    return _ContactForces(pressing, history, nodes)
 
 
 def _under_varying_pressure(
@@ -239,7 +232,7 @@ def _under_varying_pressure(
             return step_errors.halved(history, finer, zones, line.weights, half_width)
 
         refine = None if steps is None else errors
-        history, left = follow_refined(along, lambda path, _: path, path, problem.accuracy, refine, steps or 0)
+        history, left = follow_refined(along, path, problem.accuracy, refine, steps or 0)
     done = [*presses.solutions, *(holding.solutions if holding is not presses else [])]
     most = np.maximum.reduce([each.x for each in done])
     together = replace(certified(done), x=second.x, rest=second.rest)

@@ -30,6 +30,7 @@ class Line:
 
     def __init__(self, tractions: PPoly, part: Part, side: float) -> None:
         self._side, self._x, self._round = side, tractions.x, part.face is not None
+        self._count = tractions.c.shape[2] // 2  # states
         self._height, rows = height(part, tractions.x), np.moveaxis(tractions.c, 2, 0)
         if self._round:  # tractions times the height
             slopes = np.diff(self._height) / np.diff(self._x)
@@ -44,15 +45,14 @@ class Line:
         side = np.full_like(x, self._side)
         if self._round:
             depth = np.maximum(depth, _BELOW - np.interp(x, self._x, self._height))
-        value, slope = self._cauchy(x - 1j * np.maximum(depth, _SURFACE))
-        count = len(value) // (4 if self._round else 2)
-        (P, T), (yP_z, yT_z) = (
-            (each[:count][states], each[count : 2 * count][states]) for each in (value, -depth * slope)
-        )
+        parts = 4 if self._round else 2
+        rows = np.add.outer(np.arange(parts) * self._count, states).ravel()
+        found = self._cauchy(x - 1j * np.maximum(depth, _SURFACE), rows.tolist())
+        value, slope = found.reshape(2, parts, len(states), len(x))
+        P, T = value[:2]
+        yP_z, yT_z = -depth * slope[:2]
         if self._round:
-            yP_z, yT_z = (
-                each - slope[number * count : (number + 1) * count][states] for each, number in ((yP_z, 2), (yT_z, 3))
-            )
+            yP_z, yT_z = yP_z - slope[2], yT_z - slope[3]
         return np.moveaxis(under_pressure(P, yP_z, side) + under_shear(T, yT_z, side), 1, 0)
 
 

@@ -9,7 +9,7 @@ from partialslip.errors import InputError
 from partialslip.result import Clock
 from partialslip_fem import solving
 from partialslip_fem.bodies import Grading, Kept
-from partialslip_fem.first_mesh import contact_line_limit, solve_on_first_mesh, too_narrow
+from partialslip_fem.first_mesh import contact_line_limit, solve_on_first_mesh, too_narrow, widened
 from partialslip_fem.goals import growth_for
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
 from partialslip_fem.problem import Problem
@@ -48,6 +48,7 @@ def uniform(problem: Problem, size: float | None, width: float, clock: Clock, ke
     growth = growth_for(size / 10, problem.order)  # the error below the contact line is to be smaller than along it
     a = float(f"{solution.half_width:.2g}")  # rounded, so that similar loads and profiles share a mesh
     reach, limit = 1.25 * max(-solution.reach[0], solution.reach[1]), contact_line_limit(problem)
+    width = widened(width, solution)
     while True:
         reach = min(float(f"{reach:.2g}"), limit)
         grading = Grading((-reach, reach), {}, growth, size * a)

@@ -6,7 +6,16 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices
 from partialslip.condensed.coupled import Pressed
-from partialslip.condensed.ends import StickInterval, apart, finest, kinks, left_end, right_end, stick_zone
+from partialslip.condensed.ends import (
+    StickInterval,
+    apart,
+    finest,
+    kinks,
+    left_end,
+    right_end,
+    stick_zone,
+    turning_points,
+)
 from partialslip.condensed.history import History
 from partialslip_fem.elasticity import Body
 from partialslip_fem.problem import Problem
@@ -31,7 +40,8 @@ def stick_zone_of(
     :func:`growth_when_pressed`).
     """
     bound, change = growth or (history.bound, history.change)
-    return stick_zone(line.x[nodes], bound, change, line.x[:: line.order], partial(_forces_of, line, nodes))
+    forces_of = partial(_forces_of, line, nodes)
+    return stick_zone(line.x[nodes], bound, change, line.x[:: line.order], forces_of, history.changed, history.unsteady)
 
 
 def growth_when_pressed(first: Pressed | None, nodes: Indices, problem: Problem) -> tuple[Array, Array] | None:
@@ -53,6 +63,8 @@ def shear_kinks(problem: Problem, line: Body, nodes: Indices, history: History) 
     found = finest(problem.start[1].x) if problem.start else []
     for q, bound in reversed(history.visited):
         found += kinks(x, bound, q, vertices, forces)
+    if history.turns and history.never_slips is not None:
+        found += turning_points(x, history.never_slips, history.slips)
     return tuple(apart(found, _SAME_KINK * (x[-1] - x[0]) / 2))
 
 

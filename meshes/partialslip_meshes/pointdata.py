@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.errors import InputError
+from partialslip_meshes.files import check_files
 from partialslip_meshes.quiet import quiet
 
 # Suffixes of meshio's formats with point data. Readers of other formats may not terminate.
@@ -38,6 +39,7 @@ def read_point_data(path: Path) -> tuple[npt.NDArray[np.float64], dict[str, npt.
 
 def _read(path: Path) -> meshio.Mesh:
     """Read ``path``; turn meshio's exits and exceptions into InputError."""
+    check_files(path, str(path))
     try:
         with quiet():
             return meshio.read(path)

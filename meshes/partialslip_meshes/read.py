@@ -10,6 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from partialslip.errors import InputError, MissingLibraryError
+from partialslip_meshes.files import check_files
 from partialslip_meshes.mesh import Mesh
 from partialslip_meshes.quiet import quiet
 
@@ -105,10 +106,9 @@ def _refusal(name: str, path: str) -> Refuse:
 def _load(name: str, path: str, refuse: Refuse) -> "meshio.Mesh":
     if Path(path).suffix.lower() not in FORMATS:
         refuse(f"must be a file {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
+    check_files(path, f"{name} = {path!r}")
     printed, damaged = "", "the file is damaged or of another format"
     try:
-        with open(path, "rb"):
-            pass
         # meshio prints what is wrong and exits
         with quiet() as output, np.errstate(all="ignore"):
             import meshio  # slow to import, so only here

@@ -27,8 +27,12 @@ class MissingLibraryError(PartialslipError, ImportError):
 
 def one_line(text: str) -> str:
     """Return ``text`` with unprintable characters escaped and the middle of a long text left out."""
-    shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in _shortened(text))
-    return _shortened(shown)
+    return _shortened(printable(_shortened(text)))
+
+
+def printable(text: str) -> str:
+    """Return ``text`` with unprintable characters escaped."""
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 def _shortened(text: str) -> str:

@@ -7,34 +7,41 @@ only small steps do. Formulas are for similar half-planes and loads in phase; sc
 
 import math
 
+import numpy as np
+
+from partialslip.arrays import Array, Mask
 from partialslip.scene import Hertz, Scene
 
 # Hertz, large tension: slip does not reverse for Qf <= _QF and _SLOPE Qf <= sf <= _SF, a box inside the exact domain of
 # `turns_round` (checked in tests/halfplane/test_gradual.py).
 _QF, _SLOPE, _SF = 0.44, 6.0, 10.0
+_Numbers = Array | float
 
 
-def left_end_turns(Qf: float, sf: float, s: float, half_width: float) -> bool:
-    """Whether slip in the left slip zone reverses while the stick zone shrinks to ``half_width``.
+def left_end_turns(Qf: _Numbers, sf: _Numbers, s: _Numbers, half_width: _Numbers) -> Mask:
+    """Whether slip in the left slip zone reverses while the stick zone shrinks to ``half_width``; arrays broadcast.
 
     At a half-width c of the stick zone, slip at the left end is driven by dQ/pi - c dsigma/4, from the adhered traction
     of the stick zone (for positive changes). Slip does not reverse if this keeps one sign: positive from c = 1 on if
     both ends slip the same way (``s`` = 1), negative down to the last c if they slip opposite ways (-1).
     """
-    return sf > 4 * Qf if s > 0 else half_width * sf < 4 * Qf
+    result: Mask = np.where(np.asarray(s) > 0, sf > 4 * Qf, half_width * sf < 4 * Qf)
+    return result
 
 
-def turns_round(Qf: float, sf: float, s: float, centre: float, half_width: float) -> bool:
-    """Whether slip reverses between the load points of a cycle whose stick zone, from a single step, has this
-    ``centre`` and ``half_width`` (for positive changes of both loads), at any pressure.
+def turns_round(Qf: _Numbers, sf: _Numbers, s: _Numbers, centre: _Numbers, half_width: _Numbers) -> Mask:
+    """Whether slip reverses between the load points of cycles whose stick zones, from a single step, have this
+    ``centre`` and ``half_width`` (for positive changes of both loads), at any pressure; arrays broadcast.
 
     Besides :func:`left_end_turns`: points that slip must be pushed in the direction of slip from the beginning of the
     half cycle. If the ends slip opposite ways, the point x = -4 dQ/(pi dsigma), at which the adhered traction of the
     whole contact changes sign, must therefore lie in the final stick zone.
     """
-    if s > 0 or sf == 0:
-        return sf > 4 * Qf
-    return left_end_turns(Qf, sf, s, half_width) or abs(-4 * Qf / sf - centre) > half_width
+    left = left_end_turns(Qf, sf, s, half_width)
+    # -4 Qf/sf is outside; multiplied by sf, which may be 0
+    pushed = (np.asarray(s) < 0) & (np.abs(4 * Qf + sf * centre) > sf * half_width)
+    result: Mask = left | pushed
+    return result
 
 
 def may_turn_round(scene: Scene) -> bool:

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import msgspec
 
+from partialslip.errors import printable
+
 _SOURCES = ("partialslip", "partialslip_fem", "partialslip_meshes")
 _LIBRARIES = ("partialslip", "numpy", "scipy", "scikit-fem", "gmsh", "meshio")
 
@@ -57,7 +59,8 @@ class Made(msgspec.Struct, frozen=True, kw_only=True):
 def made_now(command: str | None = None, overrides: Sequence[str] = ()) -> Made:
     """Return the origin of a result that is finished now, by ``command`` with the settings ``overrides``."""
     date = datetime.now(UTC).isoformat(timespec="seconds")
-    return msgspec.structs.replace(_here(), date=date, command=command, overrides=tuple(overrides))
+    told = None if command is None else printable(command)
+    return msgspec.structs.replace(_here(), date=date, command=told, overrides=tuple(map(printable, overrides)))
 
 
 def origin_lines(origins: Sequence[Made]) -> list[tuple[str, str]]:
@@ -91,20 +94,17 @@ def source_checksum() -> str:
 
 
 def checksum_of(folders: Iterable[Path]) -> str:
-    """Return the checksum of names and contents of the files in ``folders``, without ``__pycache__``."""
+    """Return the checksum of names and contents of the files in ``folders``, without ``__pycache__``; empty if a file
+    cannot be read."""
     files = [path for folder in folders for path in sorted(folder.rglob("*")) if path.is_file()]
-    return checksum([path for path in files if "__pycache__" not in path.parts]) or ""
-
-
-def checksum(files: Iterable[Path]) -> str | None:
-    """Return the checksum of names and contents of ``files``; None if a file cannot be read."""
     found = hashlib.sha256()
     try:
         for path in files:
-            found.update(f"{path.name}\0{path.stat().st_size}\0".encode())
-            found.update(path.read_bytes())
+            if "__pycache__" not in path.parts:
+                found.update(f"{path.name}\0{path.stat().st_size}\0".encode())
+                found.update(path.read_bytes())
     except OSError:
-        return None
+        return ""
     return found.hexdigest()[:16]
 
 

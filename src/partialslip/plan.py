@@ -13,6 +13,7 @@ from msgspec.structs import replace
 from partialslip.errors import InputError
 from partialslip.gradual import may_turn_round, small_tension
 from partialslip.scene import WIDTHS, Bodies, Effects, Friction, Scene
+from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.units import Dimension
 
 Effect = Literal[
@@ -58,12 +59,13 @@ class Plan:
             )
 
 
-def plan(scene: Scene, *, subsurface: bool = False, start: bool = False) -> Plan:
+def plan(scene: AnyScene, *, subsurface: bool = False, start: bool = False) -> Plan:
     """Decide which effects ``scene`` calls for.
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene, str or path
+        A scene, the name of a shipped one, or the path of a scene file.
     subsurface : bool
         Whether fields inside the bodies are requested.
     start : bool
@@ -74,6 +76,7 @@ def plan(scene: Scene, *, subsurface: bool = False, start: bool = False) -> Plan
     InputError
         If an effect without which there is no solution is forced off, or an effect that cannot be built is forced on.
     """
+    scene = as_scene(scene)
     own = _decide(replace(scene, effects=Effects()), subsurface, start)
     forced = _forced(scene)
     _refuse(scene, forced, own, start)

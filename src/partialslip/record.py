@@ -11,6 +11,7 @@ import msgspec
 from msgspec.structs import replace
 
 from partialslip.errors import InputError
+from partialslip.halfplane.noise import Noise
 from partialslip.inputfile import read_bytes
 from partialslip.judge import Comparison, Outcome, Verdict, conclude, of_run
 from partialslip.judge.recorded import conditions_again, judged_again
@@ -131,6 +132,8 @@ class Record(msgspec.Struct, frozen=True):
         Versions of Python and of the packages that compute the results.
     made : Made or None
         Date, command, overrides, commit and machine; None in ledgers, whose entries have their own.
+    noise : Noise or None
+        Scatter due to the noise of a measured profile.
     edited : bool or None
         Whether the file that the record was read from was changed since partialslip wrote it; None if the file has no
         checksum.
@@ -146,6 +149,7 @@ class Record(msgspec.Struct, frozen=True):
     comparison: dict[str, ComparisonRecord]
     versions: dict[str, str]
     made: Made | None = None
+    noise: Noise | None = None
     edited: bool | None = False
 
     def __repr__(self) -> str:
@@ -207,6 +211,7 @@ def record(run: Run, *, curves: bool = True, made: Made | None = None) -> Record
         comparison={name: ComparisonRecord.of(comparison) for name, comparison in run.comparisons.items()},
         versions=versions(),
         made=made,
+        noise=run.noise,
     )
 
 

@@ -14,6 +14,7 @@ from partialslip.allowance import Allowance
 from partialslip.bars import LARGEST, Accuracy, Asked, asked
 from partialslip.errors import InputError
 from partialslip.frame import frame
+from partialslip.halfplane.noise import Noise
 from partialslip.judge import Comparison, Conclusion, Outcome, Verdict, compare, conditions, of_run
 from partialslip.judge.reference import ALL_EFFECTS, METHODS, reference, reference_among
 from partialslip.plan import Plan, plan, reduced
@@ -22,6 +23,7 @@ from partialslip.result.sliding import sliding
 from partialslip.result.state import State
 from partialslip.rig import Rig, key_of, load_rig
 from partialslip.scene import Effects, Scene
+from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.shown import Drawn
 
 if TYPE_CHECKING:
@@ -48,6 +50,9 @@ class Run(Drawn):
         Comparisons with the reference, by method; none for the reference.
     asked : Asked or None
         The accuracy asked for (:class:`partialslip.bars.Asked`); None if there are no bars.
+    noise : Noise or None
+        Scatter due to the noise of a measured profile, where it was asked for
+        (:func:`partialslip.halfplane.noise.noise_of`). It is no part of estimates, bars and verdicts.
     """
 
     scene: Scene
@@ -55,6 +60,7 @@ class Run(Drawn):
     results: dict[str, Result]
     comparisons: dict[str, Comparison]
     asked: Asked | None = None
+    noise: Noise | None = None
 
     def __getitem__(self, method: str) -> Result:
         """Return the result of ``method``: ``run["fem"]`` is ``run.results["fem"]``."""
@@ -178,7 +184,7 @@ def default_methods(scene: Scene) -> tuple[str, ...]:
 
 
 def run(
-    scene: Scene,
+    scene: AnyScene,
     methods: str | Iterable[str] | None = None,
     *,
     subsurface: bool = False,
@@ -192,7 +198,8 @@ def run(
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene, str or path
+        A scene, the name of a shipped one, or the path of a scene file.
     methods : str or iterable of str, optional
         Of "exact", "march", "fem" and "equivalent", one or several; default: :func:`default_methods`.
     subsurface : bool
@@ -219,10 +226,15 @@ def run(
     MissingLibraryError
         If finite elements are asked for and gmsh, or a system library of gmsh, is missing.
     """
-    if start:
+    scene = as_scene(scene)
+    if start is not None:
+        if not isinstance(start, State):
+            raise InputError(f"start = {start!r:.60}: must be a State; partialslip.load_state reads one from a file")
         start.check(scene)
     effects = plan(scene, subsurface=subsurface, start=start is not None)
     methods = default_methods(scene) if methods is None else methods
+    if not isinstance(methods, Iterable):
+        raise InputError(f"methods = {methods!r:.60}: must be one or several of {', '.join(METHODS)}")
     chosen = dict.fromkeys([methods] if isinstance(methods, str) else methods)
     tasks = {name: (name, reduced(scene), effects) for name in chosen}
     if effects.missing:
@@ -262,7 +274,7 @@ def _slid(scene: Scene, result: Result) -> Result:
     return dataclasses.replace(result, undetermined={**result.undetermined, **dict.fromkeys(("q", "q1", "q2"), _ONE)})
 
 
-def with_stresses(scene: Scene, method: str | None = None, progress: Progress = lambda _: None) -> Result:
+def with_stresses(scene: AnyScene, method: str | None = None, progress: Progress = lambda _: None) -> Result:
     """Solve ``scene`` with the stresses in the bodies.
 
     By default the method is the reference (:func:`partialslip.judge.reference.reference`), and march where exact does
@@ -273,6 +285,7 @@ def with_stresses(scene: Scene, method: str | None = None, progress: Progress = 
     InputError
         As :func:`run`.
     """
+    scene = as_scene(scene)
     chosen = method or reference(scene).method
     found = run(scene, chosen, subsurface=True, progress=progress)[chosen]
     if method is None and chosen == "exact" and not found.stress_at and not scene.slides:
@@ -305,8 +318,8 @@ def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: Acc
     return Run(scene, plan, results, comparisons, asked(accuracy))
 
 
-def characterise(scene: Scene) -> Rig:
-    """Find by finite elements what the bodies of ``scene`` add to half-planes: its rig.
+def characterise(scene: AnyScene) -> Rig:
+    """Find by finite elements what the bodies of ``scene``, a scene, name or path, add to half-planes: its rig.
 
     The rig depends on the bodies, their supports and materials, and on the profile only if a body is a pad. It is kept
     for further calls with the same bodies. :func:`partialslip.rig.write_rig` writes it to a file, which a scene may
@@ -317,6 +330,7 @@ def characterise(scene: Scene) -> Rig:
     InputError
         If no body is finite, or a mesh file cannot be read.
     """
+    scene = as_scene(scene)
     key = key_of(scene)
     if key not in _rigs:
         from partialslip_fem.characterise import characterise as characterised

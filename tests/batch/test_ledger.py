@@ -1,5 +1,6 @@
 """A ledger keeps finished cases, however the study ends."""
 
+import io
 import json
 import os
 import signal
@@ -38,6 +39,74 @@ def test_a_torn_last_line_is_dropped_and_written_over(tmp_path):
     assert path.read_bytes() == whole
     ledger.add("two", {"found": 2})
     assert [entry["key"] for entry in Ledger(path)] == ["one", "two"]
+
+
+TEXTS = {
+    "a line": b"what I want to keep",
+    "lines": b"what I want to keep\nand this, too\nand the end",
+    "a table": b"x,p,dq\n0,1,2\n1,2,3",
+    "an object": b'{"key": "mine", "value": 3}',
+    "a list": b"[1, 2]",
+    "no text": bytes(range(256)),
+}
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_file_of_the_user_is_left_as_it_is(tmp_path, name):
+    path = tmp_path / "own.txt"
+    path.write_bytes(TEXTS[name])
+    with pytest.raises(partialslip.InputError, match=r"own.txt: line 1: must be an entry of a ledger"):
+        partialslip.sweep(partialslip.load_scene("hertz-shear"), {"friction.f": [0.3]}, "exact", ledger=path)
+    assert path.read_bytes() == TEXTS[name]
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_text_behind_entries_is_left_as_it_is(tmp_path, name):
+    path = tmp_path / "ledger.jsonl"
+    Ledger(path).add("one", {"found": 1})
+    path.write_bytes(whole := path.read_bytes() + TEXTS[name])
+    with pytest.raises(partialslip.InputError, match=r"line 2: must be an entry of a ledger"):
+        Ledger(path)
+    assert path.read_bytes() == whole
+
+
+def test_an_entry_torn_at_any_byte_is_dropped_and_no_other(tmp_path):
+    path = tmp_path / "ledger.jsonl"
+    Ledger(path).add("one", {"found": 1})
+    first = path.read_bytes()
+    Ledger(path).add("two", {"found": {"a": [1, 2]}})
+    whole = path.read_bytes()
+    for count in range(len(whole)):
+        path.write_bytes(whole[:count])
+        kept = [entry["key"] for entry in Ledger(path)]
+        assert kept == (["one"] if count >= len(first) - 1 else []) + (["two"] if count == len(whole) - 1 else [])
+        Ledger(path).add("three", {})
+        assert [entry["key"] for entry in Ledger(path)] == [*kept, "three"]
+
+
+def test_a_full_disk_leaves_whole_entries(tmp_path, monkeypatch):
+    path = tmp_path / "ledger.jsonl"
+    ledger = Ledger(path)
+    ledger.add("one", {"found": 1})
+    whole = path.read_bytes()
+
+    class Full(io.FileIO):
+        def write(self, line):
+            return super().write(line[:20])
+
+    monkeypatch.setattr(module, "open", lambda path, *_, **__: Full(path, "ab"), raising=False)
+    with pytest.raises(partialslip.InputError, match="cannot be written: No space left on device"):
+        ledger.add("two", {"found": 2})
+    assert path.read_bytes() == whole
+    assert "two" not in ledger
+
+
+@pytest.mark.fault
+def test_a_tail_that_is_cut_before_it_is_judged_is_caught(tmp_path, monkeypatch):
+    """Deliberate fault: every last line without an end counts as a torn entry."""
+    monkeypatch.setattr(module, "_is_torn", bool)
+    with pytest.raises(pytest.fail.Exception, match="DID NOT RAISE"):
+        test_a_file_of_the_user_is_left_as_it_is(tmp_path, "a line")
 
 
 @pytest.mark.parametrize(

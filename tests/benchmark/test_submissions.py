@@ -3,6 +3,7 @@
 import json
 import zipfile
 
+import numpy as np
 import pytest
 
 from partialslip.benchmark import (
@@ -18,9 +19,12 @@ from partialslip.benchmark import (
 from partialslip.benchmark.book import book_page
 from partialslip.benchmark.codes import CODES, answers
 from partialslip.benchmark.codes.own import Own
+from partialslip.benchmark.table import answer_from
 from partialslip.cli import main
 from partialslip.errors import InputError
 from partialslip.origin import made_now
+from partialslip.output.lock import locked
+from partialslip.run import run
 
 SOME = {"PS-02": read_problems()["PS-02"]}
 
@@ -128,11 +132,6 @@ def test_a_code_that_is_not_installed_is_said_to_be(monkeypatch):
 
 def test_tractions_of_any_code_make_an_answer(tmp_path):
     """a, m and n are found from the tractions, as score finds them."""
-    import numpy as np
-
-    from partialslip.benchmark.table import answer_from
-    from partialslip.run import run
-
     problem = SOME["PS-02"]
     exact = run(problem.scene, "exact")["exact"]
     x = np.linspace(-1.05, 1.05, 2001) * exact.a
@@ -141,6 +140,58 @@ def test_tractions_of_any_code_make_an_answer(tmp_path):
     found = answer_from(problem, tmp_path / "mine.csv")
     for key in ("a", "m", "n"):
         assert found.values[key] == pytest.approx(problem.targets[key].value, abs=2e-3 * exact.a)
+
+
+@pytest.fixture
+def tables(tmp_path, monkeypatch):
+    """Work in a folder with two different tables of tractions for PS-02."""
+    monkeypatch.chdir(tmp_path)
+    problem = SOME["PS-02"]
+    exact = run(problem.scene, "exact")["exact"]
+    x = np.linspace(-1.2, 1.2, 241) * exact.a
+    for name, factor in (("mine", 1.0), ("other", 1.01)):
+        table = np.column_stack([x, *exact.traction.at(x)]) * [1.0, 1.0, factor]
+        np.savetxt(tmp_path / f"{name}.csv", table, delimiter=",", header="x,p,dq", comments="")
+
+
+def read_into(folder, name, *words):
+    return main(["benchmark", "read", "PS-02", f"{name}.csv", "-o", folder, *words])
+
+
+@pytest.mark.usefixtures("tables")
+def test_answers_from_tables_are_replaced_on_demand_only(tmp_path, capsys):
+    folder = tmp_path / "answers"
+    assert read_into("answers", "mine") == 0
+    assert main(["benchmark", "score", "answers", "--problems", "PS-02"]) == 0
+    assert read_submission(folder, SOME).meta.code == "mine"
+    first = (folder / "PS-02.json").read_bytes()
+    assert read_into("answers", "mine") == 0  # the same again
+    assert read_into("answers", "other") == 2
+    assert "answers/PS-02.json: is another answer" in capsys.readouterr().err
+    assert (folder / "PS-02.json").read_bytes() == first
+    assert read_into("answers", "other", "--code", "mine", "--force") == 0
+    assert (folder / "PS-02.json").read_bytes() != first
+    assert read_into("answers", "other", "--code", "another", "--force") == 2
+    assert "answers holds answers of 'mine'" in capsys.readouterr().err
+    with locked(folder):
+        assert read_into("answers", "mine", "--force") == 2
+    assert "is writing there" in capsys.readouterr().err
+    assert sorted(path.name for path in folder.iterdir()) == ["PS-02.json", "meta.toml"]
+
+
+@pytest.mark.usefixtures("tables")
+def test_answers_of_a_command_and_of_a_table_are_never_mixed(tmp_path, capsys):
+    made = ["benchmark", "run", "--code", "exact", "--problems", "PS-02", "--out"]
+    assert main([*made, "run"]) == 0
+    before = {path.name: path.read_bytes() for path in (tmp_path / "run").iterdir()}
+    for words in ([], ["--force"], ["--code", "partialslip exact", "--force"]):
+        assert read_into("run", "other", *words) == 2
+        assert "holds what a command of partialslip has written" in capsys.readouterr().err
+    assert {path.name: path.read_bytes() for path in (tmp_path / "run").iterdir()} == before
+    assert read_into("answers", "other", "--code", "my code") == 0
+    assert read_submission("answers", SOME).meta == Meta("my code", "")
+    assert main([*made, "answers"]) == 2
+    assert "holds meta.toml of unknown settings" in capsys.readouterr().err
 
 
 def test_what_was_finished_before_an_interruption_is_kept(tmp_path, monkeypatch):

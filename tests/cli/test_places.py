@@ -199,3 +199,26 @@ def test_scores_of_another_content_or_factor():
     assert main(["score", "hertz-shear", "mine.csv"]) == 0
     folders = sorted(path.name for path in Path("results").iterdir())
     assert folders == [f"hertz-shear-mine{number}" for number in ("", "-2", "-3")]
+
+
+def test_a_folder_below_any_number_of_new_ones(capsys):
+    deep = "/".join(["a"] * 1500)
+    assert main([*EXACT, "--out", deep]) == 0
+    assert Path(deep, "results.json").is_file()
+    # Python's functions that remove folders stop at 1,000 of them, pytest's clean-up, too
+    subprocess.run(["rm", "-rf", "a"] if sys.platform != "win32" else ["rmdir", "/s", "/q", "a"], check=True)
+    assert main([*EXACT, "--out", "/".join(["b" * 200] * 30)]) == 2  # more than a path may have
+    assert "cannot be written: File name too long" in capsys.readouterr().err
+    assert not [*Path().iterdir()]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not delete a working folder")
+@pytest.mark.parametrize("out", [(), ("--out", "x"), ("--out", "x/y")])
+def test_a_working_folder_that_has_been_deleted(tmp_path, monkeypatch, capsys, out):
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    assert main([*EXACT, *out]) == 2
+    assert "cannot be written: the working folder has been deleted" in capsys.readouterr().err
+    monkeypatch.chdir(tmp_path)

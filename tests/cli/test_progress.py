@@ -6,6 +6,8 @@ import re
 
 import pytest
 
+import partialslip
+from partialslip import InputError
 from partialslip.cli import consoles, main
 
 
@@ -58,3 +60,18 @@ def test_a_run_with_json_tells_on_stderr_only(tmp_path, monkeypatch, capsys):
     lines = printed.err.splitlines()
     assert lines
     assert all(re.fullmatch(r"hertz-shear: march: mesh \d: .* \(\d+ s\)", line) for line in lines)
+
+
+@pytest.mark.parametrize(("asked", "said"), [(250, "750 load steps"), (2, None)])
+def test_many_load_steps_are_told_before_they_are_taken(tmp_path, monkeypatch, capsys, asked, said):
+    told = []
+
+    def run(*_, **__):
+        told.append(capsys.readouterr().err)
+        raise InputError("enough")
+
+    monkeypatch.setattr(partialslip, "run", run)
+    varied = ("--set", "load.M=[10.0, -10.0]", "--set", f"load.steps={asked}", "--out", str(tmp_path / "out"))
+    assert main(["run", "flat-rounded", "--with", "march", *varied]) == 2
+    assert len(told) == 1
+    assert (said in told[0] and "load.steps = 250" in told[0]) if said else not told[0]

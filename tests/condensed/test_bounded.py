@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from partialslip.condensed.bounded import Factored, solve_bounded
-from partialslip.condensed.history import ahead
 
 
 def compliance(n: int, random: np.random.Generator) -> np.ndarray:
@@ -125,23 +124,8 @@ def test_members_that_just_touch_a_bound_leave_the_sum(seed):
     solution = solve_bounded(C, C @ x, -bound, bound, float(x.sum()), None, inverted)
     rounding = n * np.finfo(float).eps  # of a sum
     assert solution.imbalance <= rounding * x.sum()
-    assert np.abs(solution.rest).max() <= rounding * (C @ x).max()
+    assert np.abs(solution.rest).max() <= 2 * rounding * (C @ x).max()  # of C @ x, and of the product with the inverse
     assert solution.x == pytest.approx(x, abs=1e-10)
-
-
-@pytest.mark.parametrize(
-    ("earlier", "sides", "times", "expected"),
-    [
-        ("++....--", "+++..---", 1, "++++----"),  # both zones grow on
-        ("++....--", "+++...--", 2, "+++++.--"),
-        ("......--", "+....---", 1, "+....---"),  # a zone has come
-        ("+++...--", "++....--", 3, "......--"),  # a zone that shrinks is gone, not less than nothing
-    ],
-)
-def test_sides_ahead(earlier, sides, times, expected):
-    of = {"+": 1, ".": 0, "-": -1}
-    found = ahead(*(np.array([of[side] for side in each], dtype=np.int8) for each in (sides, earlier)), times)
-    assert "".join("-.+"[side + 1] for side in found) == expected
 
 
 @pytest.mark.parametrize("scale", [1e-12, 1e12])

@@ -74,6 +74,22 @@ def test_no_points_and_one_cell():
     assert cauchy(np.array([0.2 - 0.1j]))[:, 0, 0] == pytest.approx(power(0, np.array([0.2 - 0.1j]))[:, 0], rel=1e-14)
 
 
+def test_work_is_that_of_the_functions_asked_for(monkeypatch):
+    """Stresses at two of 2,000 load steps cost as much as those of two."""
+    vertices, random, asked = graded(), np.random.default_rng(3), [5, 1]
+    rows = random.standard_normal((7, 3, len(vertices) - 1))
+    cauchy, z = PiecewiseCauchy(vertices, rows), points(vertices)
+    every, closed, counts = cauchy(z), cauchy._closed, set()
+
+    def counted(local, *others):
+        counts.add(len(local))
+        return closed(local, *others)
+
+    monkeypatch.setattr(cauchy, "_closed", counted)
+    assert cauchy(z, asked) == pytest.approx(every[:, asked], rel=1e-12, abs=1e-12)
+    assert counts == {2}
+
+
 @pytest.mark.fault
 def test_near_cells_left_to_the_moments_are_caught(monkeypatch):
     """Deliberate fault: cells near a point taken by the forces at the nodes of their group."""

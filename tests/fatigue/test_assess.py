@@ -149,6 +149,35 @@ def test_what_is_missing_is_said_in_one_line(scene, criteria, line):
     assert str(error.value) == line
 
 
+PULLED = SCENE.replace(bodies={"lower": {"width": 40e-3, "height": 4e-3, "support": "roller"}})
+
+
+@pytest.mark.parametrize(("scene", "said"), [
+    (PULLED.replace({"fatigue.distance": 5e-3}),
+     "fatigue.distance = 0.005 m: must not leave the lower body below the hot spot; the body is 0.004 m high"),
+    (PULLED.replace({"fatigue.distance": 5e-3, "shown_in": "N-mm"}),
+     "fatigue.distance = 5 mm: must not leave the lower body below the hot spot; the body is 4 mm high"),
+    (PULLED.replace({"fatigue.distance": 7e-3, "bodies.lower.holder": {"width": 40e-3, "height": 2e-3}}),
+     "fatigue.distance = 0.007 m: must not leave the lower body below the hot spot; the body is 0.006 m high"),
+])  # fmt: skip
+def test_a_distance_beyond_the_body_is_refused_before_anything_is_solved(scene, said, monkeypatch):
+    monkeypatch.setattr("partialslip.fatigue.assessment.with_stresses", None)
+    with pytest.raises(InputError) as error:
+        partialslip.assess(scene)
+    assert str(error.value) == said
+
+
+@pytest.mark.parametrize("outside", [lambda at: at[1] < -20e-6, lambda at: at[0] > RESULT.a + 20e-6])
+def test_averages_that_leave_the_body_are_refused_and_never_nan(outside):
+    """Where the height of a body is not known, as that of a mesh; or beside it."""
+
+    def cut(x, y, phases):
+        return np.where(outside((x, y)), np.nan, RESULT.stress_at.function(x, y, phases))
+
+    with pytest.raises(InputError, match=r"fatigue.distance = 5e-05 m: must not leave the lower body"):
+        partialslip.assess(SCENE, replace(RESULT, stress_at=StressAt(cut)), ["swt"])
+
+
 def test_criteria_without_constants_are_left_out():
     found = partialslip.assess(SCENE.replace(fatigue=dict.fromkeys(CONSTANTS)), RESULT)
     assert list(found.ratings) == ["principal", "swt"]

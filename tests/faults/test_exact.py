@@ -64,7 +64,7 @@ def test_moment_about_the_middle_without_its_term(monkeypatch, sound, red):
 def test_mean_load_bounded_by_gross_sliding_alone(monkeypatch, red):
     """A mean load beyond what a steady state of large tension can hold: exact and march disagree."""
     scene = partialslip.load_scene(
-        LARGE, ["load.Q=[69115, 257610]", "load.sigma=[2e8, 1e9]", "load.cycles=30", "fem.accuracy=1e-3"]
+        LARGE, ["load.Q=[69115, 257610]", "load.sigma=[2e8, 1e9]", "load.cycles=6", "fem.accuracy=1e-2"]
     )
     outcome = partialslip.run(scene, ["exact", "march"])
     assert {result.regime for result in outcome.results.values()} == {"ratchets"}

@@ -100,7 +100,7 @@ def test_mean_loads_reach_the_steady_range_cycle_by_cycle():
         assert any("not steady" in note for note in result.notes) == (steady[-1] > 1e-3)
         off.append(max(abs(result.m / result.a - exact_m), abs(result.n / result.a - exact_n)))
     assert steady[0] > 10 * 1e-3 > steady[2]
-    assert off[2] < 1e-5 < off[0]
+    assert off[2] < 1e-3 < off[0], off
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.49, 0.4999])

@@ -1,6 +1,7 @@
 """Bodies that turn: moments and profiles that are not even, by finite elements against the exact solution."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from msgspec import to_builtins
 import partialslip
 from partialslip import parse_scene, run
 from partialslip.condensed import normal
-from partialslip_fem import model
+from partialslip_fem import goals, model
 
 TABLE = np.linspace(-2e-3, 2.5e-3, 91)
 SIDES = np.where(TABLE < 0, TABLE**2 / 0.02, TABLE**2 / 0.04 + np.maximum(TABLE, 0) ** 4 * 3e4)
@@ -80,3 +81,34 @@ def test_bodies_that_do_not_turn_would_be_seen(monkeypatch):
     monkeypatch.setattr(model, "scaled", lambda *args: replace(scaled(*args), turns=False))
     outcome = run(parse_scene(to_builtins(scene()) | {"fem": {"size": 0.1}}), ["exact", "fem"])
     assert outcome.comparisons["fem"].errors["M"] > 1e-2
+
+
+@pytest.mark.parametrize("M", [(1000.0, -1000.0), (0.0, 300.0)])
+def test_contacts_that_a_moment_moves_by_many_half_widths(M):
+    """The blocks reach beyond the whole way of the contact, not only beyond 16 of its half-widths."""
+    given = parse_scene({
+        "name": "moved",
+        "material": {"E": 70e9, "nu": 0.3},
+        "friction": {"f": 0.5},
+        "profile": {"kind": "flat-rounded", "R": 0.01, "b": 2e-3},
+        "load": {"P": 1e5, "M": M},
+        "fem": {"accuracy": 1e-2},
+        "effects": {"friction": False},
+    })  # fmt: skip
+    fem = run(given, ["fem"]).results["fem"]
+    # far from the flat the bodies turn until the contact is that of a cylinder, about the line of action of P
+    a = np.sqrt(2 / np.pi * given.material.A * 0.01 * 1e5)
+    far = [(ends, moment) for ends, moment in zip(fem.contact_ends, M, strict=True) if abs(moment) > 1e5 * (2e-3 + a)]
+    assert far
+    for ends, moment in far:
+        assert np.array(ends) == pytest.approx(moment / 1e5 + np.array([-a, a]), abs=1e-2 * a)
+    assert fem.certificate["equilibrium"] < 1e-12
+
+
+def test_a_stick_zone_of_one_point_has_gaps_to_divide_by():
+    """A contact that moves by more than its width may stick at one node only."""
+    ends = SimpleNamespace(zone_ends=np.array([-1.0, 1.0, 0.5, 0.5]), stick=True, half_width=1.0, turning=())
+    found = goals.gaps(ends, SimpleNamespace(kinks=()))
+    with np.errstate(over="raise", divide="raise"):
+        assert (1e5 / found[0, 2:] > 1).all()
+    assert found[:, :2] == pytest.approx(np.array([[np.inf, np.inf], [1.5, 0.5]]))

@@ -5,7 +5,8 @@ import itertools
 import numpy as np
 import pytest
 
-from partialslip.halfplane.gradual_path.half_cycle import Drifting, Loads, LostError, steady
+from partialslip.halfplane.gradual_path.half_cycle import Drifting, LostError, steady
+from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.steady import stick_zone
 

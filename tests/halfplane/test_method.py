@@ -85,10 +85,8 @@ def test_limits_are_where_something_else_begins():
     base = exact("hertz-large-tension")
     sliding, transition, mean = (base.limits[key] for key in ("Q_sliding", "dsigma_transition", "Q_mean"))
     load = load_scene("hertz-large-tension").load
-    for key, at, below, above in (
-        ("sigma", transition / 2, "small tension", "large tension"),
-        ("Q", sliding, "small tension", "sliding"),
-    ):
+    assert transition > 0  # that of a single step; under gradual loads small tension goes on beyond
+    for key, at, below, above in (("Q", sliding, "small tension", "sliding"),):
         for factor, regime in ((1 - 1e-6, below), (1 + 1e-6, above)):
             assert exact("hertz-large-tension", f"load.{key}=[{-at * factor}, {at * factor}]").regime == regime
     for factor, regime in ((1 - 1e-6, "large tension"), (1 + 1e-6, "ratchets")):

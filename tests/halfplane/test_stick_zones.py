@@ -9,7 +9,8 @@ import pytest
 
 import partialslip
 from partialslip.errors import InputError
-from partialslip.halfplane import Contact, contact, contact_of, hysteresis, steady, stick_zone
+from partialslip.halfplane import Contact, contact, contact_of, hysteresis, steady
+from partialslip.halfplane import one_step_zone as stick_zone
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch
 

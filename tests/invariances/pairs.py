@@ -17,7 +17,7 @@ import numpy as np
 
 from partialslip import halfplane, load_scene, load_state, plan
 from partialslip.arrays import Array
-from partialslip.condensed import steps
+from partialslip.condensed import constant, steps
 from partialslip.condensed.coupled import Relative
 from partialslip.condensed.history import History
 from partialslip.halfplane import marching
@@ -154,7 +154,7 @@ def solved(method: str, scene: Scene, start: Any = None) -> Result:
 def on_one_mesh(method: str, scene: Scene, start: Any = None) -> Result:
     """Solved in the steps that are asked for, on the one mesh that a :func:`guise` leaves."""
     found = solved(method, scene, start)
-    assert found.counts.get("steps", 0) in {0, scene.load.steps}, "steps are chosen"
+    assert found.counts.get("steps", 0) in {0, 1, scene.load.steps}, "steps are chosen"
     assert "accuracy" not in found.settings or found.counts["meshes"] == 1, "meshes are chosen"
     return found
 
@@ -309,7 +309,7 @@ def common_tension(tension: float, kind: str, *settings: str) -> Apart:
     """Both bodies stretched alike, by so many times what the scene's tension does to the lower one: what their finite
     elements, whose nodes do not match, say of the way their surfaces move is added to what the surfaces do."""
     scene = scene_of(kind, "fem.lower_size=0.7", *settings)
-    true_compliances, true_march = solving.relative_compliances, solving.march_refined
+    true_compliances, true_march = solving.relative_compliances, constant.march
     moved: list[tuple[Array, Array]] = []
 
     def compliances(halves: tuple[CondensedBody, ...], *rest: Any) -> Relative:
@@ -334,7 +334,7 @@ def common_tension(tension: float, kind: str, *settings: str) -> Apart:
 
     patches = (
         instead(solving, "relative_compliances", compliances),
-        instead(solving, "march_refined", march),
+        instead(constant, "march", march),
         instead(model, "scaled", solved_back),
     )
     return compared("fem", scene, scene, same, *patches)
@@ -352,7 +352,7 @@ def shifted(shift: float, approach: float, method: str, kind: str, *settings: st
     """All that is there moved along x, by so many lengths of the problem, and the bodies apart before they meet. Both
     runs know as little of the contact before they solve on the last meshes."""
     scene = scene_of(kind, *settings)
-    true_march, true_uniform = marching.march_refined, model.uniform
+    true_march, true_uniform = constant.march, model.uniform
 
     def moved(shift: float, approach: float) -> Any:
         def march(C: Array, x: Array, *rest: Any) -> Any:
@@ -365,7 +365,7 @@ def shifted(shift: float, approach: float, method: str, kind: str, *settings: st
             solution = solving.solve_on_meshes(meshes, there, here[0].mesh.points.max(), clock)
             return Adapted(solution, {}, 1, 1, solution.iterations, width)
 
-        return instead(model, "uniform", uniform) if method == "fem" else instead(marching, "march_refined", march)
+        return instead(model, "uniform", uniform) if method == "fem" else instead(constant, "march", march)
 
     with guise(moved(0.0, 0.0)):
         one = answer(on_one_mesh(method, scene), scene)
@@ -387,22 +387,14 @@ def shuffled(seed: int, *args: Any) -> Mesh:
 
 def reordered(seed: int, method: str, kind: str, *settings: str) -> Apart:
     """Nodes, elements and cells in any order."""
-    true_march = marching.march_refined
+    true_march = constant.march
 
-    def march(C: Array, x: Array, bound: Array, path: Any, accuracy: float, errors: Any, *rest: Any) -> Any:
+    def march(C: Array, x: Array, bound: Array, path: Any) -> History:
         order = np.random.default_rng(seed).permutation(len(bound))
-        back = np.argsort(order)
-
-        def told(*histories: History) -> dict[str, float]:
-            left: dict[str, float] = errors(*(each.of(back) for each in histories))
-            return left
-
-        asked = told if errors else None
-        found, left = true_march(C[np.ix_(order, order)], x[:, order], bound[order], path, accuracy, asked, *rest)
-        return found.of(back), left
+        return true_march(C[np.ix_(order, order)], x[:, order], bound[order], path).of(np.argsort(order))
 
     scene = scene_of(kind, *settings)
-    nodes, cells = instead(bodies, "block", partial(shuffled, seed)), instead(marching, "march_refined", march)
+    nodes, cells = instead(bodies, "block", partial(shuffled, seed)), instead(constant, "march", march)
     return compared(method, scene, scene, same, nodes if method == "fem" else cells)
 
 
@@ -411,8 +403,8 @@ def many_loads(seed: int) -> Apart:
     rng = np.random.default_rng(seed)
     pressed, order = halfplane.contact(scene_of("large tension")), rng.permutation(2000)
     dQ, dsigma = rng.uniform(-1.9, 1.9, 2000) * pressed.P, rng.uniform(-9, 9, 2000) * pressed.p0
-    one = halfplane.stick_zone(pressed, 1.0, dQ, dsigma)
-    other = halfplane.stick_zone(pressed, 1.0, dQ[order], dsigma[order])
+    one = halfplane.one_step_zone(pressed, 1.0, dQ, dsigma)
+    other = halfplane.one_step_zone(pressed, 1.0, dQ[order], dsigma[order])
     ends = (np.abs(getattr(one, key)[order] - getattr(other, key)).max() / pressed.a for key in ("m", "n"))
     return Apart(0.0, float(max(ends)))
 
@@ -433,7 +425,7 @@ _QUICK = {  # of the scenes of a pair of fem's, the one that is no slow test; as
     "f = 1e-9, no friction": "large tension",
     "f = 1e-9, loads in proportion": "large tension",
 }
-_ALL_QUICK = {"restart", "rigid shift"}  # what they find differs from scene to scene
+_ALL_QUICK = {"restart", "rigid shift"}  # what they find differs
 _UNITS = {"mm, MPa": (1e3, 1e-6), "1e12": (1e12, 1e12), "1e-12": (1e-12, 1e-12), "1e12 m, 1e-12 Pa": (1e12, 1e-12)}
 
 
@@ -465,7 +457,8 @@ def trials() -> Iterator[Trial]:
     }
     for name, (run, kinds) in pairs.items():
         for method, bar in ROUNDING.items():
-            bar = 1e-8 if name == "f = 1e-9, no friction" else bar  # ten times f
+            # ten times f; nodes of high order that slip and stick again on the way, which a leg in one step leaves out
+            bar = 1e-8 if name == "f = 1e-9, no friction" else 2e-6 if (name, method) == ("restart", "fem") else bar
             for kind in kinds:
                 if not _has(method, kind) or (
                     method == "exact" and name in ("rigid shift", "order of nodes and elements")

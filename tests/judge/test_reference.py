@@ -1,12 +1,15 @@
 """The reference of a scene: one choice, and never a solution that is known not to hold."""
 
 from dataclasses import replace
+from functools import partial
 
 import pytest
 from known import EXACT, P0, SCENE, SHARE, F, P, result, traction
 
 import partialslip
 from partialslip import compare, load_scene
+from partialslip.halfplane import method
+from partialslip.halfplane.loading import loading
 from partialslip.judge import Outcome
 from partialslip.judge.reference import ALL_EFFECTS, METHODS, REFERENCES, reference, reference_among
 from partialslip.plan import plan
@@ -22,7 +25,16 @@ def hertz(Qf, sf, *more):
     return load_scene("hertz-shear", [*loads, *more])
 
 
-REVERSING = [(0.55, 7), (0.6434668934976868, 8.670889385947003), (0.9975, 7.2), (0.85, 9), (0.75, 6), (0.6, 7)]
+REVERSING = [(0.55, 7), (0.6434668934976868, 8.670889385947003), (0.9975, 7.2), (0.75, 6), (0.6, 7)]
+
+
+@pytest.fixture(name="unknown")
+def gradual_loads_are_not_solved(monkeypatch):
+    """As if the way of gradual loads were not known where slip turns round."""
+    monkeypatch.setattr(method, "half_cycle", partial(loading, bound=2))
+    method._change.cache_clear()
+    yield
+    method._change.cache_clear()
 
 
 @pytest.mark.parametrize(
@@ -45,7 +57,15 @@ def test_one_choice_for_every_scene(scene, method, usual):
 
 
 @pytest.mark.parametrize(("Qf", "sf"), REVERSING)
-def test_where_slip_reverses_nothing_is_known_to_hold(Qf, sf):
+def test_where_slip_turns_round_gradual_loads_are_the_reference(Qf, sf):
+    scene = hertz(Qf, sf)
+    assert reference(scene) == ("exact", {})
+    assert default_methods(scene) == ("exact", "fem")
+
+
+@pytest.mark.usefixtures("unknown")
+@pytest.mark.parametrize(("Qf", "sf"), REVERSING)
+def test_where_gradual_loads_are_not_solved_nothing_is_known_to_hold(Qf, sf):
     scene = hertz(Qf, sf)
     best = reference(scene)
     assert best.method == "march"
@@ -64,13 +84,12 @@ def test_the_reference_among_results():
     assert reference_among(SCENE, [ALL_EFFECTS, *METHODS]) == ALL_EFFECTS
     assert reference_among(SCENE, ["mine"]) is None
     assert reference_among(SCENE, []) is None
-    turning = hertz(0.6, 7)
-    assert reference_among(turning, METHODS) == "march"
-    assert reference_among(turning, ["fem", "exact"]) == "exact"
+    assert reference_among(hertz(0.6, 7), METHODS) == "exact"
     assert reference_among(hertz(0.6, 0.0, "bodies.lower={width=0.02, height=0.01}"), METHODS) == "exact"
 
 
 @pytest.mark.fault
+@pytest.mark.usefixtures("unknown")
 @pytest.mark.parametrize("wrong", ["one step", "march"])
 def test_agreement_with_a_solution_that_does_not_hold_is_no_pass(wrong):
     """Deliberate fault: a result equal to the reference to the last digit, where slip reverses."""
@@ -88,8 +107,9 @@ def test_agreement_with_a_solution_that_does_not_hold_is_no_pass(wrong):
     assert (run.passed, run.conclusion.text) == (False, "not judged: m, n, q, q1, q2")
 
 
-def test_a_path_that_turns_is_not_judged_by_a_run():
-    """The scene of the audit: Q_f = 0.643, s_f = 8.67. The closed form and march differ by 0.19 a in m."""
+@pytest.mark.usefixtures("unknown")
+def test_a_path_that_turns_is_not_judged_by_one_step():
+    """Q_f = 0.643, s_f = 8.67. One step and march differ by 0.19 a in m."""
     scene = hertz(*REVERSING[1], "fem.accuracy=1e-2")
     run = partialslip.run(scene, ["exact", "march"])
     assert run.reference == "march"

@@ -1,12 +1,16 @@
 """Profiles from files of points: smoothed, convex, in any unit, with noise that carries over to m and n."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from partialslip import InputError, load_scene, run
+from partialslip import InputError, load_result, load_scene, run
+from partialslip.cli import main
 from partialslip.halfplane import contact, stick_zone
+from partialslip.halfplane.noise import noise_of
 from partialslip.report.profile import profile_svg
-from partialslip.scene.measured import refitted
+from partialslip.scene.measured import refitted, smoothest
 
 SCENE = """
 name = "measured"
@@ -85,6 +89,52 @@ def test_units_of_the_scene(tmp_path):
     assert other.profile.measured.noise == pytest.approx(own.profile.measured.noise, rel=1e-12)
 
 
+WITHOUT = SCENE.replace("unit = [1e-3, 1e-6]\n", "")
+IN_MM = WITHOUT
+for si, own in {"72.1e9": "72.1e3", "200e-6": "0.2", "400e3": "400", "40e3": "40", "60e6": "60"}.items():
+    IN_MM = IN_MM.replace(si, own)
+IN_MM = f'units = "N-mm"\n{IN_MM}'
+
+
+@pytest.mark.parametrize("lines", [
+    ("x [mm], gap [um]",),
+    ("# Profile of a pad (second measurement)", "# x [ mm ]; gap [\N{MICRO SIGN}m]"),
+    ("# x (mm) gap (\N{GREEK SMALL LETTER MU}m)", "", "# made (by hand) with (care)"),
+    ("x [m], gap [m]", "X [MM], GAP [UM]"),
+])  # fmt: skip
+def test_units_in_the_heading_are_read(tmp_path, lines):
+    given = scene_of(tmp_path, *points(2e-7)).profile
+    for text in (WITHOUT, IN_MM):
+        found = scene_of(tmp_path, *points(2e-7), text, lines).profile
+        assert found.measured.unit == pytest.approx((1e-3, 1e-6))
+        assert found.x == pytest.approx(given.x, rel=1e-12)
+        assert found.gap == pytest.approx(given.gap, rel=1e-9, abs=1e-18)
+
+
+@pytest.mark.parametrize(
+    ("lines", "unit"), [(("# all in [mm]",), 1e-3), (("# x, gap (scan [3])",), 1.0), (("x,gap",), 1.0)]
+)
+def test_one_unit_stands_for_both_columns_and_none_for_that_of_the_scene(tmp_path, lines, unit):
+    x, values = points(2e-7)
+    found = scene_of(tmp_path, x / unit / 1e3, values / unit / 1e6, WITHOUT, lines).profile
+    assert found.measured.unit == pytest.approx((unit, unit))
+    assert found.x[-1] == pytest.approx(2.5e-3, rel=1e-2)
+
+
+@pytest.mark.parametrize(("text", "lines", "message"), [
+    (SCENE, ("x [mm], gap [mm]",),
+     "profile.unit = [0.001, 1e-06]: must be that of the heading of pad.csv, [mm] and [mm], or be left out"),
+    (SCENE, ("[um]",), "must be that of the heading of pad.csv, [um], or be left out"),
+    (WITHOUT, ("x [mm], gap [mil]",), "pad.csv: units [mm] and [mil] in the heading: must be of m, mm, um"),
+])  # fmt: skip
+def test_units_that_contradict_or_are_unknown_are_refused(tmp_path, monkeypatch, text, lines, message):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError) as error:
+        scene_of(Path(), *points(2e-7), text, lines)
+    assert message in str(error.value)
+    scene_of(Path(), *points(2e-7), SCENE, ("x [mm], gap [mil]",))  # the scene says what the heading does not
+
+
 def test_exponents_of_fortran(tmp_path):
     x, values = points(2e-7)
     plain = scene_of(tmp_path, x, values)
@@ -105,6 +155,65 @@ def test_noise_carries_over(tmp_path):
     ratio = copies.std(axis=0, ddof=1) / measured.std(axis=0, ddof=1)
     assert (ratio > 0.4).all()
     assert (ratio < 2.5).all()
+
+
+def flat_of(folder, seed, smooth):
+    """A cylinder of 50 mm, 601 points over 8 mm with noise of 1 um."""
+    x = np.linspace(-4e-3, 4e-3, 601)
+    text = WITHOUT.replace("200e-6", repr(smooth))
+    return scene_of(folder, x, x**2 / 0.1 + 1e-6 * np.random.default_rng(seed).standard_normal(601), text)
+
+
+def in_closed_form(scene):
+    pressed, load = contact(scene), scene.load
+    zone = stick_zone(pressed, scene.friction.f, load.dQ, load.dsigma)
+    return np.array([pressed.a, float(zone.m), float(zone.n)])
+
+
+@pytest.mark.parametrize("smooth", [pytest.param(5e-4, marks=pytest.mark.slow), 1e-3])
+def test_the_scatter_that_is_told_is_that_of_the_results(tmp_path, smooth):
+    """Other measurements of the same body differ by as much from the body as the noisy copies do among themselves."""
+    given = flat_of(tmp_path, 0, smooth)
+    noise, true = noise_of(given), in_closed_form(given.replace(profile={"kind": "hertz", "R": 0.05}))
+    found = np.array([in_closed_form(flat_of(tmp_path, seed, smooth)) for seed in range(12)])
+    ratio = np.sqrt(np.mean((found - true) ** 2, axis=0)) / true[0] / [noise.a, noise.m, noise.n]
+    assert np.all(ratio < 2.5)
+    assert np.all(ratio > 0.4)
+
+
+def test_a_longer_smoothing_length_is_advised_where_it_scatters_less(tmp_path):
+    """The points of a cylinder fit a table of three intervals; those of a body with a hollow do not."""
+    noise = noise_of(flat_of(tmp_path, 0, 1e-4))
+    assert noise.smooth == pytest.approx(8e-4)
+    assert noise.m_then < noise.m / 2
+    assert noise_of(flat_of(tmp_path, 0, 8e-4)).smooth is None
+    assert smoothest(flat_of(tmp_path, 0, 1e-4).profile.measured) == pytest.approx(1.6e-3)
+    x, values = points(2e-7)
+    kinked = scene_of(tmp_path, x, values + 0.02 * np.abs(x), SCENE.replace("200e-6", "50e-6"))
+    assert smoothest(kinked.profile.measured) <= 4e-4
+
+
+def test_noise_is_told_and_judges_nothing(tmp_path, capsys):
+    flat_of(tmp_path, 0, 4e-4)
+    out = tmp_path / "out"
+    assert main(["run", str(tmp_path / "job.toml"), "--with", "exact", "--out", str(out)]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    noise = load_result(out / "results.json").noise
+    assert f"noise of the profile a +- {noise.a:.1e} a, m +- {noise.m:.1e} a, n +- {noise.n:.1e} a" in printed
+    assert "with a longer smooth 0.8 mm" in printed
+    plain = run(load_scene(tmp_path / "job.toml"), "exact")
+    assert plain.noise is None
+    told = load_result(out / "results.json")
+    assert (told.outcome, told.missed) == (plain.outcome, plain.missed)
+    assert told.methods["exact"].estimate == plain["exact"].estimate
+
+
+def test_only_measured_profiles_have_noise_and_some_loads_no_closed_form(tmp_path):
+    assert noise_of(load_scene("hertz-shear")) is None
+    given = flat_of(tmp_path, 0, 5e-4)
+    noise = noise_of(given.replace(load={"P": [4e5, 3e5]}))
+    assert noise.a > 0
+    assert (noise.m, noise.n) == (None, None)
 
 
 def hollow(x):

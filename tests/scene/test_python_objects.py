@@ -22,6 +22,7 @@ from partialslip.scene import (
     Scene,
     Tabulated,
 )
+from partialslip.scene.writing import scene_toml
 
 SHIPPED = partialslip.load_scene("fretting-aluminium")
 
@@ -162,3 +163,64 @@ def test_a_constructor_that_does_not_validate_is_noticed():
     raw = msgspec.StructMeta.__call__(Load, P=-1.0, Q=[1.0, float("nan")])
     assert raw.P == -1.0
     assert line(lambda: made(load=raw)) == "load.Q[1] = nan: must be finite"
+
+
+@pytest.mark.parametrize("order", [set, frozenset])
+def test_a_set_has_no_order_of_load_points(order):
+    said = "load.Q: must be a list: a set has no order"
+    assert line(lambda: SHIPPED.replace({"load.Q": order([-1e4, 1e4])})) == said
+    assert line(lambda: Load(P=1e5, Q=order([-1e4, 1e4]))) == said
+
+
+@pytest.mark.parametrize("changes", [3, "load.P", [("load.P", 1e5)], 2.5])
+def test_what_is_no_table_of_changes(changes):
+    said = line(lambda: SHIPPED.replace(changes))
+    assert said.startswith("changes = ")
+    assert "must be values by dotted key" in said
+
+
+ASKED = {
+    "run": lambda scene: partialslip.run(scene, "exact"),
+    "plan": partialslip.plan,
+    "sweep": lambda scene: partialslip.sweep(scene, {"friction.f": [0.3]}, "exact", progress=lambda *_: None),
+    "assess": lambda scene: partialslip.assess(scene, criteria=["principal"]),
+    "characterise": partialslip.characterise,
+    "refitted": lambda scene: partialslip.refitted(scene, 1),
+    "export": lambda scene: partialslip.export(scene, "gmsh"),
+    "score": lambda scene: partialslip.score(scene, "none.csv"),
+    "compare": lambda scene: partialslip.compare(*[partialslip.run(SHIPPED, "exact")["exact"]] * 2, scene, 1e-3),
+}
+REFUSED = {  # of a scene that does not suit the function, or of a file that is not there: after the scene was read
+    "characterise": "bodies",
+    "refitted": "profile: must be from a file",
+    "score": "none.csv: cannot be read",
+}
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_a_name_or_a_path_stands_for_its_scene(name, tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(scene_toml(SHIPPED), "utf-8")
+    for scene in ("fretting-aluminium", path, str(path)):
+        if name in REFUSED:
+            assert REFUSED[name] in line(lambda scene=scene: ASKED[name](scene))
+        else:
+            assert ASKED[name](scene) is not None
+    for wrong in (3, None, {"name": "mine"}, ["hertz-shear"]):
+        assert line(lambda wrong=wrong: ASKED[name](wrong)).startswith("scene = ")
+    assert "did you mean 'hertz-shear'" in line(lambda: ASKED[name]("hertz-sheer"))
+
+
+@pytest.mark.parametrize("read", [partialslip.load_scene, partialslip.load_state, partialslip.load_result,
+                                  partialslip.load_rig])  # fmt: skip
+@pytest.mark.parametrize("path", [0, None, 2.5, ["hertz-shear"]])
+def test_what_is_no_path_is_refused(read, path):
+    """Not even a number, which stands for an open file, such as standard input."""
+    assert "path of a" in line(lambda: read(path))
+
+
+def test_what_run_is_asked_for():
+    assert line(lambda: partialslip.run(SHIPPED, 3)).startswith("methods = 3: must be one or several of exact, march")
+    assert line(lambda: partialslip.run(SHIPPED, "exact", start=3)).startswith("start = 3: must be a State")
+    assert line(lambda: partialslip.load_scene("hertz-shear", [3])).startswith("override 3: must be table.key=value")
+    assert partialslip.load_scene("hertz-shear", "friction.f=0.4").friction.f == 0.4

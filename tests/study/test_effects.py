@@ -13,7 +13,7 @@ import pytest
 import partialslip
 from partialslip import InputError, load_scene, plan
 from partialslip.cli import main
-from partialslip.condensed.history import march as follow_path
+from partialslip.condensed.constant import march as follow_path
 from partialslip.condensed.path import Path, stretched
 from partialslip.halfplane import marching
 from partialslip.plan import reduced
@@ -86,7 +86,7 @@ def spied(monkeypatch):
     spy(condensation, "factor", "factor")
     spy(bodies, "half_plane", "half_plane")
     spy(bodies, "press", "press")
-    spy(solving, "march_refined", "march")
+    spy(solving.constant, "march", "march")
     spy(solving.coupled, "march", "coupled")
     spy(condensation.Condensation, "displace", "displace")
     return calls
@@ -152,8 +152,9 @@ def test_half_a_cycle_tells_the_whole(method, which):
 
 
 def test_half_a_cycle_tells_the_whole_of_any_body():
-    """Masing's rule of one step needs nothing of the bodies but a symmetric positive definite compliance."""
-    rng = np.random.default_rng(6)
+    """Masing's rule of one step needs nothing of the bodies but a symmetric positive definite compliance, and slip that
+    does not turn round."""
+    rng, compared = np.random.default_rng(6), 0
     for _ in range(100):
         n = int(rng.integers(3, 25))
         root, x = rng.normal(size=(n, n)), np.sort(rng.uniform(-1, 1, n))
@@ -161,10 +162,14 @@ def test_half_a_cycle_tells_the_whole_of_any_body():
         Q, strain = rng.uniform(-1, 1) * bound.sum(), 10.0 ** rng.uniform(-2, 2) * rng.normal()
         whole = Path(((-Q, -strain, 0.0), (Q, strain, 0.0)), (0, 1), True, 1, 1)
         one, other = (follow_path(C, stretched(x, 0.0), bound, path) for path in (replace(whole, half=True), whole))
+        if other.turns:
+            continue
+        compared += 1
         assert one.q1 == pytest.approx(other.q1, abs=1e-9)
         assert one.q2 == pytest.approx(other.q2, abs=1e-9)
         assert one.slip == pytest.approx(other.slip, abs=1e-9 * max(np.abs(other.slip).max(), 1))
         assert one.dissipated == pytest.approx(other.dissipated, rel=1e-8, abs=1e-9)
+    assert compared > 20
 
 
 def test_half_a_cycle_of_mean_loads_is_another_answer():
@@ -176,7 +181,7 @@ def test_half_a_cycle_of_mean_loads_is_another_answer():
 
 def test_a_gradual_way_is_followed():
     """Slip reverses on the path: Masing's rule would be wrong."""
-    assert fem("load.steps=3", "load.Q=[-3e4, 3e4]", LARGE).counts["load_steps"] >= 9
+    assert march("load.Q=[-172787.6, 172787.6]", "load.sigma=[-7e8, 7e8]").counts["events"] > 0
 
 
 @pytest.mark.parametrize("load", [(), ("load.Q=[-5e4, 5e4]", LESS)])
@@ -270,7 +275,7 @@ REFUSED = {
     "effects.normal=false": "without pressure there is no contact; must be true",
     "effects.friction=true friction.f=0.01": "the contact slides",
     "effects.friction=true friction.f=0": "f = 0",
-    "effects.opposing-slip=false load.sigma=[-1e9,1e9]": "large tension",
+    "effects.opposing-slip=false load.sigma=[-1e9,1e9] fem.accuracy=1e-2": "large tension",
     "effects.history=false load.sigma=[0,1e8,0] load.Q=[0,1e4,1e4]": "out of phase",
     "effects.history=false material.upper.E=400e9 material.upper.nu=0.3 load.Q=[-1e5,1e5]": "depends on the path",
     "effects.finite-size=true": "have no size; must be false",

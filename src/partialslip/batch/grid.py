@@ -20,6 +20,7 @@ from partialslip.judge.reference import METHODS
 from partialslip.record import Record
 from partialslip.run import default_methods
 from partialslip.scene import Scene
+from partialslip.scene.reading import AnyScene, as_scene
 
 if TYPE_CHECKING:
     from partialslip.frame import DataFrame
@@ -30,7 +31,7 @@ _SESSION = Ledger()  # solved points of sweeps without a file
 
 
 def sweep(
-    scene: Scene,
+    scene: AnyScene,
     over: Mapping[str, Iterable[Any]] | Sequence[Mapping[str, Any]],
     methods: str | Iterable[str] | None = None,
     *,
@@ -47,7 +48,8 @@ def sweep(
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene, str or path
+        A scene, the name of a shipped one, or the path of a scene file.
     over : mapping of str to values, or sequence of mappings
         Values by dotted key (:meth:`Scene.replace`), e.g. ``{"friction.f": [0.3, 0.4], "load.P": [1e5, 2e5]}``: the
         points are all combinations, and the last key varies fastest. A value of ``load.Q`` is a list of numbers. A
@@ -87,6 +89,7 @@ def sweep(
     MissingLibraryError
         If pandas is not installed.
     """
+    scene = as_scene(scene)
     frame({})  # pandas is missing before the first point is solved, not after the last one
     if cores is not None and not (isinstance(cores, (int, np.integer)) and cores >= 1):
         raise InputError(f"cores = {cores}: must be a whole number >= 1")

@@ -4,6 +4,7 @@ The key of a case is a checksum of scene, settings and the packages' source file
 solved again. Commit and versions are recorded only.
 """
 
+import errno
 import hashlib
 import json
 import os
@@ -14,9 +15,13 @@ from typing import Any
 import msgspec
 
 from partialslip.errors import InputError
-from partialslip.origin import checksum, made_now, source_checksum
+from partialslip.inputfile import LARGEST_MESH, check_replaceable, checksum, read_bytes, reason
+from partialslip.origin import made_now, source_checksum
+from partialslip.output.folders import make_folder
 from partialslip.scene import Scene
 from partialslip.strictjson import decoded
+
+_LARGEST = 2**32  # bytes of a file
 
 
 class Ledger:
@@ -25,13 +30,13 @@ class Ledger:
     Parameters
     ----------
     path : Path, optional
-        File, created with the first entry. An unfinished last line, left by a killed study, is removed. Without a file
-        the entries last as long as the object.
+        File, created with the first entry. An unfinished last entry, left by a killed study, is removed. Without a
+        file the entries last as long as the object.
 
     Raises
     ------
     InputError
-        If the file is not a ledger, or cannot be read or written.
+        If the file is not a ledger, or cannot be read or written; the file is then as before.
     """
 
     def __init__(self, path: Path | None = None) -> None:
@@ -39,14 +44,10 @@ class Ledger:
         self._entries: dict[str, dict[str, Any]] = {}
         if path is None:
             return
-        try:
-            text = path.read_bytes() if path.exists() else b""
-            whole, _, torn = text.rpartition(b"\n")
-            if torn:
-                os.truncate(path, len(text) - len(torn))
-        except OSError as error:
-            raise InputError(f"{path}: cannot be read: {error.strerror}") from None
-        for number, line in enumerate(whole.splitlines(), start=1):
+        text = read_bytes(path, _LARGEST) if os.path.lexists(path) else b""
+        *lines, last = text.split(b"\n")
+        torn = _is_torn(last)
+        for number, line in enumerate(lines if torn or not last else [*lines, last], start=1):
             try:
                 entry = _unsealed(line)
                 self._entries[entry["key"]] = entry
@@ -55,6 +56,10 @@ class Ledger:
                     f"{path}: line {number}: must be an entry of a ledger, unchanged since it was written; remove the "
                     "line to solve the case again"
                 ) from None
+        if torn:
+            _cut(path, len(last))
+        elif last:
+            _append(path, b"\n")
 
     @property
     def path(self) -> Path:
@@ -100,17 +105,47 @@ class Ledger:
 
 
 def _append(path: Path, line: bytes) -> None:
-    """Append ``line`` to the file and sync the file to disk."""
+    """Append ``line`` to the file and sync the file to disk. What was there before stays as it is, even if there is
+    no room for the whole line."""
+    check_replaceable(path)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
         with open(path, "ab", buffering=0) as file:
-            file.write(line)
-            os.fsync(file.fileno())
+            size = os.fstat(file.fileno()).st_size
+            try:
+                if file.write(line) < len(line):
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+                os.fsync(file.fileno())
+            except OSError:
+                file.truncate(size)
+                raise
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+        raise InputError(f"{path}: cannot be written: {reason(error)}") from None
 
 
-_SEAL = b', "sum": "'
+def _cut(path: Path, count: int) -> None:
+    """Remove the last ``count`` bytes of the file."""
+    try:
+        with open(path, "rb+") as file:
+            file.truncate(file.seek(-count, os.SEEK_END))
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {reason(error)}") from None
+
+
+_BEGINS, _SEAL = b'{"key": "', b', "sum": "'
+
+
+def _is_torn(line: bytes) -> bool:
+    """Return whether ``line`` is the beginning of an entry, and not all of one. Text of somebody else is neither."""
+    if not (line.startswith(_BEGINS) or (line and _BEGINS.startswith(line))):
+        return False
+    try:
+        json.loads(line)
+    except ValueError:
+        return True
+    except RecursionError:
+        pass
+    return False
 
 
 def _sealed(entry: str) -> bytes:
@@ -149,4 +184,12 @@ def scene_content(scene: Scene) -> dict[str, Any]:
     files = [body.mesh for _, body in scene.bodies if body.mesh is not None]
     content = msgspec.to_builtins(scene)
     del content["shown_in"], content["fatigue"]
-    return {**content, "mesh files": {file: checksum([Path(file)]) for file in files}}
+    return {**content, "mesh files": {file: _sum_of_mesh(file) for file in files}}
+
+
+def _sum_of_mesh(file: str) -> str | None:
+    """Return the checksum of a mesh file; None if it cannot be read, which the method tells that needs the mesh."""
+    try:
+        return checksum(file, LARGEST_MESH)
+    except InputError:
+        return None

@@ -11,6 +11,7 @@ from msgspec.structs import replace
 from partialslip.arrays import Array
 from partialslip.benchmark.measured import Quantity, quantities
 from partialslip.benchmark.problem import Problem, Target
+from partialslip.benchmark.turning import event_by_event, turns_round
 from partialslip.judge.means import means
 from partialslip.judge.reference import reference
 from partialslip.result import Result
@@ -18,7 +19,9 @@ from partialslip.run import run
 from partialslip.scene import Hertz
 
 _DIGITS = 1e-9  # uncertainty of closed forms, in the scale of the quantity
+_FOLLOWED = 1e-6  # uncertainty where slip turns round, unless the second way is farther off
 _ENDS = ("left_1", "right_1", "left_2", "right_2")
+_GRADUAL = "quadratures and an integral equation along the gradual path"
 _NEAR = 1e-3  # another method that is farther off does not check the digits of a closed form
 _EVEN = 1e-4  # of a: nearer to each other places are one
 _FINE = 1e-5  # accuracy asked of march and fem
@@ -67,14 +70,14 @@ def ways(problem: Problem) -> tuple[Way, ...]:
         )
     if reference(scene).method != "exact":
         return fem, march
-    return Way("exact", "closed form"), march, fem
+    return Way("exact", _GRADUAL if turns_round(scene) else "closed form"), march, fem
 
 
 def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: None) -> tuple[dict[str, Target], str]:
     """Find the targets of ``problem``, and its regime.
 
-    The uncertainty is that of a closed form, or the largest of the method's estimate and the differences between the
-    methods.
+    The uncertainty is that of a closed form; where slip turns round, the difference from the nearest other method; or
+    the largest of the method's estimate and the differences between the methods.
 
     Parameters
     ----------
@@ -95,6 +98,11 @@ def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: N
         extrapolated = Way("fem", "fem, extrapolated from 16, 64 and 256 load steps")
         progress(f"{problem.number}: {extrapolated.words}")
         checks.append((extrapolated, result, _slip(problem, result.a)))
+    if first.words == _GRADUAL:
+        followed = Way("events", "boundary elements, event by event,")
+        progress(f"{problem.number}: {followed.words}")
+        found = event_by_event(problem.scene, problem.places)
+        checks.append((followed, result, {key: values[key]._replace(value=value) for key, value in found.items()}))
     targets = {
         key: _target(problem, key, first, result, value, checks)
         for key, value in values.items()
@@ -132,9 +140,11 @@ def _slip(problem: Problem, a: float) -> dict[str, Quantity]:
     return result
 
 
-def _of_closed_form(checked: float) -> float:
-    """Uncertainty of a closed form that the nearest other method finds within ``checked``: its digits, unless no other
-    method comes near."""
+def _of_exact(checked: float, turns: bool) -> float:
+    """Uncertainty of an exact value that the nearest other method finds within ``checked``. Of a closed form: its
+    digits, unless no other method comes near. Where slip ``turns`` round there is none, and it is ``checked``."""
+    if turns:
+        return max(checked, _FOLLOWED)
     return _DIGITS if checked <= _NEAR else checked
 
 
@@ -173,7 +183,7 @@ def _target(
         value=quantity.value,
         unit=quantity.unit,
         scale=quantity.scale,
-        uncertainty=_of_closed_form(min(counted))
+        uncertainty=_of_exact(min(counted), way.words == _GRADUAL)
         if exact
         else max([0.0 if math.isnan(estimate) else estimate, *counted, _DIGITS]),
         known="; ".join([known, *said]),

@@ -5,6 +5,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from partialslip.benchmark.increments import gradual
 from partialslip.benchmark.problem import Problem
 from partialslip.errors import InputError
 from partialslip.export.abaqus import abaqus_deck
@@ -26,15 +27,16 @@ def files(problem: Problem) -> dict[str, bytes]:
     and, if there is a holder, flanks. ``calculix-mortar.inp``, ``calculix-penalty.inp`` and ``abaqus.inp``: decks.
     None where the problem cannot be exported.
     """
+    scene = gradual(problem.scene)
     try:
-        made = modelled(problem.scene, _SIZE, growth=GROWTH)
-        flat = modelled(problem.scene, _SIZE, growth=GROWTH, stiffer=STIFFER)
+        made = modelled(scene, _SIZE, growth=GROWTH)
+        flat = modelled(scene, _SIZE, growth=GROWTH, stiffer=STIFFER)
     except InputError:
         return {}
     decks = {
-        "calculix-mortar.inp": calculix_deck(problem.scene, flat, "mortar"),
-        "calculix-penalty.inp": calculix_deck(problem.scene, flat, "penalty"),
-        "abaqus.inp": abaqus_deck(problem.scene, flat),
+        "calculix-mortar.inp": calculix_deck(scene, flat, "mortar"),
+        "calculix-penalty.inp": calculix_deck(scene, flat, "penalty"),
+        "abaqus.inp": abaqus_deck(scene, flat),
     }
     texts = {"model.json": json_text(_told(made))} | {name: "\n".join(deck) + "\n" for name, deck in decks.items()}
     return {name: text.encode() for name, text in texts.items()} | _meshes(made)
@@ -69,7 +71,7 @@ def _told(made: Model) -> dict[str, Any]:
         "strains": lower.strained.tolist(),
         "upper_body": f"its held lines are a rigid frame, under P along -y and Q along -x, that moves freely{turns}",
         "guided": "in a guided step the upper body's frame is held along x",
-        "increments": "least number of equal increments; more are better where the contact grows",
+        "increments": "number of equal increments; more are better where the contact grows or slip turns round",
         "steps": [step._asdict() for step in made.steps],
     }
 

@@ -16,6 +16,8 @@ from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes, read_text
 from partialslip.output.files import write_texts
 from partialslip.output.json import json_text
+from partialslip.output.lock import locked
+from partialslip.output.place import NAME as REQUEST
 from partialslip.scene.limits import NO_TEXT
 from partialslip.scene.reading import parse_toml
 from partialslip.strictjson import converted, decoded
@@ -116,8 +118,7 @@ def read_submission(folder: str | os.PathLike[str], known: Mapping[str, Problem]
     path = Path(folder)
     if not path.is_dir():
         raise InputError(f"{folder}: must be a folder with {META} and PS-01.json and so on")
-    meta = converted(parse_toml(read_text(path / META, _LARGEST), str(path / META)), Meta, str(path / META))
-    answers = {}
+    meta, answers = _read_meta(path), dict[str, Answer]()
     for file in sorted(path.glob("*.json")):
         number = file.stem
         if number not in known:
@@ -178,15 +179,61 @@ def _check_ladder(file: Path, answer: Answer) -> None:
         raise InputError(f"{file}: values: must be those of the last mesh of the ladder")
 
 
-def write_answer(number: str, answer: Answer, folder: str | os.PathLike[str]) -> Path:
-    """Write the ``answer`` to the problem ``number`` into ``folder``."""
-    return write_texts(Path(folder), {f"{number}.json": json_text(answer)})[0]
+def add_answer(
+    number: str, answer: Answer, folder: str | os.PathLike[str], code: str, named: bool = False, force: bool = False
+) -> list[Path]:
+    """Add the ``answer`` to the problem ``number`` to the answers of one code in ``folder``. The folder is locked
+    meanwhile.
+
+    Parameters
+    ----------
+    number : str
+    answer : Answer
+    folder : str or path
+        A new folder, or one with meta.toml. In a new one meta.toml is written, of the ``code``.
+    code : str
+    named : bool
+        Whether the user has named the code: the folder must then be of this code.
+    force : bool
+        Whether to replace another answer to the problem.
+
+    Returns
+    -------
+    list of Path
+        Paths of the files written.
+
+    Raises
+    ------
+    InputError
+        If the folder holds another answer to the problem, the answers of another code, or those of a command of
+        partialslip, or cannot be written.
+    """
+    path, text = Path(folder), json_text(answer)
+    with locked(path):
+        file, there = path / f"{number}.json", os.path.lexists(path / META)
+        known = _read_meta(path).code if there else code
+        if os.path.lexists(path / REQUEST):
+            raise InputError(f"--out {path}: holds what a command of partialslip has written: must be another folder")
+        if named and known != code:
+            raise InputError(
+                f"--code {code!r}: {path} holds answers of {known!r}: must be the same code, or another folder"
+            )
+        if not force and os.path.lexists(file) and read_bytes(file, _LARGEST) != text.encode():
+            raise InputError(f"{file}: is another answer: name another folder, or replace the answer with --force")
+        return write_texts(path, ({} if there else {META: _meta_text(Meta(code, ""))}) | {file.name: text})
 
 
 def write_submission(submission: Submission, folder: str | os.PathLike[str]) -> list[Path]:
     """Write ``submission`` into ``folder``, as :func:`read_submission` reads it. Returns the paths."""
-    meta = {key: value for key, value in msgspec.to_builtins(submission.meta).items() if value}
-    files = {META: tomli_w.dumps(meta)}
-    return write_texts(
-        Path(folder), files | {f"{key}.json": json_text(each) for key, each in submission.answers.items()}
-    )
+    answers = {f"{key}.json": json_text(each) for key, each in submission.answers.items()}
+    return write_texts(Path(folder), {META: _meta_text(submission.meta)} | answers)
+
+
+def _meta_text(meta: Meta) -> str:
+    """Return ``meta`` as TOML, without empty texts that need not be there."""
+    given = msgspec.to_builtins(meta)
+    return tomli_w.dumps({key: value for key, value in given.items() if value or key in ("code", "version")})
+
+
+def _read_meta(folder: Path) -> Meta:
+    return converted(parse_toml(read_text(folder / META, _LARGEST), str(folder / META)), Meta, str(folder / META))

@@ -52,7 +52,10 @@ def add(commands: "Commands") -> None:
                                        "partialslip benchmark read PS-05 job.frd -o my-answers"])  # fmt: skip
     reads.add_argument("problem", metavar="PROBLEM", help="number of the problem")
     reads.add_argument("file", metavar="FILE", help="table of x, p and q, or CalculiX's .frd")
-    reads.add_argument("-o", "--out", metavar="DIR", required=True, help="folder of the answers")
+    reads.add_argument("-o", "--out", metavar="DIR", required=True, help="folder of the answers of one code")
+    reads.add_argument("--code", metavar="NAME",
+                       help="name of the code, for meta.toml in a new folder (default: name of the table)")  # fmt: skip
+    reads.add_argument("--force", action="store_true", help="replace another answer to the problem")
     reads.set_defaults(command=_read)
 
     scores = parts.add_parser("score", help="grade the answers of a code",
@@ -113,12 +116,14 @@ def _run(options: argparse.Namespace) -> int:
 
 def _read(options: argparse.Namespace) -> int:
     from partialslip.benchmark.problem import numbered
-    from partialslip.benchmark.submission import write_answer
+    from partialslip.benchmark.submission import add_answer
     from partialslip.benchmark.table import answer_from
     from partialslip.cli.consoles import output
 
-    problem = numbered(options.problem)
-    print_written([write_answer(problem.number, answer_from(problem, options.file), options.out)], output())
+    problem, named = numbered(options.problem), options.code is not None
+    code = options.code if named else Path(options.file).stem
+    answer = answer_from(problem, options.file)
+    print_written(add_answer(problem.number, answer, options.out, code, named, options.force), output())
     return 0
 
 

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     Commands = argparse._SubParsersAction[Any]
 
+_MANY_STEPS = 500  # load steps of a path that take longer than all else
+
 
 def add_scene(parser: "argparse.ArgumentParser") -> None:
     """Add SCENE and ``--set`` to ``parser``."""
@@ -49,6 +51,21 @@ def origin(options: "argparse.Namespace") -> "Made":
         options.made = made_now(options.line, options.overrides)
     made: Made = options.made
     return made
+
+
+def print_long_path(scene: "Scene", methods: Sequence[str]) -> None:
+    """Print at once on stderr that ``methods`` take many load steps, if the scene asks for many."""
+    load, marching = scene.load, [method for method in methods if method in ("march", "fem")]
+    if marching and load.path_steps >= _MANY_STEPS:
+        from partialslip.cli.consoles import messages
+
+        messages().print(
+            f"{scene.name}: {' and '.join(marching)}: {load.path_steps:,} load steps or more on each mesh, as "
+            f"load.steps = {load.steps}, load.cycles = {load.cycles} and there are {len(load.points)} load points; "
+            "with load.steps = 1 the steps are chosen by their errors",
+            soft_wrap=True,
+            markup=False,
+        )
 
 
 def check_report(options: "argparse.Namespace") -> None:

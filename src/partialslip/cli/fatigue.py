@@ -66,13 +66,14 @@ def _fatigue(options: argparse.Namespace) -> int:
 
     from partialslip.cli.consoles import output, working
     from partialslip.fatigue import assess
-    from partialslip.fatigue.named import chosen
+    from partialslip.fatigue.named import check_distance, chosen
     from partialslip.fatigue.page import drawn, sections, write_assessment
     from partialslip.run import with_stresses
 
     names = None if options.criterion is None else [name.strip() for name in options.criterion.split(",")]
     try:
         names = chosen(scene, names)  # before anything is solved
+        check_distance(scene, options.body)
     except InputError as error:
         raise InputError(f"{options.scene}: {error}") from None
     name = f"{scene.name}-fatigue"

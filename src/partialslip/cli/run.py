@@ -3,6 +3,7 @@
 import argparse
 import math
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ from partialslip.cli.common import (
     check_report,
     folder_if_wanted,
     origin,
+    print_long_path,
     print_outcome,
 )
 from partialslip.errors import InputError
@@ -87,6 +89,7 @@ def _run(options: argparse.Namespace) -> int:
     budget = _budget(options, scene, methods)
 
     from partialslip.cli.consoles import messages, working
+    from partialslip.halfplane.noise import noise_of
     from partialslip.output.files import write_files
     from partialslip.report import write_run
     from partialslip.run import default_methods
@@ -100,6 +103,7 @@ def _run(options: argparse.Namespace) -> int:
             scene = partialslip.load_scene(options.scene, [*price.overrides, *options.overrides])
             allowance = Allowance(budget - price.closing_s - price.start_s) if budget else None
             messages().print(f"{price}, predicted", soft_wrap=True, markup=False)
+        print_long_path(scene, chosen)
         with working(scene.name) as tell:
             outcome = partialslip.run(
                 scene,
@@ -110,6 +114,9 @@ def _run(options: argparse.Namespace) -> int:
                 start=start,
                 allowance=allowance,
             )
+            if getattr(scene.profile, "measured", None):
+                tell("noise of the profile")
+            outcome = replace(outcome, noise=noise_of(scene))
             files = []
             if options.save is not None:
                 save = Path(options.save)

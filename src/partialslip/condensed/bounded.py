@@ -84,9 +84,19 @@ class Factored:
     def expect(self, count: int) -> None:
         """Prepare for ``count`` more programmes."""
         self._programmes += count
-        if self._inverse is None and self._programmes > _MANY:
+        if self._programmes > _MANY:
+            self._invert()
+
+    @property
+    def inverse(self) -> Array:
+        """Inverse of C, (n, n)."""
+        return self._invert()
+
+    def _invert(self) -> Array:
+        if self._inverse is None:
             self._inverse = inverse(self.C)
             self._uniform = self._refined(self._inverse, np.ones(len(self.C)))
+        return self._inverse
 
     def times(self, x: Array) -> Array:
         """C ``x`` (n,)."""

@@ -4,6 +4,9 @@ Towards the end of the contact p falls like a square root, and so does 2 f p - |
 The force between a mesh vertex and the end therefore varies like distance^(3/2). Force^(2/3) is a smooth function of x,
 and its root is the end. Forces are more accurate than nodal tractions: they hardly depend on the error of the traction
 in the last elements.
+
+Where the stick zone moves over nodes that have slipped, they stick again, and 2 f p - |dq| falls towards the end like
+distance^(3/2): the force varies like distance^(5/2), and force^(2/5) is smooth.
 """
 
 import itertools
@@ -12,29 +15,36 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Indices, Mask
 
 _VERTICES = 5  # of the fit
 _BESIDE, _FINER = 3, 0.95  # cells compared on each side of a refined point; relative size of refined cells
 _STICKS = 1e-9  # room, relative to the bound, up to which a node slips
 _LEAVES = 1e-6  # distance of q from the bound, relative, that counts as none: such weak kinks do not matter
 _RUN = 4  # fewest neighbouring nodes that make a zone; fewer are noise
+_ROOT, _CAUGHT_UP = 2 / 3, 2 / 5  # powers of the force that vanish linearly at an end
 
 
 @dataclass(frozen=True)
 class StickInterval:
-    """Interval [``left``, ``right``] that sticks throughout the cycle, and the ``signs`` of dq on its left and
-    right."""
+    """Interval [``left``, ``right``] in which dq is less than the bounds allow, the ``signs`` of dq on its left and
+    right, and which ends have ``moved`` outwards last, over points that slipped before."""
 
     left: float
     right: float
     signs: tuple[int, int]
+    moved: tuple[bool, bool] = (False, False)
 
 
 def stick_zone(
-    x: Array, bound: Array, change: Array, vertices: Array, cell_forces: Callable[[Array], Array]
+    x: Array,
+    bound: Array,
+    change: Array,
+    vertices: Array,
+    cell_forces: Callable[[Array], Array],
+    changed: Array | None = None,
+    unsteady: Array | None = None,
 ) -> StickInterval:
     """Stick zone of a cycle, from the room 2 f p - |dq| and not from the state at one load point.
 
@@ -46,8 +56,15 @@ def stick_zone(
         Ends of the cells of the contact line.
     cell_forces : callable
         Takes forces of the nodes in contact to integrals over the cells.
+    changed : (n,) array, optional
+        When nodes last began to slip or to stick; nan where they did neither.
+    unsteady : (n,) array, optional
+        Room that counts as none.
     """
     room = np.divide(2 * bound - np.abs(change), bound, out=np.zeros_like(bound), where=bound > 0)
+    if unsteady is not None:
+        room = np.where(room * bound <= unsteady, 0.0, room)
+        change = np.where(room > 0, change, np.sign(change) * 2 * bound)
     sticks = _around(int(np.argmax(room)), x, room > _STICKS, vertices)
     first, last = (sticks[0], sticks[-1] + 1) if len(sticks) else (0, len(x))
     signs = _sign(change[:first], bound[:first], change[0]), _sign(change[last:][::-1], bound[last:][::-1], change[-1])
@@ -55,9 +72,29 @@ def stick_zone(
         turn = int(np.argmax(np.sign(change) != np.sign(change[0])))
         point = float(x[max(turn - 1, 0)] + x[turn]) / 2
         return StickInterval(point, point, signs)
-    left = left_end(vertices, cell_forces(2 * bound - signs[0] * change), x[sticks])
-    right = right_end(vertices, cell_forces(2 * bound - signs[1] * change), x[sticks])
-    return StickInterval(left, max(right, left), signs)
+    rooms = (cell_forces(2 * bound - sign * change) for sign in signs)
+    powers = [_power(changed, sticks[:_RUN], first - 1), _power(changed, sticks[-_RUN:], last)]
+    left, right = (
+        end_of(vertices, room, x[sticks], power)
+        for end_of, room, power in zip((left_end, right_end), rooms, powers, strict=True)
+    )
+    if changed is not None:  # beside a point where an end turned round, the fit reaches across a kink
+        away = [int(power == _ROOT) for power in powers]
+        low, high = x[np.clip([first - 1 - away[0], first + away[0]], 0, len(x) - 1)]
+        left = float(np.clip(left, low, high))
+        low, high = x[np.clip([last - 1 - away[1], last + away[1]], 0, len(x) - 1)]
+        right = float(np.clip(right, low, high))
+    moved = powers[0] != _ROOT, powers[1] != _ROOT
+    return StickInterval(left, max(right, left), signs, moved)
+
+
+def _power(changed: Array | None, inside: Indices, outside: int) -> float:
+    """Power of the force at an end of the stick zone with the nodes ``inside`` it and the node ``outside``: whether the
+    end has moved outwards, over nodes that slipped before."""
+    if changed is None or not 0 <= outside < len(changed) or not np.isfinite(changed[inside]).all():
+        return _ROOT
+    since = np.nan_to_num(changed[[inside[0], inside[-1], outside]], nan=-1.0)
+    return _CAUGHT_UP if since[:2].max() > since[2] else _ROOT
 
 
 def _sign(changes: Array, bounds: Array, outermost: float) -> int:
@@ -68,7 +105,7 @@ def _sign(changes: Array, bounds: Array, outermost: float) -> int:
     return 1 if (changes[clear[0]] if len(clear) else outermost) > 0 else -1
 
 
-def _around(most: int, x: Array, sticks: npt.NDArray[np.bool_], vertices: Array) -> npt.NDArray[np.int64]:
+def _around(most: int, x: Array, sticks: Mask, vertices: Array) -> Indices:
     """Indices of nodes that stick around the node ``most`` with the most room, up to the first slipping cell on each
     side.
 
@@ -81,7 +118,7 @@ def _around(most: int, x: Array, sticks: npt.NDArray[np.bool_], vertices: Array)
     slips[[0, -1]] = True  # beyond the contact line
     ends = np.flatnonzero(slips)
     last = np.searchsorted(ends, after[most])
-    result: npt.NDArray[np.int64] = np.flatnonzero(sticks & (after > ends[last - 1]) & (before < ends[last]))
+    result: Indices = np.flatnonzero(sticks & (after > ends[last - 1]) & (before < ends[last]))
     return result
 
 
@@ -134,6 +171,19 @@ def kinks(x: Array, bound: Array, q: Array, vertices: Array, cell_forces: Callab
     return sorted(found)
 
 
+def turning_points(x: Array, never: Mask, slips: Mask) -> list[float]:
+    """Points where an end of the stick zone turned round, which leaves a kink in q: between the nodes ``x`` (n,),
+    ascending, that ``never`` (n,) slip in a cycle and those that do, but for the ends of the stick zone, beside which a
+    node ``slips`` (n,) from load point 1 to 2."""
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(never)) + 1, [len(x)]])
+    starts = starts[:-1][np.diff(starts) >= _RUN]
+    turns = starts[1:][np.diff(never[starts])]
+    ends = np.append(np.flatnonzero(np.diff(slips)) + 1, len(x) + _RUN)
+    turns = turns[np.abs(turns[:, None] - ends).min(axis=1) > 1]
+    points: list[float] = ((x[turns - 1] + x[turns]) / 2).tolist()
+    return points
+
+
 def finest(vertices: Array) -> list[float]:
     """Inner vertices around which a graded mesh is refined: cells beside them are the smallest in the neighbourhood."""
     widths = np.diff(vertices)
@@ -156,7 +206,7 @@ def apart(ends: Sequence[float], size: float, known: Sequence[float] = ()) -> li
     return kept
 
 
-def right_end(vertices: Array, forces: Array, inside: Array) -> float:
+def right_end(vertices: Array, forces: Array, inside: Array, power: float = _ROOT) -> float:
     """Right end of a zone.
 
     Parameters
@@ -167,6 +217,8 @@ def right_end(vertices: Array, forces: Array, inside: Array) -> float:
         Integrals over the cells of the traction that vanishes at the end.
     inside : (n,) array
         Nodes inside the zone, ascending. The end lies at most two cells beyond the last node.
+    power : float
+        Power of the force from the end on that is smooth.
     """
     last = np.searchsorted(vertices, inside[-1])  # the first vertex at or beyond the last node
     x = vertices[:last][::-1]
@@ -178,16 +230,16 @@ def right_end(vertices: Array, forces: Array, inside: Array) -> float:
     near, far = inside[-1], vertices[min(last + 1, len(vertices) - 1)]
     beyond = vertices[min(int(np.searchsorted(vertices, near, "right")), len(vertices) - 1)]
     if len(x) >= 3 and (force > 0).all():
-        roots = _roots(x, force ** (2 / 3))
+        roots = _roots(x, force**power)
         between = roots[(roots > x[0]) & (roots < far)]
         if len(between):
             return float(between.min())
     return float((near + max(near, beyond)) / 2)
 
 
-def left_end(vertices: Array, forces: Array, inside: Array) -> float:
+def left_end(vertices: Array, forces: Array, inside: Array, power: float = _ROOT) -> float:
     """Left end of a zone: :func:`right_end` of the mirror image."""
-    return -right_end(-vertices[::-1], forces[::-1], -inside[::-1])
+    return -right_end(-vertices[::-1], forces[::-1], -inside[::-1], power)
 
 
 def _roots(x: Array, y: Array) -> Array:

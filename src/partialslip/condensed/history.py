@@ -11,14 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.arrays import Array, Mask
-from partialslip.condensed.bounded import Factored, Solution, solve_bounded
+from partialslip.condensed.bounded import Solution
 from partialslip.condensed.path import Path
-from partialslip.condensed.route import Route, ahead
 
 STEADY = 1e-6  # change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
-# Differences of a node's q, relative to the sum of |q|, that are rounding: between mirror images, and over a cycle. A
-# cycle that repeats ends the path, and the limit may be ten such changes away.
-_MIRRORED, _REPEATS = 1e-13, 1e-14
+_REPEATS = 3e-14  # change of a node's q over a cycle, relative to the sum of |q|, that is rounding (seen: 2.7e-14)
+_LIMIT = 10.0  # changes of the last cycle that may lie between it and the limit
 _SLIPS = 1e-9  # distance of |dq| from the bound, relative, at which a node slips
 
 
@@ -34,7 +32,8 @@ class History:
     at_ends : two (n,) arrays
         Tangential forces at load points 1 and 2 of the last cycle.
     q1, q2 : (n,) arrays
-        Equal to ``at_ends``; out of phase the smallest and the largest tangential forces of the last cycle.
+        Equal to ``at_ends``; out of phase the smallest and the largest tangential forces of the last cycle, at
+        constant pressure at its load points.
     bounds : two (n,) arrays
         f times the normal forces at load points 1 and 2.
     room : (n,) array or None
@@ -49,13 +48,20 @@ class History:
     end : two (n,) arrays
         Tangential forces, and f times the normal forces, at the end of the path.
     load_steps : int
-        Number of load steps solved.
+        Number of load steps solved; at constant pressure, of legs.
     slipped : (2, n) array or None
-        Where the pressure varies: slip of the last cycle along +x and along -x; None under constant P.
+        Slip of the last cycle along +x and along -x; None for coupled bodies.
     held : (n,) bool array or None
         Where the pressure varies: nodes that are in contact throughout the last cycle.
     around : Steps
         The load steps of the last cycle.
+    turns : bool
+        At constant pressure, in phase: whether slip turns round on a leg of the last cycle.
+    changed : (n,) array or None
+        At constant pressure, in phase: share of the leg to load point 2 at which a node last began to slip or to stick;
+        nan where it did neither. None if the leg was one step.
+    events : int
+        At constant pressure: number of instants at which rates change, on legs that are followed.
     """
 
     path: Path
@@ -73,6 +79,9 @@ class History:
     room: Array | None = None
     slipped: Array | None = None
     held: Mask | None = None
+    turns: bool = False
+    changed: Array | None = None
+    events: int = 0
 
     def of(self, nodes: npt.NDArray[np.int64]) -> "History":
         """History of some ``nodes`` only (indices)."""
@@ -83,8 +92,8 @@ class History:
             key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "bounds", "end")
         }
         fields["around"] = self.around.of(nodes)
-        if self.room is not None and self.slipped is not None and self.held is not None:
-            fields |= {"room": self.room[nodes], "slipped": self.slipped[:, nodes], "held": self.held[nodes]}
+        some = {key: getattr(self, key) for key in ("room", "slipped", "held", "changed")}
+        fields |= {key: each[..., nodes] for key, each in some.items() if each is not None}
         return replace(self, points=points, **fields)
 
     @property
@@ -113,8 +122,36 @@ class History:
     @property
     def repeats(self) -> bool:
         """Whether q changed over the last cycle by less than ``STEADY`` times the change over half a cycle."""
-        changed = np.abs(self.points[-1].x - self.points[-1 - len(self.path.cycle)].x)
-        return bool(changed.max() <= STEADY * np.abs(self.change).max())
+        return bool(self._moved.max() <= STEADY * np.abs(self.change).max())
+
+    @property
+    def _moved(self) -> Array:
+        """Change of the forces over the last cycle, (n,), without sign."""
+        result: Array = np.abs(self.points[-1].x - self.points[-1 - len(self.path.cycle)].x)
+        return result
+
+    @property
+    def unsteady(self) -> Array | None:
+        """Room 2 f p - \\|dq\\| that is gone in the steady state, (n,), at nodes that stick again after they slipped:
+        they come to the bound slowly. None if no node does.
+
+        Room of ten changes of the last cycle may be gone. So is room of which the limit of the last three cycles, by
+        Aitken's method, leaves less than half: of room that falls in geometric progression it leaves none, of room that
+        falls with a power of the cycles a part.
+        """
+        if self.changed is None:
+            return None
+        cycle, (one, two) = len(self.path.cycle), self.path.ends
+        last = len(self.points) - cycle
+        ends = [(self.points[begin + one].x, self.points[begin + two].x) for begin in range(last, 0, -cycle)[:3]]
+        room, *before = [2 * self.bound - np.abs(q2 - q1) for q1, q2 in ends]
+        gone = _LIMIT * self._moved
+        if len(before) == 2:
+            falls, fell = before[0] - room, before[1] - before[0]
+            more = np.divide(falls**2, fell - falls, out=np.zeros_like(room), where=(falls > 0) & (falls < fell))
+            gone = np.where(2 * more > room, np.maximum(room, gone), gone)
+        result: Array = np.where(np.isfinite(self.changed), gone, 0.0)
+        return result
 
     @property
     def ratchets(self) -> float:
@@ -137,6 +174,15 @@ class History:
         """Nodes that slip from load point 1 to 2, (n,)."""
         slips: Mask = np.abs(self.change) >= (2 - _SLIPS) * self.bound
         return slips
+
+    @property
+    def never_slips(self) -> Mask | None:
+        """Nodes that do not slip in the last cycle, (n,); None where this is not known."""
+        if self.slipped is None:
+            return None
+        most = self.slipped.sum(axis=0)
+        never: Mask = most <= _SLIPS * float(most.max())
+        return never
 
     @property
     def opposing(self) -> int:
@@ -176,97 +222,10 @@ class Steps(NamedTuple):
         return self._replace(forces=self.forces[:, nodes], bounds=self.bounds[:, nodes])
 
 
-def march(
-    tangential: Array,
-    stretch: Array,
-    bound: Array,
-    path: Path,
-    factored: Factored | None = None,
-    route: Route | None = None,
-) -> History:
-    """Follow the path at constant pressure; every step has a certificate.
-
-    A step is a convex problem: nodes that stick keep the relative displacement, so that C (T - T_before) equals the
-    increment of the free relative displacement.
-
-    Parameters
-    ----------
-    tangential : (n, n) array
-        Relative compliance C of the nodes in contact.
-    stretch : (2, n) array
-        Displacements of the lower surface along x under the tension that strains it by 1, and under the tension that
-        strains it by x (:func:`partialslip.condensed.path.stretched`).
-    bound : (n,) array
-        f times the normal forces.
-    path : Path
-    factored : Factored, optional
-        Factors of ``tangential`` to use and to add to.
-    route : Route, optional
-        Where steps begin, and to be kept in it; default: nothing is known.
-    """
-    first, *ways = (len(way) for way in path.fractions)
-    cycle, times = sum(ways), path.times
-    lengths = np.diff(times, prepend=0.0).tolist()
-    done: list[_Step] = []
-    factored, route = factored or Factored(tangential), route or Route()
-    factored.expect(first + cycle * (0 if path.half else path.cycles))
-    stretched = factored.refined(stretch.T)
-
-    def found(before: Solution, load: Array, change: Array) -> Solution:
-        number = len(done)
-        if not change.any():
-            return still(before)
-        if number >= cycle // 2 and (opposite := done[-(cycle // 2)]).mirrors(before, load, change):
-            return opposite.mirrored
-        if number >= first + cycle:
-            near = done[-cycle].found.sides  # this step in the previous cycle
-        elif (turned := path.turned[number]) is not None and (
-            not before.rest.any() or np.array_equal(before.sides, -done[turned - 1].found.sides)
-        ):
-            near = -done[turned].found.sides  # slip has gone as far as on the way before, backwards
-        elif (known := route.at(path, times[number], lengths[number])) is not None:
-            near = known
-        elif number and before.rest.any():  # not the first step of a way
-            last = done[-1].change
-            near = ahead(before.sides, done[-1].before.sides, float(change @ last / (last @ last)))
-        else:
-            near = before.sides
-        free = factored.times(before.x) + change[1:3] @ stretch
-        all_free = None if stretched is None else before.x + stretched @ change[1:3]
-        return solve_bounded(tangential, free, -bound, bound, float(load[0]), near, factored, all_free)
-
-    def advance(before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
-        done.append(_Step(before, load, change, found(before, load, change)))
-        return done[-1].found, bound
-
-    history = follow(path, advance, resting(0 * bound if path.before is None else path.before))
-    route.keep(path, [step.found.sides for step in done[: first + cycle]])
-    return history
-
-
-class _Step(NamedTuple):
-    """A load step at constant pressure: the solution ``before`` it, the ``load`` after it, its ``change``, and what is
-    ``found``."""
-
-    before: Solution
-    load: Array
-    change: Array
-    found: Solution
-
-    def mirrors(self, before: Solution, load: Array, change: Array) -> bool:
-        """Whether another step is this one with all signs turned round, within rounding."""
-        opposed = np.array_equal(self.load, -load) and np.array_equal(self.change, -change)
-        return opposed and _same(self.before.x, -before.x, _MIRRORED)
-
-    @property
-    def mirrored(self) -> Solution:
-        """What the step with all signs turned round leads to."""
-        return replace(self.found, x=-self.found.x, rest=-self.found.rest, iterations=0, changes=0)
-
-
-def _same(forces: Array, others: Array, near: float) -> bool:
-    """Whether ``forces`` (n,) are the ``others``, but for ``near`` of their sum."""
-    return bool(np.abs(forces - others).max() <= near * np.abs(forces).sum())
+def _settled(path: Path, forces: Array, before: Array, bound: Array) -> bool:
+    """Whether the ``forces`` (n,) after a cycle are those ``before`` it, with the ``bound`` (n,) at the end."""
+    near = path.settled * bound + _REPEATS * float(np.abs(forces).sum())
+    return bool((np.abs(forces - before) <= near).all())
 
 
 Advance = Callable[[Solution, Array, Array], tuple[Solution, Array]]
@@ -304,7 +263,7 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
             went.append(_go(advance, points[-1], np.array(start), np.array(end), fractions))
             points.append(certified([step for step, _ in went[-1]]))
             taken += len(fractions)
-        if _same(points[-1].x, points[-1 - len(went)].x, _REPEATS):
+        if _settled(path, points[-1].x, points[-1 - len(went)].x, went[-1][-1][1]):
             break
     steps = [step for way in went for step, _ in way]
     ends = [way[-1] for way in went]

@@ -2,7 +2,6 @@
 
 import itertools
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -23,6 +22,8 @@ class Path:
     reversed loads, no shear at the beginning, no reversal of slip). ``one_way``: whether the pressure is always even,
     and |dQ| >= f |dP| from each load point to the next, so that Q drives all slip one way.
 
+    Cycles end where one changes the tangential force at no node by more than ``settled`` of its bound, and rounding.
+
     ``substeps`` is the smallest number of steps between points. ``ways`` are the steps as ascending fractions up to 1:
     to the last point first, then to each point of the cycle; default: ``substeps`` equal steps.
     """
@@ -37,30 +38,13 @@ class Path:
     half: bool = False
     one_way: bool = False
     ways: tuple[tuple[float, ...], ...] = ()
+    settled: float = 0.0
 
     @property
     def fractions(self) -> tuple[tuple[float, ...], ...]:
         """``ways``, by default ``substeps`` equal steps."""
         equal = tuple(np.linspace(0, 1, self.substeps + 1)[1:].tolist())
         return self.ways or (equal,) * (1 + len(self.cycle))
-
-    @property
-    def times(self) -> list[float]:
-        """Times at which the steps of the first loading and of the first cycle end: ways done, and the fraction of the
-        next."""
-        return [number + fraction for number, way in enumerate(self.fractions) for fraction in way]
-
-    @cached_property
-    def turned(self) -> list[int | None]:
-        """For each of these steps the step at the same fraction of the way before; None for others and on the first
-        way."""
-        ways = [(), *self.fractions]
-        firsts = np.cumsum([len(way) for way in ways]).tolist()
-        return [
-            first - len(way) + step if way == before else None
-            for first, (before, way) in zip(firsts, itertools.pairwise(ways), strict=False)
-            for step in range(len(way))
-        ]
 
     @property
     def halved(self) -> "Path":
@@ -75,6 +59,12 @@ class Path:
         """Path whose steps also end at ``count`` equal fractions of each way."""
         equal = {number / count for number in range(1, count + 1)}
         return replace(self, ways=tuple(tuple(sorted(equal.union(way))) for way in self.fractions), half=False)
+
+    @property
+    def alternates(self) -> bool:
+        """Whether the path begins without loads and shear, and the loads go to a point and its opposite in turn."""
+        begins = self.before is None and not any(self.begin)
+        return begins and len(self.cycle) == 2 and self.cycle[0] == tuple(-load for load in self.cycle[1])
 
     @property
     def presses_anew(self) -> bool:

@@ -23,6 +23,10 @@ _DRIFT = 1e-11  # error of the rates, relative to their sum, from which on the t
 _MOST = 50  # pivots per node in a leg: a stick zone that crosses the contact moves each node in and out once
 
 
+class SlidesError(PartialslipError):
+    """No node sticks."""
+
+
 @dataclass(frozen=True)
 class Leg:
     """Tangential forces and slip of n nodes along a leg, on which lambda goes from 0 to 1.
@@ -72,6 +76,13 @@ class Leg:
         return result
 
 
+def noise(rate: Array, g: Array, shift: float, diagonal: Array) -> Array:
+    """Rounding errors (n,) of the rates of forces (n,) under the rates ``g`` (n,) and ``shift`` of displacements;
+    ``diagonal`` (n,) is that of the compliance."""
+    result: Array = 16 * _EPS * (float(np.abs(rate).sum()) + (np.abs(g) + abs(shift)) / diagonal)
+    return result
+
+
 class Follower:
     """Follows straight legs of one contact in turn.
 
@@ -81,11 +92,13 @@ class Follower:
         Relative compliance of the nodes, symmetric positive definite.
     bound : (n,) array
         f times the normal forces, > 0, constant.
+    inverted : (n, n) array, optional
+        Inverse of ``C``, where it is known.
     """
 
-    def __init__(self, C: Array, bound: Array) -> None:
+    def __init__(self, C: Array, bound: Array, inverted: Array | None = None) -> None:
         self._C, self._bound, self._diagonal = C, bound, np.diag(C).copy()
-        self._tableau = Tableau(inverse(C))
+        self._tableau = Tableau(inverse(C) if inverted is None else inverted)
 
     def leg(self, start: Array, g: Array, Q: float, stages: Sequence[float] = ()) -> Leg:
         """Follow one leg.
@@ -103,6 +116,8 @@ class Follower:
 
         Raises
         ------
+        SlidesError
+            If no node sticks.
         PartialslipError
             If nodes change between sticking and slipping again and again, which only rounding errors can cause.
         """
@@ -150,6 +165,7 @@ class _Leg:
         return self._result(np.array(states).reshape(-1, len(rate)), events)
 
     def _result(self, stages: Array, events: int) -> Leg:
+        self._refine()
         change = self._forces - self._start
         off = np.abs(self._C @ change - self._g - self._shift - self._rest) / self._diagonal
         beyond = np.maximum(np.maximum(self._highest, -self._lowest) - self._bound, 0.0)
@@ -169,6 +185,19 @@ class _Leg:
             pivots=self._pivots,
         )
 
+    def _refine(self) -> None:
+        """Correct the rounding errors that the events have added up, by a product with C; errors that are more than
+        these are left to be seen."""
+        change, sticks = self._forces - self._start, self._tableau.sticks
+        off = self._C @ change - self._g - self._shift - self._rest
+        if (np.abs(off) / self._diagonal).max() > _DRIFT * float(self._bound.sum()):
+            return
+        p = self._tableau.solve(-off, self._Q - float(change.sum()))
+        self._forces = np.clip(self._forces - np.where(sticks, p[:-1], 0.0), -self._bound, self._bound)
+        self._rest = self._rest + np.where(sticks, 0.0, p[:-1])
+        self._path = np.maximum(self._path, np.abs(self._rest))
+        self._shift += float(p[-1])
+
     def _begin(self) -> None:
         """Begin with the nodes that slipped last, or with none: whichever is nearer to the rates of this leg."""
         tableau = self._tableau
@@ -185,9 +214,7 @@ class _Leg:
 
     def _solve(self) -> None:
         self._p = self._tableau.solve(self._g, self._Q)
-        self._noise = (
-            16 * _EPS * (float(np.abs(self._rate()).sum()) + (np.abs(self._g) + abs(self._p[-1])) / self._diagonal)
-        )
+        self._noise = noise(self._rate(), self._g, float(self._p[-1]), self._diagonal)
 
     def _rate(self) -> Array:
         """T' (n,)."""
@@ -236,7 +263,7 @@ class _Leg:
             last = self._tableau.sticks[node] and np.count_nonzero(self._tableau.sticks) == 1
             whole = np.inf if last else -self._p[node] / column[node] * way
             if last and not np.isfinite(steps[first]):
-                raise PartialslipError("friction: the contact slides; |Q| must be less than f P along the leg")
+                raise SlidesError("friction: the contact slides; |Q| must be less than f P along the leg")
             if whole <= steps[first]:
                 total += way * whole
                 self._p += way * whole * column

@@ -5,6 +5,7 @@ nodes with the same moments. Cells of near groups are integrated in closed form.
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -42,12 +43,14 @@ class PiecewiseCauchy:
         self._centre, self._reach = (low + high) / 2, (high - low) / 2
         self._forces = self._at_nodes()
 
-    def __call__(self, z: Complex) -> Complex:
-        """Integrals and their derivatives, (2, r, m), at points ``z`` (m,) off the interval."""
-        rows, groups = len(self._local), len(self._first)
+    def __call__(self, z: Complex, rows: Sequence[int] | None = None) -> Complex:
+        """Integrals and their derivatives, (2, r, m), at points ``z`` (m,) off the interval: of all functions, or of
+        those with the indices ``rows`` (r,), to which the work is proportional."""
+        local, of_groups = (self._local, self._forces) if rows is None else (self._local[rows], self._forces[rows])
+        groups = len(self._first)
         nodes = self._centre[:, None] + self._reach[:, None] * _NODES
-        forces = self._forces.reshape(rows, -1).T
-        result = np.empty((2, rows, len(z)), complex)
+        forces = of_groups.reshape(len(local), -1).T
+        result = np.empty((2, len(local), len(z)), complex)
         for part in np.array_split(np.arange(len(z)), len(z) * nodes.size // _AT_ONCE + 1):
             zeta = (z[part, None] - self._centre) / self._reach
             near = np.abs(zeta - 1) + np.abs(zeta + 1) < _NEAR
@@ -60,7 +63,7 @@ class PiecewiseCauchy:
             for offset in range(self._together):
                 cell = group * self._together + offset
                 there = cell < len(self._half)
-                value, slope = self._closed(z[part[point[there]]], cell[there])
+                value, slope = self._closed(local, z[part[point[there]]], cell[there])
                 for order, of in enumerate((value, slope)):
                     np.add.at(result[order].T, part[point[there]], of.T)
         result /= np.pi
@@ -82,14 +85,15 @@ class PiecewiseCauchy:
         result: Array | Complex = (moments @ back.T) * _WEIGHTS
         return result
 
-    def _closed(self, z: Complex, cell: Indices) -> tuple[Complex, Complex]:
-        """Integrals and derivatives (r, pairs) over one cell for each pair of point and ``cell``.
+    def _closed(self, local: Array, z: Complex, cell: Indices) -> tuple[Complex, Complex]:
+        """Integrals and derivatives (r, pairs) of the ``local`` coefficients (r, k + 1, c) over one cell for each pair
+        of point and ``cell``.
 
         With the pole zeta, int g/(s - zeta) ds over [-1, 1] is g(zeta) log((zeta - 1)/(zeta + 1)) plus a polynomial.
         """
         half = self._half[cell]
         zeta = (z - self._middle[cell]) / half
-        c = self._local[:, :, cell]
+        c = local[:, :, cell]
         # distances from vertices, which neighbours share, to the last digit
         low, high = z - self._ends[cell], z - self._ends[cell + 1]
         logarithm = np.log(high / low)

@@ -6,7 +6,7 @@ import numpy.typing as npt
 from partialslip.arrays import Array
 from partialslip.equivalent.method import stand_ins
 from partialslip.halfplane import Contact, contact
-from partialslip.halfplane.contact import stick_zone as stick_zone_of
+from partialslip.halfplane.contact import one_step_zone
 from partialslip.halfplane.steady import drive
 from partialslip.result import StickZone
 from partialslip.rig import Rig, Terms
@@ -47,7 +47,7 @@ def stick_zone(scene: Scene, rig: Rig, dQ: npt.ArrayLike, dsigma: npt.ArrayLike)
     rig = _shortened(rig, max(map(abs, pressed.ends)))
     loads = np.broadcast_arrays(np.asarray(dQ, float), np.asarray(dsigma, float))
     if not (shape := loads[0].shape):
-        stick_zone_of(pressed, scene.friction.f, dQ, dsigma)  # raises if the contact slides
+        one_step_zone(pressed, scene.friction.f, dQ, dsigma)  # raises if the contact slides
     flat_Q, flat_sigma = (load.ravel() for load in loads)
     centre, c, s = np.empty(flat_Q.size), np.empty(flat_Q.size), np.empty(flat_Q.size, int)
     for start in range(0, flat_Q.size, _CHUNK):
@@ -72,7 +72,7 @@ def _solved(scene: Scene, rig: Rig, pressed: Contact, dQ: Array, dsigma: Array) 
     f, unit = scene.friction.f, scene.friction.f * pressed.p0
     slope = np.zeros_like(dQ)
     sigma = dsigma.copy()
-    zone = stick_zone_of(pressed, f, dQ, sigma)
+    zone = one_step_zone(pressed, f, dQ, sigma)
     centre, c, s = (np.array(each) for each in zone)
     active = np.flatnonzero(s)  # the others slide
     for _ in range(_MOST):
@@ -86,9 +86,9 @@ def _solved(scene: Scene, rig: Rig, pressed: Contact, dQ: Array, dsigma: Array) 
         active = active[changed]
         if not len(active):
             break
-        zone = stick_zone_of(pressed, f, dQ[active], sigma[active], slope[active], checked=False)
+        zone = one_step_zone(pressed, f, dQ[active], sigma[active], slope[active], checked=False)
         centre[active], c[active], s[active] = zone
-    zone = stick_zone_of(pressed, f, dQ, sigma, slope)
+    zone = one_step_zone(pressed, f, dQ, sigma, slope)
     return np.asarray(zone.centre), np.asarray(zone.half_width), np.asarray(zone.s)
 
 

@@ -8,14 +8,14 @@ from partialslip.errors import InputError
 from partialslip.export.abaqus import abaqus_deck
 from partialslip.export.calculix import calculix_deck
 from partialslip.export.model import GROWTH, SIZE, modelled
-from partialslip.scene import Scene
+from partialslip.scene.reading import AnyScene, as_scene
 
 # Suffix of the file by format.
 FORMATS = {"calculix": ".inp", "abaqus": ".inp", "gmsh": ".msh"}
 
 
 def export(
-    scene: Scene,
+    scene: AnyScene,
     to: str,
     *,
     size: float = SIZE,
@@ -33,7 +33,8 @@ def export(
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene, str or path
+        A scene, the name of a shipped one, or the path of a scene file.
         With an even gap.
     to : str
         "calculix", "abaqus" or "gmsh".
@@ -49,6 +50,7 @@ def export(
     MissingLibraryError
         If gmsh, or a system library that gmsh needs, is missing.
     """
+    scene = as_scene(scene)
     if to not in FORMATS:
         raise InputError(f"export to {to!r}: must be one of {', '.join(FORMATS)}")
     if penalty and to != "calculix":

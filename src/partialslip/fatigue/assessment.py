@@ -10,13 +10,14 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.fatigue.cycle import settled, stress_path, unknown_between
 from partialslip.fatigue.edges import Edge, edges
-from partialslip.fatigue.named import RUIZ, Criterion, chosen, criterion
+from partialslip.fatigue.named import RUIZ, Criterion, beyond, check_distance, chosen, criterion
 from partialslip.fatigue.places import OVER, averaged, depths, largest_at, surface_points
 from partialslip.fatigue.planes import Critical
 from partialslip.fatigue.ruiz import Ruiz, ruiz
 from partialslip.result import Result
 from partialslip.run import with_stresses
 from partialslip.scene import Scene
+from partialslip.scene.reading import AnyScene, as_scene
 
 BODIES = ("lower", "upper")
 
@@ -133,7 +134,7 @@ class Assessment:
 
 
 def assess(
-    scene: Scene, result: Result | None = None, criteria: Iterable[str] | None = None, *, body: str = "lower"
+    scene: AnyScene, result: Result | None = None, criteria: Iterable[str] | None = None, *, body: str = "lower"
 ) -> Assessment:
     """Assess a solved scene by fatigue criteria.
 
@@ -142,7 +143,8 @@ def assess(
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene, str or path
+        A scene, the name of a shipped one, or the path of a scene file.
         The table ``fatigue`` holds the constants of the criteria and the distance of averages.
     result : Result, optional
         Of ``scene``, with stresses: ``partialslip.run(scene, method, subsurface=True)[method]``. By default the scene
@@ -155,11 +157,14 @@ def assess(
     Raises
     ------
     InputError
-        If a criterion is unknown, a constant of a named criterion is missing, or the result has no stresses.
+        If a criterion is unknown, a constant of a named criterion is missing, the result has no stresses, or stresses
+        are to be averaged over a distance that leaves the body.
     """
+    scene = as_scene(scene)
     names = chosen(scene, criteria)
     if body not in BODIES:
         raise InputError(f"body {body!r}: must be of {', '.join(BODIES)}")
+    check_distance(scene, body)
     result = with_stresses(scene) if result is None else result
     if result.stress_at is None:
         why = result.undetermined.get("stresses", "run the scene with subsurface=True, or by another method")
@@ -177,6 +182,8 @@ def assess(
         each.name: _rated(each, at, (x, grid, stress), scene.fatigue.distance, change)
         for each, change in zip(found, changes, strict=True)
     }
+    if not all(np.isfinite(spot.value) for rating in ratings.values() for spot in rating.averages.values()):
+        raise beyond(scene, body)
     return Assessment(
         scene,
         result,

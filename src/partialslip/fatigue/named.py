@@ -17,7 +17,7 @@ from partialslip.fatigue.criteria import (
 )
 from partialslip.fatigue.invariants import crossland, dang_van
 from partialslip.fatigue.planes import Critical, Measure, critical_plane
-from partialslip.scene import Elastic, Scene
+from partialslip.scene import Body, Elastic, Scene
 from partialslip.units import Dimension
 
 #: Keys of the table fatigue that each criterion needs, by name.
@@ -71,6 +71,22 @@ def chosen(scene: Scene, names: Iterable[str] | None) -> list[str]:
         if missing := _missing(scene, name):
             raise InputError(f"fatigue.{missing[0]}: missing; the criterion {name} needs it")
     return found
+
+
+def check_distance(scene: Scene, body: str) -> None:
+    """Raise InputError if ``fatigue.distance`` is more than the height of the ``body`` lower or upper."""
+    own: Body | None = getattr(scene.bodies, body)
+    if scene.fatigue.distance is None or own is None or own.height is None:
+        return
+    height = own.height + (own.holder.height if own.holder else 0.0)
+    if scene.fatigue.distance > height:
+        raise beyond(scene, body, f"; the body is {scene.units.labelled(height, 'm')} high")
+
+
+def beyond(scene: Scene, body: str, why: str = "") -> InputError:
+    """Return the error for stresses that are to be averaged over a distance that leaves the ``body``, and ``why``."""
+    distance = scene.units.labelled(scene.fatigue.distance or 0.0, "m")
+    return InputError(f"fatigue.distance = {distance}: must not leave the {body} body below the hot spot{why}")
 
 
 def _missing(scene: Scene, name: str) -> list[str]:

@@ -13,12 +13,13 @@ from partialslip.halfplane.adhered import adhered as adhered
 from partialslip.halfplane.contact import Contact as Contact
 from partialslip.halfplane.contact import contact as contact
 from partialslip.halfplane.contact import contact_of as contact_of
-from partialslip.halfplane.contact import stick_zone as stick_zone
+from partialslip.halfplane.contact import one_step_zone as one_step_zone
 from partialslip.halfplane.contact import tilted_contact as tilted_contact
 from partialslip.halfplane.loop import Loop as Loop
 from partialslip.halfplane.loop import hysteresis as hysteresis
 from partialslip.halfplane.method import solve as solve
 from partialslip.halfplane.stress import Stress as Stress
+from partialslip.halfplane.zones import stick_zone as stick_zone
 from partialslip.result import StickZone as StickZone
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
     "contact",
     "contact_of",
     "hysteresis",
+    "one_step_zone",
     "solve",
     "stick_zone",
     "tilted_contact",

@@ -80,7 +80,7 @@ class CellStresses:
 
     def _at(self, at: Points, steps: Sequence[int]) -> Array:
         result = self._pressed.at(at, [self.states[step] for step in steps])
-        T, T_z = self._sheared(at.scaled(self.frame))[:, steps]
+        T, T_z = self._sheared(at.scaled(self.frame), steps)
         result += np.moveaxis(under_shear(T, -at.depth / self.frame.a * T_z, at.side), 1, 0)
         return result
 

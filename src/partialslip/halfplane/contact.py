@@ -202,7 +202,7 @@ def contact_of(
     return Contact(a, shape.scale * math.pi * a / 2, shape, centre)
 
 
-def stick_zone(
+def one_step_zone(
     contact: Contact,
     f: npt.ArrayLike,
     dQ: npt.ArrayLike,
@@ -211,7 +211,10 @@ def stick_zone(
     *,
     checked: bool = True,
 ) -> StickZone[Array]:
-    """Permanent stick zones of the steady state (paper, eqs. (17) and (18)), m; arrays of the broadcast shape.
+    """Stick zones by the paper's consistency conditions, eqs. (17) and (18), m; arrays of the broadcast shape.
+
+    The conditions go from load point to load point in a single step. Where slip turns round on the way, gradual loads
+    have another stick zone: :func:`partialslip.halfplane.stick_zone`.
 
     Where the loads of an array make the contact slide, |dQ| >= 2 f P, the stick zone is NaN, and
     :attr:`StickZone.slides` is true. Numbers give numbers; a single pair of loads that slides is an error.

@@ -11,6 +11,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.loading import Loading, loading
+from partialslip.halfplane.turning import Reached, Turning
 from partialslip.scene import Load
 
 _ROUNDING = 1e-9  # tolerance: lengths in a, tractions in f p0, slip in A f p0 a
@@ -29,8 +30,8 @@ class Levels:
     differs by the change over half a ``cycle``.
     """
 
-    first: Loading
-    cycle: Loading
+    first: Loading | Reached
+    cycle: Loading | Turning
     known: int
 
     def at(self, x: Array) -> tuple[Array, Array]:
@@ -51,7 +52,7 @@ class Levels:
         return (q - dq, q) if self.known else (q, q + dq)
 
 
-def levels(pressed: Contact, f: float, load: Load, cycle: Loading) -> Levels | str:
+def levels(pressed: Contact, f: float, load: Load, cycle: Loading | Turning) -> Levels | str:
     """q1 and q2 of the steady state, or the reason why no closed form gives them.
 
     The path goes from zero load to the last load point and then through all load points. Let Z be the stick zone of the
@@ -67,6 +68,8 @@ def levels(pressed: Contact, f: float, load: Load, cycle: Loading) -> Levels | s
     Fully reversed loads satisfy all conditions if each half cycle is one step.
     """
     points = [load.along[end] for end in load.ends]
+    if isinstance(cycle, Turning):
+        return _settled(cycle)
     if load.fully_reversed:
         return Levels(loading(pressed, f, *points[1], bound=1), cycle, 1)
     reason = ""
@@ -76,6 +79,13 @@ def levels(pressed: Contact, f: float, load: Load, cycle: Loading) -> Levels | s
             return found
         reason = reason or found
     return reason
+
+
+def _settled(cycle: Turning) -> Levels | str:
+    """q1 and q2 where slip turns round: known where every point slips in the steady cycle."""
+    if cycle.permanent:
+        return f"{PATH_DEPENDENT}on the way, and the first loading decides what is locked in; use march"
+    return Levels(Reached(cycle), cycle, 1)
 
 
 def _levels(pressed: Contact, f: float, load: Load, cycle: Loading, points: list[_Point], known: int) -> Levels | str:

@@ -4,6 +4,7 @@ a first loading under twice the bound. Scaled: lengths by a, tractions by f p0, 
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from partialslip.gradual import left_end_turns, turns_round
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.room import mean_load_bound
 from partialslip.halfplane.shape import Shape
-from partialslip.halfplane.slip import slip
+from partialslip.halfplane.slip import dissipation, slip
 from partialslip.halfplane.steady import NARROWEST, TOO_STEEP, drive, stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
@@ -22,6 +23,15 @@ _NOTHING = StickZone(0.0, 1.0, 1)
 _STAGES = 16  # of the way from load point to load point
 _SHARES = np.arange(9) / 8  # of slip zones
 _ROUNDING = 1e-9
+
+
+class Worn(NamedTuple):
+    """Slip over half a cycle: points ``x`` (k,), net ``slip`` there (k,), and the energy that a whole cycle dissipates,
+    ``dissipated``; scaled."""
+
+    x: Array
+    slip: Array
+    dissipated: float
 
 
 @dataclass(frozen=True)
@@ -66,6 +76,16 @@ class Loading:
         return zone.left, zone.right
 
     @property
+    def permanent(self) -> tuple[float, float] | None:
+        """Ends of the zone of points that never slip, for the signs of the loads."""
+        return self.ends
+
+    @property
+    def breaks(self) -> list[float]:
+        """Places at which the change of traction is not smooth, ascending."""
+        return list(self.ends)
+
+    @property
     def signs(self) -> tuple[int, int]:
         """Signs of the change of traction in the left and the right slip zone."""
         left, right = (self.turn * int(self.zone.s), self.turn)[:: self.mirror]
@@ -94,7 +114,7 @@ class Loading:
         if self.gf:
             return self.turns_round
         half_width = self.zone.half_width if half_width is None else half_width
-        return left_end_turns(self.Qf, self.sf, self.zone.s, half_width)
+        return bool(left_end_turns(self.Qf, self.sf, self.zone.s, half_width))
 
     @property
     def certificate(self) -> dict[str, float]:
@@ -117,12 +137,28 @@ class Loading:
         :func:`partialslip.halfplane.room.mean_load_bound`."""
         return mean_load_bound(self.zone, self.seen, self.Qf, self.sf, self.gf, reverses=self.turns_round)
 
+    @property
+    def holds(self) -> bool:
+        """Whether a single step gives what gradual loads give: slip does not reverse."""
+        return not self.turns_round
+
+    @property
+    def one_way(self) -> bool:
+        """Whether dq has one sign, so that gross sliding is all that bounds the mean of Q."""
+        return self.zone.s > 0 and self.gf <= 0
+
+    @property
+    def worn(self) -> Worn:
+        """Slip over half a cycle, and the energy that a cycle dissipates."""
+        x, slips, dissipated = dissipation(self.zone, self.seen, self.gf)
+        return Worn(self.mirror * x[:: self.mirror], self.turn * slips[:: self.mirror], dissipated)
+
     @cached_property
     def turns_round(self) -> bool:
         """Whether slip reverses during half a cycle of gradual loading; see :func:`partialslip.gradual.turns_round`."""
         if self.gf:
             return self._reverses()
-        return turns_round(self.Qf, self.sf, self.zone.s, self.zone.centre, self.zone.half_width)
+        return bool(turns_round(self.Qf, self.sf, self.zone.s, self.zone.centre, self.zone.half_width))
 
     def _reverses(self) -> bool:
         """Whether slip reverses at stages of the way: the stick zone does not shrink, or does not always have the slip

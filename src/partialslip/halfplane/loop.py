@@ -6,7 +6,8 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.halfplane.contact import Contact, stick_zone
+from partialslip.halfplane.contact import Contact, one_step_zone
+from partialslip.halfplane.turning import Turning, half_cycle
 from partialslip.shown import short
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
@@ -38,7 +39,8 @@ def hysteresis(contact: Contact, A: float, f: float, dQ: float, dsigma: float, c
 
         d(displacement)/dr = (A/pi) dQ ln(a/c) - (A/4) dsigma e,    d(moment)/dr = dQ e + (pi/8) dsigma c^2.
 
-    The loop is that of the steady state if slip does not reverse between the load points (docs/theory.md, section 7).
+    Where slip turns round between the load points, displacement and moment follow from the tractions of gradual loads
+    (docs/theory.md, section 7); where these are not known, the loop is that of single steps.
 
     Parameters
     ----------
@@ -57,17 +59,28 @@ def hysteresis(contact: Contact, A: float, f: float, dQ: float, dsigma: float, c
     """
     if count < 2:
         raise InputError(f"count = {count}: must be >= 2")
-    stick_zone(contact, f, dQ, dsigma)  # refuses loads under which the contact slides
+    one_step_zone(contact, f, dQ, dsigma)  # refuses loads under which the contact slides
     share = np.linspace(0, 1, count)
     # closer points near the end, where the stick zone may shrink fast
     ends = 1 - (1 - share) ** 2
+    cycle = half_cycle(contact, f, dQ, dsigma)
+    if isinstance(cycle, Turning):
+        stress = f * contact.p0
+        scales = A * stress * contact.a, stress * contact.a**2
+        loading = [scale * values for scale, values in zip(scales, cycle.loop(ends), strict=True)]
+    else:
+        loading = _shrinking(contact, A, f, dQ, dsigma, ends)
+    returning = [path[-1] - path[1:] for path in (ends, *loading)]
+    way, displacement, moment = (np.concatenate(pair) for pair in zip((ends, *loading), returning, strict=True))
+    return Loop(way * dQ, way * dsigma, displacement, moment)
+
+
+def _shrinking(contact: Contact, A: float, f: float, dQ: float, dsigma: float, ends: Array) -> list[Array]:
+    """Displacement and moment at the shares ``ends`` of the changes, from stick zones that only shrink."""
     half = np.diff(ends)[:, None] / 2
-    zone = stick_zone(contact, f, *((ends[:-1, None] + half * (1 + _NODES)) * change for change in (dQ, dsigma)))
+    zone = one_step_zone(contact, f, *((ends[:-1, None] + half * (1 + _NODES)) * change for change in (dQ, dsigma)))
     rates = (
         A / np.pi * dQ * np.log(contact.a / zone.half_width) - A / 4 * dsigma * zone.centre,
         dQ * zone.centre + np.pi / 8 * dsigma * zone.half_width**2,
     )
-    loading = [np.concatenate([[0.0], np.cumsum((half * rate) @ _WEIGHTS)]) for rate in rates]
-    returning = [path[-1] - path[1:] for path in (ends, *loading)]
-    way, displacement, moment = (np.concatenate(pair) for pair in zip((ends, *loading), returning, strict=True))
-    return Loop(way * dQ, way * dsigma, displacement, moment)
+    return [np.concatenate([[0.0], np.cumsum((half * rate) @ _WEIGHTS)]) for rate in rates]

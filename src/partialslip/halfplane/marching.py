@@ -15,14 +15,14 @@ import numpy as np
 from partialslip.allowance import Allowance
 from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
-from partialslip.condensed import varying
-from partialslip.condensed.ends import StickInterval, apart, finest, kinks, stick_zone, within
+from partialslip.condensed import constant, varying
+from partialslip.condensed.ends import StickInterval, apart, finest, kinks, stick_zone, turning_points, within
 from partialslip.condensed.history import SHEARS, History, certificate, last_cycle_change
 from partialslip.condensed.path import Path, load_path, stretched
 from partialslip.condensed.regime import doubts, steady_state
 from partialslip.condensed.restart import begun, known_to
 from partialslip.condensed.step_errors import halved, steps_matter
-from partialslip.condensed.steps import MOST, follow_refined, march_refined
+from partialslip.condensed.steps import MOST, follow_refined
 from partialslip.condensed.threads import one_thread
 from partialslip.halfplane.cell_stress import CellStresses
 from partialslip.halfplane.cells import compliance, graded, norm_parts, off_cells, on_cells, relative_change
@@ -47,6 +47,8 @@ _SHARE = 1 / 3  # largest part of the remaining CPU seconds for one mesh
 _WORK = 5e11  # limit of cells^3 times load steps of a mesh
 # Errors of m and n, as parts of the change from mesh to mesh and of growth^3
 _MOVED, _CUBIC = 0.1, 0.15
+# The same where slip turns round; also, at an end that moves over cells that slipped, parts of the cell's size
+_TURNED, _CAUGHT_UP = 2.0, 0.5
 _CHANGED = (0.4, 0.35)  # errors of q, q1 and q2 as parts of the change to the second mesh and to later meshes
 _JUDGED = ("m", "n", "q", "q1", "q2")
 Added = Callable[[Array], Array]
@@ -228,7 +230,7 @@ def _solve_level(
 
         def zone(of: History) -> StickInterval:
             if not of.path.presses_anew:
-                return stick_zone(x, of.bound, of.change, vertices, lambda values: values)
+                return stick_zone(x, of.bound, of.change, vertices, lambda values: values, of.changed, of.unsteady)
             on = np.flatnonzero(of.bound > 0)
 
             def spread(values: Array) -> Array:
@@ -246,11 +248,13 @@ def _solve_level(
         if path.presses_anew:
             presses = normal.presses(vertices, normally)
             along = partial(varying.march, x, tangential, moved, scene.friction.f, presses)
-            history, stepped = follow_refined(along, lambda path, _: path, path, _accuracy(scene), wanted, most)
+            history, stepped = follow_refined(along, path, _accuracy(scene), wanted, most)
         else:
             bound = scene.friction.f * normal.forces(frame, vertices)
-            history, stepped = march_refined(tangential, moved, bound, path, _accuracy(scene), wanted, most)
+            history, stepped = constant.march(tangential, moved, bound, path), {}
         inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in reversed(history.visited)]
+        if history.turns and history.never_slips is not None:
+            inner.append(turning_points(x, history.never_slips, history.slips))
         forces = normal.forces(normal.second, vertices)
         return _Level(vertices, forces, history, zone(history), tuple(itertools.chain.from_iterable(inner)), stepped)
 
@@ -276,7 +280,10 @@ def _mesh_errors(normal: NormalLoads, level: _Level, before: _Level, growth: flo
     unseen = _SOMEWHERE * size * (gap < _CELLS * size)
     moved = max(abs(level.stick.left - before.stick.left), abs(level.stick.right - before.stick.right))
     between = _CUBIC * growth**3 * np.minimum(_NEAR * gap, 1.0)
-    known = np.maximum(unseen, np.maximum(_MOVED * moved, between)) * (normal.frame.a / normal.largest.a)
+    known = np.maximum(unseen, np.maximum(_MOVED * moved, between))
+    if level.history.turns:
+        known = _TURNED * known + _CAUGHT_UP * size * np.array(level.stick.moved)
+    known *= normal.frame.a / normal.largest.a
     return dict(zip("mn", known.tolist(), strict=True)) | {
         key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices) for key, of in SHEARS.items()
     }
@@ -347,6 +354,7 @@ def _result(
             "cycles": history.cycles if history else 0,
             "load_steps": history.load_steps if history else 0,
             "steps": history.path.most_steps if history else 0,
+            "events": history.events if history else 0,
             "friction_iterations": history.changes if history else 0,
             "opposing_nodes": history.opposing if history else 0,
             **counts,

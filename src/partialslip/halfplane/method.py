@@ -1,7 +1,10 @@
 """The exact method: solves a scene in closed form."""
 
 import functools
+import math
+import time
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,12 +15,12 @@ from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.levels import Levels, levels
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.remarks import no_stresses, remarks, undetermined
-from partialslip.halfplane.slip import dissipation
 from partialslip.halfplane.states import Around, constant, sliding, without_shear
 from partialslip.halfplane.steady import transition
 from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tables import table_error
 from partialslip.halfplane.tractions import ExactTractions, sample
+from partialslip.halfplane.turning import Turning, half_cycle
 from partialslip.halfplane.varying import closed_form, require_closed_form, steady_cycle
 from partialslip.halfplane.varying_result import solve_varying
 from partialslip.plan import Plan, plan
@@ -26,6 +29,7 @@ from partialslip.result.state import State
 from partialslip.scene import Scene
 
 _SLIDES = "the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip"
+_PASSES = "slip and dissipated energy are not known: a zone inside the stick zone slips for a while"
 _RATCHETS = "the mean of Q is above the bound for a steady state: the contact ratchets, m and n are not reached"
 
 
@@ -58,10 +62,10 @@ def solve(
         if plan.needs("friction"):
             require_closed_form(scene)
         return solve_varying(scene, plan, start is not None, clock)
-    pressed, regime, cycle = _steady_state(scene, plan)
+    pressed, regime, cycle = _steady_state(scene, plan, clock)
     a, p0 = pressed.a, pressed.p0
     found = _levels(scene, pressed, regime, cycle, start)
-    turns = cycle is not None and cycle.turns_round
+    turns = cycle is not None and not cycle.holds
     tractions = ExactTractions(pressed, f, cycle, found if isinstance(found, Levels) else None)
     breaks = _breaks(scene, pressed, cycle, found)
     x = sample(np.union1d(breaks, [pressed.centre]))
@@ -75,6 +79,7 @@ def solve(
     slips = cycle and not cycle.nothing
     why = undetermined(regime, turns, found) | (no_stresses(found) if inside and not stress else {})
     table = table_error(scene, pressed, cycle)
+    slip = _slip(scene, pressed, cycle) if cycle and slips and regime != "ratchets" else None
     return Result(
         method="exact",
         a=a,
@@ -84,17 +89,22 @@ def solve(
         stick_half_width=cycle.zone.half_width * a if cycle else None,
         traction=Traction(x, p, dq, q1, q2, tractions.change, breaks, levels_at=levels_at),
         cost=clock.cost(),
-        slip=_slip(scene, pressed, cycle) if cycle and slips and regime != "ratchets" else None,
+        slip=slip,
         settings={"model": "two half-planes, steady state"},
         limits=_limits(scene, pressed, cycle) if plan.needs("friction") or (scene.slides and f > 0) else {},
         certificate=cycle.certificate if cycle and slips else {},
         estimate=table,
         shares={"table": table} if table else {},
-        notes=remarks(regime, turns, why, _SLIDES, _RATCHETS) + _coarse(table, scene.fem.accuracy),
+        notes=(
+            *remarks(regime, turns, why, _SLIDES, _RATCHETS),
+            *_coarse(table, scene.fem.accuracy),
+            *((_PASSES,) if slips and regime != "ratchets" and not slip else ()),
+        ),
         surface=surface,
         stress_at=StressAt(stress.inside) if stress else None,
         undetermined=why,
         path_dependent=turns,
+        permanent=_permanent(pressed, cycle) if cycle and slips and regime != "ratchets" and not turns else None,
         contact_ends=(pressed.ends,) * 2 if pressed.centre else None,
     )
 
@@ -105,28 +115,39 @@ def has_closed_form(scene: Scene) -> bool:
     if not ((scene.presses_anew or scene.load.dslope) and plan(scene).needs("friction")):
         return True
     try:
-        return not closed_form(scene) if scene.presses_anew else bool(_change(scene))
+        return not closed_form(scene) if scene.presses_anew else bool(_change(scene).cycle)
     except InputError:  # sigma_slope is too large
         return False
 
 
 def path_dependent(scene: Scene) -> bool:
-    """Whether slip reverses between the load points of ``scene``, two similar half-planes under loads in phase. The
-    closed form then differs from the result of gradual loading (:attr:`partialslip.Result.path_dependent`)."""
+    """Whether slip reverses between the load points of ``scene``, two similar half-planes under loads in phase, and the
+    steady state under gradual loads is not known (:attr:`partialslip.Result.path_dependent`)."""
     if scene.presses_anew:
         return steady_cycle(scene).turns_round
-    return may_turn_round(scene) and _change(scene)[1].turns_round
+    return may_turn_round(scene) and not _change(scene).cycle.holds
+
+
+class _Change(NamedTuple):
+    """The contact ``pressed``, its change over half a ``cycle``, and the ``cpu`` and ``wall`` seconds that it took."""
+
+    pressed: Contact
+    cycle: Loading | Turning
+    cpu: float
+    wall: float
 
 
 @functools.lru_cache(maxsize=1)
-def _change(scene: Scene) -> tuple[Contact, Loading]:
-    """Contact, and change from load point 1 to 2, of a ``scene`` that does not slide. Cached: :func:`path_dependent` is
-    called before :func:`solve`."""
+def _change(scene: Scene) -> _Change:
+    """Change from load point 1 to 2 of a ``scene`` that does not slide. Cached: :func:`path_dependent` is called before
+    :func:`solve`."""
+    cpu, wall = time.process_time(), time.perf_counter()
     pressed, load = contact(scene), scene.load
-    return pressed, loading(pressed, scene.friction.f, load.dQ, load.dsigma, load.dslope, bound=2)
+    cycle = half_cycle(pressed, scene.friction.f, load.dQ, load.dsigma, load.dslope)
+    return _Change(pressed, cycle, time.process_time() - cpu, time.perf_counter() - wall)
 
 
-def _steady_state(scene: Scene, plan: Plan) -> tuple[Contact, Regime, Loading | None]:
+def _steady_state(scene: Scene, plan: Plan, clock: Clock) -> tuple[Contact, Regime, Loading | Turning | None]:
     """Contact, regime, and change from load point 1 to 2 (None if nothing sticks)."""
     load, limit = scene.load, scene.friction.f * scene.P
     if scene.free:
@@ -136,19 +157,22 @@ def _steady_state(scene: Scene, plan: Plan) -> tuple[Contact, Regime, Loading | 
     if not plan.needs("friction"):
         pressed = contact(scene)
         return pressed, "stuck", loading(pressed, 1.0, 0.0, 0.0, bound=2)
-    pressed, cycle = _change(scene)
+    begun = time.process_time(), time.perf_counter()
+    pressed, cycle, cpu, wall = _change(scene)
+    clock.add_earlier(max(cpu + begun[0] - time.process_time(), 0.0), max(wall + begun[1] - time.perf_counter(), 0.0))
     if cycle.nothing:
         return pressed, "stuck", cycle
     # where dq has one sign the bound is gross sliding, ruled out above; a zero mean is within any bound, even one that
     # rounding makes negative
     mean = abs(load.Q_mean)
-    bounded = cycle.zone.s < 0 or cycle.gf > 0
-    if bounded and mean > 0 and mean > limit * cycle.mean_load_bound:
+    if not cycle.one_way and mean > 0 and mean > limit * cycle.mean_load_bound:
         return pressed, "ratchets", cycle
     return pressed, ("small tension" if cycle.zone.s > 0 else "large tension"), cycle
 
 
-def _levels(scene: Scene, pressed: Contact, regime: Regime, cycle: Loading | None, start: State | None) -> Levels | str:
+def _levels(
+    scene: Scene, pressed: Contact, regime: Regime, cycle: Loading | Turning | None, start: State | None
+) -> Levels | str:
     """q1 and q2, or the reason why there are none."""
     if regime == "frictionless":
         return "there is no friction"
@@ -158,20 +182,20 @@ def _levels(scene: Scene, pressed: Contact, regime: Regime, cycle: Loading | Non
         return "the contact ratchets"
     if start:
         return "the path goes on from a state, which the closed form cannot follow"
-    if not scene.friction.f:
+    if not scene.friction.f and isinstance(cycle, Loading):
         return Levels(cycle, cycle, 1)
     return levels(pressed, scene.friction.f, scene.load, cycle)
 
 
-def _breaks(scene: Scene, pressed: Contact, cycle: Loading | None, found: Levels | str) -> Array:
+def _breaks(scene: Scene, pressed: Contact, cycle: Loading | Turning | None, found: Levels | str) -> Array:
     """Ends of the contact and of stick zones, and kinks of p (b,), ascending, m."""
-    ends = [*(cycle.ends if cycle else ()), *(found.first.ends if isinstance(found, Levels) else ())]
+    ends = [*(cycle.breaks if cycle else ()), *(found.first.breaks if isinstance(found, Levels) else ())]
     a, centre = pressed.a, pressed.centre
     kinks = [kink for kink in scene.profile.kinks if abs(kink - centre) < a]
     return np.unique([centre - a, *kinks, *(centre + a * np.clip(ends, -1, 1)), centre + a])
 
 
-def _limits(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[str, float]:
+def _limits(scene: Scene, pressed: Contact, cycle: Loading | Turning | None) -> dict[str, float]:
     limit = scene.friction.f * scene.P
     limits = {"Q_sliding": limit}
     if cycle:
@@ -181,14 +205,21 @@ def _limits(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[str, 
     return limits
 
 
-def _slip(scene: Scene, pressed: Contact, cycle: Loading) -> Slip:
-    x, slips, dissipated = dissipation(cycle.zone, cycle.seen, cycle.gf)
+def _slip(scene: Scene, pressed: Contact, cycle: Loading | Turning) -> Slip | None:
+    if cycle.worn is None:
+        return None
+    x, slips, dissipated = cycle.worn
     stress, unit = scene.friction.f * pressed.p0, scene.material.A * scene.friction.f * pressed.p0 * pressed.a
     return Slip(
-        pressed.centre + cycle.mirror * pressed.a * x[:: cycle.mirror],
-        cycle.turn * unit * slips[:: cycle.mirror],
+        pressed.centre + pressed.a * x,
+        unit * slips,
         dissipated * unit * stress * pressed.a,
     )
+
+
+def _permanent(pressed: Contact, cycle: Loading | Turning) -> tuple[float, float]:
+    left, right = pressed.places(cycle.permanent or (math.nan, math.nan)).tolist()
+    return left, right
 
 
 def _stresses(scene: Scene, pressed: Contact, found: Levels | str) -> Around | None:

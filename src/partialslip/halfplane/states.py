@@ -11,12 +11,13 @@ from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.levels import Levels
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.mean import Path
-from partialslip.halfplane.stress import Fields, Points, Shear, SlipZones, State
+from partialslip.halfplane.stress import Acting, Fields, Points, Shear, State, half_of, reached
+from partialslip.halfplane.turning import Turning
 from partialslip.result import StickZone
 from partialslip.scene import Load, Scene
 
 _SLIDING = 1e-9  # |Q|, relative to f P, that is closer to f P slides with q = f p
-_Sum = tuple[tuple[float, Shear | SlipZones], ...]
+_Sum = tuple[tuple[float, Acting], ...]
 
 
 class _Way(Protocol):
@@ -90,13 +91,13 @@ def constant(scene: Scene, pressed: Contact, found: Levels) -> Around:
     """Stresses under constant pressure, between the tractions ``found`` at the load points."""
     load = scene.load
     _, sigma, slope = load.along[load.ends[found.known]]
-    known = (1.0, Shear.of(pressed, found.first, sigma, slope))
-    change = Shear.of(pressed, found.cycle, load.dsigma, load.dslope)
+    known = (1.0, reached(pressed, found.first, sigma, slope))
+    change = half_of(pressed, found.cycle, load.dsigma, load.dslope)
     other = _merged((known, (-2.0 if found.known else 2.0, change)))
     first, second = (other, (known,)) if found.known else ((known,), other)
-    unknown = "slip reverses" if found.cycle.turns_round else ""
+    unknown = "" if found.cycle.holds else "slip reverses"
     fields = Fields(scene.friction.f, (State(pressed, first), State(pressed, second)))
-    return Around(load, fields, _Constant(scene, pressed), unknown)
+    return Around(load, fields, _Constant(scene, pressed, found.cycle), unknown)
 
 
 def varying(scene: Scene, end: Contact, loaded: Loading, unknown: str) -> Around:
@@ -143,12 +144,14 @@ class _Constant:
 
     scene: Scene
     pressed: Contact
+    cycle: Loading | Turning
 
     def __call__(self, *, back: bool, share: float) -> tuple[Contact, _Sum]:
         load, f = self.scene.load, self.scene.friction.f
         loads = share * load.dQ, share * load.dsigma, share * load.dslope
-        change = loading(self.pressed, f, *loads, bound=2)
-        return self.pressed, ((-2.0 if back else 2.0, Shear.of(self.pressed, change, *loads[1:])),)
+        cycle, pressed = self.cycle, self.pressed
+        change = cycle.part(share) if isinstance(cycle, Turning) else loading(pressed, f, *loads, bound=2)
+        return pressed, ((-2.0 if back else 2.0, half_of(pressed, change, *loads[1:])),)
 
 
 @dataclass(frozen=True)
@@ -175,7 +178,7 @@ class _Pressed:
 
 def _merged(shears: _Sum) -> _Sum:
     """Sum of ``shears``, each of which occurs once."""
-    factors: dict[Shear | SlipZones, float] = {}
+    factors: dict[Acting, float] = {}
     for factor, shear in shears:
         factors[shear] = factors.get(shear, 0.0) + factor
     return tuple((factor, shear) for shear, factor in factors.items() if factor)

@@ -1,5 +1,6 @@
 """Stresses in the half-planes, on their surfaces and inside; SI units."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -10,10 +11,11 @@ import numpy.typing as npt
 from partialslip.arrays import Array, Complex
 from partialslip.condensed.below import under_pressure, under_shear, under_tension
 from partialslip.halfplane.cauchy import Cauchy
-from partialslip.halfplane.contact import Contact, stick_zone
-from partialslip.halfplane.loading import Loading, loading
+from partialslip.halfplane.contact import Contact, one_step_zone
+from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.traction import half_range
 from partialslip.halfplane.tractions import sample
+from partialslip.halfplane.turning import Part, Reached, Turning, half_cycle
 from partialslip.result import StickZone, SurfaceStress
 from partialslip.result.points import AtPoints
 
@@ -83,6 +85,51 @@ class Shear:
 
 
 @dataclass(frozen=True)
+class Turned:
+    """Shear traction ``share`` times that of ``change``, in which slip has turned round on the way, under the bulk
+    tension ``sigma`` (Pa)."""
+
+    contact: Contact
+    change: Part | Reached
+    share: float
+    sigma: float
+
+    @property
+    def breaks(self) -> list[float]:
+        """Places at which q is not smooth, scaled."""
+        return self.change.breaks
+
+    def traction(self, x: Array) -> Array:
+        """q at ``x`` (scaled), in f p0."""
+        return self.share * self.change.traction(x)
+
+    def stresses(self, unit: float, T: Complex, T_z: Complex, at: "Points") -> Array:
+        """Stresses (3, k), Pa, at points, from the Cauchy integrals of q in ``unit``."""
+        y = -at.depth / self.contact.a
+        found = unit * under_shear(T, y * T_z, at.side)
+        left, right = self.change.stuck or (math.inf, -math.inf)
+        x = self.contact.scaled(at.x)
+        sticks = (y == 0) & (x >= left) & (x <= right)
+        found[0] = np.where(sticks, -at.side * self.sigma / 2, found[0])
+        result: Array = found + under_tension(self.sigma + 0 * at.x, 0.0, at.depth, at.side)
+        return result
+
+
+def half_of(contact: Contact, change: Loading | Turning | Part, sigma: float, slope: float) -> Shear | Turned:
+    """Half of the shear of a ``change`` of a steady cycle, by the tension ``sigma`` and its ``slope``."""
+    if isinstance(change, Loading):
+        return Shear.of(contact, change, sigma, slope)
+    return Turned(contact, change.whole if isinstance(change, Turning) else change, 1 / 2, sigma / 2)
+
+
+def reached(contact: Contact, first: Loading | Reached, sigma: float, slope: float) -> Shear | Turned:
+    """Shear at a load point, ``first`` reached under the tension ``sigma`` and its ``slope``."""
+    if isinstance(first, Loading):
+        return Shear.of(contact, first, sigma, slope)
+    return Turned(contact, first, 1.0, sigma)
+
+
+@dataclass(frozen=True)
 class SlipZones:
     """Shear traction f p beside the ends of a contact, in the directions ``signs``: up to ``left`` and from ``right``
     on, scaled; none between them."""
@@ -107,7 +154,8 @@ class SlipZones:
         return unit * under_shear(T, -at.depth / self.contact.a * T_z, at.side)
 
 
-_Acting = Contact | Shear | SlipZones
+Acting = Shear | Turned | SlipZones
+_Acting = Contact | Acting
 
 
 class Points(NamedTuple):
@@ -133,7 +181,7 @@ class State(NamedTuple):
     under f p, and of the bulk tension ``sigma`` (Pa) and its ``slope`` (Pa/m) that act without friction."""
 
     pressed: Contact
-    shears: tuple[tuple[float, Shear | SlipZones], ...] = ()
+    shears: tuple[tuple[float, Acting], ...] = ()
     sigma: float = 0.0
     slope: float = 0.0
 
@@ -245,9 +293,8 @@ class Stress:
 
     def __init__(self, contact: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0) -> None:
         self.contact, self.f, self.dQ, self.dsigma, self.dslope = contact, f, dQ, dsigma, dslope
-        self._zone = stick_zone(contact, f, dQ, dsigma, dslope)
-        change = loading(contact, f, dQ, dsigma, dslope, bound=2)
-        half = Shear.of(contact, change, dsigma, dslope)
+        self._zone = one_step_zone(contact, f, dQ, dsigma, dslope)
+        half = half_of(contact, half_cycle(contact, f, dQ, dsigma, dslope), dsigma, dslope)
         self._fields = Fields(f, tuple(State(contact, ((sign, half),)) for sign in (-1.0, 1.0)))
 
     def surface(self, x: npt.ArrayLike) -> Array:

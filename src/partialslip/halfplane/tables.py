@@ -6,7 +6,8 @@ from msgspec.structs import replace
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact, contact
-from partialslip.halfplane.loading import Loading, loading
+from partialslip.halfplane.loading import Loading
+from partialslip.halfplane.turning import Turning, half_cycle
 from partialslip.scene import Scene, Tabulated
 
 _LESS = 3.0  # second order: the error at full spacing is a third of the change from twice the spacing
@@ -14,7 +15,7 @@ _FEWEST = 5  # points of a table
 _NODES = 200  # quadrature points of norms
 
 
-def table_error(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[str, float]:
+def table_error(scene: Scene, pressed: Contact, cycle: Loading | Turning | None) -> dict[str, float]:
     """Estimate the error of a, m, n (fractions of a), p and q (relative L2) due to the spacing of a tabulated profile;
     of a contact that is not even, of its ``left`` and ``right`` end, too.
 
@@ -45,7 +46,7 @@ def table_error(scene: Scene, pressed: Contact, cycle: Loading | None) -> dict[s
         errors["left"], errors["right"] = (np.abs(moved) / a).tolist()
     if cycle and not cycle.nothing:
         f, load = scene.friction.f, scene.load
-        coarse_cycle = loading(other, f, load.dQ, load.dsigma, load.dslope, bound=2)
+        coarse_cycle = half_cycle(other, f, load.dQ, load.dsigma, load.dslope)
         ends, moved = np.array(cycle.ends), pressed.scaled(other.centre + np.array(coarse_cycle.ends) * other.a)
         errors["m"], errors["n"] = np.abs(moved - ends).tolist()
         dq, coarse_dq = (

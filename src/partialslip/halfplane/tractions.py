@@ -8,6 +8,7 @@ from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.levels import Levels
 from partialslip.halfplane.loading import Loading
+from partialslip.halfplane.turning import Turning
 
 _POINTS = 101  # between neighbouring breaks
 
@@ -28,7 +29,7 @@ class ExactTractions:
 
     pressed: Contact
     f: float
-    cycle: Loading | None
+    cycle: Loading | Turning | None
     levels: Levels | None
 
     def change(self, x: Array) -> tuple[Array, Array]:

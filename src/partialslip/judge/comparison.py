@@ -14,6 +14,7 @@ from partialslip.judge.reference import reference as reference_of
 from partialslip.judge.verdict import NAN, NO_BAR, Bar, Outcome, Verdict, conditions, judged
 from partialslip.result import Result
 from partialslip.scene import Scene
+from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.shown import Notebook
 
 _TENSIONS = {"small tension", "large tension"}
@@ -136,7 +137,7 @@ class Comparison(Notebook):
 def compare(
     result: Result,
     reference: Result,
-    scene: Scene,
+    scene: AnyScene,
     accuracy: Accuracy | None,
     bars: Mapping[str, Bar] | None = None,
 ) -> Comparison:
@@ -146,7 +147,7 @@ def compare(
     ----------
     result, reference : Result
         Results for the same ``scene``.
-    scene : Scene
+    scene : Scene, str or path
         The loads and the coefficient of friction scale the resultants and the errors of q.
     accuracy : float, (float, float, float) or None
         Bar for a, m, n and the ends of the contact, as a fraction of a. The bar for p and P is 10 times ``accuracy``,
@@ -165,7 +166,7 @@ def compare(
     The reference's own error estimate is added to each bar. If the estimate exceeds the bar, the quantity is not
     judged.
     """
-    own = bars or {}
+    own, scene = bars or {}, as_scene(scene)
     wanted = asked(accuracy)
     usual = {key: Bar(bar) for key, bar in wanted.bars.items()} if wanted else {}
     applied = {key: _beside(bar, key, reference) for key, bar in {**usual, **own}.items()}

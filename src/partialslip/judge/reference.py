@@ -25,10 +25,10 @@ class Reference(NamedTuple):
 def reference(scene: Scene) -> Reference:
     """Return the reference of ``scene``: never a solution that is known not to hold.
 
-    Similar half-planes: exact where the steady state has a closed form, march elsewhere. Where slip reverses between
-    the load points the closed form, which goes there in one step, does not hold, and the steps of march err by an
-    amount that its estimate does not bound: neither is a reference for m, n and the shear. Finite bodies and unlike
-    materials: fem.
+    Similar half-planes: exact where the steady state is known exactly, march elsewhere. Where slip reverses between the
+    load points the closed form, which goes there in one step, does not hold; exact then follows gradual loads. Where it
+    cannot, or where the pressure varies, neither exact nor march is a reference for m, n and the shear. Finite bodies
+    and unlike materials: fem.
     """
     if scene.finite or not scene.material.alike:
         return Reference("fem")

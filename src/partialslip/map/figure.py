@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _SIZE = (5.2, 5.0)  # inches; narrow, with the legend below, to be read on a phone
+_HATCH, _ONE_STEP = "....", "m, n of one step"
 _STRIP = 0.025  # width of the strip of sliding beyond dQ = 2 f P
 
 
@@ -28,6 +29,9 @@ def map_svg(data: StickMap) -> str:
         axes.plot([], color="black", lw=1, ls="--", label="n/a, stick to n")
         axes.plot(*data.border[1:], color="black", lw=2.8, label="m = a: large tension above, small below")
         axes.axvspan(1, 1 + _STRIP, color="0.7", lw=0, label="sliding")
+        grid = data.grid
+        axes.contourf(grid.Qf, grid.sf, grid.turned, [0.5, 1.5], colors="none", hatches=[_HATCH])
+        axes.fill_between([], [], [], hatch=_HATCH, fc="none", ec="black", lw=0, label=_ONE_STEP)
         avoided = np.column_stack(data.border[1:])  # no label on the border, nor on the scene's loads
         if data.point:
             place = data.point.Qf, data.point.sf
@@ -83,5 +87,7 @@ def _draw_ends(axes: "Axes", data: StickMap, number: int) -> None:
     axes.plot(ratio, n, color="black", lw=1.4, ls="--", label="n/a")
     axes.plot(ratio, -m, color="black", lw=1.4, label="-m/a")
     axes.axvline(turn, color="black", lw=1, ls=":", label="from small (left) to large tension")
+    turned = data.curves.turned[number]
+    axes.fill_between(ratio, -1.05, 1.05, where=turned, hatch=_HATCH, fc="none", ec="0.6", lw=0, label=_ONE_STEP)
     axes.set(title=f"ΔQ/(2 f P) = {Qf[0]:g}", xlim=(0, ratio[-1]), ylim=(-1.05, 1.05))
     axes.title.set_fontsize(10)

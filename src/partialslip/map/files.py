@@ -28,7 +28,8 @@ def write_map(data: StickMap | VaryingMap, folder: Path) -> list[Path]:
 
 
 def map_csv(data: StickMap) -> str:
-    """Return the grid's stick zones of ``data`` as CSV, one row per point; with dQ and dsigma in a scene's units."""
+    """Return the grid's stick zones of ``data`` as CSV, one row per point; with dQ and dsigma in a scene's units. The
+    last column tells where gradual ``loads`` have these zones, and where only a single step has."""
     grid, zone = data.grid, data.grid.zone
     regime = np.where(zone.s > 0, "small tension", "large tension")
     regime[(grid.Qf == 0) & (grid.sf == 0)] = "stuck"
@@ -40,8 +41,9 @@ def map_csv(data: StickMap) -> str:
             units.heading("dsigma", "Pa"): units.from_si(f * data.pressed.p0 * grid.sf, "Pa"),
         }
     columns |= {"m_over_a": zone.m, "n_over_a": zone.n, "half_width_over_a": zone.half_width}
-    values = (column.ravel().tolist() for column in (*columns.values(), regime))
-    return csv_text([*columns, "regime"], zip(*values, strict=True))
+    holds = np.where(grid.turned, "one step", "gradual")
+    values = (column.ravel().tolist() for column in (*columns.values(), regime, holds))
+    return csv_text([*columns, "regime", "loads"], zip(*values, strict=True))
 
 
 def varying_csv(data: VaryingMap) -> str:

@@ -1,4 +1,4 @@
-"""Data of the stick-zone map: stick zones over a grid of loads, lengths as fractions of a.
+"""Data of the stick-zone map: stick zones of a single step over a grid of loads, lengths as fractions of a.
 
 Loads are scaled by the friction: Qf = dQ/(2 f P) and sf = dsigma/(f p0) with p0 = 2 P/(pi a). The map shows positive
 dQ and dsigma; other signs follow by symmetry.
@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Mask
 from partialslip.errors import InputError
+from partialslip.gradual import turns_round
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.shape import Shape
@@ -40,6 +41,11 @@ class LoadedZones(NamedTuple):
     Qf: Array
     sf: Array
     zone: StickZone[Array]
+
+    @property
+    def turned(self) -> Mask:
+        """Where slip turns round between the load points: the zones of a single step, which these are, do not hold."""
+        return turns_round(self.Qf, self.sf, self.zone.s, self.zone.centre, self.zone.half_width)
 
 
 class Line(NamedTuple):

@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from partialslip.errors import InputError
+from partialslip.inputfile import check_replaceable
+from partialslip.output.folders import make_folder
 from partialslip.output.lock import lock
 
 
@@ -82,10 +84,9 @@ def write_texts(folder: Path, texts: Mapping[str, str]) -> list[Path]:
 def _writing(folder: Path, names: Iterable[str]) -> Iterator[None]:
     """Create ``folder`` for files of these ``names``. Turn errors of the block into InputError."""
     for name in names:
-        if os.path.isdir(folder / name):
-            raise InputError(f"{folder / name}: cannot be written: is a folder")
+        check_replaceable(folder / name)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         yield
     except (OSError, ValueError) as error:  # ValueError: invalid file name
         reason = error.strerror if isinstance(error, OSError) else str(error)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from partialslip.errors import InputError
 from partialslip.inputfile import reason
+from partialslip.output.folders import make_folder
 
 try:
     import fcntl
@@ -83,7 +84,7 @@ def _taken(path: Path) -> tuple[int, str]:
     """Open and lock the file at ``path``. Returns the handle, and the holder if another process has the lock."""
     for _ in range(_TRIES):
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
+            make_folder(path.parent)
             handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
         except FileNotFoundError:  # the previous holder has just removed the empty folder
             continue

@@ -5,7 +5,6 @@ results. The same request overwrites the files. Other requests go to another fol
 that the user names is refused instead. A single file is overwritten only by the same content.
 """
 
-import hashlib
 import itertools
 import json
 import time
@@ -15,15 +14,17 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from partialslip.errors import InputError
-from partialslip.inputfile import reason
+from partialslip.inputfile import checksum, opened, read_bytes
 from partialslip.output.files import write_files, write_new_file, write_texts
 from partialslip.output.lock import FolderInUseError, locked
 from partialslip.strictjson import decoded
 
 NAME = ".partialslip"
 # Files of results: a folder that holds one of them, but no request, was written by an earlier version or copied.
-RESULTS = ("results.json", "report.html", "ledger.jsonl", "effects.json", "fatigue.json", "map.csv", "page.html")
+RESULTS = ("results.json", "report.html", "ledger.jsonl", "effects.json", "fatigue.json", "map.csv", "page.html",
+           "meta.toml")  # fmt: skip
 _TRIES, _PAUSE = 20, 0.1  # s: the holder of a lock writes the request at once
+_LARGEST, _LARGEST_REQUEST = 2**40, 2**24  # bytes of a file, and of a request
 _LONGEST, _MOST = 24, 3  # characters of a setting, and number of settings, in a message
 
 Request = Mapping[str, Any]
@@ -118,11 +119,7 @@ def write_placed(usual: Path, out: str | Path | None, write: Callable[[Path], ob
 
 def content(path: Path) -> list[str]:
     """Return the name of an input file, without the folder, and a checksum of its content, for a request."""
-    try:
-        with path.open("rb") as file:
-            return [path.name, hashlib.file_digest(file, "sha256").hexdigest()[:16]]
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {reason(error)}") from None
+    return [path.name, checksum(path, _LARGEST)[:16]]
 
 
 def _numbered(usual: Path, suffix: str) -> Iterator[Path]:
@@ -184,8 +181,8 @@ def _asked_by_holder(folder: Path, asked: dict[str, Any]) -> str | None:
 def _request(folder: Path) -> dict[str, Any] | None:
     """Return the request that the files in ``folder`` answer; None if there is none."""
     try:
-        return decoded((folder / NAME).read_bytes(), dict, NAME)
-    except (OSError, ValueError):  # ValueError: no JSON, or no valid name
+        return decoded(read_bytes(folder / NAME, _LARGEST_REQUEST), dict, NAME)
+    except InputError:  # none, or no JSON
         return None
 
 
@@ -226,9 +223,9 @@ def _flat(request: Request, before: str = "") -> dict[str, Any]:
 def _first_lines(path: Path) -> str:
     """Return in words what a file holds: its first two lines, shortened."""
     try:
-        with path.open("rb") as file:
+        with opened(path, _LARGEST) as file:
             lines = [file.readline(200).decode("utf-8").strip() for _ in range(2)]
-    except (OSError, ValueError):
+    except (InputError, ValueError):  # ValueError: no text
         lines = []
     text = " ".join(filter(None, lines))
     return f'holds other content, "{text[:60]}"' if text and text.isprintable() else "holds other content"

@@ -1,7 +1,7 @@
 """The answer of a run: what was asked for, in the scene's units, with the digits that are known."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -38,10 +38,11 @@ def answers(run: Run) -> list[tuple[str, str]]:
     surface of the lower body.
 
     A value has the digits that the method's own estimate of its error leaves, and the error: ``0.888 +- 0.003``. Values
-    that the answering method does not know come from the first that knows them, which is named.
+    that the answering method does not know come from the first that knows them, which is named. The noise of a measured
+    profile has lines of its own.
     """
     result = run.results[run.answering]
-    return [*_stick(run, result), *_contact(run, result), *_shears(run), *_stresses(run)]
+    return [*_stick(run, result), *_noise(run), *_contact(run, result), *_shears(run), *_stresses(run)]
 
 
 def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
@@ -56,6 +57,32 @@ def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
         _number(end / result.a, error / result.a) for end, error in zip((result.m, result.n), errors, strict=True)
     ]
     yield "m, n", f"{shares[0]} a, {shares[1]} a"
+    if result.permanent is None:
+        return
+    apart = max(abs(result.permanent[0] + result.m), abs(result.permanent[1] - result.n))
+    if apart <= _ROUNDING * result.a:
+        return
+    if math.isnan(result.permanent[0]):
+        yield "never slips", "no point: the stick zone moves across the contact"
+    else:
+        ends = [_number(end, error, exponent) for end, error in zip(result.permanent, errors, strict=True)]
+        yield "never slips", f"[{ends[0]}, {ends[1]}] {label}"
+
+
+def _noise(run: Run) -> Iterator[tuple[str, str]]:
+    """Yield the scatter due to the noise of a measured profile, and the smoothing length that scatters less."""
+    if (noise := run.noise) is None:
+        return
+    yield "noise of the profile", _scatter({"a": noise.a, "m": noise.m, "n": noise.n}) + f", from {noise.copies} copies"
+    if noise.smooth and noise.a_then is not None:
+        exponent, label = _unit(run, noise.smooth, "m")
+        then = _scatter({"a": noise.a_then, "m": noise.m_then, "n": noise.n_then})
+        yield "with a longer smooth", f"{noise.smooth / 10.0**exponent:.3g} {label}: {then}; the points allow it"
+
+
+def _scatter(deviations: Mapping[str, float | None]) -> str:
+    known = {key: each for key, each in deviations.items() if each is not None}
+    return ", ".join(f"{key} +- {each:.1e} a" for key, each in known.items()) + " (standard deviation)"
 
 
 def _contact(run: Run, result: Result) -> Iterator[tuple[str, str]]:

@@ -64,6 +64,11 @@ class Clock:
         finally:
             self.phases[name] = self.phases.get(name, 0.0) + time.process_time() - start
 
+    def add_earlier(self, cpu: float, wall: float) -> None:
+        """Add ``cpu`` and ``wall`` seconds of work that was done for this method before it began."""
+        self._cpu -= cpu
+        self._wall -= wall
+
     def add_meshing(self, seconds: float) -> None:
         """Add CPU ``seconds`` of the meshing process to phase "mesh"."""
         self.phases["mesh"] = self.phases.get("mesh", 0.0) + seconds

@@ -50,9 +50,10 @@ class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaul
 
     Fields have the names, units and meaning of the result: ``a``, ``p0``, ``regime``, ``m``, ``n``,
     ``stick_half_width``, ``stick_centre``, ``p_max``, ``settings``, ``counts``, ``limits``, ``certificate``,
-    ``last_cycle_change``, ``estimate``, ``shares``, ``undetermined``, ``path_dependent``, ``end_slips``, ``notes``,
-    ``cost``. ``contact_ends`` are the left and right end (m) at load point 1 and at load point 2. ``slip``, ``surface``
-    and ``traction`` are None if the result has none, and in ledgers, which keep no curves.
+    ``last_cycle_change``, ``estimate``, ``shares``, ``undetermined``, ``path_dependent``, ``end_slips``,
+    ``permanent``, ``notes``, ``cost``. ``contact_ends`` are the left and right end (m) at load point 1 and at load
+    point 2. ``slip``, ``surface`` and ``traction`` are None if the result has none, and in ledgers,
+    which keep no curves.
     """
 
     a: Number
@@ -76,6 +77,7 @@ class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaul
     notes: tuple[str, ...]
     cost: Cost
     end_slips: tuple[EndSlip, EndSlip] | None = None
+    permanent: tuple[Number, Number] | None = None
     slip: SlipRecord | None = None
     surface: SurfaceRecord | None = None
     traction: TractionRecord | None = None
@@ -107,6 +109,7 @@ class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaul
             notes=result.notes,
             cost=result.cost,
             end_slips=result.end_slips,
+            permanent=(number(result.permanent[0]), number(result.permanent[1])) if result.permanent else None,
             slip=SlipRecord(numbers(slip.x), numbers(slip.slip), number(slip.dissipated)) if curves and slip else None,
             surface=SurfaceRecord(numbers(surface.x), _by_body(surface.sigma)) if curves and surface else None,
             traction=TractionRecord(

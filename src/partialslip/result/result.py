@@ -46,7 +46,8 @@ class Result(Drawn):
     regime : str
         One of :data:`Regime`.
     stick_centre, stick_half_width : float or None
-        (n - m)/2 and (n + m)/2 of the stick zone [-m, n], m; None where nothing sticks. Stored instead of m and n
+        (n - m)/2 and (n + m)/2 of the stick zone [-m, n], the zone of the tractions in which \\|dq\\| < f (p_1 + p_2)
+        between the load points, m; None where nothing sticks. Stored instead of m and n
         because n + m cancels where the zone is tiny.
     traction : Traction
         p, q1, q2 and dq along the contact.
@@ -87,10 +88,15 @@ class Result(Drawn):
     undetermined : mapping of str to str
         By quantity (``m``, ``n``, ``q``, ``q1``, ``q2``), why the value cannot serve as a reference.
     path_dependent : bool
-        Whether slip reverses between the load points; a method with one load step is then no reference.
+        Whether slip reverses between the load points and the result is that of one load step, which gradual loads do
+        not have.
     end_slips : (EndSlip, EndSlip) or None
         Where the pressure varies: whether the left and the right end of the contact slip from load point 1 to 2
         "forwards" (the lower body along +x), "backwards", "never", or only during "part of the cycle".
+    permanent : (float, float) or None
+        Left and right end, m, of the permanent stick zone, which are the points that never slip in the steady cycle;
+        (nan, nan) where every point slips. [-m, n], where dq between the load points is below the bound f (p_1 + p_2),
+        is the same unless the stick zone moves on the way. None where the method does not know.
     edges : (Array, Array) or ()
         Element edges of the lower and the upper body near the contact, (k, 2, 2) by edge, end and x, y, m, undeformed;
         only edges long enough to be seen. Empty for methods without elements.
@@ -121,6 +127,7 @@ class Result(Drawn):
     undetermined: Mapping[str, str] = field(default_factory=dict)
     path_dependent: bool = False
     end_slips: tuple[EndSlip, EndSlip] | None = None
+    permanent: tuple[float, float] | None = None
     edges: tuple[Array, Array] | tuple[()] = ()
 
     def __repr__(self) -> str:

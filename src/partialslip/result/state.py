@@ -1,8 +1,11 @@
 """The state of the contact at the end of a load path, from which a later run continues. SI units."""
 
+import tokenize
 import zipfile
+import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +13,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.inputfile import check_regular
+from partialslip.inputfile import read_bytes
 from partialslip.scene import Scene
 from partialslip.shown import Short
 
@@ -19,6 +22,9 @@ if TYPE_CHECKING:
 
 _ARRAYS = ("loads", "cells", "p", "q")
 _ERROR = "q_error"  # files of earlier versions do not have it
+# an encrypted or unknown kind of compression is a RuntimeError
+_SPOILED = (OSError, KeyError, ValueError, EOFError, AttributeError, TypeError, MemoryError, RuntimeError,
+            SyntaxError, tokenize.TokenError, zipfile.BadZipFile, zlib.error)  # fmt: skip
 _LARGEST = 100_000_000  # bytes of a file, and of the arrays in it
 _HELD = 1e-6  # tolerance of equilibrium, relative to P
 _TURNED = 1e-3  # tolerance of the moment, relative to P sqrt(A R P): cells of constant pressure have no better one
@@ -87,16 +93,14 @@ def load_state(path: str | Path) -> State:
     InputError
         If the file cannot be read, holds no state, or holds tractions that are not in equilibrium with the loads.
     """
-    check_regular(path, _LARGEST)
+    content = read_bytes(path, _LARGEST)
     try:
-        with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+        with np.load(BytesIO(content), allow_pickle=False) as file:
             if sum(part.file_size for part in file.zip.infolist()) > _LARGEST:
                 raise ValueError
             there = [*_ARRAYS, *([_ERROR] if _ERROR in file else [])]
             arrays = {name: file[name].astype(float, casting="safe") for name in there}
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
-    except (KeyError, ValueError, EOFError, AttributeError, TypeError, MemoryError, zipfile.BadZipFile):
+    except _SPOILED:
         raise InputError(f"{path}: not a state that partialslip has saved") from None
     loads, cells, p, q = (arrays[name] for name in _ARRAYS)
     known = arrays.get(_ERROR)

@@ -4,10 +4,8 @@ import hashlib
 
 import msgspec
 
-from partialslip.inputfile import read_bytes
+from partialslip.inputfile import LARGEST_MESH, checksum
 from partialslip.scene import Scene
-
-_LARGEST = 2**31  # bytes of a mesh file
 
 
 def key_of(scene: Scene) -> str:
@@ -22,6 +20,6 @@ def key_of(scene: Scene) -> str:
     bodies.pop("equivalent", None)
     for name, body in scene.bodies:
         if body.mesh is not None:
-            bodies[name.removeprefix("bodies.")]["mesh"] = hashlib.sha256(read_bytes(body.mesh, _LARGEST)).hexdigest()
+            bodies[name.removeprefix("bodies.")]["mesh"] = checksum(body.mesh, LARGEST_MESH)
     parts = [bodies, scene.material, scene.profile if scene.bodies.pad else None]
     return hashlib.sha256(msgspec.json.encode(parts, order="sorted")).hexdigest()[:16]

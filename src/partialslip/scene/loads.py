@@ -157,6 +157,11 @@ class Load(Table, frozen=True, kw_only=True):
         return self.along[second][2] - self.along[first][2]
 
     @property
+    def path_steps(self) -> int:
+        """Least number of load steps of the whole path: to the last load point, and ``cycles`` times through all."""
+        return self.steps * (1 + self.cycles * len(self.points))
+
+    @property
     def Q_mean(self) -> float:
         """(Q1 + Q2)/2, N/m."""
         first, second = self.ends

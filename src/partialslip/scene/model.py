@@ -166,7 +166,8 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         """
         from partialslip.scene.reading import changed
 
-        return changed(self, {**(changes or {}), **tables})
+        given = changes if changes is not None else {}
+        return changed(self, {**given, **tables} if isinstance(given, Mapping) else given)
 
     @property
     def units(self) -> Units:

@@ -46,14 +46,35 @@ def shipped_scenes() -> dict[str, str]:
     return {name: tomllib.loads(texts[name]).get("title", "") for name in sorted(texts)}
 
 
-def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
+AnyScene = Scene | str | os.PathLike[str]
+
+
+def as_scene(scene: AnyScene) -> Scene:
+    """Return ``scene``; read it by :func:`load_scene` if it is the name of a shipped scene or the path of a file.
+
+    Raises
+    ------
+    InputError
+        If it is neither, or as :func:`load_scene`.
+    """
+    if isinstance(scene, Scene):
+        return scene
+    if isinstance(scene, (str, os.PathLike)):
+        return load_scene(scene)
+    raise InputError(
+        f"scene = {_shown(scene)}: must be a Scene, the name of a shipped scene, or the path of a scene file; "
+        "partialslip.parse_scene makes a Scene from tables"
+    )
+
+
+def load_scene(scene: str | os.PathLike[str], overrides: str | Iterable[str] = ()) -> Scene:
     """Read a scene from a file, or a shipped scene by name.
 
     Parameters
     ----------
     scene : str or Path
         The name of a shipped scene or the path of a TOML file.
-    overrides : iterable of str
+    overrides : str or iterable of str
         Settings to change, each as ``"table.key=value"`` with a TOML value, e.g. ``"load.P=2e5"``, in the units of the
         scene file.
 
@@ -62,8 +83,12 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
     InputError
         With one line that names the field, its value and what is allowed.
     """
+    if not isinstance(scene, (str, os.PathLike)):
+        raise InputError(f"scene = {_shown(scene)}: must be the name of a shipped scene or the path of a scene file")
     data = parse_toml(_text(scene), str(scene))
-    for override in overrides:
+    for override in [overrides] if isinstance(overrides, str) else overrides:
+        if not isinstance(override, str):
+            raise InputError(f"override {_shown(override)}: must be table.key=value, for example load.P=2e5")
         _override(data, override)
     _find_files(data, scene)
     try:
@@ -90,6 +115,8 @@ def parse_scene(data: Mapping[str, Any]) -> Scene:
 
 def changed(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     """Make a scene from ``scene`` with ``changes`` by key; see :meth:`partialslip.Scene.replace`."""
+    if not isinstance(changes, Mapping):
+        raise InputError(f"changes = {_shown(changes)}: must be values by dotted key, such as {{'load.P': 2e5}}")
     data = msgspec.to_builtins(scene)
     for key, value in changes.items():
         _put(data, key.split("."), value, key)
@@ -145,7 +172,7 @@ def _from_file(profile: dict[str, Any], units: Units) -> dict[str, Any]:
             raise InputError(f"profile.{key}: must not be given together with profile.file")
     own = {key: value for key, value in profile.items() if key in ProfileFile.__struct_fields__}
     try:
-        made = tabulated(_made(ProfileFile, "profile", own, own, units))
+        made = tabulated(_made(ProfileFile, "profile", own, own, units), units.size("m"))
     except InputError as error:
         raise InputError(units.relabelled(str(error))) from None
     return {key: value for key, value in profile.items() if key not in own} | made
@@ -183,7 +210,7 @@ def _place(kind: type[Table]) -> str:
     return "profile" if kind.__struct_config__.tag_field else kind.__name__.lower()
 
 
-def _text(scene: str | Path) -> str:
+def _text(scene: str | os.PathLike[str]) -> str:
     path = Path(scene)
     if path.suffix == ".toml" or _is_file(path):
         return read_text(path, _LARGEST_FILE)
@@ -236,7 +263,7 @@ def _override(data: dict[str, Any], override: str) -> None:
     data[keys[-1]] = parsed
 
 
-def _find_files(data: dict[str, Any], scene: str | Path) -> None:
+def _find_files(data: dict[str, Any], scene: str | os.PathLike[str]) -> None:
     """Make paths of meshes and profiles relative to the folder of the scene file."""
     profile = data.get("profile")
     if isinstance(profile, dict) and isinstance(file := profile.get("file"), str) and file:
@@ -257,6 +284,8 @@ def _plain(value: Any, path: str = "", depth: int = 0) -> Any:
         value = msgspec.to_builtins(value)
     elif isinstance(value, os.PathLike):
         value = os.fspath(value)
+    if isinstance(value, (set, frozenset)):
+        raise InputError(f"{path}: must be a list: a set has no order")
     if isinstance(value, (Mapping, list, tuple)) and depth == _DEEPEST:
         raise InputError(f"{path}: must be nested at most {_DEEPEST} levels deep")
     if isinstance(value, Mapping):

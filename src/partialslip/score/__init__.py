@@ -1,5 +1,6 @@
 """Score results of other codes against the solution of a scene."""
 
+import os
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,13 +12,14 @@ from partialslip.judge import reference as references
 from partialslip.result import Result
 from partialslip.run import Run, compared, run
 from partialslip.scene import Scene
+from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.score.method import centred, scored
 from partialslip.score.mistakes import in_another_unit, mistakes
 from partialslip.score.read import read
 
 
 def score(
-    scene: Scene,
+    scene: AnyScene,
     file: str | Path,
     *,
     bar: Accuracy | None = None,
@@ -33,7 +35,8 @@ def score(
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene, str or path
+        A scene, the name of a shipped one, or the path of a scene file.
     file : str or Path
         One of:
 
@@ -69,6 +72,9 @@ def score(
     InputError
         If the file cannot be read, or an argument is not allowed.
     """
+    scene = as_scene(scene)
+    if not isinstance(file, (str, os.PathLike)):
+        raise InputError(f"file = {file!r:.60}: must be the path of a file")
     file, wanted = Path(file), asked(bar)
     name = "".join(c if c.isprintable() else "?" for c in file.name)
     reference = references.reference(scene).method if reference is None else reference

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from partialslip.errors import InputError
-from partialslip.units import Dimension
+from partialslip.units import LENGTHS, Dimension
 
 NORMAL = ("p", "Fn")
 FIRST = {"p": "p1", "Fn": "Fn1"}  # the same at load point 1, where the pressure varies
@@ -39,8 +39,7 @@ NAMES = {
 
 #: Units by name, in SI units.
 UNITS = {
-    "m": 1.0, "mm": 1e-3, "um": 1e-6, "\N{MICRO SIGN}m": 1e-6, "\N{GREEK SMALL LETTER MU}m": 1e-6, "cm": 1e-2,
-    "in": 0.0254, "pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9, "psi": 6894.757293168, "ksi": 6894757.293168,
+    **LENGTHS, "pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9, "psi": 6894.757293168, "ksi": 6894757.293168,
     "n/m": 1.0, "n/mm": 1e3, "n/m^2": 1.0, "n/mm^2": 1e6, "n/mm2": 1e6, "n/um^2": 1e12,
 }  # fmt: skip
 _UNIT = re.compile(r"^(?P<name>.*?\S)\s*[\[(](?P<unit>[^\[\]()]*)[\])]$")

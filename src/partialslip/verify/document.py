@@ -11,6 +11,7 @@ from msgspec.structs import replace
 
 from partialslip.bars import CERTIFICATE_BAR
 from partialslip.errors import InputError
+from partialslip.inputfile import read_text
 from partialslip.judge import P_BAR, Q_BAR, Outcome
 from partialslip.origin import origin_lines
 from partialslip.output.page import render_page
@@ -33,6 +34,7 @@ SCOPE = {
     "book": "The numbered problems of the benchmark. Each is solved by the methods that its targets come from.",
     "stress": "Random scenes of one method. Each can be made again from its number.",
 }
+_LARGEST = 10**8  # bytes of a figure
 _LEAST = 1e-18  # smallest certificate in the figure, drawn for a residual of 0
 
 
@@ -76,8 +78,8 @@ class Account:
 def read_study(folder: Path) -> Study:
     """Read the figures written by ``partialslip study`` into ``folder``. Raises InputError if there are none."""
     try:
-        figures = {path.name: path.read_text("utf-8") for path in sorted(folder.glob("*.svg"))}
-    except (OSError, ValueError):
+        figures = {path.name: read_text(path, _LARGEST) for path in sorted(folder.glob("*.svg"))}
+    except InputError:
         raise InputError(f"--include {folder}: figures (.svg) cannot be read as UTF-8 text") from None
     if not figures or any("<svg" not in figure for figure in figures.values()):
         raise InputError(f"--include {folder}: must be the folder of a study, with figures (.svg)")

@@ -13,6 +13,7 @@ from msgspec.structs import replace
 from partialslip.batch.ledger import Ledger, key_of, scene_content
 from partialslip.batch.sweep import Progress, Task, sweep, workers
 from partialslip.errors import InputError, MissingLibraryError
+from partialslip.inputfile import read_text
 from partialslip.judge import Conclusion, Outcome
 from partialslip.judge.reference import REFERENCES
 from partialslip.output.files import write_texts
@@ -36,6 +37,7 @@ from partialslip.verify.verdicts import was_finished, write_verdicts
 
 _SCENES, _FIGURE, _SKETCH = "scenes", "tractions.svg", "sketch.svg"
 _MOST = 999_999_999
+_LARGEST = 10**8  # bytes of a figure
 
 
 @dataclass(frozen=True)
@@ -291,6 +293,6 @@ def _figures(folder: Path, entries: Mapping[str, Entry], name: str) -> dict[str,
     """Return the figures in the files ``name`` by case, of cases with a sheet."""
     paths = {case: folder / case / name for case, entry in entries.items() if entry.sheet}
     try:
-        return {case: path.read_text("utf-8") for case, path in paths.items()}
-    except (OSError, ValueError):
+        return {case: read_text(path, _LARGEST) for case, path in paths.items()}
+    except InputError:
         raise InputError(f"{folder}: figures of finished cases are missing; remove ledger.jsonl to restart") from None

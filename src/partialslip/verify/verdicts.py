@@ -9,6 +9,7 @@ import msgspec
 from rich.console import Console
 
 from partialslip.errors import InputError
+from partialslip.inputfile import read_bytes
 from partialslip.judge import NO_BAR, Outcome
 from partialslip.origin import versions
 from partialslip.output.csv import csv_text
@@ -23,6 +24,7 @@ from partialslip.verify.entry import Settings
 SCHEMA = "partialslip/verify/2"
 _FILE = "results.json"
 _SCREEN = 24  # rows
+_LARGEST = 2**30  # bytes
 
 Verdicts = Mapping[str, Sequence[CaseVerdict]]
 
@@ -88,8 +90,8 @@ def write_verdicts(folder: Path, settings: Settings, verdicts: Verdicts, finishe
 def was_finished(folder: Path) -> bool:
     """Return whether ``folder`` holds the verdicts of a finished run."""
     try:
-        found = decoded((folder / _FILE).read_bytes(), _Finished, _FILE)
-    except (OSError, InputError):
+        found = decoded(read_bytes(folder / _FILE, _LARGEST), _Finished, _FILE)
+    except InputError:
         return False
     return found.schema == SCHEMA and found.finished
 

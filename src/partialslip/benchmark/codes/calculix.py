@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from partialslip.benchmark.codes.gradual import gradual
 from partialslip.benchmark.codes.process import LONGEST, ran
 from partialslip.benchmark.codes.solved import Solved
+from partialslip.benchmark.increments import gradual, told
 from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError
 from partialslip.export import export
@@ -23,10 +23,12 @@ _DOFS = re.compile(r"number of equations\s+(\d+)")
 
 @dataclass(frozen=True)
 class Calculix:
-    """CalculiX with elements of ``size`` a, and penalty or mortar contact."""
+    """CalculiX with elements of ``size`` a, penalty or mortar contact, and so many ``increments`` a step (None: as
+    :func:`partialslip.benchmark.increments.gradual` says)."""
 
     size: float
     penalty: bool
+    increments: int | None = None
 
     @property
     def version(self) -> str | None:
@@ -38,11 +40,11 @@ class Calculix:
         """Settings in words."""
         kind = "penalty" if self.penalty else "mortar"
         elements = f"elements of {self.size:g} a along the contact, growing by {GROWTH:g}"
-        return f"{kind} contact, {elements}, bodies {STIFFER:g} times stiffer"
+        return f"{kind} contact, {elements}, bodies {STIFFER:g} times stiffer{told(self.increments)}"
 
     def solve(self, scene: Scene) -> Solved | None:
         """Solve ``scene``; None if there is no deck for it."""
-        scene = gradual(scene)
+        scene = gradual(scene, self.increments)
         try:
             write = export(scene, "calculix", size=self.size, growth=GROWTH, stiffer=STIFFER, penalty=self.penalty)
         except InputError:

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from partialslip.benchmark.codes.gradual import gradual
 from partialslip.benchmark.codes.scripted import Host, of_scene, solved
 from partialslip.benchmark.codes.solved import Solved
+from partialslip.benchmark.increments import gradual, told
 from partialslip.benchmark.neutral import GROWTH
 from partialslip.errors import InputError
 from partialslip.export.model import outlined
@@ -26,11 +26,13 @@ _POINTS = 4001  # of the table of the gap
 @dataclass(frozen=True)
 class GetFEM:
     """GetFEM with elements of ``size`` a and of ``order``; with ``fine``, a second run has elements of ``fine`` a at
-    the ends that the first found."""
+    the ends that the first found. It takes so many ``increments`` a step (None: as
+    :func:`partialslip.benchmark.increments.gradual` says)."""
 
     size: float
     fine: float | None = None
     order: int = 2
+    increments: int | None = None
 
     @property
     def version(self) -> str | None:
@@ -42,11 +44,11 @@ class GetFEM:
         """Settings in words."""
         where = f", {self.fine:g} a at the ends that a first run found" if self.fine else ""
         kind = f"Q{self.order} elements of {self.size:g} a along the contact{where}"
-        return f"{kind}; linear multipliers, augmented conditions (Alart and Curnier)"
+        return f"{kind}; linear multipliers, augmented conditions (Alart and Curnier){told(self.increments)}"
 
     def solve(self, scene: Scene) -> Solved | None:
         """Solve ``scene``; None if its meshes cannot be made."""
-        scene = gradual(scene)
+        scene = gradual(scene, self.increments)
         ends: tuple[float, ...] = ()
         cpu_s = memory_mb = 0.0
         for fine in (None, self.fine) if self.fine else (None,):

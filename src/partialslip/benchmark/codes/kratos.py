@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from partialslip.benchmark.codes.gradual import gradual
 from partialslip.benchmark.codes.scripted import Host, of_scene, solved
 from partialslip.benchmark.codes.solved import Solved
+from partialslip.benchmark.increments import gradual
 from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError
 from partialslip.export.model import Model, modelled
@@ -23,10 +23,12 @@ HOST = Host(
 
 @dataclass(frozen=True)
 class Kratos:
-    """Kratos with elements of ``size`` a and at least so many ``increments`` a step."""
+    """Kratos with elements of ``size`` a and at least so many ``increments`` a step, or, if given, ``just`` so many
+    after pressing."""
 
     size: float
     increments: int
+    just: int | None = None
 
     @property
     def version(self) -> str | None:
@@ -37,18 +39,21 @@ class Kratos:
     def settings(self) -> str:
         """Settings in words."""
         kind = f"linear quadrilaterals of {self.size:g} a along the contact, mortar contact, augmented Lagrangian"
-        return f"{kind}, tangent_factor 1, {self.increments} increments a step, bodies {STIFFER:g} times stiffer"
+        increments = f"{self.just or self.increments} increments a step"
+        return f"{kind}, tangent_factor 1, {increments}, bodies {STIFFER:g} times stiffer"
 
     def solve(self, scene: Scene) -> Solved | None:
         """Solve ``scene``; None if there is no model, or the upper body would have to turn."""
-        scene = gradual(scene)
+        scene = gradual(scene, self.just)
         if any(M for _, M in scene.pressing):
             return None
         try:
             made = modelled(scene, self.size, growth=GROWTH, stiffer=STIFFER)
         except InputError:
             return None
-        steps = [step._replace(increments=max(step.increments, self.increments)) for step in made.steps]
+        least = 1 if self.just else self.increments
+        counts = (max(each.increments, self.increments if each.name == "press" else least) for each in made.steps)
+        steps = [step._replace(increments=count) for step, count in zip(made.steps, counts, strict=True)]
         with tempfile.TemporaryDirectory() as folder:
             return solved(HOST, scene, of_scene(scene, steps) | _told(made), Path(folder))
 

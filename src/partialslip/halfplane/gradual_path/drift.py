@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.arrays import Array
-from partialslip.halfplane.gradual_path.graded import RESTS, SHARES, integrals, place, powers, spans
+from partialslip.halfplane.gradual_path.graded import DEGREES, RESTS, SHARES, integrals, place, powers, spans
 
 _Solver = Callable[[Array], Array]
 
@@ -42,7 +42,7 @@ class Drift:
     ) -> None:
         self._tension, self._lacking = tension, lacking
         after = [each + 1 for each in breaks]  # what leaves the equation a whole width later
-        inner = sorted(each for each in {*breaks, *after, 1.0, 2.0, 3.0, 4.0, 5.0} if 0 < each < farthest)
+        inner = sorted(each for each in {*breaks, *after, *np.arange(1.0, farthest)} if 0 < each < farthest)
         self._ends = [0.0, *inner, farthest] if farthest > 1 else [0.0, *(each for each in inner if each < 1), 1.0]
         self._densities: list[Array] = []  # coefficients of h by panel
         self._progress = [0.0]  # lambda at the ends of panels, from the beginning of the drift
@@ -69,8 +69,9 @@ class Drift:
         if progress <= 0:
             return 0.0
         if self.progress(high) <= progress:
-            return most
-        return float(brentq(lambda tau: self.progress(tau) - progress, low, high, xtol=1e-16, rtol=1e-15))
+            return float(high)  # the steady zone stops at a break, where the right end stood before
+        found: float = brentq(lambda tau: self.progress(tau) - progress, low, high, xtol=1e-16, rtol=1e-15)
+        return found
 
     def accumulated(self, place_: Array, tau: float) -> Array:
         """Change of q during the drift to the travel ``tau``, at places (k,): distances to the left from the zone's
@@ -130,9 +131,11 @@ def _earlier(length: float, later: float, gap: float) -> Array:
     of the length ``later``, which begins by ``gap`` after its end."""
     since = gap + later * SHARES  # from the panel's end
     begin = np.clip(since + length - 1, 0.0, length)  # the earlier part of the panel is more than 1 away
+    result = np.zeros((len(since), DEGREES))
+    near = begin < length
+    begin, since = begin[near], since[near]
     from_low, from_high, weights = spans(begin, np.full(len(since), length))
     apart = np.maximum(begin - (since + length - 1), 0.0)[:, None] + from_low  # 1 - u
     kernel = weights * np.sqrt(apart / (since[:, None] + from_high)) / length
-    result: Array = np.einsum("ik,ikj->ij", kernel, _density((begin[:, None] + from_low) / length, from_high / length))
-    result[begin >= length] = 0.0
+    result[near] = np.einsum("ik,ikj->ij", kernel, _density((begin[:, None] + from_low) / length, from_high / length))
     return result

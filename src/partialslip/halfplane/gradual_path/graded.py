@@ -8,9 +8,13 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.halfplane.shape import double_exponential
 
+_FEW, _LEAST = 200, 1e-300  # points up to which the barycentric formula is faster; a distance that is not zero
 DEGREES = 40  # coefficients, and nodes, of an interpolant
+_TAIL = 1e-10  # size of the last coefficients above which an interval is halved
+_HALVINGS = 20
+_NARROW = 1e-7  # length of intervals that are not halved: rounding of coordinates shows in their interpolants
 _HALF_PI = math.pi / 2
-_INNER, _TO_END, _WEIGHTS = double_exponential(81)
+_INNER, _TO_END, _WEIGHTS = double_exponential(97, 3.85)
 _FROM_LOW = np.where(_INNER < 0, _TO_END[::-1], 1 + _INNER)
 _FROM_HIGH = np.where(_INNER < 0, 1 - _INNER, _TO_END)
 
@@ -42,13 +46,26 @@ def shares(s: Array) -> tuple[Array, Array]:
 
 def powers(s: Array) -> Array:
     """Chebyshev polynomials on [0, 1] at ``s``, (..., DEGREES)."""
-    return np.asarray(np.polynomial.chebyshev.chebvander(2 * s - 1, DEGREES - 1), dtype=np.float64)
+    result: Array = np.moveaxis(_polynomials(s, DEGREES), 0, -1)
+    return result
+
+
+def _polynomials(s: Array, count: int) -> Array:
+    """Chebyshev polynomials on [0, 1] at ``s``, (count, ...)."""
+    found = np.empty((count, *np.shape(s)))
+    twice = 4 * s - 2
+    found[0], found[1] = 1.0, twice / 2
+    for degree in range(2, count):
+        found[degree] = twice * found[degree - 1] - found[degree - 2]
+    return found
 
 
 NODES = (1 - np.cos(np.pi * (np.arange(DEGREES) + 0.5) / DEGREES)) / 2
 SHARES, RESTS = shares(NODES)
 _TO_COEFFICIENTS = powers(NODES).T * 2 / DEGREES
 _TO_COEFFICIENTS[0] /= 2
+_VALUES = powers(NODES).T  # at the nodes, of polynomials with given coefficients
+_BARYCENTRIC = (-1.0) ** np.arange(DEGREES) * np.sin(np.pi * (np.arange(DEGREES) + 0.5) / DEGREES)
 _INTEGRALS = np.stack(  # coefficients of the integrals from s = 0 of the polynomials
     [np.polynomial.chebyshev.chebint(row, lbnd=-1) / 2 for row in np.eye(DEGREES)], axis=1
 )
@@ -56,13 +73,13 @@ _INTEGRALS = np.stack(  # coefficients of the integrals from s = 0 of the polyno
 
 def integrals(s: Array) -> Array:
     """Integrals from 0 to ``s`` of the polynomials, (..., DEGREES)."""
-    result: Array = (np.polynomial.chebyshev.chebvander(2 * s - 1, DEGREES) @ _INTEGRALS).reshape(*s.shape, DEGREES)
+    result: Array = np.moveaxis(_polynomials(s, DEGREES + 1), 0, -1) @ _INTEGRALS
     return result
 
 
 class Smooth:
     """Interpolant of a function on an interval from ``low`` to ``high``, which may have square roots and weaker
-    singularities at both ends.
+    singularities at both ends. The interval is halved until the coefficients have decayed.
 
     Parameters
     ----------
@@ -72,21 +89,50 @@ class Smooth:
     """
 
     def __init__(self, low: float, high: float, function: Callable[[Array, Array], Array]) -> None:
-        self.low, self.high = low, high
-        width = high - low
-        self._coefficients = _TO_COEFFICIENTS @ function(width * SHARES, width * RESTS)
+        self.low, self.high, width = low, high, high - low
+        ends, pieces = [0.0], list[Array]()
 
-    def __call__(self, x: Array) -> Array:
-        share = np.clip((x - self.low) / (self.high - self.low), 0.0, 1.0)
-        result: Array = powers(place(share, 1 - share)[0]) @ self._coefficients
-        return result
+        def add(end: float, halvings: int) -> None:
+            begin = ends[-1]
+            length = end - begin
+            found = _TO_COEFFICIENTS @ function(begin + length * SHARES, (width - end) + length * RESTS)
+            if halvings and length > _NARROW and np.abs(found[-3:]).max() > _TAIL:
+                add(begin + length / 2, halvings - 1)
+                add(end, halvings - 1)
+            else:
+                ends.append(end)
+                pieces.append(found)
+
+        add(width, _HALVINGS)
+        self._ends, self._pieces = np.array(ends), np.array(pieces)
 
     @property
-    def tail(self) -> float:
-        """Size of the last coefficients: the error of the interpolant, about."""
-        return float(np.abs(self._coefficients[-3:]).max())
+    def cuts(self) -> Array:
+        """Places at which the interpolant changes."""
+        cuts: Array = self.low + self._ends[1:-1]
+        return cuts
+
+    def __call__(self, x: Array) -> Array:
+        return self.near(x - self.low, self.high - x)
+
+    def near(self, from_low: Array, from_high: Array) -> Array:
+        """Values at distances from both ends, which keep their digits."""
+        ends = self._ends
+        number = np.searchsorted(ends[1:-1], from_low, side="right")
+        length = ends[number + 1] - ends[number]
+        share = np.clip((from_low - ends[number]) / length, 0.0, 1.0)
+        rest = np.clip((from_high - (ends[-1] - ends[number + 1])) / length, 0.0, 1.0)
+        s, pieces = place(share, rest)[0], self._pieces[number]
+        result: Array
+        if len(s) > _FEW:
+            result = np.einsum("ji,ij->i", _polynomials(s, DEGREES), pieces)
+            return result
+        apart = s[:, None] - NODES
+        shares = _BARYCENTRIC / np.where(apart == 0, _LEAST, apart)
+        result = (shares * (pieces @ _VALUES)).sum(axis=-1) / shares.sum(axis=-1)
+        return result
 
     def __neg__(self) -> "Smooth":
         result = object.__new__(Smooth)
-        result.low, result.high, result._coefficients = self.low, self.high, -self._coefficients
+        result.low, result.high, result._ends, result._pieces = self.low, self.high, self._ends, -self._pieces
         return result

@@ -17,6 +17,7 @@ from partialslip.halfplane.shape import Rule, rule_between
 
 _STEPS = 60
 _CLOSE = 1e-14
+_BESIDE = 1e-6  # Newton step below which an end is beside a break, or as near as rounding lets it come
 _MOST = 4.0
 _FIRST, _SMALLEST = 0.02, 1e-6  # steps of the loads
 _APART = 1e-13  # distance from the stick zone below which differences of changes are rounding
@@ -154,19 +155,29 @@ class Retreat:
 
     def balanced(self, half_width: float, guess: float) -> float | None:
         """Centre of the stick zone of this ``half_width`` c at which the rate of q is not singular at the left end,
-        shear/pi = c tension/4; by Newton's method from a ``guess``."""
-        centre, c = guess, half_width
-        for _ in range(_STEPS):
+        shear/pi = c tension/4; by Newton's method from a ``guess``, and by halving where the left end is at a break."""
+        c = half_width
+
+        def newton(centre: float) -> float:
             at = self.conditions(Zone(centre - c, centre + c))
-            step = -(at.shear / math.pi - c * at.tension / 4) / (c * at.left)
+            return -(at.shear / math.pi - c * at.tension / 4) / (c * at.left)
+
+        centre, step, before = guess, math.inf, guess
+        for _ in range(_STEPS):
+            step, before = newton(centre), centre
             if not math.isfinite(step):
                 return None
             room = self.within.right - c - centre if step > 0 else centre - c - self.within.left
-            new = centre + math.copysign(min(abs(step), _FARTHEST * room), step)
-            if abs(new - centre) < 1e-15:
-                return new
-            centre = new
-        return centre if abs(step) < 1e-12 else None
+            centre += math.copysign(min(abs(step), _FARTHEST * room), step)
+            if abs(centre - before) < _CLOSE:
+                return centre
+        if abs(step) > _BESIDE:
+            return None
+        low, high = min(centre, before), max(centre, before)
+        for _ in range(_STEPS):  # the left end is at a break, on both sides of which it has another stiffness
+            middle = (low + high) / 2
+            low, high = (middle, high) if newton(middle) > 0 else (low, middle)
+        return (low + high) / 2
 
     def inside(self, zone: Zone, from_left: Array, from_right: Array) -> Array:
         """Change in the stick ``zone`` at distances from its ends."""

@@ -1,7 +1,7 @@
 """A distribution of shear traction: on the friction bound in slip zones, interpolated elsewhere. Scaled as in
 :mod:`partialslip.halfplane.shape`, tractions by f p0."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -21,6 +21,20 @@ class Part(NamedTuple):
     factor: float
     smooth: Smooth | None = None
 
+    def rest(self, from_low: Array, from_high: Array) -> Array:
+        """q - ``factor`` p at distances from both ends, which keep their digits."""
+        if not self.smooth:
+            return np.zeros_like(from_low)
+        return self.smooth.near(self.low - self.smooth.low + from_low, self.smooth.high - self.high + from_high)
+
+    def plus(self, change: Callable[[Array, Array], Array]) -> "Part":
+        """The part with a ``change`` added; ``change(from_low, from_high)`` takes distances from both ends."""
+
+        def values(from_low: Array, from_high: Array) -> Array:
+            return self.rest(from_low, from_high) + change(from_low, from_high)
+
+        return self._replace(smooth=Smooth(self.low, self.high, values))
+
 
 @dataclass(frozen=True)
 class Tractions:
@@ -39,6 +53,12 @@ class Tractions:
         """Places at which parts meet."""
         return [part.low for part in self.parts[1:]]
 
+    @property
+    def cuts(self) -> list[float]:
+        """Places between which q is smooth and well resolved."""
+        inner = (part.smooth.cuts for part in self.parts if part.smooth)
+        return sorted({*self.breaks, *(float(cut) for cuts in inner for cut in cuts)})
+
     def less(self, factor: float, x: Array) -> Array:
         """``factor`` p - q at ``x``, without cancellation where q is on the bound."""
         result = np.zeros_like(x)
@@ -53,6 +73,18 @@ class Tractions:
     def __call__(self, x: Array) -> Array:
         """q at ``x``."""
         return -self.less(0.0, x)
+
+    def within(self, low: float, high: float, from_low: Array, from_high: Array) -> Array:
+        """q at distances from two places, which keep their digits."""
+        x = low + from_low
+        result = np.zeros_like(x)
+        parts = self.between(low, high)
+        which = np.searchsorted([part.low for part in parts[1:]], x)
+        for number, part in enumerate(parts):
+            here = which == number
+            rest = part.rest(low - part.low + from_low[here], part.high - high + from_high[here])
+            result[here] = part.factor * self.shape.pressure(x[here]) + rest
+        return result
 
     def __neg__(self) -> "Tractions":
         negated = (Part(low, high, -factor, None if rest is None else -rest) for low, high, factor, rest in self.parts)

@@ -1,0 +1,40 @@
+"""The files that meshio is going to open: the mesh, and those that it refers to."""
+
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from partialslip.errors import InputError
+from partialslip.inputfile import LARGEST_MESH, opened
+
+_INCLUDES = re.compile(rb"^\*\s*INCLUDE\b[^\n]*=([^\n]*)", re.IGNORECASE | re.MULTILINE)  # Abaqus
+_ELSEWHERE = re.compile(rb"<DataItem\b[^>]*Format\s*=\s*[\"'](?:Binary|HDF)[\"'][^>]*>([^<]*)<", re.IGNORECASE)  # XDMF
+_REFERS = {".inp": _INCLUDES, ".xdmf": _ELSEWHERE, ".xmf": _ELSEWHERE}
+_MOST = 64  # files
+
+
+def check_files(path: str | os.PathLike[str], named: str) -> None:
+    """Raise InputError if ``path``, or a file that it refers to, cannot be read or is not a regular file: meshio would
+    wait for a pipe, and read a device without end. ``named`` is the name of ``path`` in messages."""
+    found = {Path(path): named}
+    for file, its in (unseen := list(found.items())):
+        with opened(file, LARGEST_MESH, its) as content:
+            pattern = _REFERS.get(file.suffix.lower())
+            text = content.read() if pattern else b""
+        for other in _referred(file, pattern, text) if pattern else ():
+            if other not in found:
+                found[other] = f"{named}: {other}"
+                unseen.append((other, found[other]))
+        if len(found) > _MOST:
+            raise InputError(f"{named}: cannot be read: refers to more than {_MOST} files")
+
+
+def _referred(file: Path, pattern: re.Pattern[bytes], text: bytes) -> Iterator[Path]:
+    """Files that the ``text`` of ``file`` refers to, in the folders in which meshio looks for them."""
+    for each in pattern.findall(text):
+        name = each.decode("utf-8", "replace").strip()
+        if pattern is _ELSEWHERE:
+            name = name.partition(":")[0]
+        places = [Path(name), file.parent / name] if name else []
+        yield from [place for place in places if os.path.lexists(place)] or places[1:]

@@ -1,0 +1,22 @@
+"""Increments of load steps for codes that count slip from the start of an increment."""
+
+from partialslip.benchmark.turning import turns_round
+from partialslip.scene import Scene
+
+_INCREMENTS = 16
+_TURNING = 64  # where slip turns round: with fewer, most codes find the zone of one step (docs/scoreboard.md)
+
+
+def gradual(scene: Scene, increments: int | None = None) -> Scene:
+    """``scene`` with exactly so many ``increments`` a step. None: with at least 16 where the contact grows or shrinks
+    while it slips (P or M varies, or the pressure depends on the shear), and at least 64 where slip turns round."""
+    if increments is None:
+        anew = (scene.presses_anew or not scene.mirrored) and not scene.only_pressed
+        least = _TURNING if turns_round(scene) else _INCREMENTS if anew else 1
+        increments = max(scene.load.steps, least)
+    return scene if increments == scene.load.steps else scene.replace(load={"steps": increments})
+
+
+def told(increments: int | None) -> str:
+    """Words for a number of ``increments`` that was chosen, to end settings with."""
+    return "" if increments is None else f", {increments} increments a step"

@@ -1,0 +1,62 @@
+"""A phase in which a zone inside the stick zone slips; scaled as in :mod:`partialslip.halfplane.shape`."""
+
+import itertools
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.halfplane.gradual_path.inner_rates import A, B, L, R
+from partialslip.halfplane.gradual_path.inner_way import Way
+from partialslip.halfplane.gradual_path.retreat import Zone
+from partialslip.halfplane.gradual_path.stage import Loads, Stage
+from partialslip.halfplane.gradual_path.tractions import Part, Tractions
+
+
+class Parted:
+    """The stick zone is parted by an inner slip zone from ``first`` on. ``low`` is the left end of the points on the
+    lower friction bound that the first rate pushes. ``way``: the ways of the ends."""
+
+    def __init__(self, loads: Loads, first: Stage, low: float) -> None:
+        self.way = Way(loads.tension, loads.least, first.q, first.zone.left, low)
+        self.first = first._replace(inner=Zone(*(float(self.way.first[end]) for end in (A, B))))
+        last = self.at(self.way.progress)
+        self.last = last
+        if self.way.closed:
+            self.last = last._replace(inner=None)
+        elif self.way.vanished and last.inner:
+            zone = Zone(last.inner.right, right=last.zone.right)
+            parts = Part(-1.0, zone.left, -1.0), *last.q.between(zone.left, 1.0)
+            self.last = Stage(last.progress, zone, Tractions.of(first.q.shape, parts))
+
+    @property
+    def slipped(self) -> Zone:
+        """Interval of the points inside that slip."""
+        highs = [self.way.first[B], *(panel.end[B] for panel in self.way.panels)]
+        return Zone(float(self.way.ends[A]), float(max(highs)))
+
+    def at(self, progress: float) -> Stage:
+        """Stage at a ``progress`` within the phase."""
+        way, q = self.way, self.first.q
+        ends = way.at(progress)
+        left, low, high, right = (float(each) for each in ends[:4])
+
+        def added(part: Part, first: int, last: int) -> Part:
+            def change(from_low: Array, from_high: Array) -> Array:
+                result, to_first = np.empty_like(from_low), part.low - ends[first] + from_low
+                to_last = ends[last] - part.high + from_high
+                near = to_first < to_last
+                for here, end, offsets in ((near, first, to_first[near]), (~near, last, -to_last[~near])):
+                    result[here] = way.seen(ends, end, offsets, progress)[0]
+                return result
+
+            return part.plus(change)
+
+        cuts = [high, *sorted(cut for cut in way.kinks if high < cut < right), right]
+        parts = [
+            Part(-1.0, left, -1.0),
+            *(added(part, L, A) for part in q.between(left, low)),
+            Part(low, high, -1.0),
+            *(added(Part(*span, -1.0), B, R) for span in itertools.pairwise(cuts)),
+            Part(right, 1.0, 1.0),
+        ]
+        return Stage(progress, Zone(left, right), Tractions.of(q.shape, parts), Zone(low, high))

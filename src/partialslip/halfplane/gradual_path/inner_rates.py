@@ -1,0 +1,159 @@
+"""Rates of q in two stick intervals, (l, a) and (b, r), and panels of the ways of their ends. Scaled as in
+:mod:`partialslip.halfplane.shape`."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from partialslip.arrays import Array
+
+L, A, B, R, Z = range(5)  # the four ends, and z0
+DEGREES = 20  # nodes of a panel
+RATE = 1.6  # logarithm by which the width of a vanishing interval falls in a panel
+
+
+def _powers(s: Array) -> Array:
+    values = np.polynomial.chebyshev.chebvander(2 * s - 1, DEGREES - 1)
+    return np.asarray(values, dtype=np.float64).reshape(*np.shape(s), DEGREES)
+
+
+_NODES = (1 - np.cos(np.pi * (np.arange(DEGREES) + 0.5) / DEGREES)) / 2
+TO_COEFFICIENTS = _powers(_NODES).T * 2 / DEGREES
+TO_COEFFICIENTS[0] /= 2
+
+
+def _cardinal(s: Array) -> Array:
+    """Polynomials that are 1 at one node each, (..., nodes)."""
+    result: Array = _powers(s) @ TO_COEFFICIENTS
+    return result
+
+
+LAST = _cardinal(np.array(1.0))
+
+
+# integrals over a whole span, the trapezoidal rule in log(share/rest): singularities beyond its ends do no harm
+_U = np.arange(-40.0, 40.1, 0.5)
+SHARES, RESTS = 1 / (1 + np.exp(-_U)), 1 / (1 + np.exp(_U))
+WEIGHTS = 0.5 * SHARES * RESTS
+
+
+class Map(NamedTuple):
+    """How lambda runs in a panel of unit length: ``share`` of s, s of a share and its ``rest``; nodes and weights of
+    integrals up to the collocation points, singular there like a square root; ``whole``: polynomials at the nodes of
+    integrals over the panel."""
+
+    share: Callable[[Array], Array]
+    place: Callable[[Array, Array], Array]
+    own: Array
+    own_weights: Array
+    own_cardinal: Array
+    shares: Array
+    whole: Array
+
+
+def _map(
+    share: Callable[[Array], Array], slope: Callable[[Array], Array], place: Callable[[Array, Array], Array]
+) -> Map:
+    y, weights = np.polynomial.legendre.leggauss(28)
+    y, weights = (1 + y) / 2, weights / 2
+    own = _NODES[:, None] * (1 - y**2)
+    return Map(
+        share,
+        place,
+        own,
+        weights * 2 * _NODES[:, None] * y * slope(own),
+        _cardinal(own),
+        share(_NODES),
+        _cardinal(place(SHARES, RESTS)),
+    )
+
+
+SINE = _map(  # square roots at both ends of the panel
+    lambda s: np.sin(np.pi / 2 * s) ** 2,
+    lambda s: np.pi / 2 * np.sin(np.pi * s),
+    lambda share, rest: 2 / np.pi * np.arctan2(np.sqrt(share), np.sqrt(rest)),
+)
+_LEFT = float(np.exp(-2 * RATE))
+DECAY = _map(  # an interval vanishes: its width falls like the square root of what is left
+    lambda s: -np.expm1(-2 * RATE * s) / (1 - _LEFT),
+    lambda s: 2 * RATE * np.exp(-2 * RATE * s) / (1 - _LEFT),
+    lambda share, rest: -np.log(_LEFT + (1 - _LEFT) * rest) / (2 * RATE) + 0 * share,
+)
+
+_G, _WG = np.polynomial.legendre.leggauss(40)
+_G, _WG = (1 + _G) / 2, _WG / 2
+
+
+def other_root(ends: Array, zero: float, least: float) -> float:
+    """z1 of the ``ends`` (4,) and z0."""
+    return float(ends.sum() / 2 - least - zero)
+
+
+def root(ends: Array, least: float) -> Array:
+    """z0 (n,) of the ``ends`` (4, n); ``least`` is c*."""
+    left, low, high, right = ends
+    width, gap = (low - left)[:, None], (high - low)[:, None]
+    most = np.arcsinh(np.sqrt(gap / width))
+    angle, rest = most * (1 - _G**2), most * _G**2
+    to_low, to_high = width * np.sinh(angle) ** 2, width * np.sinh(rest) * np.sinh(angle + most)
+    weights = _WG * 2 * _G * most / np.sqrt(to_high * ((right - high)[:, None] + to_high))
+    first, second, third = (weights * to_low**k for k in range(3))
+    total = (left + low + high + right) / 2 - least - 2 * low  # (z0 - a) + (z1 - a)
+    product = (total * second.sum(axis=1) - third.sum(axis=1)) / first.sum(axis=1)
+    result: Array = low + total / 2 + np.sqrt(np.maximum(total**2 / 4 - product, 0.0))
+    return result
+
+
+def taken(ends: Array, least: float) -> Array:
+    """b (n,) at which z0 = b, near that of ``ends`` (4, n)."""
+    left, low, high, right = ends
+    for _ in range(40):
+        gap = np.minimum(high - low, right - high)
+        more = 1e-5 * gap
+        at = root(np.array([left, low, high, right]), least) - high
+        slope = (root(np.array([left, low, high + more, right]), least) - high - more - at) / more
+        step = np.clip(-at / slope, -0.5 * gap, 0.5 * gap)
+        high = high + step
+        if not np.abs(step).max() > 1e-15 + 1e-14 * gap.min():
+            break
+    result: Array = high
+    return result
+
+
+class Panel(NamedTuple):
+    """Ways over a span ``length`` of lambda, from ``progress`` on: ``begin`` (5,) plus ``offsets`` (5, nodes)."""
+
+    progress: float
+    length: float
+    begin: Array
+    offsets: Array
+    by: Map
+    takes: bool
+    kink: bool
+
+    @property
+    def end(self) -> Array:
+        """Ends and z0 at the end of the panel."""
+        result: Array = self.begin + self.offsets @ LAST
+        return result
+
+    def at(self, s: Array) -> Array:
+        """Offsets (5, ...) at ``s``."""
+        result: Array = np.moveaxis(_cardinal(s) @ self.offsets.T, -1, 0)
+        return result
+
+    def speeds(self, s: Array) -> Array:
+        """Mean speeds (5,) of the ends and z0 between two places."""
+        at, share = self.at(s), self.by.share(s)
+        result: Array = (at[:, 1] - at[:, 0]) / (self.length * (share[1] - share[0]))
+        return result
+
+    def place(self, x: Array) -> Array:
+        """s (n,) at which b, which moves to the left, is at ``x``."""
+        low, high = np.zeros_like(x), np.ones_like(x)
+        for _ in range(52):
+            middle = (low + high) / 2
+            later = self.begin[B] + self.at(middle)[B] > x
+            low, high = np.where(later, middle, low), np.where(later, high, middle)
+        return (low + high) / 2

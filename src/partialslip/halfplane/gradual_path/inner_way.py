@@ -1,0 +1,438 @@
+"""Ways of the ends of two stick intervals, (l, a) and (b, r), between which q is on the lower friction bound. Scaled as
+in :mod:`partialslip.halfplane.shape`.
+
+The rate of q is -+ dsigma/4 (z - z0)(z - z1)/sqrt(\\|(z - l)(z - a)(z - b)(z - r)\\|), - in the left interval: its
+strain is that of the tension in both intervals. Its sum gives z0 + z1 = (l + a + b + r)/2 - c*; that both intervals
+move alike gives the product. l, a and r retreat: the rates that a point has seen take it to the bound. b takes points
+back, z0 = b, or retreats, too. The ways are polynomials, panel by panel in lambda, found by collocation of
+q_start + int (rate) d(lambda) = bound, with Newton's method.
+"""
+
+import numpy as np
+
+from partialslip.arrays import Array, Indices
+from partialslip.halfplane.gradual_path.inner_rates import (
+    DECAY,
+    DEGREES,
+    LAST,
+    RATE,
+    RESTS,
+    SHARES,
+    SINE,
+    TO_COEFFICIENTS,
+    WEIGHTS,
+    A,
+    B,
+    L,
+    Map,
+    Panel,
+    R,
+    Z,
+    root,
+    taken,
+)
+from partialslip.halfplane.gradual_path.tractions import Tractions
+
+ENDS = (L, A, B, R)
+_STEPS = 14
+_CLOSE = 1e-12
+_SLOW = 3e-11  # where rounding stops Newton's method: ends that hardly move
+_TAIL = 1e-9  # of the ways, relative to their lengths
+_AT = 1e-11  # distance from a break within which an end is at it
+_GONE = 1e-6  # width of an interval that has vanished
+_FASTEST = 0.05  # of the contact, that an end may pass in the first panel
+_GROWTH = 1.7
+_PANELS = 60
+_PART = 0.1  # of an inner zone, to which it closes in a panel
+_SHUT = 1e-5  # width of an inner zone that has closed: points are pushed beyond the bound by its square
+_NARROW = 1e-4  # width of an inner zone that may be closed where its ends are lost
+_HALVINGS = 12
+_SHORTEST = 1e-15
+
+
+_EVENTS = {"width": {A: 1.0, L: -1.0}, "gap": {L: 0.5, R: 0.5, A: -1.0}}  # of what their size is the sum
+_AT_END = np.array([0.97, 1.0])
+
+
+class LostWayError(ValueError):
+    """The ends of two stick intervals cannot be followed."""
+
+
+class Way:
+    """Ways of the ends from a state at lambda = 0 on.
+
+    Parameters
+    ----------
+    tension, least : float
+        dsigma of the half cycle, and c*.
+    start : Tractions
+        The state: from ``low`` to 1 it is on the lower friction bound.
+    left, low : float
+        l and a at the beginning.
+
+    Attributes
+    ----------
+    closed, vanished : bool
+        Whether the inner zone has closed at the end, or the left interval has vanished.
+    """
+
+    def __init__(self, tension: float, least: float, start: Tractions, left: float, low: float) -> None:
+        self._tension, self._least, self.start = tension, least, start
+        self._breaks = np.array([-1.0, *sorted({*start.breaks, *start.shape.strong_kinks}), 1.0])
+        ends = np.array([left, low, low + 4 / 3 * ((left + 1) / 2 - least - low), 1.0])
+        ends[B] = taken(ends[:, None], least)[0]
+        self.first = np.append(ends, ends[B])
+        self.panels: list[Panel] = []
+        self.closed = self.vanished = False
+        self._kink = True
+        with np.errstate(divide="ignore", invalid="ignore"):  # by steps that go too far, which are taken back
+            self._follow()
+
+    @property
+    def progress(self) -> float:
+        """lambda at the end."""
+        return self.panels[-1].progress + self.panels[-1].length if self.panels else 0.0
+
+    @property
+    def ends(self) -> Array:
+        """Ends and z0 at the end, (5,)."""
+        return self.panels[-1].end if self.panels else self.first
+
+    def rates(self, apart: Array) -> Array:
+        """Rates of q at points of the right interval of which the ends and z0 are ``apart`` (5, ...); minus those at
+        points of the left one."""
+        other = (apart[L] + apart[A] + apart[B] + apart[R]) / 2 - self._least - apart[Z]
+        root_ = np.sqrt(np.abs(apart[L] * apart[A] * apart[B] * apart[R]))
+        result: Array = self._tension / 4 * apart[Z] * other / np.where(root_ == 0, np.inf, root_)
+        return result
+
+    def _follow(self) -> None:
+        takes, length, speeds = self._first_speeds()
+        while self.progress < 1 - 1e-14:
+            if len(self.panels) == _PANELS:
+                raise LostWayError("too many panels")
+            begin = self.ends
+            rest = 1 - self.progress
+            length = min(length, rest)
+            width, gap = begin[A] - begin[L], begin[B] - begin[A]
+            fall, shut = speeds[L] - speeds[A], speeds[A] - speeds[B]
+            panel = None
+            passing = self._next_break(begin, speeds)
+            if passing and passing[0] < 1.2 * length:
+                panel = self._solve(begin, takes, passing[0], speeds, SINE, passing[1:])
+                if panel and panel.length > rest:
+                    panel = None
+            if panel:
+                pass
+            elif self.panels and fall * length > 0.3 * width and not shut * width > fall * gap:
+                panel = self._solve(begin, takes, 0.4 * width / fall, speeds, DECAY, ("width", width * np.exp(-RATE)))
+                if panel and panel.length > rest:
+                    panel = None
+            elif self.panels and takes and shut * length > 0.5 * gap:
+                panel = self._solve(
+                    begin, takes, gap / shut, speeds, SINE, ("gap", self._least + max(_SHUT / 2, _PART * gap))
+                )
+                if panel and panel.length > rest:
+                    panel = None
+            panel = panel or self._solve(begin, takes, length, speeds, SINE)
+            crossing = self._crossing(panel) if panel else None
+            while panel and crossing:
+                end, place, s = crossing
+                panel = self._solve(
+                    begin, takes, panel.length * float(panel.by.share(np.array(s))), speeds, SINE, (end, place), panel
+                )
+                crossing = self._crossing(panel) if panel else None
+            if not panel or _tail(panel) > _TAIL:
+                length = (panel.length if panel else length) / 2
+                if length < _SHORTEST * max(1.0, 1e8 * (gap < _NARROW)):
+                    if gap < _NARROW:
+                        self.closed = True
+                        return
+                    raise LostWayError(f"no panel is short enough at {self.progress}")
+                continue
+            turn = self._turn(panel)
+            if turn is not None:
+                if turn > 1e-3:
+                    part = panel.length * float(panel.by.share(np.array(turn)))
+                    panel = self._solve(begin, takes, part, speeds, SINE, None, panel)
+                    if not panel:
+                        length = part / 2
+                        if length < _SHORTEST:
+                            raise LostWayError(f"b turns at {self.progress}")
+                        continue
+                    self.panels.append(panel)
+                takes = not takes
+            else:
+                self.panels.append(panel)
+            length = panel.length * _GROWTH
+            places = _AT_END
+            if turn is not None and turn <= 1e-3:
+                length, places = panel.length / 8, np.array([0.0, 0.2])
+            speeds = panel.speeds(places)
+            if turn is not None:
+                speeds[B] = speeds[Z] = 0.0
+            left, low, high, right = self.ends[:4]
+            self._kink = bool(min(np.abs(each - self._breaks).min() for each in (left, low, right)) < _AT)
+            self.vanished, self.closed = bool(low - left < _GONE), bool(high - low < _SHUT)
+            if self.vanished or self.closed:
+                return
+
+    def _first_speeds(self) -> tuple[bool, float, Array]:
+        """Whether b takes points back, length of the first panel, and speeds of the ends."""
+        ends, speeds, near = self.first, np.zeros(5), 1e-8
+        for end in (L, A, R):
+            way, factor = (1 if end == L else -1), (1.0 if end == R else -1.0)
+            stiff = abs(float(self.start.less(factor, np.array([ends[end] + way * near]))[0])) / np.sqrt(near)
+            apart = ends - ends[end]
+            apart[end] = 1.0
+            rate = float(self._rates_near(ends, end))
+            speeds[end] = way * 2 * rate / max(stiff, 1e-2)
+        step = 1e-4 / np.abs(speeds).max()
+        moved = ends + step * speeds
+        free = (taken(moved[:4, None], self._least)[0] - ends[B]) / step
+        takes = bool(free <= 0)
+        speeds[B] = free if takes else 2 / 3 * free
+        speeds[Z] = free
+        return takes, min(_FASTEST / np.abs(speeds).max(), 0.2), speeds
+
+    def _rates_near(self, ends: Array, end: int) -> float:
+        """Size of the rate near an ``end``, times the square root of the distance."""
+        apart = ends - ends[end]
+        other = (apart[L] + apart[A] + apart[B] + apart[R]) / 2 - self._least - apart[Z]
+        product = np.prod([abs(apart[each]) for each in ENDS if each != end])
+        return float(self._tension / 4 * abs(apart[Z] * other) / np.sqrt(product))
+
+    def _next_break(self, begin: Array, speeds: Array) -> tuple[float, int, float] | None:
+        """lambda up to the next break that an end passes, about, the end, and the break."""
+        found = []
+        for end in (L, A, R):
+            ahead = (self._breaks - begin[end]) * np.sign(speeds[end])
+            if (ahead > _AT).any():
+                ahead[ahead <= _AT] = np.inf
+                found.append((float(ahead.min() / abs(speeds[end])), end, float(self._breaks[np.argmin(ahead)])))
+        return min(found) if found else None
+
+    def _crossing(self, panel: Panel) -> tuple[int, float, float] | None:
+        """The end that passes a break first, the break, and s."""
+        s = np.linspace(0, 1, 201)[1:]
+        at, found = panel.at(s), []
+        for end in (L, A, R):
+            way = 1 if end == L else -1
+            ahead = way * (self._breaks - panel.begin[end])
+            for distance, place in zip(ahead, self._breaks, strict=True):
+                passed = way * at[end] > distance + _AT
+                if distance > _AT and passed.any():
+                    found.append((float(s[np.argmax(passed)]), end, float(place)))
+        return min(found)[1:] + min(found)[:1] if found else None
+
+    def _turn(self, panel: Panel) -> float | None:
+        """s at which b turns round: where it takes points and would move to the right, or retreats and would do so
+        beyond z0."""
+        s = np.linspace(0, 1, 401)
+        at = panel.at(s)
+        if panel.takes:
+            values = np.diff(at[B])
+            wrong = values > 1e-13
+        else:
+            wrong = (at[Z] - at[B] + (panel.begin[Z] - panel.begin[B]))[1:] < -1e-12
+        if not wrong.any():
+            return None
+        number = int(np.argmax(wrong))
+        low, high = s[number], s[min(number + 1, 400)]
+        if panel.takes:
+            low = s[max(number - 1, 0)]
+            fine = np.linspace(low, high, 2001)
+            way = panel.at(fine)[B]
+            k = int(np.argmin(way))
+            if 0 < k < 2000:
+                y0, y1, y2 = way[k - 1 : k + 2]
+                return float(fine[k] + (fine[1] - fine[0]) * 0.5 * (y0 - y2) / (y0 - 2 * y1 + y2))
+            return float(fine[k])
+        return float(low)
+
+    def at(self, progress: float) -> Array:
+        """Ends and z0 (5,) at ``progress``."""
+        for panel in self.panels:
+            share = (progress - panel.progress) / panel.length
+            if share <= 1 or panel is self.panels[-1]:
+                share = min(max(share, 0.0), 1.0)
+                result: Array = panel.begin + panel.at(panel.by.place(np.array(share), np.array(1 - share)))
+                return result
+        return self.first
+
+    @property
+    def kinks(self) -> list[float]:
+        """Points at which b began to take points while q or a way was not smooth."""
+        return [float(panel.begin[B]) for panel in self.panels if panel.takes and panel.kink]
+
+    def seen(self, begin: Array, end: int, offsets: Array, until: float = np.inf) -> tuple[Array, Array]:
+        """Change of q by the rates of the panels so far, or ``until`` a lambda, at points (n,), by their ``offsets``
+        from an ``end`` of ``begin``, and its derivative by x. Points that b has taken have seen what came after."""
+        total, slope = np.zeros_like(offsets), np.zeros_like(offsets)
+        x = begin[end] + offsets
+        entered = np.full(len(x), np.inf)  # number of the panel in which b took the point last
+        right = end in (B, R)
+        if right:
+            for number, panel in enumerate(self.panels):
+                if panel.takes and panel.progress < until:
+                    entered[x < panel.begin[B]] = number
+        for number, panel in enumerate(self.panels):
+            part_of = min((until - panel.progress) / panel.length, 1.0)
+            if part_of <= 0:
+                break
+            whole = np.flatnonzero(~np.isfinite(entered) | (entered < number))
+            if len(whole):
+                if part_of < 1:
+                    way = panel.at(panel.by.place(part_of * SHARES, (1 - part_of) + part_of * RESTS))
+                else:
+                    way = panel.offsets @ panel.by.whole.T
+                apart = ((panel.begin - begin[end])[:, None] + way)[:, None] - offsets[whole, None]
+                self._add(total, slope, whole, apart, panel.length * part_of * WEIGHTS, right)
+            part = np.flatnonzero(entered == number)
+            if len(part):
+                first = np.minimum(panel.by.share(panel.place(x[part]))[:, None], part_of)
+                shares = first + (part_of - first) * SHARES
+                rests = (1 - part_of) + (part_of - first) * RESTS
+                s = panel.by.place(shares, rests)
+                apart = (panel.begin - begin[end])[:, None, None] + panel.at(s) - offsets[part, None]
+                self._add(total, slope, part, apart, panel.length * (part_of - first) * WEIGHTS, right)
+        return total, slope
+
+    def _add(self, total: Array, slope: Array, which: Indices, apart: Array, weights: Array, right: bool) -> None:
+        other = (apart[L] + apart[A] + apart[B] + apart[R]) / 2 - self._least - apart[Z]
+        rates = weights * self.rates(apart) * (1 if right else -1)
+        total[which] += rates.sum(axis=-1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            by_x = -(1 / apart[Z] + 1 / other - sum(0.5 / apart[each] for each in ENDS))
+            slope[which] += np.where(rates == 0, 0.0, rates * by_x).sum(axis=-1)
+
+    def _completed(self, begin: Array, offsets: Array, takes: bool) -> Array | None:
+        """``offsets`` with those of z0, and of b where it takes points; None if the ends are not in order."""
+        offsets = offsets.copy()
+        ends = begin[:4, None] + offsets[:4]
+        if takes:
+            gap = 4 / 3 * ((ends[L] + ends[R]) / 2 - self._least - ends[A])  # in narrow inner zones
+            if not (gap > 0).all():
+                return None
+            ends[B] = np.where(ends[B] > ends[A] + gap / 4, ends[B], ends[A] + gap)
+        if not (np.diff(ends, axis=0) > 0).all():
+            return None
+        with np.errstate(all="ignore"):
+            if takes:
+                offsets[B] = taken(ends, self._least) - begin[B]
+                offsets[Z] = offsets[B] + (begin[B] - begin[Z])
+            else:
+                offsets[Z] = root(ends, self._least) - begin[Z]
+        ends = begin[:4, None] + offsets[:4]
+        return offsets if np.isfinite(offsets).all() and (np.diff(ends, axis=0) > 0).all() else None
+
+    def _solve(
+        self,
+        begin: Array,
+        takes: bool,
+        length: float,
+        speeds: Array,
+        by: Map,
+        event: tuple[str | int, float] | None = None,
+        like: Panel | None = None,
+    ) -> Panel | None:
+        """A panel by Newton's method; None if it does not converge. ``event``: an end and its place, or "width" or
+        "gap" and its size, at the end of the panel, whose length is unknown then."""
+        if like:
+            share = np.clip(by.shares * length / like.length, 0, 1)
+            offsets = like.at(like.by.place(share, 1 - share))
+        else:
+            offsets = speeds[:, None] * by.shares * length
+            if event and event[0] == "gap":  # a slows down with the inner zone's width
+                offsets[A] = speeds[A] * length * (1 - (1 - by.shares) ** 2.5) / 2.5
+            if not takes and begin[Z] - begin[B] < 1e-9:  # b has just turned round
+                ends = begin[:4, None] + offsets[:4]
+                offsets[B] = 0.65 * np.abs(taken(ends, self._least) - begin[B]) + 1e-9 * by.shares * length
+        free = (L, A, R) if takes else ENDS
+        count = len(free)
+        step: tuple[float, Array] | None = None  # of the length and of the offsets
+        for count_of_steps in range(_STEPS):
+            found = self._completed(begin, offsets, takes)
+            for _ in range(_HALVINGS):
+                if found is not None:
+                    break
+                if step is None:
+                    length *= 0.9
+                    offsets = offsets * 0.9
+                else:  # the last step went too far
+                    length, offsets, step = length - step[0] / 2, offsets - step[1] / 2, (step[0] / 2, step[1] / 2)
+                found = self._completed(begin, offsets, takes)
+            if found is None:
+                return None
+            offsets = found
+            ends = begin[:4, None] + offsets[:4]
+            steps = 1e-6 * np.diff(ends, axis=0).min(axis=0)
+            slopes = np.zeros((5, count, DEGREES))  # of the ends and z0 by what is free
+            for column, end in enumerate(free):
+                moved = ends.copy()
+                moved[end] += steps
+                slopes[end, column] = 1.0
+                if takes:
+                    slopes[B, column] = slopes[Z, column] = (taken(moved, self._least) - ends[B]) / steps
+                else:
+                    slopes[Z, column] = (root(moved, self._least) - begin[Z] - offsets[Z]) / steps
+            residual, matrix, by_length = (np.zeros((count, DEGREES, *more)) for more in ((), (count, DEGREES), ()))
+            own = np.moveaxis(by.own_cardinal @ offsets.T, -1, 0)  # (5, nodes, points)
+            for row, end in enumerate(free):
+                right, factor = end in (B, R), (1.0 if end == R else -1.0)
+                apart = (begin - begin[end])[:, None, None] + own - offsets[end][:, None]
+                other = (apart[L] + apart[A] + apart[B] + apart[R]) / 2 - self._least - apart[Z]
+                rates = length * by.own_weights * self.rates(apart) * (1 if right else -1)
+                total = rates.sum(axis=1)
+                by_length[row] = total / length
+                past, past_slope = self.seen(begin, end, offsets[end])
+                factors = [0.5 / other - 0.5 / apart[each] for each in ENDS] + [1 / apart[Z] - 1 / other]
+                at_x = -(1 / apart[Z] + 1 / other - sum(0.5 / apart[each] for each in ENDS if each != end))
+                diagonal = past_slope + (rates * at_x).sum(axis=1)
+                for each in range(5):
+                    if each == end:
+                        direct = rates * (0.5 / other)
+                        both = by.own_cardinal - np.eye(DEGREES)[:, None, :]
+                        block = np.einsum("jm,jmk->jk", rates * -0.5 / apart[end], both)
+                        block += np.einsum("jm,jmk->jk", direct, by.own_cardinal)
+                    else:
+                        block = np.einsum("jm,jmk->jk", rates * factors[each], by.own_cardinal)
+                    for column in range(count):
+                        if slopes[each, column].any():
+                            matrix[row, :, column] += block * slopes[each, column]
+                less = np.zeros(DEGREES)
+                if end != B:
+                    x = ends[end]
+                    near = 1e-4 * np.abs(x[:, None] - self._breaks).min(axis=1)
+                    less = self.start.less(factor, x)
+                    diagonal -= (self.start.less(factor, x + near) - self.start.less(factor, x - near)) / (2 * near)
+                residual[row] = past + total - less
+                matrix[row, :, row] += np.diag(diagonal)
+            size = count * DEGREES
+            system, target = matrix.reshape(size, size), -residual.ravel()
+            if event:
+                kind, value = event
+                extra = np.zeros((count, DEGREES))
+                signs = _EVENTS[kind] if isinstance(kind, str) else {kind: 1.0}
+                for end, sign in signs.items():
+                    extra += sign * slopes[end] * LAST
+                    value -= sign * (begin[end] + LAST @ offsets[end])
+                system = np.block([[system, by_length.reshape(-1, 1)], [extra.reshape(1, -1), np.zeros((1, 1))]])
+                target = np.append(target, value)
+            if not np.isfinite(system).all():
+                return None
+            solution = np.linalg.solve(system, target)
+            change, damp, longer = solution[:size].reshape(count, DEGREES), 1.0, 0.0
+            if event:
+                damp = min(1.0, 0.5 * length / abs(float(solution[-1])))
+                longer = damp * float(solution[-1])
+            step = longer, damp * np.einsum("ecj,cj->ej", slopes, change)
+            length, offsets = length + step[0], offsets + step[1]
+            if damp == 1 and np.abs(change).max() < (_CLOSE if count_of_steps < 2 else _SLOW):
+                return Panel(self.progress, length, begin, offsets, by, takes, self._kink)
+        return None
+
+
+def _tail(panel: Panel) -> float:
+    found = np.abs(panel.offsets @ TO_COEFFICIENTS.T)
+    return float((found[:, -2:].max(axis=1) / (1e-3 + found[:, 1:].max(axis=1))).max())

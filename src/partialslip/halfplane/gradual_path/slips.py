@@ -1,0 +1,149 @@
+"""Slip between stages of half a cycle, from the tractions alone; scaled as in :mod:`partialslip.halfplane.shape`.
+
+A change dq of shear traction and dsigma of tension displace the surfaces relative to each other by
+
+    k(x) = (1/pi) int dq(t) ln|x - t| dt + dsigma x/4,
+
+up to a rigid displacement: k is constant where the surfaces stick. The slip is what k differs by from there. Within
+one phase of the half cycle, each side of the stick zone slips one way.
+"""
+
+import itertools
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.halfplane.gradual_path.graded import spans
+from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, between
+from partialslip.halfplane.gradual_path.retreat import Zone
+from partialslip.halfplane.gradual_path.stage import Stage
+
+_COMMON = 0.25  # least share of a stick zone that sticks from stage to stage
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+
+
+class Slips(NamedTuple):
+    """Slip over half a cycle at ``x`` (k,), net ``slip`` there (k,), and the energy that one cycle dissipates,
+    ``dissipated``, in A f p0 a and A (f p0 a)^2."""
+
+    x: Array
+    slip: Array
+    dissipated: float
+
+
+class Resultants(NamedTuple):
+    """Force int dq dx and moment int x dq dx of a change of q."""
+
+    shear: float
+    moment: float
+
+
+def stages(way: HalfCycle) -> list[Stage]:
+    """Stages of the ``way``, between which phases do not change and some points stick."""
+    found = [way.phases[0].first]
+    for phase in way.phases:
+        found += between(phase, found[-1], phase.last, _COMMON)
+    return found
+
+
+def slips(way: HalfCycle) -> Slips:
+    """Slip over half a cycle and the dissipated energy."""
+    along = stages(way)
+    ends = [*itertools.chain(*(_breaks(stage) for stage in along))]
+    breaks = np.unique(np.round(ends, 14))
+    breaks = breaks[np.append(True, np.diff(breaks) > 1e-13)]
+    half = np.diff(breaks)[:, None] / 2
+    angle = np.pi / 2 * (1 + _NODES)
+    x = (breaks[:-1, None] + half * (1 - np.cos(angle))).ravel()
+    weights = (half * np.pi / 2 * _WEIGHTS * np.sin(angle)).ravel()
+    pressure = way.start.shape.pressure(x)
+    points = np.concatenate([[-1.0], x, [1.0]])
+    net, worn = np.zeros(len(points)), 0.0
+    for first, last in itertools.pairwise(along):
+        slip = _slip(way, first, last, points)
+        net += slip
+        worn += float(weights @ (pressure * np.abs(slip[1:-1])))
+    return Slips(points, net, 2 * worn)
+
+
+def loop(way: HalfCycle, shares: Array) -> tuple[Array, Array]:
+    """Displacement and moment since the beginning of half a cycle at ``shares`` (k,) of the loads, ascending from 0, in
+    A f p0 a and f p0 a^2; see :func:`displacement`."""
+    known = stages(way)
+    inner = [way.at(share) for share in shares.tolist() if 0 < share < 1]
+    along = sorted([*known, *inner], key=lambda stage: stage.progress)
+    pairs = list(itertools.pairwise(along))
+    moved = np.cumsum([0.0, *(displacement(way, *pair) for pair in pairs)])
+    moments = np.cumsum([0.0, *(resultants(*pair).moment for pair in pairs)])
+    progress = [stage.progress for stage in along]
+    return np.interp(shares, progress, moved), np.interp(shares, progress, moments)
+
+
+def displacement(way: HalfCycle, first: Stage, last: Stage) -> float:
+    """Relative displacement of the bodies, less that of the adhered contact, from the ``first`` to the ``last`` of two
+    stages at which common points stick; in A f p0 a."""
+    low, high = _common(first.zone, last.zone)
+    shear = (last.progress - first.progress) * way.loads.shear
+    at = float(_mismatch(way, first, last, np.array([(low + high) / 2]))[0])
+    return -at - shear / math.pi * math.log(2)
+
+
+def resultants(first: Stage, last: Stage) -> Resultants:
+    """Resultants of the change of q from stage to stage."""
+    t, weights, change = _sampled(first, last)
+    return Resultants(float(weights @ change), float(weights @ (t * change)))
+
+
+def _slip(way: HalfCycle, first: Stage, last: Stage, x: Array) -> Array:
+    """Slip at ``x`` (k,) from stage to stage."""
+    low, high = _common(first.zone, last.zone)
+    found = _mismatch(way, first, last, np.append(x, (low + high) / 2))
+    sticks = (x >= low) & (x <= high)
+    return np.where(sticks, 0.0, found[:-1] - found[-1])
+
+
+def _mismatch(way: HalfCycle, first: Stage, last: Stage, x: Array) -> Array:
+    """k at ``x`` (k,): quadrature over the pieces between breaks; the piece around each point is split there."""
+    breaks = _pieces(first, last)
+    low, high = breaks[:-1], breaks[1:]
+    t, weights, change = (each.reshape(len(low), -1) for each in _sampled(first, last))
+    logs = np.log(np.maximum(np.abs(x[:, None, None] - t), 1e-300))
+    by_piece = np.einsum("kpn,pn->kp", logs, weights * change)
+    own = np.clip(np.searchsorted(breaks, x, "right") - 1, 0, len(low) - 1)
+    by_piece[np.arange(len(x)), own] = 0.0
+    result = by_piece.sum(axis=1)
+    for side, begin, end in ((-1, low[own], x), (1, x, high[own])):
+        from_begin, to_end, shares = spans(begin, np.maximum(end, begin))
+        distance = from_begin if side > 0 else to_end
+        at = x[:, None] + side * distance
+        values = (last.q(at.ravel()) - first.q(at.ravel())).reshape(at.shape)
+        result += (shares * values * np.log(np.maximum(distance, 1e-300))).sum(axis=1)
+    tension = (last.progress - first.progress) * way.loads.tension
+    found: Array = result / np.pi + tension / 4 * x
+    return found
+
+
+def _sampled(first: Stage, last: Stage) -> tuple[Array, Array, Array]:
+    """Points, weights of quadrature and the change of q there from stage to stage."""
+    breaks = _pieces(first, last)
+    from_low, _, weights = spans(breaks[:-1], breaks[1:])
+    t = (breaks[:-1, None] + from_low).ravel()
+    return t, weights.ravel(), last.q(t) - first.q(t)
+
+
+def _pieces(first: Stage, last: Stage) -> Array:
+    """Places between which the change of q is smooth."""
+    return np.unique([*_breaks(first), *_breaks(last)])
+
+
+def _breaks(stage: Stage) -> Sequence[float]:
+    shape = stage.q.shape
+    inner = (*shape.kinks, *stage.q.breaks, *stage.zone)
+    return [-1.0, *(each for each in inner if -1 < each < 1), 1.0]
+
+
+def _common(one: Zone, other: Zone) -> tuple[float, float]:
+    return max(one.left, other.left), min(one.right, other.right)

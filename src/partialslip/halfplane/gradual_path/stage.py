@@ -1,0 +1,36 @@
+"""Loads of half a cycle, and states along its way; scaled as in :mod:`partialslip.halfplane.shape`."""
+
+import math
+from typing import NamedTuple
+
+from partialslip.halfplane.gradual_path.retreat import Zone
+from partialslip.halfplane.gradual_path.tractions import Tractions
+
+
+class Loads(NamedTuple):
+    """Changes of the tension and of the shear force in half a cycle, in f p0 and f p0 a; both are positive."""
+
+    tension: float
+    shear: float
+
+    @property
+    def least(self) -> float:
+        """Half-width c* of a stick zone at whose left end the rate of q is not singular."""
+        return 4 * self.shear / (math.pi * self.tension)
+
+
+class Stage(NamedTuple):
+    """State at a stage of the half cycle: share ``progress`` of the loads, stick ``zone`` and tractions ``q``. Within
+    the stick zone, an ``inner`` zone may slip."""
+
+    progress: float
+    zone: Zone
+    q: Tractions
+    inner: Zone | None = None
+
+    @property
+    def sticks(self) -> tuple[Zone, ...]:
+        """Intervals that stick, from left to right."""
+        if not self.inner:
+            return (self.zone,)
+        return Zone(self.zone.left, self.inner.left), Zone(self.inner.right, self.zone.right)

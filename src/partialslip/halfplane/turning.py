@@ -1,0 +1,189 @@
+"""Half a steady cycle in which slip turns round, under gradual loads (docs/theory.md, section 7). Scaled: lengths by a,
+tractions by f p0, slip by A f p0 a."""
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from partialslip.arrays import Array
+from partialslip.halfplane.contact import Contact
+from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, LostError, steady
+from partialslip.halfplane.gradual_path.room import room
+from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
+from partialslip.halfplane.gradual_path.stage import Loads, Stage
+from partialslip.halfplane.loading import Loading, Worn, loading
+from partialslip.halfplane.shape import Shape
+from partialslip.result import StickZone
+
+
+@dataclass(frozen=True)
+class Turning:
+    """Half a steady cycle in which slip turns round: the change ``once`` of the loads in a single step, which does not
+    hold, and the ``way`` of gradual loads, for positive changes."""
+
+    once: Loading
+    way: HalfCycle
+
+    holds = True
+    one_way = False
+
+    @property
+    def shape(self) -> Shape:
+        """Pressure."""
+        return self.once.shape
+
+    @property
+    def seen(self) -> Shape:
+        """Pressure over the mirrored x, on which both changes of the loads are positive."""
+        return self.once.seen
+
+    @property
+    def turn(self) -> int:
+        """-1 if dQ < 0."""
+        return self.once.turn
+
+    @property
+    def mirror(self) -> int:
+        """-1 if x is mirrored."""
+        return self.once.mirror
+
+    @property
+    def Qf(self) -> float:
+        """Change of the shear force, in 2 f P."""
+        return self.once.Qf
+
+    @property
+    def gf(self) -> float:
+        """Change of the tension along x."""
+        return 0.0
+
+    @property
+    def nothing(self) -> bool:
+        """Whether no load changes."""
+        return False
+
+    @cached_property
+    def zone(self) -> StickZone[float]:
+        """Stick zone of the tractions, \\|dq\\| < 2 p, for positive changes of both loads."""
+        left, right = self.way.last.zone
+        return StickZone((left + right) / 2, (right - left) / 2, self.way.sign)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Left and right end of the zone of the tractions, for the signs of the loads."""
+        return replace(self.once, zone=self.zone).ends
+
+    @property
+    def permanent(self) -> tuple[float, float] | None:
+        """Ends of the zone of points that never slip, for the signs of the loads; None if there are none."""
+        return self.whole.stuck
+
+    @property
+    def breaks(self) -> list[float]:
+        """Places at which the change of traction is not smooth, ascending."""
+        return self.whole.breaks
+
+    @cached_property
+    def whole(self) -> "Part":
+        """The change from load point to load point."""
+        return self.part(1.0)
+
+    def part(self, share: float) -> "Part":
+        """The change up to a ``share`` of the loads."""
+        return Part(self, self.way.at(share))
+
+    def traction(self, x: Array) -> Array:
+        """Change of shear traction at ``x``, in f p0."""
+        return self.whole.traction(x)
+
+    @cached_property
+    def certificate(self) -> dict[str, float]:
+        """Residual of the ``shear`` force at the end, in 2 f P."""
+        way = self.way
+        found = resultants(way.phases[0].first, way.last)
+        return {"shear": abs(found.shear - way.loads.shear) / math.pi}
+
+    @cached_property
+    def mean_load_bound(self) -> float:
+        """Largest \\|Q_mean\\|/(f P) of a steady state whose half cycle this is: the room that the points that never
+        slip have all along the way (frictional Melan theorem: Klarbring, Ciavarella and Barber, 2007)."""
+        return room(self.way)
+
+    def loop(self, shares: Array) -> tuple[Array, Array]:
+        """Relative displacement of the bodies less that of the adhered contact, and moment of q, since the beginning of
+        half a cycle, at ``shares`` (k,) of the loads, ascending from 0; in A f p0 a and f p0 a^2."""
+        displacement, moment = loop(self.way, shares)
+        return self.turn * displacement, self.turn * self.mirror * moment
+
+    @cached_property
+    def worn(self) -> Worn | None:
+        """Slip over half a cycle, and the energy that a cycle dissipates; None where a zone inside the stick zone slips
+        for a while: it leaves no trace in q, and is not followed."""
+        if not self.way.followed:
+            return None
+        x, slip, dissipated = slips(self.way)
+        return Worn(self.mirror * x[:: self.mirror], self.turn * slip[:: self.mirror], dissipated)
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Change of shear traction in a ``cycle`` from load point 1 up to the stage ``at`` a share of the loads."""
+
+    cycle: Turning
+    at: Stage
+
+    @property
+    def breaks(self) -> list[float]:
+        """Places at which the change is not smooth, ascending."""
+        inner = {*self.at.q.breaks, *self.cycle.way.start.breaks}
+        return sorted(self.cycle.mirror * each for each in inner)
+
+    @property
+    def stuck(self) -> tuple[float, float] | None:
+        """Ends of the zone of points that have not slipped, for the signs of the loads; None if there are none."""
+        left, right = self.cycle.way.stuck_until(self.at)
+        if not left < right:
+            return None
+        return (left, right) if self.cycle.mirror > 0 else (-right, -left)
+
+    def traction(self, x: Array) -> Array:
+        """Change of shear traction at ``x``, in f p0."""
+        way, seen = self.cycle.way, self.cycle.mirror * x
+        return self.cycle.turn * (self.at.q(seen) - way.start(seen))
+
+
+@dataclass(frozen=True, eq=False)
+class Reached:
+    """Shear traction at load point 2 of a ``cycle`` in which all points slip."""
+
+    cycle: Turning
+
+    stuck = None
+
+    @property
+    def breaks(self) -> list[float]:
+        """Places at which the traction is not smooth, ascending."""
+        return self.cycle.breaks
+
+    def traction(self, x: Array) -> Array:
+        """q at ``x``, in f p0."""
+        return self.cycle.traction(x) / 2
+
+
+def half_cycle(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0) -> Loading | Turning:
+    """Half a steady cycle between loads that change by ``dQ`` (N/m), ``dsigma`` (Pa) and ``dslope`` (Pa/m), of any
+    sign, with |dQ| < 2 f P. Where slip turns round and the gradual way is not known, the single step, which does not
+    hold (:attr:`Loading.holds`).
+
+    Raises
+    ------
+    InputError
+        As :func:`partialslip.halfplane.loading.loading`.
+    """
+    once = loading(pressed, f, dQ, dsigma, dslope, bound=2)
+    if once.nothing or once.gf or once.holds:
+        return once
+    try:
+        return Turning(once, steady(Loads(once.sf, math.pi * once.Qf), once.seen))
+    except LostError:
+        return once

@@ -1,0 +1,230 @@
+"""Paths of straight legs at constant pressure: in one step where that is enough, otherwise event by event."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from partialslip.arrays import runs, submatrix
+from partialslip.condensed import bounded, constant
+from partialslip.condensed.bounded import Factored
+from partialslip.condensed.constant import march
+from partialslip.condensed.ends import stick_zone
+from partialslip.condensed.path import Path
+from partialslip.condensed.path_following import Follower
+from partialslip.halfplane.cells import compliance, forces, graded
+from partialslip.halfplane.gradual_path.half_cycle import steady
+from partialslip.halfplane.gradual_path.stage import Loads
+from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.punch import Punch
+
+N = 120
+X = np.cos(np.pi * (np.arange(N)[::-1] + 0.5) / N)
+C = -np.log(np.abs(X[:, None] - X) + 0.3 / N)
+BOUND = np.sqrt(1 - X**2) / np.sqrt(1 - X**2).sum()
+STRETCH = np.array([X, X**2 / 2])
+DRIFTS = (0.55, 7.0), (0.6, 7.0), (0.62, 7.5)
+
+
+def along(Q, strain, steps, back=-0.9):
+    """Path to a shear and a tension, and ``back`` times as far and to them once more."""
+    return Path(((back * Q, back * strain, 0.0), (Q, strain, 0.0)), (0, 1), True, 1, steps)
+
+
+def close(one, other):
+    for key in ("q1", "q2", "slip", "net_slip"):
+        assert getattr(one, key) == pytest.approx(getattr(other, key), abs=1e-12), key
+
+
+def solved(path, factored=None, near=None):
+    return march(C, STRETCH, BOUND, path, factored, near)
+
+
+def cells(shape=None, points=(-1, 1), size=1e-2, growth=0.1):
+    """Compliance, displacements under tension and bound on graded cells: a = f = A = 1, forces in f P."""
+    vertices = graded(np.array(points, float), size, growth)
+    x = (vertices[1:] + vertices[:-1]) / 2
+    return vertices, compliance(vertices / 2), np.array([x, x**2 / 2]), forces(shape or Hertz(), vertices)
+
+
+def loads(Qf, sf, **more):
+    """Fully reversed loads (Q_f, s_f), scaled as :func:`cells` is: p0 = 2 P/(pi a)."""
+    Q, strain = Qf, sf / (2 * np.pi)
+    return Path(((-Q, -strain / 2, 0.0), (Q, strain / 2, 0.0)), (0, 1), True, 1, 1, **more)
+
+
+def followed(tangential, stretch, bound, path):
+    """The forces at the ends of all legs of the first cycle, event by event."""
+    follower, at, found = Follower(tangential, bound), np.array(path.begin), [0 * bound]
+    for point in (path.cycle[-1], *path.cycle):
+        change = np.array(point) - at
+        found.append(follower.leg(found[-1], change[1:3] @ stretch, float(change[0])).forces)
+        at = np.array(point)
+    return found[1:]
+
+
+@pytest.mark.parametrize("shape", [Hertz(), Punch(0.5)], ids=["Hertz", "flat"])
+def test_legs_in_one_step_are_those_that_are_gradual(shape):
+    """On random loads with mean values one step is taken only where it leads to what following the leg leads to, and
+    each way is taken often."""
+    _, *problem = cells(shape)
+    random, taken = np.random.default_rng(3), []
+    for _ in range(100):
+        Q, strain = random.uniform(-0.95, 0.95, 2), random.uniform(-1.5, 1.5, 2)
+        path = Path(tuple((float(q), float(s), 0.0) for q, s in zip(Q, strain, strict=True)), (0, 1), True, 1, 1)
+        history = march(*problem, path)
+        for point, forces_ in zip(history.points, followed(*problem, path), strict=True):
+            assert point.x == pytest.approx(forces_, abs=1e-12)
+        taken.append(history.turns)
+    assert 20 < sum(taken) < 80
+
+
+@pytest.mark.parametrize(("Qf", "sf"), DRIFTS)
+def test_drifting_zone(Qf, sf):
+    """Ends, and q, of the exact steady state, in cells of 1e-3 a at the ends; one step is off by many times as much."""
+    exact = steady(Loads(sf, np.pi * Qf), Hertz()).last
+    vertices, *problem = cells(points=(-1, *exact.zone, 1), size=1e-3, growth=0.07)
+    x = problem[1][0]
+    history = march(*problem, loads(Qf, sf))
+    assert history.turns
+    assert history.cycles > 1
+    zone = stick_zone(x, history.bound, history.change, vertices, lambda each: each, history.changed)
+    assert zone.left == pytest.approx(exact.zone.left, abs=1e-4)
+    assert zone.right == pytest.approx(exact.zone.right, abs=1e-4)
+    q = history.change / 2 / np.diff(vertices) * np.pi / 2
+    weights = np.diff(vertices)
+    off = np.sqrt((q - exact.q(x)) ** 2 @ weights / (exact.q(x) ** 2 @ weights))
+    assert off < 2e-3
+
+
+def test_half_a_cycle_where_slip_does_not_turn_round():
+    """The first loading determines the cycle; where it does not, cycles follow until nothing changes."""
+    _, *problem = cells()
+    plain, half = (march(*problem, loads(0.3, 4.0, half=half)) for half in (False, True))
+    close(plain, half)
+    assert plain.dissipated == pytest.approx(half.dissipated, rel=1e-12)
+    assert (half.load_steps, plain.load_steps) == (1, 3)
+    assert not plain.turns
+    turned = march(*problem, loads(0.6, 7.0, half=True))
+    assert not turned.path.half
+    assert turned.turns
+    assert turned.repeats
+
+
+@pytest.mark.parametrize(("Qf", "sf"), [(0.3, 4.0), (0.6, 7.0)])
+def test_stages_do_not_change_the_result(Qf, sf):
+    """Load steps are stages at which forces are kept: they lie on the way, and change nothing."""
+    _, *problem = cells()
+    one, many = (march(*problem, replace(loads(Qf, sf), substeps=count)) for count in (1, 5))
+    for key in ("q1", "q2", "slip", "net_slip", "dissipated"):
+        assert getattr(one, key) == pytest.approx(getattr(many, key), abs=1e-12), key
+    assert {*np.linspace(0.2, 1, 5).round(12)} <= {*np.round(many.around.ways[0], 12)}
+    at_ends = [np.cumsum([len(way) for way in each.around.ways]) - 1 for each in (one, many)]
+    for each, ends in zip((one, many), at_ends, strict=True):
+        assert each.around.forces[ends[1]] == pytest.approx(each.q2, abs=1e-12)
+    between = many.around.forces[: len(many.around.ways[0])]
+    Q = np.array(many.around.ways[0]) * -2 * Qf + Qf
+    assert between.sum(axis=1) == pytest.approx(Q, abs=1e-12)
+
+
+def test_permanent_stick_zone():
+    """Where the zone drifts, nodes slip, and stick again: fewer never slip than stick at the load points."""
+    _, *problem = cells()
+    for load, same in (((0.3, 4.0), True), ((0.6, 7.0), False)):
+        history = march(*problem, loads(*load))
+        assert (history.never_slips == ~history.slips).all() == same
+        assert (history.never_slips <= ~history.slips).all()
+
+
+def test_half_a_cycle_begins_with_the_zone_known_from_elsewhere():
+    path = replace(along(0.6, 0.1, 1, back=-1.0), half=True)
+    cold = solved(path)
+    warm = solved(path, None, cold.points[0].sides)
+    close(cold, warm)
+    assert warm.iterations == 1 < cold.iterations
+
+
+@pytest.mark.parametrize("others", [(0.72, 0.31), (-0.7, 0.3), (0.05, 0.0)])
+def test_other_loads_before_change_nothing(others):
+    """What was factored under other loads serves all."""
+    factored = Factored(C)
+    solved(along(*others, 4), factored)
+    close(solved(along(0.7, 0.3, 4), factored), solved(along(0.7, 0.3, 4)))
+
+
+def test_steps_on_an_inverse_multiply_by_the_compliance_once_or_twice(monkeypatch):
+    """Once for the certificate, and once more where a step of refinement was needed: not in each iteration."""
+
+    class Counted(np.ndarray):
+        products = 0
+
+        def __matmul__(self, other):
+            Counted.products += 1
+            return np.asarray(self) @ other
+
+    factored = Factored(C)
+    factored.expect(100)
+    factored.C = C.view(Counted)
+    monkeypatch.setattr(constant, "solve_bounded", lambda _, *rest: bounded.solve_bounded(factored.C, *rest))
+    found = solved(replace(along(0.7, 0.0, 1), cycles=8), factored)
+    assert found.iterations > found.load_steps
+    assert found.load_steps < Counted.products <= 2 * found.load_steps + 1
+
+
+def test_parts_of_matrices_by_runs():
+    matrix = np.arange(400.0).reshape(20, 20)
+    for members in ([], [3], [0, 1, 2, 7, 8, 19], range(20), range(0, 20, 2), [5, 6, 2, 3]):
+        rows = np.array(members, dtype=np.int64)
+        assert np.array_equal(np.concatenate([np.arange(20)[run] for run in runs(rows)] or [rows]), rows)
+        for columns in (rows, np.array([4, 5, 11])):
+            assert np.array_equal(submatrix(matrix, rows, columns), matrix[np.ix_(rows, columns)])
+
+
+def test_legs_from_the_displacements_of_another_leg_are_noticed(monkeypatch):
+    """Deliberate fault: the remembered product is that of the leg before the last one. Every leg has its certificate
+    all the same; only another solution shows it."""
+    path, late = along(0.7, 0.0, 1), [np.zeros(N)]
+    true = solved(path)
+    monkeypatch.setattr(Factored, "times", lambda self, x: (late.append(self.C @ x), late[-2])[1])
+    wrong = solved(path)
+    assert max(step.residual.max() for step in wrong.points) < 1e-12
+    assert np.abs(wrong.change - true.change).max() > 1e-3 * BOUND.max()
+
+
+@pytest.mark.fault
+def test_one_step_taken_for_enough(monkeypatch):
+    """Deliberate fault: the rates at the ends of a leg are not asked for. Each step has its certificate; m is off by
+    what section 7 of docs/theory.md warns of."""
+    exact = steady(Loads(7.0, np.pi * 0.55), Hertz()).last.zone
+    vertices, *problem = cells(points=(-1, *exact, 1), size=1e-3, growth=0.07)
+
+    def off():
+        found = march(*problem, loads(0.55, 7.0))
+        zone = stick_zone(problem[1][0], found.bound, found.change, vertices, lambda each: each, found.changed)
+        return abs(zone.left - exact.left), max(step.residual.max() for step in found.points)
+
+    assert off()[0] < 1e-4
+    monkeypatch.setattr(constant._Contact, "_suffices", lambda *_: True)
+    error, residual = off()
+    assert error > 1e-2
+    assert residual < 1e-12
+
+
+@pytest.mark.fault
+def test_rates_asked_for_at_the_end_of_the_leg_alone(monkeypatch):
+    """Deliberate fault: at the beginning of the half-cycle points are not looked at. At (0.584, 2.6) slip at the left
+    end turns round early; at the end all nodes slip on as they have, and one step seems enough."""
+    _, *problem = cells()
+    true = march(*problem, loads(0.584, 2.6))
+    real = constant.solve_bounded
+
+    def nothing_pushed(tangential, g, lower, *rest):
+        found = real(tangential, g, lower, *rest)
+        return replace(found, x=0 * found.x, rest=0 * found.rest) if np.isneginf(lower).any() else found
+
+    monkeypatch.setattr(constant, "solve_bounded", nothing_pushed)
+    monkeypatch.setattr(constant._Contact, "_agrees", lambda *_: True)
+    wrong = march(*problem, loads(0.584, 2.6))
+    assert true.turns
+    assert not wrong.turns
+    assert np.abs(wrong.change - true.change).max() > 5e-4 * problem[-1].max()

@@ -1,0 +1,89 @@
+"""The certificate of the steady state under gradual loads, and what it must see."""
+
+import numpy as np
+import pytest
+
+from partialslip.halfplane.gradual_path.certificate import certificate, certify, stages
+from partialslip.halfplane.gradual_path.drift import Drift
+from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, LostError, Retreating, steady
+from partialslip.halfplane.gradual_path.stage import Loads
+from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.punch import Punch
+
+HELD = 1e-9  # f p0
+
+
+def cycle(Qf, sf, shape=None):
+    return steady(Loads(sf, np.pi * Qf), shape or Hertz())
+
+
+@pytest.mark.parametrize(("Qf", "sf"), [(0.55, 7.0), (0.75, 6.0), (0.6, 7.0)])
+def test_all_conditions_hold(Qf, sf):
+    assert certificate(cycle(Qf, sf)).worst < HELD
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_all_conditions_hold_wherever_all_slip_is_followed(seed):
+    """A zone inside the stick zone that slips for a while and leaves no trace is left out, and said so."""
+    rng, judged = np.random.default_rng([37, seed]), 0
+    while judged < 2:
+        try:
+            found = cycle(rng.uniform(0.4, 0.99), rng.uniform(7, 15))
+        except LostError:
+            continue
+        if found.followed:
+            assert certificate(found).worst < 1e-7
+            judged += 1
+
+
+def test_what_is_left_out_is_told():
+    """(0.9, 14): the conditions fail on the way, by a quarter of f p0, and not at its end."""
+    found = cycle(0.8989503087286937, 14.038013448105065)
+    assert not found.followed
+    assert certificate(found).bound > 0.1
+    assert certificate(found).steady < HELD
+
+
+def test_all_conditions_hold_under_a_flat_rounded_punch():
+    assert certificate(cycle(0.55, 7.0, Punch(0.4))).worst < HELD
+
+
+@pytest.mark.fault
+def test_a_kernel_of_drift_off_by_a_percent_is_seen(monkeypatch):
+    found, right = cycle(0.55, 7.0), Drift.accumulated
+    monkeypatch.setattr(Drift, "accumulated", lambda self, place, tau: 1.01 * right(self, place, tau))
+    seen = certificate(HalfCycle(found.loads, found.start, found))
+    assert seen.stick > 1e-5
+    assert seen.equilibrium > 1e-5
+
+
+@pytest.mark.fault
+def test_a_drifting_zone_a_percent_too_wide_is_seen(monkeypatch):
+    right = Loads.least.fget
+    monkeypatch.setattr(Loads, "least", property(lambda self: 1.01 * right(self)))
+    assert certificate(cycle(0.55, 7.0)).worst > 1e-5
+
+
+@pytest.mark.fault
+def test_slip_of_the_wrong_sign_in_retreat_is_seen():
+    found = cycle(0.55, 7.0)
+    first, last = found.phases[0].first, found.phases[0].last
+    wrong = Retreating(found.loads, first, 1, last.progress, last.zone)
+    assert certify(found.loads, [first, last]).slip < HELD
+    assert certify(found.loads, [first, wrong.last]).slip > 1e-3
+
+
+@pytest.mark.fault
+def test_half_a_cycle_that_is_not_steady_is_seen():
+    found = cycle(0.55, 7.0)
+    path = stages(found)
+    first = HalfCycle(found.loads, -path[-2].q, found)
+    assert certificate(first).steady > 1e-5
+
+
+@pytest.mark.fault
+def test_stages_that_leave_one_out_of_the_way_are_seen():
+    """From the first stage to the last in one step, points slip there and back: no such step is admissible."""
+    found = cycle(0.55, 7.0)
+    path = stages(found)
+    assert certify(found.loads, [path[0], path[-1]]).worst > 1e-5

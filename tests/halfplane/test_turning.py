@@ -1,0 +1,140 @@
+"""The steady state where slip turns round, as scenes see it: signs, units, energy, room for a mean of Q, stresses."""
+
+import numpy as np
+import pytest
+
+import partialslip
+from partialslip import halfplane
+from partialslip.halfplane import contact, contact_of
+from partialslip.halfplane.gradual_path import slips
+from partialslip.halfplane.turning import Turning, half_cycle
+
+UNIT = contact_of(lambda x: np.sqrt(1 - x**2), 1.0)
+DRIFT, TO_THE_END, NO_POINT = (0.6434668934976868, 8.670889385947003), (0.75, 6.0), (0.9975, 7.2)
+
+
+def cycle(Qf, sf, pressed=UNIT):
+    return half_cycle(pressed, 1.0, 2 * pressed.P * Qf, pressed.p0 * sf)
+
+
+def scene(Qf, sf, *more, name="hertz-shear"):
+    base = partialslip.load_scene(name)
+    limit, stress = base.friction.f * base.P, base.friction.f * contact(base).p0 / 2
+    loads = f"load.Q=[{-Qf * limit!r}, {Qf * limit!r}]", f"load.sigma=[{-sf * stress!r}, {sf * stress!r}]"
+    return partialslip.load_scene(name, [*loads, *more])
+
+
+def exact(*given, **named):
+    return partialslip.run(scene(*given, **named), ["exact"])["exact"]
+
+
+def test_a_scene_has_one_answer():
+    """The scene of docs/theory.md, section 7: one step leaves m at 0.700 a."""
+    found = exact(*DRIFT)
+    assert (found.m / found.a, found.n / found.a) == pytest.approx((0.8907009, -0.2970207), abs=1e-6)
+    assert np.array(found.permanent) / found.a == pytest.approx([-0.671627536, -0.297020741], abs=1e-8)
+    assert not found.path_dependent
+    assert set(found.undetermined) == {"q1", "q2"}
+
+
+def test_where_no_point_sticks_throughout_the_levels_are_known():
+    found = exact(*NO_POINT)
+    assert np.isnan(found.permanent).all()
+    assert not found.undetermined
+    assert found.limits["Q_mean"] == 0
+    np.testing.assert_allclose(found.traction.q2, found.traction.dq / 2, atol=1e-9 * found.p0)
+    assert exact(*NO_POINT, "load.Q=[-3.10e5, 3.14e5]").regime == "ratchets"
+
+
+@pytest.mark.parametrize(("Qf", "sf"), [DRIFT, TO_THE_END])
+@pytest.mark.parametrize(("turn", "mirror"), [(1, -1), (-1, 1), (-1, -1)])
+def test_signs_of_the_loads(Qf, sf, turn, mirror):
+    """Reversed loads reverse dq and the slip; tension against dQ mirrors the contact."""
+    plain, other = cycle(Qf, sf), cycle(turn * Qf, turn * mirror * sf)
+    x = np.linspace(-0.99, 0.99, 41)
+    np.testing.assert_allclose(other.traction(x), turn * plain.traction(mirror * x), atol=1e-12)
+    assert other.ends == pytest.approx(plain.ends[::mirror] if mirror > 0 else [-end for end in plain.ends[::-1]])
+    at, slip, dissipated = plain.worn
+    where, theirs, worn = other.worn
+    np.testing.assert_allclose(np.interp(at, where, theirs), turn * np.interp(mirror * at, at, slip), atol=1e-9)
+    assert dissipated == pytest.approx(worn, rel=1e-9)
+
+
+@pytest.mark.parametrize(("Qf", "sf"), [(0.55, 7.0), DRIFT, TO_THE_END])
+def test_loops_enclose_what_friction_dissipates(Qf, sf):
+    """Work of the shear force and of the tension over a cycle, from displacements and moments of stick zones, against
+    the slip times the bound."""
+    found = cycle(Qf, sf)
+    share, weights = np.polynomial.legendre.leggauss(120)
+    share, weights = (1 + share) / 2, weights / 2
+    order = np.concatenate([[0.0], share, [1.0]])
+    displacement, moment = found.loop(order)
+    work = 2 * UNIT.P * Qf * (displacement[-1] - 2 * weights @ displacement[1:-1])
+    work += sf / 4 * (2 * weights @ moment[1:-1] - moment[-1])
+    assert work == pytest.approx(found.worn.dissipated, rel=1e-6)
+
+
+@pytest.mark.fault
+def test_energy_of_the_net_slip_alone_is_seen(monkeypatch):
+    """Deliberate fault: friction dissipates on the net slip of half a cycle, as if no point slipped back and forth."""
+    found = cycle(*TO_THE_END)
+    true = found.worn.dissipated
+    monkeypatch.setattr(slips, "stages", lambda way: [way.phases[0].first, way.last])
+    assert slips.slips(found.way).dissipated < (1 - 1e-3) * true
+
+
+@pytest.mark.parametrize(("Qf", "sf"), [(0.55, 7.0), DRIFT, TO_THE_END])
+def test_no_slip_where_points_stick(Qf, sf):
+    found = cycle(Qf, sf)
+    x, slip, _ = found.worn
+    left, right = found.permanent
+    inside = (x > left) & (x < right)
+    assert inside.any()
+    assert np.abs(slip[inside]).max() < 1e-9 * np.abs(slip).max()
+
+
+@pytest.mark.parametrize(
+    ("Qf", "sf", "room"), [(*DRIFT, 0.09216), (0.6, 7.0, 0.18247), (0.55, 7.0, 0.20254), (*NO_POINT, 0.0)]
+)
+def test_room_for_a_mean_of_Q_is_that_all_along_the_way(Qf, sf, room):
+    """Against the largest of 41 stages of the way, point by point."""
+    found = cycle(Qf, sf)
+    assert found.mean_load_bound == pytest.approx(room, abs=1e-5)
+    if not room:
+        return
+    x = np.linspace(*found.permanent, 1602)
+    x = (x[1:] + x[:-1]) / 2
+    changes = np.array([found.part(share).traction(x) for share in np.linspace(0, 1, 41)])
+    least = np.sqrt(1 - x**2) - np.abs(changes - changes[-1] / 2).max(axis=0)
+    assert found.mean_load_bound == pytest.approx(2 / np.pi * least.sum() * (x[1] - x[0]), abs=5e-5)
+
+
+def test_profiles_other_than_hertz():
+    """A given pressure is that of its profile; the shipped flat and rounded contact turns round, too."""
+    found = exact(0.7, 5.0, name="flat-rounded")
+    assert found.permanent is not None
+    assert not found.path_dependent
+    x, p, dq = found.traction.x, found.traction.p, found.traction.dq
+    bound = 2 * partialslip.load_scene("flat-rounded").friction.f * p
+    assert (np.abs(dq) <= bound + 1e-8 * found.p0).all()
+    assert np.trapezoid(dq, x) == pytest.approx(0.7 * np.trapezoid(bound, x), rel=1e-3)
+
+
+def test_both_ways_into_slip_that_turns_round_are_continuous():
+    """At the border of the plain region the steady state is that of one step."""
+    for Qf, inside, outside in ((0.5, 5.0, 9.0), (0.5, 5.0, 2.6)):
+        low, high = inside, outside
+        for _ in range(40):
+            middle = (low + high) / 2
+            same = isinstance(cycle(Qf, middle), Turning) == isinstance(cycle(Qf, inside), Turning)
+            low, high = (middle, high) if same else (low, middle)
+        assert isinstance(cycle(Qf, low), Turning) != isinstance(cycle(Qf, high), Turning)
+        assert cycle(Qf, low).ends == pytest.approx(cycle(Qf, high).ends, abs=1e-5)
+
+
+def test_hysteresis_of_slip_that_turns_round():
+    """One step would have another displacement."""
+    loop = halfplane.hysteresis(UNIT, 1.0, 1.0, 2 * UNIT.P * DRIFT[0], DRIFT[1], count=21)
+    found = cycle(*DRIFT)
+    assert loop.displacement[20] == pytest.approx(found.loop(np.array([0.0, 1.0]))[0][-1], rel=1e-9)
+    assert loop.displacement[-1] == pytest.approx(0, abs=1e-12)
