@@ -1,16 +1,18 @@
 """Estimates of errors against true errors, on random scenes whose answers are known.
 
 python benchmarks/estimates.py run FILE [--method fem] [--seed 1] [--count 100] [--finest 1e-7] [--coarsest 1e-3]
+                                        [--turning]
 python benchmarks/estimates.py show FILE...
 
 Truth is the exact steady state, and for q1 and q2 the exact first loading where the steady state keeps that; elsewhere
-the march at the finest accuracy that it reaches. FILE (JSON lines) keeps what is done: a run that was stopped goes on.
+the march at the finest accuracy that it reaches. --turning: large tension under which slip turns round on the way. FILE
+(JSON lines) keeps what is done: a run that was stopped goes on.
 """
 
 import argparse
 import json
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +23,9 @@ import partialslip
 from partialslip import Result, Scene
 from partialslip.arrays import Array
 from partialslip.condensed.threads import one_thread
+from partialslip.gradual import turns_round
 from partialslip.halfplane import contact
-from partialslip.halfplane.steady import transition
+from partialslip.halfplane.steady import stick_zone, transition
 from partialslip.judge import compare
 from partialslip.judge.means import norm_errors
 from partialslip.scene.reading import parse_scene
@@ -40,10 +43,10 @@ SETTLED = 1e-3  # of the accuracy: a change of q in the last cycle that is none
 WEIGHT = 2.5  # of cheap accuracies
 
 
-def drawn(seed: int, number: int, finest: float, coarsest: float) -> tuple[str, Scene]:
-    """Kind and scene of that ``seed`` and ``number``."""
+def drawn(seed: int, number: int, finest: float, coarsest: float, kinds: Sequence[str] = KINDS) -> tuple[str, Scene]:
+    """Kind, of ``kinds``, and scene of that ``seed`` and ``number``."""
     random = np.random.default_rng([seed, number])
-    kind, profile = KINDS[number % len(KINDS)], PROFILES[number % len(PROFILES)]
+    kind, profile = kinds[number % len(kinds)], PROFILES[number % len(PROFILES)]
     E, R, a = 70e9, 0.02, 1e-3
     plane, nu = ("stress", 0.3) if random.random() < 0.2 else ("strain", float(random.choice(NUS)))
     data: dict[str, Any] = {
@@ -71,7 +74,8 @@ def drawn(seed: int, number: int, finest: float, coarsest: float) -> tuple[str, 
     turned = random.choice([-1.0, 1.0], 2)
     Q, sigma = turned[0] * f * pressed.P * Q, turned[1] * f * pressed.p0 * sigma
     data["load"] |= {"Q": Q.tolist(), "sigma": sigma.tolist()}
-    data["load"]["cycles"] = {"marched": 8, "mean": 6}.get(kind, 1)
+    if kind in ("marched", "mean"):
+        data["load"]["cycles"] = {"marched": 8, "mean": 6}[kind]
     return kind, parse_scene(data)
 
 
@@ -83,6 +87,12 @@ def loads(random: np.random.Generator, kind: str, shape: Any) -> tuple[Array, Ar
         zone = np.array((1 - c) * random.uniform(0.2, 0.95)), np.array(c), np.array(-1)
         found = shape.conditions(*zone)
         return float(found.Qf) * ways, float(found.sf) / 2 * ways
+    if kind == "turning":
+        while True:  # until slip turns round in a single step's zone
+            Qf, sf = random.uniform(0.1, 0.98), random.uniform(1, 14)
+            zone = stick_zone(Qf, sf, shape)
+            if turns_round(Qf, sf, zone.s, zone.centre, zone.half_width):
+                return Qf * ways, sf / 2 * ways
     Qf = 10 ** random.uniform(-5, -2.5) if kind == "narrow strip" else random.uniform(0.1, 0.85)
     at = float(transition(Qf, shape))
     if kind == "reversed":
@@ -122,10 +132,12 @@ def true_errors(scene: Scene, kind: str, found: Result) -> dict[str, float]:
     return {key: error for key, error in errors.items() if error is not None}
 
 
-def rows(method: str, seed: int, numbers: Iterable[int], finest: float, coarsest: float) -> Iterator[dict[str, Any]]:
+def rows(
+    method: str, seed: int, numbers: Iterable[int], finest: float, coarsest: float, kinds: Sequence[str]
+) -> Iterator[dict[str, Any]]:
     """One row a scene."""
     for number in numbers:
-        kind, scene = drawn(seed, number, finest, coarsest)
+        kind, scene = drawn(seed, number, finest, coarsest, kinds)
         result = partialslip.run(scene, [method]).results[method]
         yield {
             "method": method, "seed": seed, "number": number, "kind": kind, "profile": type(scene.profile).__name__,
@@ -173,13 +185,15 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--finest", type=float, default=1e-7)
     parser.add_argument("--coarsest", type=float, default=1e-3)
+    parser.add_argument("--turning", action="store_true")
     given = parser.parse_args()
+    kinds = ("turning",) if given.turning else KINDS
     if given.what == "run":
         path = given.files[0]
         done = {(row["method"], row["seed"], row["number"]) for row in read(path)}
         todo = [n for n in range(given.count) if (given.method, given.seed, n) not in done]
         with path.open("a", encoding="utf-8") as file:
-            for row in rows(given.method, given.seed, todo, given.finest, given.coarsest):
+            for row in rows(given.method, given.seed, todo, given.finest, given.coarsest, kinds):
                 print(json.dumps(row), file=file, flush=True)
     show([row for path in given.files for row in read(path)])
 

@@ -112,7 +112,7 @@ def reduced(scene: Scene) -> Scene:
     if effects.history is False:
         changes = {"Q": load.dQ, "sigma": load.dsigma, "sigma_slope": load.dslope}
         ends = {key: (-change / 2, change / 2) for key, change in changes.items()}
-        load = replace(load, **ends, cycles=1, steps=1)
+        load = replace(load, **ends, cycles=None, steps=1)
     if effects.far_field is not None:
         width = fem.width or WIDTHS["half-plane"]
         fem = replace(fem, far_field="half-plane" if effects.far_field else "box", width=width)

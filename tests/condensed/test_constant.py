@@ -50,7 +50,7 @@ def cells(shape=None, points=(-1, 1), size=1e-2, growth=0.1):
 def loads(Qf, sf, **more):
     """Fully reversed loads (Q_f, s_f), scaled as :func:`cells` is: p0 = 2 P/(pi a)."""
     Q, strain = Qf, sf / (2 * np.pi)
-    return Path(((-Q, -strain / 2, 0.0), (Q, strain / 2, 0.0)), (0, 1), True, 1, 1, **more)
+    return Path(((-Q, -strain / 2, 0.0), (Q, strain / 2, 0.0)), (0, 1), True, 60, 1, settled=1e-7, **more)
 
 
 def followed(tangential, stretch, bound, path):

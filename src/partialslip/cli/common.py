@@ -61,7 +61,7 @@ def print_long_path(scene: "Scene", methods: Sequence[str]) -> None:
 
         messages().print(
             f"{scene.name}: {' and '.join(marching)}: {load.path_steps:,} load steps or more on each mesh, as "
-            f"load.steps = {load.steps}, load.cycles = {load.cycles} and there are {len(load.points)} load points; "
+            f"load.steps = {load.steps}, load.cycles = {load.cycles or 1} and there are {len(load.points)} points; "
             "with load.steps = 1 the steps are chosen by their errors",
             soft_wrap=True,
             markup=False,

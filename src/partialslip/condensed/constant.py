@@ -24,7 +24,7 @@ _AT = 1e-12  # distance from the bound, relative, at which a node is on it
 _LEFT = 0.9, 0.5  # of a leg: where slip on the way is looked at
 _STAGES = 32  # fewest stages between load points at which forces are kept where slip turns round
 _SLIGHT = 1e-6  # of the longest path of slip: what mean loads let slip less in each cycle
-_CYCLES, _SETTLED = 60, 1e-7  # most cycles towards a steady state; change of q, in f p, that ends them
+_EXPECTED = 8  # cycles for which factors are prepared
 
 
 def march(
@@ -48,9 +48,7 @@ def march(
     bound : (n,) array
         f times the normal forces.
     path : Path
-        If the loads only change sign (:attr:`Path.alternates`), one cycle stands for all cycles until nothing changes:
-        where slip does not turn round, these are no more than one. ``substeps`` are the stages of each leg that
-        :attr:`History.around` has at least.
+        ``substeps`` are the stages of each leg that :attr:`History.around` has at least.
     factored : Factored, optional
         Factors of ``tangential`` to use and to add to.
     near : (n,) int8 array, optional
@@ -67,9 +65,7 @@ def march(
         history = contact.followed()
         if not contact.legs[0].turns:
             return history
-        path = replace(path, half=False, cycles=1)
-    if path.cycles == 1 and path.alternates:
-        path = replace(path, cycles=_CYCLES, settled=_SETTLED)
+        path = replace(path, half=False)
     return _Contact(factored, stretch, bound, path, near, few).followed()
 
 
@@ -126,7 +122,7 @@ class _Contact:
         self.legs: list[_Done] = []
         self._cycle = len(path.cycle)
         self._one_way = len({load[1:3] for load in (path.begin, *path.cycle)}) == 1  # Q drives all slip one way
-        factored.expect(1 + self._cycle * (0 if path.half else path.cycles))
+        factored.expect(1 + self._cycle * (0 if path.half else min(path.cycles, _EXPECTED)))
         self._stretched = factored.refined(stretch.T)
         self._follower: Follower | None = None
         stages = path.substeps * math.ceil(_STAGES / path.substeps)

@@ -10,6 +10,9 @@ from partialslip.plan import Plan
 from partialslip.result.state import State
 from partialslip.scene import Scene
 
+MOST_CYCLES = 200  # towards a steady state; 0.995 of the largest mean load takes 35, a large load before the cycles 300
+_SETTLED = 1e-7  # change of q over a cycle, in f p, that ends cycles; what is left is about as much
+
 
 @dataclass(frozen=True)
 class Path:
@@ -22,7 +25,8 @@ class Path:
     reversed loads, no shear at the beginning, no reversal of slip). ``one_way``: whether the pressure is always even,
     and |dQ| >= f |dP| from each load point to the next, so that Q drives all slip one way.
 
-    Cycles end where one changes the tangential force at no node by more than ``settled`` of its bound, and rounding.
+    Cycles end where one changes the tangential force at no node by more than ``settled`` of its bound, and rounding:
+    where the scene does not tell how many there are, they lead to the steady state.
 
     ``substeps`` is the smallest number of steps between points. ``ways`` are the steps as ascending fractions up to 1:
     to the last point first, then to each point of the cycle; default: ``substeps`` equal steps.
@@ -59,12 +63,6 @@ class Path:
         """Path whose steps also end at ``count`` equal fractions of each way."""
         equal = {number / count for number in range(1, count + 1)}
         return replace(self, ways=tuple(tuple(sorted(equal.union(way))) for way in self.fractions), half=False)
-
-    @property
-    def alternates(self) -> bool:
-        """Whether the path begins without loads and shear, and the loads go to a point and its opposite in turn."""
-        begins = self.before is None and not any(self.begin)
-        return begins and len(self.cycle) == 2 and self.cycle[0] == tuple(-load for load in self.cycle[1])
 
     @property
     def presses_anew(self) -> bool:
@@ -105,7 +103,10 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | No
         changes = np.abs(np.diff([loads[0], loads[-1], *loads[1:]], axis=0))
         one_way = scene.even and bool((changes[:, 0] >= scene.friction.f * changes[:, 3]).all())
     begin, *cycle = loads
-    return Path(tuple(cycle), load.ends, load.in_phase, load.cycles, load.steps, begin, half=half, one_way=one_way)
+    cycles, settled = (load.cycles, 0.0) if load.cycles else (MOST_CYCLES, min(_SETTLED, scene.fem.accuracy))
+    return Path(
+        tuple(cycle), load.ends, load.in_phase, cycles, load.steps, begin, half=half, one_way=one_way, settled=settled
+    )
 
 
 def scaled_pressing(scene: Scene) -> tuple[tuple[float, float], ...]:

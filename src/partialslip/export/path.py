@@ -5,6 +5,7 @@ from typing import NamedTuple
 from partialslip.scene import Scene
 
 TOUCH = 1 / 64  # of P, under which the upper body is guided, where pressing makes the surfaces slip
+_CYCLES = 5  # towards the steady state, where the loads are not fully reversed and load.cycles does not tell
 _PRESSING = 16  # increments of pressing, where it makes the surfaces slip
 
 
@@ -51,10 +52,11 @@ def steps_of(scene: Scene) -> tuple[Step, ...]:
         pressed = [Step("press", P, 0.0, 0.0, M, guided=True)]
     if scene.only_pressed:
         return tuple(pressed)
+    cycles = load.cycles or (1 if load.fully_reversed else _CYCLES)
     visits = [(f"load point {len(points)}, first time", points[-1])]
     visits += [
         (f"cycle {cycle}, load point {number}", point)
-        for cycle in range(1, load.cycles + 1)
+        for cycle in range(1, cycles + 1)
         for number, point in enumerate(points, start=1)
     ]
     return (*pressed, *(Step(name, *point, load.steps, guided=free) for name, point in visits))

@@ -27,7 +27,8 @@ class Load(Table, frozen=True, kw_only=True):
     that of the upper body) are values at the load points: usually points 1 and 2, between which the loads cycle in
     phase, or more points. With ``sigma_slope`` (Pa/m) the bulk tension varies along x: it is sigma + sigma_slope x. The
     path begins at P and M of the last load point with Q = sigma = sigma_slope = 0, goes to the last point, and then
-    ``cycles`` times through all points. Methods that follow the path take at least ``steps`` load steps between points.
+    ``cycles`` times through all points; by default until nothing changes any more. Methods that follow the path take at
+    least ``steps`` load steps between points.
     """
 
     P: Positive | Forces | None = None
@@ -38,7 +39,7 @@ class Load(Table, frozen=True, kw_only=True):
     Q: Turns = (0.0, 0.0)
     sigma: Turns = (0.0, 0.0)
     sigma_slope: Turns = (0.0, 0.0)
-    cycles: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 1
+    cycles: Annotated[int, msgspec.Meta(ge=1, le=1000)] | None = None
     steps: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 1
 
     def __post_init__(self) -> None:
@@ -159,7 +160,7 @@ class Load(Table, frozen=True, kw_only=True):
     @property
     def path_steps(self) -> int:
         """Least number of load steps of the whole path: to the last load point, and ``cycles`` times through all."""
-        return self.steps * (1 + self.cycles * len(self.points))
+        return self.steps * (1 + (self.cycles or 1) * len(self.points))
 
     @property
     def Q_mean(self) -> float:
