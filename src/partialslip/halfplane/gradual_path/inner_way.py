@@ -31,6 +31,7 @@ from partialslip.halfplane.gradual_path.inner_rates import (
     root,
     taken,
 )
+from partialslip.halfplane.gradual_path.stage import LostError
 from partialslip.halfplane.gradual_path.tractions import Tractions
 
 ENDS = (L, A, B, R)
@@ -44,18 +45,15 @@ _FASTEST = 0.05  # of the contact, that an end may pass in the first panel
 _GROWTH = 1.7
 _PANELS = 60
 _PART = 0.1  # of an inner zone, to which it closes in a panel
-_SHUT = 1e-5  # width of an inner zone that has closed: points are pushed beyond the bound by its square
+SHUT = 1e-5  # width of an inner zone that has closed: points are pushed beyond the bound by its square
 _NARROW = 1e-4  # width of an inner zone that may be closed where its ends are lost
 _HALVINGS = 12
 _SHORTEST = 1e-15
+_TURNED, _NEAR_TURN = 1e-9, 1e-7  # z0 - b where b turns round; ways from there that rounding hides in the changes of q
 
 
 _EVENTS = {"width": {A: 1.0, L: -1.0}, "gap": {L: 0.5, R: 0.5, A: -1.0}}  # of what their size is the sum
 _AT_END = np.array([0.97, 1.0])
-
-
-class LostWayError(ValueError):
-    """The ends of two stick intervals cannot be followed."""
 
 
 class Way:
@@ -110,7 +108,7 @@ class Way:
         takes, length, speeds = self._first_speeds()
         while self.progress < 1 - 1e-14:
             if len(self.panels) == _PANELS:
-                raise LostWayError("too many panels")
+                raise LostError("too many panels")
             begin = self.ends
             rest = 1 - self.progress
             length = min(length, rest)
@@ -130,7 +128,7 @@ class Way:
                     panel = None
             elif self.panels and takes and shut * length > 0.5 * gap:
                 panel = self._solve(
-                    begin, takes, gap / shut, speeds, SINE, ("gap", self._least + max(_SHUT / 2, _PART * gap))
+                    begin, takes, gap / shut, speeds, SINE, ("gap", self._least + max(SHUT / 2, _PART * gap))
                 )
                 if panel and panel.length > rest:
                     panel = None
@@ -143,12 +141,12 @@ class Way:
                 )
                 crossing = self._crossing(panel) if panel else None
             if not panel or _tail(panel) > _TAIL:
-                length = (panel.length if panel else length) / 2
+                length = min(length, panel.length if panel else length) / 2
                 if length < _SHORTEST * max(1.0, 1e8 * (gap < _NARROW)):
                     if gap < _NARROW:
                         self.closed = True
                         return
-                    raise LostWayError(f"no panel is short enough at {self.progress}")
+                    raise LostError(f"no panel is short enough at {self.progress}")
                 continue
             turn = self._turn(panel)
             if turn is not None:
@@ -158,7 +156,7 @@ class Way:
                     if not panel:
                         length = part / 2
                         if length < _SHORTEST:
-                            raise LostWayError(f"b turns at {self.progress}")
+                            raise LostError(f"b turns at {self.progress}")
                         continue
                     self.panels.append(panel)
                 takes = not takes
@@ -173,7 +171,7 @@ class Way:
                 speeds[B] = speeds[Z] = 0.0
             left, low, high, right = self.ends[:4]
             self._kink = bool(min(np.abs(each - self._breaks).min() for each in (left, low, right)) < _AT)
-            self.vanished, self.closed = bool(low - left < _GONE), bool(high - low < _SHUT)
+            self.vanished, self.closed = bool(low - left < _GONE), bool(high - low < SHUT)
             if self.vanished or self.closed:
                 return
 
@@ -337,7 +335,12 @@ class Way:
         like: Panel | None = None,
     ) -> Panel | None:
         """A panel by Newton's method; None if it does not converge. ``event``: an end and its place, or "width" or
-        "gap" and its size, at the end of the panel, whose length is unknown then."""
+        "gap" and its size, at the end of the panel, whose length is unknown then.
+
+        Where b has just turned round, it moves by a quarter of what the place does at which it would take points: both
+        go with the square of the time, and by this quarter what a point has seen adds up to nothing.
+        """
+        turned = not takes and begin[Z] - begin[B] < _TURNED
         if like:
             share = np.clip(by.shares * length / like.length, 0, 1)
             offsets = like.at(like.by.place(share, 1 - share))
@@ -345,9 +348,9 @@ class Way:
             offsets = speeds[:, None] * by.shares * length
             if event and event[0] == "gap":  # a slows down with the inner zone's width
                 offsets[A] = speeds[A] * length * (1 - (1 - by.shares) ** 2.5) / 2.5
-            if not takes and begin[Z] - begin[B] < 1e-9:  # b has just turned round
+            if turned:
                 ends = begin[:4, None] + offsets[:4]
-                offsets[B] = 0.65 * np.abs(taken(ends, self._least) - begin[B]) + 1e-9 * by.shares * length
+                offsets[B] = np.abs(taken(ends, self._least) - begin[B]) / 4 + 1e-9 * by.shares * length
         free = (L, A, R) if takes else ENDS
         count = len(free)
         step: tuple[float, Array] | None = None  # of the length and of the offsets
@@ -402,12 +405,19 @@ class Way:
                             matrix[row, :, column] += block * slopes[each, column]
                 less = np.zeros(DEGREES)
                 if end != B:
-                    x = ends[end]
-                    near = 1e-4 * np.abs(x[:, None] - self._breaks).min(axis=1)
-                    less = self.start.less(factor, x)
-                    diagonal -= (self.start.less(factor, x + near) - self.start.less(factor, x - near)) / (2 * near)
+                    x, origin = offsets[end], float(begin[end])
+                    near = 1e-4 * np.abs(x[:, None] - (self._breaks - origin)).min(axis=1)
+                    less = self.start.less(factor, x, origin)
+                    beside = (self.start.less(factor, x + side * near, origin) for side in (1, -1))
+                    diagonal -= np.subtract(*beside) / (2 * near)
                 residual[row] = past + total - less
                 matrix[row, :, row] += np.diag(diagonal)
+                if end == B and turned:
+                    due = taken(ends, self._least) - begin[B]
+                    near = np.flatnonzero(np.abs(due) < _NEAR_TURN)
+                    residual[row, near] = offsets[B, near] - due[near] / 4
+                    matrix[row, near] = by_length[row, near] = 0.0
+                    matrix[row, near, row, near] = 1.0
             size = count * DEGREES
             system, target = matrix.reshape(size, size), -residual.ravel()
             if event:

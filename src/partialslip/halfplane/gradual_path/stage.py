@@ -7,6 +7,10 @@ from partialslip.halfplane.gradual_path.retreat import Zone
 from partialslip.halfplane.gradual_path.tractions import Tractions
 
 
+class LostError(ValueError):
+    """The phases of the half cycle cannot be followed."""
+
+
 class Loads(NamedTuple):
     """Changes of the tension and of the shear force in half a cycle, in f p0 and f p0 a; both are positive."""
 
