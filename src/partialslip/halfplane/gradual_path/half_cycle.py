@@ -21,7 +21,9 @@ from partialslip.halfplane.traction import half_range
 
 _CYCLES = 200
 _SETTLED, _NEAR = 1e-13, 1e-8
-_NEARLY = 1e-4  # change of the zone's middle from which on a zone inside is followed
+_CLOSE = 1e-10  # change of the middle where a zone inside is followed, which rounding moves by 1e-11
+_NEARLY = 1e-8  # change of the zone's middle from which on a zone inside is followed
+_BESIDE = 1e-6  # distance from the right end at which an inner zone leaves no kink of q of its own
 _SAME = 1e-9  # by how much a zone is wider than the one that drifts where it drifts at once
 _HALVINGS = 12  # of the way between two stages
 _NARROWEST = 0.02  # half-width of a stick zone that drifts: narrower ones travel more than fifty times their width
@@ -40,6 +42,11 @@ class HalfCycle:
         A half cycle from a similar state.
     parts : bool
         Whether a zone inside the stick zone is followed.
+
+    Attributes
+    ----------
+    opens : bool
+        Whether a zone inside the stick zone slips as the half cycle begins.
     """
 
     def __init__(self, loads: Loads, start: Tractions, guess: "HalfCycle | float", parts: bool = True) -> None:
@@ -49,8 +56,10 @@ class HalfCycle:
         left = min(first.high, 1 - 2 * c) if first.smooth is None and first.factor < 0 else -1.0
         self.phases: list[Phase] = []
         before: Leading = Resting(Stage(0.0, Zone(left, 1.0), start))
-        if parts and before.last.zone.centre - c - last.low > SHUT:
-            before = Parted(loads, before.last, last.low)
+        self.opens = before.last.zone.centre - c - last.low > SHUT
+        if parts and self.opens:
+            alike = guess.phases[0] if isinstance(guess, HalfCycle) else None
+            before = Parted(loads, before.last, last.low, alike if isinstance(alike, Parted) else None)
             self.phases.append(before)
         if before.last.zone.half_width - c > _SAME:
             before = self._retreat(before.last, guess.middle if isinstance(guess, HalfCycle) else guess)
@@ -109,6 +118,11 @@ class HalfCycle:
         return 1 if isinstance(self.phases[-1], Retreating) and self.phases[-1].retreat.sign > 0 else -1
 
     @property
+    def parted(self) -> bool:
+        """Whether it begins with a slip zone inside the stick zone."""
+        return isinstance(self.phases[0], Parted)
+
+    @property
     def stuck(self) -> tuple[float, float]:
         """Ends of the interval of points that never slip; the left one is not left of the right one if there are
         none."""
@@ -126,6 +140,8 @@ class HalfCycle:
         q, (low, high) = self.last.q, self.stuck
         if low >= high:
             return q
+        if self.last.zone.right - high < _BESIDE:
+            high = self.last.zone.right
 
         def mean(from_low: Array, from_high: Array) -> Array:
             ends = (low, high, from_low, from_high)
@@ -195,16 +211,16 @@ def steady(loads: Loads, shape: Shape) -> HalfCycle:
     if not len(narrow) or loads.least < _NARROWEST:
         raise LostError
     found = HalfCycle(loads, start, float(tried.centre[narrow[0]]), parts=False)
-    found = _repeated(found, _NEARLY, parts=False)
-    return _repeated(found, _SETTLED, parts=True)
+    return _repeated(_repeated(found, parts=False), parts=True)
 
 
-def _repeated(found: HalfCycle, settled: float, parts: bool) -> HalfCycle:
-    """The half cycle after which the zone's middle changes by less than ``settled``, or no longer gets nearer."""
+def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
+    """The half cycle after which the zone's middle changes no longer; a zone inside is followed if it ``parts``."""
     changes: list[float] = []
     for _ in range(_CYCLES):
         before, found = found.last.zone.centre, HalfCycle(found.loads, -found.settled, found, parts)
         changes.append(abs(found.last.zone.centre - before))
+        settled = _SETTLED if not found.opens else _CLOSE if found.parted else _NEARLY
         if changes[-1] < settled or min(changes[:-1], default=np.inf) < min(changes[-1], _NEAR):
             break
     return found

@@ -14,10 +14,11 @@ from partialslip.halfplane.gradual_path.tractions import Part, Tractions
 
 class Parted:
     """The stick zone is parted by an inner slip zone from ``first`` on. ``low`` is the left end of the points on the
-    lower friction bound that the first rate pushes. ``way``: the ways of the ends."""
+    lower friction bound that the first rate pushes. ``way``: the ways of the ends, perhaps near those of a similar
+    phase."""
 
-    def __init__(self, loads: Loads, first: Stage, low: float) -> None:
-        self.way = Way(loads.tension, loads.least, first.q, first.zone.left, low)
+    def __init__(self, loads: Loads, first: Stage, low: float, near: "Parted | None" = None) -> None:
+        self.way = Way(loads.tension, loads.least, first.q, first.zone.left, low, near.way if near else None)
         self.first = first._replace(inner=Zone(*(float(self.way.first[end]) for end in (A, B))))
         self.last = last = self.at(self.way.progress)
         if self.way.vanished and last.inner:

@@ -23,6 +23,7 @@ from partialslip.halfplane.gradual_path.inner_rates import (
     WEIGHTS,
     A,
     B,
+    Event,
     L,
     Map,
     Panel,
@@ -35,9 +36,10 @@ from partialslip.halfplane.gradual_path.stage import LostError
 from partialslip.halfplane.gradual_path.tractions import Tractions
 
 ENDS = (L, A, B, R)
-_STEPS = 14
+_STEPS = 24
 _CLOSE = 1e-12
 _SLOW = 3e-11  # where rounding stops Newton's method: ends that hardly move
+_RELATIVE = 1e-7  # of the way of an end in the panel: an inner zone that closes slows a down by orders of magnitude
 _TAIL = 1e-9  # of the ways, relative to their lengths
 _AT = 1e-11  # distance from a break within which an end is at it
 _GONE = 1e-6  # width of an interval that has vanished
@@ -49,6 +51,7 @@ SHUT = 1e-5  # width of an inner zone that has closed: points are pushed beyond 
 _NARROW = 1e-4  # width of an inner zone that may be closed where its ends are lost
 _HALVINGS = 12
 _SHORTEST = 1e-15
+_FARTHER = 1.05  # by which a panel is longer than the one that it is like, for b to turn round in it
 _TURNED, _NEAR_TURN = 1e-9, 1e-7  # z0 - b where b turns round; ways from there that rounding hides in the changes of q
 
 
@@ -67,6 +70,8 @@ class Way:
         The state: from ``low`` to 1 it is on the lower friction bound.
     left, low : float
         l and a at the beginning.
+    near : Way, optional
+        Ways from a similar state.
 
     Attributes
     ----------
@@ -74,7 +79,9 @@ class Way:
         Whether the inner zone has closed at the end, or the left interval has vanished.
     """
 
-    def __init__(self, tension: float, least: float, start: Tractions, left: float, low: float) -> None:
+    def __init__(
+        self, tension: float, least: float, start: Tractions, left: float, low: float, near: "Way | None" = None
+    ) -> None:
         self._tension, self._least, self.start = tension, least, start
         self._breaks = np.array([-1.0, *sorted({*start.breaks, *start.shape.strong_kinks}), 1.0])
         ends = np.array([left, low, low + 4 / 3 * ((left + 1) / 2 - least - low), 1.0])
@@ -82,6 +89,8 @@ class Way:
         self.first = np.append(ends, ends[B])
         self.panels: list[Panel] = []
         self.closed = self.vanished = False
+        self._near = near.panels if near else []
+        self._refused = -1  # number of the panel that was not found up to an event
         self._kink = True
         with np.errstate(divide="ignore", invalid="ignore"):  # by steps that go too far, which are taken back
             self._follow()
@@ -110,36 +119,11 @@ class Way:
             if len(self.panels) == _PANELS:
                 raise LostError("too many panels")
             begin = self.ends
-            rest = 1 - self.progress
-            length = min(length, rest)
-            width, gap = begin[A] - begin[L], begin[B] - begin[A]
-            fall, shut = speeds[L] - speeds[A], speeds[A] - speeds[B]
-            panel = None
-            passing = self._next_break(begin, speeds)
-            if passing and passing[0] < 1.2 * length:
-                panel = self._solve(begin, takes, passing[0], speeds, SINE, passing[1:])
-                if panel and panel.length > rest:
-                    panel = None
-            if panel:
-                pass
-            elif self.panels and fall * length > 0.3 * width and not shut * width > fall * gap:
-                panel = self._solve(begin, takes, 0.4 * width / fall, speeds, DECAY, ("width", width * np.exp(-RATE)))
-                if panel and panel.length > rest:
-                    panel = None
-            elif self.panels and takes and shut * length > 0.5 * gap:
-                panel = self._solve(
-                    begin, takes, gap / shut, speeds, SINE, ("gap", self._least + max(SHUT / 2, _PART * gap))
-                )
-                if panel and panel.length > rest:
-                    panel = None
-            panel = panel or self._solve(begin, takes, length, speeds, SINE)
-            crossing = self._crossing(panel) if panel else None
-            while panel and crossing:
-                end, place, s = crossing
-                panel = self._solve(
-                    begin, takes, panel.length * float(panel.by.share(np.array(s))), speeds, SINE, (end, place), panel
-                )
-                crossing = self._crossing(panel) if panel else None
+            gap = begin[B] - begin[A]
+            length = min(length, 1 - self.progress)
+            panel = self._again(takes, speeds)
+            if not panel:
+                panel = self._tried(takes, length, speeds)
             if not panel or _tail(panel) > _TAIL:
                 length = min(length, panel.length if panel else length) / 2
                 if length < _SHORTEST * max(1.0, 1e8 * (gap < _NARROW)):
@@ -158,7 +142,7 @@ class Way:
                         if length < _SHORTEST:
                             raise LostError(f"b turns at {self.progress}")
                         continue
-                    self.panels.append(panel)
+                    self.panels.append(panel._replace(turns=True))
                 takes = not takes
             else:
                 self.panels.append(panel)
@@ -174,6 +158,50 @@ class Way:
             self.vanished, self.closed = bool(low - left < _GONE), bool(high - low < SHUT)
             if self.vanished or self.closed:
                 return
+
+    def _again(self, takes: bool, speeds: Array) -> Panel | None:
+        """The next panel, if it is like the one in the ways from a similar state."""
+        number, panel = len(self.panels), None
+        old = self._near[number] if number < len(self._near) else None
+        if old and old.takes == takes:
+            begin, event = self.ends, old.event
+            if event and event[0] == "width":
+                event = "width", (begin[A] - begin[L]) * np.exp(-RATE)
+            elif event and event[0] != "gap":
+                event = event[0], float(self._breaks[np.argmin(np.abs(self._breaks - event[1]))])
+            panel = self._solve(begin, takes, old.length * (_FARTHER if old.turns else 1), speeds, old.by, event, old)
+        fits = panel and self.progress + panel.length <= 1 and not self._crossing(panel) and _tail(panel) <= _TAIL
+        if not fits:
+            self._near = []
+            return None
+        return panel
+
+    def _tried(self, takes: bool, length: float, speeds: Array) -> Panel | None:
+        """The next panel: up to a break, to where an interval has become narrower, or of a ``length``."""
+        begin, rest = self.ends, 1 - self.progress
+        width, gap = begin[A] - begin[L], begin[B] - begin[A]
+        fall, shut = speeds[L] - speeds[A], speeds[A] - speeds[B]
+        passing = self._next_break(begin, speeds)
+        panel = None
+        if self._refused == len(self.panels):
+            pass
+        elif passing and passing[0] < 1.2 * length:
+            panel = self._solve(begin, takes, passing[0], speeds, SINE, passing[1:])
+        elif self.panels and fall * length > 0.3 * width and not shut * width > fall * gap:
+            panel = self._solve(begin, takes, 0.4 * width / fall, speeds, DECAY, ("width", width * np.exp(-RATE)))
+        elif self.panels and takes and shut * length > 0.5 * gap:
+            size = self._least + max(SHUT / 2, _PART * gap)
+            panel = self._solve(begin, takes, gap / shut, speeds, SINE, ("gap", size))
+        if not panel or panel.length > rest or _tail(panel) > _TAIL:
+            self._refused = len(self.panels)
+            panel = self._solve(begin, takes, length, speeds, SINE)
+        crossing = self._crossing(panel) if panel else None
+        while panel and crossing:
+            end, place, s = crossing
+            part = panel.length * float(panel.by.share(np.array(s)))
+            panel = self._solve(begin, takes, part, speeds, SINE, (end, place), panel)
+            crossing = self._crossing(panel) if panel else None
+        return panel
 
     def _first_speeds(self) -> tuple[bool, float, Array]:
         """Whether b takes points back, length of the first panel, and speeds of the ends."""
@@ -191,7 +219,7 @@ class Way:
         takes = bool(free <= 0)
         speeds[B] = free if takes else 2 / 3 * free
         speeds[Z] = free
-        return takes, min(_FASTEST / np.abs(speeds).max(), 0.2), speeds
+        return takes, min(_FASTEST / np.abs(speeds).max(), 0.2, (ends[B] - ends[A]) / (2 * abs(speeds[B]))), speeds
 
     def _rates_near(self, ends: Array, end: int) -> float:
         """Size of the rate near an ``end``, times the square root of the distance."""
@@ -331,11 +359,11 @@ class Way:
         length: float,
         speeds: Array,
         by: Map,
-        event: tuple[str | int, float] | None = None,
+        event: Event | None = None,
         like: Panel | None = None,
     ) -> Panel | None:
-        """A panel by Newton's method; None if it does not converge. ``event``: an end and its place, or "width" or
-        "gap" and its size, at the end of the panel, whose length is unknown then.
+        """A panel by Newton's method, perhaps from a panel that is ``like`` it; None if it does not converge. The
+        length is unknown if there is an ``event``.
 
         Where b has just turned round, it moves by a quarter of what the place does at which it would take points: both
         go with the square of the time, and by this quarter what a point has seen adds up to nothing.
@@ -438,8 +466,11 @@ class Way:
                 longer = damp * float(solution[-1])
             step = longer, damp * np.einsum("ecj,cj->ej", slopes, change)
             length, offsets = length + step[0], offsets + step[1]
-            if damp == 1 and np.abs(change).max() < (_CLOSE if count_of_steps < 2 else _SLOW):
-                return Panel(self.progress, length, begin, offsets, by, takes, self._kink)
+            largest, moved = np.abs(change).max(axis=1), np.abs(offsets[list(free)]).max(axis=1)
+            relative = free.index(A), free.index(L), free.index(R)  # b need not be known as well where it turns round
+            close = (largest < 1e-15 + _RELATIVE * moved)[list(relative)].all()
+            if damp == 1 and close and largest.max() < (_CLOSE if count_of_steps < 2 else _SLOW):
+                return Panel(self.progress, length, begin, offsets, by, takes, self._kink, event)
         return None
 
 
