@@ -116,11 +116,8 @@ class Turning:
         return self.turn * displacement, self.turn * self.mirror * moment
 
     @cached_property
-    def worn(self) -> Worn | None:
-        """Slip over half a cycle, and the energy that a cycle dissipates; None where a zone inside the stick zone slips
-        for a while: it leaves no trace in q, and is not followed."""
-        if not self.way.followed:
-            return None
+    def worn(self) -> Worn:
+        """Slip over half a cycle, and the energy that a cycle dissipates."""
         x, slip, dissipated = slips(self.way)
         return Worn(self.mirror * x[:: self.mirror], self.turn * slip[:: self.mirror], dissipated)
 

@@ -13,7 +13,7 @@ from partialslip.halfplane.gradual_path.inner import Parted
 from partialslip.halfplane.gradual_path.inner_way import SHUT
 from partialslip.halfplane.gradual_path.phases import Drifting, Leading, Phase, Resting, Retreating
 from partialslip.halfplane.gradual_path.retreat import Retreat, Zone
-from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
+from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage, lasting
 from partialslip.halfplane.gradual_path.tractions import Part, Tractions
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone, stick_zones
@@ -161,19 +161,15 @@ class HalfCycle:
 def between(phase: Phase, first: Stage, last: Stage, share: float, halvings: int = _HALVINGS) -> list[Stage]:
     """Stages of a ``phase`` after the ``first`` up to the ``last``, so many that neighbours have a ``share`` of their
     stick zones in common; the way from ``first`` to ``last`` is halved no more than ``halvings`` times."""
-    least = min(_common(each.sticks, each.sticks) for each in (first, last))
-    if halvings == 0 or _common(first.sticks, last.sticks) >= share * least:
+    widths = [sum(zone.right - zone.left for zone in zones) for zones in (first.sticks, last.sticks)]
+    common = sum(zone.right - zone.left for zone in lasting(first, last))
+    if halvings == 0 or common >= share * min(widths):
         return [last]
     middle = phase.at((first.progress + last.progress) / 2)
     return [
         *between(phase, first, middle, share, halvings - 1),
         *between(phase, middle, last, share, halvings - 1),
     ]
-
-
-def _common(one: tuple[Zone, ...], other: tuple[Zone, ...]) -> float:
-    """Width that two sets of intervals have in common."""
-    return sum(max(min(a.right, b.right) - max(a.left, b.left), 0.0) for a in one for b in other)
 
 
 def stuck(stages: list[Stage]) -> tuple[float, float]:
