@@ -53,7 +53,9 @@ def main(points, seed):
     for kind in KINDS:
         seconds, worst = np.array([each[1:] for each in found if each[0] == kind]).reshape(-1, 2).T
         if len(seconds):
-            print(f"{kind:8} {len(seconds):4}: certificate median {np.median(worst):.1e}, worst {worst.max():.1e} f p0;")
+            print(
+                f"{kind:8} {len(seconds):4}: certificate median {np.median(worst):.1e}, worst {worst.max():.1e} f p0;"
+            )
             print(f"{'':14} CPU median {np.median(seconds):.3f}, worst {seconds.max():.2f} s")
 
 

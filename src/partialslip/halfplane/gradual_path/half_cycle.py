@@ -1,9 +1,6 @@
 """Half a cycle under gradual loads, and the steady cycle; scaled as in :mod:`partialslip.halfplane.shape`."""
 
-
 import math
-
-
 
 import numpy as np
 
@@ -27,7 +24,6 @@ _BESIDE = 1e-6  # distance from the right end at which an inner zone leaves no k
 _SAME = 1e-9  # by how much a zone is wider than the one that drifts where it drifts at once
 _HALVINGS = 12  # of the way between two stages
 _NARROWEST = 0.02  # half-width of a stick zone that drifts: narrower ones travel more than fifty times their width
-
 
 
 class HalfCycle:

@@ -84,9 +84,8 @@ def loop(way: HalfCycle, shares: Array) -> tuple[Array, Array]:
 def displacement(way: HalfCycle, first: Stage, last: Stage) -> float:
     """Relative displacement of the bodies, less that of the adhered contact, from the ``first`` to the ``last`` of two
     stages at which common points stick; in A f p0 a."""
-    low, high = _common(first.zone, last.zone)
     shear = (last.progress - first.progress) * way.loads.shear
-    at = float(_mismatch(way, first, last, np.array([(low + high) / 2]))[0])
+    at = float(_mismatch(way, first, last, np.array([_sticks(first, last)]))[0])
     return -at - shear / math.pi * math.log(2)
 
 
