@@ -76,8 +76,8 @@ class HalfCycle:
         centre = retreat.balanced(c, guess) if inside else None
         if centre is None:
             centre = retreat.bracketed(c)
-        if centre is None:
-            raise LostError
+        if centre is None:  # the zone may stay wider up to the end
+            return self._last_retreat(begin, -1, None)
         zone = Zone(centre - c, centre + c)
         progress = begin.progress + retreat.conditions(zone).tension / self.loads.tension
         if progress >= 1:
@@ -148,7 +148,8 @@ class HalfCycle:
 
         def half(from_low: Array, from_high: Array) -> Array:
             locked = mean(from_low, from_high) - (at_low * from_high + at_high * from_low) / (high - low)
-            return q.within(low, high, from_low, from_high) - locked
+            settled: Array = q.within(low, high, from_low, from_high) - locked
+            return settled
 
         middle = Part(low, high, 0.0).plus(half)
         return Tractions.of(q.shape, [*q.between(-1.0, low), middle, *q.between(high, 1.0)])
@@ -200,9 +201,10 @@ def steady(loads: Loads, shape: Shape) -> HalfCycle:
     shares = np.append(np.geomspace(1e-4, 0.1, 12), np.linspace(0.1, 1, 64)[1:])
     tried = stick_zones(shares * loads.shear / math.pi, shares * loads.tension, shape)
     narrow = np.flatnonzero(tried.half_width < loads.least)
-    if not len(narrow) or loads.least < _NARROWEST:
+    if loads.least < _NARROWEST:
         raise LostError
-    found = HalfCycle(loads, start, float(tried.centre[narrow[0]]), parts=False)
+    guess = float(tried.centre[narrow[0]]) if len(narrow) else zone.centre
+    found = HalfCycle(loads, start, guess, parts=False)
     return _repeated(_repeated(found, parts=False), parts=True)
 
 

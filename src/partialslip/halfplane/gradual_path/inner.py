@@ -18,7 +18,7 @@ class Parted:
     phase."""
 
     def __init__(self, loads: Loads, first: Stage, low: float, near: "Parted | None" = None) -> None:
-        self.way = Way(loads.tension, loads.least, first.q, first.zone.left, low, near.way if near else None)
+        self.way: Way = Way(loads.tension, loads.least, first.q, first.zone.left, low, near.way if near else None)
         self.first = first._replace(inner=Zone(*(float(self.way.first[end]) for end in (A, B))))
         self.last = last = self.at(self.way.progress)
         if self.way.vanished and last.inner:

@@ -41,8 +41,8 @@ class Stage(NamedTuple):
 
 
 def lasting(before: Stage, after: Stage) -> list[Zone]:
-    """Intervals that stick from one stage to the next: points that change from the left interval to the right one, where
-    a zone between them slips, do not."""
+    """Intervals that stick from one stage to the next: points that change from the left interval to the right one,
+    where a zone between them slips, do not."""
     early, late = before.sticks, after.sticks
     if len(early) == len(late):
         pairs = list(zip(early, late, strict=True))

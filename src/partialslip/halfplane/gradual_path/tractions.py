@@ -60,8 +60,8 @@ class Tractions:
         return sorted({*self.breaks, *(float(cut) for cuts in inner for cut in cuts)})
 
     def less(self, factor: float, x: Array, origin: float = 0.0) -> Array:
-        """``factor`` p - q at ``origin`` + ``x``, without cancellation where q is on the bound. Distances from an origin
-        at which parts meet keep their digits."""
+        """``factor`` p - q at ``origin`` + ``x``, without cancellation where q is on the bound. Distances from an
+        origin at which parts meet keep their digits."""
         result = np.zeros_like(x)
         p = self.shape.pressure(origin + x)
         which = np.searchsorted(np.array(self.breaks) - origin, x)
