@@ -26,16 +26,16 @@ def test_all_conditions_hold(Qf, sf):
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_all_conditions_hold_where_no_zone_inside_slips(seed):
+def test_all_conditions_hold_under_random_loads(seed):
+    """With or without a zone inside that slips; two states each."""
     rng, judged = np.random.default_rng([37, seed]), 0
     while judged < 2:
         try:
             found = cycle(rng.uniform(0.4, 0.99), rng.uniform(7, 15))
         except LostError:
             continue
-        if not found.parted:
-            assert certificate(found).worst < 1e-7
-            judged += 1
+        assert certificate(found).worst < 1e-7
+        judged += 1
 
 
 @pytest.mark.fault
