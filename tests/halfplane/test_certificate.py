@@ -5,8 +5,9 @@ import pytest
 
 from partialslip.halfplane.gradual_path.certificate import certificate, certify, stages
 from partialslip.halfplane.gradual_path.drift import Drift
-from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, LostError, Retreating, steady
-from partialslip.halfplane.gradual_path.stage import Loads
+from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
+from partialslip.halfplane.gradual_path.phases import Retreating
+from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch
 
@@ -17,31 +18,35 @@ def cycle(Qf, sf, shape=None):
     return steady(Loads(sf, np.pi * Qf), shape or Hertz())
 
 
-@pytest.mark.parametrize(("Qf", "sf"), [(0.55, 7.0), (0.75, 6.0), (0.6, 7.0)])
+@pytest.mark.parametrize(
+    ("Qf", "sf"), [(0.55, 7.0), (0.75, 6.0), (0.6434668934976868, 8.670889385947003), (0.9975, 7.2)]
+)
 def test_all_conditions_hold(Qf, sf):
     assert certificate(cycle(Qf, sf)).worst < HELD
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_all_conditions_hold_wherever_all_slip_is_followed(seed):
-    """A zone inside the stick zone that slips for a while and leaves no trace is left out, and said so."""
+def test_all_conditions_hold_under_random_loads(seed):
+    """With or without a zone inside that slips; two states each."""
     rng, judged = np.random.default_rng([37, seed]), 0
     while judged < 2:
         try:
             found = cycle(rng.uniform(0.4, 0.99), rng.uniform(7, 15))
         except LostError:
             continue
-        if found.followed:
-            assert certificate(found).worst < 1e-7
-            judged += 1
+        assert certificate(found).worst < 1e-7
+        judged += 1
 
 
-def test_what_is_left_out_is_told():
-    """(0.9, 14): the conditions fail on the way, by a quarter of f p0, and not at its end."""
+@pytest.mark.fault
+def test_a_zone_inside_left_out_is_seen():
+    """The steady state at (0.9, 14) without the zone inside that slips for a while is the same at its end, and violates
+    the bound on the way, by a quarter of f p0."""
     found = cycle(0.8989503087286937, 14.038013448105065)
-    assert not found.followed
-    assert certificate(found).bound > 0.1
-    assert certificate(found).steady < HELD
+    one = HalfCycle(found.loads, found.start, found, parts=False)
+    assert certificate(found).worst < 1e-8
+    assert certificate(one).bound > 0.1
+    assert certificate(one).steady < 1e-8
 
 
 def test_all_conditions_hold_under_a_flat_rounded_punch():

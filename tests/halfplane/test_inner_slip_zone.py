@@ -1,5 +1,4 @@
-"""An inner slip zone under gradual loads: the phase in which it slips, followed from a state. No half cycle has it yet
-(:func:`partialslip.halfplane.gradual_path.half_cycle.steady` refuses such loads)."""
+"""An inner slip zone under gradual loads: the phase in which it slips, and the half cycles that begin with it."""
 
 import functools
 
@@ -7,8 +6,7 @@ import numpy as np
 import pytest
 
 from partialslip.halfplane.gradual_path.certificate import certify
-from partialslip.halfplane.gradual_path.half_cycle import steady
-from partialslip.halfplane.gradual_path.inner import Parted
+from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
 from partialslip.halfplane.gradual_path.inner_rates import other_root
 from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.hertz import Hertz
@@ -18,16 +16,15 @@ LOADS = Loads(7.2, np.pi * 0.9975)
 
 @functools.cache
 def parted():
-    """The steady half cycle without the inner zone, which leaves no trace at its end, and the phase with it."""
+    """The steady half cycle, and its phase with the inner zone."""
     half = steady(LOADS, Hertz())
-    first = half.phases[0].first
-    return half, Parted(LOADS, first, half.last.zone.right)
+    return half, half.phases[0]
 
 
 def test_conditions_hold_while_the_inner_zone_slips():
     half, phase = parted()
     shares = np.linspace(0, 1, 9)[1:]
-    way = [half.phases[0].first, *(phase.at(share * phase.last.progress) for share in shares)]
+    way = [phase.first._replace(q=half.start), *(phase.at(share * phase.last.progress) for share in shares)]
     found = certify(LOADS, way)
     assert max(found.bound, found.equilibrium, found.stick, found.slip) < 1e-8
 
@@ -48,6 +45,6 @@ def test_both_intervals_move_alike():
 def test_an_inner_zone_left_out_is_seen():
     """Deliberate fault: at the same stages the stick zone is one."""
     half, phase = parted()
-    shares = np.linspace(0, 1, 9)[1:]
-    way = [half.phases[0].first, *(half.at(share * phase.last.progress) for share in shares)]
+    shares, one = np.linspace(0, 1, 9)[1:], HalfCycle(LOADS, half.start, half, parts=False)
+    way = [one.phases[0].first, *(one.at(share * phase.last.progress) for share in shares)]
     assert certify(LOADS, way).bound > 1e-3

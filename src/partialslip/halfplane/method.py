@@ -29,7 +29,6 @@ from partialslip.result.state import State
 from partialslip.scene import Scene
 
 _SLIDES = "the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip"
-_PASSES = "slip and dissipated energy are not known: a zone inside the stick zone slips for a while"
 _RATCHETS = "the mean of Q is above the bound for a steady state: the contact ratchets, m and n are not reached"
 
 
@@ -98,7 +97,6 @@ def solve(
         notes=(
             *remarks(regime, turns, why, _SLIDES, _RATCHETS),
             *_coarse(table, scene.fem.accuracy),
-            *((_PASSES,) if slips and regime != "ratchets" and not slip else ()),
         ),
         surface=surface,
         stress_at=StressAt(stress.inside) if stress else None,
@@ -205,9 +203,7 @@ def _limits(scene: Scene, pressed: Contact, cycle: Loading | Turning | None) -> 
     return limits
 
 
-def _slip(scene: Scene, pressed: Contact, cycle: Loading | Turning) -> Slip | None:
-    if cycle.worn is None:
-        return None
+def _slip(scene: Scene, pressed: Contact, cycle: Loading | Turning) -> Slip:
     x, slips, dissipated = cycle.worn
     stress, unit = scene.friction.f * pressed.p0, scene.material.A * scene.friction.f * pressed.p0 * pressed.a
     return Slip(

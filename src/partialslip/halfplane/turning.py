@@ -7,13 +7,16 @@ from functools import cached_property
 
 from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
-from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, LostError, steady
+from partialslip.halfplane.gradual_path.certificate import certificate
+from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
 from partialslip.halfplane.gradual_path.room import room
 from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
-from partialslip.halfplane.gradual_path.stage import Loads, Stage
+from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.loading import Loading, Worn, loading
 from partialslip.halfplane.shape import Shape
 from partialslip.result import StickZone
+
+_HELD = 1e-6  # f p0: violation of a condition above which a way with a slip zone inside is not taken
 
 
 @dataclass(frozen=True)
@@ -116,11 +119,8 @@ class Turning:
         return self.turn * displacement, self.turn * self.mirror * moment
 
     @cached_property
-    def worn(self) -> Worn | None:
-        """Slip over half a cycle, and the energy that a cycle dissipates; None where a zone inside the stick zone slips
-        for a while: it leaves no trace in q, and is not followed."""
-        if not self.way.followed:
-            return None
+    def worn(self) -> Worn:
+        """Slip over half a cycle, and the energy that a cycle dissipates."""
         x, slip, dissipated = slips(self.way)
         return Worn(self.mirror * x[:: self.mirror], self.turn * slip[:: self.mirror], dissipated)
 
@@ -184,6 +184,9 @@ def half_cycle(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: flo
     if once.nothing or once.gf or once.holds:
         return once
     try:
-        return Turning(once, steady(Loads(once.sf, math.pi * once.Qf), once.seen))
+        way = steady(Loads(once.sf, math.pi * once.Qf), once.seen)
     except LostError:
         return once
+    if way.parted and not certificate(way).worst < _HELD:
+        return once
+    return Turning(once, way)

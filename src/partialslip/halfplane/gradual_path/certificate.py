@@ -15,7 +15,7 @@ import numpy as np
 from partialslip.arrays import Array, Mask
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, between
 from partialslip.halfplane.gradual_path.retreat import Zone
-from partialslip.halfplane.gradual_path.stage import Loads, Stage
+from partialslip.halfplane.gradual_path.stage import Loads, Stage, lasting
 from partialslip.halfplane.gradual_path.tractions import Tractions
 
 _STEP, _REACH = 0.4, 39.0  # of the trapezoidal rule, in the logarithm
@@ -76,7 +76,7 @@ def certify(loads: Loads, found: Sequence[Stage]) -> Certificate:
         pulled += panels.integral(before.q, after.q)
         equilibrium = max(equilibrium, abs(pulled - (after.progress - found[0].progress) * loads.shear) / 2)
         strain = step * loads.tension / 4 + panels.strain(before.q, after.q)
-        moved, both = panels.cumulative(strain), held[0] & held[1]
+        moved, both = panels.cumulative(strain), panels.within(lasting(before, after))
         if not both.any():
             return Certificate(bound, equilibrium, np.inf, np.inf, np.inf)
         moved = moved - np.median(moved[both])

@@ -8,31 +8,32 @@ from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.inner_rates import A, B, L, R
 from partialslip.halfplane.gradual_path.inner_way import Way
 from partialslip.halfplane.gradual_path.retreat import Zone
-from partialslip.halfplane.gradual_path.stage import Loads, Stage
+from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Part, Tractions
 
 
 class Parted:
     """The stick zone is parted by an inner slip zone from ``first`` on. ``low`` is the left end of the points on the
-    lower friction bound that the first rate pushes. ``way``: the ways of the ends."""
+    lower friction bound that the first rate pushes. ``way``: the ways of the ends, perhaps near those of a similar
+    phase."""
 
-    def __init__(self, loads: Loads, first: Stage, low: float) -> None:
-        self.way = Way(loads.tension, loads.least, first.q, first.zone.left, low)
+    def __init__(self, loads: Loads, first: Stage, low: float, near: "Parted | None" = None) -> None:
+        self.way: Way = Way(loads.tension, loads.least, first.q, first.zone.left, low, near.way if near else None)
         self.first = first._replace(inner=Zone(*(float(self.way.first[end]) for end in (A, B))))
-        last = self.at(self.way.progress)
-        self.last = last
-        if self.way.closed:
-            self.last = last._replace(inner=None)
-        elif self.way.vanished and last.inner:
+        self.last = last = self.at(self.way.progress)
+        if self.way.vanished and last.inner:
             zone = Zone(last.inner.right, right=last.zone.right)
             parts = Part(-1.0, zone.left, -1.0), *last.q.between(zone.left, 1.0)
             self.last = Stage(last.progress, zone, Tractions.of(first.q.shape, parts))
+        elif not self.way.closed:
+            raise LostError("an inner zone slips up to the end of the half cycle")
 
-    @property
-    def slipped(self) -> Zone:
-        """Interval of the points inside that slip."""
-        highs = [self.way.first[B], *(panel.end[B] for panel in self.way.panels)]
-        return Zone(float(self.way.ends[A]), float(max(highs)))
+    def lacking(self, from_left: Array, from_right: Array) -> Array:
+        """p - q in the right interval at distances from the ends of the last zone."""
+        del from_left
+        way = self.way
+        seen, _ = way.seen(way.ends, R, -from_right, way.progress)
+        return self.first.q.less(1.0, float(way.ends[R]) - from_right) - seen
 
     def at(self, progress: float) -> Stage:
         """Stage at a ``progress`` within the phase."""

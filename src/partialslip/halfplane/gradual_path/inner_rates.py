@@ -121,8 +121,13 @@ def taken(ends: Array, least: float) -> Array:
     return result
 
 
+Event = tuple[str | int, float]
+
+
 class Panel(NamedTuple):
-    """Ways over a span ``length`` of lambda, from ``progress`` on: ``begin`` (5,) plus ``offsets`` (5, nodes)."""
+    """Ways over a span ``length`` of lambda, from ``progress`` on: ``begin`` (5,) plus ``offsets`` (5, nodes).
+    ``event``: an end and its place, or "width" or "gap" and its size, at the end of the panel. ``takes``: b takes
+    points back; ``turns``: b turns round at the end."""
 
     progress: float
     length: float
@@ -131,6 +136,8 @@ class Panel(NamedTuple):
     by: Map
     takes: bool
     kink: bool
+    event: Event | None = None
+    turns: bool = False
 
     @property
     def end(self) -> Array:

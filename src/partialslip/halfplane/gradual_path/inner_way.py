@@ -23,6 +23,7 @@ from partialslip.halfplane.gradual_path.inner_rates import (
     WEIGHTS,
     A,
     B,
+    Event,
     L,
     Map,
     Panel,
@@ -31,12 +32,14 @@ from partialslip.halfplane.gradual_path.inner_rates import (
     root,
     taken,
 )
+from partialslip.halfplane.gradual_path.stage import LostError
 from partialslip.halfplane.gradual_path.tractions import Tractions
 
 ENDS = (L, A, B, R)
-_STEPS = 14
+_STEPS = 24
 _CLOSE = 1e-12
 _SLOW = 3e-11  # where rounding stops Newton's method: ends that hardly move
+_RELATIVE = 1e-7  # of the way of an end in the panel: an inner zone that closes slows a down by orders of magnitude
 _TAIL = 1e-9  # of the ways, relative to their lengths
 _AT = 1e-11  # distance from a break within which an end is at it
 _GONE = 1e-6  # width of an interval that has vanished
@@ -44,18 +47,16 @@ _FASTEST = 0.05  # of the contact, that an end may pass in the first panel
 _GROWTH = 1.7
 _PANELS = 60
 _PART = 0.1  # of an inner zone, to which it closes in a panel
-_SHUT = 1e-5  # width of an inner zone that has closed: points are pushed beyond the bound by its square
+SHUT = 1e-5  # width of an inner zone that has closed: points are pushed beyond the bound by its square
 _NARROW = 1e-4  # width of an inner zone that may be closed where its ends are lost
 _HALVINGS = 12
 _SHORTEST = 1e-15
+_FARTHER = 1.05  # by which a panel is longer than the one that it is like, for b to turn round in it
+_TURNED, _NEAR_TURN = 1e-9, 1e-7  # z0 - b where b turns round; ways from there that rounding hides in the changes of q
 
 
 _EVENTS = {"width": {A: 1.0, L: -1.0}, "gap": {L: 0.5, R: 0.5, A: -1.0}}  # of what their size is the sum
 _AT_END = np.array([0.97, 1.0])
-
-
-class LostWayError(ValueError):
-    """The ends of two stick intervals cannot be followed."""
 
 
 class Way:
@@ -69,6 +70,8 @@ class Way:
         The state: from ``low`` to 1 it is on the lower friction bound.
     left, low : float
         l and a at the beginning.
+    near : Way, optional
+        Ways from a similar state.
 
     Attributes
     ----------
@@ -76,7 +79,9 @@ class Way:
         Whether the inner zone has closed at the end, or the left interval has vanished.
     """
 
-    def __init__(self, tension: float, least: float, start: Tractions, left: float, low: float) -> None:
+    def __init__(
+        self, tension: float, least: float, start: Tractions, left: float, low: float, near: "Way | None" = None
+    ) -> None:
         self._tension, self._least, self.start = tension, least, start
         self._breaks = np.array([-1.0, *sorted({*start.breaks, *start.shape.strong_kinks}), 1.0])
         ends = np.array([left, low, low + 4 / 3 * ((left + 1) / 2 - least - low), 1.0])
@@ -84,6 +89,8 @@ class Way:
         self.first = np.append(ends, ends[B])
         self.panels: list[Panel] = []
         self.closed = self.vanished = False
+        self._near = near.panels if near else []
+        self._refused = -1  # number of the panel that was not found up to an event
         self._kink = True
         with np.errstate(divide="ignore", invalid="ignore"):  # by steps that go too far, which are taken back
             self._follow()
@@ -110,45 +117,20 @@ class Way:
         takes, length, speeds = self._first_speeds()
         while self.progress < 1 - 1e-14:
             if len(self.panels) == _PANELS:
-                raise LostWayError("too many panels")
+                raise LostError("too many panels")
             begin = self.ends
-            rest = 1 - self.progress
-            length = min(length, rest)
-            width, gap = begin[A] - begin[L], begin[B] - begin[A]
-            fall, shut = speeds[L] - speeds[A], speeds[A] - speeds[B]
-            panel = None
-            passing = self._next_break(begin, speeds)
-            if passing and passing[0] < 1.2 * length:
-                panel = self._solve(begin, takes, passing[0], speeds, SINE, passing[1:])
-                if panel and panel.length > rest:
-                    panel = None
-            if panel:
-                pass
-            elif self.panels and fall * length > 0.3 * width and not shut * width > fall * gap:
-                panel = self._solve(begin, takes, 0.4 * width / fall, speeds, DECAY, ("width", width * np.exp(-RATE)))
-                if panel and panel.length > rest:
-                    panel = None
-            elif self.panels and takes and shut * length > 0.5 * gap:
-                panel = self._solve(
-                    begin, takes, gap / shut, speeds, SINE, ("gap", self._least + max(_SHUT / 2, _PART * gap))
-                )
-                if panel and panel.length > rest:
-                    panel = None
-            panel = panel or self._solve(begin, takes, length, speeds, SINE)
-            crossing = self._crossing(panel) if panel else None
-            while panel and crossing:
-                end, place, s = crossing
-                panel = self._solve(
-                    begin, takes, panel.length * float(panel.by.share(np.array(s))), speeds, SINE, (end, place), panel
-                )
-                crossing = self._crossing(panel) if panel else None
+            gap = begin[B] - begin[A]
+            length = min(length, 1 - self.progress)
+            panel = self._again(takes, speeds)
+            if not panel:
+                panel = self._tried(takes, length, speeds)
             if not panel or _tail(panel) > _TAIL:
-                length = (panel.length if panel else length) / 2
+                length = min(length, panel.length if panel else length) / 2
                 if length < _SHORTEST * max(1.0, 1e8 * (gap < _NARROW)):
                     if gap < _NARROW:
                         self.closed = True
                         return
-                    raise LostWayError(f"no panel is short enough at {self.progress}")
+                    raise LostError(f"no panel is short enough at {self.progress}")
                 continue
             turn = self._turn(panel)
             if turn is not None:
@@ -158,9 +140,9 @@ class Way:
                     if not panel:
                         length = part / 2
                         if length < _SHORTEST:
-                            raise LostWayError(f"b turns at {self.progress}")
+                            raise LostError(f"b turns at {self.progress}")
                         continue
-                    self.panels.append(panel)
+                    self.panels.append(panel._replace(turns=True))
                 takes = not takes
             else:
                 self.panels.append(panel)
@@ -173,9 +155,53 @@ class Way:
                 speeds[B] = speeds[Z] = 0.0
             left, low, high, right = self.ends[:4]
             self._kink = bool(min(np.abs(each - self._breaks).min() for each in (left, low, right)) < _AT)
-            self.vanished, self.closed = bool(low - left < _GONE), bool(high - low < _SHUT)
+            self.vanished, self.closed = bool(low - left < _GONE), bool(high - low < SHUT)
             if self.vanished or self.closed:
                 return
+
+    def _again(self, takes: bool, speeds: Array) -> Panel | None:
+        """The next panel, if it is like the one in the ways from a similar state."""
+        number, panel = len(self.panels), None
+        old = self._near[number] if number < len(self._near) else None
+        if old and old.takes == takes:
+            begin, event = self.ends, old.event
+            if event and event[0] == "width":
+                event = "width", (begin[A] - begin[L]) * np.exp(-RATE)
+            elif event and event[0] != "gap":
+                event = event[0], float(self._breaks[np.argmin(np.abs(self._breaks - event[1]))])
+            panel = self._solve(begin, takes, old.length * (_FARTHER if old.turns else 1), speeds, old.by, event, old)
+        fits = panel and self.progress + panel.length <= 1 and not self._crossing(panel) and _tail(panel) <= _TAIL
+        if not fits:
+            self._near = []
+            return None
+        return panel
+
+    def _tried(self, takes: bool, length: float, speeds: Array) -> Panel | None:
+        """The next panel: up to a break, to where an interval has become narrower, or of a ``length``."""
+        begin, rest = self.ends, 1 - self.progress
+        width, gap = begin[A] - begin[L], begin[B] - begin[A]
+        fall, shut = speeds[L] - speeds[A], speeds[A] - speeds[B]
+        passing = self._next_break(begin, speeds)
+        panel = None
+        if self._refused == len(self.panels):
+            pass
+        elif passing and passing[0] < 1.2 * length:
+            panel = self._solve(begin, takes, passing[0], speeds, SINE, passing[1:])
+        elif self.panels and fall * length > 0.3 * width and not shut * width > fall * gap:
+            panel = self._solve(begin, takes, 0.4 * width / fall, speeds, DECAY, ("width", width * np.exp(-RATE)))
+        elif self.panels and takes and shut * length > 0.5 * gap:
+            size = self._least + max(SHUT / 2, _PART * gap)
+            panel = self._solve(begin, takes, gap / shut, speeds, SINE, ("gap", size))
+        if not panel or panel.length > rest or _tail(panel) > _TAIL:
+            self._refused = len(self.panels)
+            panel = self._solve(begin, takes, length, speeds, SINE)
+        crossing = self._crossing(panel) if panel else None
+        while panel and crossing:
+            end, place, s = crossing
+            part = panel.length * float(panel.by.share(np.array(s)))
+            panel = self._solve(begin, takes, part, speeds, SINE, (end, place), panel)
+            crossing = self._crossing(panel) if panel else None
+        return panel
 
     def _first_speeds(self) -> tuple[bool, float, Array]:
         """Whether b takes points back, length of the first panel, and speeds of the ends."""
@@ -193,7 +219,7 @@ class Way:
         takes = bool(free <= 0)
         speeds[B] = free if takes else 2 / 3 * free
         speeds[Z] = free
-        return takes, min(_FASTEST / np.abs(speeds).max(), 0.2), speeds
+        return takes, min(_FASTEST / np.abs(speeds).max(), 0.2, (ends[B] - ends[A]) / (2 * abs(speeds[B]))), speeds
 
     def _rates_near(self, ends: Array, end: int) -> float:
         """Size of the rate near an ``end``, times the square root of the distance."""
@@ -333,11 +359,16 @@ class Way:
         length: float,
         speeds: Array,
         by: Map,
-        event: tuple[str | int, float] | None = None,
+        event: Event | None = None,
         like: Panel | None = None,
     ) -> Panel | None:
-        """A panel by Newton's method; None if it does not converge. ``event``: an end and its place, or "width" or
-        "gap" and its size, at the end of the panel, whose length is unknown then."""
+        """A panel by Newton's method, perhaps from a panel that is ``like`` it; None if it does not converge. The
+        length is unknown if there is an ``event``.
+
+        Where b has just turned round, it moves by a quarter of what the place does at which it would take points: both
+        go with the square of the time, and by this quarter what a point has seen adds up to nothing.
+        """
+        turned = not takes and begin[Z] - begin[B] < _TURNED
         if like:
             share = np.clip(by.shares * length / like.length, 0, 1)
             offsets = like.at(like.by.place(share, 1 - share))
@@ -345,9 +376,9 @@ class Way:
             offsets = speeds[:, None] * by.shares * length
             if event and event[0] == "gap":  # a slows down with the inner zone's width
                 offsets[A] = speeds[A] * length * (1 - (1 - by.shares) ** 2.5) / 2.5
-            if not takes and begin[Z] - begin[B] < 1e-9:  # b has just turned round
+            if turned:
                 ends = begin[:4, None] + offsets[:4]
-                offsets[B] = 0.65 * np.abs(taken(ends, self._least) - begin[B]) + 1e-9 * by.shares * length
+                offsets[B] = np.abs(taken(ends, self._least) - begin[B]) / 4 + 1e-9 * by.shares * length
         free = (L, A, R) if takes else ENDS
         count = len(free)
         step: tuple[float, Array] | None = None  # of the length and of the offsets
@@ -402,12 +433,19 @@ class Way:
                             matrix[row, :, column] += block * slopes[each, column]
                 less = np.zeros(DEGREES)
                 if end != B:
-                    x = ends[end]
-                    near = 1e-4 * np.abs(x[:, None] - self._breaks).min(axis=1)
-                    less = self.start.less(factor, x)
-                    diagonal -= (self.start.less(factor, x + near) - self.start.less(factor, x - near)) / (2 * near)
+                    x, origin = offsets[end], float(begin[end])
+                    near = 1e-4 * np.abs(x[:, None] - (self._breaks - origin)).min(axis=1)
+                    less = self.start.less(factor, x, origin)
+                    beside = (self.start.less(factor, x + side * near, origin) for side in (1, -1))
+                    diagonal -= np.subtract(*beside) / (2 * near)
                 residual[row] = past + total - less
                 matrix[row, :, row] += np.diag(diagonal)
+                if end == B and turned:
+                    due = taken(ends, self._least) - begin[B]
+                    near = np.flatnonzero(np.abs(due) < _NEAR_TURN)
+                    residual[row, near] = offsets[B, near] - due[near] / 4
+                    matrix[row, near] = by_length[row, near] = 0.0
+                    matrix[row, near, row, near] = 1.0
             size = count * DEGREES
             system, target = matrix.reshape(size, size), -residual.ravel()
             if event:
@@ -428,8 +466,11 @@ class Way:
                 longer = damp * float(solution[-1])
             step = longer, damp * np.einsum("ecj,cj->ej", slopes, change)
             length, offsets = length + step[0], offsets + step[1]
-            if damp == 1 and np.abs(change).max() < (_CLOSE if count_of_steps < 2 else _SLOW):
-                return Panel(self.progress, length, begin, offsets, by, takes, self._kink)
+            largest, moved = np.abs(change).max(axis=1), np.abs(offsets[list(free)]).max(axis=1)
+            relative = free.index(A), free.index(L), free.index(R)  # b need not be known as well where it turns round
+            close = (largest < 1e-15 + _RELATIVE * moved)[list(relative)].all()
+            if damp == 1 and close and largest.max() < (_CLOSE if count_of_steps < 2 else _SLOW):
+                return Panel(self.progress, length, begin, offsets, by, takes, self._kink, event)
         return None
 
 

@@ -179,6 +179,19 @@ class Retreat:
             low, high = (middle, high) if newton(middle) > 0 else (low, middle)
         return (low + high) / 2
 
+    def bracketed(self, half_width: float) -> float | None:
+        """As :meth:`balanced`, between the farthest centres; None if both push the left end the same way."""
+        from scipy.optimize import brentq  # takes long to import
+
+        def excess(centre: float) -> float:
+            at = self.conditions(Zone(centre - half_width, centre + half_width))
+            return at.shear / math.pi - half_width * at.tension / 4
+
+        low, high = self.within.left + half_width, self.within.right - half_width
+        if not excess(low) > 0 > excess(high):
+            return None
+        return float(brentq(excess, low, high, xtol=1e-15))
+
     def inside(self, zone: Zone, from_left: Array, from_right: Array) -> Array:
         """Change in the stick ``zone`` at distances from its ends."""
         to = {1: np.sqrt(from_right), -1: np.sqrt(from_left)}

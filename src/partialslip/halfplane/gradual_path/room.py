@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, Retreating
+from partialslip.halfplane.gradual_path.half_cycle import HalfCycle
+from partialslip.halfplane.gradual_path.phases import Retreating
 from partialslip.halfplane.gradual_path.retreat import Zone
 
 _STAGES, _PLACES = 24, 16  # stages between which extremes are looked for, and places at which extremes are found
@@ -18,7 +19,8 @@ def room(way: HalfCycle) -> float:
     being the change of q so far; 0 if there are no such points.
 
     dq_t falls while the rate of q is negative, which it is on the left of the distance c* from the middle of the stick
-    zone, and rises from then on. So it has one extreme on the way, while the stick zone is wider than 2 c*.
+    zone, and rises from then on. So it has one extreme on the way, while the stick zone is wider than 2 c*. While a
+    zone inside slips, it falls at all points that never slip, which are on the left.
     """
     low, high = way.stuck
     if not low < high:
@@ -33,20 +35,20 @@ def room(way: HalfCycle) -> float:
 
 def _lowest(way: HalfCycle, x: Array) -> Array:
     """Lowest change of q at points ``x`` (k,) that never slip, ascending."""
-    first = way.phases[0]
-    result = np.zeros_like(x)
-    if not (isinstance(first, Retreating) and first.retreat.sign < 0):
-        return result
+    first = next((phase for phase in way.phases if isinstance(phase, Retreating) and phase.retreat.sign < 0), None)
+    if not first:
+        return np.zeros_like(x)
+    result: Array = first.first.q(x) - way.start(x)
     begin, end, least = first.first.zone, first.last.zone, way.loads.least
     low, high = max(x[0], end.centre - least), min(x[-1], begin.centre - least)
     if not low < high:
         return result
     shares = np.linspace(1, 0, _STAGES + 1)[1:-1] ** 2
-    zones = [end]
+    zones, more = [end], first.last.progress - first.first.progress
     for share in shares.tolist():
-        zones.append(first.zone(share * first.last.progress, zones[-1]))
+        zones.append(first.zone(first.first.progress + share * more, zones[-1]))
     zones.append(begin)
-    progress = first.last.progress * np.array([1.0, *shares, 0.0])
+    progress = first.first.progress + more * np.array([1.0, *shares, 0.0])
     turning = np.array([zone.centre - least for zone in zones])  # the rate of q changes its sign there
     angle = np.pi * (np.arange(_PLACES) + 0.5) / _PLACES
     places = low + (high - low) * (1 - np.cos(angle)) / 2
@@ -58,5 +60,5 @@ def _lowest(way: HalfCycle, x: Array) -> Array:
         lowest.append(first.retreat.inside(zone, np.array([place - zone.left]), np.array([zone.right - place]))[0])
     fitted = np.polynomial.Chebyshev.fit(places, np.array(lowest), _PLACES - 1, domain=[low, high])
     here = x < high
-    result[here] = fitted(np.maximum(x[here], low))
+    result[here] += fitted(np.maximum(x[here], low))
     return result

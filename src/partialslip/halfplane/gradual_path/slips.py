@@ -5,7 +5,7 @@ A change dq of shear traction and dsigma of tension displace the surfaces relati
     k(x) = (1/pi) int dq(t) ln|x - t| dt + dsigma x/4,
 
 up to a rigid displacement: k is constant where the surfaces stick. The slip is what k differs by from there. Within
-one phase of the half cycle, each side of the stick zone slips one way.
+one phase of the half cycle, each side of the stick zone slips one way, and so does a zone inside.
 """
 
 import itertools
@@ -18,8 +18,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.graded import spans
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, between
-from partialslip.halfplane.gradual_path.retreat import Zone
-from partialslip.halfplane.gradual_path.stage import Stage
+from partialslip.halfplane.gradual_path.stage import Stage, lasting
 
 _COMMON = 0.25  # least share of a stick zone that sticks from stage to stage
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -85,9 +84,8 @@ def loop(way: HalfCycle, shares: Array) -> tuple[Array, Array]:
 def displacement(way: HalfCycle, first: Stage, last: Stage) -> float:
     """Relative displacement of the bodies, less that of the adhered contact, from the ``first`` to the ``last`` of two
     stages at which common points stick; in A f p0 a."""
-    low, high = _common(first.zone, last.zone)
     shear = (last.progress - first.progress) * way.loads.shear
-    at = float(_mismatch(way, first, last, np.array([(low + high) / 2]))[0])
+    at = float(_mismatch(way, first, last, np.array([_sticks(first, last)]))[0])
     return -at - shear / math.pi * math.log(2)
 
 
@@ -99,9 +97,8 @@ def resultants(first: Stage, last: Stage) -> Resultants:
 
 def _slip(way: HalfCycle, first: Stage, last: Stage, x: Array) -> Array:
     """Slip at ``x`` (k,) from stage to stage."""
-    low, high = _common(first.zone, last.zone)
-    found = _mismatch(way, first, last, np.append(x, (low + high) / 2))
-    sticks = (x >= low) & (x <= high)
+    found = _mismatch(way, first, last, np.append(x, _sticks(first, last)))
+    sticks = np.any([(x >= low) & (x <= high) for low, high in lasting(first, last)], axis=0)
     return np.where(sticks, 0.0, found[:-1] - found[-1])
 
 
@@ -141,9 +138,10 @@ def _pieces(first: Stage, last: Stage) -> Array:
 
 def _breaks(stage: Stage) -> Sequence[float]:
     shape = stage.q.shape
-    inner = (*shape.kinks, *stage.q.breaks, *stage.zone)
+    inner = (*shape.kinks, *stage.q.breaks, *itertools.chain(*stage.sticks))
     return [-1.0, *(each for each in inner if -1 < each < 1), 1.0]
 
 
-def _common(one: Zone, other: Zone) -> tuple[float, float]:
-    return max(one.left, other.left), min(one.right, other.right)
+def _sticks(first: Stage, last: Stage) -> float:
+    """Middle of the widest interval that sticks from stage to stage."""
+    return max(lasting(first, last), key=lambda zone: zone.half_width).centre

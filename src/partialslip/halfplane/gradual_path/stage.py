@@ -7,6 +7,10 @@ from partialslip.halfplane.gradual_path.retreat import Zone
 from partialslip.halfplane.gradual_path.tractions import Tractions
 
 
+class LostError(ValueError):
+    """The phases of the half cycle cannot be followed."""
+
+
 class Loads(NamedTuple):
     """Changes of the tension and of the shear force in half a cycle, in f p0 and f p0 a; both are positive."""
 
@@ -34,3 +38,17 @@ class Stage(NamedTuple):
         if not self.inner:
             return (self.zone,)
         return Zone(self.zone.left, self.inner.left), Zone(self.inner.right, self.zone.right)
+
+
+def lasting(before: Stage, after: Stage) -> list[Zone]:
+    """Intervals that stick from one stage to the next: points that change from the left interval to the right one,
+    where a zone between them slips, do not."""
+    early, late = before.sticks, after.sticks
+    if len(early) == len(late):
+        pairs = list(zip(early, late, strict=True))
+    elif before.inner and after.zone.left > before.inner.left:  # the left interval has vanished
+        pairs = [(early[1], after.zone)]
+    else:
+        pairs = [(one, other) for one in early for other in late]
+    common = (Zone(max(one.left, other.left), min(one.right, other.right)) for one, other in pairs)
+    return [zone for zone in common if zone.right > zone.left]

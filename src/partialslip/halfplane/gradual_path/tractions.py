@@ -59,15 +59,17 @@ class Tractions:
         inner = (part.smooth.cuts for part in self.parts if part.smooth)
         return sorted({*self.breaks, *(float(cut) for cuts in inner for cut in cuts)})
 
-    def less(self, factor: float, x: Array) -> Array:
-        """``factor`` p - q at ``x``, without cancellation where q is on the bound."""
+    def less(self, factor: float, x: Array, origin: float = 0.0) -> Array:
+        """``factor`` p - q at ``origin`` + ``x``, without cancellation where q is on the bound. Distances from an
+        origin at which parts meet keep their digits."""
         result = np.zeros_like(x)
-        p = self.shape.pressure(x)
-        which = np.searchsorted(self.breaks, x)
+        p = self.shape.pressure(origin + x)
+        which = np.searchsorted(np.array(self.breaks) - origin, x)
         for number, part in enumerate(self.parts):
             here = which == number
             if here.any():
-                result[here] = (factor - part.factor) * p[here] - (part.smooth(x[here]) if part.smooth else 0.0)
+                rest = part.rest((origin - part.low) + x[here], (part.high - origin) - x[here])
+                result[here] = (factor - part.factor) * p[here] - rest
         return result
 
     def __call__(self, x: Array) -> Array:
