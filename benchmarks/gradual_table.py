@@ -20,6 +20,7 @@ import itertools
 import json
 import math
 import time
+from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -29,14 +30,15 @@ from scipy.optimize import brentq
 
 from partialslip.arrays import Array
 from partialslip.gradual import turns_round
-from partialslip.halfplane.gradual_path.half_cycle import LostError, steady
+from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, LostError, steady
 from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.gradual_table import PLACE, tabled
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.steady import stick_zone, stick_zones
 
 HERTZ = Hertz()
-ALONG, ACROSS = 9, (6, 9, 12, 16)  # nodes along s_f, and across a patch: as many as it takes
+CYCLES, STEADY = 8, 1e-8  # half cycles from a neighbour, and the last change: changes fall faster than tenfold
+ALONG, ACROSS = 9, (8, 14)  # nodes along s_f, and across a patch: as many as it takes
 SETTLED = 1e-7  # last coefficients of a patch that has enough nodes
 MARGIN, POINTS, HALVINGS = 3e-3, 5, 5  # of a search for a border: it ends with an extrapolation from one side
 CLOSE = 1e-2  # of a corner
@@ -55,13 +57,34 @@ class Found(NamedTuple):
     reaches_end: bool
 
 
+near: deque[HalfCycle] = deque(maxlen=1)
+
+
+def following(loads: Loads) -> HalfCycle | None:
+    """The steady half cycle from the one found before, at similar loads; None if that does not lead to it."""
+    if not near:
+        return None
+    cycle, change = near[0], math.inf
+    for _ in range(CYCLES):
+        try:
+            cycle, before = HalfCycle(loads, -cycle.settled, cycle), cycle
+        except (LostError, ValueError, ArithmeticError):
+            return None
+        change = max(abs(one - other) for one, other in zip(cycle.last.zone, before.last.zone, strict=True))
+        if change < STEADY:
+            return cycle if cycle.followed else None
+    return None
+
+
 @functools.cache
 def solved(s: float, w: float) -> Found | None:
     """The solver's zone, or None if it is not known."""
+    loads = Loads(s, math.pi * (1 - w) * (1 + w))
     try:
-        cycle = steady(Loads(s, math.pi * (1 - w) * (1 + w)), HERTZ)
+        cycle = following(loads) or steady(loads, HERTZ)
     except LostError:
         return None
+    near.append(cycle)
     if not cycle.followed:
         return None
     drift = next(phase for phase in cycle.phases if hasattr(phase, "reaches_end"))

@@ -114,6 +114,8 @@ def test_lines_lead_through_their_stick_zones(shape):
         for line in lines:
             some = (line.Qf >= 0) & (line.Qf < 1 - 1e-6) & (line.sf >= 0) & (line.sf < 20)
             Qf, sf = line.Qf[some][::9], line.sf[some][::9]
+            if not len(Qf):
+                continue
             zones = grid._zones(Qf, sf, shape)
             there = grid._tabled(grid.Line(0.0, Qf, sf), shape) if isinstance(shape, Hertz) else np.zeros(len(Qf), bool)
             found = zones.zone.half_width + way * zones.zone.centre
@@ -147,7 +149,7 @@ def test_pictures_without_a_scene(hertz):
     words = texts(hertz / "map.svg")
     assert {"ΔQ/(2 f P)", "Δσ/(f p0)", "sliding", "hertz"} < set(words)
     labels = [word for word in words if re.fullmatch(r"[mn] −?0\.\d", word)]
-    assert labels.count("m 0.8") == 2  # below the border and above
+    assert labels.count("m 0.8") >= 2  # below the border and above; lines end where the map is dotted
     assert len(set(labels)) >= 12
     assert not any("scene" in word for word in words)
     assert {f"ΔQ/(2 f P) = {Qf}" for Qf in (0.2, 0.4, 0.6, 0.8)} < set(texts(hertz / "ends.svg"))

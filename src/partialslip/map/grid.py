@@ -34,6 +34,7 @@ _COUNT_KINKED = 25  # the same for a pressure with corners, which is slower
 M_LEVELS = (0.2, 0.4, 0.6, 0.8, 0.9)
 N_LEVELS = (-0.8, -0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6, 0.8)
 _FINE = 200  # points along either axis of the grid through which lines of gradual zones are drawn
+_NEXT = 0.02  # of the map: distance of the ends of parts of one line
 _AT_ONCE = 128  # zones between two calls of progress
 _CONSTANT = np.array([0.2, 0.4, 0.6, 0.8])  # Qf of the curves over dsigma a/dQ, which is sf/(pi Qf)
 _RATIOS = np.linspace(0, 8, 51)
@@ -200,7 +201,32 @@ def _lines(once: list[Line], of: str, shape: Shape) -> list[Line]:
     levels = sorted({line.at for line in once})
     there = [Line(at, *np.transpose(line)) for at in levels for line in contours.lines(at)]
     parts = [part for line in once for part in _parts(line, ~_tabled(line, shape))]
-    return parts + [part for line in there for part in _parts(line, _tabled(line, shape))]
+    parts += [part for line in there for part in _parts(line, _tabled(line, shape))]
+    return [line for at in levels for line in _joined([part for part in parts if part.at == at])]
+
+
+def _joined(parts: list[Line]) -> list[Line]:
+    """Return lines in which ``parts`` of lines, whose ends are next to each other, are one."""
+    lines: list[Line] = []
+    for part in sorted(parts, key=lambda part: -len(part.Qf)):
+        points = np.column_stack([part.Qf, part.sf])
+        while True:
+            ends = ((line, way, turned) for line in lines for way in (1, -1) for turned in (1, -1))
+            found = next((each for each in ends if _gap(each, points) < _NEXT), None)
+            if found is None:
+                break
+            line, way, turned = found
+            lines = [other for other in lines if other is not line]
+            points = np.concatenate([np.column_stack(line[1:])[::way], points[::turned]])
+        lines.append(Line(part.at, *points.T))
+    return lines
+
+
+def _gap(join: tuple[Line, int, int], points: Array) -> float:
+    """Return the distance on the map from the end of a line, in one way, to the beginning of ``points``, in one way."""
+    line, way, turned = join
+    Qf, sf = np.column_stack(line[1:])[::way][-1] - points[::turned][0]
+    return math.hypot(Qf, sf / _TOP)
 
 
 def _tabled(line: Line, shape: Shape) -> Mask:
