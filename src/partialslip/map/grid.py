@@ -199,7 +199,7 @@ def _lines(once: list[Line], of: str, shape: Shape) -> list[Line]:
     fine = _zones(Qf, sf, shape)
     contours = contour_generator(Qf, sf, np.where(fine.turned, np.nan, getattr(fine.zone, of)))
     levels = sorted({line.at for line in once})
-    there = [Line(at, *np.transpose(line)) for at in levels for line in contours.lines(at)]
+    there = [Line(at, *np.asarray(line, float).T) for at in levels for line in contours.lines(at)]
     parts = [part for line in once for part in _parts(line, ~_tabled(line, shape))]
     parts += [part for line in there for part in _parts(line, _tabled(line, shape))]
     return [line for at in levels for line in _joined([part for part in parts if part.at == at])]
