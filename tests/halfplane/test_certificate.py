@@ -25,6 +25,7 @@ def test_all_conditions_hold(Qf, sf):
     assert certificate(cycle(Qf, sf)).worst < HELD
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
 def test_all_conditions_hold_under_random_loads(seed):
     """With or without a zone inside that slips; two states each."""

@@ -1,5 +1,7 @@
 """The steady state where slip turns round, as scenes see it: signs, units, energy, room for a mean of Q, stresses."""
 
+import functools
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,7 @@ UNIT = contact_of(lambda x: np.sqrt(1 - x**2), 1.0)
 DRIFT, TO_THE_END, NO_POINT = (0.6434668934976868, 8.670889385947003), (0.75, 6.0), (0.9975, 7.2)
 
 
+@functools.cache
 def cycle(Qf, sf, pressed=UNIT):
     return half_cycle(pressed, 1.0, 2 * pressed.P * Qf, pressed.p0 * sf)
 
@@ -46,7 +49,7 @@ def test_where_no_point_sticks_throughout_the_levels_are_known():
     assert exact(*NO_POINT, "load.Q=[-3.10e5, 3.14e5]").regime == "ratchets"
 
 
-@pytest.mark.parametrize(("Qf", "sf"), [DRIFT, TO_THE_END])
+@pytest.mark.parametrize(("Qf", "sf"), [(0.55, 7.0), TO_THE_END])
 @pytest.mark.parametrize(("turn", "mirror"), [(1, -1), (-1, 1), (-1, -1)])
 def test_signs_of_the_loads(Qf, sf, turn, mirror):
     """Reversed loads reverse dq and the slip; tension against dQ mirrors the contact."""
@@ -60,7 +63,9 @@ def test_signs_of_the_loads(Qf, sf, turn, mirror):
     assert dissipated == pytest.approx(worn, rel=1e-9)
 
 
-@pytest.mark.parametrize(("Qf", "sf"), [(0.55, 7.0), DRIFT, TO_THE_END])
+@pytest.mark.parametrize(
+    ("Qf", "sf"), [(0.55, 7.0), pytest.param(*DRIFT, marks=pytest.mark.slow), TO_THE_END]
+)
 def test_loops_enclose_what_friction_dissipates(Qf, sf):
     """Work of the shear force and of the tension over a cycle, from displacements and moments of stick zones, against
     the slip times the bound."""
@@ -116,7 +121,8 @@ def test_profiles_other_than_hertz():
     assert not found.path_dependent
     x, p, dq = found.traction.x, found.traction.p, found.traction.dq
     bound = 2 * partialslip.load_scene("flat-rounded").friction.f * p
-    assert (np.abs(dq) <= bound + 1e-8 * found.p0).all()
+    rounding = 2 * np.sqrt(np.finfo(float).eps)  # of x beside an end of the zone, where dq goes like a square root
+    assert (np.abs(dq) <= bound + rounding * found.p0).all()
     assert np.trapezoid(dq, x) == pytest.approx(0.7 * np.trapezoid(bound, x), rel=1e-3)
 
 

@@ -11,6 +11,8 @@ import pytest
 
 from partialslip.cli import main
 from partialslip.halfplane import contact
+from partialslip.halfplane.gradual_path.half_cycle import steady
+from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.loading import half_cycle
 from partialslip.halfplane.punch import Punch
@@ -18,6 +20,7 @@ from partialslip.halfplane.steady import stick_zone, stick_zones, transition
 from partialslip.map import files as map_files
 from partialslip.map import grid, place, stick_map
 from partialslip.output.place import NAME
+from partialslip.result import StickZone
 from partialslip.scene.reading import load_scene
 
 FILES = ["ends.svg", "map.csv", "map.svg"]
@@ -76,11 +79,16 @@ def test_table_against_one_zone_at_a_time(hertz):
     table = rows(hertz)
     assert list(table[0]) == ["Qf", "sf", "m_over_a", "n_over_a", "half_width_over_a", "regime", "loads"]
     for row in table[::37]:
-        zone = stick_zone(float(row["Qf"]), float(row["sf"]), Hertz())
+        Qf, sf = float(row["Qf"]), float(row["sf"])
+        zone, turns = stick_zone(Qf, sf, Hertz()), half_cycle(Qf, sf, Hertz()).turns_round
+        if turns and row["loads"] == "gradual":
+            left, right = steady(Loads(sf, np.pi * Qf), Hertz()).last.zone
+            zone = StickZone((left + right) / 2, (right - left) / 2, 0)
+        else:
+            assert (row["loads"] == "one step") == turns
         found = [float(row[key]) for key in ("m_over_a", "n_over_a", "half_width_over_a")]
         ends = [zone.half_width - zone.centre, zone.half_width + zone.centre, zone.half_width]
-        np.testing.assert_allclose(found, ends, rtol=0, atol=1e-12)
-        assert (row["loads"] == "one step") == half_cycle(float(row["Qf"]), float(row["sf"]), Hertz()).turns_round
+        np.testing.assert_allclose(found, ends, rtol=0, atol=1e-6 if turns else 1e-12)
     assert {(row["Qf"], row["sf"]) for row in table if row["regime"] == "stuck"} == {("0.0", "0.0")}
 
 
@@ -106,8 +114,13 @@ def test_lines_lead_through_their_stick_zones(shape):
         for line in lines:
             some = (line.Qf >= 0) & (line.Qf < 1 - 1e-6) & (line.sf >= 0) & (line.sf < 20)
             Qf, sf = line.Qf[some][::9], line.sf[some][::9]
-            centre, half_width, _ = stick_zones(Qf, sf, shape)
-            np.testing.assert_allclose(half_width + way * centre, line.at, rtol=0, atol=1e-9)
+            if not len(Qf):
+                continue
+            zones = grid._zones(Qf, sf, shape)
+            there = grid._tabled(grid.Line(0.0, Qf, sf), shape) if isinstance(shape, Hertz) else np.zeros(len(Qf), bool)
+            found = zones.zone.half_width + way * zones.zone.centre
+            np.testing.assert_allclose(found[~there], line.at, rtol=0, atol=1e-9)
+            np.testing.assert_allclose(found[there], line.at, rtol=0, atol=1e-3)  # lines through a grid
     assert {line.at for line in data.n_lines} == set(grid.N_LEVELS)
 
 
@@ -136,7 +149,7 @@ def test_pictures_without_a_scene(hertz):
     words = texts(hertz / "map.svg")
     assert {"ΔQ/(2 f P)", "Δσ/(f p0)", "sliding", "hertz"} < set(words)
     labels = [word for word in words if re.fullmatch(r"[mn] −?0\.\d", word)]
-    assert labels.count("m 0.8") == 2  # below the border and above
+    assert labels.count("m 0.8") >= 2  # below the border and above; lines end where the map is dotted
     assert len(set(labels)) >= 12
     assert not any("scene" in word for word in words)
     assert {f"ΔQ/(2 f P) = {Qf}" for Qf in (0.2, 0.4, 0.6, 0.8)} < set(texts(hertz / "ends.svg"))

@@ -43,14 +43,14 @@ const page = (() => {
     const contacts = [[P1, e1], [P2, e2]].map(([force, e]) => ({ a: Math.sqrt(force / P), e: e / a }));
     const found = {
       varies, P, P1, P2, e1, e2, a, p0, Qf, sf, f, turn, mirror, contacts, zone: null, stick: null, ends: null,
-      points: [], means: null, m: null, n: null, q: null, reverses: false,
+      points: [], means: null, m: null, n: null, q: null, reverses: false, gradual: false,
     };
     if (f === 0 && dQ === 0 && !scene.Q_mean) return { ...found, Qf: 0, sf: 0, regime: "frictionless" };
     const [Q1, Q2] = [-1, 1].map((way) => Math.abs(scene.Q_mean + way * turn * dQ / 2));
     if (!(Q1 < f * P1 && Q2 < f * P2)) return { ...found, regime: "sliding" };
 
     const solved = varies ? uneven(contacts.map((at) => ({ ...at, e: mirror * at.e })), Qf, sf) : even(Qf, sf);
-    const { zone, stick, ends, points, means } = solved, ascending = (one, two) => one - two;
+    const { zone, stick, ends, points, means = null } = solved, ascending = (one, two) => one - two;
     const placed = stick && stick.map((x) => mirror * x).sort(ascending);
     const limits = means && means.map((limit) => turn * limit).sort(ascending), mean = scene.Q_mean / (f * P);
     const ratchets = limits && !(limits[0] <= mean && mean <= limits[1]);
@@ -71,11 +71,17 @@ const page = (() => {
 
   // The solution for constant P and e = 0. `ends`: direction of slip at the left and the right end, times `turn`.
   function even(Qf, sf) {
-    const zone = hertz.stickZone(Qf, sf), bound = hertz.meanLoadBound(zone, Qf, sf);
-    const found = { zone, stick: varying.ends(zone), ends: [zone.s, 1], means: [-bound, bound] };
+    const once = hertz.stickZone(Qf, sf), reverses = hertz.reverses(once, Qf, sf);
+    const gradual = reverses ? hertz.gradualZone(scene.table, once, Qf, sf) : null, zone = gradual ?? once;
+    const found = { zone, stick: varying.ends(zone), ends: [zone.s, 1], regime: tensile(zone) };
+    if (gradual) {  // q and the limits of its mean depend on the way
+      const same = gradual === once;
+      return { ...found, gradual: true, points: same ? hertz.tractions(zone) : [], q: same ? hertz.largest(zone) : null };
+    }
+    const bound = hertz.meanLoadBound(zone, Qf, sf);
+    found.means = [-bound, bound];
     if (Qf === 0 && sf === 0) return { ...found, points: [{ x: -1, q: 0 }, { x: 1, q: 0 }], q: 0, regime: "stuck" };
-    const reverses = hertz.reverses(zone, Qf, sf);
-    return { ...found, points: hertz.tractions(zone), q: hertz.largest(zone), reverses, regime: tensile(zone) };
+    return { ...found, points: hertz.tractions(zone), q: hertz.largest(zone), reverses };
   }
 
   // The solution for any P and e. `ends` has words of varying.js where no closed form exists.
@@ -113,7 +119,11 @@ const page = (() => {
     return `${zone ? "from load point 1 to 2 " : ""}the left end ${left}, the right end ${right}`;
   }
 
-  function note({ regime, reverses, points, varies }) {
+  function note({ regime, reverses, gradual, points, varies }) {
+    if (gradual) {
+      return "Slip at one end turns round on the way. m and n are those of gradual loads, within 1e-4 a; " +
+        (points.length ? "" : "q is not drawn, ") + "the limits of the mean of Q are not given: run the exact method.";
+    }
     if (varies && regime !== "sliding" && !points.length) {
       return "q has no closed form for these loads and is not drawn; the method march calculates it.";
     }

@@ -150,6 +150,33 @@ const hertz = (() => {
     return Math.abs(centre) >= c ? 1 : pressure(Math.min(...ends));
   }
 
+  // Sum of coefficients times Chebyshev polynomials at x, from -1 to 1.
+  function series(coefficients, x) {
+    let one = 0, two = 0;
+    for (let i = coefficients.length - 1; i > 0; i--) [one, two] = [coefficients[i] + 2 * x * one - two, one];
+    return (coefficients[0] ?? 0) + x * one - two;
+  }
+
+  // The stick zone under gradual loads where slip turns round, from the `table` of gradual_table.py; null where it has
+  // none. One step holds again where all points that slipped the other way slip once more.
+  function gradualZone(table, once, Qf, sf) {
+    if (once.s > 0 && sf * (1 - (once.centre - once.c)) <= 8 * Qf) return once;
+    const w = Math.sqrt(1 - Qf);
+    for (const { low, high, borders, patches } of table.panels) {
+      if (sf < low || sf > high) continue;
+      const along = 2 * (sf - low) / (high - low) - 1, at = borders.map((border) => series(border, along));
+      for (const [i, ends] of patches.entries()) {
+        const share = (at[i] - w) / (at[i] - at[i + 1]);
+        if (share < -1e-6 || share > 1 + 1e-6) continue;
+        const [left, right] = ends.map((rows) => {
+          return series(rows.map((row) => series(row, clamp(2 * share - 1, -1, 1))), along);
+        });
+        return { centre: (left + right) / 2, c: (right - left) / 2, s: w < at[1] ? 1 : -1, steps: 0 };
+      }
+    }
+    return null;
+  }
+
   // Whether slip reverses on the straight way between the load points (section 7).
   function reverses({ centre, c, s }, Qf, sf) {
     if (sf === 0) return false;
@@ -199,5 +226,5 @@ const hertz = (() => {
     return taken;
   }
 
-  return { conditions, insideOf, largest, meanLoadBound, reverses, rule: RULE, stickZone, tractions, transition };
+  return { conditions, gradualZone, insideOf, largest, meanLoadBound, reverses, rule: RULE, stickZone, tractions, transition };
 })();

@@ -12,6 +12,7 @@ from msgspec.structs import fields
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane import contact
+from partialslip.halfplane.gradual_table import table
 from partialslip.map.grid import Line, stick_map
 from partialslip.output.labels import label_places
 from partialslip.output.template import template
@@ -27,6 +28,7 @@ _SOLVED = {  # fields that the page takes into account; any other that is given 
     "effects": (),
 }
 _ROUNDED = 5  # decimals of the map's lines
+_DECIMALS = 7  # of the table of gradual zones: its patches stay within 1e-4 a
 _TOP, _HIGHEST = 10.0, 40.0  # dsigma/(f p0) at the map's top, more for scenes with more, up to the second number
 
 
@@ -94,8 +96,35 @@ def _data(scene: Scene) -> dict[str, Any]:
         "dsigma": load.dsigma,
         "Q_mean": load.Q_mean,
         "units": {of: [units.label(of), units.size(of)] for of in ("m", "Pa", "N/m")} if units != SI else {},
+        "table": _table(),
         "map": _lines(max(_TOP, math.ceil(1.2 * sf)) if sf <= _HIGHEST else _TOP),
     }
+
+
+@functools.cache
+def _table() -> dict[str, Any]:
+    """Return the table of gradual zones in the page's accuracy: coefficients of series are rounded, and left out beyond
+    the last that is not zero."""
+
+    def short(series: list[float]) -> list[float]:
+        rounded = np.round(series, _DECIMALS)
+        return _trimmed(rounded.tolist())
+
+    panels = [
+        {
+            **panel,
+            "borders": [short(border) for border in panel["borders"]],
+            "patches": [[_trimmed([short(row) for row in end]) for end in patch] for patch in panel["patches"]],
+        }
+        for panel in table()["panels"]
+    ]
+    return {"panels": panels}
+
+
+def _trimmed(values: list[Any]) -> list[Any]:
+    """Return ``values`` without zeros and empty lists at their end."""
+    last = max((number for number, value in enumerate(values) if value), default=-1)
+    return values[: last + 1]
 
 
 @functools.cache

@@ -1,4 +1,7 @@
-"""Data of the stick-zone map: stick zones of a single step over a grid of loads, lengths as fractions of a.
+"""Data of the stick-zone map: stick zones over a grid of loads, lengths as fractions of a.
+
+The zones are those of gradual loads where slip does not turn round and, for Hertz, where the table of gradual zones has
+them. Elsewhere they are those of a single step, and marked.
 
 Loads are scaled by the friction: Qf = dQ/(2 f P) and sf = dsigma/(f p0) with p0 = 2 P/(pi a). The map shows positive
 dQ and dsigma; other signs follow by symmetry.
@@ -15,6 +18,7 @@ from partialslip.arrays import Array, Mask
 from partialslip.errors import InputError
 from partialslip.gradual import turns_round
 from partialslip.halfplane.contact import Contact, contact
+from partialslip.halfplane.gradual_table import tabled
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zones, transition
@@ -29,6 +33,8 @@ _COUNT = 50  # steps along either axis
 _COUNT_KINKED = 25  # the same for a pressure with corners, which is slower
 M_LEVELS = (0.2, 0.4, 0.6, 0.8, 0.9)
 N_LEVELS = (-0.8, -0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6, 0.8)
+_FINE = 200  # points along either axis of the grid through which lines of gradual zones are drawn
+_NEXT = 0.02  # of the map: distance of the ends of parts of one line
 _AT_ONCE = 128  # zones between two calls of progress
 _CONSTANT = np.array([0.2, 0.4, 0.6, 0.8])  # Qf of the curves over dsigma a/dQ, which is sf/(pi Qf)
 _RATIOS = np.linspace(0, 8, 51)
@@ -36,16 +42,13 @@ _ALONG = 101  # points per line
 
 
 class LoadedZones(NamedTuple):
-    """Loads ``Qf`` and ``sf`` and their stick zones ``zone``, as fractions of a: arrays of one shape."""
+    """Loads ``Qf`` and ``sf`` and their stick zones ``zone``, as fractions of a: arrays of one shape. ``turned``: where
+    the zones are those of a single step, and do not hold, as slip turns round between the load points."""
 
     Qf: Array
     sf: Array
     zone: StickZone[Array]
-
-    @property
-    def turned(self) -> Mask:
-        """Where slip turns round between the load points: the zones of a single step, which these are, do not hold."""
-        return turns_round(self.Qf, self.sf, self.zone.s, self.zone.centre, self.zone.half_width)
+    turned: Mask
 
 
 class Line(NamedTuple):
@@ -158,8 +161,8 @@ def _mapped(shape: Shape, top: float, progress: Callable[[str], None]) -> StickM
     tensions = np.sort(np.concatenate([np.pi * _CONSTANT[:, None] * ratios, turns[:, None]], axis=1), axis=1)
     return StickMap(
         grid=_zones(grid[0], grid[1], shape, lambda share: progress(f"map {share:.0%}")),
-        m_lines=[line for m in M_LEVELS for line in _m_lines(m, shape)],
-        n_lines=[_n_line(n, shape) for n in N_LEVELS],
+        m_lines=_lines([line for m in M_LEVELS for line in _m_lines(m, shape)], "m", shape),
+        n_lines=_lines([_n_line(n, shape) for n in N_LEVELS], "n", shape),
         border=_m_lines(1.0, shape)[0],
         curves=_zones(_CONSTANT[:, None] + 0 * tensions, tensions, shape, lambda share: progress(f"ends {share:.0%}")),
         turns=_zones(_CONSTANT, turns, shape),
@@ -185,6 +188,64 @@ def _n_line(n: float, shape: Shape) -> Line:
     return Line(n, loads.Qf, loads.sf)
 
 
+def _lines(once: list[Line], of: str, shape: Shape) -> list[Line]:
+    """Return lines of equal m or n under gradual loads: the lines of a single step, ``once``, and in place of their
+    parts where the table of gradual zones has others, lines through a fine grid of gradual zones."""
+    if not isinstance(shape, Hertz):
+        return once
+    from contourpy import contour_generator  # takes long to import
+
+    Qf, sf = np.meshgrid(np.linspace(0, 1, _FINE, endpoint=False), np.linspace(0, _TOP, _FINE))
+    fine = _zones(Qf, sf, shape)
+    contours = contour_generator(Qf, sf, np.where(fine.turned, np.nan, getattr(fine.zone, of)))
+    levels = sorted({line.at for line in once})
+    there = [Line(at, *np.asarray(line, float).T) for at in levels for line in contours.lines(at)]
+    parts = [part for line in once for part in _parts(line, ~_tabled(line, shape))]
+    parts += [part for line in there for part in _parts(line, _tabled(line, shape))]
+    return [line for at in levels for line in _joined([part for part in parts if part.at == at])]
+
+
+def _joined(parts: list[Line]) -> list[Line]:
+    """Return lines in which ``parts`` of lines, whose ends are next to each other, are one."""
+    lines: list[Line] = []
+    for part in sorted(parts, key=lambda part: -len(part.Qf)):
+        points = np.column_stack([part.Qf, part.sf])
+        while True:
+            ends = ((line, way, turned) for line in lines for way in (1, -1) for turned in (1, -1))
+            found = next((each for each in ends if _gap(each, points) < _NEXT), None)
+            if found is None:
+                break
+            line, way, turned = found
+            lines = [other for other in lines if other is not line]
+            points = np.concatenate([np.column_stack(line[1:])[::way], points[::turned]])
+        lines.append(Line(part.at, *points.T))
+    return lines
+
+
+def _gap(join: tuple[Line, int, int], points: Array) -> float:
+    """Return the distance on the map from the end of a line, in one way, to the beginning of ``points``, in one way."""
+    line, way, turned = join
+    Qf, sf = np.column_stack(line[1:])[::way][-1] - points[::turned][0]
+    return math.hypot(Qf, sf / _TOP)
+
+
+def _tabled(line: Line, shape: Shape) -> Mask:
+    """Whether slip turns round at the points of a ``line``, and the table of gradual zones has them."""
+    on = (line.Qf >= 0) & (line.Qf < 1) & (line.sf >= 0)
+    Qf, sf = np.where(on, line.Qf, 0), np.where(on, line.sf, 0)
+    zone = stick_zones(Qf, sf, shape)
+    turned = turns_round(Qf, sf, zone.s, zone.centre, zone.half_width)
+    result: Mask = on & turned & ~np.isnan(tabled(Qf, sf).centre)
+    return result
+
+
+def _parts(line: Line, kept: Mask) -> list[Line]:
+    """Return the parts of a ``line`` whose points are ``kept``."""
+    cuts = np.flatnonzero(np.diff(kept)) + 1
+    numbers = (part for part in np.split(np.arange(len(kept)), cuts) if kept[part[0]] and len(part) > 1)
+    return [Line(line.at, line.Qf[part], line.sf[part]) for part in numbers]
+
+
 def _half_widths(low: float, high: float) -> Array:
     """Return half-widths from just above ``low`` to ``high``, denser towards ``low``."""
     return low + (high - low) * np.linspace(1e-4, 1, _ALONG) ** 3
@@ -198,7 +259,15 @@ def _zones(Qf: Array, sf: Array, shape: Shape, progress: Callable[[float], None]
         part = slice(start, start + _AT_ONCE)
         parts.append(stick_zones(Qf.ravel()[part], sf.ravel()[part], shape))
     zone = StickZone(*(np.concatenate(values).reshape(Qf.shape) for values in zip(*parts, strict=True)))
-    return LoadedZones(Qf, sf, zone)
+    turned = turns_round(Qf, sf, zone.s, zone.centre, zone.half_width)
+    if isinstance(shape, Hertz):
+        gradual = tabled(Qf[turned], sf[turned])
+        known = ~np.isnan(gradual.centre)
+        at = np.flatnonzero(turned)[known]
+        for values, found in zip(zone, gradual, strict=True):
+            values.flat[at] = found[known]
+        turned.flat[at] = False
+    return LoadedZones(Qf, sf, zone, turned)
 
 
 def _point(scene: Scene, pressed: Contact) -> tuple[Point | None, str]:

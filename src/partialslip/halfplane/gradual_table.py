@@ -1,0 +1,63 @@
+"""Table of Hertz's stick zones under gradual loads whose slip turns round (docs/theory.md, section 7), for many loads
+at once. Scaled as in :mod:`partialslip.halfplane.shape`.
+
+Patches over s_f and w = sqrt(1 - Q_f), between border curves w(s_f) at which the zone's ends have kinks; Chebyshev
+series in s_f and in the share of the way from border to border. ``benchmarks/gradual_table.py`` makes the table from
+the solver, and measures its error.
+"""
+
+import functools
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from partialslip.arrays import Array, Mask
+from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.steady import stick_zones
+from partialslip.result import StickZone
+
+PLACE = Path(__file__).with_name("gradual_table.json")
+_BESIDE = 1e-6  # of a patch: a place as near to it is inside, as rounding may put it on the wrong side
+
+
+def tabled(Qf: Array, sf: Array) -> StickZone[Array]:
+    """Stick zones under gradual loads (k,) whose slip turns round, for Hertz; NaN where the table has none.
+
+    m and n are within 1e-6 of the solver (``benchmarks/gradual_table.py --check``).
+    """
+    once = stick_zones(Qf, sf, Hertz())
+    left, right = np.full((2, len(Qf)), np.nan)
+    sign = np.zeros(len(Qf), int)
+    holds = again(Qf, sf, once)
+    left[holds], right[holds], sign[holds] = once.left[holds], once.right[holds], 1
+    w = np.sqrt(1 - Qf)
+    for panel in table()["panels"]:
+        here = np.flatnonzero(~holds & (sf >= panel["low"]) & (sf <= panel["high"]))
+        along = 2 * (sf[here] - panel["low"]) / (panel["high"] - panel["low"]) - 1
+        borders = chebyshev.chebval(along, np.array(panel["borders"]).T)
+        for upper, lower, patch in zip(borders, borders[1:], panel["patches"], strict=False):
+            share = (upper - w[here]) / (upper - lower)
+            inside = (share >= -_BESIDE) & (share <= 1 + _BESIDE)
+            across = np.clip(2 * share[inside] - 1, -1, 1)
+            at = here[inside]
+            left[at], right[at] = (chebyshev.chebval2d(along[inside], across, np.array(end)) for end in patch)
+            sign[at] = np.where(borders[1][inside] > w[at], 1, -1)
+    return StickZone((left + right) / 2, (right - left) / 2, sign)
+
+
+def again(Qf: Array, sf: Array, once: StickZone[Array]) -> Mask:
+    """Whether one step has the zone of gradual loads, although slip turns round: the ends slip the same way at last,
+    and all points that slipped the other way before slip again. Then the left end of the zone has come as far as
+    1 - 2 c*, where it is when the zone begins to drift."""
+    result: Mask = (once.s > 0) & (sf * (1 - once.left) <= 8 * Qf)
+    return result
+
+
+@functools.cache
+def table() -> dict[str, Any]:
+    """The table, as its file has it."""
+    found: dict[str, Any] = json.loads(PLACE.read_text())
+    return found

@@ -1,0 +1,124 @@
+"""The table of Hertz's gradual stick zones: against the solver, near its borders, and as `stick_zone` uses it."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from partialslip.gradual import turns_round
+from partialslip.halfplane import contact, gradual_table, stick_zone
+from partialslip.halfplane.gradual_path.half_cycle import LostError, steady
+from partialslip.halfplane.gradual_path.stage import Loads
+from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.steady import stick_zones
+from partialslip.scene.reading import load_scene
+
+SEED = 20261  # played no part in making the table
+PRESSED = contact(load_scene("hertz-shear"))
+F = 0.3
+
+
+def turned(count, seed=SEED):
+    """Random Qf and sf whose slip turns round, which the table has."""
+    random = np.random.default_rng(seed)
+    Qf, sf = random.random(40 * count), 10.4 * random.random(40 * count)
+    zone = stick_zones(Qf, sf, Hertz())
+    there = turns_round(Qf, sf, zone.s, zone.centre, zone.half_width)
+    there[there] = ~np.isnan(gradual_table.tabled(Qf[there], sf[there]).centre)
+    return Qf[there][:count], sf[there][:count]
+
+
+def solved(Qf, sf):
+    """Ends by the solver."""
+    return np.array([steady(Loads(s, math.pi * Q), Hertz()).last.zone for Q, s in zip(Qf, sf, strict=True)]).T
+
+
+def off(Qf, sf):
+    """Largest error of the table."""
+    zone = gradual_table.tabled(Qf, sf)
+    return np.abs(np.array([zone.left, zone.right]) - solved(Qf, sf)).max()
+
+
+def beside_borders(beside=1e-3):
+    """Loads on both sides of borders between two patches, and inside of the first and the last border."""
+    at = []
+    for panel in gradual_table.table()["panels"]:
+        sf = panel["low"] + 0.37 * (panel["high"] - panel["low"])
+        w = [np.polynomial.chebyshev.chebval(-0.26, border) for border in panel["borders"]]
+        for upper, lower in itertools.pairwise(w):
+            width = upper - lower
+            at += [(1 - each**2, sf) for each in (upper - beside * width, lower + beside * width)]
+    return np.array(at).T
+
+
+def test_random_loads():
+    assert off(*turned(20)) < 1e-6
+
+
+@pytest.mark.slow
+def test_many_random_loads():
+    assert off(*turned(300, SEED + 1)) < 1e-6
+
+
+def test_loads_beside_borders():
+    assert off(*beside_borders()) < 1e-6
+
+
+@pytest.mark.fault
+def test_series_cut_short_show(monkeypatch):
+    """Fault: three terms along s_f."""
+    real = gradual_table.table()
+    panels = [{**each, "patches": [[end[:3] for end in patch] for patch in each["patches"]]} for each in real["panels"]]
+    monkeypatch.setattr(gradual_table, "table", lambda: {"panels": panels})
+    assert off(*beside_borders()) > 1e-5
+
+
+def test_zones_meet_at_borders():
+    """m and n are continuous across each border."""
+    for panel in gradual_table.table()["panels"]:
+        for first, second in zip(panel["patches"], panel["patches"][1:], strict=False):
+            along = np.linspace(-1, 1, 9)
+            for one, other in zip(first, second, strict=True):
+                ends = [np.polynomial.chebyshev.chebval2d(along, 0 * along + way, np.array(end))
+                        for end, way in ((one, 1), (other, -1))]  # fmt: skip
+                np.testing.assert_allclose(*ends, rtol=0, atol=1e-6)
+
+
+def test_one_step_holds_again_where_all_slips_again():
+    """Just above the least tension under which slip turns round, small tension in closed form holds."""
+    Qf = np.array([0.2, 0.6, 0.9])
+    sf = 4 * Qf * (1 + 1e-3)
+    once = stick_zones(Qf, sf, Hertz())
+    assert gradual_table.again(Qf, sf, once).all()
+    np.testing.assert_allclose(solved(Qf, sf), [once.left, once.right], rtol=0, atol=1e-9)
+
+
+def test_arrays_take_the_table_and_numbers_the_solver():
+    """The same zones within 1e-6, for all signs; a million of loads would take no solver."""
+    Qf, sf = turned(4, SEED + 2)
+    dQ, dsigma = 2 * F * PRESSED.P * Qf, F * PRESSED.p0 * sf
+    for signs in ((1, 1), (-1, 1), (1, -1)):
+        many = stick_zone(PRESSED, F, signs[0] * dQ, signs[1] * dsigma)
+        for i in range(len(Qf)):
+            one = stick_zone(PRESSED, F, signs[0] * dQ[i], signs[1] * dsigma[i])
+            assert (many.m[i], many.n[i]) == pytest.approx((one.m, one.n), abs=1e-6 * PRESSED.a)
+            assert many.s[i] == one.s
+
+
+def test_the_solver_is_not_asked_where_the_table_has_the_zone(monkeypatch):
+    monkeypatch.setattr("partialslip.halfplane.zones.half_cycle", None)
+    Qf, sf = turned(50, SEED + 3)
+    assert not np.isnan(stick_zone(PRESSED, F, 2 * F * PRESSED.P * Qf, F * PRESSED.p0 * sf).m).any()
+
+
+def test_the_table_is_small():
+    assert gradual_table.PLACE.stat().st_size < 200_000
+
+
+def test_beyond_the_table_there_is_nothing():
+    """An inner slip zone, and larger tension."""
+    zone = gradual_table.tabled(np.array([0.85, 0.6]), np.array([9.0, 14.0]))
+    assert np.isnan(zone.centre).all()
+    with pytest.raises(LostError):
+        solved([0.85], [9.0])
