@@ -63,9 +63,7 @@ def test_signs_of_the_loads(Qf, sf, turn, mirror):
     assert dissipated == pytest.approx(worn, rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("Qf", "sf"), [(0.55, 7.0), pytest.param(*DRIFT, marks=pytest.mark.slow), TO_THE_END]
-)
+@pytest.mark.parametrize(("Qf", "sf"), [(0.55, 7.0), pytest.param(*DRIFT, marks=pytest.mark.slow), TO_THE_END])
 def test_loops_enclose_what_friction_dissipates(Qf, sf):
     """Work of the shear force and of the tension over a cycle, from displacements and moments of stick zones, against
     the slip times the bound."""
