@@ -103,6 +103,7 @@ class _Refinement:
         self.eased = False  # whether the present mesh grows faster near the ends
         self.block_width = 0.0  # width of the blocks of the present mesh
         self.errors, self.end_errors = dict[str, float](), dict[str, float]()
+        self.error_at_ends = np.inf  # error due to the elements at the ends of zones alone, not at kinks
         self.largest_end_element = np.inf
         self.error, self.error_before, self.calmer = np.inf, np.inf, 1.0
         self.step_errors: Mapping[str, float] | None = None  # None until the steps are chosen
@@ -211,6 +212,7 @@ class _Refinement:
             at_ends = at_ends * (1 + beside / (self.size * a))
         self.largest_end_element = grading.at(solution.zone_ends).max() * coarsest / a
         self.errors = self.end_errors = self._errors_of_ends(at_ends, at_kinks)
+        self.error_at_ends = worst(self._errors_of_ends(at_ends, 0 * at_kinks))
 
     def estimate_errors(self) -> None:
         """Estimate the error away from the ends, if the error of the ends is small enough or no smaller one is to
@@ -218,9 +220,10 @@ class _Refinement:
         self.error, self.calmer = np.inf, 1.0
         if self.solution.lower.order < self.problem.order:
             return  # a mesh on the way
-        self.waited = self.waited + 1 if self.error_before < np.inf else 0
+        fine = self.located and self.error_at_ends <= self.bar
+        self.waited = self.waited + 1 if self.error_before < np.inf or fine else 0
         if self.solution.enclosed and (
-            (self.located and worst(self.end_errors) <= self.bar)
+            (fine and worst(self.end_errors) <= self.bar)
             or self.size <= goals.FINEST
             or self.solution.dofs > _MOST_UNKNOWNS
             or self.waited > _WAITS
@@ -244,7 +247,7 @@ class _Refinement:
                 f"reaches the ends of {self.cuts} contact lines"
             )
         if reached(self.size, self.size_goal):
-            self.finer = min(max(3 * worst(self.end_errors) / self.bar, 1.0), goals.FINER)
+            self.finer = min(max(3 * self.error_at_ends / self.bar, 1.0), goals.FINER)
         if self.error < np.inf:
             self.error_before, self.least = self.error, self.least * self.calmer
 

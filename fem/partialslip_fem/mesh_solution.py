@@ -17,6 +17,8 @@ from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import Body
 from partialslip_fem.recovery import traction
 
+_TOUCHES = 1e-9  # mean traction of an open node, relative to the largest: rounding of the mass matrix's inverse
+
 
 @dataclass(frozen=True)
 class MeshSolution:
@@ -214,6 +216,22 @@ class MeshSolution:
             return None
         first, second = (self.shear(bound / f) for bound in self.history.bounds)
         return first, second
+
+    def tension(self, f: float) -> float:
+        """Largest -p at both load points in cells of which, as of the cells on both sides, all nodes are pressed; 0 if
+        there is none. In the last cells of a contact the error of the mesh makes p negative, in others only rounding:
+        nodal forces of a traction that oscillates within the cells may still be positive. ``f`` is the coefficient of
+        friction."""
+        order, both = self.lower.order, self.pressures(f)
+        tractions = both or (self.pressure(),)
+        most = 0.0
+        for pressure in tractions:
+            values = pressure(self.lower.x)
+            touching = np.abs(self.lower.mass @ values) > _TOUCHES * self.lower.weights * np.abs(values).max()
+            inner = np.lib.stride_tricks.sliding_window_view(touching, 3 * order + 1)[::order].all(axis=1)
+            cells = np.lib.stride_tricks.sliding_window_view(values, order + 1)[order:-order:order]
+            most = max(most, float(-cells[inner].min(initial=0.0)))
+        return most
 
     def shear(self, forces: Array) -> PPoly:
         """Traction along the contact line that is equivalent to ``forces`` (k,) on the nodes in contact."""

@@ -1,5 +1,7 @@
 """Mortar projection between contact lines whose nodes do not match."""
 
+from typing import NamedTuple
+
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
@@ -25,9 +27,9 @@ def transfer(onto: Body, other: Body) -> Array:
 def nodal_forces(body: Body, traction: PPoly) -> Array:
     """Nodal forces on the contact line of ``body``, (n,), of a piecewise ``traction`` that is zero off its cells."""
     order = (body.order + len(traction.c)) // 2 + 1
-    x, weights = _rule(np.clip(np.union1d(body.x[:: body.order], traction.x), body.x[0], body.x[-1]), order)
-    nodes, values = shape_functions(body, x)
-    products = (weights * inside(traction, x))[:, None] * values
+    rule = _rule(np.clip(np.union1d(body.x[:: body.order], traction.x), body.x[0], body.x[-1]), order)
+    nodes, values = shape_functions(body, rule.starts, rule.offsets)
+    products = (rule.weights * inside(traction, rule.starts + rule.offsets))[:, None] * values
     return np.bincount(nodes.ravel(), products.ravel(), len(body.x)).astype(float)
 
 
@@ -35,26 +37,38 @@ def _products(onto: Body, other: Body) -> sp.csr_matrix:
     """Integrals of products of shape functions of both bodies, (n, n_other); the quadrature is exact."""
     vertices = np.union1d(onto.x[:: onto.order], other.x[:: other.order])
     vertices = vertices[(vertices >= max(onto.x[0], other.x[0])) & (vertices <= min(onto.x[-1], other.x[-1]))]
-    x, weights = _rule(vertices, (onto.order + other.order) // 2 + 1)
-    rows, left = shape_functions(onto, x)
-    columns, right = shape_functions(other, x)
+    starts, offsets, weights = _rule(vertices, (onto.order + other.order) // 2 + 1)
+    rows, left = shape_functions(onto, starts, offsets)
+    columns, right = shape_functions(other, starts, offsets)
     values = weights[:, None, None] * left[:, :, None] * right[:, None, :]
     where = (np.broadcast_to(index, values.shape).ravel() for index in (rows[:, :, None], columns[:, None, :]))
     return sp.coo_array((values.ravel(), tuple(where)), (len(onto.x), len(other.x))).tocsr()
 
 
-def _rule(vertices: Array, count: int) -> tuple[Array, Array]:
-    """Points and weights of Gauss's rule with ``count`` points between neighbouring ``vertices``."""
+class _Rule(NamedTuple):
+    """Quadrature points (k,), each by where its interval ``starts`` and its ``offsets`` from there, and ``weights``."""
+
+    starts: Array
+    offsets: Array
+    weights: Array
+
+
+def _rule(vertices: Array, count: int) -> _Rule:
+    """Gauss's rule with ``count`` points between neighbouring ``vertices``."""
     points, weights = np.polynomial.legendre.leggauss(count)
     half = np.diff(vertices)[:, None] / 2
-    return (vertices[:-1, None] + half * (1 + points)).ravel(), (half * weights).ravel()
+    return _Rule(np.repeat(vertices[:-1], count), (half * (1 + points)).ravel(), (half * weights).ravel())
 
 
-def shape_functions(body: Body, x: Array) -> tuple[Indices, Array]:
-    """Nodes whose shape functions do not vanish at ``x`` (k,), and the values there, (k, order + 1) each."""
+def shape_functions(body: Body, x: Array, offsets: Array | float = 0.0) -> tuple[Indices, Array]:
+    """Nodes whose shape functions do not vanish at ``x`` + ``offsets`` (k,), and the values, (k, order + 1) each.
+
+    A point and its ``x`` are in the same cell. The offset counts from the cell's first node, as coordinates resolve a
+    cell of the size h only to eps/h of it. Compliances that are projected with such errors make p oscillate by eps/h^2.
+    """
     k, vertices = body.order, body.x[:: body.order]
     cell = np.clip(np.searchsorted(vertices, x, "right") - 1, 0, len(vertices) - 2)
-    local = (x - vertices[cell]) / np.diff(vertices)[cell]
+    local = ((x - vertices[cell]) + offsets) / np.diff(vertices)[cell]
     values = shapes(k, local)
     nodes: Indices = k * cell[:, None] + np.arange(k + 1)
     return nodes, values

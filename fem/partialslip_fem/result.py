@@ -138,10 +138,11 @@ def _state(scene: Scene, problem: Problem, solution: MeshSolution, errors: dict[
 
 
 def _certificate(problem: Problem, solution: MeshSolution, p0: float) -> dict[str, float]:
-    """Largest residual of normal contact and friction, in p0, and of equilibrium, relative to P."""
+    """Largest residual of normal contact and friction and largest tension, in p0; of equilibrium, relative to P."""
     weights = solution.lower.weights
     pressing = solution.pressing
-    normal = {"kkt": float((pressing.residual / weights).max() / p0), "equilibrium": pressing.imbalance}
+    residual = max(float((pressing.residual / weights).max()), solution.tension(problem.f))
+    normal = {"kkt": residual / p0, "equilibrium": pressing.imbalance}
     if not solution.history:
         return normal
     friction = certificate(solution.history, weights[solution.nodes], problem.f, p0)

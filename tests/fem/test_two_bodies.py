@@ -57,6 +57,13 @@ def test_transfer_between_matching_nodes_is_the_identity(lines):
     assert transfer(lines[0], lines[0]) == pytest.approx(np.eye(len(lines[0].x)), abs=1e-11)
 
 
+def test_transfer_between_tiny_cells_off_the_middle_is_the_identity():
+    """Coordinates near x = -0.8 resolve a cell of 1e-7 to 1e-9 of its size; compliances must not have that error, which
+    made p oscillate by more than itself."""
+    line = body(block(5.0, (-1.2, 1.2), {-0.7885596: 1e-7}, 0.5), 1.8, 4)
+    assert transfer(line, line) == pytest.approx(np.eye(len(line.x)), abs=1e-11)
+
+
 def test_similar_half_planes_as_two_coupled_bodies():
     """Mirror images whose meshes do not match are solved as two bodies: the closed form is still the truth."""
     scene = load_scene("hertz-large-tension", [COARSE, "fem.lower_size=1.3"])
