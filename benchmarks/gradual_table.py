@@ -1,6 +1,6 @@
 """Make the table of Hertz's stick zones under gradual loads: src/partialslip/halfplane/gradual_table.json.
 
-    nice python benchmarks/gradual_table.py            make it anew (about 10 CPU minutes)
+    nice python benchmarks/gradual_table.py            make it anew (about 18 CPU minutes)
     nice python benchmarks/gradual_table.py --check 300 --seed 1    its error at random loads
 
 The table is made of patches over s_f = dsigma/(f p0) and w = sqrt(1 - Q_f), each between two border curves w(s_f). In a

@@ -27,7 +27,7 @@ def map_svg(data: StickMap) -> str:
         axes.set(xlabel="ΔQ/(2 f P)", ylabel="Δσ/(f p0)", xlim=(0, 1 + _STRIP), ylim=(0, data.grid.sf.max()))
         axes.plot([], color="black", lw=1, label="m/a, stick from -m")
         axes.plot([], color="black", lw=1, ls="--", label="n/a, stick to n")
-        axes.plot(*data.border[1:], color="black", lw=2.8, label="m = a: large tension above, small below")
+        axes.plot(*data.border[1:], color="black", lw=2.8, label="m = a in one step: large tension above")
         axes.axvspan(1, 1 + _STRIP, color="0.7", lw=0, label="sliding")
         grid = data.grid
         axes.contourf(grid.Qf, grid.sf, grid.turned, [0.5, 1.5], colors="none", hatches=[_HATCH])
@@ -86,7 +86,7 @@ def _draw_ends(axes: "Axes", data: StickMap, number: int) -> None:
     axes.fill_between(ratio, -m, n, color="0.88", lw=0, label="stick zone [-m, n]")
     axes.plot(ratio, n, color="black", lw=1.4, ls="--", label="n/a")
     axes.plot(ratio, -m, color="black", lw=1.4, label="-m/a")
-    axes.axvline(turn, color="black", lw=1, ls=":", label="from small (left) to large tension")
+    axes.axvline(turn, color="black", lw=1, ls=":", label="from small (left) to large tension, in one step")
     turned = data.curves.turned[number]
     axes.fill_between(ratio, -1.05, 1.05, where=turned, hatch=_HATCH, fc="none", ec="0.6", lw=0, label=_ONE_STEP)
     axes.set(title=f"ΔQ/(2 f P) = {Qf[0]:g}", xlim=(0, ratio[-1]), ylim=(-1.05, 1.05))
