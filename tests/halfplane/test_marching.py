@@ -42,14 +42,14 @@ def test_order_of_convergence(monkeypatch):
 
 @pytest.mark.slow
 def test_transients_die_out_and_leave_the_steady_range():
-    """The change per cycle decreases about like cycles^-3; geometrically only if the mesh is too coarse for the last
-    slipping strips."""
+    """The change per cycle decreases with the number of cycles, and does not end: what slips last slips ever less."""
     results = {k: marched("hertz-large-tension", ROUGH, *MEAN, f"load.cycles={k}") for k in (1, 3, 6, 12)}
     changes = [result.last_cycle_change for result in results.values()]
     assert changes[0] > 0.2  # on the gradual way
-    assert all(4 < before / after < 16 for before, after in itertools.pairwise(changes[1:]))
+    assert all(after < before / 3 for before, after in itertools.pairwise(changes))
     assert all(("not steady" in " ".join(r.notes)) == (r.last_cycle_change > 1e-3) for r in results.values())
-    result = marched("hertz-large-tension", *MEAN, "load.cycles=12")
+    result = marched("hertz-large-tension", *MEAN)
+    assert 12 < result.counts["cycles"] < 100
     assert (result.m / result.a, result.n / result.a) == pytest.approx((0.749058362969, 0.370590356334), abs=2e-5)
 
 
@@ -124,17 +124,18 @@ def test_slip_that_turns_round_on_a_gradual_way(Qf, sf, turns):
 
 @pytest.mark.slow
 def test_slip_that_turns_round_as_the_loads_do():
-    """Points that finally slip to the right are first pushed to the left: a flat remembers, and the notes say so."""
+    """Points that finally slip to the right are first pushed to the left: a flat remembers."""
     scene = partialslip.load_scene("flat-rounded")
     fP, fp0 = scene.friction.f * scene.P, scene.friction.f * contact(scene).p0
     loads = [ROUGH, f"load.Q={[-0.375 * fP, 0.375 * fP]}", f"load.sigma={[-4.125 * fp0, 4.125 * fp0]}"]
     one, gradual = (
-        partialslip.run(partialslip.load_scene("flat-rounded", [*loads, f"load.steps={k}"]), ["exact", "march"])
-        for k in (1, 4)
+        partialslip.run(partialslip.load_scene("flat-rounded", [*loads, f"load.steps={k}"]), ["march"]) for k in (1, 4)
     )
-    assert any("reverses" in note for note in one.results["exact"].notes)
-    assert one.results["march"].counts["steps"] > 1  # without naming them
-    assert min(each.comparisons["exact"].n for each in (one, gradual)) > 0.01
+    assert all(each.results["march"].counts["events"] for each in (one, gradual))
+    once = one_step_zone(contact(scene), scene.friction.f, 0.75 * fP, 8.25 * fp0).n
+    found = [each.results["march"] for each in (one, gradual)]
+    assert min(abs(each.n - once) / each.a for each in found) > 0.01
+    assert found[0].n == pytest.approx(found[1].n, abs=1e-6 * found[0].a)
 
 
 def test_cells_follow_every_kink_of_q1_and_q2():
