@@ -16,7 +16,7 @@ from partialslip.report import answer, print_run, rows
 from partialslip.run import compared
 from partialslip.scene import Scene
 
-REVERSES = ["load.Q=[-267035.3755551323, 267035.3755551323]", "load.sigma=[-9e8, 9e8]"]
+REVERSES = ["load.Q=[-31415.926535897932, 31415.926535897932]", "load.sigma=[-3e9, 3e9]"]  # a very narrow zone drifts
 
 
 def ran(results, scene: Scene = SCENE, accuracy=1e-3):
@@ -111,7 +111,7 @@ def test_march_alone_and_a_cycle_with_a_mean_give_stresses():
 def test_a_reversing_path_says_that_nothing_is_known_to_hold():
     scene = load_scene("hertz-shear", [*REVERSES, "fem.accuracy=1e-2"])
     found = run(scene, ["march", "exact"])
-    assert answer.heading(found).startswith("march: small tension; path-dependent: slip reverses")
+    assert answer.heading(found).startswith("march: large tension; path-dependent: slip reverses")
     assert rows.verdict(found).startswith("not judged: m, n, q, q1, q2; asked: within 1 % of a, 10 % of p and q")
 
 
