@@ -8,13 +8,19 @@ import scipy.special
 
 import partialslip
 from partialslip.bars import CERTIFICATE_BAR
-from partialslip.halfplane import loading, steady
+from partialslip.halfplane import contact, loading, steady
 from partialslip.halfplane import traction as exact_traction
 from partialslip.halfplane.hertz import Hertz
 from partialslip.judge import compare
 from partialslip.run import compared
 
 LARGE = "hertz-large-tension"
+
+
+def closed_form(scene):
+    """Half a cycle in one step; where the zone of a fault lets slip turn round, exact goes another way."""
+    load = scene.load
+    return loading.loading(contact(scene), scene.friction.f, load.dQ, load.dsigma, bound=2)
 
 
 @pytest.mark.fault
@@ -34,8 +40,7 @@ def test_sign_of_x_instead_of_the_slip_zones(monkeypatch, sound, red):
 def test_both_ends_taken_to_slip_the_same_way(monkeypatch, sound, red):
     scene, true = sound(LARGE), Hertz.conditions
     monkeypatch.setattr(Hertz, "conditions", lambda self, edge, c, s: true(self, edge, c, np.abs(s)))
-    certificate = red.run(scene, "exact").results["exact"].certificate
-    red("certificate: shear", certificate["shear"], CERTIFICATE_BAR)
+    red("certificate: shear", closed_form(scene).certificate["shear"], CERTIFICATE_BAR)
 
 
 @pytest.mark.fault
@@ -56,8 +61,7 @@ def test_moment_about_the_middle_without_its_term(monkeypatch, sound, red):
         return at._replace(Qf=at.Qf + (np.abs(edge) + c - 1) * at.sf / 4)
 
     monkeypatch.setattr(steady, "_at", about_the_middle)
-    certificate = red.run(scene, "exact").results["exact"].certificate
-    red("certificate: shear", certificate["shear"], CERTIFICATE_BAR)
+    red("certificate: shear", closed_form(scene).certificate["shear"], CERTIFICATE_BAR)
 
 
 @pytest.mark.fault

@@ -9,6 +9,7 @@ import pytest
 
 import partialslip
 from partialslip.errors import InputError
+from partialslip.gradual import turns_round
 from partialslip.halfplane import Contact, Stress, cauchy, contact_of
 from partialslip.halfplane import stress as stress_module
 from partialslip.halfplane.hertz import Hertz
@@ -188,6 +189,8 @@ def test_surface_is_strained_by_the_slope_of_the_slip(Qf, sf, shape):
 @every_load
 def test_surface_is_the_limit_of_the_inside(Qf, sf, shape):
     stress, zone = scaled(shape, Qf, sf), stick_zone(Qf, sf, shape)
+    if turns_round(Qf, sf, zone.s, zone.centre, zone.half_width):
+        pytest.skip("slip turns round: q is not that of one step")
     x = places(stress)
     surface, p, q = stress.surface(x), shape.pressure(x), F * half_range(x, zone, shape)
     for body, side in enumerate((-1, 1)):
