@@ -140,7 +140,7 @@ OPENERS = {
     "inputfile",  # files of users
     "ledger", "state",  # to write
     "origin", "memory",  # of the packages and of the operating system
-    "reading", "book", "problem", "prices",  # data of the package
+    "reading", "book", "problem", "prices", "gradual_table",  # data of the package
     "ending",  # the null device
     "process", "calculix", "neutral", "run_getfem", "run_kratos",  # in temporary folders of the package
 }  # fmt: skip

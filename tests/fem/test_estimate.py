@@ -75,9 +75,9 @@ def test_a_difference_of_tractions_is_relative_to_the_first():
 @pytest.mark.slow
 def test_locked_elements_stop_where_meshes_bring_nothing():
     """Instead of refining without end, and it is said that the accuracy is not reached."""
-    overrides = ["fem.order=1", "material.nu=0.4999", "fem.accuracy=1e-2"]
+    overrides = ["fem.order=1", "material.nu=0.499", "fem.accuracy=1e-2"]
     fem = partialslip.run(partialslip.load_scene("hertz-small-tension", overrides), ["fem"]).results["fem"]
-    assert max(fem.estimate[key] for key in "amn") > 0.1
+    assert max(fem.estimate[key] for key in "amn") > 0.05
     assert any("not reached" in note for note in fem.notes)
 
 

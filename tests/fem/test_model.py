@@ -89,8 +89,8 @@ def test_static_mean_load_sticks():
 
 @pytest.mark.slow
 def test_mean_loads_reach_the_steady_range_cycle_by_cycle():
-    """The first cycles differ; the range tends to that of the reversed loads of the same changes, with the cube of the
-    cycles (tests/halfplane/test_marching.py)."""
+    """Tractions change from cycle to cycle, ever less; the ends of the stick zone are those of the reversed loads of
+    the same changes from the second cycle on (tests/halfplane/test_marching.py)."""
     overrides = ["load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]"]  # 0.1 .. 0.7 fP, 1 .. 5 f p0
     exact_m, exact_n = 0.749058362969, 0.370590356334  # dQ/(2fP) = 0.3, dsigma/(f p0) = 4
     steady, off = [], []
@@ -100,7 +100,7 @@ def test_mean_loads_reach_the_steady_range_cycle_by_cycle():
         assert any("not steady" in note for note in result.notes) == (steady[-1] > 1e-3)
         off.append(max(abs(result.m / result.a - exact_m), abs(result.n / result.a - exact_n)))
     assert steady[0] > 10 * 1e-3 > steady[2]
-    assert off[2] < 1e-3 < off[0], off
+    assert max(off[1:]) < min(1e-3, off[0]), off
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.49, 0.4999])

@@ -257,12 +257,13 @@ def slow(first, end, step=1):
     return pytest.param(range(first, end, step), marks=pytest.mark.slow)
 
 
-# Of 7,000 scenes the first 1,600 showed all that was wrong once, but for scenes that nearly stick: of these more.
+# Of 7,000 scenes the first 1,600 showed all that was wrong once, but for scenes that nearly stick: of these more. Since
+# zones inside the stick zone are followed, which takes seconds, 640 are tried. Number 70 once went on for ever.
 NEARLY_STUCK = slow(KINDS.index("near-stuck"), 7_500, len(KINDS))
 
 
 @pytest.mark.parametrize(
-    "numbers", [range(43), *(slow(first, first + 320) for first in range(0, 1_600, 320)), NEARLY_STUCK], ids=str
+    "numbers", [range(43), *(slow(first, first + 107) for first in range(0, 640, 107)), NEARLY_STUCK], ids=str
 )
 def test_random_scenes(numbers):
     """Nothing raises, everything is finite, and the paper's inequalities hold."""

@@ -11,6 +11,16 @@ from partialslip.halfplane.gradual_path.retreat import Zone
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Part, Tractions
 
+_PATIENT = 24  # steps without progress, for ways that are lost with fewer
+
+
+def _followed(loads: Loads, first: Stage, low: float, near: Way | None) -> Way:
+    given = loads.tension, loads.least, first.q, first.zone.left, low
+    try:
+        return Way(*given, near)
+    except LostError:  # rounding decides whether Newton's method comes through
+        return Way(*given, patience=_PATIENT)
+
 
 class Parted:
     """The stick zone is parted by an inner slip zone from ``first`` on. ``low`` is the left end of the points on the
@@ -18,7 +28,7 @@ class Parted:
     phase."""
 
     def __init__(self, loads: Loads, first: Stage, low: float, near: "Parted | None" = None) -> None:
-        self.way: Way = Way(loads.tension, loads.least, first.q, first.zone.left, low, near.way if near else None)
+        self.way: Way = _followed(loads, first, low, near.way if near else None)
         self.first = first._replace(inner=Zone(*(float(self.way.first[end]) for end in (A, B))))
         self.last = last = self.at(self.way.progress)
         if self.way.vanished and last.inner:

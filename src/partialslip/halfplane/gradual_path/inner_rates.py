@@ -10,6 +10,7 @@ from partialslip.arrays import Array
 
 L, A, B, R, Z = range(5)  # the four ends, and z0
 DEGREES = 20  # nodes of a panel
+PAST = 28  # nodes of integrals over part of a panel, or over panels that are past
 RATE = 1.6  # logarithm by which the width of a vanishing interval falls in a panel
 
 
@@ -41,7 +42,7 @@ WEIGHTS = 0.5 * SHARES * RESTS
 class Map(NamedTuple):
     """How lambda runs in a panel of unit length: ``share`` of s, s of a share and its ``rest``; nodes and weights of
     integrals up to the collocation points, singular there like a square root; ``whole``: polynomials at the nodes of
-    integrals over the panel."""
+    integrals over the panel; ``past``, ``past_weights``: those of integrals that are smooth in s."""
 
     share: Callable[[Array], Array]
     place: Callable[[Array, Array], Array]
@@ -50,12 +51,14 @@ class Map(NamedTuple):
     own_cardinal: Array
     shares: Array
     whole: Array
+    past: Array
+    past_weights: Array
 
 
 def _map(
     share: Callable[[Array], Array], slope: Callable[[Array], Array], place: Callable[[Array, Array], Array]
 ) -> Map:
-    y, weights = np.polynomial.legendre.leggauss(28)
+    y, weights = np.polynomial.legendre.leggauss(PAST)
     y, weights = (1 + y) / 2, weights / 2
     own = _NODES[:, None] * (1 - y**2)
     return Map(
@@ -66,6 +69,8 @@ def _map(
         _cardinal(own),
         share(_NODES),
         _cardinal(place(SHARES, RESTS)),
+        _cardinal(y),
+        weights * slope(y),
     )
 
 

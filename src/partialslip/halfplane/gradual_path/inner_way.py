@@ -8,13 +8,16 @@ back, z0 = b, or retreats, too. The ways are polynomials, panel by panel in lamb
 q_start + int (rate) d(lambda) = bound, with Newton's method.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
-from partialslip.arrays import Array, Indices
+from partialslip.arrays import Array, Indices, Mask
 from partialslip.halfplane.gradual_path.inner_rates import (
     DECAY,
     DEGREES,
     LAST,
+    PAST,
     RATE,
     RESTS,
     SHARES,
@@ -37,6 +40,7 @@ from partialslip.halfplane.gradual_path.tractions import Tractions
 
 ENDS = (L, A, B, R)
 _STEPS = 24
+PATIENCE = 3  # steps without one that is half as large as those before, after which a panel is too long
 _CLOSE = 1e-12
 _SLOW = 3e-11  # where rounding stops Newton's method: ends that hardly move
 _RELATIVE = 1e-7  # of the way of an end in the panel: an inner zone that closes slows a down by orders of magnitude
@@ -51,12 +55,24 @@ SHUT = 1e-5  # width of an inner zone that has closed: points are pushed beyond 
 _NARROW = 1e-4  # width of an inner zone that may be closed where its ends are lost
 _HALVINGS = 12
 _SHORTEST = 1e-15
+_APART = 0.15  # of the way of an end in a panel: integrals over it are smooth at points so far from its end
 _FARTHER = 1.05  # by which a panel is longer than the one that it is like, for b to turn round in it
 _TURNED, _NEAR_TURN = 1e-9, 1e-7  # z0 - b where b turns round; ways from there that rounding hides in the changes of q
 
 
 _EVENTS = {"width": {A: 1.0, L: -1.0}, "gap": {L: 0.5, R: 0.5, A: -1.0}}  # of what their size is the sum
 _AT_END = np.array([0.97, 1.0])
+
+
+class Past(NamedTuple):
+    """Panels: where they ``begin`` and end (5, panels), how far ends have ``moved`` in them, and the ``ways``
+    (5, panels, nodes) with ``weights`` (panels, nodes) of integrals that are smooth."""
+
+    begins: Array
+    ends: Array
+    moved: Array
+    ways: Array
+    weights: Array
 
 
 class Way:
@@ -72,6 +88,8 @@ class Way:
         l and a at the beginning.
     near : Way, optional
         Ways from a similar state.
+    patience : int
+        Steps of Newton's method without progress after which a panel is too long.
 
     Attributes
     ----------
@@ -80,9 +98,10 @@ class Way:
     """
 
     def __init__(
-        self, tension: float, least: float, start: Tractions, left: float, low: float, near: "Way | None" = None
-    ) -> None:
-        self._tension, self._least, self.start = tension, least, start
+        self, tension: float, least: float, start: Tractions, left: float, low: float, near: "Way | None" = None,
+        patience: int = PATIENCE
+    ) -> None:  # fmt: skip
+        self._tension, self._least, self.start, self._patience = tension, least, start, patience
         self._breaks = np.array([-1.0, *sorted({*start.breaks, *start.shape.strong_kinks}), 1.0])
         ends = np.array([left, low, low + 4 / 3 * ((left + 1) / 2 - least - low), 1.0])
         ends[B] = taken(ends[:, None], least)[0]
@@ -126,7 +145,7 @@ class Way:
                 panel = self._tried(takes, length, speeds)
             if not panel or _tail(panel) > _TAIL:
                 length = min(length, panel.length if panel else length) / 2
-                if length < _SHORTEST * max(1.0, 1e8 * (gap < _NARROW)):
+                if not length >= _SHORTEST * max(1.0, 1e8 * (gap < _NARROW)):  # NaN where speeds are infinite
                     if gap < _NARROW:
                         self.closed = True
                         return
@@ -139,7 +158,7 @@ class Way:
                     panel = self._solve(begin, takes, part, speeds, SINE, None, panel)
                     if not panel:
                         length = part / 2
-                        if length < _SHORTEST:
+                        if not length >= _SHORTEST:
                             raise LostError(f"b turns at {self.progress}")
                         continue
                     self.panels.append(panel._replace(turns=True))
@@ -195,13 +214,14 @@ class Way:
         if not panel or panel.length > rest or _tail(panel) > _TAIL:
             self._refused = len(self.panels)
             panel = self._solve(begin, takes, length, speeds, SINE)
-        crossing = self._crossing(panel) if panel else None
-        while panel and crossing:
+        for _ in range(_HALVINGS):
+            crossing = self._crossing(panel) if panel else None
+            if not panel or not crossing:
+                return panel
             end, place, s = crossing
             part = panel.length * float(panel.by.share(np.array(s)))
             panel = self._solve(begin, takes, part, speeds, SINE, (end, place), panel)
-            crossing = self._crossing(panel) if panel else None
-        return panel
+        return None
 
     def _first_speeds(self) -> tuple[bool, float, Array]:
         """Whether b takes points back, length of the first panel, and speeds of the ends."""
@@ -291,9 +311,12 @@ class Way:
         """Points at which b began to take points while q or a way was not smooth."""
         return [float(panel.begin[B]) for panel in self.panels if panel.takes and panel.kink]
 
-    def seen(self, begin: Array, end: int, offsets: Array, until: float = np.inf) -> tuple[Array, Array]:
-        """Change of q by the rates of the panels so far, or ``until`` a lambda, at points (n,), by their ``offsets``
-        from an ``end`` of ``begin``, and its derivative by x. Points that b has taken have seen what came after."""
+    def seen(
+        self, begin: Array, end: int, offsets: Array, until: float = np.inf, only: Mask | None = None
+    ) -> tuple[Array, Array]:
+        """Change of q by the rates of the panels so far, or ``only`` of some, or ``until`` a lambda, at points (n,), by
+        their ``offsets`` from an ``end`` of ``begin``, and its derivative by x. Points that b has taken have seen what
+        came after."""
         total, slope = np.zeros_like(offsets), np.zeros_like(offsets)
         x = begin[end] + offsets
         entered = np.full(len(x), np.inf)  # number of the panel in which b took the point last
@@ -303,6 +326,8 @@ class Way:
                 if panel.takes and panel.progress < until:
                     entered[x < panel.begin[B]] = number
         for number, panel in enumerate(self.panels):
+            if only is not None and not only[number]:
+                continue
             part_of = min((until - panel.progress) / panel.length, 1.0)
             if part_of <= 0:
                 break
@@ -324,12 +349,45 @@ class Way:
                 self._add(total, slope, part, apart, panel.length * (part_of - first) * WEIGHTS, right)
         return total, slope
 
+    def _ahead(self, begin: Array, end: int, offsets: Array, past: Past) -> tuple[Array, Array]:
+        """What :meth:`seen` returns, at points that an ``end`` has not reached: integrals over panels whose ends stay
+        apart from the points are smooth, unless b was among the points."""
+        least, most = float(offsets.min()), float(offsets.max())
+        among = end == R and any(panel.takes and panel.begin[B] > begin[end] + least for panel in self.panels)
+        if not self.panels or end == B or among:
+            return self.seen(begin, end, offsets)
+        sides = [L, A] if end in (L, A) else [B, R]
+        reached = past.ends[sides] - begin[end]
+        apart = np.maximum(reached - most, least - reached)
+        smooth = (apart > _APART * past.moved[sides]).all(axis=0)
+        total, slope = self.seen(begin, end, offsets, only=~smooth)
+        if smooth.any():
+            ways = ((past.begins[:, smooth] - begin[end])[:, :, None] + past.ways[:, smooth]).reshape(5, 1, -1)
+            weights = past.weights[smooth].ravel()
+            self._add(total, slope, np.arange(len(offsets)), ways - offsets[:, None], weights, end == R)
+        return total, slope
+
+    def _past(self) -> Past:
+        """The panels so far."""
+        panels = self.panels
+        return Past(
+            np.array([panel.begin for panel in panels]).reshape(-1, 5).T,
+            np.array([panel.end for panel in panels]).reshape(-1, 5).T,
+            np.array([np.abs(panel.offsets).max(axis=1) for panel in panels]).reshape(-1, 5).T,
+            np.array([panel.offsets @ panel.by.past.T for panel in panels]).reshape(-1, 5, PAST).swapaxes(0, 1),
+            np.array([panel.length * panel.by.past_weights for panel in panels]).reshape(-1, PAST),
+        )
+
     def _add(self, total: Array, slope: Array, which: Indices, apart: Array, weights: Array, right: bool) -> None:
-        other = (apart[L] + apart[A] + apart[B] + apart[R]) / 2 - self._least - apart[Z]
-        rates = weights * self.rates(apart) * (1 if right else -1)
-        total[which] += rates.sum(axis=-1)
         with np.errstate(divide="ignore", invalid="ignore"):
-            by_x = -(1 / apart[Z] + 1 / other - sum(0.5 / apart[each] for each in ENDS))
+            other = (apart[L] + apart[A] + apart[B] + apart[R]) / 2 - self._least - apart[Z]
+            inverse = 1 / apart
+            roots = np.sqrt(np.abs(inverse[L] * inverse[A] * inverse[B] * inverse[R]))
+            rates = (self._tension / 4 * (1 if right else -1)) * weights * apart[Z] * other * roots
+            by_x = (inverse[L] + inverse[A] + inverse[B] + inverse[R]) / 2 - inverse[Z] - 1 / other
+            at_end = ~np.isfinite(roots)
+            rates[at_end] = 0.0
+            total[which] += rates.sum(axis=-1)
             slope[which] += np.where(rates == 0, 0.0, rates * by_x).sum(axis=-1)
 
     def _completed(self, begin: Array, offsets: Array, takes: bool) -> Array | None:
@@ -379,9 +437,10 @@ class Way:
             if turned:
                 ends = begin[:4, None] + offsets[:4]
                 offsets[B] = np.abs(taken(ends, self._least) - begin[B]) / 4 + 1e-9 * by.shares * length
-        free = (L, A, R) if takes else ENDS
+        free, before = (L, A, R) if takes else ENDS, self._past()
         count = len(free)
         step: tuple[float, Array] | None = None  # of the length and of the offsets
+        best, since = np.inf, 0
         for count_of_steps in range(_STEPS):
             found = self._completed(begin, offsets, takes)
             for _ in range(_HALVINGS):
@@ -416,7 +475,7 @@ class Way:
                 rates = length * by.own_weights * self.rates(apart) * (1 if right else -1)
                 total = rates.sum(axis=1)
                 by_length[row] = total / length
-                past, past_slope = self.seen(begin, end, offsets[end])
+                past, past_slope = self._ahead(begin, end, offsets[end], before)
                 factors = [0.5 / other - 0.5 / apart[each] for each in ENDS] + [1 / apart[Z] - 1 / other]
                 at_x = -(1 / apart[Z] + 1 / other - sum(0.5 / apart[each] for each in ENDS if each != end))
                 diagonal = past_slope + (rates * at_x).sum(axis=1)
@@ -471,6 +530,10 @@ class Way:
             close = (largest < 1e-15 + _RELATIVE * moved)[list(relative)].all()
             if damp == 1 and close and largest.max() < (_CLOSE if count_of_steps < 2 else _SLOW):
                 return Panel(self.progress, length, begin, offsets, by, takes, self._kink, event)
+            if damp == 1 and largest.max() < best / 2:
+                best, since = float(largest.max()), count_of_steps
+            if count_of_steps - since > self._patience:
+                return None
         return None
 
 
