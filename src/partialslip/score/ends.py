@@ -33,6 +33,9 @@ _SAFE = 2.6  # factor on the least uncertainty, as selecting the least one is bi
 _COMPARABLE = 5.0  # times the least uncertainty: largest uncertainty of an estimate that counts for the drift
 _SPREAD = 0.5  # of the length over which an end is spread: error of the end
 _CELL = 0.06  # of a cell: shift of the end of a square root by taking means over cells
+_DRIFTS = 1e-6  # of the largest value: least one of a zone that has drifted
+_CLEAR = 10.0  # times the noise: least value beyond the end of a square root that a few points tell
+_FEWEST = 3  # points beyond the end of a square root that show a drift
 NOISE_FACTOR = 4.0  # standard deviations of the noise: smaller values count as noise
 ZERO_LEVEL = 1e-9  # of the largest value: smaller values count as zero
 
@@ -192,6 +195,40 @@ def left_end(
     count, slack = len(x) - 1, None if slack is None else slack[::-1]
     end = right_end(-x[::-1], values[::-1], count - first, count - last, cells=cells, slack=slack, least=least)
     return end._replace(x=-end.x)
+
+
+def drifted_right_end(x: Array, values: Array, end: ZoneEnd, last: int, least: float) -> ZoneEnd:
+    """Right end of a zone that may have drifted there: beyond the ``end`` of a square root, ``values`` then fall with
+    the power 3/2 of the distance (docs/theory.md, section 7). The ``end`` itself if they do not, less sure if they may.
+
+    ``x``, ``values``, ``last`` and ``least`` as for :func:`right_end`.
+    """
+    high = values > max(least, _DRIFTS * values.max())
+    beyond = np.flatnonzero(high & (x > end.x) & (np.arange(len(x)) <= last + 1))
+    if not len(beyond) or (np.diff(values[beyond]) >= 0).any() or (np.diff(beyond) > 1).any():
+        return end
+    if len(beyond) < _FEWEST:
+        if values[beyond[0]] < _CLEAR * least:
+            return end
+        farthest = float(x[min(beyond[-1] + 1, len(x) - 1)])
+        return end._replace(uncertainty=float(np.hypot(end.uncertainty, farthest - end.x)))
+    height = np.cbrt(values[beyond] / values.max()) ** 2
+    t, found = x[beyond] - x[beyond[-1]], []
+    for count, degree in ((max(len(t) // 2, 2), 1), (len(t), 2), (len(t), 3)):
+        roots = np.roots(np.polyfit(t[-count:], height[-count:], min(degree, count - 1)))
+        roots = roots[(np.abs(roots.imag) < 1e-12) & (roots.real > t[-1])].real
+        if not len(roots):
+            return end
+        found.append(float(x[beyond[-1]] + roots.min()))
+    uncertainty = _SAFE * float(np.ptp(found))
+    return ZoneEnd(found[1], uncertainty) if uncertainty < end.spread else end
+
+
+def drifted_left_end(x: Array, values: Array, end: ZoneEnd, first: int, least: float) -> ZoneEnd:
+    """Left end of a zone that has drifted there: :func:`drifted_right_end` of the mirror image."""
+    mirrored = end._replace(x=-end.x)
+    found = drifted_right_end(-x[::-1], values[::-1], mirrored, len(x) - 1 - first, least)
+    return found._replace(x=-found.x)
 
 
 def _agreeing(levels: list[list[_Estimate]]) -> list[_Estimate]:

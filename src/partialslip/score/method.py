@@ -9,7 +9,17 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.result import Clock, Regime, Result, Traction
 from partialslip.scene import Scene
-from partialslip.score.ends import NOISE_FACTOR, ZERO_LEVEL, ZoneEnd, left_end, noise, right_end, zone_around_peak
+from partialslip.score.ends import (
+    NOISE_FACTOR,
+    ZERO_LEVEL,
+    ZoneEnd,
+    drifted_left_end,
+    drifted_right_end,
+    left_end,
+    noise,
+    right_end,
+    zone_around_peak,
+)
 from partialslip.score.friction import Friction, frictions
 from partialslip.score.samples import FEWEST, Samples
 from partialslip.units import Units
@@ -222,6 +232,10 @@ def _stick_zone(
         slacks = [np.zeros_like(slack) for slack in slacks]  # f is the scene's
     left = left_end(x, rooms[0], first, last, cells=cells, slack=slacks[0], least=told[0])
     right = right_end(x, rooms[1], last, first, cells=cells, slack=slacks[1], least=told[1])
+    if not pressed and sides[0].seen:
+        left = drifted_left_end(x, rooms[0], left, first, hidden[0])
+    if not pressed and sides[1].seen:
+        right = drifted_right_end(x, rooms[1], right, last, hidden[1])
     return SeenStickZone(left, right if right.x > left.x else ZoneEnd(left.x, right.uncertainty), sides)
 
 

@@ -22,6 +22,7 @@ _STEP, _REACH = 0.4, 39.0  # of the trapezoidal rule, in the logarithm
 _NEAR = 1e-5  # distance from a panel's end from which on points are judged: nearer, x has too few digits
 _EMPTY = 1e-13  # width below which a panel is left out
 _SHARES = (1e-3, 0.05, 0.25, 0.5, 0.75, 1.0)  # stages in a phase
+_ROWS = 64  # of the matrix of a quadrature, at once
 _OVERLAP = 0.7  # of a stick zone that sticks up to the next stage, too
 
 
@@ -135,8 +136,12 @@ class _Panels:
     def strain(self, before: Tractions, after: Tractions) -> Array:
         """Mismatch of the strains at the points by the change of q: minus its principal-value integral over pi."""
         change = self._weights * (after(self._nodes) - before(self._nodes))
-        apart = (self._near - self._origin[:, None]) + (self._off - self._offset[:, None])
-        result: Array = -(1 / apart) @ change / np.pi
+        found = []
+        for rows in np.array_split(np.arange(len(self.x)), max(len(self.x) // _ROWS, 1)):  # that fit into the cache
+            apart = self._near - self._origin[rows, None]
+            apart += self._off - self._offset[rows, None]
+            found.append(np.reciprocal(apart, out=apart) @ change)
+        result: Array = -np.concatenate(found) / np.pi
         return result
 
     def cumulative(self, values: Array) -> Array:

@@ -88,7 +88,8 @@ class Drift:
             from_first, to_last, weights = spans(first, last)
             left, right = (first - at)[:, None] + from_first, (at + 1 - last)[:, None] + to_last
             share, rest = ((first - low)[:, None] + from_first), (high - last)[:, None] + to_last
-            values = _density(share / (high - low), rest / (high - low)) @ density / (high - low)
+            s, slope = place(share / (high - low), rest / (high - low))
+            values = np.polynomial.chebyshev.chebval(2 * s - 1, density) / slope / (high - low)
             result[here] += (weights * np.sqrt(left / right) * values).sum(axis=1)
         return self._tension / 4 * result
 

@@ -11,6 +11,7 @@ from partialslip.arrays import Array
 L, A, B, R, Z = range(5)  # the four ends, and z0
 DEGREES = 20  # nodes of a panel
 PAST = 28  # nodes of integrals over part of a panel, or over panels that are past
+_FALLS = 0.1  # a Newton step over the one before
 RATE = 1.6  # logarithm by which the width of a vanishing interval falls in a panel
 
 
@@ -113,15 +114,21 @@ def root(ends: Array, least: float) -> Array:
 def taken(ends: Array, least: float) -> Array:
     """b (n,) at which z0 = b, near that of ``ends`` (4, n)."""
     left, low, high, right = ends
+    slope, before = np.zeros(0), np.inf
     for _ in range(40):
         gap = np.minimum(high - low, right - high)
-        more = 1e-5 * gap
         at = root(np.array([left, low, high, right]), least) - high
-        slope = (root(np.array([left, low, high + more, right]), least) - high - more - at) / more
+        if not slope.size:
+            more = 1e-5 * gap
+            slope = (root(np.array([left, low, high + more, right]), least) - high - more - at) / more
         step = np.clip(-at / slope, -0.5 * gap, 0.5 * gap)
         high = high + step
-        if not np.abs(step).max() > 1e-15 + 1e-14 * gap.min():
+        largest = np.abs(step).max()
+        if not largest > 1e-15 + 1e-14 * gap.min():
             break
+        if largest > _FALLS * before:  # the slope has changed
+            slope = np.zeros(0)
+        before = largest
     result: Array = high
     return result
 

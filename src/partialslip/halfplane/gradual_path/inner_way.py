@@ -8,22 +8,16 @@ back, z0 = b, or retreats, too. The ways are polynomials, panel by panel in lamb
 q_start + int (rate) d(lambda) = bound, with Newton's method.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
-from partialslip.arrays import Array, Indices, Mask
+from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.inner_rates import (
     DECAY,
     DEGREES,
     LAST,
-    PAST,
     RATE,
-    RESTS,
-    SHARES,
     SINE,
     TO_COEFFICIENTS,
-    WEIGHTS,
     A,
     B,
     Event,
@@ -35,6 +29,7 @@ from partialslip.halfplane.gradual_path.inner_rates import (
     root,
     taken,
 )
+from partialslip.halfplane.gradual_path.inner_seen import Seen
 from partialslip.halfplane.gradual_path.stage import LostError
 from partialslip.halfplane.gradual_path.tractions import Tractions
 
@@ -49,13 +44,12 @@ _AT = 1e-11  # distance from a break within which an end is at it
 _GONE = 1e-6  # width of an interval that has vanished
 _FASTEST = 0.05  # of the contact, that an end may pass in the first panel
 _GROWTH = 1.7
-_PANELS = 60
+_PANELS = 200
 _PART = 0.1  # of an inner zone, to which it closes in a panel
 SHUT = 1e-5  # width of an inner zone that has closed: points are pushed beyond the bound by its square
 _NARROW = 1e-4  # width of an inner zone that may be closed where its ends are lost
 _HALVINGS = 12
 _SHORTEST = 1e-15
-_APART = 0.15  # of the way of an end in a panel: integrals over it are smooth at points so far from its end
 _FARTHER = 1.05  # by which a panel is longer than the one that it is like, for b to turn round in it
 _TURNED, _NEAR_TURN = 1e-9, 1e-7  # z0 - b where b turns round; ways from there that rounding hides in the changes of q
 
@@ -64,18 +58,7 @@ _EVENTS = {"width": {A: 1.0, L: -1.0}, "gap": {L: 0.5, R: 0.5, A: -1.0}}  # of w
 _AT_END = np.array([0.97, 1.0])
 
 
-class Past(NamedTuple):
-    """Panels: where they ``begin`` and end (5, panels), how far ends have ``moved`` in them, and the ``ways``
-    (5, panels, nodes) with ``weights`` (panels, nodes) of integrals that are smooth."""
-
-    begins: Array
-    ends: Array
-    moved: Array
-    ways: Array
-    weights: Array
-
-
-class Way:
+class Way(Seen):
     """Ways of the ends from a state at lambda = 0 on.
 
     Parameters
@@ -101,12 +84,12 @@ class Way:
         self, tension: float, least: float, start: Tractions, left: float, low: float, near: "Way | None" = None,
         patience: int = PATIENCE
     ) -> None:  # fmt: skip
-        self._tension, self._least, self.start, self._patience = tension, least, start, patience
+        super().__init__(tension, least)
+        self.start, self._patience = start, patience
         self._breaks = np.array([-1.0, *sorted({*start.breaks, *start.shape.strong_kinks}), 1.0])
         ends = np.array([left, low, low + 4 / 3 * ((left + 1) / 2 - least - low), 1.0])
         ends[B] = taken(ends[:, None], least)[0]
         self.first = np.append(ends, ends[B])
-        self.panels: list[Panel] = []
         self.closed = self.vanished = False
         self._near = near.panels if near else []
         self._refused = -1  # number of the panel that was not found up to an event
@@ -123,14 +106,6 @@ class Way:
     def ends(self) -> Array:
         """Ends and z0 at the end, (5,)."""
         return self.panels[-1].end if self.panels else self.first
-
-    def rates(self, apart: Array) -> Array:
-        """Rates of q at points of the right interval of which the ends and z0 are ``apart`` (5, ...); minus those at
-        points of the left one."""
-        other = (apart[L] + apart[A] + apart[B] + apart[R]) / 2 - self._least - apart[Z]
-        root_ = np.sqrt(np.abs(apart[L] * apart[A] * apart[B] * apart[R]))
-        result: Array = self._tension / 4 * apart[Z] * other / np.where(root_ == 0, np.inf, root_)
-        return result
 
     def _follow(self) -> None:
         takes, length, speeds = self._first_speeds()
@@ -165,7 +140,8 @@ class Way:
                 takes = not takes
             else:
                 self.panels.append(panel)
-            length = panel.length * _GROWTH
+            at_break = panel.event is not None and not isinstance(panel.event[0], str)
+            length = max(panel.length * _GROWTH, length if at_break else 0.0)
             places = _AT_END
             if turn is not None and turn <= 1e-3:
                 length, places = panel.length / 8, np.array([0.0, 0.2])
@@ -311,85 +287,6 @@ class Way:
         """Points at which b began to take points while q or a way was not smooth."""
         return [float(panel.begin[B]) for panel in self.panels if panel.takes and panel.kink]
 
-    def seen(
-        self, begin: Array, end: int, offsets: Array, until: float = np.inf, only: Mask | None = None
-    ) -> tuple[Array, Array]:
-        """Change of q by the rates of the panels so far, or ``only`` of some, or ``until`` a lambda, at points (n,), by
-        their ``offsets`` from an ``end`` of ``begin``, and its derivative by x. Points that b has taken have seen what
-        came after."""
-        total, slope = np.zeros_like(offsets), np.zeros_like(offsets)
-        x = begin[end] + offsets
-        entered = np.full(len(x), np.inf)  # number of the panel in which b took the point last
-        right = end in (B, R)
-        if right:
-            for number, panel in enumerate(self.panels):
-                if panel.takes and panel.progress < until:
-                    entered[x < panel.begin[B]] = number
-        for number, panel in enumerate(self.panels):
-            if only is not None and not only[number]:
-                continue
-            part_of = min((until - panel.progress) / panel.length, 1.0)
-            if part_of <= 0:
-                break
-            whole = np.flatnonzero(~np.isfinite(entered) | (entered < number))
-            if len(whole):
-                if part_of < 1:
-                    way = panel.at(panel.by.place(part_of * SHARES, (1 - part_of) + part_of * RESTS))
-                else:
-                    way = panel.offsets @ panel.by.whole.T
-                apart = ((panel.begin - begin[end])[:, None] + way)[:, None] - offsets[whole, None]
-                self._add(total, slope, whole, apart, panel.length * part_of * WEIGHTS, right)
-            part = np.flatnonzero(entered == number)
-            if len(part):
-                first = np.minimum(panel.by.share(panel.place(x[part]))[:, None], part_of)
-                shares = first + (part_of - first) * SHARES
-                rests = (1 - part_of) + (part_of - first) * RESTS
-                s = panel.by.place(shares, rests)
-                apart = (panel.begin - begin[end])[:, None, None] + panel.at(s) - offsets[part, None]
-                self._add(total, slope, part, apart, panel.length * (part_of - first) * WEIGHTS, right)
-        return total, slope
-
-    def _ahead(self, begin: Array, end: int, offsets: Array, past: Past) -> tuple[Array, Array]:
-        """What :meth:`seen` returns, at points that an ``end`` has not reached: integrals over panels whose ends stay
-        apart from the points are smooth, unless b was among the points."""
-        least, most = float(offsets.min()), float(offsets.max())
-        among = end == R and any(panel.takes and panel.begin[B] > begin[end] + least for panel in self.panels)
-        if not self.panels or end == B or among:
-            return self.seen(begin, end, offsets)
-        sides = [L, A] if end in (L, A) else [B, R]
-        reached = past.ends[sides] - begin[end]
-        apart = np.maximum(reached - most, least - reached)
-        smooth = (apart > _APART * past.moved[sides]).all(axis=0)
-        total, slope = self.seen(begin, end, offsets, only=~smooth)
-        if smooth.any():
-            ways = ((past.begins[:, smooth] - begin[end])[:, :, None] + past.ways[:, smooth]).reshape(5, 1, -1)
-            weights = past.weights[smooth].ravel()
-            self._add(total, slope, np.arange(len(offsets)), ways - offsets[:, None], weights, end == R)
-        return total, slope
-
-    def _past(self) -> Past:
-        """The panels so far."""
-        panels = self.panels
-        return Past(
-            np.array([panel.begin for panel in panels]).reshape(-1, 5).T,
-            np.array([panel.end for panel in panels]).reshape(-1, 5).T,
-            np.array([np.abs(panel.offsets).max(axis=1) for panel in panels]).reshape(-1, 5).T,
-            np.array([panel.offsets @ panel.by.past.T for panel in panels]).reshape(-1, 5, PAST).swapaxes(0, 1),
-            np.array([panel.length * panel.by.past_weights for panel in panels]).reshape(-1, PAST),
-        )
-
-    def _add(self, total: Array, slope: Array, which: Indices, apart: Array, weights: Array, right: bool) -> None:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            other = (apart[L] + apart[A] + apart[B] + apart[R]) / 2 - self._least - apart[Z]
-            inverse = 1 / apart
-            roots = np.sqrt(np.abs(inverse[L] * inverse[A] * inverse[B] * inverse[R]))
-            rates = (self._tension / 4 * (1 if right else -1)) * weights * apart[Z] * other * roots
-            by_x = (inverse[L] + inverse[A] + inverse[B] + inverse[R]) / 2 - inverse[Z] - 1 / other
-            at_end = ~np.isfinite(roots)
-            rates[at_end] = 0.0
-            total[which] += rates.sum(axis=-1)
-            slope[which] += np.where(rates == 0, 0.0, rates * by_x).sum(axis=-1)
-
     def _completed(self, begin: Array, offsets: Array, takes: bool) -> Array | None:
         """``offsets`` with those of z0, and of b where it takes points; None if the ends are not in order."""
         offsets = offsets.copy()
@@ -409,6 +306,23 @@ class Way:
                 offsets[Z] = root(ends, self._least) - begin[Z]
         ends = begin[:4, None] + offsets[:4]
         return offsets if np.isfinite(offsets).all() and (np.diff(ends, axis=0) > 0).all() else None
+
+    def _slopes(self, ends: Array, free: tuple[int, ...]) -> Array:
+        """Derivatives (5, free, n) of the ends and z0 by the ``free`` ends; the others are such that b takes points."""
+        steps = 1e-6 * np.diff(ends, axis=0).min(axis=0)
+        found, by = np.zeros((5, len(free), ends.shape[1])), dict[int, Array]()
+        at = root(ends, self._least)
+        for end in ENDS:
+            moved = ends.copy()
+            moved[end] += steps
+            by[end] = (root(moved, self._least) - at) / steps
+        for column, end in enumerate(free):
+            found[end, column] = 1.0
+            if B in free:
+                found[Z, column] = by[end]
+            else:  # where z0 = b
+                found[B, column] = found[Z, column] = by[end] / (1 - by[B])
+        return found
 
     def _solve(
         self,
@@ -456,16 +370,7 @@ class Way:
                 return None
             offsets = found
             ends = begin[:4, None] + offsets[:4]
-            steps = 1e-6 * np.diff(ends, axis=0).min(axis=0)
-            slopes = np.zeros((5, count, DEGREES))  # of the ends and z0 by what is free
-            for column, end in enumerate(free):
-                moved = ends.copy()
-                moved[end] += steps
-                slopes[end, column] = 1.0
-                if takes:
-                    slopes[B, column] = slopes[Z, column] = (taken(moved, self._least) - ends[B]) / steps
-                else:
-                    slopes[Z, column] = (root(moved, self._least) - begin[Z] - offsets[Z]) / steps
+            slopes = self._slopes(ends, free)
             residual, matrix, by_length = (np.zeros((count, DEGREES, *more)) for more in ((), (count, DEGREES), ()))
             own = np.moveaxis(by.own_cardinal @ offsets.T, -1, 0)  # (5, nodes, points)
             for row, end in enumerate(free):
@@ -494,8 +399,8 @@ class Way:
                 if end != B:
                     x, origin = offsets[end], float(begin[end])
                     near = 1e-4 * np.abs(x[:, None] - (self._breaks - origin)).min(axis=1)
-                    less = self.start.less(factor, x, origin)
-                    beside = (self.start.less(factor, x + side * near, origin) for side in (1, -1))
+                    places = np.concatenate([x, x + near, x - near])
+                    less, *beside = self.start.less(factor, places, origin).reshape(3, -1)
                     diagonal -= np.subtract(*beside) / (2 * near)
                 residual[row] = past + total - less
                 matrix[row, :, row] += np.diag(diagonal)
