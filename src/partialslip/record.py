@@ -134,6 +134,8 @@ class Record(msgspec.Struct, frozen=True):
         Date, command, overrides, commit and machine; None in ledgers, whose entries have their own.
     noise : Noise or None
         Scatter due to the noise of a measured profile.
+    spacing : dict of str to float
+        Errors due to the spacing of a tabulated profile.
     edited : bool or None
         Whether the file that the record was read from was changed since partialslip wrote it; None if the file has no
         checksum.
@@ -150,6 +152,7 @@ class Record(msgspec.Struct, frozen=True):
     versions: dict[str, str]
     made: Made | None = None
     noise: Noise | None = None
+    spacing: dict[str, float] = {}
     edited: bool | None = False
 
     def __repr__(self) -> str:
@@ -212,6 +215,7 @@ def record(run: Run, *, curves: bool = True, made: Made | None = None) -> Record
         versions=versions(),
         made=made,
         noise=run.noise,
+        spacing=dict(run.spacing),
     )
 
 

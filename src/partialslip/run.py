@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from partialslip.allowance import Allowance
 from partialslip.bars import LARGEST, Accuracy, Asked, asked
 from partialslip.errors import InputError
 from partialslip.frame import frame
+from partialslip.halfplane.method import spacing_error
 from partialslip.halfplane.noise import Noise
 from partialslip.judge import Comparison, Conclusion, Outcome, Verdict, compare, conditions, of_run
 from partialslip.judge.reference import ALL_EFFECTS, METHODS, reference, reference_among
@@ -53,6 +54,9 @@ class Run(Drawn):
     noise : Noise or None
         Scatter due to the noise of a measured profile, where it was asked for
         (:func:`partialslip.halfplane.noise.noise_of`). It is no part of estimates, bars and verdicts.
+    spacing : dict of str to float
+        Errors of a, m and n (in a), p and q (relative L2) due to the spacing of a tabulated profile, which are no part
+        of them either (:func:`partialslip.halfplane.method.spacing_error`).
     """
 
     scene: Scene
@@ -61,6 +65,7 @@ class Run(Drawn):
     comparisons: dict[str, Comparison]
     asked: Asked | None = None
     noise: Noise | None = None
+    spacing: Mapping[str, float] = field(default_factory=dict)
 
     def __getitem__(self, method: str) -> Result:
         """Return the result of ``method``: ``run["fem"]`` is ``run.results["fem"]``."""
@@ -315,7 +320,7 @@ def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: Acc
         for name, result in results.items()
         if chosen and name != chosen
     }
-    return Run(scene, plan, results, comparisons, asked(accuracy))
+    return Run(scene, plan, results, comparisons, asked(accuracy), spacing=spacing_error(scene))
 
 
 def characterise(scene: AnyScene) -> Rig:

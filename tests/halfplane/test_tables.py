@@ -9,6 +9,8 @@ from partialslip.halfplane.given import Given
 from partialslip.halfplane.loading import loading
 from partialslip.halfplane.punch import Punch, _unit
 from partialslip.halfplane.tables import table_error
+from partialslip.record import record
+from partialslip.report.answer import answers
 
 A, F = 4 * (1 - 0.3**2) / 70e9, 0.4
 P = 3 * np.pi * 1e-6 / (2 * A)  # with the gap 1e-6 (x/a)^4, a = 1 mm
@@ -58,11 +60,19 @@ def test_the_tables_own_error_is_known_within_a_factor_of_three(count):
         assert true / 3 < estimate[key] < 3 * true, key
 
 
-def test_results_state_it():
-    result = partialslip.run(table(np.linspace(0, 1.5, 9)), ["exact"]).results["exact"]
-    assert result.shares["table"] == result.estimate
-    assert set(result.estimate) == {"a", "m", "n", "p", "q"}
-    assert any("table of the profile is coarse" in note for note in result.notes)
+@pytest.mark.parametrize("method", ["exact", "march"])
+def test_runs_state_it_apart_from_estimates(method):
+    """It is an error of the input, the same for all methods: nobody's estimate has it."""
+    run = partialslip.run(table(np.linspace(0, 1.5, 9)), [method])
+    assert set(run.spacing) == {"a", "m", "n", "p", "q"}
+    assert run.spacing["a"] > 1e-3 > 10 * max(run[method].estimate.get(key, 0.0) for key in "amn")
+    assert ("spacing of the table", "off by about ") in [(name, told[:13]) for name, told in answers(run)]
+    assert record(run).spacing == run.spacing
+
+
+def test_other_profiles_and_bodies_have_none():
+    for scene in ("hertz-shear", "flat-rounded"):
+        assert not partialslip.run(scene, ["exact"]).spacing
 
 
 def test_a_parabola_has_no_error():

@@ -26,7 +26,7 @@ from partialslip.halfplane.varying_result import solve_varying
 from partialslip.plan import Plan, plan
 from partialslip.result import Clock, Regime, Result, Slip, StressAt, Traction
 from partialslip.result.state import State
-from partialslip.scene import Scene
+from partialslip.scene import Scene, Tabulated
 
 _SLIDES = "the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip"
 _RATCHETS = "the mean of Q is above the bound for a steady state: the contact ratchets, m and n are not reached"
@@ -77,7 +77,6 @@ def solve(
     surface = along_surface(stress.surface, np.concatenate([[-far], breaks, [far]])) if stress else None
     slips = cycle and not cycle.nothing
     why = undetermined(regime, turns, found) | (no_stresses(found) if inside and not stress else {})
-    table = table_error(scene, pressed, cycle)
     slip = _slip(scene, pressed, cycle) if cycle and slips and regime != "ratchets" else None
     return Result(
         method="exact",
@@ -92,12 +91,7 @@ def solve(
         settings={"model": "two half-planes, steady state"},
         limits=_limits(scene, pressed, cycle) if plan.needs("friction") or (scene.slides and f > 0) else {},
         certificate=cycle.certificate if cycle and slips else {},
-        estimate=table,
-        shares={"table": table} if table else {},
-        notes=(
-            *remarks(regime, turns, why, _SLIDES, _RATCHETS),
-            *_coarse(table, scene.fem.accuracy),
-        ),
+        notes=remarks(regime, turns, why, _SLIDES, _RATCHETS),
         surface=surface,
         stress_at=StressAt(stress.inside) if stress else None,
         undetermined=why,
@@ -116,6 +110,21 @@ def has_closed_form(scene: Scene) -> bool:
         return not closed_form(scene) if scene.presses_anew else bool(_change(scene).cycle)
     except InputError:  # sigma_slope is too large
         return False
+
+
+def spacing_error(scene: Scene) -> dict[str, float]:
+    """Errors of a, m and n (fractions of a), p and q (relative L2) that the spacing of a tabulated profile makes; empty
+    where half-planes have no closed form, and for other profiles.
+
+    An error of the input: it is the same for all methods, and no part of their estimates, bars and verdicts.
+    """
+    half_planes = not scene.finite and scene.material.alike and scene.load.in_phase and not scene.presses_anew
+    if not (isinstance(scene.profile, Tabulated) and half_planes) or (scene.load.dslope and not has_closed_form(scene)):
+        return {}
+    if scene.free or scene.slides or not plan(scene).needs("friction"):
+        return table_error(scene, contact(scene), None)
+    pressed, cycle, *_ = _change(scene)
+    return table_error(scene, pressed, cycle)
 
 
 def path_dependent(scene: Scene) -> bool:
@@ -223,11 +232,3 @@ def _stresses(scene: Scene, pressed: Contact, found: Levels | str) -> Around | N
     if isinstance(found, Levels):
         return constant(scene, pressed, found)
     return without_shear(scene) if scene.free else sliding(scene) if scene.slides else None
-
-
-def _coarse(table: dict[str, float], accuracy: float) -> tuple[str, ...]:
-    ends = {key: error for key, error in table.items() if key in ("a", "m", "n")}
-    if max(ends.values(), default=0.0) <= accuracy:
-        return ()
-    known = ", ".join(f"{key} {error:.1e}" for key, error in ends.items())
-    return (f"the table of the profile is coarse: its spacing changes the ends by about {known} a",)

@@ -181,8 +181,8 @@ def compare(
 def _beside(bar: Bar, quantity: str, reference: Result) -> Bar:
     """Return the bar plus the error estimate of the ``reference``.
 
-    The estimate's shares of a tabulated profile and of the state at the beginning do not count: every method is given
-    the same table and the same state.
+    The estimate's share of the state at the beginning does not count: every method is given the same state. Neither
+    does that of a table, which results of earlier versions have.
     """
     key = quantity.removesuffix("_1").removesuffix("_2")
     given = sum(reference.shares.get(source, {}).get(key, 0.0) for source in ("table", "start"))

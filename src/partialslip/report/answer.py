@@ -38,11 +38,11 @@ def answers(run: Run) -> list[tuple[str, str]]:
     surface of the lower body.
 
     A value has the digits that the method's own estimate of its error leaves, and the error: ``0.888 +- 0.003``. Values
-    that the answering method does not know come from the first that knows them, which is named. The noise of a measured
-    profile has lines of its own.
+    that the answering method does not know come from the first that knows them, which is named. What the noise and
+    the spacing of a given profile make has lines of its own.
     """
     result = run.results[run.answering]
-    return [*_stick(run, result), *_noise(run), *_contact(run, result), *_shears(run), *_stresses(run)]
+    return [*_stick(run, result), *_noise(run), *_spacing(run), *_contact(run, result), *_shears(run), *_stresses(run)]
 
 
 def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
@@ -78,6 +78,12 @@ def _noise(run: Run) -> Iterator[tuple[str, str]]:
         exponent, label = _unit(run, noise.smooth, "m")
         then = _scatter({"a": noise.a_then, "m": noise.m_then, "n": noise.n_then})
         yield "with a longer smooth", f"{noise.smooth / 10.0**exponent:.3g} {label}: {then}; the points allow it"
+
+
+def _spacing(run: Run) -> Iterator[tuple[str, str]]:
+    """Yield the errors of the ends due to the spacing of a table."""
+    if known := [f"{key} {run.spacing[key]:.1e} a" for key in "amn" if run.spacing.get(key, 0.0) > _ROUNDING]:
+        yield "spacing of the table", "off by about " + ", ".join(known)
 
 
 def _scatter(deviations: Mapping[str, float | None]) -> str:
