@@ -25,6 +25,7 @@ from partialslip.verify.hard_cases import (
     poisson,
     sharp,
     transition,
+    turning,
     varying_pressure,
 )
 
@@ -60,6 +61,7 @@ _FAMILIES = {
     "few-nodes": few_nodes,
     "meshes": meshes,
     "mirrored": mirrored,
+    "turning": turning,
 }
 
 
