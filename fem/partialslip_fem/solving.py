@@ -214,8 +214,6 @@ def _under_varying_pressure(
     left: step_errors.Errors = {}
     if path:
         assert C.xx is not None
-        ends = contact_ends(line, first.x), contact_ends(line, second.x)
-        varying.overlap(*ends, 2 * float(line.weights.max()))
         if problem.start:
             path = replace(path, before=nodal_forces(line, problem.start[1]))
         at_largest = (first if problem.largest == 1 else second).x

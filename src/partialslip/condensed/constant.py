@@ -54,9 +54,10 @@ def march(
     near : (n,) int8 array, optional
         Where the search for the sides after the first loading begins.
     few : int
-        Nodes beside either end of the contact of which as many may have the wrong sign where slip does not turn round:
-        some have in finite elements of high order, whose compliance is not that of springs. One step is then taken all
-        the same, if the loads are in phase. Beside the stick zone a single node shows that its end takes points back.
+        Nodes that may have the wrong sign where slip does not turn round: beside the ends of slip zones some have in
+        finite elements of high order, whose compliance is not that of springs. One step is then taken all the same, if
+        the loads are in phase. At the end of the leg these nodes are beside the ends of the contact; beside the stick
+        zone a single one that has slipped shows that its end takes points back.
     """
     factored = factored or Factored(tangential)
     path = replace(path, ways=((1.0,),) * (1 + len(path.cycle)))
@@ -185,7 +186,11 @@ class _Contact:
         line = factored.line(sides == 0, g, 0 * g, all_free)
         shift = (Q - line.total) / line.slope
         rate, slip = line.at(shift)
-        if self._clear(sides * slip > unclear(rate, shift) * factored.diagonal):
+        back = sides * slip > unclear(rate, shift) * factored.diagonal
+        if self._clear(back):
+            return False
+        back &= np.abs(found.rest) > _SLIGHT * np.abs(found.rest).max()
+        if back[self._few : len(back) - self._few].any():
             return False
         # at the beginning: these nodes, and no others, are pushed or slip that way
         on = np.where(np.abs(start) >= (1 - _AT) * bound, np.sign(start), 0)
@@ -196,9 +201,8 @@ class _Contact:
         return not self._clear((slips * sides < np.abs(slips)) | (sides * first.x < -unsure))
 
     def _clear(self, wrong: Mask) -> bool:
-        """Whether nodes (n,) are ``wrong``, and not only a few beside the ends of the contact."""
-        inner = wrong[self._few : len(wrong) - self._few]
-        return bool(inner.any()) or int(np.count_nonzero(wrong)) > self._few
+        """Whether enough nodes (n,) are ``wrong``."""
+        return int(np.count_nonzero(wrong)) > self._few
 
     def _agrees(self, start: Array, load: Array, change: Array, found: Solution) -> bool:
         """Whether nodes that slip on the way, in one step up to there, slip at the end of the step, and the same way.

@@ -21,7 +21,6 @@ from partialslip.arrays import Array, Mask, submatrix
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded, spread
 from partialslip.condensed.history import History, follow, resting
 from partialslip.condensed.path import Path
-from partialslip.errors import InputError
 
 _INSIDE = 0.4  # of the distance from the end at the beginning of a step: where the ratio L is taken
 _FEW = 3  # nodes that touch on one side from which on L is linear, and not constant
@@ -76,15 +75,6 @@ def march(
         return found, f * normal.x
 
     return follow(path, advance, resting(0 * x if path.before is None else path.before))
-
-
-def overlap(first: tuple[float, float], second: tuple[float, float], size: float = 0.0) -> None:
-    """Check that contacts from left to right end at load points 1 and 2 have points in common, the ends being known to
-    a ``size``. Raises InputError."""
-    if max(first[0], second[0]) > min(first[1], second[1]) + size:
-        raise InputError(
-            "load.P, load.M: no point is in contact at both load points: the contacts must overlap for points to stick"
-        )
 
 
 def _spanned(forces: Array) -> Mask:

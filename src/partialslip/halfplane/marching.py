@@ -115,8 +115,6 @@ def solve(
     clock = Clock(allowance)
     normal = NormalLoads.of(scene)
     path = load_path(scene, plan, start)
-    if path and scene.presses_anew:
-        varying.overlap(normal.first.ends, normal.second.ends)
     ends = [*normal.ends, *normal.within(scene.profile.kinks)]
     inner = normal.within(finest(start.q.x)) if start else []
     level: _Level | None = None
