@@ -14,14 +14,14 @@ import pytest
 
 import partialslip
 from partialslip.errors import InputError
-from partialslip.halfplane import Contact, contact, contact_of
+from partialslip.halfplane import Contact, contact, contact_of, method
 from partialslip.halfplane import one_step_zone as stick_zone
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.loading import loading
 from partialslip.halfplane.slip import dissipation
 from partialslip.halfplane.steady import transition
 from partialslip.halfplane.traction import half_range
-from partialslip.halfplane.turning import Turning, half_cycle
+from partialslip.halfplane.turning import Turning
 from partialslip.result import StickZone
 from partialslip.verify.random_scenes import KINDS, PROFILES, changes, draw, kind_of, without_shear
 
@@ -54,14 +54,14 @@ class Answer:
     levels: tuple[np.ndarray, ...] = ()
     slips: tuple[np.ndarray, np.ndarray] | None = None
     dissipated: float = 0.0
-
-    gradual: bool = False
+    scene: partialslip.Scene | None = None
 
     @functools.cached_property
     def cycle(self):
-        """Half a cycle of gradual loads; of a single step where only that is asked for."""
-        given = self.pressed, self.f, self.shear, self.tension
-        return half_cycle(*given) if self.gradual else loading(*given, bound=2)
+        """Half a cycle of gradual loads; of a single step where only the pressure is given."""
+        if self.scene:
+            return method._change(self.scene).cycle  # kept since the scene was solved
+        return loading(self.pressed, self.f, self.shear, self.tension, bound=2)
 
     @property
     def turns(self):
@@ -119,7 +119,7 @@ def of_scene(pressed, scene):
         pressed, scene.friction.f, load.dQ, load.dsigma, load.Q_mean, found.regime, found.m, found.n,
         found.stick_half_width, traction.x, traction.p, traction.dq, traction.at, found.limits,
         () if traction.q1 is None else (traction.q1, traction.q2),
-        (slip.x, slip.slip) if slip else None, slip.dissipated if slip else 0.0, gradual=True,
+        (slip.x, slip.slip) if slip else None, slip.dissipated if slip else 0.0, scene,
     )  # fmt: skip
 
 
