@@ -10,8 +10,8 @@ TITLE = "Slip that turns round on the way: zones that drift, and zones inside th
 HARD = """
 Between the load points the stick zone drifts: it takes points back on one side that have slipped, and then leaves
 them again, or a part of it slips the other way for a while and sticks again. The tractions at the load points do not
-show it. One load step ends with another m, off by up to 0.05 a, and so do sixteen. The ends of the stick zone that
-have drifted are flat: |dq| meets its bound with the power 3/2, so that m read from the traction is poor. The cases are
+show it. One load step ends with another m, off by 3e-4 to 0.11 a in these cases. The ends of the stick zone that have
+drifted are flat: |dq| meets its bound with the power 3/2, so that m read from the traction is poor. The cases are
 beside the borders: where the drift begins, where it ends before the loads do, and where a zone inside begins to slip.
 """
 
