@@ -149,7 +149,7 @@ def nodal(scene: Scene, x: Array, order: int) -> Table:
     return Table(columns, state, order)
 
 
-def _averaged(table: Table, count: int) -> Table:
+def averaged(table: Table, count: int) -> Table:
     kernel = np.ones(count) / count
     smooth = {name: np.convolve(table.columns[name], kernel, "same") for name in ("p", "dq")}
     return replace(table, columns=table.columns | smooth)
@@ -199,7 +199,7 @@ def spoiled(scene: Scene, sampling: str, seed: int = 0) -> Iterator[tuple[str, s
     for digits in (7, 5, 4, 3):
         yield "rounded to digits", str(digits), _rounded(clean, digits)
     for count in (3, 9):
-        yield "moving average", str(count), _averaged(clean, count)
+        yield "moving average", str(count), averaged(clean, count)
     for delta, (at, slip) in penalty(scene).items():
         shear = 2 * f * clean.columns["p"] * np.tanh(np.interp(x / a, at, slip))
         yield "penalty friction", f"{delta:.0e}", replace(clean, columns=clean.columns | {"dq": shear})

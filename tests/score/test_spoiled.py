@@ -63,6 +63,21 @@ def test_an_end_is_looked_for_where_shear_fades_out(monkeypatch):
     assert abs(wrong.n - clean.truth.n) > 10 * wrong.estimate["n"] * clean.truth.a
 
 
+@pytest.mark.fault
+def test_a_running_mean_is_taken_for_a_drift(monkeypatch):
+    """The mean of a square root over some length falls with the power 3/2, as where an end of the stick zone drifted.
+    Only the ends of the contact, which are spread as much, show the difference."""
+    scene = load_scene("flat-rounded")
+    monkeypatch.setattr(spoiling, "spoiled", lambda *_: [("moving average", "9", averaged)])
+    averaged = spoiling.averaged(spoiling.sampled(scene, spoiling.points(spoiling.exact(scene), "151")), 9)
+    (found,) = spoiling.readings(scene, "151")
+    assert found.honest
+    monkeypatch.setattr(method, "blur", lambda *_: 0.0)
+    (wrong,) = spoiling.readings(scene, "151")
+    assert not wrong.honest
+    assert max(wrong.errors) > wrong.spacing
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("sampling", spoiling.SAMPLINGS)
 @pytest.mark.parametrize("name", shipped_scenes())

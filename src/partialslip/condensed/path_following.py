@@ -20,6 +20,7 @@ _EPS = float(np.finfo(float).eps)
 _AT = 1e-12  # distance from the bound, relative: a thousand roundings of the forces that many events add up
 _CHECKED = 64  # pivots after which the rates are checked by a product with C, at the cost of one more pivot
 _DRIFT = 1e-11  # error of the rates, relative to their sum, from which on the tableau is set up anew
+_GIVE = 8  # rounds in which nodes that corrections push beyond their bounds are let slip
 _MOST = 50  # pivots per node in a leg: a stick zone that crosses the contact moves each node in and out once
 
 
@@ -166,8 +167,8 @@ class _Leg:
 
     def _result(self, stages: Array, events: int) -> Leg:
         self._refine()
+        off = np.abs(self._off()) / self._diagonal
         change = self._forces - self._start
-        off = np.abs(self._C @ change - self._g - self._shift - self._rest) / self._diagonal
         beyond = np.maximum(np.maximum(self._highest, -self._lowest) - self._bound, 0.0)
         return Leg(
             forces=self._forces,
@@ -187,16 +188,34 @@ class _Leg:
 
     def _refine(self) -> None:
         """Correct the rounding errors that the events have added up, by a product with C; errors that are more than
-        these are left to be seen."""
-        change, sticks = self._forces - self._start, self._tableau.sticks
-        off = self._C @ change - self._g - self._shift - self._rest
+        these are left to be seen. Nodes that stick at their bounds, and would get beyond them, slip a little instead:
+        a force that is cut off at its bound is an error at all others."""
+        tableau, sticks, off = self._tableau, self._tableau.sticks, self._off()
         if (np.abs(off) / self._diagonal).max() > _DRIFT * float(self._bound.sum()):
             return
-        p = self._tableau.solve(-off, self._Q - float(change.sum()))
+        alone = tableau.solve(-off, self._Q - float((self._forces - self._start).sum()))
+        p, give, slip = alone, np.empty(0, dtype=np.int64), off[:0]
+        for _ in range(_GIVE):
+            forces = self._forces - np.where(sticks, p[:-1], 0.0)
+            bounded = np.clip(forces, -self._bound, self._bound)
+            beyond = np.setdiff1d(np.flatnonzero(forces != bounded), give)
+            if not len(beyond):
+                break
+            give = np.union1d(give, beyond)
+            columns = tableau.columns(give)
+            least = self._forces[give] - alone[give]
+            slip = np.linalg.solve(columns[give], least - np.clip(least, -self._bound[give], self._bound[give]))
+            p = alone + columns @ slip
         self._forces = np.clip(self._forces - np.where(sticks, p[:-1], 0.0), -self._bound, self._bound)
         self._rest = self._rest + np.where(sticks, 0.0, p[:-1])
+        self._rest[give] += slip
         self._path = np.maximum(self._path, np.abs(self._rest))
         self._shift += float(p[-1])
+
+    def _off(self) -> Array:
+        """Errors of the displacements (n,): the way from the beginning, by a product with C, less what is added up."""
+        result: Array = self._C @ (self._forces - self._start) - self._g - self._shift - self._rest
+        return result
 
     def _begin(self) -> None:
         """Begin with the nodes that slipped last, or with none: whichever is nearer to the rates of this leg."""

@@ -60,6 +60,13 @@ class Tableau:
             result += added @ (self._signs[: self._count] * added[node])
         return result
 
+    def columns(self, nodes: Indices) -> Array:
+        """:meth:`column` of each of the ``nodes`` (k,), (n + 1, k)."""
+        self._add()
+        rows = np.arange(len(self._V))[:, None]
+        result: Array = self._V[np.maximum(rows, nodes), np.minimum(rows, nodes)]
+        return result
+
     def pivot(self, node: int, column: Array) -> None:
         """Let the ``node`` slip if it sticks, and stick if it slips; ``column`` is :meth:`column` of it."""
         if self._count == _TOGETHER:

@@ -36,6 +36,7 @@ _CELL = 0.06  # of a cell: shift of the end of a square root by taking means ove
 _DRIFTS = 1e-6  # of the largest value: least one of a zone that has drifted
 _CLEAR = 10.0  # times the noise: least value beyond the end of a square root that a few points tell
 _FEWEST = 3  # points beyond the end of a square root that show a drift
+_BLURS = 5.0  # times the length over which the contact's ends are spread: shortest drift that smoothing does not mimic
 NOISE_FACTOR = 4.0  # standard deviations of the noise: smaller values count as noise
 ZERO_LEVEL = 1e-9  # of the largest value: smaller values count as zero
 
@@ -197,9 +198,17 @@ def left_end(
     return end._replace(x=-end.x)
 
 
-def drifted_right_end(x: Array, values: Array, end: ZoneEnd, last: int, least: float) -> ZoneEnd:
+def blur(contact: tuple[ZoneEnd, ZoneEnd], whole: bool) -> float:
+    """Length over which the ends of the ``contact`` are spread, m; infinite unless the ``whole`` of it is seen."""
+    return max(end.spread for end in contact) / _SPREAD if whole else np.inf
+
+
+def drifted_right_end(x: Array, values: Array, end: ZoneEnd, last: int, least: float, spread: float) -> ZoneEnd:
     """Right end of a zone that may have drifted there: beyond the ``end`` of a square root, ``values`` then fall with
     the power 3/2 of the distance (docs/theory.md, section 7). The ``end`` itself if they do not, less sure if they may.
+
+    A square root that was averaged over some length falls with the same power: only ends of the contact that are
+    ``spread`` (:func:`blur`) over much less than the drift show that nothing was averaged.
 
     ``x``, ``values``, ``last`` and ``least`` as for :func:`right_end`.
     """
@@ -207,9 +216,9 @@ def drifted_right_end(x: Array, values: Array, end: ZoneEnd, last: int, least: f
     beyond = np.flatnonzero(high & (x > end.x) & (np.arange(len(x)) <= last + 1))
     if not len(beyond) or (np.diff(values[beyond]) >= 0).any() or (np.diff(beyond) > 1).any():
         return end
-    if len(beyond) < _FEWEST:
-        if values[beyond[0]] < _CLEAR * least:
-            return end
+    if len(beyond) < _FEWEST and values[beyond[0]] < _CLEAR * least:
+        return end
+    if len(beyond) < _FEWEST or x[beyond[-1]] - end.x < _BLURS * spread:
         farthest = float(x[min(beyond[-1] + 1, len(x) - 1)])
         return end._replace(uncertainty=float(np.hypot(end.uncertainty, farthest - end.x)))
     height = np.cbrt(values[beyond] / values.max()) ** 2
@@ -224,10 +233,10 @@ def drifted_right_end(x: Array, values: Array, end: ZoneEnd, last: int, least: f
     return ZoneEnd(found[1], uncertainty) if uncertainty < end.spread else end
 
 
-def drifted_left_end(x: Array, values: Array, end: ZoneEnd, first: int, least: float) -> ZoneEnd:
+def drifted_left_end(x: Array, values: Array, end: ZoneEnd, first: int, least: float, spread: float) -> ZoneEnd:
     """Left end of a zone that has drifted there: :func:`drifted_right_end` of the mirror image."""
     mirrored = end._replace(x=-end.x)
-    found = drifted_right_end(-x[::-1], values[::-1], mirrored, len(x) - 1 - first, least)
+    found = drifted_right_end(-x[::-1], values[::-1], mirrored, len(x) - 1 - first, least, spread)
     return found._replace(x=-found.x)
 
 

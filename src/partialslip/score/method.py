@@ -13,6 +13,7 @@ from partialslip.score.ends import (
     NOISE_FACTOR,
     ZERO_LEVEL,
     ZoneEnd,
+    blur,
     drifted_left_end,
     drifted_right_end,
     left_end,
@@ -87,7 +88,10 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     first, last = min(contact.first for contact in contacts), max(contact.last for contact in contacts)
     inside = slice(first, last + 1)
     slips = f > 0 and bool(np.abs(dq).max() > max(ZERO_LEVEL * p0, NOISE_FACTOR * noise(dq, x)))
-    stick = _stick_zone(x[inside], p[inside], dq[inside], f, p0, cells, _pressed(scene)) if slips else None
+    seen = [contact.first > 0 and contact.last + 1 < len(x) for contact in contacts]
+    spread = max(blur((contact.left, contact.right), whole) for contact, whole in zip(contacts, seen, strict=True))
+    told = x[inside], p[inside], dq[inside]
+    stick = _stick_zone(*told, f, p0, cells, None if _pressed(scene) else spread) if slips else None
     # a point that is out of contact at a load point does not stick
     both = max(contact.left for contact in contacts), min(contact.right for contact in contacts)
     regime, ends = _regime(scene, stick, *both, slips)
@@ -202,13 +206,13 @@ def _widths(samples: Samples) -> Array:
 
 
 def _stick_zone(
-    x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool, pressed: bool
+    x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool, spread: float | None
 ) -> SeenStickZone | None:
     """Stick zone from 2 f p - |dq| at the points in contact, ``p`` being the mean pressure; None if nothing sticks.
 
-    The room 2 f p - |dq| grows from the ends of the stick zone like a square root. Where the bodies were only
-    ``pressed`` it is the sum over all stages of pressing, and grows with the power 3/2: its cube root like a square
-    root.
+    The room 2 f p - |dq| grows from the ends of the stick zone like a square root, where they drifted with the power
+    3/2; ``spread`` is the length over which the contact's ends are spread. Where the bodies were only pressed (None)
+    it is the sum over all stages of pressing, and grows with the power 3/2: its cube root like a square root.
     """
     sides = frictions(p, dq, asked)
     slacks = [2 * side.uncertainty * p for side in sides]
@@ -225,17 +229,17 @@ def _stick_zone(
     )
     rooms = [2 * side.f * p - side.sign * dq for side in sides]
     told = [least if side.seen else 0.0 for least, side in zip(hidden, sides, strict=True)]
-    if pressed:
+    if spread is None:
         scale = 2 * asked * p0
         rooms = [scale * np.cbrt(room / scale) for room in rooms]
         told = [scale * float(np.cbrt(least / scale)) for least in told]
         slacks = [np.zeros_like(slack) for slack in slacks]  # f is the scene's
     left = left_end(x, rooms[0], first, last, cells=cells, slack=slacks[0], least=told[0])
     right = right_end(x, rooms[1], last, first, cells=cells, slack=slacks[1], least=told[1])
-    if not pressed and sides[0].seen:
-        left = drifted_left_end(x, rooms[0], left, first, hidden[0])
-    if not pressed and sides[1].seen:
-        right = drifted_right_end(x, rooms[1], right, last, hidden[1])
+    if spread is not None and sides[0].seen:
+        left = drifted_left_end(x, rooms[0], left, first, hidden[0], spread)
+    if spread is not None and sides[1].seen:
+        right = drifted_right_end(x, rooms[1], right, last, hidden[1], spread)
     return SeenStickZone(left, right if right.x > left.x else ZoneEnd(left.x, right.uncertainty), sides)
 
 
