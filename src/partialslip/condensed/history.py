@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from scipy.ndimage import maximum_filter1d
 
 from partialslip.arrays import Array, Mask
 from partialslip.condensed.bounded import Solution
@@ -16,7 +17,8 @@ from partialslip.condensed.path import Path
 
 STEADY = 1e-6  # change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
 _REPEATS = 3e-14  # change of a node's q over a cycle, relative to the sum of |q|, that is rounding (seen: 2.7e-14)
-_LIMIT = 10.0  # changes of the last cycle that may lie between it and the limit
+_LIMIT = 10.0  # least number of changes of the last cycle that may lie between it and the limit
+_BESIDE = 5  # neighbouring nodes of which the one that moves most tells how far the steady state is
 _SLIPS = 1e-9  # distance of |dq| from the bound, relative, at which a node slips
 
 
@@ -135,9 +137,11 @@ class History:
         """Room 2 f p - \\|dq\\| that is gone in the steady state, (n,), at nodes that stick again after they slipped:
         they come to the bound slowly. None if no node does.
 
-        Room of ten changes of the last cycle may be gone. So is room of which the limit of the last three cycles, by
-        Aitken's method, leaves less than half: of room that falls in geometric progression it leaves none, of room that
-        falls with a power of the cycles a part.
+        Room that falls with a power of the cycles lasts as many changes of the last cycle as cycles went before: that
+        many may be gone, and ten at least. A single node may hardly move by chance, so that the one of its neighbours
+        that moves most tells. Gone is also room of which the limit of the last three cycles, by Aitken's method, leaves
+        less than half: of room that falls in geometric progression it leaves none, of room that falls with a power of
+        the cycles a part.
         """
         if self.changed is None:
             return None
@@ -145,12 +149,14 @@ class History:
         last = len(self.points) - cycle
         ends = [(self.points[begin + one].x, self.points[begin + two].x) for begin in range(last, 0, -cycle)[:3]]
         room, *before = [2 * self.bound - np.abs(q2 - q1) for q1, q2 in ends]
-        gone = _LIMIT * self._moved
+        changed = np.isfinite(self.changed)
+        moved = np.divide(self._moved, self.bound, out=np.zeros_like(room), where=changed & (self.bound > 0))
+        gone = max(_LIMIT, self.cycles) * self.bound * maximum_filter1d(moved, _BESIDE)
         if len(before) == 2:
             falls, fell = before[0] - room, before[1] - before[0]
             more = np.divide(falls**2, fell - falls, out=np.zeros_like(room), where=(falls > 0) & (falls < fell))
             gone = np.where(2 * more > room, np.maximum(room, gone), gone)
-        result: Array = np.where(np.isfinite(self.changed), gone, 0.0)
+        result: Array = np.where(changed, gone, 0.0)
         return result
 
     @property

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg as la
 
 from partialslip.arrays import Array, Mask
 from partialslip.condensed.bounded import inverse
@@ -193,8 +194,8 @@ class _Leg:
         tableau, sticks, off = self._tableau, self._tableau.sticks, self._off()
         if (np.abs(off) / self._diagonal).max() > _DRIFT * float(self._bound.sum()):
             return
-        alone = tableau.solve(-off, self._Q - float((self._forces - self._start).sum()))
-        p, give, slip = alone, np.empty(0, dtype=np.int64), off[:0]
+        p = alone = tableau.solve(-off, self._Q - float((self._forces - self._start).sum()))
+        give, slip = np.empty(0, dtype=np.int64), off[:0]
         for _ in range(_GIVE):
             forces = self._forces - np.where(sticks, p[:-1], 0.0)
             bounded = np.clip(forces, -self._bound, self._bound)
@@ -204,7 +205,8 @@ class _Leg:
             give = np.union1d(give, beyond)
             columns = tableau.columns(give)
             least = self._forces[give] - alone[give]
-            slip = np.linalg.solve(columns[give], least - np.clip(least, -self._bound[give], self._bound[give]))
+            excess = least - np.clip(least, -self._bound[give], self._bound[give])
+            slip = la.solve(columns[give], excess)
             p = alone + columns @ slip
         self._forces = np.clip(self._forces - np.where(sticks, p[:-1], 0.0), -self._bound, self._bound)
         self._rest = self._rest + np.where(sticks, 0.0, p[:-1])
