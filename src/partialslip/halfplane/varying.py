@@ -17,6 +17,8 @@ from partialslip.result import EndSlip
 from partialslip.scene import Hertz, Scene
 
 _STAGES = 16  # of the way from load point to load point
+_NEAR = 0.5 ** np.arange(5, 15)  # from either end of a way: an end of the stick zone may turn round shortly before
+_STOPS = np.unique([*np.arange(1, _STAGES) / _STAGES, *_NEAR, *(1 - _NEAR), 1.0])
 _ROUNDING = 1e-9  # lengths in a, tractions in f p0
 _EQUAL = 1e-12  # relative difference of rates that is rounding
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
@@ -251,7 +253,7 @@ def _turns(path: Path, f: float, change: Loading) -> bool:
     if _goes_back(path, f, path.stage(1.0)):
         return True
     before = path.begin.ends
-    for share in (np.arange(1, _STAGES + 1) / _STAGES).tolist():
+    for share in _STOPS.tolist():
         stage = path.stage(share)
         (left, right), room = stage.stick, _ROUNDING * stage.mean.a
         inner = common(path.begin, stage.now)
