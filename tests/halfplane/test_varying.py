@@ -204,11 +204,11 @@ def test_the_mean_adds_up_to_the_mean_force():
 
 @pytest.mark.fault
 def test_an_end_that_turns_round_shortly_before_the_load_point(monkeypatch):
-    """On the way back the left end of the stick zone goes inwards, and in the last percent of the way outwards: one step
-    gives m 8.7e-5 a off. Of 100 scenes near this one, sixteen even stages of the way miss nine of 61 that turn round."""
+    """On the way back the left end of the stick zone turns outwards in the last percent of the way: one step gives m
+    8.7e-5 a off. Of 100 scenes near this one, sixteen even stages of the way miss nine of 61 that turn round."""
     scene = parse_scene(
         {
-            "name": "turns late",
+            "name": "turns-late",
             "material": {"E": 3833947646.7975616, "nu": 0.0728499298150398},
             "profile": {"kind": "hertz", "R": 0.02120468981931021},
             "friction": {"f": 0.8447415003898505},
