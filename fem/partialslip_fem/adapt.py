@@ -25,6 +25,7 @@ from partialslip_fem.problem import Problem
 _CALMER = (0.4, 0.85)  # smallest and largest factor of the growth after a mesh whose error is too large
 _WANDERING = 1.5, 0.5  # error aimed below, and inverse power of the growth that errors fall with where zone ends wander
 _WAITS = 2  # meshes in a row without an estimate of the error away from the ends, after a first one
+_MERGED = 0.1  # of the smallest element: points nearer to each other are one
 _KINK_SLACK = 1.5  # of the element size that a kink needs: the mesh is refined at kinks where it is coarser than this
 _MOST_UNKNOWNS = 200_000  # on a mesh from which no finer one is made
 _CHOICES = 13  # accuracies tried, from the one asked for to the loosest, when an allowance does not suffice
@@ -277,6 +278,10 @@ class _Refinement:
             sizes |= {
                 point: size for point in np.linspace(low, high, count + 2)[1:-1].tolist() if size > sizes[points[0]]
             }
+        # two vertices far nearer to each other than elements are wide make an element without an area
+        kept = apart(sorted(sizes, key=lambda point: sizes[point]), _MERGED * min(sizes.values()))
+        for point in set(sizes).difference(kept):
+            del sizes[point]
         return grading
 
     def _keep_steps(self) -> None:

@@ -68,9 +68,9 @@ def to_result(
     begins, doubted = begun(adapted.errors, history, weights, problem.f, start, forces)
     if begins:
         shares["start"] = begins
-    keys = [*adapted.errors, *(key for key in step_errors if key not in adapted.errors)]
-    estimate = {key: float(sum(share.get(key, 0.0) for share in shares.values())) for key in keys}
     known = found.centre is not None
+    keys = [key for key in {**adapted.errors, **step_errors} if known or key not in ("m", "n")]
+    estimate = {key: float(sum(share.get(key, 0.0) for share in shares.values())) for key in keys}
     (left1, right1), (left2, right2) = solution.contact_ends
     return Result(
         method="fem",

@@ -24,7 +24,8 @@ def press(
     """Nodal normal forces (n,), none tensile, that close ``gap`` (n,) and sum to ``P``; and the angle of rotation.
 
     ``normal`` is the compliance along y, (n, n). With ``arms`` (n,), the abscissae of the nodes, the bodies turn until
-    the forces have the ``moment``. The moment grows with the angle, and is linear in it while no node changes sides.
+    the forces have the ``moment``. The moment grows with the angle, and is linear in it while no node changes sides;
+    that of a single node does not depend on it, but for rounding.
     ``near`` are the sides and the angle of a similar problem, to begin with.
     """
     free = np.zeros(len(gap)), np.full(len(gap), np.inf), P
@@ -42,7 +43,7 @@ def press(
         factor = la.cho_factor(submatrix(normal, on, on), check_finite=False)
         uniform, tilted = la.cho_solve(factor, np.stack([np.ones(len(on)), arms[on]], axis=1), check_finite=False).T
         rate = float(arms[on] @ (tilted - uniform * tilted.sum() / uniform.sum()))
-        step = -off / rate if rate > 0 else np.copysign(_WIDER * (abs(angle) + _START), -off)
+        step = -off / rate if rate > 0 and len(on) > 1 else np.copysign(_WIDER * (abs(angle) + _START), -off)
         angle = angle + step if low < angle + step < high else (low + high) / 2
         found = solve_bounded(normal, angle * arms - gap, *free, found.sides)
         iterations, changes = iterations + found.iterations, changes + found.changes

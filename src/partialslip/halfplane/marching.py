@@ -321,6 +321,8 @@ def _result(
     unit = scene.material.A * P  # of displacement
 
     known = found.centre is not None
+    if not known:
+        errors = {key: error for key, error in errors.items() if key not in ("m", "n")}
     tractions = CellTractions(frame, normal.second, normal.first, level.vertices, q1, q2)
     anew = scene.presses_anew
 
