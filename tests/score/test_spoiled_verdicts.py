@@ -1,12 +1,14 @@
 """Forty tables spoiled on purpose, and the verdicts on them: none passes whose errors are above the bars."""
 
+import importlib
 from functools import cache
 
 import numpy as np
 import pytest
 
-from partialslip import load_scene, run, score
+from partialslip import halfplane, load_scene, run, score
 from partialslip.cli import main
+from partialslip.halfplane.loading import loading
 from partialslip.judge import Outcome
 
 BAR = 1e-3
@@ -16,6 +18,9 @@ SCENES = {
     "large": load_scene("hertz-large-tension"),
     # slip turns round on the way: Q_f = 0.55, s_f = 7
     "turns": load_scene("hertz-shear", ["load.Q=[-172787.59594743856, 172787.59594743856]", "load.sigma=[-7e8, 7e8]"]),
+    # and here, where an end takes back 0.003 a: Q_f = 0.3, s_f = 1.3
+    "takes back": load_scene("hertz-shear", ["load.Q=[-94247.7796076938, 94247.7796076938]",
+                                             "load.sigma=[-1.3e8, 1.3e8]"]),
     # so does it here, where the zone that drifts is too narrow to be followed: Q_f = 0.1, s_f = 30
     "not followed": load_scene("hertz-shear", ["load.Q=[-31415.92653589793, 31415.92653589793]",
                                                "load.sigma=[-3e9, 3e9]"]),
@@ -168,6 +173,37 @@ def test_ends_that_drift_are_read(count, known, turn, tmp_path):
     errors = abs(ends[0] - truth.m) / truth.a, abs(ends[1] - truth.n) / truth.a
     assert errors[0] <= found.estimate[end] < known
     assert errors[1] < 1e-6
+
+
+def one_step(name):
+    """The table of a code that takes one step from load point to load point."""
+    scene, truth = SCENES[name], exact(name)
+    pressed = halfplane.contact(scene)
+    change = loading(pressed, scene.friction.f, scene.load.dQ, scene.load.dsigma, bound=2)
+    x, p, _ = table(name)
+    return x, p, scene.friction.f * truth.p0 * change.traction(pressed.scaled(x))
+
+
+@pytest.mark.fault
+def test_a_strip_without_points_that_is_taken_for_none(tmp_path, monkeypatch):
+    """Deliberate fault: a right table is missed where an end of the stick zone comes back over less than a spacing."""
+    path = write(tmp_path, clean("takes back"))
+    found = score(SCENES["takes back"], path, bar=BAR)
+    (comparison,) = found.comparisons.values()
+    assert found.outcome is Outcome.NOT_JUDGED
+    assert set(comparison.unjudged) == {"m", "n"}
+    assert "m: on the way the end of the stick zone takes back 0.003 a, too little for points so far apart" in str(
+        found.results["table.csv"].notes
+    )
+    monkeypatch.setattr(importlib.import_module("partialslip.score"), "_unresolved", lambda result, *_: result)
+    assert score(SCENES["takes back"], path, bar=BAR).outcome is Outcome.MISSED
+
+
+def test_one_step_is_missed(tmp_path):
+    """Where three points show the strip, a code that took one step, and stops short of it, is told so."""
+    found = score(SCENES["turns"], write(tmp_path, one_step("turns")), bar=BAR)
+    assert found.outcome is Outcome.MISSED
+    assert "m: error 0.0172" in str(found)
 
 
 @pytest.mark.parametrize(("name", "spoil", "outcomes"), SPOILED, ids=lambda each: getattr(each, "__name__", None))

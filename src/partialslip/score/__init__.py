@@ -6,6 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
+
 from partialslip.bars import Accuracy, asked
 from partialslip.errors import InputError
 from partialslip.judge import reference as references
@@ -13,9 +15,12 @@ from partialslip.result import Result
 from partialslip.run import Run, compared, run
 from partialslip.scene import Scene
 from partialslip.scene.reading import AnyScene, as_scene
+from partialslip.score.ends import FEWEST
 from partialslip.score.method import centred, scored
 from partialslip.score.mistakes import in_another_unit, mistakes
 from partialslip.score.read import read
+
+_STRIPS = 2.0  # widths of a strip that is not resolved: largest error that it may cause
 
 
 def score(
@@ -89,17 +94,42 @@ def score(
         found = centred(found, str(file), scene.units)
     result = scored(scene, found, name, str(file))
     outcome = run(scene, [reference], progress=progress)
-    return compared(
-        scene, outcome.plan, outcome.results | {name: _read_as(scene, result, outcome.results[reference])}, wanted
-    )
+    seen = _read_as(scene, result, outcome.results[reference], wanted.bars if wanted else None)
+    return compared(scene, outcome.plan, outcome.results | {name: seen}, wanted)
 
 
-def _read_as(scene: Scene, result: Result, reference: Result) -> Result:
-    """Add notes on likely mistakes to ``result``, and remove quantities that they make meaningless."""
+def _read_as(scene: Scene, result: Result, reference: Result, bars: Mapping[str, float] | None = None) -> Result:
+    """Add notes on likely mistakes to ``result``, and remove quantities that they make meaningless, or that the table
+    does not show to the ``bars``."""
     result = replace(result, notes=(*mistakes(scene, result, reference), *result.notes))
     if in_another_unit(scene, result, reference):
         why = dict.fromkeys(("m", "n"), "x is in another unit than the scene")
         result = replace(result, stick_centre=None, stick_half_width=None, undetermined=why)
+    result = _unresolved(result, reference, bars or {})
     if reference.regime == "ratchets":  # not visible in tractions
         result = replace(result, regime="ratchets")
     return result
+
+
+def _unresolved(result: Result, reference: Result, bars: Mapping[str, float]) -> Result:
+    """``result`` with an estimate of m and n that is not below their error where an end of the stick zone went out and
+    came back on the way, over a strip in which too few points of the table lie to show it; without m and n where that
+    error is above the bar. The strip is that of the ``reference``: between the points that never slip and the zone of
+    the tractions."""
+    m, n, permanent = reference.m, reference.n, reference.permanent
+    if m is None or n is None or permanent is None or result.m is None or result.n is None:
+        return result
+    x, estimate, notes, hidden = result.traction.x, dict(result.estimate), list(result.notes), False
+    for key, end, inner, found in zip("mn", (-m, n), permanent, (-result.m, result.n), strict=True):
+        low, high = min(end, inner), max(end, inner)
+        width, off = (high - low) / reference.a, abs(found - end) / reference.a
+        seen = int(np.count_nonzero((x > low) & (x < high)))
+        if seen < FEWEST and estimate[key] < off <= _STRIPS * width:
+            estimate[key], hidden = off, hidden or off > bars.get(key, np.inf)
+            back = f"{key}: on the way the end of the stick zone takes back {width:.1g} a"
+            notes.append(f"{back}, too little for points so far apart")
+    result = replace(result, estimate=estimate, notes=tuple(notes))
+    if not hidden:
+        return result
+    why = dict.fromkeys(("m", "n"), "the points are too far apart where an end of the stick zone comes back on the way")
+    return replace(result, stick_centre=None, stick_half_width=None, undetermined=why)

@@ -35,8 +35,8 @@ _SPREAD = 0.5  # of the length over which an end is spread: error of the end
 _CELL = 0.06  # of a cell: shift of the end of a square root by taking means over cells
 _DRIFTS = 1e-6  # of the largest value: least one of a zone that has drifted
 _CLEAR = 10.0  # times the noise: least value beyond the end of a square root that a few points tell
-_FEWEST = 3  # points beyond the end of a square root that show a drift
 _BLURS = 5.0  # times the length over which the contact's ends are spread: shortest drift that smoothing does not mimic
+FEWEST = 3  # points beyond the end of a square root that show a drift
 NOISE_FACTOR = 4.0  # standard deviations of the noise: smaller values count as noise
 ZERO_LEVEL = 1e-9  # of the largest value: smaller values count as zero
 
@@ -214,23 +214,23 @@ def drifted_right_end(x: Array, values: Array, end: ZoneEnd, last: int, least: f
     """
     high = values > max(least, _DRIFTS * values.max())
     beyond = np.flatnonzero(high & (x > end.x) & (np.arange(len(x)) <= last + 1))
-    if not len(beyond) or (np.diff(values[beyond]) >= 0).any() or (np.diff(beyond) > 1).any():
+    if not len(beyond) or (len(beyond) < FEWEST and values[beyond[0]] < _CLEAR * least):
         return end
-    if len(beyond) < _FEWEST and values[beyond[0]] < _CLEAR * least:
-        return end
-    if len(beyond) < _FEWEST or x[beyond[-1]] - end.x < _BLURS * spread:
-        farthest = float(x[min(beyond[-1] + 1, len(x) - 1)])
-        return end._replace(uncertainty=float(np.hypot(end.uncertainty, farthest - end.x)))
+    farthest = float(x[min(beyond[-1] + 1, len(x) - 1)])
+    unsure = end._replace(uncertainty=float(np.hypot(end.uncertainty, farthest - end.x)))
+    told = len(beyond) >= FEWEST and x[beyond[-1]] - end.x >= _BLURS * spread
+    if not told or (np.diff(values[beyond]) >= 0).any() or (np.diff(beyond) > 1).any():
+        return unsure
     height = np.cbrt(values[beyond] / values.max()) ** 2
     t, found = x[beyond] - x[beyond[-1]], []
     for count, degree in ((max(len(t) // 2, 2), 1), (len(t), 2), (len(t), 3)):
         roots = np.roots(np.polyfit(t[-count:], height[-count:], min(degree, count - 1)))
         roots = roots[(np.abs(roots.imag) < 1e-12) & (roots.real > t[-1])].real
         if not len(roots):
-            return end
+            return unsure
         found.append(float(x[beyond[-1]] + roots.min()))
     uncertainty = _SAFE * float(np.ptp(found))
-    return ZoneEnd(found[1], uncertainty) if uncertainty < end.spread else end
+    return ZoneEnd(found[1], uncertainty) if uncertainty < end.spread else unsure
 
 
 def drifted_left_end(x: Array, values: Array, end: ZoneEnd, first: int, least: float, spread: float) -> ZoneEnd:

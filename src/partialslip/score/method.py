@@ -236,9 +236,8 @@ def _stick_zone(
         slacks = [np.zeros_like(slack) for slack in slacks]  # f is the scene's
     left = left_end(x, rooms[0], first, last, cells=cells, slack=slacks[0], least=told[0])
     right = right_end(x, rooms[1], last, first, cells=cells, slack=slacks[1], least=told[1])
-    if spread is not None and sides[0].seen:
+    if spread is not None:
         left = drifted_left_end(x, rooms[0], left, first, hidden[0], spread)
-    if spread is not None and sides[1].seen:
         right = drifted_right_end(x, rooms[1], right, last, hidden[1], spread)
     return SeenStickZone(left, right if right.x > left.x else ZoneEnd(left.x, right.uncertainty), sides)
 
@@ -260,10 +259,18 @@ def _regime(
         return "sliding", None
     if _pressed(scene):
         return "pressing", (stick.left, stick.right)
-    ends = (max(stick.left, left), min(stick.right, right))
+    ends = _limited(stick.left, left, -1), _limited(stick.right, right, 1)
     if not scene.load.in_phase:
         return "out of phase", ends
     return ("small tension" if stick.sides[0].sign == stick.sides[1].sign else "large tension"), ends
+
+
+def _limited(end: ZoneEnd, contact: ZoneEnd, way: int) -> ZoneEnd:
+    """The ``end`` of the stick zone on the left (``way`` -1) or right (1), or the end of the ``contact`` where the end
+    read lies beyond it; it is then as unsure as both."""
+    if way * (end.x - contact.x) <= 0:
+        return end
+    return contact._replace(uncertainty=float(np.hypot(contact.uncertainty, end.uncertainty)))
 
 
 @dataclass(frozen=True)
