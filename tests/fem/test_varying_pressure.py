@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from partialslip import load_scene, run
+from partialslip import load_scene, parse_scene, run
 from partialslip.errors import InputError
 
 sys.path.append(str(Path(__file__).parent.parent / "halfplane"))
@@ -85,3 +85,23 @@ def test_no_stick_zone_without_a_point_in_contact_at_both_load_points(method):
     assert result.m is result.n is None
     assert "m" not in result.estimate
     assert "no point is in contact at both load points: there is no stick zone" in result.notes
+
+
+@pytest.mark.parametrize("method", ["march", "fem"])
+def test_what_does_not_slip_does_not_ratchet(method):
+    """No end slips; relative to the largest slip, which is rounding, so is the slip of a whole cycle: 1."""
+    load = {"P": [12996.94968303615, 8319.07592189774], "Q": [1394.5783132456947, 155.94873652021462]}
+    scene = parse_scene(
+        {
+            "name": "no-slip",
+            "material": {"E": 32397301897.722683, "nu": 0.3},
+            "profile": {"kind": "hertz", "R": 0.03},
+            "friction": {"f": 0.30086574442786695},
+            "load": load,
+            "fem": {"accuracy": 1e-3},
+        }
+    )
+    results = run(scene, ["exact", method])
+    assert results["exact"].regime == "no slip"
+    assert results[method].regime == "no slip"
+    assert results[method].m == pytest.approx(results["exact"].m, rel=1e-3)

@@ -67,7 +67,7 @@ def steady_state(
         regime = "no slip" if set(slips) == {"never"} else "sticking ends"
     if not load.in_phase:
         regime = "out of phase"
-    if history.repeats and history.ratchets > _RATCHETS:
+    if regime != "no slip" and history.repeats and history.ratchets > _RATCHETS:  # else the slip is that of rounding
         regime = "ratchets"
         notes += (
             "tractions repeat, slip does not: every cycle adds up to "
