@@ -57,10 +57,12 @@ def steady_state(
     ):  # all of the contact sticks
         left, right = common or (-half_width, half_width)
         return SteadyState("stuck", (right + left) / 2, (right - left) / 2, ())
-    smaller: tuple[str, ...] = ()
-    if stick.left == stick.right:
-        smaller = ("the stick zone is smaller than an element: m and n are where slip changes sign",)
-    notes = smaller
+    notes: tuple[str, ...] = ()
+    apart = common is not None and common[0] >= common[1]
+    if apart:
+        notes = ("no point is in contact at both load points: there is no stick zone",)
+    elif stick.left == stick.right:
+        notes = ("the stick zone is smaller than an element: m and n are where slip changes sign",)
     regime: Regime = "small tension" if stick.signs[0] == stick.signs[1] else "large tension"
     slips = end_slips(x, history, stick) if anew and x is not None and load.in_phase else None
     if slips and {"never", "part of the cycle"}.intersection(slips):
@@ -76,9 +78,8 @@ def steady_state(
     if anew and history.dissipated > _WORK * history.bound.sum() and history.path.most_steps < _FEW_STEPS:
         steps = "a step" if history.path.most_steps == 1 else f"{history.path.most_steps} steps"
         notes += (f"slip and dissipated energy are rough: {steps} from load point to load point (load.steps)",)
-    if common and common[0] >= common[1]:
-        note = "no point is in contact at both load points: there is no stick zone"
-        return SteadyState(regime, None, None, (note, *notes[len(smaller) :]), slips)
+    if apart:
+        return SteadyState(regime, None, None, notes, slips)
     return SteadyState(regime, (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, notes, slips)
 
 

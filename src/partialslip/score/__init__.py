@@ -103,8 +103,7 @@ def _read_as(scene: Scene, result: Result, reference: Result, bars: Mapping[str,
     does not show to the ``bars``."""
     result = replace(result, notes=(*mistakes(scene, result, reference), *result.notes))
     if in_another_unit(scene, result, reference):
-        why = dict.fromkeys(("m", "n"), "x is in another unit than the scene")
-        result = replace(result, stick_centre=None, stick_half_width=None, undetermined=why)
+        result = _without_stick_zone(result, "x is in another unit than the scene")
     result = _unresolved(result, reference, bars or {})
     if reference.regime == "ratchets":  # not visible in tractions
         result = replace(result, regime="ratchets")
@@ -129,7 +128,9 @@ def _unresolved(result: Result, reference: Result, bars: Mapping[str, float]) ->
             back = f"{key}: on the way the end of the stick zone takes back {width:.1g} a"
             notes.append(f"{back}, too little for points so far apart")
     result = replace(result, estimate=estimate, notes=tuple(notes))
-    if not hidden:
-        return result
-    why = dict.fromkeys(("m", "n"), "the points are too far apart where an end of the stick zone comes back on the way")
-    return replace(result, stick_centre=None, stick_half_width=None, undetermined=why)
+    why = "the points are too far apart where an end of the stick zone comes back on the way"
+    return _without_stick_zone(result, why) if hidden else result
+
+
+def _without_stick_zone(result: Result, why: str) -> Result:
+    return replace(result, stick_centre=None, stick_half_width=None, undetermined=dict.fromkeys(("m", "n"), why))
