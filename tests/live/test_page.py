@@ -289,7 +289,8 @@ def test_the_point_is_dragged(page):
     assert handle(page) == pytest.approx([start[0] + 120, start[1] - 40], abs=1)
     assert after.Qf > before.Qf + 0.1
     assert after.sf > before.sf + 0.5
-    assert (after.m, after.n) == pytest.approx(python_zone(page, load_scene(LARGE)), abs=1e-9)
+    assert after.gradual  # the page's table has fewer digits than Python's
+    assert (after.m, after.n) == pytest.approx(python_zone(page, load_scene(LARGE)), abs=1e-5)
     page.drag(handle(page), [5000, start[1]])
     assert answer(page).regime == "sliding"
     page.run("document.getElementById('reset').click()")

@@ -213,7 +213,7 @@ const hertz = (() => {
     });
     const low = zone.centre - 4 * Qf / sf, high = -4 * Qf / sf, places = [low, clamp(turn, low, high), high];
     let taken = 0;
-    for (const [from, to] of [places.slice(0, 2), places.slice(1)].filter((ends) => ends[1] > ends[0])) {
+    for (const [from, to] of [places.slice(0, 2), places.slice(1)].filter((ends) => ends[1] - ends[0] > SETTLED)) {
       for (const { node, weight } of RULE) {
         const x = (from + to) / 2 + (to - from) / 2 * node;
         const next = clamp(stages.findIndex((place) => place <= x), 1, STAGES), after = stages[next];
