@@ -47,7 +47,7 @@ _SHARE = 1 / 3  # largest part of the remaining CPU seconds for one mesh
 _WORK = 5e11  # limit of cells^3 times load steps of a mesh
 # Errors of m and n, as parts of the change from mesh to mesh and of growth^3
 _MOVED, _CUBIC = 0.1, 0.15
-# The same part in a narrow stick zone, which its surroundings move as a whole: cells nearby are reduced with it, so that
+# The same part in a narrow stick zone, which its surroundings move as a whole. Cells nearby are reduced with the zone:
 # only growth is halved from mesh to mesh, and errors are of second order in it
 _CARRIED = 1 / 3
 # The same where slip turns round; also, at an end that moves over cells that slipped, parts of the cell's size
