@@ -65,6 +65,8 @@ def read_bytes(path: Name, most: int) -> bytes:
     """Return the content of ``path``, a regular file of at most ``most`` bytes. Raises InputError as :func:`opened`."""
     with opened(path, most) as file:
         content = file.read(most + 1)  # files in /proc report a size of 0
+        if content is None:  # one that would wait, such as /proc/kmsg
+            raise InputError(f"{path}: cannot be read: {_NOT_REGULAR}")
     if len(content) > most:
         raise InputError(f"{path}: more than {most} bytes: must be at most {most}")
     return content

@@ -175,6 +175,23 @@ class Run(Drawn):
         return frame(self.columns)
 
 
+def chosen_methods(scene: Scene, methods: object = None) -> tuple[str, ...]:
+    """Return the names of ``methods``, one name or several, each once; by default :func:`default_methods`.
+
+    Raises
+    ------
+    InputError
+        If there is none, or one of them is unknown.
+    """
+    if methods is None:
+        return default_methods(scene)
+    named = [*methods] if isinstance(methods, Iterable) and not isinstance(methods, str) else [methods]
+    if not named or not all(isinstance(each, str) and each in METHODS for each in named):
+        shown = ", ".join(map(str, named)) or "none"
+        raise InputError(f"methods = {shown:.60}: must be one or several of {', '.join(METHODS)}")
+    return tuple(dict.fromkeys(map(str, named)))
+
+
 def default_methods(scene: Scene) -> tuple[str, ...]:
     """Return the default methods for ``scene``: fem, and for half-planes the reference
     (:func:`partialslip.judge.reference.reference`); beside finite bodies half-planes; with a rig exact and equivalent.
@@ -237,10 +254,7 @@ def run(
             raise InputError(f"start = {start!r:.60}: must be a State; partialslip.load_state reads one from a file")
         start.check(scene)
     effects = plan(scene, subsurface=subsurface, start=start is not None)
-    methods = default_methods(scene) if methods is None else methods
-    if not isinstance(methods, Iterable):
-        raise InputError(f"methods = {methods!r:.60}: must be one or several of {', '.join(METHODS)}")
-    chosen = dict.fromkeys([methods] if isinstance(methods, str) else methods)
+    chosen = chosen_methods(scene, methods)
     tasks = {name: (name, reduced(scene), effects) for name in chosen}
     if effects.missing:
         whole = replace(scene, effects=Effects())
@@ -382,4 +396,4 @@ def _method(
         from partialslip.equivalent import solve as solve_as_half_planes
 
         return partial(solve_as_half_planes, rig_of=rig_of)
-    raise InputError(f"method {name!r}: must be one of {', '.join(METHODS)}")
+    raise AssertionError(name)

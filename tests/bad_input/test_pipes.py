@@ -1,6 +1,7 @@
 """Files of a user are regular files: a pipe would be waited for, and a device be read, without end."""
 
 import ast
+import contextlib
 import os
 import signal
 from pathlib import Path
@@ -134,6 +135,14 @@ def test_a_study_of_pipes_and_a_folder_whose_request_is_one(tmp_path, capsys, od
     (tmp_path / "out" / "notes.txt").write_text("mine", "utf-8")
     message = check(main(["run", "hertz-shear", "--with", "exact", "--out", "out"]), capsys.readouterr())
     assert REFUSED in message
+
+
+@pytest.mark.skipif(not os.access("/proc/kmsg", os.R_OK), reason="the log of the kernel is not to be read")
+def test_a_regular_file_that_would_wait_is_refused():
+    """/proc/kmsg calls itself a regular file."""
+    for read in (load_scene, load_result, Ledger):
+        with contextlib.suppress(InputError):  # or there are lines to read
+            read(Path("/proc/kmsg"))
 
 
 OPENERS = {

@@ -7,6 +7,7 @@ import pytest
 
 import partialslip
 from partialslip.halfplane import contact, marching, one_step_zone
+from partialslip.verify.hard_cases.scenes import hard_scene
 
 MEAN = ["load.Q=[31415.926535897932, 219911.48575128554]", "load.sigma=[2e8, 1e9]"]  # 0.1 .. 0.7 fP, 1 .. 5 f p0
 ROUGH = "fem.accuracy=1e-3"
@@ -206,3 +207,33 @@ def test_kinks_that_pass_by_cost_little(method):
     assert result.n / result.a == pytest.approx(0.220387, abs=min(result.estimate["n"] + known, 1e-4))
     assert max(result.estimate["m"], result.estimate["n"]) <= 1e-4
     assert result.certificate["kkt"] <= 1e-10
+
+
+NARROW = ((5.5, 2.2), (7.0, 0.7), (4.2, 3.0))  # dQ = (1 - 10^-k) 2 f P, and dsigma in f p0
+
+
+def largest_ratio(k, tension):
+    """Largest error of m and n over its estimate."""
+    scene = hard_scene("narrow", 1 - 10.0**-k, tension)
+    outcome = partialslip.run(scene, ["exact", "march"])
+    estimate, comparison = outcome.results["march"].estimate, outcome.comparisons["march"]
+    return max(comparison.m / estimate["m"], comparison.n / estimate["n"])
+
+
+@pytest.mark.parametrize(("k", "tension"), NARROW)
+def test_the_place_of_a_narrow_stick_zone_is_known(k, tension):
+    """The whole contact carries a narrow zone along: cells near the zone tell nothing of how far."""
+    assert largest_ratio(k, tension) <= 1.5
+
+
+@pytest.mark.fault
+def test_a_narrow_zone_errs_as_a_wide_one(monkeypatch):
+    """Deliberate fault: the change of a narrow zone from mesh to mesh is taken for one of the cells beside its ends."""
+    monkeypatch.setattr(marching, "_CARRIED", marching._MOVED)
+    assert largest_ratio(*NARROW[0]) > 2
+
+
+def test_the_estimates_of_small_shear_are_relative_to_one_norm():
+    """q is half of q2 - q1, which are opposite without mean loads: their estimates are equal, however small q is."""
+    small = partialslip.run(hard_scene("small", 1e-6, 1e-6), ["march"]).results["march"].estimate
+    assert small["q"] == pytest.approx(small["q1"], rel=1e-9) == small["q2"]

@@ -150,6 +150,9 @@ def test_a_star_stands_for_any_table():
         ({"load.p": 3}, "load.p: unknown key; did you mean 'P'?"),
         ({"load": 3}, "load = 3: must be a table, not a whole number"),
         ({"load": {3: 4}}, "load.3: a key must be a string"),
+        ({3: 4}, "3: a key must be a string, such as 'load.P'"),
+        ({b"load.P": 1e5}, "b'load.P': a key must be a string, such as 'load.P'"),
+        ({("load", "P"): 1e5}, "('load', 'P'): a key must be a string, such as 'load.P'"),
         ({"load.a": 1e-4}, "load: exactly one of P, a, p0 must be given, not P and a"),
     ],
 )
@@ -221,6 +224,8 @@ def test_what_is_no_path_is_refused(read, path):
 
 def test_what_run_is_asked_for():
     assert line(lambda: partialslip.run(SHIPPED, 3)).startswith("methods = 3: must be one or several of exact, march")
+    assert line(lambda: partialslip.run(SHIPPED, [["fem"]])).startswith("methods = ['fem']: must be one or several of")
+    assert line(lambda: partialslip.run(SHIPPED, [])).startswith("methods = none: must be one or several of")
     assert line(lambda: partialslip.run(SHIPPED, "exact", start=3)).startswith("start = 3: must be a State")
     assert line(lambda: partialslip.load_scene("hertz-shear", [3])).startswith("override 3: must be table.key=value")
     assert partialslip.load_scene("hertz-shear", "friction.f=0.4").friction.f == 0.4

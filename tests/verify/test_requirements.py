@@ -1,4 +1,4 @@
-"""Each requirement, R1 to R9, sees a deliberate fault. Nothing is solved."""
+"""Each requirement, R1 to R10, sees a deliberate fault. Nothing is solved."""
 
 from dataclasses import replace
 
@@ -37,11 +37,13 @@ FAULTS = {
     "R2": ("finite", replace(SOUND, limits={"Q_mean": NAN})),
     "R3": ("certificate", replace(SOUND, certificate={"kkt": 1e-12, "equilibrium": 1e-3})),
     "R4": ("regime", replace(SOUND, regime="large tension")),
-    "R5": ("a", result(a=1.01, contact_ends=((-A, A), (-A, A)))),
-    "R6": ("m", result(centre=-0.005, half_width=EXACT.stick_half_width / A + 0.005)),
-    "R7": ("n", result(centre=0.005, half_width=EXACT.stick_half_width / A + 0.005)),
+    "R5": ("a", result(a=1.01, contact_ends=((-A, A), (-A, A)), estimate={})),
+    "R6": ("m", result(centre=-0.005, half_width=EXACT.stick_half_width / A + 0.005, estimate={})),
+    "R7": ("n", result(centre=0.005, half_width=EXACT.stick_half_width / A + 0.005, estimate={})),
     "R8": ("p", result(of=wavy(0))),
     "R9": ("q", result(of=wavy(1))),
+    # m is off by 3e-4 a: less than the bar, 1e-3 a, and three times the estimate
+    "R10": ("estimate of m", result(centre=-1.5e-4, half_width=EXACT.stick_half_width / A + 1.5e-4)),
 }
 
 
@@ -61,7 +63,7 @@ def test_each_requirement_sees_its_fault(number):
     verdicts = found(wrong)
     (seen,) = (each for each in verdicts if each.outcome is Outcome.MISSED)
     assert (seen.quantity, number_of(seen.quantity), seen.requirement) == (
-        quantity, number, f"{number}: {REQUIREMENTS[quantity]}",
+        quantity, number, f"{number}: {REQUIREMENTS[requirement_of(quantity)]}",
     )  # fmt: skip
     assert (seen.case, seen.method) == ("made", "fem")
     assert min(verdicts, key=room) is seen
@@ -71,8 +73,8 @@ def test_each_requirement_sees_its_fault(number):
 def test_a_sound_result_answers_all_requirements():
     verdicts = found(SOUND)
     assert missed(verdicts) == set()
-    assert {number_of(each.quantity) for each in verdicts} == set(FAULTS) == {f"R{n}" for n in range(1, 10)}
-    assert list(REQUIREMENTS) == [quantity for quantity, _ in FAULTS.values()]
+    assert {number_of(each.quantity) for each in verdicts} == set(FAULTS) == {f"R{n}" for n in range(1, 11)}
+    assert list(REQUIREMENTS) == [requirement_of(quantity) for quantity, _ in FAULTS.values()]
     assert {each.outcome for each in verdicts} == {Outcome.PASSED}
     assert not {"p_max", "q_max"} & {each.quantity for each in verdicts}
     kept = {"left": "a", "right_2": "a", "P": "p", "p_1": "p", "dQ": "q", "q1": "q", "m": "m", "finite": "finite"}
@@ -112,7 +114,42 @@ def test_bars_are_the_accuracy_asked_for_unless_a_case_or_its_mesh_says_otherwis
         verdicts = {each.quantity: each.outcome for each in found(result(a=2.0), case)}
         assert (verdicts["a"], verdicts["regime"]) == (Outcome.NOT_JUDGED, Outcome.NOT_JUDGED)
         own = replace(case, bars={"fem.a": Bar(0.5, "coarse")})
-        assert missed(found(result(a=2.0, contact_ends=((-A, A),) * 2), own)) == {"a"}
+        assert missed(found(result(a=2.0, contact_ends=((-A, A),) * 2, estimate={}), own)) == {"a"}
+
+
+@pytest.mark.parametrize(
+    ("estimate", "own", "outcome"),
+    [
+        (1.4e-4, {}, Outcome.MISSED),  # m is off by 3e-4 a
+        (1.6e-4, {}, Outcome.PASSED),
+        (1.4e-4, {"m": 5e-5}, Outcome.PASSED),  # the reference may be off by as much as is missing
+        (1e-4, {"m": 5e-4}, Outcome.NOT_JUDGED),  # the reference is known less well than the method claims to be
+        (0.0, {}, Outcome.MISSED),
+        (None, {}, None),
+    ],
+)
+def test_an_estimate_of_less_than_half_of_the_error_is_missed(estimate, own, outcome):
+    off = result(centre=-1.5e-4, half_width=EXACT.stick_half_width / A + 1.5e-4)
+    off = replace(off, estimate={} if estimate is None else {"m": estimate})
+    verdicts = {each.quantity: each for each in found(off, exact=replace(EXACT, estimate=own))}
+    assert "estimate of n" not in verdicts
+    verdict = verdicts.get("estimate of m")
+    assert outcome is (verdict and verdict.outcome)
+    if outcome is Outcome.MISSED:
+        assert verdict.text.startswith("estimate of m: error 0.0003 > ")
+        assert verdict.reason == f"estimated to be {estimate:.1e}"
+
+
+def test_an_estimate_of_what_is_not_judged_has_no_verdict():
+    loose = result(centre=None, regime="ratchets")
+    verdicts = {each.quantity for each in found(loose)}
+    assert "estimate of a" in verdicts
+    assert "estimate of m" not in verdicts
+
+
+def test_rounding_needs_no_estimate():
+    tiny = result(centre=-2e-10, half_width=EXACT.stick_half_width / A + 2e-10, estimate={"m": 0.0})
+    assert missed(found(tiny)) == set()
 
 
 @pytest.mark.fault

@@ -19,6 +19,7 @@ from partialslip.batch import ledger
 from partialslip.batch.ledger import Ledger
 from partialslip.cli import main
 from partialslip.cli import verify as command
+from partialslip.halfplane import marching
 from partialslip.judge import Bar, Outcome, verdict
 from partialslip.run import run
 from partialslip.scene.reading import load_scene
@@ -62,6 +63,22 @@ def test_a_missed_bar_is_exit_1(tmp_path, capsys, monkeypatch):
     assert code == 1
     assert [one["quantity"] for one in record["cases"]["stress-5-1"] if one["outcome"] == "missed"] == ["certificate"]
     assert "missed: stress-5-1, march: certificate" in capsys.readouterr().out
+
+
+@pytest.mark.fault
+def test_estimates_that_are_too_small_are_seen(tmp_path, capsys, monkeypatch):
+    """Deliberate fault: march takes its errors of m and n for a thousandth of what they are. No bar is missed."""
+    for name in ("_MOVED", "_CARRIED", "_CUBIC"):
+        monkeypatch.setattr(marching, name, 1e-3 * getattr(marching, name))
+    code, record = verify(tmp_path, "verify", "--suite", "full", "--only", "no-tension")
+    assert code == 1
+    missed = [one for one in record["cases"]["no-tension"] if one["outcome"] == "missed"]
+    assert [(one["method"], one["quantity"]) for one in missed] == [
+        ("march", "estimate of m"),
+        ("march", "estimate of n"),
+    ]
+    assert all(one["requirement"].startswith("R10: ") and "estimated to be" in one["reason"] for one in missed)
+    assert "missed: no-tension, march: estimate of m: error" in capsys.readouterr().out
 
 
 def test_what_is_raised_is_a_verdict(monkeypatch):

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import replace
@@ -16,9 +17,8 @@ from partialslip.batch.sweep import Progress, Task, workers
 from partialslip.batch.sweep import sweep as work_through
 from partialslip.errors import InputError
 from partialslip.frame import frame
-from partialslip.judge.reference import METHODS
 from partialslip.record import Record
-from partialslip.run import default_methods
+from partialslip.run import chosen_methods
 from partialslip.scene import Scene
 from partialslip.scene.reading import AnyScene, as_scene
 
@@ -96,7 +96,10 @@ def sweep(
     if not 0 <= check <= 1:
         raise InputError(f"check = {check}: must be from 0 to 1")
     points = _points(over)
-    methods = [methods] if isinstance(methods, str) else None if methods is None else list(methods)
+    if methods is not None:
+        methods = chosen_methods(scene, methods)
+    if ledger is not None and not isinstance(ledger, (str, os.PathLike)):
+        raise InputError(f"ledger = {ledger!r:.60}: must be the path of a file")
     jobs = [_job(scene.replace(point), methods, point) for point in points]
     leading = [job.methods[0] if "fem" not in job.methods else None for job in jobs]
     for k in np.random.default_rng(0).choice(len(jobs), math.ceil(check * len(jobs)), replace=False):
@@ -141,11 +144,12 @@ def _plain(value: Any) -> Any:
     return tuple(value) if isinstance(value, list) else value
 
 
-def _job(scene: Scene, methods: list[str] | None, point: Mapping[str, Any]) -> Job:
-    chosen = tuple(dict.fromkeys(default_methods(scene) if methods is None else methods))
-    if not chosen or not set(chosen) <= set(METHODS):
-        raise InputError(f"methods = {', '.join(map(str, chosen)) or 'none'}: must be of {', '.join(METHODS)}")
-    return Job(scene, chosen, {key: value if isinstance(value, float) else str(value) for key, value in point.items()})
+def _job(scene: Scene, methods: Iterable[str] | None, point: Mapping[str, Any]) -> Job:
+    return Job(
+        scene,
+        chosen_methods(scene, methods),
+        {key: value if isinstance(value, float) else str(value) for key, value in point.items()},
+    )
 
 
 def _geometry(task: Task) -> str:

@@ -47,6 +47,9 @@ _SHARE = 1 / 3  # largest part of the remaining CPU seconds for one mesh
 _WORK = 5e11  # limit of cells^3 times load steps of a mesh
 # Errors of m and n, as parts of the change from mesh to mesh and of growth^3
 _MOVED, _CUBIC = 0.1, 0.15
+# The same part in a narrow stick zone, which its surroundings move as a whole. Cells nearby are reduced with the zone:
+# only growth is halved from mesh to mesh, and errors are of second order in it
+_CARRIED = 1 / 3
 # The same where slip turns round; also, at an end that moves over cells that slipped, parts of the cell's size
 _TURNED, _CAUGHT_UP = 2.0, 0.5
 _CHANGED = (0.4, 0.35)  # errors of q, q1 and q2 as parts of the change to the second mesh and to later meshes
@@ -280,23 +283,24 @@ def _mesh_errors(normal: NormalLoads, level: _Level, before: _Level, growth: flo
     unseen = _SOMEWHERE * size * (gap < _CELLS * size)
     moved = max(abs(level.stick.left - before.stick.left), abs(level.stick.right - before.stick.right))
     between = _CUBIC * growth**3 * np.minimum(_NEAR * gap, 1.0)
-    known = np.maximum(unseen, np.maximum(_MOVED * moved, between))
+    part = _CARRIED if _NEAR * gaps[1] < 1 else _MOVED
+    known = np.maximum(unseen, np.maximum(part * moved, between))
     if level.history.turns:
         known = _TURNED * known + _CAUGHT_UP * size * np.array(level.stick.moved)
     known *= normal.frame.a / normal.largest.a
     return dict(zip("mn", known.tolist(), strict=True)) | {
-        key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices) for key, of in SHEARS.items()
+        key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices, 2 if key == "q" else 1)
+        for key, of in SHEARS.items()
     }
 
 
-def _apart(level: _Level, of: Callable[[History], Array], other: History, cells: Array) -> float:
+def _apart(level: _Level, of: Callable[[History], Array], other: History, cells: Array, shears: int) -> float:
     """Relative L2 difference of the means over ``cells`` (c + 1,), the cells of the ``other`` history, of the forces
-    ``of`` the level and of the other history."""
+    ``of`` the level and of the other history, which are sums of 1 or 2 ``shears``."""
     assert level.history
-
     known, bound = (norm_parts(level.vertices, each, cells) for each in (of(level.history), level.history.bound))
     others = norm_parts(cells, of(other), cells)
-    return relative_change(known, others, LEAST_SHEAR * float(np.linalg.norm(bound)))
+    return relative_change(known, others, shears * LEAST_SHEAR * float(np.linalg.norm(bound)))
 
 
 def _result(

@@ -283,7 +283,8 @@ def _mesh_errors(level: _Level, before: _Level, problem: _Problem) -> dict[str, 
     if level.history and before.history:
         bound = before.history.bound
         errors |= {
-            key: _apart(level, of(level.history), before, of(before.history), bound) for key, of in SHEARS.items()
+            key: _apart(level, of(level.history), before, of(before.history), (2 if key == "q" else 1) * bound)
+            for key, of in SHEARS.items()  # q is half of the change
         }
     return {key: error / 2 for key, error in errors.items()}
 

@@ -3,6 +3,8 @@
 from partialslip.bars import BARS as BARS
 from partialslip.judge.comparison import Comparison as Comparison
 from partialslip.judge.comparison import compare as compare
+from partialslip.judge.estimates import ESTIMATE as ESTIMATE
+from partialslip.judge.estimates import estimate_verdicts as estimate_verdicts
 from partialslip.judge.means import cell_errors as cell_errors
 from partialslip.judge.means import cell_means as cell_means
 from partialslip.judge.outcome import Conclusion as Conclusion

@@ -119,6 +119,8 @@ def changed(scene: Scene, changes: Mapping[str, Any]) -> Scene:
         raise InputError(f"changes = {_shown(changes)}: must be values by dotted key, such as {{'load.P': 2e5}}")
     data = msgspec.to_builtins(scene)
     for key, value in changes.items():
+        if not isinstance(key, str):
+            raise InputError(f"{_shown(key)}: a key must be a string, such as 'load.P'")
         _put(data, key.split("."), value, key)
     return parse_scene(data)
 

@@ -1,7 +1,7 @@
 """Cases and requirements of the verification.
 
 A case is a scene, methods and bars. A verdict compares one quantity of one method with a bar, and belongs to one of the
-requirements R1 to R9.
+requirements R1 to R10.
 """
 
 import time
@@ -12,7 +12,19 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.bars import BARS
-from partialslip.judge import NO_BAR, Bar, Conclusion, Outcome, Verdict, compare, conclude, conditions, together
+from partialslip.judge import (
+    ESTIMATE,
+    NO_BAR,
+    Bar,
+    Conclusion,
+    Outcome,
+    Verdict,
+    compare,
+    conclude,
+    conditions,
+    estimate_verdicts,
+    together,
+)
 from partialslip.judge.reference import reference as reference_of
 from partialslip.judge.reference import reference_among
 from partialslip.plan import plan
@@ -34,13 +46,14 @@ REQUIREMENTS = {
     "p": "cell averages of p differ from the exact ones by at most the bar, relative L2; so does the resultant from P",
     "q": "cell averages of q differ from the exact ones by at most the bar, relative L2; so does the resultant of dq "
     "from dQ, in 2 f P",
+    "estimate": "errors of a, m, n, p and q are at most twice the method's own estimates of them",
 }
 _PART_OF = {
     **dict.fromkeys(("left", "right", "left_1", "right_1", "left_2", "right_2"), "a"),
     **dict.fromkeys(("P", "P_1", "M", "M_1", "p_1"), "p"),
     **dict.fromkeys(("dQ", "q1", "q2"), "q"),
 }
-_CONDITIONS = ("finishes", "finite", "certificate")
+_CONDITIONS = ("finishes", "finite", "certificate", "estimate")
 _BAR = Bar(1.0)  # stands for the usual bar
 
 
@@ -114,11 +127,11 @@ class CaseVerdict(Verdict):
 
 def requirement_of(quantity: str) -> str:
     """Return the key in :data:`REQUIREMENTS` of the requirement on ``quantity``."""
-    return _PART_OF.get(quantity, quantity)
+    return "estimate" if quantity.startswith(ESTIMATE) else _PART_OF.get(quantity, quantity)
 
 
 def number_of(quantity: str) -> str:
-    """Return the number of the requirement on ``quantity``, R1 to R9."""
+    """Return the number of the requirement on ``quantity``, R1 to R10."""
     return f"R{list(REQUIREMENTS).index(requirement_of(quantity)) + 1}"
 
 
@@ -177,8 +190,8 @@ def conclusions(verdicts: Iterable[CaseVerdict]) -> dict[tuple[str, str], Conclu
         groups.setdefault((verdict.case, verdict.method), []).append(verdict)
     return {
         group: conclude(
-            [verdict for verdict in some if verdict.quantity not in _CONDITIONS],
-            [verdict for verdict in some if verdict.quantity in _CONDITIONS],
+            [verdict for verdict in some if requirement_of(verdict.quantity) not in _CONDITIONS],
+            [verdict for verdict in some if requirement_of(verdict.quantity) in _CONDITIONS],
             {verdict.quantity for verdict in some if verdict.waived},
         )
         for group, some in groups.items()
@@ -189,7 +202,11 @@ def whole(verdicts: Iterable[CaseVerdict]) -> Conclusion:
     """Return what the ``verdicts`` on many cases amount to; where no case has a reference, by the conditions alone."""
     verdicts = tuple(verdicts)
     found = together(conclusions(verdicts).values())
-    certified = bool(verdicts) and all(verdict.quantity in _CONDITIONS for verdict in verdicts) and not found.missed
+    certified = (
+        bool(verdicts)
+        and all(requirement_of(verdict.quantity) in _CONDITIONS for verdict in verdicts)
+        and not found.missed
+    )
     return replace(found, outcome=Outcome.PASSED, asked=True) if certified else found
 
 
@@ -208,7 +225,8 @@ def _solve(case: Case, method: str) -> Result | Failure:
 
 
 def _judged(case: Case, method: str, result: Result, reference: Result | None) -> Iterator[Verdict]:
-    """Yield the verdicts on a result: the largest residual, the regime and the quantities that usually have bars."""
+    """Yield the verdicts on a result: the largest residual, the regime, the quantities that usually have bars, and the
+    estimates of their errors."""
     yield Verdict("finishes", Outcome.PASSED)
     finite, *certificate = conditions(result)
     yield finite
@@ -218,5 +236,7 @@ def _judged(case: Case, method: str, result: Result, reference: Result | None) -
     if reference:
         own = {key.removeprefix(f"{method}."): bar for key, bar in case.bars.items() if key.startswith(f"{method}.")}
         accuracy = None if case.meshes or case.scene.fem.size else case.scene.fem.accuracy
-        verdicts = compare(result, reference, case.scene, accuracy, own).verdicts
-        yield from (verdict for verdict in verdicts if verdict.quantity in ("regime", *BARS))
+        every = compare(result, reference, case.scene, accuracy, own).verdicts
+        verdicts = [verdict for verdict in every if verdict.quantity in ("regime", *BARS)]
+        yield from verdicts
+        yield from estimate_verdicts(verdicts, reference)

@@ -18,7 +18,7 @@ from partialslip.output.json import json_text
 from partialslip.output.tables import print_table
 from partialslip.report import rows
 from partialslip.strictjson import decoded
-from partialslip.verify.case import CaseVerdict, conclusions
+from partialslip.verify.case import CaseVerdict, conclusions, requirement_of
 from partialslip.verify.entry import Settings
 
 SCHEMA = "partialslip/verify/2"
@@ -157,10 +157,12 @@ def every_one(verdicts: Verdicts) -> list[CaseVerdict]:
 
 
 def nearest(verdicts: Verdicts) -> list[CaseVerdict]:
-    """Return one verdict per case and method: a missed one, else the one nearest to the bar."""
+    """Return one verdict per case and method: a missed one, else the one nearest to the bar, without estimates: how far
+    these are from errors says nothing about the errors."""
     groups: dict[tuple[str, str], list[CaseVerdict]] = {}
     for verdict in every_one(verdicts):
-        groups.setdefault((verdict.case, verdict.method), []).append(verdict)
+        if missed(verdict) or requirement_of(verdict.quantity) != "estimate":
+            groups.setdefault((verdict.case, verdict.method), []).append(verdict)
     return [min(some, key=room) for some in groups.values()]
 
 
