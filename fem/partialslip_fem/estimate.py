@@ -48,6 +48,7 @@ AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002, 6: 0.001}
 # and to the nearest other end or kink.
 _FIT = np.array([8.0, 2.0])
 _STICK = 1.5  # error of an end of the stick zone, in the error of an end of the contact
+_COUPLED = 0.1  # the same of coupled bodies: where slip begins p varies with q, not like a square root (measured)
 _SIDE = 0.5  # largest error of an end due to the fit, in the element size
 # Where slip turns round, ends of the stick zone are known less; at one that moves over nodes that slipped, q is off
 # its bound by little: parts of the element size.
@@ -117,6 +118,8 @@ def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Arra
     if solution.stick:
         fit = _FIT[:, None] * np.minimum(sizes / gaps, 1.0) ** 2
         fitted = _STICK * off + np.minimum(fit.sum(axis=0), _SIDE) * sizes
+        if solution.coupled:
+            fitted[2:4] += _COUPLED * (sizes[:4].max() if solution.slips_when_pressed else sizes[2:4])
         if solution.history and solution.history.turns:
             fitted[2:4] = _TURNED * fitted[2:4] + _CAUGHT_UP * sizes[2:4] * np.array(solution.stick.moved)
         errors |= dict(zip("mn", fitted[2:4].tolist(), strict=True))

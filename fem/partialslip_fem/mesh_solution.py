@@ -9,9 +9,9 @@ from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array, Indices
 from partialslip.condensed.bounded import Solution
-from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.ends import StickInterval, turning_points
 from partialslip.condensed.history import History
+from partialslip.condensed.pressing import Pressed
 from partialslip.condensed.trail import Trail
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import Body

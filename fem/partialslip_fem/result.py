@@ -4,8 +4,8 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
-from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.history import certificate, last_cycle_change
+from partialslip.condensed.pressing import Pressed
 from partialslip.condensed.regime import doubts, steady_state, unestimated
 from partialslip.condensed.restart import begun, known_to
 from partialslip.plan import Plan

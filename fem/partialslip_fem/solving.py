@@ -10,20 +10,21 @@ from partialslip.arrays import Array, Indices
 from partialslip.bars import BARS
 from partialslip.condensed import constant, coupled, step_errors, varying
 from partialslip.condensed.bounded import Solution
-from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.ends import within
 from partialslip.condensed.history import History, certified
 from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path, stretched
+from partialslip.condensed.pressing import Pressed
 from partialslip.condensed.steps import follow_refined
 from partialslip.condensed.trail import Trail
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, condense, key_of, mesh_bodies
 from partialslip_fem.contact import CondensedBody, relative_compliances
+from partialslip_fem.elasticity import Body
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import nodal_forces
 from partialslip_fem.problem import Problem
-from partialslip_fem.zones import contact_ends, growth_when_pressed, shear_kinks, stick_zone_of
+from partialslip_fem.zones import contact_ends, growth_when_pressed, resultants, shear_kinks, stick_zone_of
 from partialslip_meshes import Mesh
 
 
@@ -108,16 +109,19 @@ def solve_contact(
         line, both = bodies[0].body, relative.xy is not None
         forces = _contact_forces(problem, relative, bodies[0], steps, shared, before)
         history, nodes, errors = forces.history, forces.nodes, forces.step_errors
-        left, right = contact_ends(line, forces.pressing.x)
+        ends_under = partial(contact_ends, line, beta=problem.beta if both else 0.0)
+        on_line = partial(_on_line, line, nodes)
+        left, right = ends_under(forces.pressing.x, on_line(history.q2) if history else None)
         ends_at_1: tuple[float, float] | tuple[()] = ()
         at_first = forces.first
         if history and both and at_first is None:
-            at_first = np.zeros(len(line.x))
-            at_first[nodes] = history.bounds[0]
+            at_first = on_line(history.bounds[0]) / problem.f
         if at_first is not None:
-            ends_at_1 = contact_ends(line, at_first)
+            ends_at_1 = ends_under(at_first, on_line(history.q1) if history else None)
         growth = growth_when_pressed(forces.pressed, nodes, problem)
         stick = stick_zone_of(line, nodes, history, growth) if history else None
+        if stick and growth and forces.pressed:
+            stick = forces.pressed.scaled(stick, left, right)
         if stick:  # on a coarse mesh the ends of the stick zone may lie outside the contact
             left_at_1, right_at_1 = ends_at_1 or (left, right)
             stick = replace(stick, left=max(stick.left, left, left_at_1), right=min(stick.right, right, right_at_1))
@@ -138,6 +142,13 @@ def solve_contact(
             bodies, factored, nodes, forces.pressing, history, left, right, stick, ends_at_1, kinks, both,
             forces.pressed, errors, forces.first, forces.most, problem.largest, passing, forces.trail,
         )  # fmt: skip
+
+
+def _on_line(line: Body, nodes: Indices, values: Array) -> Array:
+    """``values`` (k,) of the ``nodes``, with zeros at all other nodes of the contact line, (n,)."""
+    result = np.zeros(len(line.x))
+    result[nodes] = values
+    return result
 
 
 @dataclass(frozen=True)
@@ -171,9 +182,11 @@ def _contact_forces(
         path = replace(path, before=locked)
     if path and C.xy is not None:
         trail = Trail(line.x, before.trail if before else None)
-        ends = partial(contact_ends, line)
+        ends = partial(contact_ends, line, beta=problem.beta)
         reach = before.half_width if before else None
-        along = coupled.Line(line.x, line.weights, ends, problem.similar, problem.nearly_similar, reach, trail)
+        along = coupled.Line(
+            line.x, line.weights, ends, partial(resultants, line), problem.similar, problem.nearly_similar, reach, trail
+        )
         near = BARS["q"] * problem.accuracy
         history, pressing, first = coupled.march(C, gap, stretch, moved[1], problem.f, path, pressed, along, near)
         nodes = np.flatnonzero(history.bound > 0)

@@ -99,10 +99,9 @@ def test_punches_add_up_to_a_parabola():
     x = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 201))
     edges = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 402)[1:-1:2])
     weights = np.diff(np.concatenate([[-1.0], edges, [1.0]]))[: len(x)]
-    with np.errstate(divide="ignore"):
-        traction = 1 / (np.pi * np.sqrt(1 - x**2))
-    traction[[0, -1]] = 0.0
-    stages = Punch(1.0, x, weights, weights * traction, 0 * x)
+    normal = np.diff(np.arcsin(np.concatenate([[-1.0], edges, [1.0]]))) / np.pi
+    left = 0.5 + np.arcsin(x[3:-3]) / np.pi
+    stages = Punch((-1.0, 1.0), x, weights, (normal, 0 * x), x[3:-3], (left, 0 * left))
     for share, nodes, error in ((1.0, 0.99, 2e-4), (0.9, 0.88, 1e-3)):
         p, q = stages.stage(share)
         expected = share * 2 / np.pi * np.sqrt(np.maximum(1 - (x / share) ** 2, 0.0))
@@ -118,7 +117,8 @@ def test_a_stage_bears_its_load_and_no_shear():
     x = np.sort(random.uniform(-1, 1, 301))
     weights = np.gradient(x)
     normal = weights / np.sqrt(1 - x**2)
-    p, q = Punch(1.0, x, weights, normal, 0.3 * np.sign(x) * normal).stage(0.95)
+    forces = normal, 0.3 * np.sign(x) * normal
+    p, q = Punch((-1.0, 1.0), x, weights, forces, x, tuple(map(np.cumsum, forces))).stage(0.95)
     assert p.sum() == pytest.approx(0.95**2)
     assert abs(q.sum()) < 1e-12
 

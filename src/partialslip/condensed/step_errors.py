@@ -7,9 +7,9 @@ import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
-from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.ends import StickInterval
 from partialslip.condensed.history import History
+from partialslip.condensed.pressing import Pressed
 
 Errors = dict[str, float]
 Indices = npt.NDArray[np.int64]

@@ -17,11 +17,11 @@ from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.condensed import coupled
 from partialslip.condensed.bounded import Solution
-from partialslip.condensed.coupled import Pressed
-from partialslip.condensed.ends import StickInterval, apart, kinks, left_end, right_end, stick_zone, within
+from partialslip.condensed.ends import StickInterval, apart, contact_ends, kinks, stick_zone, within
 from partialslip.condensed.history import SHEARS, History, certificate, last_cycle_change
 from partialslip.condensed.normal import press
 from partialslip.condensed.path import Path, load_path, stretched
+from partialslip.condensed.pressing import Pressed
 from partialslip.condensed.regime import doubts, steady_state, unestimated
 from partialslip.condensed.restart import begun, known_to
 from partialslip.condensed.step_errors import pressed_together
@@ -204,8 +204,8 @@ def _solve_on(problem: _Problem, path: Path | None, vertices: Array, clock: Cloc
         points = (x[:, None] + widths[:, None] / 2 * _NODES) * L + scene.origin
         gap = scene.gap_at(points) @ (_WEIGHTS / 2) / (scene.material.A * scene.P)
 
-        def ends(forces: Array) -> tuple[float, float]:
-            return left_end(vertices, forces, x[forces > 0]), right_end(vertices, forces, x[forces > 0])
+        def ends(p: Array, q: Array | None = None) -> tuple[float, float]:
+            return contact_ends(vertices, p, x[p > 0], q, problem.beta)
 
         if not path:
             pressing, _ = press(C.yy, gap, 1.0)
@@ -216,11 +216,12 @@ def _solve_on(problem: _Problem, path: Path | None, vertices: Array, clock: Cloc
             begins, shear = (on_cells(each, places) / scene.P for each in (problem.start.p, problem.start.q))
             path = replace(path, before=shear)
         stages = partial(OnCells, problem.punch, vertices) if problem.punch else None
-        line = coupled.Line(x, widths, ends, problem.punch is not None, stages=stages)
+        line = coupled.Line(x, widths, ends, None, problem.punch is not None, stages=stages)
         moved = stretched(x, scene.origin / L)
         stretch, near = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
         history, pressing, first = coupled.march(C, gap, stretch, moved[1], scene.friction.f, path, begins, line, near)
-        at_points = tuple(ends(bound) for bound in history.bounds)
+        f = scene.friction.f
+        at_points = tuple(ends(bound / f, q) for bound, q in zip(history.bounds, (history.q1, history.q2), strict=True))
         level = _Level(vertices, pressing, history, first, at_points, None, ())  # type: ignore[arg-type]
         return replace(level, stick=_stick_zone(level, problem.punch), kinks=_kinks(level))
 
