@@ -136,11 +136,14 @@ def solve_contact(
             # beside the stick zone q1 and q2 are -f p and f p
             passing = tuple(kink for kink in kinks if not stick.left < kink < stick.right)
             kinks = tuple(kink for kink in kinks if kink not in passing)
+        path_errors: Mapping[str, float] = {}
+        if both:
+            path_errors, errors = errors, {}
         if history and forces.pressed:
             errors = step_errors.pressed_together(history, forces.pressed, line.weights, nodes)
         return MeshSolution(
             bodies, factored, nodes, forces.pressing, history, left, right, stick, ends_at_1, kinks, both,
-            forces.pressed, errors, forces.first, forces.most, problem.largest, passing, forces.trail,
+            forces.pressed, errors, forces.first, forces.most, problem.largest, passing, forces.trail, path_errors,
         )  # fmt: skip
 
 
@@ -188,10 +191,15 @@ def _contact_forces(
             line.x, line.weights, ends, partial(resultants, line), problem.similar, problem.nearly_similar, reach, trail
         )
         near = BARS["q"] * problem.accuracy
-        history, pressing, first = coupled.march(C, gap, stretch, moved[1], problem.f, path, pressed, along, near)
+        loaded = C, gap, stretch, moved[1], problem.f
+        history, pressing, first = coupled.march(*loaded, path, pressed, along, near)
         nodes = np.flatnonzero(history.bound > 0)
         most = np.maximum(*history.bounds) / problem.f if problem.pressing else None
-        return _ContactForces(pressing, history.of(nodes), nodes, first, most=most, trail=trail)
+        left: step_errors.Errors = {}
+        if steps and path.moves:
+            finer, *_ = coupled.march(*loaded, step_errors.other_steps(path), pressed, replace(along, trail=None), near)
+            left = _path_errors(problem, line, history, finer)
+        return _ContactForces(pressing, history.of(nodes), nodes, first, left, most=most, trail=trail)
     opened = gap if path else gap - problem.strains[1][0] * stretch[1]
     arms = line.x if problem.turns else None
     if problem.pressing:
@@ -210,6 +218,20 @@ def _contact_forces(
     known = tangential.C, moved[:, nodes], problem.f * pressing.x[nodes]
     history = constant.march(*known, path, tangential, slipping, problem.order)
     return _ContactForces(pressing, history, nodes)
+
+
+def _path_errors(problem: Problem, line: Body, history: History, finer: History) -> step_errors.Errors:
+    """Errors of the load steps of coupled bodies; ``history`` and ``finer`` at all nodes of the contact ``line``."""
+
+    def ends(each: History) -> tuple[float, ...]:
+        forces = zip(each.bounds, (each.q1, each.q2), strict=True)
+        return tuple(end for bound, q in forces for end in contact_ends(line, bound / problem.f, q, problem.beta))
+
+    on = [np.flatnonzero(each.bound > 0) for each in (history, finer)]
+    zones = stick_zone_of(line, on[0], history.of(on[0])), stick_zone_of(line, on[1], finer.of(on[1]))
+    left1, right1, left2, right2 = ends(history)
+    half_width = (right1 - left1 if problem.largest == 1 else right2 - left2) / 2
+    return step_errors.along_path(history, finer, zones, ends, line.weights, half_width)
 
 
 def _under_varying_pressure(
