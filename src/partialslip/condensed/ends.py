@@ -269,7 +269,7 @@ def contact_ends(
     if shear is not None and beta:
         first, last = np.searchsorted(vertices, inside[[0, -1]])
         for side, cells in enumerate(
-            (slice(max(first - 1, 0), first + _VERTICES), slice(max(last - _VERTICES, 0), last))
+            (slice(max(first - 1, 0), first - 1 + _VERTICES), slice(max(last - _VERTICES, 0), last))
         ):
             total = float(normal[cells].sum())
             more[side] = math.atan(beta * float(shear[cells].sum()) / total) / math.pi if total > 0 else 0.0

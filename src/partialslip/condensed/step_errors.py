@@ -17,6 +17,7 @@ Errors = dict[str, float]
 Indices = npt.NDArray[np.int64]
 
 _NOTHING = 0.01
+_PROBED = 7  # fewest steps from load point to load point with which those of coupled bodies are compared
 _SHEARS = ("change", "q1", "q2")
 
 
@@ -78,7 +79,7 @@ def along_path(
 def other_steps(path: Path) -> Path:
     """The ``path`` in half as large steps, and others that end at odd fractions of each way: where a stick zone moves
     past both ends of a step, halves alone may see nothing of it."""
-    return path.halved.with_steps(2 * path.substeps + 1)
+    return path.halved.with_steps(max(2 * path.substeps + 1, _PROBED))
 
 
 def summed(*errors: Mapping[str, float]) -> Errors:
