@@ -53,6 +53,7 @@ _STICK = 1.5  # error of an end of the stick zone, in the error of an end of the
 # element, whose p is a power of the distance, and where it is not.
 _COUPLED, _PUNCHED = 0.1, 0.3
 _SLIPPING, _STUCK = 0.02, 0.3
+_OF_LOCKED, _P_OF_LOCKED = 0.004, 0.02  # error of an end and of p, in that of q1 and q2, as q opens the gap (measured)
 _SIDE = 0.5  # largest error of an end due to the fit, in the element size
 # Where slip turns round, ends of the stick zone are known less; at one that moves over nodes that slipped, q is off
 # its bound by little: parts of the element size.
@@ -171,6 +172,10 @@ def together(solution: MeshSolution, smooth: Mapping[str, float], at_ends: Mappi
         for key, norm in zip(_SHEARS, norms.tolist(), strict=True):
             if key in errors and norm > 0:
                 errors[key] = math.hypot(errors[key], moved / norm)
+    if solution.coupled and "q2" in errors:
+        off = max(errors["q1"], errors["q2"])
+        errors |= {key: error + _OF_LOCKED * off for key, error in errors.items() if key in END_KEYS}
+        errors["p"] = math.hypot(errors["p"], _P_OF_LOCKED * off)
     return errors
 
 
