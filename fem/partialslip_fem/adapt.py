@@ -108,6 +108,7 @@ class _Refinement:
         self.largest_end_element = np.inf
         self.error, self.error_before, self.calmer = np.inf, np.inf, 1.0
         self.step_errors: Mapping[str, float] | None = None  # None until the steps are chosen
+        self.path_errors: Mapping[str, float] = {}  # of the steps of coupled bodies, which are as asked for
         self.waited = self.cuts = 0
 
     @property
@@ -189,7 +190,7 @@ class _Refinement:
         expected = None
         if self.expense.limited:
             expected = self.expense.unknowns(grading, problem.order, self.block_width)
-        choose = self.step_errors is None and self.size <= goals.COARSEST
+        choose = self.step_errors is None and not self.path_errors and self.size <= goals.COARSEST
         steps = (0 if self.expense.limited else MOST) if choose else None  # the cost of more steps is not predicted
         self.solution = solving.mesh_and_solve(
             problem, self.block_width, grading, self.clock, None, steps, self.solution
@@ -198,6 +199,8 @@ class _Refinement:
             self._keep_steps()
         elif self.step_errors is not None:
             self.solution = replace(self.solution, step_errors=self.step_errors)
+        self.path_errors = self.solution.path_errors or self.path_errors
+        self.solution = replace(self.solution, path_errors=self.path_errors)
         solution = self.solution
         self.expense.measure(solution.dofs, expected)
         self.meshes, self.factored = self.meshes + 1, self.factored + solution.factored

@@ -9,9 +9,9 @@ from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array, Indices
 from partialslip.condensed.bounded import Solution
-from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.ends import StickInterval, turning_points
 from partialslip.condensed.history import History
+from partialslip.condensed.pressing import Pressed
 from partialslip.condensed.trail import Trail
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import Body
@@ -50,6 +50,8 @@ class MeshSolution:
         How coupled bodies were pressed together before the load path.
     step_errors : mapping of str to float
         Errors of the load steps (:mod:`partialslip.condensed.step_errors`), where they were asked for.
+    path_errors : mapping of str to float
+        The same of the load path of coupled bodies, besides the steps in which they were pressed together.
     first, most : (n,) arrays or None
         Where the pressure varies: normal forces on all nodes of the contact line at load point 1, and the largest ones
         on the path.
@@ -79,6 +81,7 @@ class MeshSolution:
     largest: int = 2
     passing: tuple[float, ...] = ()
     trail: Trail | None = None
+    path_errors: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def slips_when_pressed(self) -> bool:

@@ -213,6 +213,15 @@ class Problem:
         return tuple(M / P for P, M in loads)
 
     @property
+    def beta(self) -> float:
+        """Dundurs' constant of the bodies: positive where pressure moves the upper surface more than the lower one
+        towards the load."""
+        if len(self.parts) == 1 or not self.coupled:
+            return 0.0
+        lower, upper = (part.compliance * (part.kappa - 1) / (part.kappa + 1) for part in self.parts)
+        return (upper - lower) / sum(part.compliance for part in self.parts)
+
+    @property
     def meshed(self) -> bool:
         """Whether every body has a mesh from a file."""
         return all(part.mesh for part in self.parts)

@@ -4,10 +4,11 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
-from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.history import certificate, last_cycle_change
-from partialslip.condensed.regime import doubts, steady_state, unestimated
+from partialslip.condensed.pressing import Pressed
+from partialslip.condensed.regime import doubts, steady_state, steps_of_coupled
 from partialslip.condensed.restart import begun, known_to
+from partialslip.condensed.step_errors import summed
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, StressAt, Traction
 from partialslip.result.state import State
@@ -58,8 +59,8 @@ def to_result(
     extra = {"back_solves": len(displaced), "factorizations": adapted.factorizations + restored}
 
     shares = {"discretisation": adapted.errors, "rounding": dict.fromkeys(adapted.errors, rounding_error(solution))}
-    if step_errors := solution.step_errors:
-        shares["steps"] = dict(step_errors)
+    if step_errors := summed(solution.step_errors, solution.path_errors):
+        shares["steps"] = step_errors
 
     def forces(state: State) -> Array:
         p = rescaled(state.p, L / scene.P, 1 / L, -origin / L)
@@ -109,7 +110,7 @@ def to_result(
         notes=found.notes
         + doubted
         + _note_on_pieces(solution)
-        + (unestimated(history) if solution.coupled else ())
+        + (steps_of_coupled(history, solution.path_errors, accuracy) if solution.coupled else ())
         + _note_on_the_middle(scene, solution, adapted)
         + _note_on_the_allowance(adapted, scene)
         + doubts(change, estimate, accuracy),

@@ -10,20 +10,21 @@ from partialslip.arrays import Array, Indices
 from partialslip.bars import BARS
 from partialslip.condensed import constant, coupled, step_errors, varying
 from partialslip.condensed.bounded import Solution
-from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.ends import within
 from partialslip.condensed.history import History, certified
 from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path, stretched
+from partialslip.condensed.pressing import Pressed
 from partialslip.condensed.steps import follow_refined
 from partialslip.condensed.trail import Trail
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, condense, key_of, mesh_bodies
 from partialslip_fem.contact import CondensedBody, relative_compliances
+from partialslip_fem.elasticity import Body
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import nodal_forces
 from partialslip_fem.problem import Problem
-from partialslip_fem.zones import contact_ends, growth_when_pressed, shear_kinks, stick_zone_of
+from partialslip_fem.zones import contact_ends, growth_when_pressed, resultants, shear_kinks, stick_zone_of
 from partialslip_meshes import Mesh
 
 
@@ -108,16 +109,19 @@ def solve_contact(
         line, both = bodies[0].body, relative.xy is not None
         forces = _contact_forces(problem, relative, bodies[0], steps, shared, before)
         history, nodes, errors = forces.history, forces.nodes, forces.step_errors
-        left, right = contact_ends(line, forces.pressing.x)
+        ends_under = partial(contact_ends, line, beta=problem.beta if both else 0.0)
+        on_line = partial(_on_line, line, nodes)
+        left, right = ends_under(forces.pressing.x, on_line(history.q2) if history else None)
         ends_at_1: tuple[float, float] | tuple[()] = ()
         at_first = forces.first
         if history and both and at_first is None:
-            at_first = np.zeros(len(line.x))
-            at_first[nodes] = history.bounds[0]
+            at_first = on_line(history.bounds[0]) / problem.f
         if at_first is not None:
-            ends_at_1 = contact_ends(line, at_first)
+            ends_at_1 = ends_under(at_first, on_line(history.q1) if history else None)
         growth = growth_when_pressed(forces.pressed, nodes, problem)
         stick = stick_zone_of(line, nodes, history, growth) if history else None
+        if stick and growth and forces.pressed:
+            stick = forces.pressed.scaled(stick, left, right)
         if stick:  # on a coarse mesh the ends of the stick zone may lie outside the contact
             left_at_1, right_at_1 = ends_at_1 or (left, right)
             stick = replace(stick, left=max(stick.left, left, left_at_1), right=min(stick.right, right, right_at_1))
@@ -132,12 +136,22 @@ def solve_contact(
             # beside the stick zone q1 and q2 are -f p and f p
             passing = tuple(kink for kink in kinks if not stick.left < kink < stick.right)
             kinks = tuple(kink for kink in kinks if kink not in passing)
+        path_errors: Mapping[str, float] = {}
+        if both:
+            path_errors, errors = errors, {}
         if history and forces.pressed:
             errors = step_errors.pressed_together(history, forces.pressed, line.weights, nodes)
         return MeshSolution(
             bodies, factored, nodes, forces.pressing, history, left, right, stick, ends_at_1, kinks, both,
-            forces.pressed, errors, forces.first, forces.most, problem.largest, passing, forces.trail,
+            forces.pressed, errors, forces.first, forces.most, problem.largest, passing, forces.trail, path_errors,
         )  # fmt: skip
+
+
+def _on_line(line: Body, nodes: Indices, values: Array) -> Array:
+    """``values`` (k,) of the ``nodes``, with zeros at all other nodes of the contact line, (n,)."""
+    result = np.zeros(len(line.x))
+    result[nodes] = values
+    return result
 
 
 @dataclass(frozen=True)
@@ -171,14 +185,21 @@ def _contact_forces(
         path = replace(path, before=locked)
     if path and C.xy is not None:
         trail = Trail(line.x, before.trail if before else None)
-        ends = partial(contact_ends, line)
+        ends = partial(contact_ends, line, beta=problem.beta)
         reach = before.half_width if before else None
-        along = coupled.Line(line.x, line.weights, ends, problem.similar, problem.nearly_similar, reach, trail)
+        along = coupled.Line(
+            line.x, line.weights, ends, partial(resultants, line), problem.similar, problem.nearly_similar, reach, trail
+        )
         near = BARS["q"] * problem.accuracy
-        history, pressing, first = coupled.march(C, gap, stretch, moved[1], problem.f, path, pressed, along, near)
+        loaded = C, gap, stretch, moved[1], problem.f
+        history, pressing, first = coupled.march(*loaded, path, pressed, along, near)
         nodes = np.flatnonzero(history.bound > 0)
         most = np.maximum(*history.bounds) / problem.f if problem.pressing else None
-        return _ContactForces(pressing, history.of(nodes), nodes, first, most=most, trail=trail)
+        left: step_errors.Errors = {}
+        if steps and path.moves:
+            finer, *_ = coupled.march(*loaded, step_errors.other_steps(path), pressed, replace(along, trail=None), near)
+            left = _path_errors(problem, line, history, finer)
+        return _ContactForces(pressing, history.of(nodes), nodes, first, left, most=most, trail=trail)
     opened = gap if path else gap - problem.strains[1][0] * stretch[1]
     arms = line.x if problem.turns else None
     if problem.pressing:
@@ -197,6 +218,20 @@ def _contact_forces(
     known = tangential.C, moved[:, nodes], problem.f * pressing.x[nodes]
     history = constant.march(*known, path, tangential, slipping, problem.order)
     return _ContactForces(pressing, history, nodes)
+
+
+def _path_errors(problem: Problem, line: Body, history: History, finer: History) -> step_errors.Errors:
+    """Errors of the load steps of coupled bodies; ``history`` and ``finer`` at all nodes of the contact ``line``."""
+
+    def ends(each: History) -> tuple[float, ...]:
+        forces = zip(each.bounds, (each.q1, each.q2), strict=True)
+        return tuple(end for bound, q in forces for end in contact_ends(line, bound / problem.f, q, problem.beta))
+
+    on = [np.flatnonzero(each.bound > 0) for each in (history, finer)]
+    zones = stick_zone_of(line, on[0], history.of(on[0])), stick_zone_of(line, on[1], finer.of(on[1]))
+    left1, right1, left2, right2 = ends(history)
+    half_width = (right1 - left1 if problem.largest == 1 else right2 - left2) / 2
+    return step_errors.along_path(history, finer, zones, ends, line.weights, half_width)
 
 
 def _under_varying_pressure(

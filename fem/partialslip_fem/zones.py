@@ -5,30 +5,36 @@ from functools import partial
 import numpy as np
 
 from partialslip.arrays import Array, Indices
-from partialslip.condensed.coupled import Pressed
-from partialslip.condensed.ends import (
-    StickInterval,
-    apart,
-    finest,
-    kinks,
-    left_end,
-    right_end,
-    stick_zone,
-    turning_points,
-)
+from partialslip.condensed import ends
+from partialslip.condensed.ends import StickInterval, apart, finest, kinks, stick_zone, turning_points
 from partialslip.condensed.history import History
+from partialslip.condensed.pressing import Pressed
 from partialslip_fem.elasticity import Body
 from partialslip_fem.problem import Problem
 from partialslip_fem.recovery import traction
 
+_ROUGH = 3  # cells at each end of the contact in which tractions are not smooth
+_SAMPLES = 32  # points in each other cell, between which the force is nearly linear
 _SAME_KINK = 1e-3  # of the contact half-width: kinks nearer to each other count as one
 
 
-def contact_ends(line: Body, normal: Array) -> tuple[float, float]:
-    """Ends of the contact under ``normal`` forces (n,) on the nodes of the contact line."""
-    forces, touching = _cell_forces(line, normal), line.x[normal > 0]
+def contact_ends(
+    line: Body, normal: Array, shear: Array | None = None, beta: float = 0.0, rise: float = ends.ROUNDED
+) -> tuple[float, float]:
+    """Ends of the contact under ``normal`` forces and ``shear`` forces (n,) on the nodes of the contact line; ``beta``
+    and ``rise`` as for :func:`partialslip.condensed.ends.contact_ends`."""
+    tangential = _cell_forces(line, shear) if shear is not None and beta else None
     vertices = line.x[:: line.order]
-    return left_end(vertices, forces, touching), right_end(vertices, forces, touching)
+    return ends.contact_ends(vertices, _cell_forces(line, normal), line.x[normal > 0], tangential, beta, rise)
+
+
+def resultants(line: Body, normal: Array, shear: Array) -> tuple[Array, Array, Array]:
+    """Points (k,) well inside the contact under ``normal`` and ``shear`` forces (n,), and the forces along y and x on
+    their left, (k,) each. Near the ends, where tractions are not smooth, there are none."""
+    first, last = np.flatnonzero(normal > 0)[[0, -1]] // line.order
+    vertices = line.x[(first + _ROUGH) * line.order : (last + 2 - _ROUGH) * line.order : line.order]
+    points = (vertices[:-1, None] + np.diff(vertices)[:, None] * np.linspace(0, 1, _SAMPLES, endpoint=False)).ravel()
+    return points, *(traction(line, forces).antiderivative()(points) for forces in (normal, shear))
 
 
 def stick_zone_of(

@@ -97,12 +97,10 @@ def test_one_step_of_pressing_forgets_what_stuck_early(monkeypatch, pressed):
 def test_punches_add_up_to_a_parabola():
     """The closed form: flat punches of all half-widths, 1/(pi sqrt(1 - x^2)), make 2/pi sqrt(1 - x^2)."""
     x = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 201))
-    edges = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 402)[1:-1:2])
-    weights = np.diff(np.concatenate([[-1.0], edges, [1.0]]))[: len(x)]
-    with np.errstate(divide="ignore"):
-        traction = 1 / (np.pi * np.sqrt(1 - x**2))
-    traction[[0, -1]] = 0.0
-    stages = Punch(1.0, x, weights, weights * traction, 0 * x)
+    edges = np.concatenate([[-1.0], np.sin(np.linspace(-np.pi / 2, np.pi / 2, 402)[1:-1:2]), [1.0]])
+    weights, normal = np.diff(edges)[: len(x)], np.diff(np.arcsin(edges)) / np.pi
+    left = 0.5 + np.arcsin(x[3:-3]) / np.pi
+    stages = Punch((-1.0, 1.0), x, weights, (normal, 0 * x), x[3:-3], (left, 0 * left))
     for share, nodes, error in ((1.0, 0.99, 2e-4), (0.9, 0.88, 1e-3)):
         p, q = stages.stage(share)
         expected = share * 2 / np.pi * np.sqrt(np.maximum(1 - (x / share) ** 2, 0.0))
@@ -118,7 +116,8 @@ def test_a_stage_bears_its_load_and_no_shear():
     x = np.sort(random.uniform(-1, 1, 301))
     weights = np.gradient(x)
     normal = weights / np.sqrt(1 - x**2)
-    p, q = Punch(1.0, x, weights, normal, 0.3 * np.sign(x) * normal).stage(0.95)
+    forces = normal, 0.3 * np.sign(x) * normal
+    p, q = Punch((-1.0, 1.0), x, weights, forces, x, tuple(map(np.cumsum, forces))).stage(0.95)
     assert p.sum() == pytest.approx(0.95**2)
     assert abs(q.sum()) < 1e-12
 
@@ -200,3 +199,22 @@ def test_one_punch_for_all_sizes_is_seen(monkeypatch):
     x = np.linspace(-0.95, 0.95, 191)
     q, other = (each.traction.levels_at(x * each.a)[1] for each in (right, wrong))
     assert np.linalg.norm(other - q) > 0.05 * np.linalg.norm(q)
+
+
+def unlike(accuracy=1e-3):
+    steel = {"E": 70e9, "nu": 0.1, "upper": {"E": 200e9, "nu": 0.3}}
+    return scene(0.25).replace(material=steel, profile={"R": 0.01}, load={"P": 2e4}, fem={"accuracy": accuracy})
+
+
+INDEPENDENT = 0.607382  # m/a from a fully coupled flat punch of second order, on cells of its own
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-4])
+def test_estimates_of_unlike_half_planes_hold(accuracy):
+    result = solve(unlike(accuracy), plan(unlike(accuracy)))
+    march = partialslip.run(unlike(1e-4), "march")["march"]
+    assert march.m / march.a == pytest.approx(INDEPENDENT, abs=1e-5)
+    assert abs(result.m / result.a - INDEPENDENT) < result.estimate["m"]
+    assert abs(result.n / result.a - INDEPENDENT) < result.estimate["n"]
+    assert abs(result.a / march.a - 1) < result.estimate["a"] + march.estimate["a"]
+    assert result.estimate["m"] < accuracy

@@ -16,10 +16,11 @@ import scipy.linalg as la
 
 from partialslip.arrays import Array, Mask, submatrix
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded
+from partialslip.condensed.ends import CORNER
 from partialslip.condensed.history import History, certified, follow, resting, still
 from partialslip.condensed.partition import Factors, Forces, longest
 from partialslip.condensed.path import Path
-from partialslip.condensed.pressing import Punch, Punches, Stages
+from partialslip.condensed.pressing import Pressed, Punch, Punches, Stages
 from partialslip.condensed.trail import Trail
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
@@ -216,40 +217,23 @@ class _Step:
 
 @dataclass(frozen=True)
 class Line:
-    """Nodes of the contact line: ``x`` (n,), ``weights`` (n,) that turn tractions into forces, and
-    ``ends(forces) -> (left, right)``, the ends of the contact under nodal normal forces (n,). ``similar``: whether
-    half-planes are pressed together under a parabolic gap, so that all stages of pressing are similar; ``stages`` gives
-    them for a half-width of the contact, if they are known: by default a flat punch on the nodes tells them.
-    ``nearly_similar``: the same of bodies of a size; ``near`` is about the half-width of the contact, if it is known.
-    ``trail``: where the steps begin, and are to be remembered."""
+    """Nodes of the contact line: ``x`` (n,), ``weights`` (n,) that turn tractions into forces, and ``ends(p, q,
+    rise=...) -> (left, right)``, the ends of the contact under nodal forces along y and x, (n,) each. ``resultants(p,
+    q) -> (points, normal, tangential)``: points (k,) within the contact, and the forces on their left, (k,) each;
+    needed without ``stages``. ``similar``: whether half-planes are pressed together under a parabolic gap, so that all
+    stages of pressing are similar; ``stages`` gives them for a half-width of the contact, if they are known: by default
+    a flat punch on the nodes tells them. ``nearly_similar``: the same of bodies of a size; ``near`` is about the half-
+    width of the contact, if it is known. ``trail``: where the steps begin, and are to be remembered."""
 
     x: Array
     weights: Array
-    ends: Callable[[Array], tuple[float, float]]
+    ends: Callable[..., tuple[float, float]]
+    resultants: Callable[[Array, Array], tuple[Array, Array, Array]] | None
     similar: bool
     nearly_similar: bool = False
     near: float | None = None
     trail: Trail | None = None
     stages: Callable[[float], Stages] | None = None
-
-
-@dataclass(frozen=True)
-class Pressed:
-    """Bodies pressed together: ``normal`` and ``tangential`` forces, number of ``steps``, and ``errors`` due to the
-    steps, of q (relative L2) and a (relative). ``growth`` are the increments (n,) of the forces along y and x at the
-    end of pressing: nodes at which these are within the bound with ``f`` have stuck since they touched."""
-
-    normal: Solution
-    tangential: Solution
-    steps: int
-    errors: dict[str, float]
-    growth: tuple[Array, Array]
-    f: float
-
-    def slipped(self) -> bool:
-        """Whether any node has slipped."""
-        p, q = self.growth
-        return bool((np.abs(q)[p > 0] >= (1 - _STICKS) * self.f * p[p > 0]).any())
 
 
 def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accuracy: float, P: float = 1.0) -> Pressed:
@@ -286,13 +270,15 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
         size = float(norm @ q**2)
         return float(np.sqrt(norm @ (q - other) ** 2 / size)) if size > 0 else 0.0
 
+    vertex = 0.0
     if line is not None and (line.similar or line.nearly_similar):
-        line = replace(line, x=line.x - _vertex(line.x, gap))
+        vertex = _vertex(line.x, gap)
+        line = replace(line, x=line.x - vertex)
     if line is not None and line.similar:
-        return _similar(C, gap, f, line, steps(1)[-1], step, off)
+        return _similar(C, gap, f, line, vertex, steps(1)[-1], step, off)
     if line is not None and line.nearly_similar:
         if not (reach := line.near):
-            left, right = line.ends(steps(1)[-1][0].x)
+            left, right = line.ends(*(each.x for each in steps(1)[-1]))
             reach = (right - left) / 2
         if found := _nearly_similar(C, gap, f, line, reach, step, off):
             return found
@@ -301,7 +287,7 @@ def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accu
         before, last, count = last, steps(2 * count), 2 * count
         errors = {"q": 2 * off(last[-1][1].x, before[-1][1].x)}
         if line is not None:
-            errors["a"] = 2 * _moved(line, last[-1][0].x, before[-1][0].x)
+            errors["a"] = 2 * _moved(line, last[-1], before[-1])
         grown = last[-1][0].x - last[-2][0].x, last[-1][1].x - last[-2][1].x
         reached = errors["q"] <= accuracy and errors.get("a", 0.0) <= accuracy / _ENDS
         if reached or 2 * count > max(_MOST, 2 * least) or 2 * count * len(gap) > _WORK:
@@ -313,32 +299,46 @@ def _vertex(x: Array, gap: Array) -> float:
     return float(np.polynomial.Polynomial.fit(x, gap, 2).deriv().roots()[0].real)
 
 
-def _moved(line: Line, forces: Array, others: Array) -> float:
+def _moved(line: Line, forces: Pair, others: Pair) -> float:
     """Largest distance between the ends of two contacts, in half-widths."""
-    (left, right), (l_other, r_other) = line.ends(forces), line.ends(others)
+    (left, right), (l_other, r_other) = (line.ends(p.x, q.x) for p, q in (forces, others))
     return max(abs(left - l_other), abs(right - r_other)) * 2 / (right - left)
 
 
 def _similar(
-    C: Relative, gap: Array, f: float, line: Line, last: Pair, step: _Press, off: Callable[[Array, Array], float]
+    C: Relative,
+    gap: Array,
+    f: float,
+    line: Line,
+    vertex: float,
+    last: Pair,
+    step: _Press,
+    off: Callable[[Array, Array], float],
 ) -> Pressed:
-    """Press self-similarly, with last steps of two sizes; the difference is the error estimate."""
+    """Press self-similarly about the ``vertex``, from which the nodes of the ``line`` count, with last steps of two
+    sizes; the difference is the error estimate."""
+    corners: tuple[float, float] | None = None
     for _ in range(_TIMES):
-        left, right = line.ends(last[0].x)
+        left, right = line.ends(last[0].x, last[1].x)
         reach = (right - left) / 2
         if line.stages:
             stages = line.stages(reach)
         else:
             flat = np.where(np.abs(line.x) <= reach * (1 + _STICKS), 0.0, _FAR * reach)
             punch = step(1.0, flat, 0 * gap, (resting(0 * gap), resting(0 * gap)))
-            stages = Punch(reach, line.x, line.weights, punch[0].x, punch[1].x)
+            corners = line.ends(punch[0].x, punch[1].x, rise=CORNER)  # between the last node and the next one
+            assert line.resultants
+            growth = punch[0].x, punch[1].x
+            points, normal, tangential = line.resultants(*growth)
+            between = corners[0] - vertex, corners[1] - vertex
+            stages = Punch(between, line.x, line.weights, growth, points - vertex, (normal, tangential))
         found = []
         for size in (stages.last, stages.last / 2):
             p, q = stages.stage(1 - size)
             found.append(step(1.0, gap, C.moved(p, q)[0], (replace(last[0], x=p), replace(last[1], x=q))))
         rough, last = found
-    errors = {"q": off(last[1].x, rough[1].x), "a": _moved(line, last[0].x, rough[0].x)}
-    return Pressed(*_certified([last]), 2 + 2 * _TIMES, errors, stages.growth, f)
+    errors = {"q": off(last[1].x, rough[1].x), "a": _moved(line, last, rough)}
+    return Pressed(*_certified([last]), 2 + 2 * _TIMES, errors, stages.growth, f, corners)
 
 
 def _nearly_similar(
@@ -366,10 +366,10 @@ def _nearly_similar(
     for count, size in ((len(under) - 1, punches.last), (len(under), punches.last / 2)):
         kept = punches.kept(gap, reach, 1 - size, count)
         found.append(step(1.0, gap, kept, found[-1], ("last", count)))
-        left, right = line.ends(found[-1][0].x)
+        left, right = line.ends(*(each.x for each in found[-1]))
         reach = (right - left) / 2
     growing, rough, last = found
-    errors = {"q": off(last[1].x, rough[1].x), "a": _moved(line, last[0].x, rough[0].x)}
+    errors = {"q": off(last[1].x, rough[1].x), "a": _moved(line, last, rough)}
     if errors["q"] > _ROUGH:
         return None
     if abs(reach / half_widths[0] - 1) > _SETTLED:

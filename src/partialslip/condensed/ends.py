@@ -24,6 +24,7 @@ _STICKS = 1e-9  # room, relative to the bound, up to which a node slips
 _LEAVES = 1e-6  # distance of q from the bound, relative, that counts as none: such weak kinks do not matter
 _RUN = 4  # fewest neighbouring nodes that make a zone; fewer are noise
 _ROOT, _CAUGHT_UP = 2 / 3, 2 / 5  # powers of the force that vanish linearly at an end
+ROUNDED, CORNER = 3 / 2, 1 / 2  # powers of the distance with which the normal force grows from an end of the contact
 
 
 @dataclass(frozen=True)
@@ -235,6 +236,46 @@ def right_end(vertices: Array, forces: Array, inside: Array, power: float = _ROO
         if len(between):
             return float(between.min())
     return float((near + max(near, beyond)) / 2)
+
+
+def contact_ends(
+    vertices: Array,
+    normal: Array,
+    inside: Array,
+    shear: Array | None = None,
+    beta: float = 0.0,
+    rise: float = ROUNDED,
+) -> tuple[float, float]:
+    """Left and right end of the contact.
+
+    Where unlike bodies slip under q = r p, p varies near the right end like distance^(1/2 + atan(beta r)/pi), and near
+    the left end like distance^(1/2 - atan(beta r)/pi) (Comninou 1976).
+
+    Parameters
+    ----------
+    vertices : (c + 1,) array
+        Ends of the cells, ascending.
+    normal, shear : (c,) arrays
+        Integrals of p and q over the cells. Without ``shear`` the powers are those of like bodies.
+    inside : (n,) array
+        Nodes in contact, ascending.
+    beta : float
+        Dundurs' constant: positive where pressure moves the upper surface more than the lower one towards the load.
+    rise : float
+        Power of the distance with which the normal force grows from an end where q vanishes: ``ROUNDED`` where the
+        surfaces part smoothly, ``CORNER`` under a flat punch.
+    """
+    more = [0.0, 0.0]
+    if shear is not None and beta:
+        first, last = np.searchsorted(vertices, inside[[0, -1]])
+        for side, cells in enumerate(
+            (slice(max(first - 1, 0), first - 1 + _VERTICES), slice(max(last - _VERTICES, 0), last))
+        ):
+            total = float(normal[cells].sum())
+            more[side] = math.atan(beta * float(shear[cells].sum()) / total) / math.pi if total > 0 else 0.0
+    return left_end(vertices, normal, inside, 1 / (rise - more[0])), right_end(
+        vertices, normal, inside, 1 / (rise + more[1])
+    )
 
 
 def left_end(vertices: Array, forces: Array, inside: Array, power: float = _ROOT) -> float:

@@ -20,19 +20,52 @@ follows from the gap, which the displacements along y close in the same way.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 
 from partialslip.arrays import Array, Mask
+from partialslip.condensed.bounded import Solution
+from partialslip.condensed.ends import StickInterval
 
+_STICKS = 1e-9  # relative tolerance of the friction bound
 _TELLING = 1e-9  # tolerance of lengths, relative to the half-width
 _POINTS, _WEIGHTS = (np.polynomial.legendre.leggauss(16) + np.array([[1.0], [0.0]])) / 2
 _NEAR, _SOME = 1.05, 64  # nodes that matter, in half-widths of the contact; how many are enough for the gap
 _FAR = np.geomspace(1.01, 1e3, 40)  # beyond the last node, in its distance
 _CLOSED = 0.98  # nodes that are certainly closed, in half-widths of the contact
 _INNER = 0.8  # the same, where the slope at the last node begins
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """Bodies pressed together: ``normal`` and ``tangential`` forces, number of ``steps``, and ``errors`` due to the
+    steps, of q (relative L2) and a (relative). ``growth`` are the increments (n,) of the forces along y and x at the
+    end of pressing: nodes at which these are within the bound with ``f`` have stuck since they touched. They are those
+    under a flat punch between ``corners``, if there are any."""
+
+    normal: Solution
+    tangential: Solution
+    steps: int
+    errors: dict[str, float]
+    growth: tuple[Array, Array]
+    f: float
+    corners: tuple[float, float] | None = None
+
+    def slipped(self) -> bool:
+        """Whether any node has slipped."""
+        p, q = self.growth
+        return bool((np.abs(q)[p > 0] >= (1 - _STICKS) * self.f * p[p > 0]).any())
+
+    def scaled(self, stick: StickInterval, left: float, right: float) -> StickInterval:
+        """Stick zone of the contact from ``left`` to ``right``, from that of the ``growth``: it is the same part of the
+        contact as of the punch, which ends where nodes let it."""
+        if not self.corners:
+            return stick
+        first, last = self.corners
+        at = [left + (end - first) * (right - left) / (last - first) for end in (stick.left, stick.right)]
+        return replace(stick, left=at[0], right=at[1])
 
 
 class Stages(Protocol):
@@ -52,57 +85,66 @@ class Stages(Protocol):
 
 @dataclass(frozen=True)
 class Punch:
-    """Flat punch of ``half_width`` under the force 1: ``normal`` and ``tangential`` nodal forces (n,) at the nodes
-    ``x`` (n,), whose ``weights`` (n,) turn tractions into forces."""
+    """Flat punch under the force 1, on nodes, of bodies that are pressed together under a parabola.
 
-    half_width: float
+    Parameters
+    ----------
+    corners : (float, float)
+        Where the punch ends, as its forces tell: a node covers part of the space to the next one.
+    x : (n,) array
+        Nodes, from the vertex of the parabola.
+    weights : (n,) array
+        Factors that turn tractions into forces.
+    growth : two of (n,) array
+        Nodal forces along y and x.
+    points : (k,) array
+        Points between the corners, ascending, which may be few.
+    left : two of (k,) array
+        Forces along y and x on the left of the ``points``.
+    """
+
+    corners: tuple[float, float]
     x: Array
     weights: Array
-    normal: Array
-    tangential: Array
+    growth: tuple[Array, Array]
+    points: Array
+    left: tuple[Array, Array]
     last: float = 2.5e-3
 
     @property
-    def growth(self) -> tuple[Array, Array]:
-        """Nodal forces along y and x (n,) under the flat punch."""
-        return self.normal, self.tangential
+    def half_width(self) -> float:
+        """Half of the distance of the corners."""
+        return (self.corners[1] - self.corners[0]) / 2
 
     def stage(self, share: float) -> tuple[Array, Array]:
         """Nodal forces along y and x (n,) under the parabola, pressed up to ``share`` of the punch's half-width."""
-        reach = self.half_width * share
-        inside = np.abs(self.x) < self.half_width * (1 - _TELLING)
-        at = np.concatenate([[-1.0], self.x[inside] / self.half_width, [1.0]])
-
-        def forces(of: Array) -> Array:
-            values = np.concatenate([[0.0], self._summed(of)[inside], [0.0]])
-            traction = np.interp(self.x / reach, at, values, left=0.0, right=0.0)
-            result: Array = self.weights * traction * share
-            return result
-
-        p, q = forces(self.normal), forces(self.tangential)
+        scaled = self.x / (self.half_width * share)
+        p, q = (
+            self.weights * self._summed(scaled, float(forces.sum()), left)
+            for forces, left in zip(self.growth, self.left, strict=True)
+        )
         # correct the sums: the discretisation error is small, but not compared with the increment of the last step
-        return p * share**2 / p.sum(), q - q.sum() / p.sum() * p
+        return p * share**2 / p.sum(), (q - q.sum() / p.sum() * p) * share**2 / p.sum()
 
-    def _summed(self, forces: Array) -> Array:
-        """2 x times the integral of traction(t)/t^2 from x to 1, lengths in half-widths. With t = sin(angle), the
-        traction times cos(angle) is regular at the ends; it is interpolated linearly between nodes."""
-        scaled = self.x / self.half_width
-        result = np.zeros(len(scaled))
+    def _summed(self, x: Array, total: float, left: Array) -> Array:
+        """2 |x| times the integral of traction(t)/t^2 from |x| to 1 at ``x`` (m,), lengths in half-widths; from the
+        forces on the ``left`` (k,) of the points and the ``total``. With t = sin(angle), they are nearly linear in the
+        angle, even beside the corners, where nodal tractions are inaccurate."""
+        middle = sum(self.corners) / 2
+        points = np.concatenate([[-1.0], (self.points - middle) / self.half_width, [1.0]])
+        left, result = np.concatenate([[0.0], left, [total]]), np.zeros(len(x))
         for way in (1, -1):
-            side = np.flatnonzero((way * scaled > _TELLING) & (way * scaled < 1 - _TELLING))
-            if not len(side):
-                continue
-            side = side[np.argsort(way * scaled[side])]
-            angle = np.arcsin(way * scaled[side])
-            regular = forces[side] / self.weights[side] * np.cos(angle)
-            # nodes beside the end are inaccurate due to the singularity; coarse meshes have no others
-            regular[-2:] = regular[-min(3, len(regular))]
-            angle, regular = np.append(angle, np.pi / 2), np.append(regular, regular[-1])
-            slope = np.diff(regular) / np.diff(angle)
-            pieces = slope * np.diff(np.log(np.sin(angle))) - np.diff(regular / np.tan(angle))
-            result[side] = 2 * np.sin(angle[:-1]) * np.cumsum(pieces[::-1])[::-1]
-        middle, known = np.abs(scaled) <= _TELLING, np.abs(scaled) > _TELLING
-        result[middle] = np.interp(scaled[middle], scaled[known], result[known])
+            at, outside = way * points[::way], (total - left if way > 0 else left)[::way]
+            beyond = (at > _TELLING) & (at < 1)
+            angle = np.concatenate([[0.0], np.arcsin(at[beyond]), [np.pi / 2]])
+            force = np.concatenate([[np.interp(0.0, at, outside)], outside[beyond], [0.0]])
+            density, cotangent = -np.diff(force) / np.diff(angle), np.append(1 / np.tan(angle[1:-1]), 0.0)
+            sums = np.append(np.cumsum((density[1:] * -np.diff(cotangent))[::-1])[::-1], 0.0)
+            side = np.flatnonzero((way * x < 1) & ((way * x > 0) | ((x == 0) & (way > 0))))
+            own = np.arcsin(way * x[side])
+            cell = np.searchsorted(angle, own, "right") - 1
+            inner = sums[cell] - density[cell] * cotangent[cell]
+            result[side] = 2 * (np.sin(own) * inner + density[cell] * np.cos(own))
         return result
 
 

@@ -83,14 +83,17 @@ def steady_state(
     return SteadyState(regime, (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, notes, slips)
 
 
-def unestimated(history: History | None) -> tuple[str, ...]:
-    """A note on load steps of coupled bodies: they are as asked for, without error estimate."""
+def steps_of_coupled(history: History | None, errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:
+    """A note on load steps of coupled bodies, which are as asked for, where their ``errors`` are beyond the
+    ``accuracy`` or, if empty, not known."""
     if not history or not history.path.moves:
         return ()
-    steps = history.path.substeps
-    return (
-        f"coupled bodies go from load point to load point in {steps} steps (load.steps), whose error is not estimated",
-    )
+    bars = Asked(accuracy, accuracy).bars
+    if errors and all(error <= bars[key] for key, error in errors.items()):
+        return ()
+    known = "too few for the accuracy" if errors else "whose error is not estimated"
+    steps = "1 step" if history.path.substeps == 1 else f"{history.path.substeps} steps"
+    return (f"coupled bodies go from load point to load point in {steps} (load.steps), {known}",)
 
 
 def doubts(change: float | None, errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:

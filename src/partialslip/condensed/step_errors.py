@@ -1,20 +1,23 @@
 """Errors of ends and tractions due to finite steps of the load path."""
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
-from partialslip.condensed.coupled import Pressed
 from partialslip.condensed.ends import StickInterval
 from partialslip.condensed.history import History
+from partialslip.condensed.path import Path
+from partialslip.condensed.pressing import Pressed
 
 Errors = dict[str, float]
 Indices = npt.NDArray[np.int64]
 
 _NOTHING = 0.01
+_PROBED = 7  # fewest steps from load point to load point with which those of coupled bodies are compared
 _SHEARS = ("change", "q1", "q2")
 
 
@@ -51,15 +54,50 @@ def halved(
     return found
 
 
+def along_path(
+    history: History,
+    finer: History,
+    zones: tuple[StickInterval, StickInterval],
+    ends: Callable[[History], tuple[float, ...]],
+    weights: Array,
+    half_width: float,
+) -> Errors:
+    """Errors of :func:`halved` and, as p varies with q in coupled bodies, of a, left and right (in contact half-widths)
+    and of p (relative L2).
+
+    Parameters as for :func:`halved`; ``finer`` follows :func:`other_steps`. ``ends`` gives the left and right ends of
+    the contact at load points 1 and 2, four numbers.
+    """
+    found = halved(history, finer, zones, weights, half_width)
+    off = 2 * np.abs(np.subtract(ends(history), ends(finer))) / half_width
+    found |= {"a": float(off[2:].mean()), "left": float(off[::2].max()), "right": float(off[1::2].max())}
+    p, other = (each.bounds[1] / np.sqrt(weights) for each in (history, finer))
+    found["p"] = 2 * float(np.linalg.norm(p - other) / np.linalg.norm(p))
+    return found
+
+
+def other_steps(path: Path) -> Path:
+    """The ``path`` in half as large steps, and others that end at odd fractions of each way: where a stick zone moves
+    past both ends of a step, halves alone may see nothing of it."""
+    return path.halved.with_steps(max(2 * path.substeps + 1, _PROBED))
+
+
+def summed(*errors: Mapping[str, float]) -> Errors:
+    """Sums of ``errors`` by key."""
+    return {key: sum(each.get(key, 0.0) for each in errors) for key in dict.fromkeys(itertools.chain(*errors))}
+
+
 def pressed_together(history: History, pressed: Pressed, weights: Array, nodes: Indices) -> Errors:
-    """Errors of a (in half-widths), q1 and q2 (relative L2) of coupled bodies ``pressed`` together in steps: an error
-    of q at the end of pressing may persist. ``weights`` turn tractions at all nodes of the contact line into forces;
-    ``nodes`` are the indices of the nodes of ``history``."""
+    """Errors of a, left and right (in half-widths), q1 and q2 (relative L2) of coupled bodies ``pressed`` together in
+    steps: an error of q at the end of pressing may persist. ``weights`` turn tractions at all nodes of the contact line
+    into forces; ``nodes`` are the indices of the nodes of ``history``."""
     off = pressed.errors["q"] * np.linalg.norm(pressed.tangential.x / np.sqrt(weights))
     held = np.sqrt(weights[nodes])
     least = _least(history, held)
     norms = {key: max(float(np.linalg.norm(getattr(history, key) / held)), least) for key in ("q1", "q2")}
-    return {"a": pressed.errors.get("a", 0.0)} | {key: float(off / norm) for key, norm in norms.items() if norm > 0}
+    return dict.fromkeys(("a", "left", "right"), pressed.errors.get("a", 0.0)) | {
+        key: float(off / norm) for key, norm in norms.items() if norm > 0
+    }
 
 
 def _least(history: History, held: Array) -> float:

@@ -17,14 +17,14 @@ from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.condensed import coupled
 from partialslip.condensed.bounded import Solution
-from partialslip.condensed.coupled import Pressed
-from partialslip.condensed.ends import StickInterval, apart, kinks, left_end, right_end, stick_zone, within
+from partialslip.condensed.ends import StickInterval, apart, contact_ends, kinks, stick_zone, within
 from partialslip.condensed.history import SHEARS, History, certificate, last_cycle_change
 from partialslip.condensed.normal import press
 from partialslip.condensed.path import Path, load_path, stretched
-from partialslip.condensed.regime import doubts, steady_state, unestimated
+from partialslip.condensed.pressing import Pressed
+from partialslip.condensed.regime import doubts, steady_state, steps_of_coupled
 from partialslip.condensed.restart import begun, known_to
-from partialslip.condensed.step_errors import pressed_together
+from partialslip.condensed.step_errors import along_path, other_steps, pressed_together, summed
 from partialslip.halfplane.cells import graded, norm_parts, off_cells, on_cells, relative_change
 from partialslip.halfplane.pressing import NormalLoads
 from partialslip.halfplane.punch_growth import OnCells, PunchGrowth, relative
@@ -105,6 +105,7 @@ def solve(
     problem = _Problem.of(scene, plan, start)
     level: _Level | None = None
     errors: dict[str, float] = {}
+    followed: dict[str, float] = {}
     shares: dict[str, dict[str, float]] = {}
     meshes, spent = 0, 0.0
     for size, growth in _MESHES:
@@ -115,7 +116,9 @@ def solve(
         spent, meshes = clock.cost().cpu_s - began, meshes + 1
         if before:
             meshed = _mesh_errors(level, before, problem)
-            stepped = _step_errors(level)
+            if not followed and path and path.moves and problem.beta:
+                followed = _path_errors(problem, path, level, clock)
+            stepped = summed(_step_errors(level), followed)
             shares = {"discretisation": meshed} | ({"steps": stepped} if stepped else {})
             errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
             progress(f"mesh {meshes}: {len(level.x):,} cells, a known to {errors['a']:.1e}")
@@ -131,6 +134,7 @@ def solve(
     if known:
         shares["start"] = known
         errors = {key: error + known.get(key, 0.0) for key, error in errors.items()}
+    notes += steps_of_coupled(level.history, followed, scene.fem.accuracy) if problem.beta else ()
     return _result(problem, level, errors, shares, meshes, clock, notes)
 
 
@@ -204,8 +208,8 @@ def _solve_on(problem: _Problem, path: Path | None, vertices: Array, clock: Cloc
         points = (x[:, None] + widths[:, None] / 2 * _NODES) * L + scene.origin
         gap = scene.gap_at(points) @ (_WEIGHTS / 2) / (scene.material.A * scene.P)
 
-        def ends(forces: Array) -> tuple[float, float]:
-            return left_end(vertices, forces, x[forces > 0]), right_end(vertices, forces, x[forces > 0])
+        def ends(p: Array, q: Array | None = None) -> tuple[float, float]:
+            return contact_ends(vertices, p, x[p > 0], q, problem.beta)
 
         if not path:
             pressing, _ = press(C.yy, gap, 1.0)
@@ -216,11 +220,12 @@ def _solve_on(problem: _Problem, path: Path | None, vertices: Array, clock: Cloc
             begins, shear = (on_cells(each, places) / scene.P for each in (problem.start.p, problem.start.q))
             path = replace(path, before=shear)
         stages = partial(OnCells, problem.punch, vertices) if problem.punch else None
-        line = coupled.Line(x, widths, ends, problem.punch is not None, stages=stages)
+        line = coupled.Line(x, widths, ends, None, problem.punch is not None, stages=stages)
         moved = stretched(x, scene.origin / L)
         stretch, near = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
         history, pressing, first = coupled.march(C, gap, stretch, moved[1], scene.friction.f, path, begins, line, near)
-        at_points = tuple(ends(bound) for bound in history.bounds)
+        f = scene.friction.f
+        at_points = tuple(ends(bound / f, q) for bound, q in zip(history.bounds, (history.q1, history.q2), strict=True))
         level = _Level(vertices, pressing, history, first, at_points, None, ())  # type: ignore[arg-type]
         return replace(level, stick=_stick_zone(level, problem.punch), kinks=_kinks(level))
 
@@ -307,6 +312,22 @@ def _step_errors(level: _Level) -> dict[str, float]:
     return pressed_together(level.history, level.pressed, np.diff(level.vertices), np.arange(len(level.x)))
 
 
+def _path_errors(problem: _Problem, path: Path, level: _Level, clock: Clock) -> dict[str, float]:
+    """Errors of the load steps, on the cells of the ``level``."""
+    if not level.history or not level.stick:
+        return {}
+    finer = _solve_on(problem, other_steps(path), level.vertices, clock)
+    if not finer.history or not finer.stick:
+        return {}
+    places = {id(level.history): level.ends, id(finer.history): finer.ends}
+
+    def ends(history: History) -> tuple[float, ...]:
+        return (*places[id(history)][0], *places[id(history)][1])
+
+    zones, widths = (level.stick, finer.stick), np.diff(level.vertices)
+    return along_path(level.history, finer.history, zones, ends, widths, level.a[problem.scene.largest - 1])
+
+
 def _result(
     problem: _Problem,
     level: _Level,
@@ -316,7 +337,7 @@ def _result(
     clock: Clock,
     notes: tuple[str, ...],
 ) -> Result:
-    scene, beta, history = problem.scene, problem.beta, level.history
+    scene, history = problem.scene, level.history
     P, L, f = scene.P, scene.length, scene.friction.f
     widths, stress, unit = np.diff(level.vertices), scene.P / scene.length, scene.material.A * scene.P
     a = level.a[scene.largest - 1]
@@ -382,7 +403,7 @@ def _result(
         last_cycle_change=change,
         estimate=errors,
         shares=shares,
-        notes=found.notes + notes + (unestimated(history) if beta else ()) + doubts(change, errors, scene.fem.accuracy),
+        notes=found.notes + notes + doubts(change, errors, scene.fem.accuracy),
         contact_ends=tuple((left * L + scene.origin, right * L + scene.origin) for left, right in level.ends),  # type: ignore[arg-type]
         end_slips=found.slips,
     )

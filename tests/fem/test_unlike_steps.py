@@ -1,0 +1,56 @@
+"""Load steps of coupled bodies: their error is estimated from other steps."""
+
+import pytest
+
+import partialslip
+from partialslip.condensed import step_errors
+
+
+def solved(steps, **more):
+    scene = partialslip.parse_scene(
+        {
+            "name": "steel-on-aluminium",
+            "material": {"E": 70e9, "nu": 0.1, "upper": {"E": 200e9, "nu": 0.3}},
+            "profile": {"kind": "hertz", "R": 0.01},
+            "friction": {"f": 0.25},
+            "load": {"P": 2e4, "Q": [-2500, 2500], "steps": steps, "cycles": 1, **more},
+            "fem": {"accuracy": 1e-2},
+        }
+    )
+    return partialslip.run(scene, "fem")["fem"]
+
+
+def told(result):
+    return [note for note in result.notes if "too few" in note]
+
+
+TURNING = {"sigma": [-1e8, 1e8]}  # slip turns round on the way from load point to load point
+
+
+@pytest.fixture(scope="module")
+def few():
+    return solved(1, **TURNING)
+
+
+def test_steps_in_which_slip_turns_round_are_known_to_be_too_few(few):
+    fine = solved(12, **TURNING)
+    off = abs(fine.m / fine.a - few.m / few.a)
+    assert off > 0.1
+    assert few.shares["steps"]["m"] > off
+    assert fine.shares["steps"]["m"] < few.shares["steps"]["m"] / 4
+    assert len(told(few)) == 1
+
+
+def test_steps_that_suffice_are_not_told():
+    result = solved(1)
+    assert result.shares["steps"]["m"] < 1e-6
+    assert not told(result)
+
+
+@pytest.mark.fault
+def test_halves_alone_see_too_little(few, monkeypatch):
+    """Deliberate fault: a step and its halves end with the same stick zone, which moves past both in between."""
+    monkeypatch.setattr(step_errors.Path, "with_steps", lambda self, _: self)
+    blind = solved(1, **TURNING)
+    assert blind.shares["steps"]["m"] < 1e-3
+    assert few.shares["steps"]["m"] > 0.1
