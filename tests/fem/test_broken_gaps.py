@@ -1,4 +1,4 @@
-"""Gaps whose curvature jumps within elements, as tables have them: what is interpolated does other work than the gap."""
+"""Gaps whose curvature jumps within elements, as in tables: interpolation changes their work."""
 
 import math
 
