@@ -311,7 +311,7 @@ class _Refinement:
         """
         other = estimate.neighbour(self.solution, self.problem, self.block_width, self.clock)
         self.factored, self.iterations = self.factored + other.factored, self.iterations + other.iterations
-        smooth = estimate.smooth_errors(self.solution, other, self.eased)
+        smooth = estimate.smooth_errors(self.solution, other, self.eased, self.problem.breaks)
         self.errors = estimate.together(self.solution, smooth, self.end_errors)
         return smooth
 

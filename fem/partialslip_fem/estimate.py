@@ -7,7 +7,12 @@ between the two solutions is about the latter. The error of order k is then d^(k
 error is d itself. If shear is confined to narrow strips, the prefactor is the norm of the shear.
 
 Where ends of zones wander (:attr:`partialslip_fem.mesh_solution.MeshSolution.wanders`), they leave kinks in q within
-elements. Errors then hardly depend on the order, and the change of m, n and q is itself the error.
+elements. Errors then hardly depend on the order, and the change of m, n and q is itself the error. Where slip turns
+round, load steps have no part in it, and only q keeps the kinks: ends of the stick zone lie beside them. Their change
+is the error where only one of both solutions takes back points that slipped, so that they read the end in two ways.
+
+Where the gap's curvature jumps within elements, p has a kink of the kind x log|x| there. Errors then fall slowly with
+the order: like those of q at kinks, they are a part of the change.
 
 At an end tractions are square roots. There the error depends on the element size, not on the order. It also depends on
 the distance to the next end or kink of the profile, as ends of the stick zone are fitted to some elements next to them.
@@ -38,7 +43,7 @@ KEYS = (*END_KEYS, "p", *_SHEARS)
 _SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.9, "n": 1.9, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
 _EASED_SAFE = {6: 2.0}  # the same for meshes that grow faster near the ends, by order
 _LEAST_OF_A = 1 / 3  # of the error of a: least error of any end
-_OF_SHEAR = 0.5  # of the change of q: least error of ends of slip that turns round; both solutions share its kinks
+_OF_SHEAR = 0.1  # of the change of q: least error of ends of slip that turns round; both solutions share its kinks
 _NARROW = 0.1  # of the norm of f p: shear with a smaller norm is confined to narrow strips
 
 # Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.
@@ -57,10 +62,13 @@ _OF_LOCKED, _P_OF_LOCKED = 0.004, 0.02  # error of an end and of p, in that of q
 _SIDE = 0.5  # largest error of an end due to the fit, in the element size
 # Where slip turns round, ends of the stick zone are known less; at one that moves over nodes that slipped, q is off
 # its bound by little: parts of the element size.
-_TURNED, _CAUGHT_UP = 5.0, 0.3
+_TURNED, _CAUGHT_UP = 5.0, 0.1
 _KINK = 0.03  # L2 error of q at a kink, in its strength times the element size
 _STEEP = 0.3  # the same at ends of a narrow slip zone, also times element size / gap
 _SHIFT = 1.5  # L2 error of q due to a shifted kink, in its strength times the shift
+# Of the change: least error where the gap's curvature jumps within elements (measured on tables); distance
+# of such a jump from a vertex, in contact half-widths, that counts as none.
+_OF_BROKEN, _ON_VERTEX = 0.4, 1e-9
 _ACROSS = 3.0  # elements on either side of a kink from which its strength is found
 # Errors of p and q, in the error of an end, for Hertz contacts; in other contacts also times the steepness.
 _TRACTIONS = {"p": 12.0, "q": 40.0}
@@ -80,9 +88,11 @@ def neighbour(solution: MeshSolution, problem: Problem, width: float, clock: Clo
     )
 
 
-def smooth_errors(solution: MeshSolution, other: MeshSolution, eased: bool = False) -> dict[str, float]:
+def smooth_errors(
+    solution: MeshSolution, other: MeshSolution, eased: bool = False, breaks: Sequence[float] = ()
+) -> dict[str, float]:
     """Errors of ``solution`` away from the ends, from the ``other`` solution of the neighbouring order; ``eased``:
-    whether the elements grow faster near the ends than elsewhere.
+    whether the elements grow faster near the ends than elsewhere; ``breaks``: where the gap's curvature jumps.
 
     Errors of a, left, right, m and n are in contact half-widths; of p, q, q1 and q2 relative L2 errors of cell means.
     """
@@ -94,12 +104,33 @@ def smooth_errors(solution: MeshSolution, other: MeshSolution, eased: bool = Fal
         key: safe * _SAFE[key] * change * (change / prefactors.get(key, 1.0)) ** power
         for key, change in changes.items()
     }
+    if _within_elements(solution, breaks):
+        errors = {key: max(error, _OF_BROKEN * changes[key]) for key, error in errors.items()}
     if solution.wanders:
-        errors |= {key: max(errors[key], changes[key]) for key in ("m", "n", *_SHEARS) if key in changes}
-    if solution.wanders and solution.history and solution.history.turns:
-        errors |= {key: max(errors[key], _OF_SHEAR * changes["q"]) for key in ("m", "n") if key in errors}
+        turns = bool(solution.history and solution.history.turns)
+        kinked = *(("m", "n") if not turns else _taken_otherwise(solution, other)), *_SHEARS
+        errors |= {key: max(errors[key], changes[key]) for key in kinked if key in changes}
+        if turns:
+            errors |= {key: max(errors[key], _OF_SHEAR * changes["q"]) for key in ("m", "n") if key in errors}
     least = _LEAST_OF_A * errors["a"]  # two solutions may agree at one end by chance
     return {key: max(error, least) if key in END_KEYS else error for key, error in errors.items()}
+
+
+def _taken_otherwise(solution: MeshSolution, other: MeshSolution) -> Iterator[str]:
+    """Keys of the ends of the stick zone at which only one of both solutions takes back points that slipped."""
+    if solution.stick and other.stick:
+        for key, here, there in zip("mn", solution.stick.moved, other.stick.moved, strict=True):
+            if here != there:
+                yield key
+
+
+def _within_elements(solution: MeshSolution, breaks: Sequence[float]) -> bool:
+    """Whether some of the ``breaks`` lie in the contact and on no vertex."""
+    vertices = solution.lower.x[:: solution.lower.order]
+    inside = np.array([each for each in breaks if solution.left < each < solution.right])
+    after = np.searchsorted(vertices, inside)
+    apart = np.minimum(vertices[after] - inside, inside - vertices[after - 1])
+    return bool((apart > _ON_VERTEX * solution.half_width).any())
 
 
 def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Array) -> dict[str, float]:

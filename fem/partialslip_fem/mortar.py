@@ -1,5 +1,6 @@
-"""Mortar projection between contact lines whose nodes do not match."""
+"""L2 projection onto contact lines: between those whose nodes do not match, and of gaps."""
 
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +32,29 @@ def nodal_forces(body: Body, traction: PPoly) -> Array:
     nodes, values = shape_functions(body, rule.starts, rule.offsets)
     products = (rule.weights * inside(traction, rule.starts + rule.offsets))[:, None] * values
     return np.bincount(nodes.ravel(), products.ravel(), len(body.x)).astype(float)
+
+
+def projected(body: Body, gap: Callable[[Array], Array], breaks: Sequence[float]) -> Array:
+    """Values on the contact line of ``body``, (n,), of a piecewise polynomial ``gap`` of the second degree.
+
+    Where its curvature jumps (``breaks``) within a cell, the gap is projected, as its work with the traction counts. An
+    interpolated gap does work that is off like the jump times size^3, whatever the order of the elements. With the
+    projection the error is like jump^2 size^4.
+    """
+    values, vertices = gap(body.x), body.x[:: body.order]
+    points = np.setdiff1d(breaks, vertices)
+    points = points[(points > vertices[0]) & (points < vertices[-1])]
+    if not len(points):
+        return values
+    cells = np.unique(np.searchsorted(vertices, points))
+    ends = np.union1d(np.union1d(vertices[cells - 1], vertices[cells]), points)
+    starts, offsets, weights = _rule(ends, body.order + 1)
+    nodes, shape = shape_functions(body, starts, offsets)
+    missing = weights * (gap(starts + offsets) - (shape * values[nodes]).sum(axis=1))
+    missing[~np.isin(np.searchsorted(vertices, starts + offsets), cells)] = 0.0
+    work = np.bincount(nodes.ravel(), (missing[:, None] * shape).ravel(), len(body.x))
+    result: Array = values + body.mass_factor.solve(work)
+    return result
 
 
 def _products(onto: Body, other: Body) -> sp.csr_matrix:

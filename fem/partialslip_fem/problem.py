@@ -146,7 +146,7 @@ class Problem:
     gap : callable
         Gap at points x (k,), smooth except at its ``kinks``.
     kinks : tuple of float
-        Points x where the gap's slope or curvature jumps.
+        Points x where the gap's slope or curvature jumps, which meshes are graded to.
     f : float
         Coefficient of friction.
     path : Path or None
@@ -161,6 +161,8 @@ class Problem:
         Library that factors the stiffness.
     start : two PPoly, optional
         Tractions p and q at the beginning of the path.
+    breaks : tuple of float
+        All points x where the gap's curvature jumps; between them the gap is a parabola.
     coupled : bool
         Whether p moves the surfaces along x and q moves them along y.
     inside : bool
@@ -193,6 +195,7 @@ class Problem:
     far_field: Literal["half-plane", "box"]
     backend: Backend
     start: tuple[PPoly, PPoly] | None = None
+    breaks: tuple[float, ...] = ()
     coupled: bool = True
     inside: bool = True
     strains: tuple[tuple[float, float], ...] = ((0.0, 0.0), (0.0, 0.0))
@@ -248,6 +251,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         far_field=scene.fem.far_field,
         backend=scene.fem.factor or default_backend(),
         start=tuple(rescaled(q, L / P, 1 / L, -origin / L) for q in (start.p, start.q)) if start else None,
+        breaks=tuple(((scene.profile.curvature.breaks - origin) / L).tolist()),
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
         strains=tuple((lower_strain(scene, sigma), lower_strain(scene, slope * L)) for _, sigma, slope in at_ends),

@@ -22,7 +22,7 @@ from partialslip_fem.bodies import Grading, Kept, Shared, condense, key_of, mesh
 from partialslip_fem.contact import CondensedBody, relative_compliances
 from partialslip_fem.elasticity import Body
 from partialslip_fem.mesh_solution import MeshSolution
-from partialslip_fem.mortar import nodal_forces
+from partialslip_fem.mortar import nodal_forces, projected
 from partialslip_fem.problem import Problem
 from partialslip_fem.zones import contact_ends, growth_when_pressed, resultants, shear_kinks, stick_zone_of
 from partialslip_meshes import Mesh
@@ -179,7 +179,7 @@ def _contact_forces(
     """Solve p and q together if ``C`` couples them; otherwise p first, then q along the load path."""
     line, stretch = lower.body, lower.stretch
     moved = np.array([stretch[0], stretched(line.x, problem.origin)[1]])
-    gap, path, pressed = problem.gap(line.x), problem.path, None
+    gap, path, pressed = projected(line, problem.gap, problem.breaks), problem.path, None
     if path and problem.start:
         pressed, locked = (nodal_forces(line, traction) for traction in problem.start)
         path = replace(path, before=locked)
@@ -254,7 +254,8 @@ def _under_varying_pressure(
         at_largest = (first if problem.largest == 1 else second).x
         half_width = float(np.subtract(*contact_ends(line, at_largest)[::-1])) / 2
         if not any(part.finite for part in problem.parts):  # see partialslip.condensed.varying.march
-            holding = Presses(C.xx, problem.gap(line.x), line.x if problem.turns else None)
+            gap = projected(line, problem.gap, problem.breaks)
+            holding = Presses(C.xx, gap, line.x if problem.turns else None)
 
         moved = np.array([lower.stretch[0], stretched(line.x, problem.origin)[1]])
 
