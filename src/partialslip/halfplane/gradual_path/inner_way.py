@@ -8,6 +8,8 @@ back, z0 = b, or retreats, too. The ways are polynomials, panel by panel in lamb
 q_start + int (rate) d(lambda) = bound, with Newton's method.
 """
 
+import itertools
+
 import numpy as np
 
 from partialslip.arrays import Array
@@ -130,9 +132,9 @@ class Way(Seen):
             if turn is not None:
                 if turn > 1e-3:
                     part = panel.length * float(panel.by.share(np.array(turn)))
-                    panel = self._solve(begin, takes, part, speeds, SINE, None, panel)
-                    if not panel:
-                        length = part / 2
+                    panel = self._solve(begin, takes, part, speeds, panel.by, None, panel)
+                    if not panel or _tail(panel) > _TAIL:
+                        length, self._refused = part / 2, len(self.panels)
                         if not length >= _SHORTEST:
                             raise LostError(f"b turns at {self.progress}")
                         continue
@@ -163,7 +165,11 @@ class Way(Seen):
             if event and event[0] == "width":
                 event = "width", (begin[A] - begin[L]) * np.exp(-RATE)
             elif event and event[0] != "gap":
-                event = event[0], float(self._breaks[np.argmin(np.abs(self._breaks - event[1]))])
+                breaks = self._breaks_of(event[0], takes)
+                if not len(breaks):
+                    self._near = []
+                    return None
+                event = event[0], float(breaks[np.argmin(np.abs(breaks - event[1]))])
             panel = self._solve(begin, takes, old.length * (_FARTHER if old.turns else 1), speeds, old.by, event, old)
         fits = panel and self.progress + panel.length <= 1 and not self._crossing(panel) and _tail(panel) <= _TAIL
         if not fits:
@@ -176,7 +182,7 @@ class Way(Seen):
         begin, rest = self.ends, 1 - self.progress
         width, gap = begin[A] - begin[L], begin[B] - begin[A]
         fall, shut = speeds[L] - speeds[A], speeds[A] - speeds[B]
-        passing = self._next_break(begin, speeds)
+        passing = self._next_break(begin, takes, speeds)
         panel = None
         if self._refused == len(self.panels):
             pass
@@ -224,24 +230,37 @@ class Way(Seen):
         product = np.prod([abs(apart[each]) for each in ENDS if each != end])
         return float(self._tension / 4 * abs(apart[Z] * other) / np.sqrt(product))
 
-    def _next_break(self, begin: Array, speeds: Array) -> tuple[float, int, float] | None:
+    def _breaks_of(self, end: int, takes: bool) -> Array:
+        """Places at which an ``end`` has a kink: where q at the beginning is not smooth, or, of b on its way back, where
+        it began to take points."""
+        if end != B:
+            return self._breaks
+        began = [
+            float(panel.begin[B])
+            for before, panel in itertools.pairwise([None, *self.panels])
+            if panel and panel.takes and not (before and before.takes)
+        ]
+        return np.array([] if takes else began)
+
+    def _next_break(self, begin: Array, takes: bool, speeds: Array) -> tuple[float, int, float] | None:
         """lambda up to the next break that an end passes, about, the end, and the break."""
         found = []
-        for end in (L, A, R):
-            ahead = (self._breaks - begin[end]) * np.sign(speeds[end])
+        for end in ENDS:
+            breaks = self._breaks_of(end, takes)
+            ahead = (breaks - begin[end]) * np.sign(speeds[end])
             if (ahead > _AT).any():
                 ahead[ahead <= _AT] = np.inf
-                found.append((float(ahead.min() / abs(speeds[end])), end, float(self._breaks[np.argmin(ahead)])))
+                found.append((float(ahead.min() / abs(speeds[end])), end, float(breaks[np.argmin(ahead)])))
         return min(found) if found else None
 
     def _crossing(self, panel: Panel) -> tuple[int, float, float] | None:
         """The end that passes a break first, the break, and s."""
         s = np.linspace(0, 1, 201)[1:]
         at, found = panel.at(s), []
-        for end in (L, A, R):
-            way = 1 if end == L else -1
-            ahead = way * (self._breaks - panel.begin[end])
-            for distance, place in zip(ahead, self._breaks, strict=True):
+        for end in ENDS:
+            way, breaks = (1 if end in (L, B) else -1), self._breaks_of(end, panel.takes)
+            ahead = way * (breaks - panel.begin[end])
+            for distance, place in zip(ahead, breaks, strict=True):
                 passed = way * at[end] > distance + _AT
                 if distance > _AT and passed.any():
                     found.append((float(s[np.argmax(passed)]), end, float(place)))
@@ -372,7 +391,7 @@ class Way(Seen):
             ends = begin[:4, None] + offsets[:4]
             slopes = self._slopes(ends, free)
             residual, matrix, by_length = (np.zeros((count, DEGREES, *more)) for more in ((), (count, DEGREES), ()))
-            own = np.moveaxis(by.own_cardinal @ offsets.T, -1, 0)  # (5, nodes, points)
+            own = np.tensordot(offsets, by.own_cardinal, (1, 2))  # (5, nodes, points)
             for row, end in enumerate(free):
                 right, factor = end in (B, R), (1.0 if end == R else -1.0)
                 apart = (begin - begin[end])[:, None, None] + own - offsets[end][:, None]
