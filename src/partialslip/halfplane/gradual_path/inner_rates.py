@@ -161,8 +161,8 @@ class Panel(NamedTuple):
 
     def at(self, s: Array) -> Array:
         """Offsets (5, ...) at ``s``."""
-        found = self.offsets @ cardinal(np.ravel(s)).T
-        return found.reshape(5, *np.shape(s))
+        result: Array = (self.offsets @ cardinal(np.ravel(s)).T).reshape(5, *np.shape(s))
+        return result
 
     def speeds(self, s: Array) -> Array:
         """Mean speeds (5,) of the ends and z0 between two places."""

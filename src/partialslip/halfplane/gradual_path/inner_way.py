@@ -52,6 +52,7 @@ SHUT = 1e-5  # width of an inner zone that has closed: points are pushed beyond 
 _NARROW = 1e-4  # width of an inner zone that may be closed where its ends are lost
 _HALVINGS = 12
 _SHORTEST = 1e-15
+_REFUSED = 24  # halvings of a panel after the first, after which the way is lost
 _FARTHER = 1.05  # by which a panel is longer than the one that it is like, for b to turn round in it
 _TURNED, _NEAR_TURN = 1e-9, 1e-7  # z0 - b where b turns round; ways from there that rounding hides in the changes of q
 
@@ -111,6 +112,7 @@ class Way(Seen):
 
     def _follow(self) -> None:
         takes, length, speeds = self._first_speeds()
+        refused = 0  # panels in a row
         while self.progress < 1 - 1e-14:
             if len(self.panels) == _PANELS:
                 raise LostError("too many panels")
@@ -121,14 +123,15 @@ class Way(Seen):
             if not panel:
                 panel = self._tried(takes, length, speeds)
             if not panel or _tail(panel) > _TAIL:
-                length = min(length, panel.length if panel else length) / 2
-                if not length >= _SHORTEST * max(1.0, 1e8 * (gap < _NARROW)):  # NaN where speeds are infinite
+                length, refused = min(length, panel.length if panel else length) / 2, refused + 1
+                shortest = _SHORTEST * max(1.0, 1e8 * (gap < _NARROW))
+                if not length >= shortest or (self.panels and refused > _REFUSED and gap >= _NARROW):  # NaN where speeds are infinite
                     if gap < _NARROW:
                         self.closed = True
                         return
                     raise LostError(f"no panel is short enough at {self.progress}")
                 continue
-            turn = self._turn(panel)
+            turn, refused = self._turn(panel), 0
             if turn is not None:
                 if turn > 1e-3:
                     part = panel.length * float(panel.by.share(np.array(turn)))
@@ -164,7 +167,7 @@ class Way(Seen):
             begin, event = self.ends, old.event
             if event and event[0] == "width":
                 event = "width", (begin[A] - begin[L]) * np.exp(-RATE)
-            elif event and event[0] != "gap":
+            elif event and not isinstance(event[0], str):
                 breaks = self._breaks_of(event[0], takes)
                 if not len(breaks):
                     self._near = []
@@ -231,8 +234,8 @@ class Way(Seen):
         return float(self._tension / 4 * abs(apart[Z] * other) / np.sqrt(product))
 
     def _breaks_of(self, end: int, takes: bool) -> Array:
-        """Places at which an ``end`` has a kink: where q at the beginning is not smooth, or, of b on its way back, where
-        it began to take points."""
+        """Places at which the way of an ``end`` has a kink: where q at the beginning is not smooth, or, of b on its way
+        back, where it began to take points."""
         if end != B:
             return self._breaks
         began = [
