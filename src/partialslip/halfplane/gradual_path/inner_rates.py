@@ -26,7 +26,7 @@ _BARYCENTRIC = (-1.0) ** np.arange(DEGREES) * np.sin(_ANGLES)
 def cardinal(s: Array) -> Array:
     """Polynomials that are 1 at one node each, (..., nodes)."""
     apart = np.asarray(s)[..., None] - _NODES
-    result = _BARYCENTRIC / np.where(apart == 0, _LEAST, apart)
+    result: Array = _BARYCENTRIC / np.where(apart == 0, _LEAST, apart)
     result /= result.sum(axis=-1, keepdims=True)
     return result
 
@@ -179,4 +179,5 @@ class Panel(NamedTuple):
             middle = (low + high) / 2
             later = cardinal(middle) @ way > offsets
             low, high = np.where(later, middle, low), np.where(later, high, middle)
-        return (low + high) / 2
+        result: Array = (low + high) / 2
+        return result

@@ -125,7 +125,9 @@ class Way(Seen):
             if not panel or _tail(panel) > _TAIL:
                 length, refused = min(length, panel.length if panel else length) / 2, refused + 1
                 shortest = _SHORTEST * max(1.0, 1e8 * (gap < _NARROW))
-                if not length >= shortest or (self.panels and refused > _REFUSED and gap >= _NARROW):  # NaN where speeds are infinite
+                if not length >= shortest or (
+                    self.panels and refused > _REFUSED and gap >= _NARROW
+                ):  # NaN where speeds are infinite
                     if gap < _NARROW:
                         self.closed = True
                         return
