@@ -47,6 +47,7 @@ _GONE = 1e-6  # width of an interval that has vanished
 _FASTEST = 0.05  # of the contact, that an end may pass in the first panel
 _GROWTH = 1.7
 _PANELS = 200
+_SLOWS = 2.5  # power of what is left, with which a comes to rest while an inner zone closes
 _PART = 0.1  # of an inner zone, to which it closes in a panel
 SHUT = 1e-5  # width of an inner zone that has closed: points are pushed beyond the bound by its square
 _NARROW = 1e-4  # width of an inner zone that may be closed where its ends are lost
@@ -133,11 +134,11 @@ class Way(Seen):
                         return
                     raise LostError(f"no panel is short enough at {self.progress}")
                 continue
-            turn, refused = self._turn(panel), 0
+            turn, halved, refused = self._turn(panel), refused > 0, 0
             if turn is not None:
                 if turn > 1e-3:
                     part = panel.length * float(panel.by.share(np.array(turn)))
-                    panel = self._solve(begin, takes, part, speeds, panel.by, None, panel)
+                    panel = self._solve(begin, takes, part, speeds, SINE, None, panel)
                     if not panel or _tail(panel) > _TAIL:
                         length, self._refused = part / 2, len(self.panels)
                         if not length >= _SHORTEST:
@@ -148,7 +149,8 @@ class Way(Seen):
             else:
                 self.panels.append(panel)
             at_break = panel.event is not None and not isinstance(panel.event[0], str)
-            length = max(panel.length * _GROWTH, length if at_break else 0.0)
+            grown = panel.length if halved and takes else _GROWTH * panel.length
+            length = max(grown, length if at_break else 0.0)
             places = _AT_END
             if turn is not None and turn <= 1e-3:
                 length, places = panel.length / 8, np.array([0.0, 0.2])
@@ -255,7 +257,13 @@ class Way(Seen):
             ahead = (breaks - begin[end]) * np.sign(speeds[end])
             if (ahead > _AT).any():
                 ahead[ahead <= _AT] = np.inf
-                found.append((float(ahead.min() / abs(speeds[end])), end, float(breaks[np.argmin(ahead)])))
+                span = float(ahead.min() / abs(speeds[end]))
+                shut = (begin[B] - begin[A]) / (speeds[A] - speeds[B])  # lambda until the inner zone closes, about
+                if end == A and takes and shut > 0:  # a slows down as in the first guess of a panel
+                    if not _SLOWS * span < shut:
+                        continue
+                    span = float(shut * (1 - (1 - _SLOWS * span / shut) ** (1 / _SLOWS)))
+                found.append((span, end, float(breaks[np.argmin(ahead)])))
         return min(found) if found else None
 
     def _crossing(self, panel: Panel) -> tuple[int, float, float] | None:
@@ -371,7 +379,7 @@ class Way(Seen):
         else:
             offsets = speeds[:, None] * by.shares * length
             if event and event[0] == "gap":  # a slows down with the inner zone's width
-                offsets[A] = speeds[A] * length * (1 - (1 - by.shares) ** 2.5) / 2.5
+                offsets[A] = speeds[A] * length * (1 - (1 - by.shares) ** _SLOWS) / _SLOWS
             if turned:
                 ends = begin[:4, None] + offsets[:4]
                 offsets[B] = np.abs(taken(ends, self._least) - begin[B]) / 4 + 1e-9 * by.shares * length
