@@ -5,7 +5,7 @@ import functools
 import numpy as np
 import pytest
 
-from partialslip.halfplane.gradual_path.certificate import certify
+from partialslip.halfplane.gradual_path.certificate import certificate, certify
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
 from partialslip.halfplane.gradual_path.inner_rates import other_root
 from partialslip.halfplane.gradual_path.stage import Loads
@@ -39,6 +39,33 @@ def test_both_intervals_move_alike():
         other = other_root(np.array([left, low, high, right]), zero, LOADS.least)
         values = (z - zero) * (z - other) / np.sqrt((z - left) * (right - z))
         assert abs(values.mean()) < 1e-9 * np.abs(values).mean()
+
+
+@pytest.mark.parametrize(
+    ("Qf", "sf"),
+    [
+        (0.9, 9.0),  # b turns round shortly before the left interval vanishes
+        pytest.param(0.9, 14.0, marks=pytest.mark.slow),  # on its way back b passes where it began
+        pytest.param(0.85, 9.0, marks=pytest.mark.slow),  # half cycles tend to the steady one by -0.42 each
+    ],
+)
+def test_hard_ways_are_followed(Qf, sf):
+    assert certificate(steady(Loads(sf, np.pi * Qf), Hertz())).worst < 5e-9
+
+
+def test_states_are_mixed_where_their_parts_meet_and_between():
+    """A state is on the way to itself; half-way between two states that are alike, places at which parts meet are, too,
+    and q on the bound stays there. States with other parts are not mixed."""
+    one, other = parted()[0].last.q, steady(Loads(7.21, LOADS.shear), Hertz()).last.q
+    x = np.linspace(-1, 1, 801)[1:-1]
+    np.testing.assert_allclose(one.toward(one, 0.3)(x), one(x), atol=1e-9)
+    half = one.toward(other, 0.5)
+    zones = [np.array(each.breaks) for each in (one, half, other)]
+    outer = [each[[0, -1]] for each in zones]
+    np.testing.assert_allclose(outer[1], (outer[0] + outer[2]) / 2, atol=1e-14)
+    assert np.abs(half(x[x > outer[1][1]])) == pytest.approx(np.sqrt(1 - x[x > outer[1][1]] ** 2))
+    assert np.abs(half(x) - (one(x) + other(x)) / 2).mean() < 1e-4
+    assert one.toward(steady(Loads(7.0, np.pi * 0.55), Hertz()).last.q, 0.5) is None
 
 
 @pytest.mark.fault

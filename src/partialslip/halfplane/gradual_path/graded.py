@@ -105,6 +105,7 @@ class Smooth:
 
         add(width, _HALVINGS)
         self._ends, self._pieces = np.array(ends), np.array(pieces)
+        self._values = self._pieces @ _VALUES
 
     @property
     def cuts(self) -> Array:
@@ -122,17 +123,18 @@ class Smooth:
         length = ends[number + 1] - ends[number]
         share = np.clip((from_low - ends[number]) / length, 0.0, 1.0)
         rest = np.clip((from_high - (ends[-1] - ends[number + 1])) / length, 0.0, 1.0)
-        s, pieces = place(share, rest)[0], self._pieces[number]
+        s = place(share, rest)[0]
         result: Array
         if len(s) > _FEW:
-            result = np.einsum("ji,ij->i", _polynomials(s, DEGREES), pieces)
+            result = np.einsum("ji,ij->i", _polynomials(s, DEGREES), self._pieces[number])
             return result
         apart = s[:, None] - NODES
         shares = _BARYCENTRIC / np.where(apart == 0, _LEAST, apart)
-        result = (shares * (pieces @ _VALUES)).sum(axis=-1) / shares.sum(axis=-1)
+        result = (shares * self._values[number]).sum(axis=-1) / shares.sum(axis=-1)
         return result
 
     def __neg__(self) -> "Smooth":
         result = object.__new__(Smooth)
-        result.low, result.high, result._ends, result._pieces = self.low, self.high, self._ends, -self._pieces
+        result.low, result.high, result._ends = self.low, self.high, self._ends
+        result._pieces, result._values = -self._pieces, -self._values
         return result

@@ -18,10 +18,12 @@ from partialslip.halfplane.traction import half_range
 
 _CYCLES = 200
 _SETTLED, _NEAR = 1e-13, 1e-8
-_CLOSE = 1e-10  # change of the middle where a zone inside is followed, which rounding moves by 1e-11
+_CLOSE = 1e-11  # change of the middle where a zone inside is followed, which rounding moves by 4e-12
 _NEARLY = 1e-8  # change of the zone's middle from which on a zone inside is followed
 _BESIDE = 1e-6  # distance from the right end at which an inner zone leaves no kink of q of its own
 _SAME = 1e-9  # by how much a zone is wider than the one that drifts where it drifts at once
+_LEAST, _MOST = 0.05, 0.8  # shares of the half cycle before in a mixture
+_FINE = 1e-8  # change of the middle below which the interpolation of a mixture shows
 _HALVINGS = 12  # of the way between two stages
 _NARROWEST = 0.02  # half-width of a stick zone that drifts: narrower ones travel more than fifty times their width
 
@@ -209,12 +211,34 @@ def steady(loads: Loads, shape: Shape) -> HalfCycle:
 
 
 def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
-    """The half cycle after which the zone's middle changes no longer; a zone inside is followed if it ``parts``."""
+    """The half cycle after which the zone's middle changes no longer; a zone inside is followed if it ``parts``.
+
+    Half cycles tend to the steady one by a factor that may be as large as -0.5 where a zone inside slips. There the
+    next one begins from a mixture of the two states before, in which the middle would not change (secant method). The
+    last ones are true half cycles, each from the end of the one before.
+    """
     changes: list[float] = []
+    begin, middle = -found.settled, found.last.zone.centre
+    last: tuple[Tractions, float, float] | None = None  # state and middle after the half cycle before, and its change
     for _ in range(_CYCLES):
-        before, found = found.last.zone.centre, HalfCycle(found.loads, -found.settled, found, parts)
-        changes.append(abs(found.last.zone.centre - before))
+        try:
+            found = HalfCycle(found.loads, begin, found, parts)
+        except LostError:
+            if not last or begin is last[0]:
+                raise
+            begin, middle, _ = last
+            last = None
+            continue
+        state, after = -found.settled, found.last.zone.centre
+        change = after - middle
+        changes.append(abs(change))
         settled = _SETTLED if not found.opens else _CLOSE if found.parted else _NEARLY
         if changes[-1] < settled or min(changes[:-1], default=np.inf) < min(changes[-1], _NEAR):
             break
+        begin, middle = state, after
+        if last and found.parted and abs(change) > _FINE:
+            share = change / (change - last[2]) if change != last[2] else 0.0
+            if _LEAST < abs(share) < _MOST and (mixed := state.toward(last[0], share)):
+                begin, middle, changes = mixed, after + share * (last[1] - after), []
+        last = state, after, change
     return found

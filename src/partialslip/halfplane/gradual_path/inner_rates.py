@@ -11,27 +11,29 @@ from partialslip.arrays import Array
 L, A, B, R, Z = range(5)  # the four ends, and z0
 DEGREES = 20  # nodes of a panel
 PAST = 28  # nodes of integrals over part of a panel, or over panels that are past
+_LEAST = 1e-300  # a distance that is not zero
 _FALLS = 0.1  # a Newton step over the one before
 RATE = 1.6  # logarithm by which the width of a vanishing interval falls in a panel
 
 
-def _powers(s: Array) -> Array:
-    values = np.polynomial.chebyshev.chebvander(2 * s - 1, DEGREES - 1)
-    return np.asarray(values, dtype=np.float64).reshape(*np.shape(s), DEGREES)
-
-
-_NODES = (1 - np.cos(np.pi * (np.arange(DEGREES) + 0.5) / DEGREES)) / 2
-TO_COEFFICIENTS = _powers(_NODES).T * 2 / DEGREES
+_ANGLES = np.pi * (np.arange(DEGREES) + 0.5) / DEGREES
+_NODES = (1 - np.cos(_ANGLES)) / 2
+TO_COEFFICIENTS = np.polynomial.chebyshev.chebvander(2 * _NODES - 1, DEGREES - 1).T * 2 / DEGREES
 TO_COEFFICIENTS[0] /= 2
+_BARYCENTRIC = (-1.0) ** np.arange(DEGREES) * np.sin(_ANGLES)
 
 
-def _cardinal(s: Array) -> Array:
+def cardinal(s: Array) -> Array:
     """Polynomials that are 1 at one node each, (..., nodes)."""
-    result: Array = _powers(s) @ TO_COEFFICIENTS
+    apart = np.asarray(s)[..., None] - _NODES
+    result: Array = _BARYCENTRIC / np.where(apart == 0, _LEAST, apart)
+    result /= result.sum(axis=-1, keepdims=True)
     return result
 
 
-LAST = _cardinal(np.array(1.0))
+LAST = cardinal(np.array(1.0))
+_CELLS = 1024  # of a panel, in which b is sought by halving
+_AT_CELLS = cardinal(np.arange(1, _CELLS) / _CELLS)
 
 
 # integrals over a whole span, the trapezoidal rule in log(share/rest): singularities beyond its ends do no harm
@@ -67,10 +69,10 @@ def _map(
         place,
         own,
         weights * 2 * _NODES[:, None] * y * slope(own),
-        _cardinal(own),
+        cardinal(own),
         share(_NODES),
-        _cardinal(place(SHARES, RESTS)),
-        _cardinal(y),
+        cardinal(place(SHARES, RESTS)),
+        cardinal(y),
         weights * slope(y),
     )
 
@@ -159,7 +161,7 @@ class Panel(NamedTuple):
 
     def at(self, s: Array) -> Array:
         """Offsets (5, ...) at ``s``."""
-        result: Array = np.moveaxis(_cardinal(s) @ self.offsets.T, -1, 0)
+        result: Array = (self.offsets @ cardinal(np.ravel(s)).T).reshape(5, *np.shape(s))
         return result
 
     def speeds(self, s: Array) -> Array:
@@ -170,9 +172,12 @@ class Panel(NamedTuple):
 
     def place(self, x: Array) -> Array:
         """s (n,) at which b, which moves to the left, is at ``x``."""
-        low, high = np.zeros_like(x), np.ones_like(x)
-        for _ in range(52):
+        way, offsets = self.offsets[B], x - self.begin[B]
+        cells = np.searchsorted(-np.minimum.accumulate(_AT_CELLS @ way), -offsets)
+        low, high = cells / _CELLS, (cells + 1) / _CELLS
+        for _ in range(42):
             middle = (low + high) / 2
-            later = self.begin[B] + self.at(middle)[B] > x
+            later = cardinal(middle) @ way > offsets
             low, high = np.where(later, middle, low), np.where(later, high, middle)
-        return (low + high) / 2
+        result: Array = (low + high) / 2
+        return result

@@ -8,6 +8,8 @@ back, z0 = b, or retreats, too. The ways are polynomials, panel by panel in lamb
 q_start + int (rate) d(lambda) = bound, with Newton's method.
 """
 
+import itertools
+
 import numpy as np
 
 from partialslip.arrays import Array
@@ -45,11 +47,13 @@ _GONE = 1e-6  # width of an interval that has vanished
 _FASTEST = 0.05  # of the contact, that an end may pass in the first panel
 _GROWTH = 1.7
 _PANELS = 200
+_SLOWS = 2.5  # power of what is left, with which a comes to rest while an inner zone closes
 _PART = 0.1  # of an inner zone, to which it closes in a panel
 SHUT = 1e-5  # width of an inner zone that has closed: points are pushed beyond the bound by its square
 _NARROW = 1e-4  # width of an inner zone that may be closed where its ends are lost
 _HALVINGS = 12
 _SHORTEST = 1e-15
+_REFUSED = 24  # halvings of a panel after the first, after which the way is lost
 _FARTHER = 1.05  # by which a panel is longer than the one that it is like, for b to turn round in it
 _TURNED, _NEAR_TURN = 1e-9, 1e-7  # z0 - b where b turns round; ways from there that rounding hides in the changes of q
 
@@ -109,6 +113,7 @@ class Way(Seen):
 
     def _follow(self) -> None:
         takes, length, speeds = self._first_speeds()
+        refused = 0  # panels in a row
         while self.progress < 1 - 1e-14:
             if len(self.panels) == _PANELS:
                 raise LostError("too many panels")
@@ -119,20 +124,23 @@ class Way(Seen):
             if not panel:
                 panel = self._tried(takes, length, speeds)
             if not panel or _tail(panel) > _TAIL:
-                length = min(length, panel.length if panel else length) / 2
-                if not length >= _SHORTEST * max(1.0, 1e8 * (gap < _NARROW)):  # NaN where speeds are infinite
+                length, refused = min(length, panel.length if panel else length) / 2, refused + 1
+                shortest = _SHORTEST * max(1.0, 1e8 * (gap < _NARROW))
+                if not length >= shortest or (
+                    self.panels and refused > _REFUSED and gap >= _NARROW
+                ):  # NaN where speeds are infinite
                     if gap < _NARROW:
                         self.closed = True
                         return
                     raise LostError(f"no panel is short enough at {self.progress}")
                 continue
-            turn = self._turn(panel)
+            turn, halved, refused = self._turn(panel), refused > 0, 0
             if turn is not None:
                 if turn > 1e-3:
                     part = panel.length * float(panel.by.share(np.array(turn)))
                     panel = self._solve(begin, takes, part, speeds, SINE, None, panel)
-                    if not panel:
-                        length = part / 2
+                    if not panel or _tail(panel) > _TAIL:
+                        length, self._refused = part / 2, len(self.panels)
                         if not length >= _SHORTEST:
                             raise LostError(f"b turns at {self.progress}")
                         continue
@@ -141,7 +149,8 @@ class Way(Seen):
             else:
                 self.panels.append(panel)
             at_break = panel.event is not None and not isinstance(panel.event[0], str)
-            length = max(panel.length * _GROWTH, length if at_break else 0.0)
+            grown = panel.length if halved and takes else _GROWTH * panel.length
+            length = max(grown, length if at_break else 0.0)
             places = _AT_END
             if turn is not None and turn <= 1e-3:
                 length, places = panel.length / 8, np.array([0.0, 0.2])
@@ -162,8 +171,12 @@ class Way(Seen):
             begin, event = self.ends, old.event
             if event and event[0] == "width":
                 event = "width", (begin[A] - begin[L]) * np.exp(-RATE)
-            elif event and event[0] != "gap":
-                event = event[0], float(self._breaks[np.argmin(np.abs(self._breaks - event[1]))])
+            elif event and not isinstance(event[0], str):
+                breaks = self._breaks_of(event[0], takes)
+                if not len(breaks):
+                    self._near = []
+                    return None
+                event = event[0], float(breaks[np.argmin(np.abs(breaks - event[1]))])
             panel = self._solve(begin, takes, old.length * (_FARTHER if old.turns else 1), speeds, old.by, event, old)
         fits = panel and self.progress + panel.length <= 1 and not self._crossing(panel) and _tail(panel) <= _TAIL
         if not fits:
@@ -176,7 +189,7 @@ class Way(Seen):
         begin, rest = self.ends, 1 - self.progress
         width, gap = begin[A] - begin[L], begin[B] - begin[A]
         fall, shut = speeds[L] - speeds[A], speeds[A] - speeds[B]
-        passing = self._next_break(begin, speeds)
+        passing = self._next_break(begin, takes, speeds)
         panel = None
         if self._refused == len(self.panels):
             pass
@@ -224,24 +237,43 @@ class Way(Seen):
         product = np.prod([abs(apart[each]) for each in ENDS if each != end])
         return float(self._tension / 4 * abs(apart[Z] * other) / np.sqrt(product))
 
-    def _next_break(self, begin: Array, speeds: Array) -> tuple[float, int, float] | None:
+    def _breaks_of(self, end: int, takes: bool) -> Array:
+        """Places at which the way of an ``end`` has a kink: where q at the beginning is not smooth, or, of b on its way
+        back, where it began to take points."""
+        if end != B:
+            return self._breaks
+        began = [
+            float(panel.begin[B])
+            for before, panel in itertools.pairwise([None, *self.panels])
+            if panel and panel.takes and not (before and before.takes)
+        ]
+        return np.array([] if takes else began)
+
+    def _next_break(self, begin: Array, takes: bool, speeds: Array) -> tuple[float, int, float] | None:
         """lambda up to the next break that an end passes, about, the end, and the break."""
         found = []
-        for end in (L, A, R):
-            ahead = (self._breaks - begin[end]) * np.sign(speeds[end])
+        for end in ENDS:
+            breaks = self._breaks_of(end, takes)
+            ahead = (breaks - begin[end]) * np.sign(speeds[end])
             if (ahead > _AT).any():
                 ahead[ahead <= _AT] = np.inf
-                found.append((float(ahead.min() / abs(speeds[end])), end, float(self._breaks[np.argmin(ahead)])))
+                span = float(ahead.min() / abs(speeds[end]))
+                shut = (begin[B] - begin[A]) / (speeds[A] - speeds[B])  # lambda until the inner zone closes, about
+                if end == A and takes and shut > 0:  # a slows down as in the first guess of a panel
+                    if not _SLOWS * span < shut:
+                        continue
+                    span = float(shut * (1 - (1 - _SLOWS * span / shut) ** (1 / _SLOWS)))
+                found.append((span, end, float(breaks[np.argmin(ahead)])))
         return min(found) if found else None
 
     def _crossing(self, panel: Panel) -> tuple[int, float, float] | None:
         """The end that passes a break first, the break, and s."""
         s = np.linspace(0, 1, 201)[1:]
         at, found = panel.at(s), []
-        for end in (L, A, R):
-            way = 1 if end == L else -1
-            ahead = way * (self._breaks - panel.begin[end])
-            for distance, place in zip(ahead, self._breaks, strict=True):
+        for end in ENDS:
+            way, breaks = (1 if end in (L, B) else -1), self._breaks_of(end, panel.takes)
+            ahead = way * (breaks - panel.begin[end])
+            for distance, place in zip(ahead, breaks, strict=True):
                 passed = way * at[end] > distance + _AT
                 if distance > _AT and passed.any():
                     found.append((float(s[np.argmax(passed)]), end, float(place)))
@@ -347,7 +379,7 @@ class Way(Seen):
         else:
             offsets = speeds[:, None] * by.shares * length
             if event and event[0] == "gap":  # a slows down with the inner zone's width
-                offsets[A] = speeds[A] * length * (1 - (1 - by.shares) ** 2.5) / 2.5
+                offsets[A] = speeds[A] * length * (1 - (1 - by.shares) ** _SLOWS) / _SLOWS
             if turned:
                 ends = begin[:4, None] + offsets[:4]
                 offsets[B] = np.abs(taken(ends, self._least) - begin[B]) / 4 + 1e-9 * by.shares * length
@@ -372,7 +404,7 @@ class Way(Seen):
             ends = begin[:4, None] + offsets[:4]
             slopes = self._slopes(ends, free)
             residual, matrix, by_length = (np.zeros((count, DEGREES, *more)) for more in ((), (count, DEGREES), ()))
-            own = np.moveaxis(by.own_cardinal @ offsets.T, -1, 0)  # (5, nodes, points)
+            own = np.tensordot(offsets, by.own_cardinal, (1, 2))  # (5, nodes, points)
             for row, end in enumerate(free):
                 right, factor = end in (B, R), (1.0 if end == R else -1.0)
                 apart = (begin - begin[end])[:, None, None] + own - offsets[end][:, None]

@@ -1,6 +1,7 @@
 """A distribution of shear traction: on the friction bound in slip zones, interpolated elsewhere. Scaled as in
 :mod:`partialslip.halfplane.shape`, tractions by f p0."""
 
+import itertools
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -10,6 +11,8 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.graded import Smooth
 from partialslip.halfplane.shape import Shape
+
+_ALIKE = 1e-6  # of a run of parts, within which cuts of two states correspond
 
 
 class Part(NamedTuple):
@@ -96,3 +99,63 @@ class Tractions:
         """Parts between two places."""
         cut = (part._replace(low=max(part.low, low), high=min(part.high, high)) for part in self.parts)
         return [part for part in cut if part.high > part.low]
+
+    def toward(self, other: "Tractions", share: float) -> "Tractions | None":
+        """State between two (beyond them if ``share`` is not between 0 and 1) that resemble each other: the places at
+        which parts meet are mixed, and the tractions between them. None if the parts do not correspond."""
+        runs = [_runs(each.parts) for each in (self, other)]
+        kinds = [[(run[0].factor, run[0].smooth is None) for run in each] for each in runs]
+        if kinds[0] != kinds[1]:
+            return None
+        mixed = [_mixed(one, two, share) for pairs in zip(*runs, strict=True) for one, two in _matched(*pairs)]
+        whole = all(part.low < part.high for part in mixed)
+        return Tractions(self.shape, tuple(mixed)) if whole else None
+
+
+def _runs(parts: Iterable[Part]) -> list[list[Part]]:
+    """Neighbouring parts with the same factor."""
+    groups = itertools.groupby(parts, key=lambda part: (part.factor, part.smooth is None))
+    return [list(group) for _, group in groups]
+
+
+def _matched(one: list[Part], other: list[Part]) -> list[tuple[Part, Part]]:
+    """Parts that correspond, one by one; places at which only one of the runs is cut cut the other, too."""
+    if len(one) == len(other):
+        return list(zip(one, other, strict=True))
+    runs = one, other
+    width = [run[-1].high - run[0].low for run in runs]
+    cuts = [[(part.low - run[0].low) / wide for part in run[1:]] for run, wide in zip(runs, width, strict=True)]
+    pairs = [(0.0, 0.0)]
+    while any(cuts):
+        first, second = (each[0] if each else np.inf for each in cuts)
+        least = min(first, second)
+        pairs.append((first if first - least < _ALIKE else least, second if second - least < _ALIKE else least))
+        cuts = [each[1:] if place - least < _ALIKE else each for each, place in zip(cuts, (first, second), strict=True)]
+    pairs.append((1.0, 1.0))
+    found = []
+    for (first, second), (third, fourth) in itertools.pairwise(pairs):
+        pieces = []
+        for run, wide, low, high in zip(runs, width, (first, second), (third, fourth), strict=True):
+            part = next(each for each in run if run[0].low + (low + high) / 2 * wide < each.high or each is run[-1])
+            within = run[0].low + low * wide, run[0].low + high * wide
+            pieces.append(part._replace(low=max(within[0], part.low), high=min(within[1], part.high)))
+        found.append((pieces[0], pieces[1]))
+    return found
+
+
+def _mixed(one: Part, other: Part, share: float) -> Part:
+    low, high = one.low + share * (other.low - one.low), one.high + share * (other.high - one.high)
+    if one.smooth is None or not high > low:
+        return Part(low, high, one.factor)
+
+    def rest(from_low: Array, from_high: Array) -> Array:
+        first, second = (
+            part.rest(
+                from_low * ((part.high - part.low) / (high - low)), from_high * ((part.high - part.low) / (high - low))
+            )
+            for part in (one, other)
+        )
+        result: Array = first + share * (second - first)
+        return result
+
+    return Part(low, high, one.factor, Smooth(low, high, rest))
