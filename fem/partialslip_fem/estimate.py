@@ -55,9 +55,9 @@ AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002, 6: 0.001}
 # and to the nearest other end or kink.
 _FIT = np.array([8.0, 2.0])
 _STICK = 1.5  # error of an end of the stick zone, in the error of an end of the contact
-# The same of coupled bodies, where p and q vary with each other, in the element size (measured): after a cycle, and
-# under a flat punch, whose corner is to be found, too. Ends of their contact: where the slip zone is wider than an
-# element, whose p is a power of the distance, and where it is not.
+# The same of bodies of unlike materials, where p and q vary with each other, in the element size (measured): after a
+# cycle, and under a flat punch, whose corner is to be found, too. Ends of their contact: where the slip zone is wider
+# than an element, whose p is a power of the distance, and where it is not.
 _COUPLED, _PUNCHED = 0.1, 0.3
 _SLIPPING, _STUCK = 0.02, 0.3
 _OF_LOCKED, _P_OF_LOCKED = 0.004, 0.02  # error of an end and of p, in that of q1 and q2, as q opens the gap (measured)
@@ -149,7 +149,7 @@ def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Arra
         Sizes of the elements at ``solution.kinks``, in contact half-widths.
     """
     off = AT_END[solution.lower.order] * sizes
-    if solution.coupled and solution.stick:
+    if solution.dissimilar and solution.stick:
         beside = np.abs(solution.zone_ends[2:4] - solution.zone_ends[:2]) / solution.half_width
         off[:2] += np.where(beside > sizes[:2], _SLIPPING, _STUCK) * sizes[:2]
     most = float(off.max()) * max(_steepness(solution), 1.0)
@@ -159,7 +159,7 @@ def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Arra
     if solution.stick:
         fit = _FIT[:, None] * np.minimum(sizes / gaps, 1.0) ** 2
         fitted = _STICK * off + np.minimum(fit.sum(axis=0), _SIDE) * sizes
-        if solution.coupled:
+        if solution.dissimilar:
             fitted[2:4] += _PUNCHED * sizes[:4].max() if solution.slips_when_pressed else _COUPLED * sizes[2:4]
         if solution.history and solution.history.turns:
             fitted[2:4] = _TURNED * fitted[2:4] + _CAUGHT_UP * sizes[2:4] * np.array(solution.stick.moved)
@@ -205,7 +205,7 @@ def together(solution: MeshSolution, smooth: Mapping[str, float], at_ends: Mappi
         for key, norm in zip(_SHEARS, norms.tolist(), strict=True):
             if key in errors and norm > 0:
                 errors[key] = math.hypot(errors[key], moved / norm)
-    if solution.coupled and "q2" in errors:
+    if solution.dissimilar and "q2" in errors:
         off = max(errors["q1"], errors["q2"])
         errors |= {key: error + _OF_LOCKED * off for key, error in errors.items() if key in END_KEYS}
         errors["p"] = math.hypot(errors["p"], _P_OF_LOCKED * off)

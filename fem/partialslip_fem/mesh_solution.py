@@ -52,6 +52,8 @@ class MeshSolution:
         Errors of the load steps (:mod:`partialslip.condensed.step_errors`), where they were asked for.
     path_errors : mapping of str to float
         The same of the load path of coupled bodies, besides the steps in which they were pressed together.
+    dissimilar : bool
+        Whether shear moves surfaces along y as it does in half-planes of unlike materials (Dundurs' beta is not 0).
     first, most : (n,) arrays or None
         Where the pressure varies: normal forces on all nodes of the contact line at load point 1, and the largest ones
         on the path.
@@ -82,6 +84,7 @@ class MeshSolution:
     passing: tuple[float, ...] = ()
     trail: Trail | None = None
     path_errors: Mapping[str, float] = field(default_factory=dict)
+    dissimilar: bool = False
 
     @property
     def slips_when_pressed(self) -> bool:

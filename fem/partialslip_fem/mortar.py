@@ -13,6 +13,8 @@ from partialslip_fem.elasticity import Body
 from partialslip_fem.elements import shapes
 from partialslip_fem.recovery import inside
 
+_ON_VERTEX = 1e-6  # distance of a jump of the gap's curvature from a vertex, in the cell, that counts as none
+
 
 def transfer(onto: Body, other: Body) -> Array:
     """L2 projection T from the contact line of ``other`` to the contact line of ``onto``, (n, n_other).
@@ -42,8 +44,10 @@ def projected(body: Body, gap: Callable[[Array], Array], breaks: Sequence[float]
     projection the error is like jump^2 size^4.
     """
     values, vertices = gap(body.x), body.x[:: body.order]
-    points = np.setdiff1d(breaks, vertices)
-    points = points[(points > vertices[0]) & (points < vertices[-1])]
+    points = np.array([each for each in breaks if vertices[0] < each < vertices[-1]])
+    after = np.searchsorted(vertices, points)
+    beside = np.minimum(vertices[after] - points, points - vertices[after - 1])
+    points = points[beside > _ON_VERTEX * (vertices[after] - vertices[after - 1])]
     if not len(points):
         return values
     cells = np.unique(np.searchsorted(vertices, points))

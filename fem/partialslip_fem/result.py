@@ -59,7 +59,9 @@ def to_result(
     extra = {"back_solves": len(displaced), "factorizations": adapted.factorizations + restored}
 
     shares = {"discretisation": adapted.errors, "rounding": dict.fromkeys(adapted.errors, rounding_error(solution))}
-    if step_errors := summed(solution.step_errors, solution.path_errors):
+    # errors of the steps alone say nothing of quantities whose discretisation errors are not known: meshes as given
+    path_errors = {key: error for key, error in solution.path_errors.items() if key in adapted.errors}
+    if step_errors := summed(solution.step_errors, path_errors):
         shares["steps"] = step_errors
 
     def forces(state: State) -> Array:
@@ -110,7 +112,7 @@ def to_result(
         notes=found.notes
         + doubted
         + _note_on_pieces(solution)
-        + (steps_of_coupled(history, solution.path_errors, accuracy) if solution.coupled else ())
+        + (steps_of_coupled(history, path_errors, accuracy) if solution.coupled else ())
         + _note_on_the_middle(scene, solution, adapted)
         + _note_on_the_allowance(adapted, scene)
         + doubts(change, estimate, accuracy),

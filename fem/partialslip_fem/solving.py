@@ -143,7 +143,8 @@ def solve_contact(
             errors = step_errors.pressed_together(history, forces.pressed, line.weights, nodes)
         return MeshSolution(
             bodies, factored, nodes, forces.pressing, history, left, right, stick, ends_at_1, kinks, both,
-            forces.pressed, errors, forces.first, forces.most, problem.largest, passing, forces.trail, path_errors,
+            forces.pressed, errors, forces.first, forces.most, problem.largest, passing, forces.trail,
+            path_errors, both and problem.beta != 0,
         )  # fmt: skip
 
 

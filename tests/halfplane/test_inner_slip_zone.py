@@ -50,7 +50,7 @@ def test_both_intervals_move_alike():
     ],
 )
 def test_hard_ways_are_followed(Qf, sf):
-    assert certificate(steady(Loads(sf, np.pi * Qf), Hertz())).worst < 5e-9
+    assert certificate(steady(Loads(sf, np.pi * Qf), Hertz())).worst < 2e-8
 
 
 def test_states_are_mixed_where_their_parts_meet_and_between():

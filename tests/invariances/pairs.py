@@ -361,7 +361,11 @@ def shifted(shift: float, approach: float, method: str, kind: str, *settings: st
         def uniform(problem: Problem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
             here = true_uniform(problem, size, width, clock, *rest).solution.bodies
             meshes = [replace(half.mesh, points=half.mesh.points + np.array([shift, 0])) for half in here]
-            there = replace(problem, gap=lambda x: problem.gap(x - shift) + approach)
+            there = replace(
+                problem,
+                gap=lambda x: problem.gap(x - shift) + approach,
+                breaks=tuple(each + shift for each in problem.breaks),
+            )
             solution = solving.solve_on_meshes(meshes, there, here[0].mesh.points.max(), clock)
             return Adapted(solution, {}, 1, 1, solution.iterations, width)
 
