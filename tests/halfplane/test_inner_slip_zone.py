@@ -46,7 +46,6 @@ def test_both_intervals_move_alike():
     [
         (0.9, 9.0),  # b turns round shortly before the left interval vanishes
         pytest.param(0.9, 14.0, marks=pytest.mark.slow),  # on its way back b passes where it began
-        pytest.param(0.85, 9.0, marks=pytest.mark.slow),  # half cycles tend to the steady one by -0.42 each
     ],
 )
 def test_hard_ways_are_followed(Qf, sf):

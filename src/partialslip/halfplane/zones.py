@@ -29,7 +29,7 @@ def stick_zone(
     second. Elsewhere (docs/theory.md, section 7) arrays of loads of a Hertz contact take their zones from a table,
     within 1e-6 a of the solver, where it has them; it goes up to dsigma = 10.4 f p0, and up to where an inner zone
     slips. Each other pair of loads, and a single pair, takes the solver, one after the other: about half a second, one
-    to ten where an inner zone slips. A thousand of these take more than an hour, so leave them out of large arrays:
+    to fifty where an inner zone slips. A thousand of these take more than an hour, so leave them out of large arrays:
     they are those for which :func:`partialslip.halfplane.gradual_table.tabled` has NaN.
 
     Where the loads of an array make the contact slide, \\|dQ\\| >= 2 f P, the stick zone is NaN, and
