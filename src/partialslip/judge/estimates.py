@@ -14,6 +14,7 @@ ESTIMATE = "estimate of "
 # Estimates do not include rounding: 1e-9 a, or 1e-9 of f p, as in the residuals of converged solvers. Errors of the
 # shear are relative to its norm, or to a part of the norm of f p where the shear is smaller.
 _ROUNDING = {"q": 1e-9 / LEAST_SHEAR, "q1": 1e-9 / LEAST_SHEAR, "q2": 1e-9 / LEAST_SHEAR}
+_NOTHING = 0.01  # of the bar: errors that matter to nobody need no estimate
 
 
 def estimate_verdicts(verdicts: Iterable[Verdict], reference: Result) -> Iterator[Verdict]:
@@ -31,9 +32,8 @@ def estimate_verdicts(verdicts: Iterable[Verdict], reference: Result) -> Iterato
         unknown = verdict.outcome is Outcome.NOT_JUDGED and verdict.reason != NO_BAR
         if verdict.estimate is None or verdict.error is None or unknown:
             continue
-        bar = beside(
-            Bar(max(MOST * verdict.estimate, _ROUNDING.get(verdict.quantity, 1e-9))), verdict.quantity, reference
-        )
+        least = max(_ROUNDING.get(verdict.quantity, 1e-9), _NOTHING * (verdict.bar or 0.0))
+        bar = beside(Bar(max(MOST * verdict.estimate, least)), verdict.quantity, reference)
         outcome = Outcome.NOT_JUDGED if bar.value is None else judged(verdict.error, bar.value)
         yield Verdict(
             f"{ESTIMATE}{verdict.quantity}",

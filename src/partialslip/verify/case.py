@@ -46,7 +46,8 @@ REQUIREMENTS = {
     "p": "cell averages of p differ from the exact ones by at most the bar, relative L2; so does the resultant from P",
     "q": "cell averages of q differ from the exact ones by at most the bar, relative L2; so does the resultant of dq "
     "from dQ, in 2 f P",
-    "estimate": "errors of a, m, n, p and q are at most twice the method's own estimates of them",
+    "estimate": "errors of a, m, n, p and q are at most twice the method's own estimates of them, or a "
+    "hundredth of the bar",
 }
 _PART_OF = {
     **dict.fromkeys(("left", "right", "left_1", "right_1", "left_2", "right_2"), "a"),
