@@ -128,6 +128,7 @@ def test_tolerance_in_metres(monkeypatch, red):
     red("invariance: units", in_mm(), 1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_coupling_of_the_wrong_sign(monkeypatch, red):
     """The bodies' own coupling added where it is to be subtracted: unlike half-planes do not swap places any more."""
