@@ -76,10 +76,9 @@ def test_methods_and_plan_of_what_may_turn_round(Qf, sf, known, turns):
     assert default_methods(its) == ("exact", "fem")
     result = partialslip.run(its, ["exact"]).results["exact"]
     assert isinstance(loading_of(its), Turning) == turns
-    assert set(result.undetermined) == ({"q1", "q2"} if turns else set())
-    assert all(reason.startswith("path-dependent") for reason in result.undetermined.values())
+    assert not result.undetermined
     assert result.m is not None
-    assert (result.traction.q2 is None) == turns
+    assert result.traction.q2 is not None
 
 
 def test_a_stick_zone_that_drifts_and_is_too_narrow_to_follow_is_refused():

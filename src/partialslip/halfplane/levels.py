@@ -10,8 +10,9 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
+from partialslip.halfplane.gradual_path.stage import LostError
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.halfplane.turning import Reached, Turning
+from partialslip.halfplane.turning import Followed, Reached, Turning
 from partialslip.scene import Load
 
 _ROUNDING = 1e-9  # tolerance: lengths in a, tractions in f p0, slip in A f p0 a
@@ -30,7 +31,7 @@ class Levels:
     differs by the change over half a ``cycle``.
     """
 
-    first: Loading | Reached
+    first: Loading | Reached | Followed
     cycle: Loading | Turning
     known: int
 
@@ -63,13 +64,13 @@ def levels(pressed: Contact, f: float, load: Load, cycle: Loading | Turning) -> 
       throughout: the cycle then returns to q_k;
     - load points visited before k caused slip only outside Z_k, and less than the first loading to k: the loading to k
       then makes up the difference;
-    - slip does not reverse between load points.
+    - slip does not reverse between load points. Where it does, the loads are followed from zero.
 
     Fully reversed loads satisfy all conditions if each half cycle is one step.
     """
     points = [load.along[end] for end in load.ends]
     if isinstance(cycle, Turning):
-        return _settled(cycle)
+        return _where_slip_turns(pressed, f, load, cycle)
     if load.fully_reversed:
         return Levels(loading(pressed, f, *points[1], bound=1), cycle, 1)
     reason = ""
@@ -81,11 +82,20 @@ def levels(pressed: Contact, f: float, load: Load, cycle: Loading | Turning) -> 
     return reason
 
 
-def _settled(cycle: Turning) -> Levels | str:
-    """q1 and q2 where slip turns round: known where every point slips in the steady cycle."""
-    if cycle.permanent:
-        return f"{PATH_DEPENDENT}on the way, and the first loading decides what is locked in; use march"
-    return Levels(Reached(cycle), cycle, 1)
+def _where_slip_turns(pressed: Contact, f: float, load: Load, cycle: Turning) -> Levels | str:
+    """q1 and q2 where slip turns round: known where every point slips in the steady cycle, and where the loads can be
+    followed from zero."""
+    if not cycle.permanent:
+        return Levels(Reached(cycle), cycle, 1)
+    lost = f"{PATH_DEPENDENT}on the way, and the first loading decides what is locked in; use march"
+    if cycle.way.parted or len(load.points) > 2:
+        return lost
+    Q, sigma = load.points[-1]
+    unit = f * pressed.p0
+    try:
+        return Levels(Followed.from_zero(cycle, Q / (unit * pressed.a), sigma / unit), cycle, 1)
+    except LostError:
+        return lost
 
 
 def _levels(pressed: Contact, f: float, load: Load, cycle: Loading, points: list[_Point], known: int) -> Levels | str:

@@ -15,7 +15,7 @@ from partialslip.halfplane.contact import Contact, one_step_zone
 from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.traction import half_range
 from partialslip.halfplane.tractions import sample
-from partialslip.halfplane.turning import Part, Reached, Turning, half_cycle
+from partialslip.halfplane.turning import Followed, Part, Reached, Turning, half_cycle
 from partialslip.result import StickZone, SurfaceStress
 from partialslip.result.points import AtPoints
 
@@ -90,7 +90,7 @@ class Turned:
     tension ``sigma`` (Pa)."""
 
     contact: Contact
-    change: Part | Reached
+    change: Part | Reached | Followed
     share: float
     sigma: float
 
@@ -122,7 +122,7 @@ def half_of(contact: Contact, change: Loading | Turning | Part, sigma: float, sl
     return Turned(contact, change.whole if isinstance(change, Turning) else change, 1 / 2, sigma / 2)
 
 
-def reached(contact: Contact, first: Loading | Reached, sigma: float, slope: float) -> Shear | Turned:
+def reached(contact: Contact, first: Loading | Reached | Followed, sigma: float, slope: float) -> Shear | Turned:
     """Shear at a load point, ``first`` reached under the tension ``sigma`` and its ``slope``."""
     if isinstance(first, Loading):
         return Shear.of(contact, first, sigma, slope)

@@ -8,10 +8,12 @@ from functools import cached_property
 from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.certificate import certificate
+from partialslip.halfplane.gradual_path.from_zero import from_zero
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
 from partialslip.halfplane.gradual_path.room import room
 from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
+from partialslip.halfplane.gradual_path.tractions import Tractions
 from partialslip.halfplane.loading import Loading, Worn, loading
 from partialslip.halfplane.shape import Shape
 from partialslip.result import StickZone
@@ -81,6 +83,11 @@ class Turning:
         """Ends of the zone of points that never slip, for the signs of the loads; None if there are none."""
         return self.whole.stuck
 
+    def seen_from(self, interval: tuple[float, float]) -> tuple[float, float]:
+        """Ends of an ``interval`` of the mirrored x, or of x, on the other of both."""
+        left, right = interval
+        return (left, right) if self.mirror > 0 else (-right, -left)
+
     @property
     def breaks(self) -> list[float]:
         """Places at which the change of traction is not smooth, ascending."""
@@ -142,9 +149,7 @@ class Part:
     def stuck(self) -> tuple[float, float] | None:
         """Ends of the zone of points that have not slipped, for the signs of the loads; None if there are none."""
         left, right = self.cycle.way.stuck_until(self.at)
-        if not left < right:
-            return None
-        return (left, right) if self.cycle.mirror > 0 else (-right, -left)
+        return self.cycle.seen_from((left, right)) if left < right else None
 
     def traction(self, x: Array) -> Array:
         """Change of shear traction at ``x``, in f p0."""
@@ -168,6 +173,42 @@ class Reached:
     def traction(self, x: Array) -> Array:
         """q at ``x``, in f p0."""
         return self.cycle.traction(x) / 2
+
+
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """Shear traction at load point 2 of a ``cycle`` after loads that begin at zero: ``q``, and the ends of the interval
+    that has ``never`` slipped (None if every point has), both for positive changes of the loads."""
+
+    cycle: Turning
+    q: Tractions
+    never: tuple[float, float] | None
+
+    @classmethod
+    def from_zero(cls, cycle: Turning, shear: float, tension: float) -> "Followed":
+        """Follow the loads to load point 2, with ``shear`` (in f p0 a) and ``tension`` (in f p0), and then through the
+        cycle until it repeats.
+
+        Raises
+        ------
+        LostError
+            If the way is not known.
+        """
+        return cls(cycle, *from_zero(Loads(cycle.turn * cycle.mirror * tension, cycle.turn * shear), cycle.way))
+
+    @property
+    def breaks(self) -> list[float]:
+        """Places at which the traction is not smooth, ascending."""
+        return sorted(self.cycle.mirror * each for each in self.q.breaks)
+
+    @property
+    def stuck(self) -> tuple[float, float] | None:
+        """Ends of the zone of points that have never slipped, for the signs of the loads; None if there are none."""
+        return self.cycle.seen_from(self.never) if self.never else None
+
+    def traction(self, x: Array) -> Array:
+        """q at ``x``, in f p0."""
+        return self.cycle.turn * self.q(self.cycle.mirror * x)
 
 
 def half_cycle(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0) -> Loading | Turning:

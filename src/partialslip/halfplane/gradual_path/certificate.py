@@ -52,12 +52,13 @@ def certificate(half: HalfCycle) -> Certificate:
     return certify(half.loads, stages(half))
 
 
-def stages(half: HalfCycle) -> list[Stage]:
-    """Stages along a half cycle; most of the stick zone sticks from each to the next."""
+def stages(half: HalfCycle, shares: Sequence[float] = _SHARES) -> list[Stage]:
+    """Stages along a half cycle, at ``shares`` of each phase, ascending to 1; most of the stick zone sticks from each
+    stage to the next."""
     found = [half.phases[0].first._replace(q=half.start)]
     for phase in half.phases:
         first, last = phase.first.progress, phase.last.progress
-        for share in _SHARES:
+        for share in shares:
             stage = phase.last if share == 1 else phase.at(first + share * (last - first))
             found += between(phase, found[-1], stage, _OVERLAP)
     return found

@@ -54,11 +54,14 @@ class HalfCycle:
         left = min(first.high, 1 - 2 * c) if first.smooth is None and first.factor < 0 else -1.0
         self.phases: list[Phase] = []
         before: Leading = Resting(Stage(0.0, Zone(left, 1.0), start))
-        self.opens = before.last.zone.centre - c - last.low > SHUT
+        self.opens = last.smooth is None and before.last.zone.centre - c - last.low > SHUT
         if parts and self.opens:
             alike = guess.phases[0] if isinstance(guess, HalfCycle) else None
             before = Parted(loads, before.last, last.low, alike if isinstance(alike, Parted) else None)
             self.phases.append(before)
+        if c - before.last.zone.half_width > _SAME:  # the left end slips forwards from the beginning
+            self.phases.append(self._last_retreat(before.last, 1, None))
+            return
         if before.last.zone.half_width - c > _SAME:
             before = self._retreat(before.last, guess.middle if isinstance(guess, HalfCycle) else guess)
             self.phases.append(before)
@@ -74,6 +77,8 @@ class HalfCycle:
     def _retreat(self, begin: Stage, guess: float) -> Retreating:
         """Retreat up to where the zone drifts, its middle near a ``guess``, or up to the end of the half cycle."""
         c, retreat = self.loads.least, Retreat(begin.q, begin.zone, -1)
+        if not c:
+            return self._last_retreat(begin, -1, None)
         inside = begin.zone.left + c < guess < begin.zone.right - c
         centre = retreat.balanced(c, guess) if inside else None
         if centre is None:

@@ -20,6 +20,10 @@ _CLOSE = 1e-14
 _BESIDE = 1e-6  # Newton step below which an end is beside a break, or as near as rounding lets it come
 _MOST = 4.0
 _FIRST, _SMALLEST = 0.02, 1e-6  # steps of the loads
+_USUAL = 8  # steps after which an end without stiffness lies beside a break
+_ROUNDING = 1e-12  # error of the loads that is rounding there
+_SOFT = 1e-3  # stiffness of an end below which it has none; else it is of the order of 1
+_PASSED = 1e-12  # distance beyond a break
 _APART = 1e-13  # distance from the stick zone below which differences of changes are rounding
 _WIDE = 3.0  # in theta: the length of a piece at the end of the contact
 _FARTHEST = 0.7  # of a slip zone or a stick zone, by which one step may narrow it
@@ -112,20 +116,35 @@ class Retreat:
         the sum is bounded.
         """
         left, right = guess
-        for _ in range(_STEPS):
+        for number in range(_STEPS):
             c = (right - left) / 2
             at = self.conditions(Zone(left, right))
             more, pull = (shear - at.shear) / math.pi, c * (tension - at.tension) / 4
-            to_right = -(more + pull) / (c * at.right) if at.right else 0.0
-            to_left = (more - pull) / (c * at.left) if at.left else 0.0
+            to_right = self._step(right, -(more + pull) / c, at.right)
+            to_left = self._step(left, (more - pull) / c, at.left)
             if not (math.isfinite(to_left) and math.isfinite(to_right)):
                 return None
             left, right = _moved(left, right, to_left, to_right, self.within)
-            if right - left <= 0 or max(abs(to_left), abs(to_right)) < _CLOSE:
+            at_break = number > _USUAL and max(abs(more), abs(pull)) < _ROUNDING
+            if right - left <= 0 or max(abs(to_left), abs(to_right)) < _CLOSE or at_break:
                 break
         else:
             return None
         return Zone(left, right) if right > left else None
+
+    def _step(self, end: float, push: float, stiffness: float) -> float:
+        """Newton step of an ``end`` that is pushed.
+
+        Points that were taken to the bound by the same loads in the half cycle before reach it at once: an end without
+        stiffness passes all of them, up to the next break.
+        """
+        if abs(stiffness) > _SOFT or not push:
+            return push / stiffness if stiffness else 0.0
+        ahead = self._breaks[(self._breaks - end) * push > 0]
+        if not len(ahead):
+            return 0.0
+        nearest = float(ahead[np.argmin(np.abs(ahead - end))])
+        return nearest - end + math.copysign(_PASSED, push)
 
     def follow(self, tension: float, shear: float) -> Zone | None:
         """Stick zone under changes of the loads, followed from their beginning; None if it is lost."""

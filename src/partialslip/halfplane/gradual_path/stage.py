@@ -12,7 +12,7 @@ class LostError(ValueError):
 
 
 class Loads(NamedTuple):
-    """Changes of the tension and of the shear force in half a cycle, in f p0 and f p0 a; both are positive."""
+    """Changes of the tension and of the shear force in half a cycle, in f p0 and f p0 a; neither is negative."""
 
     tension: float
     shear: float
@@ -20,7 +20,7 @@ class Loads(NamedTuple):
     @property
     def least(self) -> float:
         """Half-width c* of a stick zone at whose left end the rate of q is not singular."""
-        return 4 * self.shear / (math.pi * self.tension)
+        return 4 * self.shear / (math.pi * self.tension) if self.tension else math.inf
 
 
 class Stage(NamedTuple):
