@@ -62,8 +62,8 @@ def test_a_path_that_begins_in_the_steady_cycle_is_seen(monkeypatch):
     true = levels(exact(0.55, 7.0, MEAN))
     followed = from_zero.from_zero
 
-    def without_mean(_, steady):
-        return followed(Loads(steady.loads.tension / 2, steady.loads.shear / 2), steady)
+    def without_mean(_, steady, cycles):
+        return followed(Loads(steady.loads.tension / 2, steady.loads.shear / 2), steady, cycles)
 
     monkeypatch.setattr("partialslip.halfplane.turning.from_zero", without_mean)
     wrong = levels(partialslip.run(scene(0.55, 7.0, MEAN), "exact")["exact"])
@@ -79,6 +79,11 @@ def test_loads_are_held_within_the_bound():
         scaled = q / (0.5 * found.p0)
         assert (np.abs(scaled) <= np.sqrt(1 - x**2) + 1e-9).all()
         assert scaled @ weights == pytest.approx(force * np.pi / 2, abs=1e-5)
+
+
+def test_one_cycle_does_not_lead_to_the_steady_state_of_mean_loads():
+    assert "q1" in exact(0.55, 7.0, MEAN, "load.cycles=1").undetermined
+    assert not exact(0.55, 7.0, REVERSED, "load.cycles=2").undetermined
 
 
 def test_fully_reversed_loads_lock_in_next_to_nothing():

@@ -93,7 +93,7 @@ def _where_slip_turns(pressed: Contact, f: float, load: Load, cycle: Turning) ->
     Q, sigma = load.points[-1]
     unit = f * pressed.p0
     try:
-        return Levels(Followed.from_zero(cycle, Q / (unit * pressed.a), sigma / unit), cycle, 1)
+        return Levels(Followed.from_zero(cycle, Q / (unit * pressed.a), sigma / unit, load.cycles), cycle, 1)
     except LostError:
         return lost
 

@@ -8,7 +8,7 @@ from functools import cached_property
 from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.certificate import certificate
-from partialslip.halfplane.gradual_path.from_zero import from_zero
+from partialslip.halfplane.gradual_path.from_zero import MOST_CYCLES, from_zero
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
 from partialslip.halfplane.gradual_path.room import room
 from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
@@ -185,16 +185,17 @@ class Followed:
     never: tuple[float, float] | None
 
     @classmethod
-    def from_zero(cls, cycle: Turning, shear: float, tension: float) -> "Followed":
-        """Follow the loads to load point 2, with ``shear`` (in f p0 a) and ``tension`` (in f p0), and then through the
-        cycle until it repeats.
+    def from_zero(cls, cycle: Turning, shear: float, tension: float, cycles: int | None = None) -> "Followed":
+        """Follow the loads to load point 2, with ``shear`` (in f p0 a) and ``tension`` (in f p0), and then through so
+        many ``cycles``, by default until q repeats.
 
         Raises
         ------
         LostError
             If the way is not known.
         """
-        return cls(cycle, *from_zero(Loads(cycle.turn * cycle.mirror * tension, cycle.turn * shear), cycle.way))
+        first = Loads(cycle.turn * cycle.mirror * tension, cycle.turn * shear)
+        return cls(cycle, *from_zero(first, cycle.way, cycles or MOST_CYCLES))
 
     @property
     def breaks(self) -> list[float]:

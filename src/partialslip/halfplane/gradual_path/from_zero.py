@@ -13,14 +13,15 @@ from partialslip.halfplane.gradual_path.half_cycle import HalfCycle
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.gradual_path.tractions import Part, Tractions
 
-_CYCLES = 30  # loads that tend to the steady state more slowly are not followed
+MOST_CYCLES = 30  # loads that tend to the steady state more slowly are not followed
 _REPEATS = 1e-10  # change of q over a cycle, in f p0, that is none: states are interpolated to this tolerance
+_NEARLY = 1e-6  # the same that is none where no more cycles follow
 _HELD = 1e-6  # violation of a condition, in f p0, above which a way does not hold
 _SHARES = (0.05, 0.5, 1.0)  # stages in a phase at which the conditions are checked
 _PLACES = np.cos(np.linspace(np.pi, 0, 257))[1:-1]
 
 
-def from_zero(first: Loads, steady: HalfCycle) -> tuple[Tractions, tuple[float, float] | None]:
+def from_zero(first: Loads, steady: HalfCycle, cycles: int) -> tuple[Tractions, tuple[float, float] | None]:
     """Return the tractions at load point 2 of the cycle whose change from load point 1 to 2 is that of ``steady``, and
     the ends of the interval that has never slipped (None if every point has).
 
@@ -30,12 +31,13 @@ def from_zero(first: Loads, steady: HalfCycle) -> tuple[Tractions, tuple[float, 
         Loads at load point 2, to which the path goes first; of one sign.
     steady : HalfCycle
         Half cycle to which half cycles tend.
+    cycles : int
+        Most cycles.
 
     Raises
     ------
     LostError
-        If the loads at load point 2 differ in sign, the way is lost or does not hold, or q does not repeat after 30
-        cycles.
+        If the loads at load point 2 differ in sign, the way is lost or does not hold, or q does not repeat.
     """
     shape, sign = steady.start.shape, -1 if min(first) < 0 else 1
     first = Loads(*(sign * load for load in first))
@@ -44,19 +46,21 @@ def from_zero(first: Loads, steady: HalfCycle) -> tuple[Tractions, tuple[float, 
     nothing = Tractions.of(shape, [Part(-1.0, 1.0, 0.0, Smooth(-1.0, 1.0, lambda low, high: 0 * (low + high)))])
     way = HalfCycle(first, nothing, steady.middle)
     ways, q, guess, change = [_checked(way)], way.last.q if sign > 0 else -way.last.q, steady, np.inf
-    for _ in range(_CYCLES):
+    for _ in range(cycles):
         back = HalfCycle(steady.loads, -q, guess)  # to load point 1; the signs of loads and tractions are reversed
         way = guess = HalfCycle(steady.loads, -back.last.q, back)
         ways += [back, way]
-        if change > _HELD:  # later cycles repeat the one that was checked
+        if change > _NEARLY:  # later cycles repeat the one that was checked
             _checked(back), _checked(way)
         before, q = q, way.last.q
         change = np.abs(q(_PLACES) - before(_PLACES)).max()
         if change < _REPEATS:
-            lows, highs = zip(*(each.stuck for each in ways), strict=True)
-            low, high = max(lows), min(highs)
-            return q, ((low, high) if low < high else None)
-    raise LostError(f"q does not repeat after {_CYCLES} cycles")
+            break
+    if change > _NEARLY:
+        raise LostError(f"q does not repeat after {cycles} cycles")
+    lows, highs = zip(*(each.stuck for each in ways), strict=True)
+    low, high = max(lows), min(highs)
+    return q, ((low, high) if low < high else None)
 
 
 def _checked(way: HalfCycle) -> HalfCycle:
