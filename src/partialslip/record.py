@@ -133,7 +133,7 @@ class Record(msgspec.Struct, frozen=True):
     made : Made or None
         Date, command, overrides, commit and machine; None in ledgers, whose entries have their own.
     noise : Noise or None
-        Scatter due to the noise of a measured profile.
+        Scatter due to the noise of a measured profile; None in ledgers.
     spacing : dict of str to float
         Errors due to the spacing of a tabulated profile.
     edited : bool or None
@@ -199,7 +199,7 @@ def record(run: Run, *, curves: bool = True, made: Made | None = None) -> Record
     ----------
     run : Run
     curves : bool
-        Whether to include tractions, slip and stresses along the surfaces.
+        Whether to include tractions, slip and stresses along the surfaces, and the scatter due to noise.
     made : Made, optional
         Origin of the run (:func:`partialslip.origin.made_now`).
     """
@@ -214,7 +214,7 @@ def record(run: Run, *, curves: bool = True, made: Made | None = None) -> Record
         comparison={name: ComparisonRecord.of(comparison) for name, comparison in run.comparisons.items()},
         versions=versions(),
         made=made,
-        noise=run.noise,
+        noise=run.noise if curves else None,
         spacing=dict(run.spacing),
     )
 

@@ -3,7 +3,7 @@
 import dataclasses
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from partialslip.bars import LARGEST, Accuracy, Asked, asked
 from partialslip.errors import InputError
 from partialslip.frame import frame
 from partialslip.halfplane.method import spacing_error
-from partialslip.halfplane.noise import Noise
+from partialslip.halfplane.noise import Noise, noise_of
 from partialslip.judge import Comparison, Conclusion, Outcome, Verdict, compare, conditions, of_run
 from partialslip.judge.reference import ALL_EFFECTS, METHODS, reference, reference_among
 from partialslip.plan import Plan, plan, reduced
@@ -51,12 +51,9 @@ class Run(Drawn):
         Comparisons with the reference, by method; none for the reference.
     asked : Asked or None
         The accuracy asked for (:class:`partialslip.bars.Asked`); None if there are no bars.
-    noise : Noise or None
-        Scatter due to the noise of a measured profile, where it was asked for
-        (:func:`partialslip.halfplane.noise.noise_of`). It is no part of estimates, bars and verdicts.
     spacing : dict of str to float
         Errors of a, m and n (in a), p and q (relative L2) due to the spacing of a tabulated profile, which are no part
-        of them either (:func:`partialslip.halfplane.method.spacing_error`).
+        of estimates, bars and verdicts (:func:`partialslip.halfplane.method.spacing_error`).
     """
 
     scene: Scene
@@ -64,7 +61,6 @@ class Run(Drawn):
     results: dict[str, Result]
     comparisons: dict[str, Comparison]
     asked: Asked | None = None
-    noise: Noise | None = None
     spacing: Mapping[str, float] = field(default_factory=dict)
 
     def __getitem__(self, method: str) -> Result:
@@ -102,6 +98,17 @@ class Run(Drawn):
         best = reference(self.scene).method
         wanted = (best, "equivalent") if self.scene.finite else (best,)
         return next((name for name in wanted if name in self.results), next(iter(self.results)))
+
+    @cached_property
+    def noise(self) -> Noise | None:
+        """Scatter of a, m and n due to the noise of a measured profile (:func:`partialslip.halfplane.noise.noise_of`),
+        which is no part of estimates, bars and verdicts. None without a measured profile, or if its file is gone.
+
+        It takes about a CPU second, once, when it is first asked for."""
+        try:
+            return noise_of(self.scene)
+        except InputError:  # the file of the points
+            return None
 
     @property
     def judged(self) -> bool:

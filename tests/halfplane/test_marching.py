@@ -1,11 +1,13 @@
 """Marching against the closed forms, and the first cycles, which only marching resolves."""
 
 import itertools
+import math
 
 import numpy as np
 import pytest
 
 import partialslip
+from partialslip import parse_scene
 from partialslip.halfplane import contact, marching, one_step_zone
 from partialslip.verify.hard_cases.scenes import hard_scene
 
@@ -237,3 +239,40 @@ def test_the_estimates_of_small_shear_are_relative_to_one_norm():
     """q is half of q2 - q1, which are opposite without mean loads: their estimates are equal, however small q is."""
     small = partialslip.run(hard_scene("small", 1e-6, 1e-6), ["march"]).results["march"].estimate
     assert small["q"] == pytest.approx(small["q1"], rel=1e-9) == small["q2"]
+
+
+def beside_the_flat(share, end, other):
+    """Punch whose flat part is a ``share`` of the contact, under loads for which the stick zone is [-other, end] a."""
+    flat = {"kind": "flat-rounded", "R": 0.01, "b": share * 1e-3}
+    given = {"name": "flat", "material": {"E": 72.1e9, "nu": 0.33}, "friction": {"f": 0.3}, "profile": flat}
+    # P presses the contact to the half-width 1e-3 m: the closed form of a in alpha = b/a
+    angle = math.acos(share)
+    trial = parse_scene({**given, "load": {"P": 1e5}})
+    P = (2 * angle - math.sin(2 * angle)) * 1e-6 / (2 * 0.01 * trial.material.A)
+    pressed = contact(parse_scene({**given, "load": {"P": P}}))
+    assert pressed.a == pytest.approx(1e-3, rel=1e-9)
+    found = pressed.shape.conditions(np.array([1 - other]), np.array([(other + end) / 2]), np.array([1.0]))
+    dQ, dsigma = float(found.Qf[0]) * 0.6 * P, float(found.sf[0]) * 0.3 * pressed.p0
+    return parse_scene({**given, "load": {"P": P, "Q": [-dQ / 2, dQ / 2], "sigma": [-dsigma / 2, dsigma / 2]}})
+
+
+def of_the_soft_end(monkeypatch, share, end, other):
+    """Error of n over its estimate, on three meshes."""
+    monkeypatch.setattr(marching, "_MESHES", marching._MESHES[:3])
+    scene = beside_the_flat(share, end, other)
+    result = partialslip.run(scene, "march")["march"]
+    assert result.m / result.a == pytest.approx(other, abs=result.estimate["m"])
+    return abs(result.n / result.a - end) / result.estimate["n"]
+
+
+@pytest.mark.parametrize(("share", "end", "other"), [(0.6, 0.54, 0.669), (0.6, 0.6, 0.711), (0.3, 0.3, 0.7)])
+def test_ends_on_the_flat_and_at_its_corner_are_known(monkeypatch, share, end, other):
+    """Little room is left beside the end of the stick zone there, so that small errors of the loads move it far."""
+    assert of_the_soft_end(monkeypatch, share, end, other) <= 1.0
+
+
+@pytest.mark.fault
+def test_ends_that_are_all_as_stiff_as_under_hertz_pressure_are_seen(monkeypatch):
+    """Deliberate fault: the estimate does not know how soft an end is."""
+    monkeypatch.setattr(marching, "_stiffness", lambda _: np.ones(2))
+    assert of_the_soft_end(monkeypatch, 0.6, 0.54, 0.669) > 2

@@ -4,11 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from partialslip import InputError, load_result, load_scene, run
 from partialslip.cli import main
 from partialslip.halfplane import contact, stick_zone
 from partialslip.halfplane.noise import noise_of
+from partialslip.record import record
 from partialslip.report.profile import profile_svg
 from partialslip.scene.measured import refitted, smoothest
 
@@ -201,11 +203,17 @@ def test_noise_is_told_and_judges_nothing(tmp_path, capsys):
     noise = load_result(out / "results.json").noise
     assert f"noise of the profile a +- {noise.a:.1e} a, m +- {noise.m:.1e} a, n +- {noise.n:.1e} a" in printed
     assert "with a longer smooth 0.8 mm" in printed
-    plain = run(load_scene(tmp_path / "job.toml"), "exact")
+    scene = load_scene(tmp_path / "job.toml")
+    assert run(scene, "exact").noise == noise
+    plain = run(replace(scene, profile=replace(scene.profile, measured=None)), "exact")
     assert plain.noise is None
     told = load_result(out / "results.json")
     assert (told.outcome, told.missed) == (plain.outcome, plain.missed)
     assert told.methods["exact"].estimate == plain["exact"].estimate
+    again = run(scene, "exact")
+    assert record(again, curves=False).noise is None
+    (tmp_path / "pad.csv").unlink()
+    assert again.noise is None
 
 
 def test_only_measured_profiles_have_noise_and_some_loads_no_closed_form(tmp_path):

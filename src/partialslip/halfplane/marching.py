@@ -45,13 +45,15 @@ _INNER = 8.0  # size of cells at kinks of q over the size at the ends: kinks har
 _PASSING = 32.0  # the same at kinks that neither q1 nor q2 has
 _SHARE = 1 / 3  # largest part of the remaining CPU seconds for one mesh
 _WORK = 5e11  # limit of cells^3 times load steps of a mesh
-# Errors of m and n, as parts of the change from mesh to mesh and of growth^3
-_MOVED, _CUBIC = 0.1, 0.15
+# Errors of m and n, as parts of the change from mesh to mesh and of growth^3; the latter with a part over the stiffness
+# of the end, 1 in Hertz contacts: an error of the loads moves an end the more the less stiff the end is
+_MOVED, _CUBIC, _CUBIC_OF_SOFT = 0.1, 0.1, 0.05
 # The same part in a narrow stick zone, which its surroundings move as a whole. Cells nearby are reduced with the zone:
 # only growth is halved from mesh to mesh, and errors are of second order in it
 _CARRIED = 1 / 3
 # The same where slip turns round; also, at an end that moves over cells that slipped, parts of the cell's size
 _TURNED, _CAUGHT_UP = 2.0, 0.5
+_FITTED, _SOFTEST = 4, 1e-3  # cells inside an end of the stick zone from which its stiffness is found; least stiffness
 _CHANGED = (0.4, 0.35)  # errors of q, q1 and q2 as parts of the change to the second mesh and to later meshes
 _JUDGED = ("m", "n", "q", "q1", "q2")
 Added = Callable[[Array], Array]
@@ -266,9 +268,9 @@ def _mesh_errors(normal: NormalLoads, level: _Level, before: _Level, growth: flo
     """Discretisation errors of m and n (in half-widths of the contact at the largest P) and of q, q1 and q2 (relative
     L2 of cell averages).
 
-    Errors of m and n are a part of the change from the mesh ``before``, or a multiple of ``growth``^3. Errors of q are
-    a part of the change, for which ``first`` tells whether the mesh before is the first one. The factors are calibrated
-    on random scenes with known solutions.
+    Errors of m and n are a part of the change from the mesh ``before``, or a multiple of ``growth``^3, the larger the
+    less stiff the end is. Errors of q are a part of the change, for which ``first`` tells whether the mesh before is
+    the first one. The factors are calibrated on random scenes with known solutions.
     """
     assert level.stick
     assert before.stick
@@ -282,7 +284,7 @@ def _mesh_errors(normal: NormalLoads, level: _Level, before: _Level, growth: flo
     size = np.diff(level.vertices)[cells]
     unseen = _SOMEWHERE * size * (gap < _CELLS * size)
     moved = max(abs(level.stick.left - before.stick.left), abs(level.stick.right - before.stick.right))
-    between = _CUBIC * growth**3 * np.minimum(_NEAR * gap, 1.0)
+    between = (_CUBIC + _CUBIC_OF_SOFT / _stiffness(level)) * growth**3 * np.minimum(_NEAR * gap, 1.0)
     part = _CARRIED if _NEAR * gaps[1] < 1 else _MOVED
     known = np.maximum(unseen, np.maximum(part * moved, between))
     if level.history.turns:
@@ -292,6 +294,26 @@ def _mesh_errors(normal: NormalLoads, level: _Level, before: _Level, growth: flo
         key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices, 2 if key == "q" else 1)
         for key, of in SHEARS.items()
     }
+
+
+def _stiffness(level: _Level) -> Array:
+    """Stiffness K of the ends of the stick zone, (2,), at most 1: f p - |dq|/2 is K f p0 sqrt(2 c r)/a at a small
+    distance r inside an end, with p0 of a Hertz contact and the half-width c of the zone. Beside the flat part of a
+    punch K is small. 1 at ends that moved over cells that slipped, where the room begins with another power."""
+    history, stick, vertices = level.history, level.stick, level.vertices
+    assert history
+    assert stick
+    after, c = np.searchsorted(vertices, level.zone), (stick.right - stick.left) / 2
+    ranges = (after[0] - 1, after[0] + _FITTED), (after[1] - 1 - _FITTED, after[1])
+    found = np.ones(2)
+    for side, (first, last) in enumerate(np.clip(ranges, 0, len(vertices) - 1).tolist()):
+        if stick.moved[side] or c == 0:
+            continue
+        room = float((history.bound - stick.signs[side] * history.change / 2)[first:last].sum())
+        r = abs(float(vertices[first if side else last]) - level.zone[side])
+        hertz = float(history.bound.sum()) * (2 / np.pi) * np.sqrt(2 * c) * (2 / 3) * r**1.5
+        found[side] = np.clip(room / hertz, _SOFTEST, 1.0)
+    return found
 
 
 def _apart(level: _Level, of: Callable[[History], Array], other: History, cells: Array, shears: int) -> float:
