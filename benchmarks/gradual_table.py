@@ -1,6 +1,6 @@
 """Make the table of Hertz's stick zones under gradual loads: src/partialslip/halfplane/gradual_table.json.
 
-    nice python benchmarks/gradual_table.py            make it anew (about 18 CPU minutes)
+    nice python benchmarks/gradual_table.py            make it anew (about 18 CPU minutes); then run inner_table.py
     nice python benchmarks/gradual_table.py --check 300 --seed 1    its error at random loads
 
 The table is made of patches over s_f = dsigma/(f p0) and w = sqrt(1 - Q_f), each between two border curves w(s_f). In a
@@ -10,8 +10,8 @@ Q_f on, are those at which
 - slip begins to turn round: the half-width of the zone of one step is c* = 4 Q_f/s_f;
 - the zone just reaches the left end of the contact at the end of the half cycle;
 - all that slipped backwards slips forwards again, so that one step holds again (in closed form), or Q_f = 0.9975, or an
-  inner slip zone begins: n = -c* or, where points at the left end slip at once, n = (1 - m)/2 - c*. Beyond the last
-  two, the table has no patch.
+  inner slip zone begins: n = -c* or, where points at the left end slip at once, n = (1 - m)/2 - c*. Beyond the
+  beginning of an inner zone ``inner_table.py`` makes the patches.
 """
 
 import argparse
@@ -22,7 +22,7 @@ import math
 import time
 from collections import deque
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -67,25 +67,25 @@ def following(loads: Loads) -> HalfCycle | None:
     cycle, change = near[0], math.inf
     for _ in range(CYCLES):
         try:
-            cycle, before = HalfCycle(loads, -cycle.settled, cycle), cycle
+            cycle, before = HalfCycle(loads, -cycle.settled, cycle, parts=False), cycle
         except (LostError, ValueError, ArithmeticError):
             return None
         change = max(abs(one - other) for one, other in zip(cycle.last.zone, before.last.zone, strict=True))
         if change < STEADY:
-            return cycle if cycle.followed else None
+            return cycle
     return None
 
 
 @functools.cache
 def solved(s: float, w: float) -> Found | None:
-    """The solver's zone, or None if it is not known."""
+    """The solver's zone, or None if it is not known or an inner zone slips."""
     loads = Loads(s, math.pi * (1 - w) * (1 + w))
     try:
-        cycle = following(loads) or steady(loads, HERTZ)
+        cycle = following(loads) or steady(loads, HERTZ, parts=False)
     except LostError:
         return None
     near.append(cycle)
-    if not cycle.followed:
+    if cycle.opens:
         return None
     drift = next(phase for phase in cycle.phases if hasattr(phase, "reaches_end"))
     spared = cycle.last.zone.right + cycle.loads.least - cycle.phases[0].first.zone.centre
@@ -162,7 +162,7 @@ def fitted(values: Array) -> Array:
     return flat.reshape(values.shape)
 
 
-def panel(low: float, high: float, borders: Callable[[float], list[float]]) -> dict[str, object]:
+def panel(low: float, high: float, borders: Callable[[float], list[float]]) -> dict[str, Any]:
     """Patches between the ``borders`` of s, from large to small w."""
     along = nodes(ALONG, low, high)
     curves = np.array([borders(s) for s in along.tolist()])
@@ -184,6 +184,8 @@ def panel(low: float, high: float, borders: Callable[[float], list[float]]) -> d
         "high": high,
         "borders": fitted(curves).T.round(ROUNDED).tolist(),
         "patches": [patch.transpose(2, 0, 1).round(ROUNDED).tolist() for patch in patches],
+        "signs": [-1, 1][: len(patches)],
+        "steep": ["none"] * len(patches),
     }
 
 
@@ -237,11 +239,49 @@ def make() -> None:
         (0.0, 2.0, again_ends),
     ):
         panels.append(panel(low, high, borders))
-        PLACE.write_text(json.dumps({"panels": panels}, separators=(",", ":")) + "\n")
+        write(panels)
+    top, below = panels[0], panels[2]
+    meeting = corner(below)
+    panels[0], panels[2] = stretched(top, meeting, top["high"]), stretched(below, below["low"], meeting)
+    write(panels)
+
+
+def write(panels: list[dict[str, Any]]) -> None:
+    """Write the table."""
+    PLACE.write_text(json.dumps({"panels": panels}, separators=(",", ":")) + "\n")
+
+
+def corner(panel: dict[str, Any]) -> float:
+    """s_f, beside the upper end of a ``panel``, at which the zone reaches the left end of the contact just where an
+    inner zone begins."""
+
+    def apart(s: float) -> float:
+        along = 2 * (s - panel["low"]) / (panel["high"] - panel["low"]) - 1
+        _, reached, parted = chebyshev.chebval(along, np.array(panel["borders"]).T)
+        return float(reached - parted)
+
+    return float(brentq(apart, panel["high"] - 0.1, panel["high"] + 0.05))
+
+
+def stretched(panel: dict[str, Any], low: float, high: float) -> dict[str, Any]:
+    """The same series over another range of s, a little longer or shorter."""
+    s = nodes(ALONG, low, high)
+    along = 2 * (s - panel["low"]) / (panel["high"] - panel["low"]) - 1
+
+    def moved(series: Any) -> Any:
+        return fitted(np.moveaxis(chebyshev.chebval(along, np.array(series)), -1, 0)).round(ROUNDED).tolist()
+
+    return {
+        **panel,
+        "low": low,
+        "high": high,
+        "borders": [moved(border) for border in panel["borders"]],
+        "patches": [[moved(end) for end in patch] for patch in panel["patches"]],
+    }
 
 
 def ends_at(positive: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
-    """Values of s close together between which ``positive`` is so no more; what is between them is left out."""
+    """Values of s close together between which ``positive`` is so no more."""
     while high - low > CLOSE:
         middle = (low + high) / 2
         low, high = (middle, high) if positive(middle) > 0 else (low, middle)

@@ -2,12 +2,14 @@
 at once. Scaled as in :mod:`partialslip.halfplane.shape`.
 
 Patches over s_f and w = sqrt(1 - Q_f), between border curves w(s_f) at which the zone's ends have kinks; Chebyshev
-series in s_f and in the share of the way from border to border. ``benchmarks/gradual_table.py`` makes the table from
-the solver, and measures its error.
+series in s_f and in the share of the way from border to border, or in a function of the share where the ends have
+square roots at a border. ``benchmarks/gradual_table.py`` makes the table from the solver, ``benchmarks/inner_table.py``
+the part of it in which an inner zone slips; both measure its error.
 """
 
 import functools
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +23,11 @@ from partialslip.result import StickZone
 
 PLACE = Path(__file__).with_name("gradual_table.json")
 _BESIDE = 1e-6  # of a patch: a place as near to it is inside, as rounding may put it on the wrong side
+_EVEN: dict[str, Callable[[Array], Array]] = {  # what the series run over, of a share; by the borders with square roots
+    "none": lambda share: share,
+    "upper": np.sqrt,
+    "both": lambda share: 2 / np.pi * np.arcsin(np.sqrt(share)),
+}
 
 
 def tabled(Qf: Array, sf: Array) -> StickZone[Array]:
@@ -35,17 +42,29 @@ def tabled(Qf: Array, sf: Array) -> StickZone[Array]:
     left[holds], right[holds], sign[holds] = once.left[holds], once.right[holds], 1
     w = np.sqrt(1 - Qf)
     for panel in table()["panels"]:
-        here = np.flatnonzero(~holds & (sf >= panel["low"]) & (sf <= panel["high"]))
+        here = np.flatnonzero(~holds & np.isnan(left) & (sf >= panel["low"]) & (sf <= panel["high"]))
         along = 2 * (sf[here] - panel["low"]) / (panel["high"] - panel["low"]) - 1
-        borders = chebyshev.chebval(along, np.array(panel["borders"]).T)
-        for upper, lower, patch in zip(borders, borders[1:], panel["patches"], strict=False):
+        borders = [chebyshev.chebval(along, border) for border in panel["borders"]]
+        patches = zip(borders, borders[1:], panel["patches"], panel["signs"], panel["steep"], strict=False)
+        for upper, lower, patch, way, steep in patches:
             share = (upper - w[here]) / (upper - lower)
             inside = (share >= -_BESIDE) & (share <= 1 + _BESIDE)
-            across = np.clip(2 * share[inside] - 1, -1, 1)
+            across = 2 * _EVEN[steep](np.clip(share[inside], 0, 1)) - 1
             at = here[inside]
             left[at], right[at] = (chebyshev.chebval2d(along[inside], across, np.array(end)) for end in patch)
-            sign[at] = np.where(borders[1][inside] > w[at], 1, -1)
+            sign[at] = way
     return StickZone((left + right) / 2, (right - left) / 2, sign)
+
+
+def parted(Qf: Array, sf: Array) -> Mask:
+    """Whether an inner zone slips at loads (k,) whose slip turns round, as far as the table goes."""
+    result, w = np.zeros(len(Qf), bool), np.sqrt(1 - Qf)
+    for panel in table()["panels"]:
+        if panel.get("inner"):
+            here = (sf >= panel["low"]) & (sf <= panel["high"])
+            along = 2 * (sf[here] - panel["low"]) / (panel["high"] - panel["low"]) - 1
+            result[here] |= w[here] < chebyshev.chebval(along, panel["borders"][0])
+    return result
 
 
 def again(Qf: Array, sf: Array, once: StickZone[Array]) -> Mask:

@@ -181,8 +181,8 @@ def stuck(stages: list[Stage]) -> tuple[float, float]:
     return max(stage.zone.left for stage in stages), min(stage.sticks[0].right for stage in stages)
 
 
-def steady(loads: Loads, shape: Shape) -> HalfCycle:
-    """Return the steady half cycle, to which half cycles tend, where no zone inside the stick zone slips.
+def steady(loads: Loads, shape: Shape, parts: bool = True, close: float = _CLOSE) -> HalfCycle:
+    """Return the steady half cycle, to which half cycles tend.
 
     Parameters
     ----------
@@ -190,6 +190,10 @@ def steady(loads: Loads, shape: Shape) -> HalfCycle:
         Loads under which the stick zone drifts: slip turns round on the way.
     shape : Shape
         Pressure.
+    parts : bool
+        Whether a slip zone inside the stick zone is followed.
+    close : float
+        Change of the zone's middle below which half cycles with such a slip zone count as steady.
 
     Raises
     ------
@@ -212,10 +216,11 @@ def steady(loads: Loads, shape: Shape) -> HalfCycle:
         raise LostError
     guess = float(tried.centre[narrow[0]]) if len(narrow) else zone.centre
     found = HalfCycle(loads, start, guess, parts=False)
-    return _repeated(_repeated(found, parts=False), parts=True)
+    found = _repeated(found, parts=False)
+    return _repeated(found, parts=True, close=close) if parts else found
 
 
-def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
+def _repeated(found: HalfCycle, parts: bool, close: float = _CLOSE) -> HalfCycle:
     """The half cycle after which the zone's middle changes no longer; a zone inside is followed if it ``parts``.
 
     Half cycles tend to the steady one by a factor that may be as large as -0.5 where a zone inside slips. There the
@@ -237,7 +242,7 @@ def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
         state, after = -found.settled, found.last.zone.centre
         change = after - middle
         changes.append(abs(change))
-        settled = _SETTLED if not found.opens else _CLOSE if found.parted else _NEARLY
+        settled = _SETTLED if not found.opens else close if found.parted else _NEARLY
         if changes[-1] < settled or min(changes[:-1], default=np.inf) < min(changes[-1], _NEAR):
             break
         begin, middle = state, after
