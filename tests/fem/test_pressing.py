@@ -214,7 +214,7 @@ def march():
     return partialslip.run(unlike(1e-4), "march")["march"]
 
 
-@pytest.mark.parametrize("accuracy", [1e-3, 1e-4])
+@pytest.mark.parametrize("accuracy", [1e-3, pytest.param(1e-4, marks=pytest.mark.slow)])
 def test_estimates_of_unlike_half_planes_hold(accuracy, march):
     result = solve(unlike(accuracy), plan(unlike(accuracy)))
     assert march.m / march.a == pytest.approx(INDEPENDENT, abs=1e-5)

@@ -57,7 +57,8 @@ def test_transients_die_out_and_leave_the_steady_range():
 
 
 @pytest.mark.parametrize(
-    ("level", "steady"), [(0.5, True), (0.9, True), pytest.param(1.1, False, marks=pytest.mark.slow)]
+    ("level", "steady"),
+    [(0.5, True), *(pytest.param(*each, marks=pytest.mark.slow) for each in ((0.9, True), (1.1, False)))],
 )
 def test_steady_below_the_mean_load_bound_ratchets_above(level, steady):
     """The bound is 0.4711 f P for dQ/(2 f P) = 0.3, dsigma/(f p0) = 4."""
@@ -172,7 +173,7 @@ def test_cells_follow_every_kink_of_q1_and_q2():
     assert np.abs(again.traction.cells / again.a - kink).min() < 1e-3
 
 
-@pytest.mark.parametrize(("Qf", "sf"), [(0.5, 2.8), (0.75, 4.5)])
+@pytest.mark.parametrize(("Qf", "sf"), [(0.5, 2.8), pytest.param(0.75, 4.5, marks=pytest.mark.slow)])
 def test_legs_are_followed_where_slip_turns_round(Qf, sf):
     """Event by event; one step remains if slip does not turn round. Load steps are stages, and change nothing."""
     fP, half = 314159.26535897935, sf * 1e8
@@ -222,7 +223,9 @@ def largest_ratio(k, tension):
     return max(comparison.m / estimate["m"], comparison.n / estimate["n"])
 
 
-@pytest.mark.parametrize(("k", "tension"), NARROW)
+@pytest.mark.parametrize(
+    ("k", "tension"), [NARROW[0], *(pytest.param(*each, marks=pytest.mark.slow) for each in NARROW[1:])]
+)
 def test_the_place_of_a_narrow_stick_zone_is_known(k, tension):
     """The whole contact carries a narrow zone along: cells near the zone tell nothing of how far."""
     assert largest_ratio(k, tension) <= 1.5

@@ -63,7 +63,7 @@ def test_inner_slip_zone(Qf, sf, method):
     assert max(found.estimate["m"], found.estimate["n"]) < 5e-3
 
 
-@pytest.mark.parametrize("method", ["march", "fem"])
+@pytest.mark.parametrize("method", ["march", pytest.param("fem", marks=pytest.mark.slow)])
 def test_load_steps_do_not_matter(method):
     """On straight legs at constant pressure."""
     one, many = (solved(0.55, 7.0, method, "fem.accuracy=1e-3", f"load.steps={count}") for count in (1, 5))
