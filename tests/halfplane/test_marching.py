@@ -1,13 +1,12 @@
 """Marching against the closed forms, and the first cycles, which only marching resolves."""
 
 import itertools
-import math
 
 import numpy as np
 import pytest
+from flats import beside_the_flat
 
 import partialslip
-from partialslip import parse_scene
 from partialslip.halfplane import contact, marching, one_step_zone
 from partialslip.verify.hard_cases.scenes import hard_scene
 
@@ -242,21 +241,6 @@ def test_the_estimates_of_small_shear_are_relative_to_one_norm():
     """q is half of q2 - q1, which are opposite without mean loads: their estimates are equal, however small q is."""
     small = partialslip.run(hard_scene("small", 1e-6, 1e-6), ["march"]).results["march"].estimate
     assert small["q"] == pytest.approx(small["q1"], rel=1e-9) == small["q2"]
-
-
-def beside_the_flat(share, end, other):
-    """Punch whose flat part is a ``share`` of the contact, under loads for which the stick zone is [-other, end] a."""
-    flat = {"kind": "flat-rounded", "R": 0.01, "b": share * 1e-3}
-    given = {"name": "flat", "material": {"E": 72.1e9, "nu": 0.33}, "friction": {"f": 0.3}, "profile": flat}
-    # P presses the contact to the half-width 1e-3 m: the closed form of a in alpha = b/a
-    angle = math.acos(share)
-    trial = parse_scene({**given, "load": {"P": 1e5}})
-    P = (2 * angle - math.sin(2 * angle)) * 1e-6 / (2 * 0.01 * trial.material.A)
-    pressed = contact(parse_scene({**given, "load": {"P": P}}))
-    assert pressed.a == pytest.approx(1e-3, rel=1e-9)
-    found = pressed.shape.conditions(np.array([1 - other]), np.array([(other + end) / 2]), np.array([1.0]))
-    dQ, dsigma = float(found.Qf[0]) * 0.6 * P, float(found.sf[0]) * 0.3 * pressed.p0
-    return parse_scene({**given, "load": {"P": P, "Q": [-dQ / 2, dQ / 2], "sigma": [-dsigma / 2, dsigma / 2]}})
 
 
 def of_the_soft_end(monkeypatch, share, end, other):
