@@ -29,6 +29,7 @@ from partialslip.arrays import Array
 from partialslip.bars import LEAST_SHEAR
 from partialslip.result import Clock
 from partialslip_fem.mesh_solution import MeshSolution
+from partialslip_fem.mortar import within_cells
 from partialslip_fem.problem import Problem
 from partialslip_fem.solving import solve_on_meshes
 
@@ -68,9 +69,7 @@ _TURNED, _CAUGHT_UP = 5.0, 0.3
 _KINK = 0.03  # L2 error of q at a kink, in its strength times the element size
 _STEEP = 0.3  # the same at ends of a narrow slip zone, also times element size / gap
 _SHIFT = 1.5  # L2 error of q due to a shifted kink, in its strength times the shift
-# Of the change: least error where the gap's curvature jumps within elements (measured on tables); distance
-# of such a jump from a vertex, in contact half-widths, that counts as none.
-_OF_BROKEN, _ON_VERTEX = 0.4, 1e-9
+_OF_BROKEN = 0.4  # of the change: least error where the gap's curvature jumps within elements (measured on tables)
 _ACROSS = 3.0  # elements on either side of a kink from which its strength is found
 # Errors of p and q, in the error of an end, for Hertz contacts; in other contacts also times the steepness.
 _TRACTIONS = {"p": 12.0, "q": 40.0}
@@ -128,11 +127,8 @@ def _taken_otherwise(solution: MeshSolution, other: MeshSolution) -> Iterator[st
 
 def _within_elements(solution: MeshSolution, breaks: Sequence[float]) -> bool:
     """Whether some of the ``breaks`` lie in the contact and on no vertex."""
-    vertices = solution.lower.x[:: solution.lower.order]
-    inside = np.array([each for each in breaks if solution.left < each < solution.right])
-    after = np.searchsorted(vertices, inside)
-    apart = np.minimum(vertices[after] - inside, inside - vertices[after - 1])
-    return bool((apart > _ON_VERTEX * solution.half_width).any())
+    points = within_cells(solution.lower.x[:: solution.lower.order], breaks)
+    return bool(((points > solution.left) & (points < solution.right)).any())
 
 
 def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Array) -> dict[str, float]:

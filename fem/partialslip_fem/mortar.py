@@ -44,10 +44,7 @@ def projected(body: Body, gap: Callable[[Array], Array], breaks: Sequence[float]
     projection the error is like jump^2 size^4.
     """
     values, vertices = gap(body.x), body.x[:: body.order]
-    points = np.array([each for each in breaks if vertices[0] < each < vertices[-1]])
-    after = np.searchsorted(vertices, points)
-    beside = np.minimum(vertices[after] - points, points - vertices[after - 1])
-    points = points[beside > _ON_VERTEX * (vertices[after] - vertices[after - 1])]
+    points = within_cells(vertices, breaks)
     if not len(points):
         return values
     cells = np.unique(np.searchsorted(vertices, points))
@@ -58,6 +55,15 @@ def projected(body: Body, gap: Callable[[Array], Array], breaks: Sequence[float]
     missing[~np.isin(np.searchsorted(vertices, starts + offsets), cells)] = 0.0
     work = np.bincount(nodes.ravel(), (missing[:, None] * shape).ravel(), len(body.x))
     result: Array = values + body.mass_factor.solve(work)
+    return result
+
+
+def within_cells(vertices: Array, points: Sequence[float]) -> Array:
+    """Those of the ``points`` that lie between the ``vertices`` (c + 1,) of cells and on no vertex, (k,)."""
+    inside = np.array([each for each in points if vertices[0] < each < vertices[-1]])
+    after = np.searchsorted(vertices, inside)
+    beside = np.minimum(vertices[after] - inside, inside - vertices[after - 1])
+    result: Array = inside[beside > _ON_VERTEX * (vertices[after] - vertices[after - 1])]
     return result
 
 

@@ -69,7 +69,8 @@ def test_words(judged, tmp_path, field):
 @pytest.mark.parametrize("field", ["profile.b", "profile.R", "load.P", "material.E", "friction.f"])
 def test_a_flat(judged, tmp_path, field):
     """Of any size, with pressure from next to none to a contact all but as wide as the flat."""
-    sizes = [value for value in SIZES if (field, value) != ("profile.R", "1e-12")]  # works, but takes long
+    long = ("profile.R", "1e-12"), ("profile.b", "1")  # these work, but take long
+    sizes = [value for value in SIZES if (field, value) not in long]
     refusals(judged, tmp_path, FLAT, [(field, value) for value in sizes])
 
 

@@ -269,7 +269,7 @@ def test_mutations(tmp_path, kind):
     assert len(codes) == count
 
 
-@pytest.mark.parametrize("number", range(25))
+@pytest.mark.parametrize("number", [each for each in range(26) if each != 13])  # 13 takes five seconds
 def test_some_mutations(tmp_path, monkeypatch, capsys, number):
     """The same without processes of their own: always run."""
     monkeypatch.chdir(tmp_path)

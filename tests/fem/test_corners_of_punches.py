@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from flats import beside_the_flat
 
 import partialslip
 from partialslip.verify.hard_cases.scenes import hard_scene
@@ -37,3 +38,14 @@ def test_corners_that_meshes_take_for_wide_are_seen(monkeypatch):
     scene = hard_scene("sharp-0.99", 0.4, 4.0, flat=0.99)
     monkeypatch.setattr(goals, "_corner", lambda *_: np.inf)
     assert "p" in {text.partition(":")[0] for text in compared(scene)[1].missed}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("accuracy", [1e-3, 2e-5, 1e-6])
+@pytest.mark.parametrize("share", [0.3, 0.6, 0.9])
+def test_ends_at_the_corner_of_the_flat_are_known(share, accuracy):
+    """p has a kink at the end of the stick zone, and so has what is left to slip."""
+    other = share + 0.6 * (0.97 - share)
+    fem = partialslip.run(beside_the_flat(share, share, other, accuracy), "fem")["fem"]
+    for key, true in (("a", 1e-3), ("m", other * 1e-3), ("n", share * 1e-3)):
+        assert abs(getattr(fem, key) - true) <= fem.estimate[key] * 1e-3

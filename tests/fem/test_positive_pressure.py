@@ -28,6 +28,7 @@ def solved(scene):
     return partialslip.run(scene, ["fem"]).results["fem"]
 
 
+@pytest.mark.slow
 def test_kinks_of_q_do_not_shrink_the_elements_at_the_ends():
     found = solved(partialslip.parse_scene(PAD))
     x, p = found.traction.x, found.traction.p

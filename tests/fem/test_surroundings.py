@@ -41,7 +41,7 @@ def around(part, points=POINTS, places=PLACES):
 # reciprocity
 
 
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize("name", [pytest.param(each, marks=[pytest.mark.slow] * (each == "pad")) for each in BODIES])
 def test_what_one_force_does_to_another_it_does_back(name):
     """Betti: the displacement at x along i of a force at t along j is that at t along j of a force at x along i."""
     part = BODIES[name]

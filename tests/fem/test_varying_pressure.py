@@ -73,7 +73,7 @@ def test_contacts_that_have_nothing_in_common():
         run(far, ["fem"])
 
 
-@pytest.mark.parametrize("method", ["march", "fem"])
+@pytest.mark.parametrize("method", ["march", pytest.param("fem", marks=pytest.mark.slow)])
 def test_no_stick_zone_without_a_point_in_contact_at_both_load_points(method):
     """A punch that rolls from one edge to the other, in which no point sticks all the time. The moment of a single node
     does not depend on the angle; taken for a slope, its rounding error once turned the punch off the other body."""

@@ -1,13 +1,12 @@
 """Marching against the closed forms, and the first cycles, which only marching resolves."""
 
 import itertools
-import math
 
 import numpy as np
 import pytest
+from flats import beside_the_flat
 
 import partialslip
-from partialslip import parse_scene
 from partialslip.halfplane import contact, marching, one_step_zone
 from partialslip.verify.hard_cases.scenes import hard_scene
 
@@ -57,7 +56,8 @@ def test_transients_die_out_and_leave_the_steady_range():
 
 
 @pytest.mark.parametrize(
-    ("level", "steady"), [(0.5, True), (0.9, True), pytest.param(1.1, False, marks=pytest.mark.slow)]
+    ("level", "steady"),
+    [(0.5, True), *(pytest.param(*each, marks=pytest.mark.slow) for each in ((0.9, True), (1.1, False)))],
 )
 def test_steady_below_the_mean_load_bound_ratchets_above(level, steady):
     """The bound is 0.4711 f P for dQ/(2 f P) = 0.3, dsigma/(f p0) = 4."""
@@ -172,7 +172,7 @@ def test_cells_follow_every_kink_of_q1_and_q2():
     assert np.abs(again.traction.cells / again.a - kink).min() < 1e-3
 
 
-@pytest.mark.parametrize(("Qf", "sf"), [(0.5, 2.8), (0.75, 4.5)])
+@pytest.mark.parametrize(("Qf", "sf"), [(0.5, 2.8), pytest.param(0.75, 4.5, marks=pytest.mark.slow)])
 def test_legs_are_followed_where_slip_turns_round(Qf, sf):
     """Event by event; one step remains if slip does not turn round. Load steps are stages, and change nothing."""
     fP, half = 314159.26535897935, sf * 1e8
@@ -222,7 +222,9 @@ def largest_ratio(k, tension):
     return max(comparison.m / estimate["m"], comparison.n / estimate["n"])
 
 
-@pytest.mark.parametrize(("k", "tension"), NARROW)
+@pytest.mark.parametrize(
+    ("k", "tension"), [NARROW[0], *(pytest.param(*each, marks=pytest.mark.slow) for each in NARROW[1:])]
+)
 def test_the_place_of_a_narrow_stick_zone_is_known(k, tension):
     """The whole contact carries a narrow zone along: cells near the zone tell nothing of how far."""
     assert largest_ratio(k, tension) <= 1.5
@@ -239,21 +241,6 @@ def test_the_estimates_of_small_shear_are_relative_to_one_norm():
     """q is half of q2 - q1, which are opposite without mean loads: their estimates are equal, however small q is."""
     small = partialslip.run(hard_scene("small", 1e-6, 1e-6), ["march"]).results["march"].estimate
     assert small["q"] == pytest.approx(small["q1"], rel=1e-9) == small["q2"]
-
-
-def beside_the_flat(share, end, other):
-    """Punch whose flat part is a ``share`` of the contact, under loads for which the stick zone is [-other, end] a."""
-    flat = {"kind": "flat-rounded", "R": 0.01, "b": share * 1e-3}
-    given = {"name": "flat", "material": {"E": 72.1e9, "nu": 0.33}, "friction": {"f": 0.3}, "profile": flat}
-    # P presses the contact to the half-width 1e-3 m: the closed form of a in alpha = b/a
-    angle = math.acos(share)
-    trial = parse_scene({**given, "load": {"P": 1e5}})
-    P = (2 * angle - math.sin(2 * angle)) * 1e-6 / (2 * 0.01 * trial.material.A)
-    pressed = contact(parse_scene({**given, "load": {"P": P}}))
-    assert pressed.a == pytest.approx(1e-3, rel=1e-9)
-    found = pressed.shape.conditions(np.array([1 - other]), np.array([(other + end) / 2]), np.array([1.0]))
-    dQ, dsigma = float(found.Qf[0]) * 0.6 * P, float(found.sf[0]) * 0.3 * pressed.p0
-    return parse_scene({**given, "load": {"P": P, "Q": [-dQ / 2, dQ / 2], "sigma": [-dsigma / 2, dsigma / 2]}})
 
 
 def of_the_soft_end(monkeypatch, share, end, other):

@@ -19,6 +19,7 @@ from partialslip.halfplane.shape import Conditions
 from partialslip.halfplane.slip import density, slip
 from partialslip.halfplane.steady import stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
+from partialslip.run import default_methods
 
 P = math.pi / 2  # of a contact with a = p0 = 1
 UNIT = Contact(1.0, P, Hertz())
@@ -317,4 +318,4 @@ def test_slopes_that_are_not_solved_are_refused():
     with pytest.raises(InputError, match=r"load.sigma_slope: must have as many numbers as load.Q, 2, not 3"):
         SCENES["small tension"].replace(load={"sigma_slope": [1e9, 2e9, 3e9]})
     steep = scene([0, 0], [0, 0], [-14, 14])
-    assert list(partialslip.run(steep.replace(fem={"accuracy": 1e-2})).results) == ["march", "fem"]
+    assert default_methods(steep) == ("march", "fem")

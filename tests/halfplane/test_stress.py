@@ -25,10 +25,15 @@ SHAPES = {"hertz": Hertz(), "0.5": Punch(0.5), "0.95": Punch(0.95), "table": Pun
 LOADS = [(0.5, 0.0), (0.75, 2.4), (0.3, 4.0), (0.1, 10.0)]  # (Qf, sf): shear alone, small and large tension
 DEPTHS = [1e-8, 1e-5, 1e-3, 0.03, 0.5, 4.0]
 
-every_shape = pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
-every_load = pytest.mark.parametrize(("Qf", "sf"), LOADS)
+SLOW = ("0.95", (0.1, 10.0))  # the half cycle takes seconds
+
+every_case = pytest.mark.parametrize(("Qf", "sf", "shape"), [
+    pytest.param(*loads, shape, id=f"{loads[0]}-{loads[1]}-{name}", marks=[pytest.mark.slow] * ((name, loads) == SLOW))
+    for loads in LOADS for name, shape in SHAPES.items()
+])  # fmt: skip
 
 
+@functools.cache
 def scaled(shape, Qf, sf):
     """With a = p0 = 1; load point 2 is half of the changes."""
     return Stress(Contact(1.0, math.pi / 2, shape), F, math.pi * F * Qf, F * sf)
@@ -125,8 +130,7 @@ def test_hertz_sliding(depth):
     assert shear[0] == pytest.approx(F * closed, rel=0, abs=1e-11)
 
 
-@every_shape
-@every_load
+@every_case
 def test_sum_of_point_forces(Qf, sf, shape):
     stress = scaled(shape, Qf, sf)
     x = places(stress, count=2)[::3]
@@ -137,8 +141,7 @@ def test_sum_of_point_forces(Qf, sf, shape):
         assert stress.inside(x, -side * depth + 0 * x)[1] == pytest.approx(expected, rel=0, abs=1e-10 + rounding)
 
 
-@every_shape
-@every_load
+@every_case
 def test_equilibrium_at_every_point(Qf, sf, shape):
     stress = scaled(shape, Qf, sf)
     random = np.random.default_rng(3)
@@ -157,8 +160,7 @@ def test_equilibrium_at_every_point(Qf, sf, shape):
     assert np.abs(along[:, 2] + up[:, 1]).max() < 1e-6
 
 
-@every_shape
-@every_load
+@every_case
 def test_resultants_of_a_deep_line(Qf, sf, shape):
     """P and Q pass through every horizontal line of either body, whatever its depth."""
     stress = scaled(shape, Qf, sf)
@@ -188,8 +190,7 @@ def test_surface_of_small_tension(Qf, sf):
     assert edge == pytest.approx(F * (2 * math.sqrt((1 + sf / 8) ** 2 - 1 + Qf) + sf / 4), rel=1e-12)
 
 
-@every_shape
-@every_load
+@every_case
 def test_surface_is_strained_by_the_slope_of_the_slip(Qf, sf, shape):
     """The bodies' difference is four times the relative strain, by quadrature of p over the slip zones; their sum is
     -2 p and the tension. In the stick zone they are alike."""
@@ -208,8 +209,7 @@ def test_surface_is_strained_by_the_slope_of_the_slip(Qf, sf, shape):
     assert stress.inside(x, -1e-20 + 0 * x)[1, 0] == pytest.approx(lower, rel=0, abs=1e-9)
 
 
-@every_shape
-@every_load
+@every_case
 def test_surface_is_the_limit_of_the_inside(Qf, sf, shape):
     stress = scaled(shape, Qf, sf)
     x = places(stress)
