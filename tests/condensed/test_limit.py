@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from test_constant import cells, loads
 
 from partialslip.condensed import history
 from partialslip.condensed.constant import march
 from partialslip.condensed.limit import limit
-from test_constant import cells, loads
 
 BOUND = np.array([1.0, 2.0, 0.5, 0.0])
 END, MODE = np.array([0.3, -1.2, 0.1, 0.0]), np.array([0.2, 0.1, -0.05, 0.0])

@@ -93,21 +93,23 @@ def stick_zone(
     moved = powers[0] != _ROOT, powers[1] != _ROOT
     if changed is None:
         return StickInterval(left, max(right, left), signs, moved)
-    caught = _caught_up(x, changed, sticks), _caught_up(x, changed, sticks[::-1])
+    first_caught = _caught_up(x, changed, sticks) if moved[0] else math.nan
+    caught = first_caught, _caught_up(x, changed, sticks[::-1]) if moved[1] else math.nan
     again = bool(np.isfinite(changed[sticks[:_RUN]]).all()), bool(np.isfinite(changed[sticks[-_RUN:]]).all())
     return StickInterval(left, max(right, left), signs, moved, caught, again)
 
 
 def _caught_up(x: Array, changed: Array, inside: Indices) -> float:
     """Where an end of the stick zone is at the end of a leg on which it moved outwards, from the shares of the leg at
-    which the nodes ``inside`` the zone, from the end on, stuck again: its speed is finite there; nan if fewer than
-    ``_RUN`` nodes did."""
+    which the nodes ``inside`` the zone, from the end on, stuck again: its speed is finite there; nan if they
+    stuck at fewer than ``_RUN`` instants."""
     since = 1 - changed[inside[:_CAUGHT]]
     still = np.flatnonzero(~np.isfinite(since))
     count = int(still[0]) if len(still) else len(since)
-    if count < _RUN or np.ptp(since[:count]) == 0:
+    since = since[:count]
+    if len(np.unique(since)) < _RUN:
         return math.nan
-    return float(np.polyfit(since[:count], x[inside[:count]], 2)[-1])
+    return float(np.linalg.lstsq(np.vander(since / since.max(), 3), x[inside[:count]], rcond=None)[0][-1])
 
 
 def _power(changed: Array | None, inside: Indices, outside: int) -> float:
