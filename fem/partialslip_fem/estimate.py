@@ -9,10 +9,11 @@ error is d itself. If shear is confined to narrow strips, the prefactor is the n
 Where ends of zones wander (:attr:`partialslip_fem.mesh_solution.MeshSolution.wanders`), they leave kinks in q within
 elements. Errors then hardly depend on the order, and the change of m, n and q is itself the error. Where slip turns
 round, load steps have no part in it, and both solutions share the errors of q that the way has locked in, so that their
-ends may agree by chance. An end that retreats, last of all, over points that had slipped and stuck again meets these
-errors: it may be off by a good part of the change of q. The other end is far from them. While the zone drifts, its
-width follows from the loads, and its place from sums of q in which these errors cancel. An end that drifts is read
-twice, from the room that q has left and from the loads at which the nodes beside it stuck again
+ends may agree by chance. These errors differ from element to element: an end answers to each like the inverse root of
+its distance, and to all like the root of the sum of squares. An end that retreats, last of all, over points that had
+slipped and stuck again meets them; the other end is far from them. While the zone drifts, its width follows from the
+loads, and its place from sums of q in which these errors cancel. An end that drifts is read twice, from the room that q
+has left and from the loads at which the nodes beside it stuck again
 (:attr:`partialslip.condensed.ends.StickInterval.caught`): it is not known better than both readings agree.
 
 Where the gap's curvature jumps within elements, p has a kink of the kind x log|x| there. Errors then fall slowly with
@@ -47,10 +48,12 @@ KEYS = (*END_KEYS, "p", *_SHEARS)
 _SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.9, "n": 1.9, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
 _EASED_SAFE = {6: 2.0}  # the same for meshes that grow faster near the ends, by order
 _LEAST_OF_A = 1 / 3  # of the error of a: least error of any end
-# Least errors of m and n where slip turns round, measured: parts of their own change; and of the change of q, where the
-# zone drifts, of an end that retreats over points that stuck again, and of others.
+# Least errors of m and n where slip turns round, measured: in their own change; in what they answer to the change of q,
+# of an end that retreats over points that stuck again, and of others; in the change of q, where the zone drifts, and at
+# most.
 _OF_TURNED = 0.5
-_DRIFTS, _OVER_CAUGHT, _APART = 0.03, 0.5, 0.1
+_OVER_CAUGHT, _APART = 2.0, 0.5
+_DRIFTS, _MOST = 0.03, 0.5
 _NARROW = 0.1  # of the norm of f p: shear with a smaller norm is confined to narrow strips
 
 # Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.
@@ -117,13 +120,35 @@ def smooth_errors(
         turns = bool(solution.history and solution.history.turns)
         parts = dict.fromkeys(("m", "n"), _OF_TURNED if turns else 1.0) | dict.fromkeys(_SHEARS, 1.0)
         errors |= {key: max(errors[key], part * changes[key]) for key, part in parts.items() if key in changes}
-        if turns and solution.stick and "q" in changes:
-            stick = solution.stick
-            for key, again in zip(("m", "n"), stick.again, strict=True):
-                part = _DRIFTS if any(stick.moved) else _OVER_CAUGHT if again else _APART
-                errors[key] = max(errors[key], part * changes["q"])
+        if turns and "q" in changes:
+            locked = dict(zip(("m", "n"), _of_locked(solution, other, changes["q"]), strict=True))
+            errors |= {key: max(errors[key], least) for key, least in locked.items()}
     least = _LEAST_OF_A * errors["a"]  # two solutions may agree at one end by chance
     return {key: max(error, least) if key in END_KEYS else error for key, error in errors.items()}
+
+
+def _of_locked(solution: MeshSolution, other: MeshSolution, change: float) -> list[float]:
+    """Errors of m and n, where slip turns round, due to errors of q that the way locked in; ``change`` is that of q.
+
+    A force F at the distance d inside an end, beside which q has a kink of the strength S, moves the end by
+    2 F/(pi S sqrt(d)).
+    """
+    stick, history, a = solution.stick, solution.history, solution.half_width
+    assert stick
+    assert history
+    if any(stick.moved):
+        return [_DRIFTS * change] * 2
+    of, at = next(_shears(solution, other))
+    forces = np.diff(at.antiderivative()(of.x)) - np.diff(of.antiderivative()(of.x))
+    middles = (of.x[1:] + of.x[:-1]) / 2
+    inside = (middles > stick.left) & (middles < stick.right)
+    ends = solution.zone_ends[2:4]
+    apart = np.maximum(np.abs(middles - ends[:, None]), np.diff(of.x))[:, inside]
+    strengths = np.maximum(_strengths(solution, [history.change / 2], ends)[0], np.finfo(float).tiny)
+    answers = 2 / np.pi * np.sqrt((forces[inside] ** 2 / apart).sum(axis=1)) / strengths / a
+    parts = np.where(stick.again, _OVER_CAUGHT, _APART)
+    result: list[float] = np.minimum(parts * answers, _MOST * change).tolist()
+    return result
 
 
 def _within_elements(solution: MeshSolution, breaks: Sequence[float]) -> bool:
