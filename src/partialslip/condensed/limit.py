@@ -12,7 +12,7 @@ from partialslip.arrays import Array
 
 STATES = 4  # ends of cycles that are looked at
 _CLEAN = 0.1  # of the last change: what the progression may leave unexplained
-_STEADY = 0.2  # of 1 - ratio: by how much the ratio may change from cycle to cycle
+_STEADY = 0.3  # of 1 - ratio: by how much the ratio may change from cycle to cycle
 
 
 def limit(states: Sequence[Array], bound: Array) -> Array | None:
