@@ -8,8 +8,13 @@ error is d itself. If shear is confined to narrow strips, the prefactor is the n
 
 Where ends of zones wander (:attr:`partialslip_fem.mesh_solution.MeshSolution.wanders`), they leave kinks in q within
 elements. Errors then hardly depend on the order, and the change of m, n and q is itself the error. Where slip turns
-round, load steps have no part in it, and only q keeps the kinks: ends of the stick zone lie beside them. Their change
-is the error where only one of both solutions takes back points that slipped, so that they read the end in two ways.
+round, load steps have no part in it, and both solutions share the errors of q that the way has locked in, so that their
+ends may agree by chance. These errors differ from element to element: an end answers to each like the inverse root of
+its distance, and to all like the root of the sum of squares. An end that retreats, last of all, over points that had
+slipped and stuck again meets them; the other end is far from them. While the zone drifts, its width follows from the
+loads, and its place from sums of q in which these errors cancel. An end that drifts is read twice, from the room that q
+has left and from the loads at which the nodes beside it stuck again
+(:attr:`partialslip.condensed.ends.StickInterval.caught`): it is not known better than both readings agree.
 
 Where the gap's curvature jumps within elements, p has a kink of the kind x log|x| there. Errors then fall slowly with
 the order: like those of q at kinks, they are a part of the change.
@@ -44,9 +49,12 @@ KEYS = (*END_KEYS, "p", *_SHEARS)
 _SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.9, "n": 1.9, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
 _EASED_SAFE = {6: 2.0}  # the same for meshes that grow faster near the ends, by order
 _LEAST_OF_A = 1 / 3  # of the error of a: least error of any end
-# Of the change of q: least error of ends where slip turns round, as both solutions share its kinks. Random scenes of
-# large tension need 0.1; beside the transition, where little slip turns round, m was off by 0.3 of the change.
-_OF_SHEAR = 0.5
+# Least errors of m and n where slip turns round, measured: in their own change; in what they answer to the change of q,
+# of an end that retreats over points that stuck again, and of others; in the change of q, where the zone drifts, and at
+# most.
+_OF_TURNED = 0.5
+_OVER_CAUGHT, _APART = 2.0, 0.5
+_DRIFTS, _MOST = 0.03, 0.5
 _NARROW = 0.1  # of the norm of f p: shear with a smaller norm is confined to narrow strips
 
 # Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.
@@ -65,7 +73,7 @@ _OF_LOCKED, _P_OF_LOCKED = 0.004, 0.02  # error of an end and of p, in that of q
 _SIDE = 0.5  # largest error of an end due to the fit, in the element size
 # Where slip turns round, ends of the stick zone are known less; at one that moves over nodes that slipped, q is off
 # its bound by little: parts of the element size.
-_TURNED, _CAUGHT_UP = 5.0, 0.3
+_TURNED, _CAUGHT_UP = 5.0, 0.05
 _KINK = 0.03  # L2 error of q at a kink, in its strength times the element size
 _STEEP = 0.3  # the same at ends of a narrow slip zone, also times element size / gap
 _SHIFT = 1.5  # L2 error of q due to a shifted kink, in its strength times the shift
@@ -109,20 +117,37 @@ def smooth_errors(
         errors = {key: max(error, _OF_BROKEN * changes[key]) for key, error in errors.items()}
     if solution.wanders:
         turns = bool(solution.history and solution.history.turns)
-        kinked = *(("m", "n") if not turns else _taken_otherwise(solution, other)), *_SHEARS
-        errors |= {key: max(errors[key], changes[key]) for key in kinked if key in changes}
-        if turns:
-            errors |= {key: max(errors[key], _OF_SHEAR * changes["q"]) for key in ("m", "n") if key in errors}
+        parts = dict.fromkeys(("m", "n"), _OF_TURNED if turns else 1.0) | dict.fromkeys(_SHEARS, 1.0)
+        errors |= {key: max(errors[key], part * changes[key]) for key, part in parts.items() if key in changes}
+        if turns and "q" in changes:
+            locked = dict(zip(("m", "n"), _of_locked(solution, other, changes["q"]), strict=True))
+            errors |= {key: max(errors[key], least) for key, least in locked.items()}
     least = _LEAST_OF_A * errors["a"]  # two solutions may agree at one end by chance
     return {key: max(error, least) if key in END_KEYS else error for key, error in errors.items()}
 
 
-def _taken_otherwise(solution: MeshSolution, other: MeshSolution) -> Iterator[str]:
-    """Keys of the ends of the stick zone at which only one of both solutions takes back points that slipped."""
-    if solution.stick and other.stick:
-        for key, here, there in zip("mn", solution.stick.moved, other.stick.moved, strict=True):
-            if here != there:
-                yield key
+def _of_locked(solution: MeshSolution, other: MeshSolution, change: float) -> list[float]:
+    """Errors of m and n, where slip turns round, due to errors of q that the way locked in; ``change`` is that of q.
+
+    A force F at the distance d inside an end, beside which q has a kink of the strength S, moves the end by
+    2 F/(pi S sqrt(d)).
+    """
+    stick, history, a = solution.stick, solution.history, solution.half_width
+    assert stick
+    assert history
+    if any(stick.moved):
+        return [_DRIFTS * change] * 2
+    of, at = next(_shears(solution, other))
+    forces = np.diff(at.antiderivative()(of.x)) - np.diff(of.antiderivative()(of.x))
+    middles = (of.x[1:] + of.x[:-1]) / 2
+    inside = (middles > stick.left) & (middles < stick.right)
+    ends = solution.zone_ends[2:4]
+    apart = np.maximum(np.abs(middles - ends[:, None]), np.diff(of.x))[:, inside]
+    strengths = np.maximum(_strengths(solution, [history.change / 2], ends)[0], np.finfo(float).tiny)
+    answers = 2 / np.pi * np.sqrt((forces[inside] ** 2 / apart).sum(axis=1)) / strengths / a
+    parts = np.where(stick.again, _OVER_CAUGHT, _APART)
+    result: list[float] = np.minimum(parts * answers, _MOST * change).tolist()
+    return result
 
 
 def _within_elements(solution: MeshSolution, breaks: Sequence[float]) -> bool:
@@ -158,7 +183,7 @@ def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Arra
         if solution.dissimilar:
             fitted[2:4] += _PUNCHED * sizes[:4].max() if solution.slips_when_pressed else _COUPLED * sizes[2:4]
         if solution.history and solution.history.turns:
-            fitted[2:4] = _TURNED * fitted[2:4] + _CAUGHT_UP * sizes[2:4] * np.array(solution.stick.moved)
+            fitted[2:4] = _TURNED * fitted[2:4] + _of_caught(solution, sizes[2:4])
         errors |= dict(zip("mn", fitted[2:4].tolist(), strict=True))
     if solution.history:
         half, *both = _norms(solution)
@@ -170,6 +195,16 @@ def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Arra
         for key, norm, kinks in zip(("q1", "q2"), both, locked.tolist(), strict=True):
             if norm > 0:
                 errors[key] = math.hypot(errors["q"] * half, kinks) / float(norm)
+    return errors
+
+
+def _of_caught(solution: MeshSolution, sizes: Array) -> Array:
+    """Errors of the ends of the stick zone that have moved outwards, over nodes that slipped before, (2,); 0 at others.
+    ``sizes`` (2,) are those of the elements at the ends, in contact half-widths."""
+    assert solution.stick
+    apart = np.abs(np.subtract(solution.stick.caught, solution.zone_ends[2:4])) / solution.half_width
+    apart = np.where(np.isnan(apart), _SIDE * sizes, apart)
+    errors: Array = np.where(solution.stick.moved, _CAUGHT_UP * sizes + apart, 0.0)
     return errors
 
 

@@ -142,7 +142,7 @@ def recorded():
     """The marches that are followed meanwhile: on all meshes, and with all choices of steps."""
     marches, making, legs = [], [], []
 
-    def following(true, path, advance, before):
+    def following(true, path, advance, before, **how):
         (C, stretch, across, bound), done = making[-1], []
         at_first = bound
 
@@ -156,7 +156,7 @@ def recorded():
             bound = after
             return found, after
 
-        found = true(path, stepping, before)
+        found = true(path, stepping, before, **how)
         marches.append(March(C, stretch, across, at_first is not None, done, found))
         return found
 

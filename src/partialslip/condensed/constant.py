@@ -132,7 +132,8 @@ class _Contact:
     def followed(self) -> History:
         """Follow the path."""
         before = self._path.before
-        history = follow(self._path, self._advance, resting(0 * self._bound if before is None else before))
+        begin = resting(0 * self._bound if before is None else before)
+        history = follow(self._path, self._advance, begin, hastens=self._path.settled > 0)
         return self._completed(history)
 
     def _advance(self, before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:

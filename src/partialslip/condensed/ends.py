@@ -22,6 +22,7 @@ _VERTICES = 5  # of the fit
 _BESIDE, _FINER = 3, 0.95  # cells compared on each side of a refined point; relative size of refined cells
 _STICKS = 1e-9  # room, relative to the bound, up to which a node slips
 _LEAVES = 1e-6  # distance of q from the bound, relative, that counts as none: such weak kinks do not matter
+_CAUGHT = 20  # nodes that tell where an end that moves outwards is
 _RUN = 4  # fewest neighbouring nodes that make a zone; fewer are noise
 _ROOT, _CAUGHT_UP = 2 / 3, 2 / 5  # powers of the force that vanish linearly at an end
 ROUNDED, CORNER = 3 / 2, 1 / 2  # powers of the distance with which the normal force grows from an end of the contact
@@ -30,12 +31,16 @@ ROUNDED, CORNER = 3 / 2, 1 / 2  # powers of the distance with which the normal f
 @dataclass(frozen=True)
 class StickInterval:
     """Interval [``left``, ``right``] in which dq is less than the bounds allow, the ``signs`` of dq on its left and
-    right, and which ends have ``moved`` outwards last, over points that slipped before."""
+    right, and which ends have ``moved`` outwards last, over points that slipped before. ``caught`` are these ends as
+    the loads tell at which the nodes beside them stuck again; nan where they do not tell. ``again``: beside which ends
+    points of the zone slipped and stuck again."""
 
     left: float
     right: float
     signs: tuple[int, int]
     moved: tuple[bool, bool] = (False, False)
+    caught: tuple[float, float] = (math.nan, math.nan)
+    again: tuple[bool, bool] = (False, False)
 
 
 def stick_zone(
@@ -86,7 +91,25 @@ def stick_zone(
         low, high = x[np.clip([last - 1 - away[1], last + away[1]], 0, len(x) - 1)]
         right = float(np.clip(right, low, high))
     moved = powers[0] != _ROOT, powers[1] != _ROOT
-    return StickInterval(left, max(right, left), signs, moved)
+    if changed is None:
+        return StickInterval(left, max(right, left), signs, moved)
+    first_caught = _caught_up(x, changed, sticks) if moved[0] else math.nan
+    caught = first_caught, _caught_up(x, changed, sticks[::-1]) if moved[1] else math.nan
+    again = bool(np.isfinite(changed[sticks[:_RUN]]).all()), bool(np.isfinite(changed[sticks[-_RUN:]]).all())
+    return StickInterval(left, max(right, left), signs, moved, caught, again)
+
+
+def _caught_up(x: Array, changed: Array, inside: Indices) -> float:
+    """Where an end of the stick zone is at the end of a leg on which it moved outwards, from the shares of the leg at
+    which the nodes ``inside`` the zone, from the end on, stuck again: its speed is finite there; nan if they
+    stuck at fewer than ``_RUN`` instants."""
+    since = 1 - changed[inside[:_CAUGHT]]
+    still = np.flatnonzero(~np.isfinite(since))
+    count = int(still[0]) if len(still) else len(since)
+    since = since[:count]
+    if len(np.unique(since)) < _RUN:
+        return math.nan
+    return float(np.linalg.lstsq(np.vander(since / since.max(), 3), x[inside[:count]], rcond=None)[0][-1])
 
 
 def _power(changed: Array | None, inside: Indices, outside: int) -> float:

@@ -13,11 +13,14 @@ from scipy.ndimage import maximum_filter1d
 
 from partialslip.arrays import Array, Mask
 from partialslip.condensed.bounded import Solution
+from partialslip.condensed.limit import limit
 from partialslip.condensed.path import Path
 
 STEADY = 1e-6  # change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
 _REPEATS = 3e-14  # change of a node's q over a cycle, relative to the sum of |q|, that is rounding (seen: 2.7e-14)
-_LIMIT = 10.0  # least number of changes of the last cycle that may lie between it and the limit
+_LIMIT = (
+    10.0  # number of changes of the last cycle that may lie between it and the limit, however few cycles went before
+)
 _BESIDE = 5  # neighbouring nodes of which the one that moves most tells how far the steady state is
 _SLIPS = 1e-9  # distance of |dq| from the bound, relative, at which a node slips
 
@@ -137,11 +140,12 @@ class History:
         """Room 2 f p - \\|dq\\| that is gone in the steady state, (n,), at nodes that stick again after they slipped:
         they come to the bound slowly. None if no node does.
 
-        Room that falls with a power of the cycles lasts as many changes of the last cycle as cycles went before: that
-        many may be gone, and ten at least. A single node may hardly move by chance, so that the one of its neighbours
-        that moves most tells. Gone is also room of which the limit of the last three cycles, by Aitken's method, leaves
-        less than half: of room that falls in geometric progression it leaves none, of room that falls with a power of
-        the cycles a part.
+        Changes in geometric progression add up to the last change times r/(1 - r), with r the ratio of the last two
+        changes; r is known within a factor of two of 1 - r. Room that falls with a power of the cycles lasts as many
+        changes of the last cycle as cycles went before: more is not counted. A single node may hardly move by chance,
+        so that the one of its neighbours that moves most tells. Gone is also room of which the limit of the last three
+        cycles, by Aitken's method, leaves less than half: of room that falls in geometric progression it leaves none,
+        of room that falls with a power of the cycles a part.
         """
         if self.changed is None:
             return None
@@ -150,13 +154,27 @@ class History:
         ends = [(self.points[begin + one].x, self.points[begin + two].x) for begin in range(last, 0, -cycle)[:3]]
         room, *before = [2 * self.bound - np.abs(q2 - q1) for q1, q2 in ends]
         changed = np.isfinite(self.changed)
-        moved = np.divide(self._moved, self.bound, out=np.zeros_like(room), where=changed & (self.bound > 0))
-        gone = max(_LIMIT, self.cycles) * self.bound * maximum_filter1d(moved, _BESIDE)
+        moved, lasts = self._moved_beside(0), np.full_like(room, max(_LIMIT, self.cycles))
+        if self.cycles > 1:
+            falls = np.maximum(self._moved_beside(1) - moved, 0.0)
+            lasts = np.minimum(np.maximum(np.divide(2 * moved, falls, out=lasts.copy(), where=falls > 0), 1.0), lasts)
+        gone = np.where(changed, lasts * self.bound * moved, 0.0)
         if len(before) == 2:
             falls, fell = before[0] - room, before[1] - before[0]
             more = np.divide(falls**2, fell - falls, out=np.zeros_like(room), where=(falls > 0) & (falls < fell))
             gone = np.where(2 * more > room, np.maximum(room, gone), gone)
         result: Array = np.where(changed, gone, 0.0)
+        return result
+
+    def _moved_beside(self, ago: int) -> Array:
+        """Largest change of q over a cycle, relative to the bound, of each node and its neighbours, (n,): over the last
+        cycle, or the one so many cycles ``ago``; of nodes that change between sticking and slipping alone."""
+        cycle = len(self.path.cycle)
+        last = len(self.points) - 1 - ago * cycle
+        off = np.abs(self.points[last].x - self.points[last - cycle].x)
+        counts = (self.bound > 0) & (np.isfinite(self.changed) if self.changed is not None else True)
+        moved: Array = np.divide(off, self.bound, out=np.zeros_like(off), where=counts)
+        result: Array = maximum_filter1d(moved, _BESIDE)
         return result
 
     @property
@@ -249,13 +267,14 @@ def still(before: Solution) -> Solution:
     return replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0)
 
 
-def follow(path: Path, advance: Advance, before: Solution) -> History:
+def follow(path: Path, advance: Advance, before: Solution, hastens: bool = False) -> History:
     """Follow the path: to the last load point, then cycle after cycle, until a cycle repeats or all cycles are done. If
     the first loading determines the cycle (``path.half``), only the first loading is solved.
 
     ``advance(before, load, change) -> (solution, bound)`` solves one step: from the solution before the step, the loads
     after the step and their change, to the solution after the step, whose ``rest`` is minus the slip, and f times the
-    normal forces.
+    normal forces. ``hastens``: whether cycles that lead to the steady state may skip those of which the limit is known
+    (:func:`partialslip.condensed.limit.limit`).
     """
     first, *ways = path.fractions
     load = np.array(path.begin)
@@ -263,6 +282,7 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
     points, taken = [certified([step for step, _ in went[0]])], len(first)
     if path.half:
         return _reversed(path, points[0], went[0])
+    ended = [points[0].x]  # cycles, since some were skipped
     for _ in range(path.cycles):
         went = []
         for start, end, fractions in zip((path.cycle[-1], *path.cycle), path.cycle, ways, strict=False):
@@ -271,6 +291,10 @@ def follow(path: Path, advance: Advance, before: Solution) -> History:
             taken += len(fractions)
         if _settled(path, points[-1].x, points[-1 - len(went)].x, went[-1][-1][1]):
             break
+        ended.append(points[-1].x)
+        skipped = limit(ended, went[-1][-1][1]) if hastens else None
+        if skipped is not None:
+            points[-1], ended = replace(points[-1], x=skipped), [skipped]
     steps = [step for way in went for step, _ in way]
     ends = [way[-1] for way in went]
     slips = np.cumsum([sum(-step.rest for step, _ in way) for way in went], axis=0)

@@ -11,7 +11,8 @@ from partialslip.result.state import State
 from partialslip.scene import Scene
 
 MOST_CYCLES = 200  # towards a steady state; 0.995 of the largest mean load takes 35, a large load before the cycles 300
-_SETTLED = 1e-7  # change of q over a cycle, in f p, that ends cycles under fully reversed loads
+# Change of q over a cycle, in f p, that ends cycles under fully reversed loads: a share of the accuracy, within limits
+_SETTLED, _STILL = 5e-3, (1e-7, 1e-6)
 _SHARE = 0.5  # of the accuracy of a, m and n: the same under other loads; q may be off by 15 times that accuracy
 
 
@@ -105,7 +106,8 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | No
         one_way = scene.even and bool((changes[:, 0] >= scene.friction.f * changes[:, 3]).all())
     begin, *cycle = loads
     # under mean loads the change of a cycle falls with its number only, and little of q changes
-    near = min(_SETTLED, scene.fem.accuracy) if load.fully_reversed else _SHARE * scene.fem.accuracy
+    accuracy = scene.fem.accuracy
+    near = min(max(_SETTLED * accuracy, _STILL[0]), _STILL[1]) if load.fully_reversed else _SHARE * accuracy
     cycles, settled = (load.cycles, 0.0) if load.cycles else (MOST_CYCLES, near)
     return Path(
         tuple(cycle), load.ends, load.in_phase, cycles, load.steps, begin, half=half, one_way=one_way, settled=settled

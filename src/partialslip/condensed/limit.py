@@ -1,0 +1,44 @@
+"""The limit of cycles that come to the steady state in geometric progression.
+
+A node beside an end of the stick zone may need hundreds of cycles to come to its bound, while nothing else changes any
+more. Aitken's method finds the limit of such a progression from four cycles.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from partialslip.arrays import Array
+
+STATES = 4  # ends of cycles that are looked at
+_CLEAN = 0.1  # of the last change: what the progression may leave unexplained
+_STEADY = 0.3  # of 1 - ratio: by how much the ratio may change from cycle to cycle
+
+
+def limit(states: Sequence[Array], bound: Array) -> Array | None:
+    """Limit of the tangential forces at the ends of cycles.
+
+    Parameters
+    ----------
+    states : sequence of (n,) arrays
+        Forces at the same load point of cycles in turn, without any other step between them.
+    bound : (n,) array
+        f times the normal forces, which limit them.
+
+    Returns
+    -------
+    (n,) array or None
+        None if the changes from cycle to cycle are no geometric progression.
+    """
+    if len(states) < STATES:
+        return None
+    off = np.divide(np.diff(states[-STATES:], axis=0), bound, out=np.zeros((STATES - 1, len(bound))), where=bound > 0)
+    squares = (off[:-1] ** 2).sum(axis=1)
+    if not squares.all():
+        return None
+    before, ratio = ((off[:-1] * off[1:]).sum(axis=1) / squares).tolist()
+    rest = np.abs(off[-1] - ratio * off[-2]).max()
+    if not 0 < ratio < 1 or abs(ratio - before) > _STEADY * (1 - ratio) or rest > _CLEAN * np.abs(off[-1]).max():
+        return None
+    result: Array = np.clip(states[-1] + (states[-1] - states[-2]) * ratio / (1 - ratio), -bound, bound)
+    return result
