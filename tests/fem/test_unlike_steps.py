@@ -32,6 +32,7 @@ def few():
     return solved(1, **TURNING)
 
 
+@pytest.mark.slow
 def test_steps_in_which_slip_turns_round_are_known_to_be_too_few(few):
     fine = solved(12, **TURNING)
     off = abs(fine.m / fine.a - few.m / few.a)

@@ -124,6 +124,7 @@ def test_profiles_other_than_hertz():
     assert np.trapezoid(dq, x) == pytest.approx(0.7 * np.trapezoid(bound, x), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_both_ways_into_slip_that_turns_round_are_continuous():
     """At the border of the plain region the steady state is that of one step."""
     for Qf, inside, outside in ((0.5, 5.0, 9.0), (0.5, 5.0, 2.6)):

@@ -54,6 +54,7 @@ def nodes_that_stick(case):
     return int((np.abs(traction.dq) < 1.9 * f * traction.p).sum()), result.counts["contact_nodes"]
 
 
+@pytest.mark.slow
 def test_few_nodes_are_few():
     assert nodes_that_stick(CASES["no-stick-node"])[0] <= 1
     assert nodes_that_stick(CASES["one-contact-node"])[1] == 1
