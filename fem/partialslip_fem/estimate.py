@@ -10,10 +10,9 @@ Where ends of zones wander (:attr:`partialslip_fem.mesh_solution.MeshSolution.wa
 elements. Errors then hardly depend on the order, and the change of m, n and q is itself the error. Where slip turns
 round, load steps have no part in it, and both solutions share the errors of q that the way has locked in, so that their
 ends may agree by chance. These errors differ from element to element: an end answers to each like the inverse root of
-its distance, and to all like the root of the sum of squares. An end that retreats, last of all, over points that had
-slipped and stuck again meets them; the other end is far from them. While the zone drifts, its width follows from the
-loads, and its place from sums of q in which these errors cancel. An end that drifts is read twice, from the room that q
-has left and from the loads at which the nodes beside it stuck again
+its distance, and to all like the root of the sum of squares. While the zone drifts, its width follows from the loads,
+and its place from sums of q in which these errors cancel. An end that drifts is read twice, from the room that q has
+left and from the loads at which the nodes beside it stuck again
 (:attr:`partialslip.condensed.ends.StickInterval.caught`): it is not known better than both readings agree.
 
 Where the gap's curvature jumps within elements, p has a kink of the kind x log|x| there. Errors then fall slowly with
@@ -49,11 +48,9 @@ KEYS = (*END_KEYS, "p", *_SHEARS)
 _SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.9, "n": 1.9, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
 _EASED_SAFE = {6: 2.0}  # the same for meshes that grow faster near the ends, by order
 _LEAST_OF_A = 1 / 3  # of the error of a: least error of any end
-# Least errors of m and n where slip turns round, measured: in their own change; in what they answer to the change of q,
-# of an end that retreats over points that stuck again, and of others; in the change of q, where the zone drifts, and at
-# most.
-_OF_TURNED = 0.5
-_OVER_CAUGHT, _APART = 2.0, 0.5
+# Least errors of m and n where slip turns round, measured: in their own change; in what they answer to the change of q;
+# in the change of q, where the zone drifts, and at most.
+_OF_TURNED, _ANSWERED = 0.5, 2.0
 _DRIFTS, _MOST = 0.03, 0.5
 _NARROW = 0.1  # of the norm of f p: shear with a smaller norm is confined to narrow strips
 
@@ -145,8 +142,7 @@ def _of_locked(solution: MeshSolution, other: MeshSolution, change: float) -> li
     apart = np.maximum(np.abs(middles - ends[:, None]), np.diff(of.x))[:, inside]
     strengths = np.maximum(_strengths(solution, [history.change / 2], ends)[0], np.finfo(float).tiny)
     answers = 2 / np.pi * np.sqrt((forces[inside] ** 2 / apart).sum(axis=1)) / strengths / a
-    parts = np.where(stick.again, _OVER_CAUGHT, _APART)
-    result: list[float] = np.minimum(parts * answers, _MOST * change).tolist()
+    result: list[float] = np.minimum(_ANSWERED * answers, _MOST * change).tolist()
     return result
 
 

@@ -31,16 +31,14 @@ ROUNDED, CORNER = 3 / 2, 1 / 2  # powers of the distance with which the normal f
 @dataclass(frozen=True)
 class StickInterval:
     """Interval [``left``, ``right``] in which dq is less than the bounds allow, the ``signs`` of dq on its left and
-    right, and which ends have ``moved`` outwards last, over points that slipped before. ``caught`` are these ends as
-    the loads tell at which the nodes beside them stuck again; nan where they do not tell. ``again``: beside which ends
-    points of the zone slipped and stuck again."""
+    right, and which ends have ``moved`` outwards last, over points that slipped before. ``caught`` are ends that moved,
+    as the loads tell at which the nodes beside them stuck again; nan where no nodes did."""
 
     left: float
     right: float
     signs: tuple[int, int]
     moved: tuple[bool, bool] = (False, False)
     caught: tuple[float, float] = (math.nan, math.nan)
-    again: tuple[bool, bool] = (False, False)
 
 
 def stick_zone(
@@ -93,10 +91,8 @@ def stick_zone(
     moved = powers[0] != _ROOT, powers[1] != _ROOT
     if changed is None:
         return StickInterval(left, max(right, left), signs, moved)
-    first_caught = _caught_up(x, changed, sticks) if moved[0] else math.nan
-    caught = first_caught, _caught_up(x, changed, sticks[::-1]) if moved[1] else math.nan
-    again = bool(np.isfinite(changed[sticks[:_RUN]]).all()), bool(np.isfinite(changed[sticks[-_RUN:]]).all())
-    return StickInterval(left, max(right, left), signs, moved, caught, again)
+    caught = _caught_up(x, changed, sticks), _caught_up(x, changed, sticks[::-1])
+    return StickInterval(left, max(right, left), signs, moved, caught)
 
 
 def _caught_up(x: Array, changed: Array, inside: Indices) -> float:
