@@ -88,7 +88,7 @@ def test_work_of_the_loads_is_dissipated():
     forces, bounds = history.around.forces, history.around.bounds
     assert (np.abs(forces) <= bounds + 1e-13).all()
     assert history.dissipated > 0
-    assert np.abs(history.net_slip[history.held]).max() < 1e-12
+    assert np.abs(history.net_slip[history.held]).max() < 1e-10  # cycles end where q changes by less than 1e-12 f p
 
 
 TURNS = {"Q": [-172787.59594743856, 172787.59594743856], "sigma": [-7e8, 7e8]}

@@ -20,6 +20,7 @@ from partialslip.condensed.path import Path
 from partialslip.condensed.path_following import Bounds, Follower, Leg
 
 _STAGES = 32  # fewest stages between load points at which forces are kept
+_REPEATS = 1e-12  # change of q over a cycle, in f p, that is rounding of the events
 _SLIGHT = 1e-6  # of the longest path of slip: none
 
 
@@ -76,7 +77,7 @@ class _Contact:
 
     def __init__(self, tangential: Array, stretch: Array, f: float, press: Presses, path: Path, few: int) -> None:
         self._asked, self._stretch, self._few = path, stretch, few
-        self._path = replace(path, ways=((1.0,),) * (1 + len(path.cycle)))
+        self._path = replace(path, ways=((1.0,),) * (1 + len(path.cycle)), settled=max(path.settled, _REPEATS))
         loads = [load[3:5] for load in (path.begin, path.cycle[-1], *path.cycle)]
         ways = [press.way((P, M), (P2, M2)) for (P, M), (P2, M2) in itertools.pairwise(loads)]
         most = np.maximum.reduce([each.values.max(axis=0) for each in ways])
