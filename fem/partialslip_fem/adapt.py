@@ -10,7 +10,6 @@ from partialslip.arrays import Array
 from partialslip.bars import BARS
 from partialslip.condensed.ends import apart
 from partialslip.condensed.step_errors import steps_matter
-from partialslip.condensed.steps import MOST
 from partialslip.errors import InputError
 from partialslip.result import Clock
 from partialslip_fem import estimate, goals, solving
@@ -136,12 +135,12 @@ class _Refinement:
         return f"mesh {self.meshes}: {self.solution.dofs:,} unknowns{known}"
 
     def check_steps(self) -> None:
-        """Halve the load steps on the present mesh and estimate their errors anew, where steps matter: the mesh on
+        """Check the load steps on the present mesh and estimate their errors anew, where steps matter: the mesh on
         which they were chosen saw less of a stick zone that moves while the loads change."""
         if self.expense.limited or not steps_matter(self.step_errors or {}, self.problem.accuracy):
             return
         coarse = self.solution
-        fine = solving.solve_contact(self.problem, coarse.bodies, coarse.factored, self.clock, MOST, before=coarse)
+        fine = solving.solve_contact(self.problem, coarse.bodies, coarse.factored, self.clock, True, before=coarse)
         self.solution, self.step_errors = fine, fine.step_errors
         self.iterations += fine.iterations
 
@@ -191,9 +190,8 @@ class _Refinement:
         if self.expense.limited:
             expected = self.expense.unknowns(grading, problem.order, self.block_width)
         choose = self.step_errors is None and not self.path_errors and self.size <= goals.COARSEST
-        steps = (0 if self.expense.limited else MOST) if choose else None  # the cost of more steps is not predicted
         self.solution = solving.mesh_and_solve(
-            problem, self.block_width, grading, self.clock, None, steps, self.solution
+            problem, self.block_width, grading, self.clock, None, choose, self.solution
         )
         if choose:
             self._keep_steps()

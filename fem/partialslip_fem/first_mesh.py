@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from partialslip.condensed.steps import MOST
 from partialslip.errors import InputError
 from partialslip.result import Clock
 from partialslip_fem import solving
@@ -42,7 +41,7 @@ def solve_on_first_mesh(
         If the contact does not fit on a finite body, or a moment moves it by many times its width.
     """
     reach, limit, meshes, factored = 1.5 + max(map(abs, problem.kinks), default=0.0), contact_line_limit(problem), 0, 0
-    steps = MOST if problem.meshed else None  # on meshes from files this solution is also the last
+    check = problem.meshed  # on meshes from files this solution is also the last
     farthest, most = max(map(abs, problem.lines), default=0.0), _WIDER * reach
     if farthest >= most:
         raise InputError(
@@ -55,7 +54,7 @@ def solve_on_first_mesh(
         reach = min(reach, limit)
         sizes = dict.fromkeys(np.linspace(-reach, reach, _POINTS).tolist(), 2 * FIRST_SIZE * reach)
         grading = Grading((-reach, reach), sizes, _GROWTH)
-        solution = solving.mesh_and_solve(problem, width * reach, grading, clock, keep, steps, alone=alone)
+        solution = solving.mesh_and_solve(problem, width * reach, grading, clock, keep, check, alone=alone)
         meshes, factored = meshes + 1, factored + solution.factored
         if solution.enclosed:
             return solution, meshes, factored

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 
 from partialslip.allowance import Allowance
-from partialslip.condensed.steps import MOST
 from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
 from partialslip.plan import Plan
@@ -86,7 +85,7 @@ def solve_meshed(scene: Scene, plan: Plan, meshes: Sequence[Mesh]) -> Result:
     problem = scaled(scene, plan)
     in_lengths = [replace(mesh, points=mesh.points / scene.length) for mesh in meshes]
     width = float(np.abs(in_lengths[0].points[:, 0]).max())
-    solution = solve_on_meshes(in_lengths, problem, width, clock, steps=MOST)
+    solution = solve_on_meshes(in_lengths, problem, width, clock, check=True)
     adapted = Adapted(solution, {}, 1, solution.factored, solution.iterations, width / solution.half_width)
     return to_result(scene, plan, problem, adapted, clock)
 

@@ -15,7 +15,7 @@ from partialslip.condensed.history import History, certified
 from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path, stretched
 from partialslip.condensed.pressing import Pressed
-from partialslip.condensed.steps import follow_refined
+from partialslip.condensed.steps import follow_or_step
 from partialslip.condensed.trail import Trail
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, condense, key_of, mesh_bodies
@@ -34,7 +34,7 @@ def mesh_and_solve(
     grading: Grading,
     clock: Clock,
     keep: Kept | None = None,
-    steps: int | None = None,
+    check: bool = False,
     before: MeshSolution | None = None,
     alone: bool = False,
 ) -> MeshSolution:
@@ -51,9 +51,9 @@ def mesh_and_solve(
         Counts the CPU seconds of the phases.
     keep : Kept, optional
         Condensed bodies to reuse, and to add the new ones to.
-    steps : int, optional
-        Refine the load steps up to about this many from load point to load point, as the accuracy requires, and
-        estimate their errors (:attr:`MeshSolution.step_errors`). By default the path's steps are used.
+    check : bool
+        Whether to check if the load steps suffice (:func:`partialslip.condensed.steps.follow_or_step`), and to estimate
+        their errors (:attr:`MeshSolution.step_errors`).
     before : MeshSolution, optional
         Solution on other meshes: the search for the zones begins at its zones.
     alone : bool
@@ -63,11 +63,11 @@ def mesh_and_solve(
     key = key_of(problem, width, grading)
     if keep and (known := keep.find(key)):
         bodies, shared = known
-        return solve_contact(problem, bodies, 0, clock, steps, None if alone else shared, before)
+        return solve_contact(problem, bodies, 0, clock, check, None if alone else shared, before)
     bodies, shared = condense(mesh_bodies(problem, width, grading, clock), problem, width, clock), Shared()
     if keep:
         keep.add(key, bodies, shared)
-    return solve_contact(problem, bodies, len(bodies), clock, steps, shared, before)
+    return solve_contact(problem, bodies, len(bodies), clock, check, shared, before)
 
 
 def solve_on_meshes(
@@ -75,15 +75,15 @@ def solve_on_meshes(
     problem: Problem,
     width: float,
     clock: Clock,
-    steps: int | None = None,
+    check: bool = False,
     before: MeshSolution | None = None,
 ) -> MeshSolution:
     """Solve ``problem`` on ``meshes``, in the order of the problem's parts.
 
-    ``width``, ``clock``, ``steps`` and ``before`` as for :func:`mesh_and_solve`.
+    ``width``, ``clock``, ``check`` and ``before`` as for :func:`mesh_and_solve`.
     """
     bodies = condense(meshes, problem, width, clock)
-    return solve_contact(problem, bodies, len(bodies), clock, steps, before=before)
+    return solve_contact(problem, bodies, len(bodies), clock, check, before=before)
 
 
 def solve_contact(
@@ -91,13 +91,13 @@ def solve_contact(
     bodies: tuple[CondensedBody, ...],
     factored: int,
     clock: Clock,
-    steps: int | None = None,
+    check: bool = False,
     shared: Shared | None = None,
     before: MeshSolution | None = None,
 ) -> MeshSolution:
     """Solve contact and friction of condensed ``bodies`` and find the zones.
 
-    ``factored`` is the number of factorisations made for them; ``clock``, ``steps`` and ``before`` as for
+    ``factored`` is the number of factorisations made for them; ``clock``, ``check`` and ``before`` as for
     :func:`mesh_and_solve`; ``shared`` is what earlier solutions on these bodies have found.
     """
     shared = shared or Shared()
@@ -107,7 +107,7 @@ def solve_contact(
         relative = shared.relative[problem.coupled]
     with clock.phase("contact"):
         line, both = bodies[0].body, relative.xy is not None
-        forces = _contact_forces(problem, relative, bodies[0], steps, shared, before)
+        forces = _contact_forces(problem, relative, bodies[0], check, shared, before)
         history, nodes, errors = forces.history, forces.nodes, forces.step_errors
         ends_under = partial(contact_ends, line, beta=problem.beta if both else 0.0)
         on_line = partial(_on_line, line, nodes)
@@ -173,7 +173,7 @@ def _contact_forces(
     problem: Problem,
     C: coupled.Relative,
     lower: CondensedBody,
-    steps: int | None,
+    check: bool,
     shared: Shared,
     before: MeshSolution | None,
 ) -> _ContactForces:
@@ -197,7 +197,7 @@ def _contact_forces(
         nodes = np.flatnonzero(history.bound > 0)
         most = np.maximum(*history.bounds) / problem.f if problem.pressing else None
         left: step_errors.Errors = {}
-        if steps and path.moves:
+        if check and path.moves:
             finer, *_ = coupled.march(*loaded, step_errors.other_steps(path), pressed, replace(along, trail=None), near)
             left = _path_errors(problem, line, history, finer)
         return _ContactForces(pressing, history.of(nodes), nodes, first, left, most=most, trail=trail)
@@ -205,7 +205,7 @@ def _contact_forces(
     arms = line.x if problem.turns else None
     if problem.pressing:
         presses = Presses(C.yy, opened, arms)
-        return _under_varying_pressure(problem, C, lower, presses, problem.pressing, steps)
+        return _under_varying_pressure(problem, C, lower, presses, problem.pressing, check)
     apart = -((line.x < before.left) | (line.x > before.right)).astype(np.int8) if before else None
     pressing = shared.press(C.yy, opened, arms, apart)
     nodes = np.flatnonzero(pressing.x > 0)
@@ -241,7 +241,7 @@ def _under_varying_pressure(
     lower: CondensedBody,
     presses: Presses,
     pressing: tuple[tuple[float, float], tuple[float, float]],
-    steps: int | None,
+    check: bool,
 ) -> _ContactForces:
     """Solve p anew at each step of the load path, and q of bodies that are not coupled; ``pressing`` are P and M at
     load points 1 and 2."""
@@ -261,15 +261,14 @@ def _under_varying_pressure(
         moved = np.array([lower.stretch[0], stretched(line.x, problem.origin)[1]])
 
         def along(path: Path) -> History:
-            return varying.march(line.x, C.xx, moved, problem.f, holding, path)  # type: ignore[arg-type]
+            return varying.march(line.x, C.xx, moved, problem.f, holding, path, problem.order)  # type: ignore[arg-type]
 
-        def errors(history: History, finer: History) -> step_errors.Errors:
-            on = [np.flatnonzero(each.bound > 0) for each in (history, finer)]
-            zones = stick_zone_of(line, on[0], history.of(on[0])), stick_zone_of(line, on[1], finer.of(on[1]))
-            return step_errors.halved(history, finer, zones, line.weights, half_width)
+        def errors(history: History, gradual: History) -> step_errors.Errors:
+            on = [np.flatnonzero(each.bound > 0) for each in (history, gradual)]
+            zones = stick_zone_of(line, on[0], history.of(on[0])), stick_zone_of(line, on[1], gradual.of(on[1]))
+            return step_errors.of_steps(history, gradual, zones, line.weights, half_width)
 
-        refine = None if steps is None else errors
-        history, left = follow_refined(along, path, problem.accuracy, refine, steps or 0)
+        history, left = follow_or_step(along, path, problem.accuracy, errors if check else None)
     done = [*presses.solutions, *(holding.solutions if holding is not presses else [])]
     most = np.maximum.reduce([each.x for each in done])
     together = replace(certified(done), x=second.x, rest=second.rest)

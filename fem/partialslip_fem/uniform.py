@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from partialslip.condensed.steps import MOST
 from partialslip.errors import InputError
 from partialslip.result import Clock
 from partialslip_fem import solving
@@ -52,7 +51,7 @@ def uniform(problem: Problem, size: float | None, width: float, clock: Clock, ke
     while True:
         reach = min(float(f"{reach:.2g}"), limit)
         grading = Grading((-reach, reach), {}, growth, size * a)
-        solution = solving.mesh_and_solve(problem, width * a, grading, clock, keep, MOST, solution)
+        solution = solving.mesh_and_solve(problem, width * a, grading, clock, keep, True, solution)
         meshes, factored = meshes + 1, factored + solution.factored
         iterations += solution.iterations
         if solution.enclosed:

@@ -11,7 +11,7 @@ from partialslip.condensed.bounded import Factored
 from partialslip.condensed.constant import march
 from partialslip.condensed.ends import stick_zone
 from partialslip.condensed.path import Path
-from partialslip.condensed.path_following import Follower
+from partialslip.condensed.path_following import Bounds, Follower
 from partialslip.halfplane.cells import compliance, forces, graded
 from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads
@@ -55,10 +55,10 @@ def loads(Qf, sf, **more):
 
 def followed(tangential, stretch, bound, path):
     """The forces at the ends of all legs of the first cycle, event by event."""
-    follower, at, found = Follower(tangential, bound), np.array(path.begin), [0 * bound]
+    follower, at, found = Follower(tangential), np.array(path.begin), [0 * bound]
     for point in (path.cycle[-1], *path.cycle):
         change = np.array(point) - at
-        found.append(follower.leg(found[-1], change[1:3] @ stretch, float(change[0])).forces)
+        found.append(follower.leg(Bounds.constant(bound), found[-1], change[1:3] @ stretch, float(change[0])).forces)
         at = np.array(point)
     return found[1:]
 

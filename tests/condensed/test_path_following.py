@@ -7,7 +7,7 @@ import pytest
 
 from partialslip.condensed import path_following
 from partialslip.condensed.bounded import solve_bounded
-from partialslip.condensed.path_following import Follower
+from partialslip.condensed.path_following import Bounds, Follower
 from partialslip.condensed.tableau import Tableau
 from partialslip.errors import PartialslipError
 from partialslip.halfplane.cells import compliance, forces
@@ -26,9 +26,9 @@ def hertz(cells=120):
 def loaded(load, problem, stages=()):
     """First loading, and the half-cycle after it."""
     (Qf, sf), (C, bound, x) = load, problem
-    follower = Follower(C, bound)
-    first = follower.leg(0 * bound, sf / 2 * x, np.pi / 2 * Qf)
-    return first, follower.leg(first.forces, -sf * x, -np.pi * Qf, stages)
+    follower = Follower(C)
+    first = follower.leg(Bounds.constant(bound), 0 * bound, sf / 2 * x, np.pi / 2 * Qf)
+    return first, follower.leg(Bounds.constant(bound), first.forces, -sf * x, -np.pi * Qf, stages)
 
 
 def random_problem(seed, largest=40):
@@ -44,9 +44,9 @@ def random_problem(seed, largest=40):
 
 
 def in_turn(C, bound, legs):
-    follower, found = Follower(C, bound), []
+    follower, found = Follower(C), []
     for g, Q in legs:
-        found.append(follower.leg(found[-1].forces if found else 0 * bound, g, Q))
+        found.append(follower.leg(Bounds.constant(bound), found[-1].forces if found else 0 * bound, g, Q))
     return found
 
 
@@ -89,14 +89,14 @@ def test_certificate_and_coulomb_on_the_way(seed):
     """At random places of a leg nodes that stick do not move, and nodes that slip lie on the bound that opposes them;
     by products with C alone."""
     C, bound, legs = random_problem(seed)
-    random, start, follower = np.random.default_rng(seed), 0 * bound, Follower(C, bound)
+    random, start, follower = np.random.default_rng(seed), 0 * bound, Follower(C)
     for g, Q in legs:
         at = np.sort(random.random(6))
-        leg = follower.leg(start, g, Q, at.tolist())
+        leg = follower.leg(Bounds.constant(bound), start, g, Q, at.tolist())
         assert leg.residual.max() <= CERTIFIED * bound.sum()
         assert leg.imbalance <= CERTIFIED * bound.sum()
         for (one, two), (before, after) in zip(itertools.pairwise(at), itertools.pairwise(leg.stages), strict=True):
-            part = Follower(C, bound).leg(before, (two - one) * g, (two - one) * Q)
+            part = Follower(C).leg(Bounds.constant(bound), before, (two - one) * g, (two - one) * Q)
             assert part.forces == pytest.approx(after, abs=1e-9)
             slip = (two - one) * g - C @ (after - before)
             between = (part.highest < bound) & (part.lowest > -bound)
@@ -112,10 +112,10 @@ def test_certificate_and_coulomb_on_the_way(seed):
 def test_conditions_of_the_rates(seed):
     """Within so short a leg that nothing happens, slip opposes traction at each node, and work is lost."""
     C, bound, legs = random_problem(seed)
-    follower, start = Follower(C, bound), 0 * bound
+    follower, start = Follower(C), 0 * bound
     for g, Q in legs:
-        leg = follower.leg(start, g, Q)
-        tiny = Follower(C, bound).leg(leg.forces, 1e-9 * g, 1e-9 * Q)
+        leg = follower.leg(Bounds.constant(bound), start, g, Q)
+        tiny = Follower(C).leg(Bounds.constant(bound), leg.forces, 1e-9 * g, 1e-9 * Q)
         assert (tiny.rest * leg.forces <= 1e-15).all()
         assert (np.abs(tiny.rest[np.abs(leg.forces) < (1 - 1e-6) * bound]) <= 1e-15).all()
         assert (leg.path >= np.abs(leg.rest) - 1e-12).all()
@@ -199,11 +199,11 @@ def test_both_ends_at_once():
 def test_dissipation_is_the_work_of_the_loads():
     """Over a steady cycle Q, on the displacement of a point that sticks, and tension do the work against friction."""
     (C, bound, x), (Qf, sf), at = hertz(), DRIFTS, np.linspace(0, 1, 2001)
-    follower, forces, lost, work = Follower(C, bound), 0 * bound, 0.0, 0.0
+    follower, forces, lost, work = Follower(C), 0 * bound, 0.0, 0.0
     sticks = int(np.argmin(np.abs(4 * x + 0.5)))
     for number in range(21):
         way = (-1) ** number * (2 if number else 1) / 2
-        leg = follower.leg(forces, way * sf * x, way * np.pi * Qf, at.tolist())
+        leg = follower.leg(Bounds.constant(bound), forces, way * sf * x, way * np.pi * Qf, at.tolist())
         if number > 18:
             shift = (leg.stages - forces) @ C[sticks] - way * sf * x[sticks] * at
             work += float(np.trapezoid(leg.stages.sum(axis=1), shift) + np.trapezoid(leg.stages @ (way * sf * x), at))
@@ -216,7 +216,7 @@ def test_dissipation_is_the_work_of_the_loads():
 def test_contact_that_slides():
     C, bound, x = hertz(20)
     with pytest.raises(PartialslipError, match=r"slides; \|Q\| must be less than f P"):
-        Follower(C, bound).leg(0 * bound, x, 1.001 * float(bound.sum()))
+        Follower(C).leg(Bounds.constant(bound), 0 * bound, x, 1.001 * float(bound.sum()))
 
 
 def residual(load=DRIFTS):
@@ -284,7 +284,8 @@ def corrected():
     the nodes at their bounds."""
     C, bound, x = hertz()
     start = np.clip(1.1 * bound * np.sin(9 * x), -bound, bound)
-    leg = path_following._Leg(C, np.diag(C), bound, Tableau(np.linalg.inv(C)), start, 0 * bound, 0.0)
+    leg = path_following._Leg(C, np.diag(C), Bounds.constant(bound), Tableau(np.linalg.inv(C)), start, 0 * bound, 0.0)
+    leg._enter(0)
     leg._rest += 1e-12 * np.cos(40 * x)
     before = np.abs(leg._off()).max()
     leg._refine()

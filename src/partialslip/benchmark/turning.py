@@ -7,7 +7,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from partialslip.arrays import Array
-from partialslip.condensed.path_following import Follower, Leg
+from partialslip.condensed.path_following import Bounds, Follower, Leg
 from partialslip.gradual import may_turn_round
 from partialslip.halfplane import contact
 from partialslip.halfplane.cells import compliance, forces
@@ -67,12 +67,13 @@ def _half(Qf: float, sf: float, count: int, shape: Shape) -> _Half:
     vertices = np.linspace(-1, whole * width - 1, whole + 1)
     vertices[-1] = 1.0  # the last cell has what is left
     bound = np.pi / 2 * forces(shape, vertices)
-    follower = Follower(compliance(vertices / 2), bound)
+    held = Bounds.constant(bound)
+    follower = Follower(compliance(vertices / 2))
     g, Q = sf * (vertices[1:] + vertices[:-1]) / 8, np.pi * Qf
-    leg = follower.leg(np.zeros_like(bound), g / 2, Q / 2)
+    leg = follower.leg(held, np.zeros_like(bound), g / 2, Q / 2)
     for number in range(_HALF_CYCLES):
         start, sign = leg.forces, (number % 2) * 2 - 1
-        leg = follower.leg(start, sign * g, sign * Q)
+        leg = follower.leg(held, start, sign * g, sign * Q)
     return _Half(vertices, bound, (leg.forces - start) / np.diff(vertices), leg)
 
 

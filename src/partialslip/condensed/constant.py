@@ -18,7 +18,7 @@ from partialslip.arrays import Array, Mask
 from partialslip.condensed.bounded import Factored, Sides, Solution, solve_bounded
 from partialslip.condensed.history import History, Steps, follow, resting, still
 from partialslip.condensed.path import Path
-from partialslip.condensed.path_following import Follower, Leg, SlidesError, noise
+from partialslip.condensed.path_following import Bounds, Follower, Leg, SlidesError, noise
 
 _AT = 1e-12  # distance from the bound, relative, at which a node is on it
 _LEFT = 0.9, 0.5  # of a leg: where slip on the way is looked at
@@ -220,13 +220,13 @@ class _Contact:
         return True
 
     def _follow(self, start: Array, load: Array, change: Array) -> _Done:
-        self._follower = self._follower or Follower(self.factored.C, self._bound, self.factored.inverse)
+        self._follower = self._follower or Follower(self.factored.C, self.factored.inverse)
         # a state of another mesh has the load, and keeps the bounds, to an error of that mesh only
         start = np.clip(start, -self._bound, self._bound)
         off = float(load[0] - change[0]) - float(start.sum())
         Q = float(change[0]) + (off if abs(off) > _AT * float(self._bound.sum()) else 0.0)
         try:
-            leg = self._follower.leg(start, change[1:3] @ self._stretch, Q, self._stages)
+            leg = self._follower.leg(Bounds.constant(self._bound), start, change[1:3] @ self._stretch, Q, self._stages)
         except SlidesError:  # so near to sliding that rounding lets no node stick: a step still has an answer
             return _Done(start, load, change, self._one_step(start, float(load[0]), change, None))
         found = Solution(leg.forces, leg.rest, leg.residual, leg.imbalance, 1, leg.pivots)

@@ -42,8 +42,9 @@ class History:
     bounds : two (n,) arrays
         f times the normal forces at load points 1 and 2.
     room : (n,) array or None
-        Where the pressure varies: the least room of q up to f p in the last cycle, plus that down to -f p; zero where a
-        node slips both ways, or is open at times. None under constant P, where it is 2 f p less the range of q.
+        Where the pressure varies, out of phase: the least room of q up to f p in the last cycle, plus that down to
+        -f p; zero where a node slips both ways, or is open at times. None elsewhere: it is f (p_1 + p_2) less the
+        change of q without sign.
     slip : (n,) array
         Slip from load point 1 to 2 of the last cycle.
     net_slip : (n,) array
@@ -61,12 +62,12 @@ class History:
     around : Steps
         The load steps of the last cycle.
     turns : bool
-        At constant pressure, in phase: whether slip turns round on a leg of the last cycle.
+        In phase: whether slip turns round on a leg of the last cycle.
     changed : (n,) array or None
-        At constant pressure, in phase: share of the leg to load point 2 at which a node last began to slip or to stick;
-        nan where it did neither. None if the leg was one step.
+        In phase: share of the leg to load point 2 at which a node last began to slip or to stick; nan where it did
+        neither. None if the leg was not followed.
     events : int
-        At constant pressure: number of instants at which rates change, on legs that are followed.
+        Number of instants at which rates change, on legs that are followed.
     """
 
     path: Path
@@ -309,7 +310,7 @@ def follow(path: Path, advance: Advance, before: Solution, hastens: bool = False
         slip = -np.array([step.rest for step in steps])
         room = (bounds - forces).min(axis=0) + (bounds + forces).min(axis=0)
         anew = {
-            "room": np.maximum(room, 0.0),
+            "room": None if path.in_phase else np.maximum(room, 0.0),
             "held": (bounds > 0).all(axis=0),
             "slipped": np.array([slip.clip(0).sum(axis=0), -slip.clip(None, 0).sum(axis=0)]),
         }

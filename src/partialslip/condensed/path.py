@@ -31,7 +31,9 @@ class Path:
     where the scene does not tell how many there are, they lead to the steady state.
 
     ``substeps`` is the smallest number of steps between points. ``ways`` are the steps as ascending fractions up to 1:
-    to the last point first, then to each point of the cycle; default: ``substeps`` equal steps.
+    to the last point first, then to each point of the cycle; default: ``substeps`` equal steps. A path that is
+    ``followed`` has no steps: where the pressure varies, each leg is followed event by event. ``turns`` tells whether
+    slip is known to turn round on the way.
     """
 
     cycle: tuple[tuple[float, ...], ...]
@@ -45,6 +47,8 @@ class Path:
     one_way: bool = False
     ways: tuple[tuple[float, ...], ...] = ()
     settled: float = 0.0
+    followed: bool = False
+    turns: bool = False
 
     @property
     def fractions(self) -> tuple[tuple[float, ...], ...]:

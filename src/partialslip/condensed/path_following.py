@@ -1,18 +1,24 @@
 """Coulomb friction along a straight leg of the load path, exactly in time, event by event.
 
-At constant pressure the rates of all nodes are constant between two events. At an event a node reaches its bound and
-begins to slip; held nodes whose slip would turn round stick again. Each change of a node is a principal pivot
-(:class:`partialslip.condensed.tableau.Tableau`). There are no load steps, and no errors of load steps. This is
-parametric quadratic programming; the rates after an event are found by principal pivoting (Keller, 1973).
+The rates of all nodes are constant between two events. At an event a node reaches its bound and begins to slip; held
+nodes whose slip would turn round stick again; where the pressure varies, nodes touch and open. Each change of a node is
+a principal pivot (:class:`partialslip.condensed.tableau.Tableau`). There are no load steps, and no errors of load
+steps. This is parametric quadratic programming; the rates after an event are found by principal pivoting (Keller,
+1973).
+
+Nodes on a bound s f p have the rates s f p', and what they have besides, tau = T' - s f p', is what obeys the law of
+constant bounds: tau = 0 where they slip, and s tau <= 0 where they stick. Open nodes are nodes that slip without
+forces.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Mask
+from partialslip.arrays import Array, Indices, Mask
 from partialslip.condensed.bounded import inverse
 from partialslip.condensed.tableau import Tableau
 from partialslip.errors import PartialslipError
@@ -29,6 +35,40 @@ class SlidesError(PartialslipError):
     """No node sticks."""
 
 
+class Bounds(NamedTuple):
+    """f times the normal forces along a leg: ``values`` (k + 1, n) where lambda is ``at`` (k + 1,), from 0 to 1, linear
+    between. Nodes touch and open at these lambda only: they are open between two zeros."""
+
+    at: Array
+    values: Array
+
+    @classmethod
+    def constant(cls, values: Array) -> "Bounds":
+        """Constant bounds ``values`` (n,)."""
+        return cls(np.array([0.0, 1.0]), np.array([values, values]))
+
+    @property
+    def reversed(self) -> "Bounds":
+        """The same on the way back."""
+        return Bounds(1.0 - self.at[::-1], self.values[::-1])
+
+    def of(self, nodes: Indices) -> "Bounds":
+        """Bounds of some ``nodes`` only (indices)."""
+        return self._replace(values=self.values[:, nodes])
+
+    def times(self, factor: float) -> "Bounds":
+        """Bounds times a ``factor``."""
+        return self._replace(values=factor * self.values)
+
+    def stages(self, shares: Sequence[float]) -> Array:
+        """Bounds (s, n) at the ``shares`` of the leg (s,)."""
+        place = np.interp(shares, self.at, np.arange(len(self.at)))
+        before = np.minimum(place.astype(np.int64), len(self.at) - 2)
+        weight = (place - before)[:, None]
+        result: Array = (1 - weight) * self.values[before] + weight * self.values[before + 1]
+        return result
+
+
 @dataclass(frozen=True)
 class Leg:
     """Tangential forces and slip of n nodes along a leg, on which lambda goes from 0 to 1.
@@ -38,7 +78,7 @@ class Leg:
     forces : (n,) array
         Tangential forces T at the end.
     rest : (n,) array
-        C (T - T_start) - g - shift: minus the slip.
+        Minus the slip of nodes in contact: C (T - T_start) - g - shift at nodes that never open.
     path : (n,) array
         Length of the path of slip, \\|slip\\| added up both ways.
     lowest, highest : (n,) arrays
@@ -47,6 +87,8 @@ class Leg:
         lambda at which a node last began to slip, and at which it last began to stick again; nan: never.
     slips : (n,) bool array
         Nodes that slip at the end.
+    dissipated : float
+        Work against friction.
     stages : (s, n) array
         Forces at the requested stages.
     residual : (n,) array
@@ -65,6 +107,7 @@ class Leg:
     began: Array
     stuck: Array
     slips: Mask
+    dissipated: float
     stages: Array
     residual: Array
     imbalance: float
@@ -92,23 +135,23 @@ class Follower:
     ----------
     C : (n, n) array
         Relative compliance of the nodes, symmetric positive definite.
-    bound : (n,) array
-        f times the normal forces, > 0, constant.
     inverted : (n, n) array, optional
         Inverse of ``C``, where it is known.
     """
 
-    def __init__(self, C: Array, bound: Array, inverted: Array | None = None) -> None:
-        self._C, self._bound, self._diagonal = C, bound, np.diag(C).copy()
+    def __init__(self, C: Array, inverted: Array | None = None) -> None:
+        self._C, self._diagonal = C, np.diag(C).copy()
         self._tableau = Tableau(inverse(C) if inverted is None else inverted)
 
-    def leg(self, start: Array, g: Array, Q: float, stages: Sequence[float] = ()) -> Leg:
+    def leg(self, bounds: Bounds, start: Array, g: Array, Q: float, stages: Sequence[float] = ()) -> Leg:
         """Follow one leg.
 
         Parameters
         ----------
+        bounds : Bounds
+            f times the normal forces.
         start : (n,) array
-            Tangential forces at the beginning, |start| <= bound.
+            Tangential forces at the beginning, not beyond the bounds.
         g : (n,) array
             Change of the free relative displacements over the leg, up to a rigid shift.
         Q : float
@@ -123,65 +166,108 @@ class Follower:
         PartialslipError
             If nodes change between sticking and slipping again and again, which only rounding errors can cause.
         """
-        return _Leg(self._C, self._diagonal, self._bound, self._tableau, start, g, Q).followed(stages)
+        return _Leg(self._C, self._diagonal, bounds, self._tableau, start, g, Q).followed(stages)
 
 
 class _Leg:
     """A leg on its way: forces, rates, and which nodes stick.
 
     ``sides`` (n,) are 1 and -1 at nodes that lie on the upper and the lower bound, 0 between the bounds. Slipping nodes
-    lie on a bound. Of the others, those on a bound have just been released: they may not be pushed beyond it.
+    lie on a bound, or are open. Of the others, those on a bound have just been released: they may not be pushed beyond
+    it. ``along`` (n,) are the rates with which nodes follow their bounds.
     """
 
     def __init__(
-        self, C: Array, diagonal: Array, bound: Array, tableau: Tableau, start: Array, g: Array, Q: float
+        self, C: Array, diagonal: Array, bounds: Bounds, tableau: Tableau, start: Array, g: Array, Q: float
     ) -> None:
-        self._C, self._diagonal, self._bound, self._tableau = C, diagonal, bound, tableau
+        self._C, self._diagonal, self._bounds, self._tableau = C, diagonal, bounds, tableau
         self._start, self._g, self._Q = start, g, Q
-        count = len(bound)
+        self._least = _AT * bounds.values.max(axis=0)  # distance from the bound that is none
+        count = len(start)
+        self._bound, self._slope = bounds.values[0].copy(), np.zeros(count)
         self._forces = start.copy()
-        self._sides = np.where(np.abs(start) >= (1 - _AT) * bound, np.sign(start), 0).astype(np.int8)
+        on = (np.abs(start) >= self._bound - self._least) & (self._bound > 0)
+        self._sides = np.where(on, np.sign(start), 0).astype(np.int8)
+        self._open = np.zeros(count, dtype=bool)
         self._at, self._rest, self._path, self._shift = 0.0, np.zeros(count), np.zeros(count), 0.0
+        self._slip, self._dissipated = np.zeros(count), 0.0
         self._lowest, self._highest = start.copy(), start.copy()
+        self._beyond = np.zeros(count)
         self._began, self._stuck = np.full(count, np.nan), np.full(count, np.nan)
-        self._begin()
-        self._checked = self._tableau.pivots
+        self._along = np.zeros(count)
         self._pivots = 0
+        self._checked = 0
 
     def followed(self, stages: Sequence[float]) -> Leg:
         wanted, states, events = [*stages], list[Array](), 0
-        while True:
-            self._settle()
-            if self._tableau.pivots - self._checked >= _CHECKED:
-                self._check()
-            node, step = self._next()
-            rate = self._rate()
-            while wanted and wanted[0] <= self._at + step:
-                states.append(self._forces + (wanted.pop(0) - self._at) * rate)
-            self._advance(rate, step)
-            if node is None:
-                break
-            self._sides[node] = 1 if rate[node] > 0 else -1
-            self._forces[node] = self._sides[node] * self._bound[node]
-            events += 1
-        return self._result(np.array(states).reshape(-1, len(rate)), events)
+        for piece, end in enumerate(self._bounds.at[1:].tolist()):
+            self._enter(piece)
+            while True:
+                self._settle()
+                if self._tableau.pivots - self._checked >= _CHECKED:
+                    self._check()
+                node, way, step = self._next(end)
+                rate = self._rate()
+                while wanted and wanted[0] <= self._at + step:
+                    states.append(self._forces + (wanted.pop(0) - self._at) * rate)
+                self._advance(rate, step)
+                if node is None:
+                    break
+                self._put(node, way)
+                self._forces[node] = way * self._bound[node]
+                events += 1
+            self._at = end
+        return self._result(np.array(states).reshape(-1, len(self._forces)), events)
+
+    def _enter(self, piece: int) -> None:
+        """Begin a piece of the leg, in which no node touches or opens."""
+        (begin, end), (before, after) = (each[piece : piece + 2] for each in self._bounds)
+        self._bound, self._slope = before.copy(), (after - before) / (end - begin)
+        was, self._open = self._open, (before <= 0) & (after <= 0)
+        self._forces = np.where(self._sides != 0, self._sides * before, self._forces)
+        closing = self._open & ~was
+        self._beyond = np.maximum(self._beyond, np.where(closing, np.abs(self._forces), 0.0))
+        self._forces[closing], self._sides[closing] = 0.0, 0
+        if piece == 0:
+            self._along = self._sides * self._slope
+            self._begin()
+            self._checked = self._tableau.pivots
+            return
+        for node in np.flatnonzero(closing & self._tableau.sticks).tolist():
+            self._change(node)
+        for node in np.flatnonzero(was & ~self._open).tolist():
+            self._sides[node] = self._beside(node, was)
+            if self._sides[node] == 0:
+                self._change(node)
+        self._along = self._sides * self._slope
+        self._solve()
+
+    def _beside(self, node: int, was: Mask) -> int:
+        """Bound on which nodes slip beside the ``node`` that touches; 0 if they stick. Open nodes ``was`` (n,)."""
+        near = [each for each in (node - 1, node + 1) if 0 <= each < len(was) and not (was[each] or self._open[each])]
+        return int(self._sides[near[0]]) if near and not self._tableau.sticks[near[0]] else 0
+
+    def _change(self, node: int) -> None:
+        """Let the ``node`` stick if it is open, and be open if it sticks."""
+        self._tableau.pivot(node, self._tableau.column(node))
+        self._pivots += 1
 
     def _result(self, stages: Array, events: int) -> Leg:
         self._refine()
         off = np.abs(self._off()) / self._diagonal
         change = self._forces - self._start
-        beyond = np.maximum(np.maximum(self._highest, -self._lowest) - self._bound, 0.0)
         return Leg(
             forces=self._forces,
-            rest=self._rest,
+            rest=self._slip,
             path=self._path,
             lowest=self._lowest,
             highest=self._highest,
             began=self._began,
             stuck=self._stuck,
-            slips=~self._tableau.sticks,
+            slips=~(self._tableau.sticks | self._open),
+            dissipated=self._dissipated,
             stages=stages,
-            residual=np.maximum(off, beyond),
+            residual=np.maximum(off, self._beyond),
             imbalance=abs(float(change.sum()) - self._Q),
             events=events,
             pivots=self._pivots,
@@ -209,9 +295,11 @@ class _Leg:
             slip = la.solve(columns[give], excess)
             p = alone + columns @ slip
         self._forces = np.clip(self._forces - np.where(sticks, p[:-1], 0.0), -self._bound, self._bound)
-        self._rest = self._rest + np.where(sticks, 0.0, p[:-1])
-        self._rest[give] += slip
-        self._path = np.maximum(self._path, np.abs(self._rest))
+        more = np.where(sticks, 0.0, p[:-1])
+        more[give] += slip
+        self._rest = self._rest + more
+        self._slip = self._slip + np.where(self._open, 0.0, more)
+        self._path = np.maximum(self._path, np.abs(self._slip))
         self._shift += float(p[-1])
 
     def _off(self) -> Array:
@@ -222,36 +310,43 @@ class _Leg:
     def _begin(self) -> None:
         """Begin with the nodes that slipped last, or with none: whichever is nearer to the rates of this leg."""
         tableau = self._tableau
-        slipping = ~tableau.sticks
+        slipping, free = ~tableau.sticks, self._open | (self._sides != 0)
         if slipping.any():
-            if not self._sides[slipping].all():
-                tableau.restart(np.flatnonzero(slipping & (self._sides != 0)))
+            if not (free[slipping].all() and slipping[self._open].all()):
+                tableau.restart(np.flatnonzero(self._open | (slipping & free)))
             self._solve()
             wrong = np.count_nonzero(self._room() < -self._tolerance())
-            if 2 * wrong <= np.count_nonzero(~tableau.sticks):
+            if 2 * wrong <= np.count_nonzero(~(tableau.sticks | self._open)):
                 return
-            tableau.restart(np.empty(0, dtype=np.int64))
+        if slipping.any() or self._open.any():
+            tableau.restart(np.flatnonzero(self._open))
         self._solve()
 
     def _solve(self) -> None:
-        self._p = self._tableau.solve(self._g, self._Q)
+        self._p = self._tableau.solve(self._g, self._Q, self._along)
         self._noise = noise(self._rate(), self._g, float(self._p[-1]), self._diagonal)
+
+    def _put(self, node: int, side: int) -> None:
+        """Let the ``node``, which sticks, be on the bound ``side``, or 0, between the bounds."""
+        self._sides[node] = side
+        self._p[node] += side * self._slope[node] - self._along[node]
+        self._along[node] = side * self._slope[node]
 
     def _rate(self) -> Array:
         """T' (n,)."""
-        result: Array = np.where(self._tableau.sticks, -self._p[:-1], 0.0)
+        result: Array = np.where(self._tableau.sticks, -self._p[:-1], 0.0) + self._along
         return result
 
     def _room(self) -> Array:
-        """What must not be negative (n,): T' away from the bound at nodes on it that stick, the rate of slip along T at
-        nodes that slip; 0 at the other nodes."""
+        """What must not be negative (n,): T' away from the moving bound at nodes on it that stick, the rate of slip
+        along T at nodes that slip; 0 at the other nodes."""
         result: Array = np.where(self._tableau.sticks, self._sides, -self._sides) * self._p[:-1]
         return result
 
     def _tolerance(self) -> Array:
         """What of :meth:`_room` cannot be told from zero: rates that change forces by less than ``_AT`` of the bound
         over the leg, or rounding errors."""
-        result: Array = np.maximum(self._noise, _AT * self._bound) * np.where(self._tableau.sticks, 1.0, self._diagonal)
+        result: Array = np.maximum(self._noise, self._least) * np.where(self._tableau.sticks, 1.0, self._diagonal)
         return result
 
     def _settle(self) -> None:
@@ -318,25 +413,36 @@ class _Leg:
             self._settle()
         self._checked = tableau.pivots
 
-    def _next(self) -> tuple[int | None, float]:
-        """The node that reaches its bound next, and the lambda up to there; None if none does in this leg."""
-        rate = self._rate()
-        bound = np.copysign(self._bound, rate)
-        moves = (rate != 0) & (self._sides * rate <= 0)
-        steps = np.divide(bound - self._forces, rate, out=np.full(len(rate), np.inf), where=moves)
-        node = int(np.argmin(steps))
-        left = 1.0 - self._at
-        return (node, max(float(steps[node]), 0.0)) if steps[node] < left else (None, left)
+    def _next(self, end: float) -> tuple[int | None, int, float]:
+        """The node that reaches a bound next, which one, and the lambda up to there; None if none does before the
+        ``end`` of the piece."""
+        rate, left = self._rate(), end - self._at
+        first, way, least = None, 0, left
+        for side in (1, -1):
+            closing = side * rate - self._slope
+            moves = self._tableau.sticks & (closing > 0) & (side * self._sides <= 0)
+            distance = np.maximum(self._bound - side * self._forces, 0.0)
+            steps = np.divide(distance, closing, out=np.full(len(rate), np.inf), where=moves)
+            node = int(np.argmin(steps))
+            if steps[node] < least:
+                first, way, least = node, side, float(steps[node])
+        return first, way, least
 
     def _advance(self, rate: Array, step: float) -> None:
         if step > 0:
             slip = np.where(self._tableau.sticks, 0.0, step * self._p[:-1])
-            self._forces += step * rate
             self._rest += slip
+            slip[self._open] = 0.0
+            self._slip += slip
             self._path += np.abs(slip)
+            self._forces += step * rate
+            self._dissipated += float(np.abs(slip) @ (self._bound + step / 2 * self._slope))
+            self._bound += step * self._slope
             self._shift += step * float(self._p[-1])
             np.minimum(self._lowest, self._forces, out=self._lowest)
             np.maximum(self._highest, self._forces, out=self._highest)
+            np.maximum(self._beyond, np.abs(self._forces) - self._bound, out=self._beyond)
             self._at += step
-            released = self._tableau.sticks & (self._bound - self._sides * self._forces > _AT * self._bound)
-            self._sides[released] = 0
+            away = self._bound - self._sides * self._forces > self._least
+            for node in np.flatnonzero(self._tableau.sticks & away & (self._sides != 0)).tolist():
+                self._put(node, 0)

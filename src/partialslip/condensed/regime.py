@@ -8,7 +8,7 @@ from partialslip.bars import Asked
 from partialslip.condensed.end_slips import end_slips
 from partialslip.condensed.ends import StickInterval
 from partialslip.condensed.history import STEADY, History
-from partialslip.result import FRICTIONLESS, EndSlip, Regime
+from partialslip.result import FRICTIONLESS, PATH_DEPENDENT, EndSlip, Regime
 from partialslip.scene import Scene
 
 _FEW_STEPS = 8  # from load point to load point: with fewer, p while a node slips is known roughly where it varies
@@ -75,7 +75,10 @@ def steady_state(
             "tractions repeat, slip does not: every cycle adds up to "
             f"{history.ratchets:.1g} times the slip of half a cycle",
         )
-    if anew and history.dissipated > _WORK * history.bound.sum() and history.path.most_steps < _FEW_STEPS:
+    if anew and history.path.turns and regime in ("small tension", "large tension"):
+        notes += (f"{PATH_DEPENDENT}between the load points; m, n, q are those of loads that change gradually",)
+    few = not history.path.followed and history.path.most_steps < _FEW_STEPS
+    if anew and few and history.dissipated > _WORK * history.bound.sum():
         steps = "a step" if history.path.most_steps == 1 else f"{history.path.most_steps} steps"
         notes += (f"slip and dissipated energy are rough: {steps} from load point to load point (load.steps)",)
     if apart:

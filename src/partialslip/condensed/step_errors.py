@@ -26,31 +26,30 @@ def steps_matter(errors: Mapping[str, float], accuracy: float) -> bool:
     return any(error > _NOTHING * BARS[key] * accuracy for key, error in errors.items())
 
 
-def halved(
-    history: History, finer: History, zones: tuple[StickInterval, StickInterval], weights: Array, half_width: float
+def of_steps(
+    history: History, gradual: History, zones: tuple[StickInterval, StickInterval], weights: Array, half_width: float
 ) -> Errors:
-    """Errors of m and n (in contact half-widths), q, q1 and q2 (relative L2): twice the change due to halving all
-    steps, as errors are of first order in the steps.
+    """Errors of m and n (in contact half-widths), q, q1 and q2 (relative L2) of a history in steps.
 
     Parameters
     ----------
-    history, finer : History
-        With the steps taken, and with all steps halved.
+    history, gradual : History
+        With the steps taken, and without any.
     zones : two StickInterval
-        Stick zones of ``history`` and ``finer``.
+        Stick zones of ``history`` and ``gradual``.
     weights : (n,) array
         Factors that turn tractions at the nodes into forces.
     half_width : float
         Half-width of the contact.
     """
     held, (zone, other) = np.sqrt(weights), zones
-    found = {"m": 2 * abs(zone.left - other.left) / half_width, "n": 2 * abs(zone.right - other.right) / half_width}
+    found = {"m": abs(zone.left - other.left) / half_width, "n": abs(zone.right - other.right) / half_width}
     for key in _SHEARS:
         forces = getattr(history, key)
         size = max(float(np.linalg.norm(forces / held)), _least(history, held) * (2 if key == "change" else 1))
         if size > 0:
-            off = float(np.linalg.norm((getattr(finer, key) - forces) / held))
-            found["q" if key == "change" else key] = 2 * off / size
+            off = float(np.linalg.norm((getattr(gradual, key) - forces) / held))
+            found["q" if key == "change" else key] = off / size
     return found
 
 
@@ -62,13 +61,13 @@ def along_path(
     weights: Array,
     half_width: float,
 ) -> Errors:
-    """Errors of :func:`halved` and, as p varies with q in coupled bodies, of a, left and right (in contact half-widths)
-    and of p (relative L2).
+    """Errors of :func:`of_steps` and, as p varies with q in coupled bodies, of a, left and right (in contact
+    half-widths) and of p (relative L2): twice the change due to finer steps, as errors are of first order in the steps.
 
-    Parameters as for :func:`halved`; ``finer`` follows :func:`other_steps`. ``ends`` gives the left and right ends of
+    Parameters as for :func:`of_steps`; ``finer`` follows :func:`other_steps`. ``ends`` gives the left and right ends of
     the contact at load points 1 and 2, four numbers.
     """
-    found = halved(history, finer, zones, weights, half_width)
+    found = {key: 2 * error for key, error in of_steps(history, finer, zones, weights, half_width).items()}
     off = 2 * np.abs(np.subtract(ends(history), ends(finer))) / half_width
     found |= {"a": float(off[2:].mean()), "left": float(off[::2].max()), "right": float(off[1::2].max())}
     p, other = (each.bounds[1] / np.sqrt(weights) for each in (history, finer))

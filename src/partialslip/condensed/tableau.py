@@ -82,13 +82,25 @@ class Tableau:
         self.sticks[node] = not self.sticks[node]
         self.pivots += 1
 
-    def solve(self, g: Array, Q: float) -> Array:
-        """Unknown rates p (n + 1,) under ``g`` (n,), the rate of the free displacements, and ``Q``, that of the sum."""
+    def solve(self, g: Array, Q: float, along: Array | float = 0.0) -> Array:
+        """Unknown rates p (n + 1,) under ``g`` (n,), the rate of the free displacements, and ``Q``, that of the sum.
+
+        With ``along`` (n,), which is T' at the slipping nodes, p holds along - T' where nodes stick.
+        """
         self._add()
-        known = np.append(np.where(self.sticks, g, 0.0), Q)
+        known = np.append(np.where(self.sticks, g, along), Q)
         p: Array = la.blas.dsymv(1.0, self._V, known, lower=1)
-        p[:-1] -= np.where(self.sticks, 0.0, g)
+        p[:-1] += np.where(self.sticks, along, -g)
         return p
+
+    def exchange(self, node: int, *unknown: Array) -> None:
+        """:meth:`pivot` at the ``node``; ``unknown`` rates p (n + 1,) each become those after it."""
+        column, sticks = self.column(node), self.sticks[node]
+        for p in unknown:
+            rate = -p[node] / column[node]
+            p += rate * column
+            p[node] = rate if sticks else -rate
+        self.pivot(node, column)
 
     def _add(self) -> None:
         """Add all updates to V."""

@@ -11,16 +11,19 @@ and of tension this is exact up to relative errors of d^2. L is linear over the 
 consistent with the q to which it leads.
 """
 
-from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 import scipy.linalg as la
 
 from partialslip.arrays import Array, Mask, submatrix
+from partialslip.condensed import varying_path
 from partialslip.condensed.bounded import Sides, Solution, solve_bounded, spread
 from partialslip.condensed.history import History, follow, resting
+from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path
+from partialslip.condensed.path_following import SlidesError
 
 _INSIDE = 0.4  # of the distance from the end at the beginning of a step: where the ratio L is taken
 _FEW = 3  # nodes that touch on one side from which on L is linear, and not constant
@@ -32,10 +35,12 @@ def march(
     tangential: Array,
     stretch: Array,
     f: float,
-    press: Callable[[float, float], Solution],
+    press: Presses,
     path: Path,
+    few: int = 0,
 ) -> History:
-    """Follow the path with a new pressure at each step; every step has a certificate.
+    """Follow the path with a new pressure at each step, or event by event (:attr:`Path.followed`); every step, and
+    every leg, has a certificate.
 
     Parameters
     ----------
@@ -45,12 +50,17 @@ def march(
         As for :func:`partialslip.condensed.history.march`, at all nodes.
     f : float
         Coefficient of friction.
-    press : callable
-        ``press(P, M)``: normal forces (n,) under these loads. Where surfaces stick while the contact grows, they must
-        come from the compliance ``tangential``, which is also the one along y of half-planes: a difference between the
+    press : Presses
+        Normal forces (n,) under any P and M. Where surfaces stick while the contact grows, they must come from the
+        compliance ``tangential``, which is also the one along y of half-planes: a difference between the
         discretisations of both would be locked in.
     path : Path
+    few : int
+        As for :func:`partialslip.condensed.varying_path.march`.
     """
+    if path.followed:
+        with suppress(SlidesError):  # so near to sliding that rounding lets no node stick: steps still have an answer
+            return varying_path.march(tangential, stretch, f, press, path, few)
     first, *ways = (len(way) for way in path.fractions)
     cycle = sum(ways)
     sides: list[Sides] = []

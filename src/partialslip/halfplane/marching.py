@@ -21,8 +21,8 @@ from partialslip.condensed.history import SHEARS, History, certificate, last_cyc
 from partialslip.condensed.path import Path, load_path, stretched
 from partialslip.condensed.regime import doubts, steady_state
 from partialslip.condensed.restart import begun, known_to
-from partialslip.condensed.step_errors import halved, steps_matter
-from partialslip.condensed.steps import MOST, follow_refined
+from partialslip.condensed.step_errors import of_steps, steps_matter
+from partialslip.condensed.steps import follow_or_step
 from partialslip.condensed.threads import one_thread
 from partialslip.halfplane.cell_stress import CellStresses
 from partialslip.halfplane.cells import compliance, graded, norm_parts, off_cells, on_cells, relative_change
@@ -243,17 +243,17 @@ def _solve_level(
                 every[on] = values
                 return every
 
-            return within(stick_zone(x[on], of.bound[on], of.change[on], vertices, spread), normal.common, vertices)
+            here = of.of(on)
+            found = stick_zone(x[on], here.bound, here.change, vertices, spread, here.changed, here.unsteady)
+            return within(found, normal.common, vertices)
 
-        def errors(of: History, finer: History) -> dict[str, float]:
-            return halved(of, finer, (zone(of), zone(finer)), np.diff(vertices), normal.largest.a / frame.a)
+        def errors(of: History, gradual: History) -> dict[str, float]:
+            return of_steps(of, gradual, (zone(of), zone(gradual)), np.diff(vertices), normal.largest.a / frame.a)
 
-        most = 0 if clock.limited else MOST  # the cost of more steps is not predicted
-        wanted = errors if choose else None
         if path.presses_anew:
             presses = normal.presses(vertices, normally)
             along = partial(varying.march, x, tangential, moved, scene.friction.f, presses)
-            history, stepped = follow_refined(along, path, _accuracy(scene), wanted, most)
+            history, stepped = follow_or_step(along, path, _accuracy(scene), errors if choose else None)
         else:
             bound = scene.friction.f * normal.forces(frame, vertices)
             history, stepped = constant.march(tangential, moved, bound, path), {}

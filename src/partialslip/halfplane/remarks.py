@@ -1,7 +1,6 @@
 """What a result of the exact method leaves undetermined, and its notes."""
 
-from partialslip.halfplane.levels import PATH_DEPENDENT
-from partialslip.result import FRICTIONLESS, Regime
+from partialslip.result import FRICTIONLESS, PATH_DEPENDENT, Regime
 
 
 def undetermined(regime: Regime, turns: bool, found: object) -> dict[str, str]:

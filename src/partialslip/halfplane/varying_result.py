@@ -7,7 +7,6 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
-from partialslip.halfplane.levels import PATH_DEPENDENT
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.mean import Path, common
 from partialslip.halfplane.remarks import no_stresses, remarks, undetermined
@@ -16,7 +15,7 @@ from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tractions import sample
 from partialslip.halfplane.varying import Cycle, steady_cycle
 from partialslip.plan import Plan
-from partialslip.result import Clock, Regime, Result, Slip, StressAt, Traction
+from partialslip.result import PATH_DEPENDENT, Clock, Regime, Result, Slip, StressAt, Traction
 from partialslip.scene import Scene
 
 _ROUNDING = 1e-9  # lengths in a, tractions in f p0

@@ -6,6 +6,7 @@ from partialslip.result.fields import DeformedBody as DeformedBody
 from partialslip.result.fields import Slip as Slip
 from partialslip.result.fields import SurfaceStress as SurfaceStress
 from partialslip.result.result import FRICTIONLESS as FRICTIONLESS
+from partialslip.result.result import PATH_DEPENDENT as PATH_DEPENDENT
 from partialslip.result.result import EndSlip as EndSlip
 from partialslip.result.result import Regime as Regime
 from partialslip.result.result import Result as Result

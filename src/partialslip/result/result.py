@@ -16,6 +16,7 @@ from partialslip.shown import Drawn
 if TYPE_CHECKING:
     from partialslip.frame import DataFrame
 
+PATH_DEPENDENT = "path-dependent: slip reverses "
 FRICTIONLESS = "f = 0 and Q = 0: nothing sticks, and without shear force the contact stays where it is"
 
 Regime = Literal[

@@ -1,0 +1,137 @@
+"""Coulomb friction along a path on which the pressure varies, event by event.
+
+Between two instants at which nodes touch or open, normal forces are linear in time on a straight leg of the path, and
+tangential ones between two events of friction (:mod:`partialslip.condensed.path_following`). There are no load steps.
+
+Scaled as in :mod:`partialslip.condensed.history`.
+"""
+
+import itertools
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from partialslip.arrays import Array, Mask, submatrix
+from partialslip.condensed.bounded import Solution, spread
+from partialslip.condensed.history import History, Steps, follow, resting
+from partialslip.condensed.normal import Presses
+from partialslip.condensed.path import Path
+from partialslip.condensed.path_following import Bounds, Follower, Leg
+
+_STAGES = 32  # fewest stages between load points at which forces are kept
+_REPEATS = 1e-12  # change of q over a cycle, in f p, that is rounding of the events
+_SLIGHT = 1e-6  # of the longest path of slip: none
+
+
+def march(tangential: Array, stretch: Array, f: float, press: Presses, path: Path, few: int = 0) -> History:
+    """Follow the path leg by leg; every leg has a certificate.
+
+    Parameters
+    ----------
+    tangential, stretch, f, press, path
+        As for :func:`partialslip.condensed.varying.march`.
+    few : int
+        Nodes that may slip both ways where slip does not turn round, as for
+        :func:`partialslip.condensed.constant.march`.
+
+    Raises SlidesError if no node sticks.
+    """
+    return _Contact(tangential, stretch, f, press, path, few).followed()
+
+
+@dataclass(frozen=True)
+class _Done:
+    """A ``leg`` under ``bounds``, at the nodes that are ever in contact."""
+
+    bounds: Bounds
+    leg: Leg
+
+    @property
+    def held(self) -> Mask:
+        """Nodes that are in contact throughout."""
+        held: Mask = self.bounds.values.min(axis=0) > 0
+        return held
+
+    @property
+    def _slips(self) -> Mask:
+        slips: Mask = self.held & (self.leg.path > _SLIGHT * float(self.leg.path.max()))
+        return slips
+
+    @property
+    def turns(self) -> int:
+        """Number of nodes that slip both ways, or cease to slip. Nodes that open do so with the contact."""
+        leg = self.leg
+        both = leg.path - np.abs(leg.rest) > _SLIGHT * float(leg.path.max())
+        return int(np.count_nonzero(self._slips & (both | ~leg.slips)))
+
+    @property
+    def changed(self) -> Array:
+        """Share of the leg at which each node last began to slip or to stick, (n,); nan where a node slips so little
+        that it does not slip in the steady state."""
+        return np.where(self._slips, np.where(self.leg.slips, self.leg.began, self.leg.stuck), np.nan)
+
+
+class _Contact:
+    """Legs of a path in turn; arguments as for :func:`march`."""
+
+    def __init__(self, tangential: Array, stretch: Array, f: float, press: Presses, path: Path, few: int) -> None:
+        self._asked, self._stretch, self._few = path, stretch, few
+        self._path = replace(path, ways=((1.0,),) * (1 + len(path.cycle)), settled=max(path.settled, _REPEATS))
+        loads = [load[3:5] for load in (path.begin, path.cycle[-1], *path.cycle)]
+        ways = [press.way((P, M), (P2, M2)) for (P, M), (P2, M2) in itertools.pairwise(loads)]
+        most = np.maximum.reduce([each.values.max(axis=0) for each in ways])
+        self._on, self._count = np.flatnonzero(most > 0), len(most)
+        self._ways = [each.of(self._on).times(f) for each in ways]
+        self._follower = Follower(submatrix(tangential, self._on, self._on))
+        self._legs: list[_Done] = []
+        stages = path.substeps * math.ceil(_STAGES / path.substeps)
+        self._stages = tuple((np.arange(1, stages + 1) / stages).tolist())
+
+    def followed(self) -> History:
+        """Follow the path."""
+        before = self._path.before
+        return self._completed(
+            follow(self._path, self._advance, resting(np.zeros(self._count) if before is None else before))
+        )
+
+    def _advance(self, before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
+        """Go along one leg, as :func:`partialslip.condensed.history.follow` asks for it."""
+        on, number = self._on, len(self._legs)
+        bounds = self._ways[number if not number else 1 + (number - 1) % len(self._path.cycle)]
+        # a state of another mesh has the load, and keeps the bounds, to an error of that mesh only
+        start = np.clip(before.x[on], -bounds.values[0], bounds.values[0])
+        g, Q = (change[1:3] @ self._stretch)[on], float(load[0]) - float(start.sum())
+        leg = self._follower.leg(bounds, start, g, Q, self._stages)
+        self._legs.append(_Done(bounds, leg))
+        found = Solution(leg.forces, leg.rest, leg.residual, leg.imbalance, 1, leg.pivots)
+        return found.spread(on, self._count), self._spread(bounds.values[-1])
+
+    def _spread(self, values: Array) -> Array:
+        return spread(values, self._on, self._count)
+
+    def _completed(self, history: History) -> History:
+        """``history`` with what is known of its legs."""
+        path, last = history.path, self._legs[-len(self._path.cycle) :]
+        stages = np.zeros((2, len(last) * len(self._stages), self._count))
+        stages[:, :, self._on] = [
+            np.concatenate([each.leg.stages for each in last]),
+            np.concatenate([each.bounds.stages(self._stages) for each in last]),
+        ]
+        forces, bounds = stages
+        room = np.maximum((bounds - forces).min(axis=0) + (bounds + forces).min(axis=0), 0.0)
+        changed = np.full(self._count, np.nan)
+        changed[self._on] = last[path.ends[1]].changed
+        turns = path.in_phase and any(each.turns > self._few for each in last)
+        return replace(
+            history,
+            path=replace(self._asked, turns=turns),
+            room=None if path.in_phase else room,
+            held=self._spread(np.logical_and.reduce([each.held for each in last])).astype(bool),
+            slipped=np.array([self._spread(each) for each in np.sum([each.leg.slipped for each in last], axis=0)]),
+            dissipated=sum(each.leg.dissipated for each in last),
+            around=Steps((self._stages,) * len(last), forces, bounds),
+            turns=turns,
+            changed=changed if path.in_phase else None,
+            events=sum(each.leg.events for each in self._legs),
+        )
