@@ -2,6 +2,7 @@
 
 import functools
 
+import event_cells
 import numpy as np
 import pytest
 
@@ -45,11 +46,37 @@ def test_both_intervals_move_alike():
     ("Qf", "sf"),
     [
         (0.9, 9.0),  # b turns round shortly before the left interval vanishes
+        (0.53022, 9.55338),  # a moves by 1e-6 only, before the inner zone closes
         pytest.param(0.9, 14.0, marks=pytest.mark.slow),  # on its way back b passes where it began
+        pytest.param(0.85, 9.0, marks=pytest.mark.slow),  # half cycles tend slowly to the steady one
+        pytest.param(0.47450296749, 19.4127801131, marks=pytest.mark.slow),  # breaks two widths of the drift before
     ],
 )
 def test_hard_ways_are_followed(Qf, sf):
-    assert certificate(steady(Loads(sf, np.pi * Qf), Hertz())).worst < 2e-8
+    assert certificate(steady(Loads(sf, np.pi * Qf), Hertz())).worst < 1e-9
+
+
+@pytest.mark.slow
+def test_the_inner_zone_closes_when_event_driven_cells_say_so():
+    """At (0.85, 9), by cells that are followed event by event and share nothing with the package."""
+    half = steady(Loads(9.0, np.pi * 0.85), Hertz())
+    x, q, closes = event_cells.follow(200, 0.85, 9.0)
+    assert closes == pytest.approx(half.phases[0].last.progress, abs=2e-2)
+    assert np.abs(q - half.last.q(x)).mean() < 5e-3
+
+
+@pytest.mark.slow
+@pytest.mark.fault
+def test_a_kink_beside_the_right_end_left_out_is_seen(monkeypatch):
+    """Deliberate fault: where a came to rest within 1e-6 of the right end, the state has no kink."""
+    true = HalfCycle.stuck.fget
+
+    def stuck(self):
+        low, high = true(self)
+        return low, self.last.zone.right if self.last.zone.right - high < 1e-6 else high
+
+    monkeypatch.setattr(HalfCycle, "stuck", property(stuck))
+    assert certificate(steady(Loads(9.55338, np.pi * 0.53022), Hertz())).stick > 1e-8
 
 
 def test_states_are_mixed_where_their_parts_meet_and_between():

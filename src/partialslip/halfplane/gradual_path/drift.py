@@ -18,6 +18,9 @@ import numpy.typing as npt
 from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.graded import DEGREES, RESTS, SHARES, integrals, place, powers, spans
 
+_WIDTHS = 4  # of the zone, after which a break of its beginning is seen no more
+_TAIL, _SHORTEST = 5e-10, 0.2  # last coefficients of h above which a panel is halved, and panels that are not
+
 _Solver = Callable[[Array], Array]
 
 
@@ -41,11 +44,16 @@ class Drift:
         self, tension: float, lacking: Callable[[Array, Array], Array], breaks: list[float], farthest: float
     ) -> None:
         self._tension, self._lacking = tension, lacking
-        after = [each + 1 for each in breaks]  # what leaves the equation a whole width later
+        after = [each + later for each in breaks for later in range(1, _WIDTHS)]  # seen again whole widths later
         inner = sorted(each for each in {*breaks, *after, *np.arange(1.0, farthest)} if 0 < each < farthest)
         self._ends = [0.0, *inner, farthest] if farthest > 1 else [0.0, *(each for each in inner if each < 1), 1.0]
         self._densities: list[Array] = []  # coefficients of h by panel
         self._progress = [0.0]  # lambda at the ends of panels, from the beginning of the drift
+
+    @property
+    def ends(self) -> list[float]:
+        """Travels at which h is not smooth, as far as it is known, and others between."""
+        return self._ends[: len(self._densities) + 1]
 
     def progress(self, tau: float) -> float:
         """lambda from the beginning of the drift to the travel ``tau``."""
@@ -103,6 +111,9 @@ class Drift:
             if last > low - 1:
                 target = target - _earlier(last - first, high - low, low - last) @ density
         density = _own(high - low)(target)
+        if np.abs(density[-2:]).max() > _TAIL and high - low > _SHORTEST:
+            self._ends.insert(number + 1, (low + high) / 2)
+            return
         self._densities.append(density)
         self._progress.append(self._progress[-1] + float(integrals(np.array(1.0)) @ density))
 

@@ -18,12 +18,13 @@ from partialslip.halfplane.traction import half_range
 
 _CYCLES = 200
 _SETTLED, _NEAR = 1e-13, 1e-8
-_CLOSE = 1e-11  # change of the middle where a zone inside is followed, which rounding moves by 4e-12
+_CLOSE = 1e-12  # change of the middle where a zone inside is followed
+_PROBES = (1 - np.cos(np.pi * (np.arange(200) + 0.5) / 200)) / 2  # places between the outer ends
+_OF_Q = 5e-3  # change of the outer ends that counts as much as one of q by 1: q rises there like a square root
 _NEARLY = 1e-8  # change of the zone's middle from which on a zone inside is followed
-_BESIDE = 1e-6  # distance from the right end at which an inner zone leaves no kink of q of its own
 _SAME = 1e-9  # by how much a zone is wider than the one that drifts where it drifts at once
 _LEAST, _MOST = 0.05, 0.8  # shares of the half cycle before in a mixture
-_FINE = 1e-8  # change of the middle below which the interpolation of a mixture shows
+_FINE = 1e-11  # change of the middle below which the interpolation of a mixture shows
 _HALVINGS = 12  # of the way between two stages
 _NARROWEST = 0.02  # half-width of a stick zone that drifts: narrower ones travel more than fifty times their width
 
@@ -143,8 +144,6 @@ class HalfCycle:
         q, (low, high) = self.last.q, self.stuck
         if low >= high:
             return q
-        if self.last.zone.right - high < _BESIDE:
-            high = self.last.zone.right
 
         def mean(from_low: Array, from_high: Array) -> Array:
             ends = (low, high, from_low, from_high)
@@ -159,7 +158,7 @@ class HalfCycle:
             return settled
 
         middle = Part(low, high, 0.0).plus(half)
-        return Tractions.of(q.shape, [*q.between(-1.0, low), middle, *q.between(high, 1.0)])
+        return Tractions.of(q.shape, [*q.between(-1.0, low), middle, *q.between(high, 1.0)]).joined()
 
 
 def between(phase: Phase, first: Stage, last: Stage, share: float, halvings: int = _HALVINGS) -> list[Stage]:
@@ -207,8 +206,8 @@ def steady(loads: Loads, shape: Shape, parts: bool = True, close: float = _CLOSE
         return half_range(zone.left + from_low, zone, shape)
 
     once = Smooth(zone.left, zone.right, half)
-    parts = Part(-1.0, zone.left, zone.s), Part(zone.left, zone.right, 0.0, once), Part(zone.right, 1.0, 1.0)
-    start = -Tractions.of(shape, parts)
+    pieces = Part(-1.0, zone.left, zone.s), Part(zone.left, zone.right, 0.0, once), Part(zone.right, 1.0, 1.0)
+    start = -Tractions.of(shape, pieces)
     shares = np.append(np.geomspace(1e-4, 0.1, 12), np.linspace(0.1, 1, 64)[1:])
     tried = stick_zones(shares * loads.shear / math.pi, shares * loads.tension, shape)
     narrow = np.flatnonzero(tried.half_width < loads.least)
@@ -218,6 +217,15 @@ def steady(loads: Loads, shape: Shape, parts: bool = True, close: float = _CLOSE
     found = HalfCycle(loads, start, guess, parts=False)
     found = _repeated(found, parts=False)
     return _repeated(found, parts=True, close=close) if parts else found
+
+
+def _moved(one: Tractions, other: Tractions) -> float:
+    """How far two states are apart: the outer ends of their stick zones, or q between these, in a part of f p0 that
+    counts as much."""
+    ends = np.array([[each.parts[0].high, each.parts[-1].low] for each in (one, other)])
+    low, high = ends[:, 0].max(), ends[:, 1].min()
+    x = low + (high - low) * _PROBES
+    return float(max(np.abs(ends[0] - ends[1]).max(), _OF_Q * np.abs(one(x) - other(x)).max()))
 
 
 def _repeated(found: HalfCycle, parts: bool, close: float = _CLOSE) -> HalfCycle:
@@ -241,7 +249,7 @@ def _repeated(found: HalfCycle, parts: bool, close: float = _CLOSE) -> HalfCycle
             continue
         state, after = -found.settled, found.last.zone.centre
         change = after - middle
-        changes.append(abs(change))
+        changes.append(max(abs(change), _moved(begin, state)) if found.parted else abs(change))
         settled = _SETTLED if not found.opens else close if found.parted else _NEARLY
         if changes[-1] < settled or min(changes[:-1], default=np.inf) < min(changes[-1], _NEAR):
             break

@@ -50,10 +50,11 @@ class Parted:
         way, q = self.way, self.first.q
         ends = way.at(progress)
         left, low, high, right = (float(each) for each in ends[:4])
+        shut = way.closed and progress == way.progress  # what is left of the inner zone is no part of its own
 
         def added(part: Part, first: int, last: int) -> Part:
             def change(from_low: Array, from_high: Array) -> Array:
-                result, to_first = np.empty_like(from_low), part.low - ends[first] + from_low
+                result, to_first = np.empty_like(from_low), np.maximum(part.low - ends[first] + from_low, 0.0)
                 to_last = ends[last] - part.high + from_high
                 near = to_first < to_last
                 for here, end, offsets in ((near, first, to_first[near]), (~near, last, -to_last[~near])):
@@ -62,11 +63,11 @@ class Parted:
 
             return part.plus(change)
 
-        cuts = [high, *sorted(cut for cut in way.kinks if high < cut < right), right]
+        cuts = [low if shut else high, *sorted(cut for cut in way.kinks if high < cut < right), right]
         parts = [
             Part(-1.0, left, -1.0),
             *(added(part, L, A) for part in q.between(left, low)),
-            Part(low, high, -1.0),
+            *([] if shut else [Part(low, high, -1.0)]),
             *(added(Part(*span, -1.0), B, R) for span in itertools.pairwise(cuts)),
             Part(right, 1.0, 1.0),
         ]

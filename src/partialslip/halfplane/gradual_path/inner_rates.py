@@ -12,6 +12,7 @@ L, A, B, R, Z = range(5)  # the four ends, and z0
 DEGREES = 20  # nodes of a panel
 PAST = 28  # nodes of integrals over part of a panel, or over panels that are past
 _LEAST = 1e-300  # a distance that is not zero
+_STILL = 1e-3  # way below which an end hardly moves
 _FALLS = 0.1  # a Newton step over the one before
 RATE = 1.6  # logarithm by which the width of a vanishing interval falls in a panel
 
@@ -164,6 +165,17 @@ class Panel(NamedTuple):
         result: Array = (self.offsets @ cardinal(np.ravel(s)).T).reshape(5, *np.shape(s))
         return result
 
+    @property
+    def tail(self) -> float:
+        """Last coefficients of the ways, relative to the largest ones."""
+        found = np.abs(self.offsets @ TO_COEFFICIENTS.T)
+        return float((found[:, -2:].max(axis=1) / (_STILL + found[:, 1:].max(axis=1))).max())
+
+    def cut(self, length: float, by: Map) -> Array:
+        """Offsets (5, nodes) over the first ``length`` of the panel."""
+        share = np.clip(by.shares * length / self.length, 0, 1)
+        return self.at(self.by.place(share, 1 - share))
+
     def speeds(self, s: Array) -> Array:
         """Mean speeds (5,) of the ends and z0 between two places."""
         at, share = self.at(s), self.by.share(s)
@@ -181,3 +193,15 @@ class Panel(NamedTuple):
             low, high = np.where(later, middle, low), np.where(later, high, middle)
         result: Array = (low + high) / 2
         return result
+
+
+def ways(panels: list[Panel], progress: Array) -> Array:
+    """Ends and z0 (5, k) at ``progress`` (k,)."""
+    begins = np.array([panel.progress for panel in panels])
+    number = np.maximum(np.searchsorted(begins, progress) - 1, 0)
+    result = np.empty((5, len(progress)))
+    for each in np.unique(number):
+        panel, here = panels[each], number == each
+        share = np.clip((progress[here] - panel.progress) / panel.length, 0.0, 1.0)
+        result[:, here] = panel.begin[:, None] + panel.at(panel.by.place(share, 1 - share))
+    return result

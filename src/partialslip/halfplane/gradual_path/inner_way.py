@@ -19,7 +19,6 @@ from partialslip.halfplane.gradual_path.inner_rates import (
     LAST,
     RATE,
     SINE,
-    TO_COEFFICIENTS,
     A,
     B,
     Event,
@@ -30,6 +29,7 @@ from partialslip.halfplane.gradual_path.inner_rates import (
     Z,
     root,
     taken,
+    ways,
 )
 from partialslip.halfplane.gradual_path.inner_seen import Seen
 from partialslip.halfplane.gradual_path.stage import LostError
@@ -50,6 +50,7 @@ _PANELS = 200
 _SLOWS = 2.5  # power of what is left, with which a comes to rest while an inner zone closes
 _PART = 0.1  # of an inner zone, to which it closes in a panel
 SHUT = 1e-5  # width of an inner zone that has closed: points are pushed beyond the bound by its square
+_WEAK = 1e-3  # width of an inner zone below which a hardly moves: a break that it passes leaves no kink at b
 _NARROW = 1e-4  # width of an inner zone that may be closed where its ends are lost
 _HALVINGS = 12
 _SHORTEST = 1e-15
@@ -59,6 +60,10 @@ _TURNED, _NEAR_TURN = 1e-9, 1e-7  # z0 - b where b turns round; ways from there 
 
 
 _EVENTS = {"width": {A: 1.0, L: -1.0}, "gap": {L: 0.5, R: 0.5, A: -1.0}}  # of what their size is the sum
+RETREATING, _AHEAD = [L, A, R], np.array([[1.0], [-1.0], [-1.0]])  # ends that only retreat, and where to
+_KEPT = 0.2  # least share of its way that a Newton step leaves an end
+_REST, _MISSES = 0.5, 3  # of a panel, that is left of it; panels unlike those from a similar state
+_SMOOTH = 1e-12  # last coefficients of ways, of which two panels may be one
 _AT_END = np.array([0.97, 1.0])
 
 
@@ -96,6 +101,7 @@ class Way(Seen):
         self.first = np.append(ends, ends[B])
         self.closed = self.vanished = False
         self._near = near.panels if near else []
+        self._missed, self._misses = -1, 0  # number of the last panel that is unlike these, and how many are
         self._refused = -1  # number of the panel that was not found up to an event
         self._kink = True
         with np.errstate(divide="ignore", invalid="ignore"):  # by steps that go too far, which are taken back
@@ -123,7 +129,7 @@ class Way(Seen):
             panel = self._again(takes, speeds)
             if not panel:
                 panel = self._tried(takes, length, speeds)
-            if not panel or _tail(panel) > _TAIL:
+            if not panel or panel.tail > _TAIL:
                 length, refused = min(length, panel.length if panel else length) / 2, refused + 1
                 shortest = _SHORTEST * max(1.0, 1e8 * (gap < _NARROW))
                 if not length >= shortest or (
@@ -138,8 +144,8 @@ class Way(Seen):
             if turn is not None:
                 if turn > 1e-3:
                     part = panel.length * float(panel.by.share(np.array(turn)))
-                    panel = self._solve(begin, takes, part, speeds, SINE, None, panel)
-                    if not panel or _tail(panel) > _TAIL:
+                    panel = self._solve(begin, takes, part, speeds, SINE, None, panel.cut(part, SINE))
+                    if not panel or panel.tail > _TAIL:
                         length, self._refused = part / 2, len(self.panels)
                         if not length >= _SHORTEST:
                             raise LostError(f"b turns at {self.progress}")
@@ -158,31 +164,44 @@ class Way(Seen):
             if turn is not None:
                 speeds[B] = speeds[Z] = 0.0
             left, low, high, right = self.ends[:4]
-            self._kink = bool(min(np.abs(each - self._breaks).min() for each in (left, low, right)) < _AT)
+            at_break = min(np.abs(each - self._breaks).min() for each in (left, low, right)) < _AT
+            self._kink = bool(at_break and high - low > _WEAK)
             self.vanished, self.closed = bool(low - left < _GONE), bool(high - low < SHUT)
             if self.vanished or self.closed:
                 return
 
     def _again(self, takes: bool, speeds: Array) -> Panel | None:
-        """The next panel, if it is like the one in the ways from a similar state."""
-        number, panel = len(self.panels), None
-        old = self._near[number] if number < len(self._near) else None
-        if old and old.takes == takes:
+        """The next panel, if one like that of the ways from a similar state fits, or two of these in one."""
+        ahead = [each for each in self._near if each.progress + (1 - _REST) * each.length > self.progress][:2]
+        if not ahead or any(each.takes != takes for each in ahead) or self._missed == len(self.panels):
+            return None
+        wide = bool(self.first[B] - self.first[A] > _WEAK)  # of narrower ones the panels are few
+        both = wide and len(ahead) == 2 and not ahead[0].event and max(each.tail for each in ahead) < _SMOOTH
+        for old in ahead[both::-1]:
             begin, event = self.ends, old.event
+            length = old.progress + old.length * (_FARTHER if old.turns else 1) - self.progress
             if event and event[0] == "width":
                 event = "width", (begin[A] - begin[L]) * np.exp(-RATE)
             elif event and not isinstance(event[0], str):
                 breaks = self._breaks_of(event[0], takes)
-                if not len(breaks):
-                    self._near = []
-                    return None
-                event = event[0], float(breaks[np.argmin(np.abs(breaks - event[1]))])
-            panel = self._solve(begin, takes, old.length * (_FARTHER if old.turns else 1), speeds, old.by, event, old)
-        fits = panel and self.progress + panel.length <= 1 and not self._crossing(panel) and _tail(panel) <= _TAIL
-        if not fits:
+                event = (event[0], float(breaks[np.argmin(np.abs(breaks - event[1]))])) if len(breaks) else None
+            panel = self._solve(begin, takes, length, speeds, old.by, event, self._alike(length, old.by))
+            if panel and self.progress + panel.length <= 1 and not self._crossing(panel) and panel.tail <= _TAIL:
+                return panel
+        self._missed = len(self.panels)
+        self._misses += 1
+        if self._misses > _MISSES:
             self._near = []
+        return None
+
+    def _alike(self, length: float, by: Map) -> Array | None:
+        """Ways of the ends over the next ``length`` of lambda in a similar state, (5, nodes); None beyond its end."""
+        progress = self.progress + length * np.append(0.0, by.shares)
+        if not self._near or progress[-1] > self._near[-1].progress + self._near[-1].length:
             return None
-        return panel
+        ends = ways(self._near, progress)
+        result: Array = ends[:, 1:] - ends[:, :1]
+        return result
 
     def _tried(self, takes: bool, length: float, speeds: Array) -> Panel | None:
         """The next panel: up to a break, to where an interval has become narrower, or of a ``length``."""
@@ -200,7 +219,7 @@ class Way(Seen):
         elif self.panels and takes and shut * length > 0.5 * gap:
             size = self._least + max(SHUT / 2, _PART * gap)
             panel = self._solve(begin, takes, gap / shut, speeds, SINE, ("gap", size))
-        if not panel or panel.length > rest or _tail(panel) > _TAIL:
+        if not panel or panel.length > rest or panel.tail > _TAIL:
             self._refused = len(self.panels)
             panel = self._solve(begin, takes, length, speeds, SINE)
         for _ in range(_HALVINGS):
@@ -209,7 +228,7 @@ class Way(Seen):
                 return panel
             end, place, s = crossing
             part = panel.length * float(panel.by.share(np.array(s)))
-            panel = self._solve(begin, takes, part, speeds, SINE, (end, place), panel)
+            panel = self._solve(begin, takes, part, speeds, SINE, (end, place), panel.cut(part, SINE))
         return None
 
     def _first_speeds(self) -> tuple[bool, float, Array]:
@@ -306,13 +325,7 @@ class Way(Seen):
 
     def at(self, progress: float) -> Array:
         """Ends and z0 (5,) at ``progress``."""
-        for panel in self.panels:
-            share = (progress - panel.progress) / panel.length
-            if share <= 1 or panel is self.panels[-1]:
-                share = min(max(share, 0.0), 1.0)
-                result: Array = panel.begin + panel.at(panel.by.place(np.array(share), np.array(1 - share)))
-                return result
-        return self.first
+        return ways(self.panels, np.array([progress]))[:, 0] if self.panels else self.first
 
     @property
     def kinks(self) -> list[float]:
@@ -364,18 +377,17 @@ class Way(Seen):
         speeds: Array,
         by: Map,
         event: Event | None = None,
-        like: Panel | None = None,
+        like: Array | None = None,
     ) -> Panel | None:
-        """A panel by Newton's method, perhaps from a panel that is ``like`` it; None if it does not converge. The
-        length is unknown if there is an ``event``.
+        """A panel by Newton's method, perhaps from ways that are ``like`` these (5, nodes); None if it does not
+        converge. The length is unknown if there is an ``event``.
 
         Where b has just turned round, it moves by a quarter of what the place does at which it would take points: both
         go with the square of the time, and by this quarter what a point has seen adds up to nothing.
         """
         turned = not takes and begin[Z] - begin[B] < _TURNED
-        if like:
-            share = np.clip(by.shares * length / like.length, 0, 1)
-            offsets = like.at(like.by.place(share, 1 - share))
+        if like is not None:
+            offsets = like
         else:
             offsets = speeds[:, None] * by.shares * length
             if event and event[0] == "gap":  # a slows down with the inner zone's width
@@ -460,7 +472,13 @@ class Way(Seen):
             if event:
                 damp = min(1.0, 0.5 * length / abs(float(solution[-1])))
                 longer = damp * float(solution[-1])
-            step = longer, damp * np.einsum("ecj,cj->ej", slopes, change)
+            moves = damp * np.einsum("ecj,cj->ej", slopes, change)
+            ahead = _AHEAD * (offsets[RETREATING] + moves[RETREATING])
+            back = ahead < _KEPT * _AHEAD * offsets[RETREATING]
+            if back.any():  # behind its beginning an end would see rates that there are none
+                moves[RETREATING] = np.where(back, (_KEPT - 1) * offsets[RETREATING], moves[RETREATING])
+                damp = min(damp, 0.5)
+            step = longer, moves
             length, offsets = length + step[0], offsets + step[1]
             largest, moved = np.abs(change).max(axis=1), np.abs(offsets[list(free)]).max(axis=1)
             relative = free.index(A), free.index(L), free.index(R)  # b need not be known as well where it turns round
@@ -472,8 +490,3 @@ class Way(Seen):
             if count_of_steps - since > self._patience:
                 return None
         return None
-
-
-def _tail(panel: Panel) -> float:
-    found = np.abs(panel.offsets @ TO_COEFFICIENTS.T)
-    return float((found[:, -2:].max(axis=1) / (1e-3 + found[:, 1:].max(axis=1))).max())

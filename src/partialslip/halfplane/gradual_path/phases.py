@@ -113,7 +113,6 @@ class Drifting:
 
         breaks = [(zone.right - kink) / (2 * c) for kink in shape.strong_kinks]
         breaks += [(zone.right - each) / (2 * c) for each in first.q.breaks if zone.left < each < zone.right]
-        self._breaks = breaks
         self._drift = Drift(loads.tension, missing, [each for each in breaks if each > 0], (zone.right + 1) / (2 * c))
         self._most = (zone.left + 1) / (2 * c)
         self.travel = self._drift.travel(1 - first.progress, self._most)
@@ -144,7 +143,7 @@ class Drifting:
 
             return part.plus(change)
 
-        cuts = [left0 - width * each for each in {0.0, *self._breaks, *range(1, 6)} if left < left0 - width * each]
+        cuts = [left0 - width * each for each in self._drift.ends if left < left0 - width * each]
         cuts = sorted(each for each in {left, *cuts, min(left0, right)} if left <= each <= min(left0, right))
         back = [Part(low, high, -1.0) for low, high in itertools.pairwise(cuts)]
         parts = [

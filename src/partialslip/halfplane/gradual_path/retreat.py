@@ -85,6 +85,7 @@ class Retreat:
     def __init__(self, start: Tractions, within: Zone, left: int) -> None:
         self.start, self.within, self.sign = start, within, left
         self._breaks = np.array(sorted({*start.breaks, *start.shape.kinks}))
+        self._latest: tuple[Zone | None, dict[int, _Side]] = None, {}  # zone in which changes were asked for
 
     def outside(self, side: int, x: Array) -> Array:
         """Change at ``x`` in the slip zone on one ``side``, 1 or -1."""
@@ -213,10 +214,12 @@ class Retreat:
 
     def inside(self, zone: Zone, from_left: Array, from_right: Array) -> Array:
         """Change in the stick ``zone`` at distances from its ends."""
+        if zone != self._latest[0]:
+            self._latest = zone, {side: self._side(zone, side) for side in (1, -1)}
         to = {1: np.sqrt(from_right), -1: np.sqrt(from_left)}
         arcs, rest = np.zeros_like(from_left), np.zeros_like(from_left)
         for side in (1, -1):
-            of = self._side(zone, side)
+            of = self._latest[1][side]
             if not of.gap:
                 continue
             tangent = _tangent(of.gap, zone.half_width)

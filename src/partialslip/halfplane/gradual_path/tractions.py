@@ -12,7 +12,11 @@ from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.graded import Smooth
 from partialslip.halfplane.shape import Shape
 
-_ALIKE = 1e-6  # of a run of parts, within which cuts of two states correspond
+_LAST, _DECAYED = 4, 1e-10  # coefficients in a window that have decayed where q is smooth
+_ANGLES = np.pi * (np.arange(24) + 0.5) / 24
+_WINDOW = -np.cos(_ANGLES)  # Chebyshev nodes
+_COEFFICIENTS = np.linalg.inv(np.polynomial.chebyshev.chebvander(_WINDOW, 23))
+_ALIKE = 1e-2  # of a run of parts, within which cuts of two states correspond
 
 
 class Part(NamedTuple):
@@ -100,6 +104,19 @@ class Tractions:
         cut = (part._replace(low=max(part.low, low), high=min(part.high, high)) for part in self.parts)
         return [part for part in cut if part.high > part.low]
 
+    def joined(self) -> "Tractions":
+        """The same tractions, in which parts are one where q is smooth from one to the next."""
+        parts: list[Part] = []
+        for run in _runs(self.parts):
+            group = run[:1]
+            for part in run[1:]:
+                if part.smooth is None or not _smooth_between(group[-1], part):
+                    parts.append(_one(group))
+                    group = []
+                group.append(part)
+            parts.append(_one(group))
+        return Tractions(self.shape, tuple(parts))
+
     def toward(self, other: "Tractions", share: float) -> "Tractions | None":
         """State between two (beyond them if ``share`` is not between 0 and 1) that resemble each other: the places at
         which parts meet are mixed, and the tractions between them. None if the parts do not correspond."""
@@ -112,6 +129,33 @@ class Tractions:
         return Tractions(self.shape, tuple(mixed)) if whole else None
 
 
+def _smooth_between(left: Part, right: Part) -> bool:
+    """Whether q is smooth where two parts meet: in a window there, its Chebyshev coefficients decay."""
+    reach = min(left.high - left.low, right.high - right.low) / 2
+    before, after = reach * -_WINDOW[_WINDOW < 0], reach * _WINDOW[_WINDOW > 0]
+    values = left.rest(left.high - left.low - before, before), right.rest(after, right.high - right.low - after)
+    found = _COEFFICIENTS @ np.concatenate(values)
+    return bool(np.abs(found[-_LAST:]).max() < _DECAYED)
+
+
+def _one(parts: list[Part]) -> Part:
+    """One part in place of neighbours with the same factor."""
+    if len(parts) == 1:
+        return parts[0]
+    low, high = parts[0].low, parts[-1].high
+    inner = np.array([part.low for part in parts[1:]])
+
+    def rest(from_low: Array, from_high: Array) -> Array:
+        result = np.empty_like(from_low)
+        which = np.searchsorted(inner - low, from_low)
+        for number, part in enumerate(parts):
+            here = which == number
+            result[here] = part.rest(low - part.low + from_low[here], part.high - high + from_high[here])
+        return result
+
+    return Part(low, high, parts[0].factor, Smooth(low, high, rest))
+
+
 def _runs(parts: Iterable[Part]) -> list[list[Part]]:
     """Neighbouring parts with the same factor."""
     groups = itertools.groupby(parts, key=lambda part: (part.factor, part.smooth is None))
@@ -120,8 +164,6 @@ def _runs(parts: Iterable[Part]) -> list[list[Part]]:
 
 def _matched(one: list[Part], other: list[Part]) -> list[tuple[Part, Part]]:
     """Parts that correspond, one by one; places at which only one of the runs is cut cut the other, too."""
-    if len(one) == len(other):
-        return list(zip(one, other, strict=True))
     runs = one, other
     width = [run[-1].high - run[0].low for run in runs]
     cuts = [[(part.low - run[0].low) / wide for part in run[1:]] for run, wide in zip(runs, width, strict=True)]
