@@ -176,7 +176,7 @@ def stuck(stages: list[Stage]) -> tuple[float, float]:
     return max(stage.zone.left for stage in stages), min(stage.sticks[0].right for stage in stages)
 
 
-def steady(loads: Loads, shape: Shape, parts: bool = True, close: float = _CLOSE) -> HalfCycle:
+def steady(loads: Loads, shape: Shape, parts: bool = True) -> HalfCycle:
     """Return the steady half cycle, to which half cycles tend.
 
     Parameters
@@ -187,8 +187,6 @@ def steady(loads: Loads, shape: Shape, parts: bool = True, close: float = _CLOSE
         Pressure.
     parts : bool
         Whether a slip zone inside the stick zone is followed.
-    close : float
-        Change of the zone's middle below which half cycles with such a slip zone count as steady.
 
     Raises
     ------
@@ -202,8 +200,8 @@ def steady(loads: Loads, shape: Shape, parts: bool = True, close: float = _CLOSE
         return half_range(zone.left + from_low, zone, shape)
 
     once = Smooth(zone.left, zone.right, half)
-    parts = Part(-1.0, zone.left, zone.s), Part(zone.left, zone.right, 0.0, once), Part(zone.right, 1.0, 1.0)
-    start = -Tractions.of(shape, parts)
+    pieces = Part(-1.0, zone.left, zone.s), Part(zone.left, zone.right, 0.0, once), Part(zone.right, 1.0, 1.0)
+    start = -Tractions.of(shape, pieces)
     shares = np.append(np.geomspace(1e-4, 0.1, 12), np.linspace(0.1, 1, 64)[1:])
     tried = stick_zones(shares * loads.shear / math.pi, shares * loads.tension, shape)
     narrow = np.flatnonzero(tried.half_width < loads.least)
@@ -212,10 +210,10 @@ def steady(loads: Loads, shape: Shape, parts: bool = True, close: float = _CLOSE
     guess = float(tried.centre[narrow[0]]) if len(narrow) else zone.centre
     found = HalfCycle(loads, start, guess, parts=False)
     found = _repeated(found, parts=False)
-    return _repeated(found, parts=True, close=close) if parts else found
+    return _repeated(found, parts=True) if parts else found
 
 
-def _repeated(found: HalfCycle, parts: bool, close: float = _CLOSE) -> HalfCycle:
+def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
     """The half cycle after which the zone's middle changes no longer; a zone inside is followed if it ``parts``.
 
     Half cycles tend to the steady one by a factor that may be as large as -0.5 where a zone inside slips. There the
@@ -237,7 +235,7 @@ def _repeated(found: HalfCycle, parts: bool, close: float = _CLOSE) -> HalfCycle
         state, after = -found.settled, found.last.zone.centre
         change = after - middle
         changes.append(abs(change))
-        settled = _SETTLED if not found.opens else close if found.parted else _NEARLY
+        settled = _SETTLED if not found.opens else _CLOSE if found.parted else _NEARLY
         if changes[-1] < settled or min(changes[:-1], default=np.inf) < min(changes[-1], _NEAR):
             break
         begin, middle = state, after
