@@ -26,7 +26,15 @@ from partialslip.scene.reading import load_scene
 
 FILES = ["ends.svg", "map.csv", "map.svg"]
 DOCS = Path(__file__).parents[2] / "docs"
-FIGURES = ["adhered.svg", "ends.svg", "large-tension.svg", "loop.svg", "small-tension.svg", "turning.svg"]
+FIGURES = [
+    "adhered.svg",
+    "ends.svg",
+    "large-tension.svg",
+    "loop.svg",
+    "regions.svg",
+    "small-tension.svg",
+    "turning.svg",
+]
 
 
 def names(folder):
