@@ -185,7 +185,6 @@ def panel(low: float, high: float, borders: Callable[[float], list[float]]) -> d
         "borders": fitted(curves).T.round(ROUNDED).tolist(),
         "patches": [patch.transpose(2, 0, 1).round(ROUNDED).tolist() for patch in patches],
         "signs": [-1, 1][: len(patches)],
-        "steep": ["none"] * len(patches),
     }
 
 
@@ -238,7 +237,7 @@ def make() -> None:
         (2.0, 4.0, again_ends),
         (0.0, 2.0, again_ends),
     ):
-        panels.append(panel(low, high, borders))
+        panels.append(panel(low, high, borders) | {"parting": borders in (drifting, up_to_inner)})
         write(panels)
     top, below = panels[0], panels[2]
     meeting = corner(below)

@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from partialslip.gradual import turns_round
 from partialslip.halfplane import Contact, adhered, hysteresis, one_step_zone
 from partialslip.halfplane import stick_zone as stick_zone_under
+from partialslip.halfplane.gradual_table import parted, tabled
 from partialslip.halfplane.hertz import Hertz
-from partialslip.halfplane.steady import stick_zone
+from partialslip.halfplane.steady import stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 from partialslip.map.figure import ends_svg
 from partialslip.map.grid import stick_map
@@ -34,6 +36,7 @@ def main(folder: Path) -> None:
         "loop": svg(_loops, _SIZE),
         "ends": ends_svg(stick_map()),
         "turning": svg(_turning, _SIZE),
+        "regions": svg(_regions, (7.4, 4.4)),
     }
     for name, text in figures.items():
         (folder / f"{name}.svg").write_text(text, "utf-8")
@@ -82,6 +85,29 @@ def _turning(figure: "Figure") -> None:
         axes.title.set_fontsize(10)
     panels[0].set_ylabel("x/a")
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower left", ncols=4, frameon=False)
+
+
+def _regions(figure: "Figure") -> None:
+    """Where slip turns round, where an inner zone slips, and by how much m and n of one step are off there."""
+    Qf, sf = np.meshgrid(np.linspace(0, 1, 400, endpoint=False), np.linspace(0, 10, 400))
+    once = stick_zones(Qf.ravel(), sf.ravel(), Hertz())
+    turned = turns_round(Qf.ravel(), sf.ravel(), once.s, once.centre, once.half_width)
+    zone, inner = tabled(Qf.ravel(), sf.ravel()), np.zeros(Qf.size)
+    inner[turned] = parted(Qf.ravel()[turned], sf.ravel()[turned])
+    panels = figure.subplots(1, 2, sharey=True)
+    for axes, of in zip(panels, "mn", strict=True):
+        off = np.abs(getattr(zone, of) - getattr(once, of))
+        off[~turned] = np.nan
+        off = off.reshape(Qf.shape)
+        filled = axes.contourf(Qf, sf, off, [0, 1e-3, 1e-2, 3e-2, 0.1, 0.2, 0.4], cmap="Greys", extend="max")
+        axes.contour(Qf, sf, turned.reshape(Qf.shape), [0.5], colors="black", linewidths=1.4)
+        axes.contour(Qf, sf, inner.reshape(Qf.shape), [0.5], colors="black", linewidths=1, linestyles="--")
+        axes.set(xlabel="ΔQ/(2 f P)", title=f"{of}/a of one step: error")
+        axes.title.set_fontsize(10)
+    panels[0].set_ylabel("Δσ/(f p0)")
+    panels[0].text(0.12, 6, "one step\nholds", fontsize=9)
+    panels[0].text(0.68, 9.4, "inner zone", fontsize=9)
+    figure.colorbar(filled, ax=panels)
 
 
 def _loops(figure: "Figure") -> None:

@@ -1,5 +1,6 @@
 """The page's gradual stick zones, and its bound on the mean of Q, by node, against Python."""
 
+import contextlib
 import json
 import shutil
 import subprocess
@@ -9,7 +10,9 @@ import numpy as np
 import pytest
 
 from partialslip.gradual import turns_round
-from partialslip.halfplane.gradual_table import tabled
+from partialslip.halfplane.gradual_path.half_cycle import steady
+from partialslip.halfplane.gradual_path.stage import Loads, LostError
+from partialslip.halfplane.gradual_table import parted, tabled
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.loading import half_cycle
 from partialslip.halfplane.steady import stick_zones
@@ -65,6 +68,23 @@ def check(change=lambda text: text):
 
 def test_the_page_has_the_zones_of_python():
     check()
+
+
+@pytest.mark.slow
+def test_the_page_against_the_solver_where_an_inner_zone_slips():
+    """20 random loads whose solver is not lost; the page claims 1e-4."""
+    random = np.random.default_rng(4712)
+    Qf, sf = 0.9975 * random.random(2000), 5.71 + 4.29 * random.random(2000)
+    there = parted(Qf, sf)
+    there[there] = ~np.isnan(tabled(Qf[there], sf[there]).centre)
+    loads, ends = np.column_stack([Qf, sf])[there], []
+    found = asked(loads[:40])
+    for (Q, s), zone in zip(loads.tolist(), found, strict=False):
+        with contextlib.suppress(LostError):
+            ends.append((zone[:2], steady(Loads(s, np.pi * Q), Hertz()).last.zone))
+        if len(ends) == 20:
+            break
+    np.testing.assert_allclose(*np.swapaxes(ends, 0, 1), rtol=0, atol=1e-4)
 
 
 @pytest.mark.fault

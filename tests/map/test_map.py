@@ -26,7 +26,15 @@ from partialslip.scene.reading import load_scene
 
 FILES = ["ends.svg", "map.csv", "map.svg"]
 DOCS = Path(__file__).parents[2] / "docs"
-FIGURES = ["adhered.svg", "ends.svg", "large-tension.svg", "loop.svg", "small-tension.svg", "turning.svg"]
+FIGURES = [
+    "adhered.svg",
+    "ends.svg",
+    "large-tension.svg",
+    "loop.svg",
+    "regions.svg",
+    "small-tension.svg",
+    "turning.svg",
+]
 
 
 def names(folder):
@@ -321,7 +329,7 @@ def test_figures_of_the_documents_are_made(tmp_path, monkeypatch, hertz):
     assert names(tmp_path / "figures") == FIGURES == names(DOCS / "figures")
     for name in FIGURES:
         words = texts(tmp_path / "figures" / name)
-        assert {word for word in words if word.isascii() and word.startswith(("x/", "q/", "Q/"))}
+        assert {word for word in words if word.isascii() and word.startswith(("x/", "q/", "Q/", "m/"))}
         assert words == texts(DOCS / "figures" / name)
     assert (tmp_path / "figures" / "ends.svg").read_bytes() == (hertz / "ends.svg").read_bytes()
 

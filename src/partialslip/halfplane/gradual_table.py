@@ -2,14 +2,12 @@
 at once. Scaled as in :mod:`partialslip.halfplane.shape`.
 
 Patches over s_f and w = sqrt(1 - Q_f), between border curves w(s_f) at which the zone's ends have kinks; Chebyshev
-series in s_f and in the share of the way from border to border, or in a function of the share where the ends have
-square roots at a border. ``benchmarks/gradual_table.py`` makes the table from the solver, ``benchmarks/inner_table.py``
-the part of it in which an inner zone slips; both measure its error.
+series in s_f and in the share of the way from border to border. ``benchmarks/gradual_table.py`` makes the table from
+the solver, ``benchmarks/inner_table.py`` the part of it in which an inner zone slips; both measure its error.
 """
 
 import functools
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -23,17 +21,13 @@ from partialslip.result import StickZone
 
 PLACE = Path(__file__).with_name("gradual_table.json")
 _BESIDE = 1e-6  # of a patch: a place as near to it is inside, as rounding may put it on the wrong side
-_EVEN: dict[str, Callable[[Array], Array]] = {  # what the series run over, of a share; by the borders with square roots
-    "none": lambda share: share,
-    "upper": np.sqrt,
-    "both": lambda share: 2 / np.pi * np.arcsin(np.sqrt(share)),
-}
 
 
 def tabled(Qf: Array, sf: Array) -> StickZone[Array]:
     """Stick zones under gradual loads (k,) whose slip turns round, for Hertz; NaN where the table has none.
 
-    m and n are within 1e-6 of the solver (``benchmarks/gradual_table.py --check``).
+    m and n are within 1e-6 of the solver (``benchmarks/gradual_table.py --check``), also where an inner zone slips that
+    makes no difference in the end (``benchmarks/inner_table.py --check``).
     """
     once = stick_zones(Qf, sf, Hertz())
     left, right = np.full((2, len(Qf)), np.nan)
@@ -45,11 +39,10 @@ def tabled(Qf: Array, sf: Array) -> StickZone[Array]:
         here = np.flatnonzero(~holds & np.isnan(left) & (sf >= panel["low"]) & (sf <= panel["high"]))
         along = 2 * (sf[here] - panel["low"]) / (panel["high"] - panel["low"]) - 1
         borders = [chebyshev.chebval(along, border) for border in panel["borders"]]
-        patches = zip(borders, borders[1:], panel["patches"], panel["signs"], panel["steep"], strict=False)
-        for upper, lower, patch, way, steep in patches:
+        for upper, lower, patch, way in zip(borders, borders[1:], panel["patches"], panel["signs"], strict=False):
             share = (upper - w[here]) / (upper - lower)
             inside = (share >= -_BESIDE) & (share <= 1 + _BESIDE)
-            across = 2 * _EVEN[steep](np.clip(share[inside], 0, 1)) - 1
+            across = np.clip(2 * share[inside] - 1, -1, 1)
             at = here[inside]
             left[at], right[at] = (chebyshev.chebval2d(along[inside], across, np.array(end)) for end in patch)
             sign[at] = way
@@ -57,13 +50,14 @@ def tabled(Qf: Array, sf: Array) -> StickZone[Array]:
 
 
 def parted(Qf: Array, sf: Array) -> Mask:
-    """Whether an inner zone slips at loads (k,) whose slip turns round, as far as the table goes."""
+    """Whether an inner zone slips at loads (k,), up to the largest s_f of the table: beyond the last border of panels
+    that end there."""
     result, w = np.zeros(len(Qf), bool), np.sqrt(1 - Qf)
     for panel in table()["panels"]:
-        if panel.get("inner"):
+        if panel.get("parting"):
             here = (sf >= panel["low"]) & (sf <= panel["high"])
             along = 2 * (sf[here] - panel["low"]) / (panel["high"] - panel["low"]) - 1
-            result[here] |= w[here] < chebyshev.chebval(along, panel["borders"][0])
+            result[here] |= w[here] < chebyshev.chebval(along, panel["borders"][-1])
     return result
 
 

@@ -27,10 +27,11 @@ def stick_zone(
     A stick zone is the zone of the tractions: \\|dq\\| is less than 2 f p between the load points. Where slip does not
     turn round on the way it follows from the consistency conditions (:func:`one_step_zone`), a million in about a
     second. Elsewhere (docs/theory.md, section 7) arrays of loads of a Hertz contact take their zones from a table,
-    within 1e-6 a of the solver, where it has them; it goes up to dsigma = 10.4 f p0, and up to where an inner zone
-    slips. Each other pair of loads, and a single pair, takes the solver, one after the other: about half a second, one
-    to fifty where an inner zone slips. A thousand of these take more than an hour, so leave them out of large arrays:
-    they are those for which :func:`partialslip.halfplane.gradual_table.tabled` has NaN.
+    within 1e-6 a of the solver, where it has them; it goes up to dsigma = 10.4 f p0. Where an inner zone slips it has
+    only loads up to 9.2 f p0 under which all points that slipped inside slip again at the left. Each other pair of
+    loads, and a single pair, takes the solver, one after the other: about half a second, one to twenty where an inner
+    zone slips. A thousand of these take an hour, so leave them out of large arrays: they are those for which
+    :func:`partialslip.halfplane.gradual_table.tabled` has NaN.
 
     Where the loads of an array make the contact slide, \\|dQ\\| >= 2 f P, the stick zone is NaN, and
     :attr:`StickZone.slides` is true. Numbers give numbers; a single pair of loads that slides is an error.

@@ -19,12 +19,6 @@ const hertz = (() => {
     return { node: Math.tanh(u), toEnd: 2 / (1 + Math.exp(2 * u)), weight };
   });
 
-  const EVEN = {  // what series of the table run over, of a share of a patch; by the borders with square roots
-    none: (share) => share,
-    upper: Math.sqrt,
-    both: (share) => 2 / Math.PI * Math.asin(Math.sqrt(share)),
-  };
-
   const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
   const pressure = (x) => Math.sqrt(Math.max((1 - x) * (1 + x), 0));
 
@@ -168,13 +162,13 @@ const hertz = (() => {
   function gradualZone(table, once, Qf, sf) {
     if (once.s > 0 && sf * (1 - (once.centre - once.c)) <= 8 * Qf) return once;
     const w = Math.sqrt(1 - Qf);
-    for (const { low, high, borders, patches, signs, steep } of table.panels) {
+    for (const { low, high, borders, patches, signs } of table.panels) {
       if (sf < low || sf > high) continue;
       const along = 2 * (sf - low) / (high - low) - 1, at = borders.map((border) => series(border, along));
       for (const [i, ends] of patches.entries()) {
         const share = (at[i] - w) / (at[i] - at[i + 1]);
         if (share < -1e-6 || share > 1 + 1e-6) continue;
-        const across = 2 * EVEN[steep[i]](clamp(share, 0, 1)) - 1;
+        const across = clamp(2 * share - 1, -1, 1);
         const [left, right] = ends.map((rows) => series(rows.map((row) => series(row, across)), along));
         return { centre: (left + right) / 2, c: (right - left) / 2, s: signs[i], steps: 0 };
       }

@@ -180,7 +180,7 @@ def stuck(stages: list[Stage]) -> tuple[float, float]:
     return max(stage.zone.left for stage in stages), min(stage.sticks[0].right for stage in stages)
 
 
-def steady(loads: Loads, shape: Shape, parts: bool = True, close: float = _CLOSE) -> HalfCycle:
+def steady(loads: Loads, shape: Shape, parts: bool = True) -> HalfCycle:
     """Return the steady half cycle, to which half cycles tend.
 
     Parameters
@@ -191,8 +191,6 @@ def steady(loads: Loads, shape: Shape, parts: bool = True, close: float = _CLOSE
         Pressure.
     parts : bool
         Whether a slip zone inside the stick zone is followed.
-    close : float
-        Change of the zone's middle below which half cycles with such a slip zone count as steady.
 
     Raises
     ------
@@ -216,7 +214,7 @@ def steady(loads: Loads, shape: Shape, parts: bool = True, close: float = _CLOSE
     guess = float(tried.centre[narrow[0]]) if len(narrow) else zone.centre
     found = HalfCycle(loads, start, guess, parts=False)
     found = _repeated(found, parts=False)
-    return _repeated(found, parts=True, close=close) if parts else found
+    return _repeated(found, parts=True) if parts else found
 
 
 def _moved(one: Tractions, other: Tractions) -> float:
@@ -228,7 +226,7 @@ def _moved(one: Tractions, other: Tractions) -> float:
     return float(max(np.abs(ends[0] - ends[1]).max(), _OF_Q * np.abs(one(x) - other(x)).max()))
 
 
-def _repeated(found: HalfCycle, parts: bool, close: float = _CLOSE) -> HalfCycle:
+def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
     """The half cycle after which the zone's middle changes no longer; a zone inside is followed if it ``parts``.
 
     Half cycles tend to the steady one by a factor that may be as large as -0.5 where a zone inside slips. There the
@@ -250,7 +248,7 @@ def _repeated(found: HalfCycle, parts: bool, close: float = _CLOSE) -> HalfCycle
         state, after = -found.settled, found.last.zone.centre
         change = after - middle
         changes.append(max(abs(change), _moved(begin, state)) if found.parted else abs(change))
-        settled = _SETTLED if not found.opens else close if found.parted else _NEARLY
+        settled = _SETTLED if not found.opens else _CLOSE if found.parted else _NEARLY
         if changes[-1] < settled or min(changes[:-1], default=np.inf) < min(changes[-1], _NEAR):
             break
         begin, middle = state, after
