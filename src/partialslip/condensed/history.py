@@ -17,10 +17,8 @@ from partialslip.condensed.limit import limit
 from partialslip.condensed.path import Path
 
 STEADY = 1e-6  # change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
-_REPEATS = 3e-14  # change of a node's q over a cycle, relative to the sum of |q|, that is rounding (seen: 2.7e-14)
-_LIMIT = (
-    10.0  # number of changes of the last cycle that may lie between it and the limit, however few cycles went before
-)
+_REPEATS = 3e-14  # change of a node's q over a cycle, relative to the largest sum of |q|: rounding (seen: 2.7e-14)
+_LIMIT = 10.0  # changes of the last cycle that may lie between it and the limit, however few cycles went before
 _BESIDE = 5  # neighbouring nodes of which the one that moves most tells how far the steady state is
 _SLIPS = 1e-9  # distance of |dq| from the bound, relative, at which a node slips
 
@@ -247,9 +245,10 @@ class Steps(NamedTuple):
         return self._replace(forces=self.forces[:, nodes], bounds=self.bounds[:, nodes])
 
 
-def _settled(path: Path, forces: Array, before: Array, bound: Array) -> bool:
-    """Whether the ``forces`` (n,) after a cycle are those ``before`` it, with the ``bound`` (n,) at the end."""
-    near = path.settled * bound + _REPEATS * float(np.abs(forces).sum())
+def _settled(path: Path, forces: Array, before: Array, bound: Array, largest: float) -> bool:
+    """Whether the ``forces`` (n,) after a cycle are those ``before`` it, with the ``bound`` (n,) at the end. Rounding
+    is that of the ``largest`` sum of forces, without sign, in the cycle."""
+    near = path.settled * bound + _REPEATS * largest
     return bool((np.abs(forces - before) <= near).all())
 
 
@@ -290,7 +289,8 @@ def follow(path: Path, advance: Advance, before: Solution, hastens: bool = False
             went.append(_go(advance, points[-1], np.array(start), np.array(end), fractions))
             points.append(certified([step for step, _ in went[-1]]))
             taken += len(fractions)
-        if _settled(path, points[-1].x, points[-1 - len(went)].x, went[-1][-1][1]):
+        largest = max(float(np.abs(step.x).sum()) for way in went for step, _ in way)
+        if _settled(path, points[-1].x, points[-1 - len(went)].x, went[-1][-1][1], largest):
             break
         ended.append(points[-1].x)
         skipped = limit(ended, went[-1][-1][1]) if hastens else None

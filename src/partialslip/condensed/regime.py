@@ -62,7 +62,7 @@ def steady_state(
     if apart:
         notes = ("no point is in contact at both load points: there is no stick zone",)
     elif stick.left == stick.right:
-        notes = ("the stick zone is smaller than an element: m and n are where slip changes sign",)
+        notes = ("not resolved: the stick zone is smaller than an element; m and n are where slip changes sign",)
     regime: Regime = "small tension" if stick.signs[0] == stick.signs[1] else "large tension"
     slips = end_slips(x, history, stick) if anew and x is not None and load.in_phase else None
     if slips and {"never", "part of the cycle"}.intersection(slips):

@@ -22,6 +22,7 @@ from partialslip.condensed.path_following import Bounds, Follower, Leg
 _STAGES = 32  # fewest stages between load points at which forces are kept
 _REPEATS = 1e-12  # change of q over a cycle, in f p, that is rounding of the events
 _SLIGHT = 1e-6  # of the longest path of slip: none
+_NOTHING = 1e-11  # slip, relative to the largest possible: rounding
 
 
 def march(tangential: Array, stretch: Array, f: float, press: Presses, path: Path, few: int = 0) -> History:
@@ -55,7 +56,8 @@ class _Done:
 
     @property
     def _slips(self) -> Mask:
-        slips: Mask = self.held & (self.leg.path > _SLIGHT * float(self.leg.path.max()))
+        least = max(_SLIGHT * float(self.leg.path.max()), _NOTHING * float(self.bounds.values.max(axis=0).sum()))
+        slips: Mask = self.held & (self.leg.path > least)
         return slips
 
     @property
