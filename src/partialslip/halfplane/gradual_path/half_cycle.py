@@ -227,7 +227,7 @@ def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
     last ones are true half cycles, each from the end of the one before.
     """
     changes: list[float] = []
-    least, since = np.inf, 0  # change, and half cycles since it became smaller
+    mixes, least, since = True, np.inf, 0  # change, and half cycles since it became smaller
     begin, middle = -found.settled, found.last.zone.centre
     last: tuple[Tractions, float, float] | None = None  # state and middle after the half cycle before, and its change
     for _ in range(_CYCLES):
@@ -246,12 +246,14 @@ def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
         if changes[-1] < least / 2:
             least, since = changes[-1], 0
         since += 1
-        if found.parted and since > _STALLED and least < _ROUGH:  # rounding decides what mixtures change
-            break
+        if found.parted and since > _STALLED and least < _ROUGH:
+            if not mixes:
+                break
+            mixes, since = False, 0
         if changes[-1] < settled or min(changes[:-1], default=np.inf) < min(changes[-1], _NEAR):
             break
         begin, middle = state, after
-        if last and found.parted and abs(change) > _FINE:
+        if mixes and last and found.parted and abs(change) > _FINE:
             share = change / (change - last[2]) if change != last[2] else 0.0
             if _LEAST < abs(share) < _MOST and (mixed := state.toward(last[0], share)):
                 begin, middle, changes = mixed, after + share * (last[1] - after), []
