@@ -23,6 +23,7 @@ _PROBES = (1 - np.cos(np.pi * (np.arange(200) + 0.5) / 200)) / 2  # places betwe
 _OF_Q = 5e-3  # change of the outer ends that counts as much as one of q by 1: q rises there like a square root
 _NEARLY = 1e-8  # change of the zone's middle from which on a zone inside is followed
 _SAME = 1e-9  # by how much a zone is wider than the one that drifts where it drifts at once
+_STALLED, _ROUGH = 4, 1e-6  # half cycles in which changes below a size become no smaller
 _LEAST, _MOST = 0.05, 0.8  # shares of the half cycle before in a mixture
 _FINE = 1e-11  # change of the middle below which the interpolation of a mixture shows
 _HALVINGS = 12  # of the way between two stages
@@ -234,6 +235,7 @@ def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
     last ones are true half cycles, each from the end of the one before.
     """
     changes: list[float] = []
+    mixes, least, since = True, np.inf, 0  # change, and half cycles since it became smaller
     begin, middle = -found.settled, found.last.zone.centre
     last: tuple[Tractions, float, float] | None = None  # state and middle after the half cycle before, and its change
     for _ in range(_CYCLES):
@@ -249,10 +251,17 @@ def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
         change = after - middle
         changes.append(max(abs(change), _moved(begin, state)) if found.parted else abs(change))
         settled = _SETTLED if not found.opens else _CLOSE if found.parted else _NEARLY
+        if changes[-1] < least / 2:
+            least, since = changes[-1], 0
+        since += 1
+        if found.parted and since > _STALLED and least < _ROUGH:
+            if not mixes:
+                break
+            mixes, since = False, 0
         if changes[-1] < settled or min(changes[:-1], default=np.inf) < min(changes[-1], _NEAR):
             break
         begin, middle = state, after
-        if last and found.parted and abs(change) > _FINE:
+        if mixes and last and found.parted and abs(change) > _FINE:
             share = change / (change - last[2]) if change != last[2] else 0.0
             if _LEAST < abs(share) < _MOST and (mixed := state.toward(last[0], share)):
                 begin, middle, changes = mixed, after + share * (last[1] - after), []
