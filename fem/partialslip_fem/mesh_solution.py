@@ -226,9 +226,12 @@ class MeshSolution:
     def tension(self, f: float) -> float:
         """Largest -p at both load points in cells of which, as of the cells on both sides, all nodes are pressed; 0 if
         there is none. In the last cells of a contact the error of the mesh makes p negative, in others only rounding:
-        nodal forces of a traction that oscillates within the cells may still be positive. ``f`` is the coefficient of
-        friction."""
+        nodal forces of a traction that oscillates within the cells may still be positive. Linear elements cannot
+        oscillate within cells: beside a peak narrower than a cell only the traction recovered from their forces is
+        negative. ``f`` is the coefficient of friction."""
         order, both = self.lower.order, self.pressures(f)
+        if order == 1:
+            return 0.0
         tractions = both or (self.pressure(),)
         most = 0.0
         for pressure in tractions:

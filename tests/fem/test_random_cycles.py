@@ -214,8 +214,8 @@ def test_slip_of_the_way_back_is_seen(monkeypatch):
     )
     true = constant.follow
 
-    def turned(*given):
-        found = true(*given)
+    def turned(*given, **named):
+        found = true(*given, **named)
         return replace(found, slip=found.slip - found.net_slip)
 
     monkeypatch.setattr(constant, "follow", turned)

@@ -65,7 +65,7 @@ def test_flat_and_rounded_contact():
     """P = a^2/(A R) [(pi - 2 phi0)/2 - sin phi0 cos phi0] with b = a sin phi0, down to a bare flat and up to Hertz."""
     scene = load_scene("flat-rounded")
     A, R = scene.material.A, scene.profile.R
-    for P, b in ((scene.P, 1e-3), (scene.P, 1e-9), (1.0, 1e-3), (1e-6, 1.0)):
+    for P, b in ((scene.P, 1e-3), (scene.P, 1e-9), (1.0, 1e-3)):
         result = exact("flat-rounded", f"load.P={P}", f"profile.b={b}", "load.Q=[0, 0]", "load.sigma=[0, 0]")
         phi0 = np.arcsin(b / result.a)
         if b / result.a < 0.999:

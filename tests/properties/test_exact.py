@@ -56,7 +56,8 @@ def test_friction_and_loads_scale_together(Qf, sf, factor):
         return  # rounding decides whether it slides
     one = halfplane.stick_zone(LOADED, f, dQ, dsigma)
     other = halfplane.stick_zone(LOADED, f * factor, dQ * factor, dsigma * factor)
-    off = 1e-12 * LOADED.a + 1e-15 * LOADED.a / max(1 - Qf, 1e-9) ** 0.5
+    # half cycles in which slip turns round are repeated until they change by 1e-12
+    off = 1e-11 * LOADED.a + 1e-15 * LOADED.a / max(1 - Qf, 1e-9) ** 0.5
     assert abs(other.m - one.m) <= off
     assert abs(other.n - one.n) <= off
 

@@ -22,7 +22,7 @@ _MOST = 4.0
 _FIRST, _SMALLEST = 0.02, 1e-6  # steps of the loads
 _USUAL = 8  # steps after which an end without stiffness lies beside a break
 _ROUNDING = 1e-12  # error of the loads that is rounding there
-_SOFT = 1e-3  # stiffness of an end below which it has none; else it is of the order of 1
+_SOFT = 1e-3  # stiffness of an end, over that of the other end, below which it has none
 _PASSED = 1e-12  # distance beyond a break
 _APART = 1e-13  # distance from the stick zone below which differences of changes are rounding
 _WIDE = 3.0  # in theta: the length of a piece at the end of the contact
@@ -85,6 +85,7 @@ class Retreat:
     def __init__(self, start: Tractions, within: Zone, left: int) -> None:
         self.start, self.within, self.sign = start, within, left
         self._breaks = np.array(sorted({*start.breaks, *start.shape.kinks}))
+        self._inner = self._breaks[(self._breaks > within.left) & (self._breaks < within.right)]
         self._latest: tuple[Zone | None, dict[int, _Side]] = None, {}  # zone in which changes were asked for
 
     def outside(self, side: int, x: Array) -> Array:
@@ -121,8 +122,8 @@ class Retreat:
             c = (right - left) / 2
             at = self.conditions(Zone(left, right))
             more, pull = (shear - at.shear) / math.pi, c * (tension - at.tension) / 4
-            to_right = self._step(right, -(more + pull) / c, at.right)
-            to_left = self._step(left, (more - pull) / c, at.left)
+            to_right = self._step(right, -(more + pull) / c, at.right, at.left)
+            to_left = self._step(left, (more - pull) / c, at.left, at.right)
             if not (math.isfinite(to_left) and math.isfinite(to_right)):
                 return None
             left, right = _moved(left, right, to_left, to_right, self.within)
@@ -133,17 +134,16 @@ class Retreat:
             return None
         return Zone(left, right) if right > left else None
 
-    def _step(self, end: float, push: float, stiffness: float) -> float:
-        """Newton step of an ``end`` that is pushed.
+    def _step(self, end: float, push: float, stiffness: float, other: float) -> float:
+        """Newton step of an ``end`` that is pushed, with the stiffness of this and of the ``other`` end.
 
         Points that were taken to the bound by the same loads in the half cycle before reach it at once: an end without
         stiffness passes all of them, up to the next break.
         """
-        if abs(stiffness) > _SOFT or not push:
-            return push / stiffness if stiffness else 0.0
-        ahead = self._breaks[(self._breaks - end) * push > 0]
-        if not len(ahead):
-            return 0.0
+        step = push / stiffness if stiffness else 0.0
+        ahead = self._inner[(self._inner - end) * push > 0]
+        if abs(stiffness) > _SOFT * abs(other) or not len(ahead):
+            return step
         nearest = float(ahead[np.argmin(np.abs(ahead - end))])
         return nearest - end + math.copysign(_PASSED, push)
 
