@@ -45,9 +45,9 @@ _INNER = 8.0  # size of cells at kinks of q over the size at the ends: kinks har
 _PASSING = 32.0  # the same at kinks that neither q1 nor q2 has
 _SHARE = 1 / 3  # largest part of the remaining CPU seconds for one mesh
 _WORK = 5e11  # limit of cells^3 times load steps of a mesh
-# Errors of m and n, as parts of the change from mesh to mesh and of growth^3; the latter with a part over the stiffness
-# of the end, 1 in Hertz contacts: an error of the loads moves an end the more the less stiff the end is
-_MOVED, _CUBIC, _CUBIC_OF_SOFT = 0.1, 0.1, 0.05
+# Errors of m and n, as parts of the change from mesh to mesh and of growth^3; the same part of ends that are soft, over
+# their stiffness, 1 in Hertz contacts: an error of the loads moves an end the more the less stiff the end is
+_MOVED, _CUBIC, _CUBIC_OF_SOFT = 0.1, 0.15, 0.05
 # The same part in a narrow stick zone, which its surroundings move as a whole. Cells nearby are reduced with the zone:
 # only growth is halved from mesh to mesh, and errors are of second order in it
 _CARRIED = 1 / 3
@@ -284,7 +284,7 @@ def _mesh_errors(normal: NormalLoads, level: _Level, before: _Level, growth: flo
     size = np.diff(level.vertices)[cells]
     unseen = _SOMEWHERE * size * (gap < _CELLS * size)
     moved = max(abs(level.stick.left - before.stick.left), abs(level.stick.right - before.stick.right))
-    between = (_CUBIC + _CUBIC_OF_SOFT / _stiffness(level)) * growth**3 * np.minimum(_NEAR * gap, 1.0)
+    between = np.maximum(_CUBIC, _CUBIC_OF_SOFT / _stiffness(level)) * growth**3 * np.minimum(_NEAR * gap, 1.0)
     part = _CARRIED if _NEAR * gaps[1] < 1 else _MOVED
     known = np.maximum(unseen, np.maximum(part * moved, between))
     if level.history.turns:

@@ -227,8 +227,7 @@ def half_cycle(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: flo
         return once
     try:
         way = steady(Loads(once.sf, math.pi * once.Qf), once.seen)
+        holds = not way.parted or certificate(way).worst < _HELD
     except LostError:
         return once
-    if way.parted and not certificate(way).worst < _HELD:
-        return once
-    return Turning(once, way)
+    return Turning(once, way) if holds else once

@@ -7,6 +7,7 @@ bounded at both ends (the conditions and the inversion of docs/theory.md, sectio
 """
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -44,6 +45,9 @@ class Zone(NamedTuple):
     def half_width(self) -> float:
         """Half of the width of the zone."""
         return (self.right - self.left) / 2
+
+
+_Step = Callable[[float, float, float, float], float]
 
 
 class Conditions(NamedTuple):
@@ -117,33 +121,39 @@ class Retreat:
         An increment of the loads adds the adhered traction of the zone, singular at its ends, and the ends move until
         the sum is bounded.
         """
+        return self._newton(tension, shear, guess, self._plainly) or self._newton(
+            tension, shear, guess, self._past_breaks
+        )
+
+    def _newton(self, tension: float, shear: float, guess: Zone, step: _Step) -> Zone | None:
         left, right = guess
         for number in range(_STEPS):
             c = (right - left) / 2
             at = self.conditions(Zone(left, right))
             more, pull = (shear - at.shear) / math.pi, c * (tension - at.tension) / 4
-            to_right = self._step(right, -(more + pull) / c, at.right, at.left)
-            to_left = self._step(left, (more - pull) / c, at.left, at.right)
+            to_right = step(right, -(more + pull) / c, at.right, at.left)
+            to_left = step(left, (more - pull) / c, at.left, at.right)
             if not (math.isfinite(to_left) and math.isfinite(to_right)):
                 return None
             left, right = _moved(left, right, to_left, to_right, self.within)
-            at_break = number > _USUAL and max(abs(more), abs(pull)) < _ROUNDING
+            at_break = step == self._past_breaks and number > _USUAL and max(abs(more), abs(pull)) < _ROUNDING
             if right - left <= 0 or max(abs(to_left), abs(to_right)) < _CLOSE or at_break:
                 break
         else:
             return None
         return Zone(left, right) if right > left else None
 
-    def _step(self, end: float, push: float, stiffness: float, other: float) -> float:
-        """Newton step of an ``end`` that is pushed, with the stiffness of this and of the ``other`` end.
+    def _plainly(self, end: float, push: float, stiffness: float, other: float) -> float:
+        """Newton step of an ``end`` that is pushed, with the stiffness of this and of the ``other`` end."""
+        del end, other
+        return push / stiffness if stiffness else 0.0
 
-        Points that were taken to the bound by the same loads in the half cycle before reach it at once: an end without
-        stiffness passes all of them, up to the next break.
-        """
-        step = push / stiffness if stiffness else 0.0
+    def _past_breaks(self, end: float, push: float, stiffness: float, other: float) -> float:
+        """The same, where the end may have no stiffness: points that were taken to the bound by the same loads in the
+        half cycle before reach it at once, and the end passes all of them, up to the next break."""
         ahead = self._inner[(self._inner - end) * push > 0]
         if abs(stiffness) > _SOFT * abs(other) or not len(ahead):
-            return step
+            return self._plainly(end, push, stiffness, other)
         nearest = float(ahead[np.argmin(np.abs(ahead - end))])
         return nearest - end + math.copysign(_PASSED, push)
 
