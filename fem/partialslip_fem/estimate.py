@@ -199,7 +199,8 @@ def _of_caught(solution: MeshSolution, sizes: Array) -> Array:
     ``sizes`` (2,) are those of the elements at the ends, in contact half-widths."""
     assert solution.stick
     apart = np.abs(np.subtract(solution.stick.caught, solution.zone_ends[2:4])) / solution.half_width
-    apart = np.where(np.isnan(apart), _SIDE * sizes, apart)
+    # nodes that slip a little once more under mean loads stick again as well, and tell nothing of the end
+    apart = np.where(np.isnan(apart), _SIDE * sizes, np.minimum(apart, sizes))
     errors: Array = np.where(solution.stick.moved, _CAUGHT_UP * sizes + apart, 0.0)
     return errors
 

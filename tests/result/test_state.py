@@ -1,5 +1,6 @@
 """Saved states: what they hold, and what is refused. To stop and go on is not to stop: see `tests/invariances`."""
 
+import functools
 from dataclasses import replace
 
 import numpy as np
@@ -16,8 +17,15 @@ MEAN = ("load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]", "fem.accuracy=1e-
 
 
 def solved(method, cycles, start=None, extra=()):
+    if start is None:
+        return from_zero(method, cycles, extra)
     scene = load_scene("hertz-large-tension", [*MEAN, f"load.cycles={cycles}", *extra])
     return run(scene, [method], start=start).results[method]
+
+
+@functools.cache
+def from_zero(method, cycles, extra):
+    return run(load_scene("hertz-large-tension", [*MEAN, f"load.cycles={cycles}", *extra]), [method]).results[method]
 
 
 def test_a_state_of_one_method_starts_another():

@@ -19,6 +19,7 @@ from partialslip.condensed.path import Path
 STEADY = 1e-6  # change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
 _REPEATS = 3e-14  # change of a node's q over a cycle, relative to the largest sum of |q|: rounding (seen: 2.7e-14)
 _LIMIT = 10.0  # changes of the last cycle that may lie between it and the limit, however few cycles went before
+_NEAR = 1e-6  # change over a cycle, in f p, that ends cycles near enough to the limit for ratios of changes to tell it
 _BESIDE = 5  # neighbouring nodes of which the one that moves most tells how far the steady state is
 _SLIPS = 1e-9  # distance of |dq| from the bound, relative, at which a node slips
 
@@ -140,11 +141,11 @@ class History:
         they come to the bound slowly. None if no node does.
 
         Changes in geometric progression add up to the last change times r/(1 - r), with r the ratio of the last two
-        changes; r is known within a factor of two of 1 - r. Room that falls with a power of the cycles lasts as many
-        changes of the last cycle as cycles went before: more is not counted. A single node may hardly move by chance,
-        so that the one of its neighbours that moves most tells. Gone is also room of which the limit of the last three
-        cycles, by Aitken's method, leaves less than half: of room that falls in geometric progression it leaves none,
-        of room that falls with a power of the cycles a part.
+        changes; r is known within a factor of two of 1 - r, where cycles end close to their limit. Room that falls with
+        a power of the cycles lasts as many changes of the last cycle as cycles went before: more is not counted. A
+        single node may hardly move by chance, so that the one of its neighbours that moves most tells. Gone is also
+        room of which the limit of the last three cycles, by Aitken's method, leaves less than half: of room that falls
+        in geometric progression it leaves none, of room that falls with a power of the cycles a part.
         """
         if self.changed is None:
             return None
@@ -154,7 +155,7 @@ class History:
         room, *before = [2 * self.bound - np.abs(q2 - q1) for q1, q2 in ends]
         changed = np.isfinite(self.changed)
         moved, lasts = self._moved_beside(0), np.full_like(room, max(_LIMIT, self.cycles))
-        if self.cycles > 1:
+        if self.cycles > 1 and 0 < self.path.settled <= _NEAR:
             falls = np.maximum(self._moved_beside(1) - moved, 0.0)
             lasts = np.minimum(np.maximum(np.divide(2 * moved, falls, out=lasts.copy(), where=falls > 0), 1.0), lasts)
         gone = np.where(changed, lasts * self.bound * moved, 0.0)
