@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from partialslip import halfplane, load_scene
+from partialslip import InputError, halfplane, load_scene
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.loading import half_cycle
 from partialslip.halfplane.punch import Punch
@@ -50,11 +50,17 @@ def test_the_right_end_only_recedes(Qf, more_Qf, sf, more_sf, shape):
 
 
 @given(SHEARS, TENSIONS, FACTORS)
+@settings(max_examples=settings().max_examples // 3)  # zones inside that slip take seconds
 def test_friction_and_loads_scale_together(Qf, sf, factor):
     f, dQ, dsigma = np.array([0.4, Qf * 0.8 * LOADED.P, sf * 0.4 * LOADED.p0])
     if dQ >= 2 * f * LOADED.P * (1 - 1e-9):
         return  # rounding decides whether it slides
-    one = halfplane.stick_zone(LOADED, f, dQ, dsigma)
+    try:
+        one = halfplane.stick_zone(LOADED, f, dQ, dsigma)
+    except InputError:  # a very narrow zone drifts: its way is not known
+        with pytest.raises(InputError, match="slip turns round"):
+            halfplane.stick_zone(LOADED, f * factor, dQ * factor, dsigma * factor)
+        return
     other = halfplane.stick_zone(LOADED, f * factor, dQ * factor, dsigma * factor)
     # half cycles in which slip turns round are repeated until they change by 1e-12
     off = 1e-11 * LOADED.a + 1e-15 * LOADED.a / max(1 - Qf, 1e-9) ** 0.5
