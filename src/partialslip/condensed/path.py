@@ -81,11 +81,6 @@ class Path:
         return len({self.begin, *self.cycle}) > 1
 
     @property
-    def mean_steps(self) -> float:
-        """Mean number of steps from one load point to the next."""
-        return sum(map(len, self.fractions)) / len(self.fractions)
-
-    @property
     def most_steps(self) -> int:
         """Largest number of steps from one load point to the next."""
         return max(len(way) for way in self.fractions)
