@@ -1,10 +1,12 @@
 """Sweeps: axes, cases solved once, and the law of the sizes."""
 
+import contextlib
 import csv
 import math
 import signal
 import subprocess
 import sys
+import threading
 import time
 import xml.etree.ElementTree
 from concurrent.futures import ThreadPoolExecutor
@@ -157,6 +159,16 @@ with workers(processes=2) as pool:
     print(*{pool.submit(os.getpid).result() for _ in range(8)}, flush=True)
     list(pool.map(time.sleep, [60] * 4))
 """
+
+
+def test_no_thread_of_the_workers_is_left():
+    """Otherwise the exit of Python now and then ends in "Bad file descriptor"."""
+    threads = set(threading.enumerate())
+    with contextlib.suppress(KeyboardInterrupt), workers(processes=2) as pool:
+        tasks = [pool.submit(time.sleep, 60) for _ in range(8)]
+        raise KeyboardInterrupt
+    assert tasks[-1].cancelled()
+    assert set(threading.enumerate()) <= threads
 
 
 @pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])

@@ -103,6 +103,20 @@ class _Processes(ProcessPoolExecutor):
         finally:
             sys.modules["__main__"] = script
 
+    def end(self) -> None:
+        """Cancel what waits, terminate the processes, and wait for the thread that manages them.
+
+        Python's exit would otherwise write to a pipe that this thread may just have closed, and print a traceback. The
+        work is cancelled first: the thread fails at cancelled work of a process that has died.
+        """
+        processes = list((self._processes or {}).values())
+        manager: Any = self._executor_manager_thread
+        self.shutdown(wait=False, cancel_futures=True)
+        for process in processes:
+            process.terminate()
+        if manager:
+            manager.join()
+
 
 class _Here(Executor):
     """Executor in this process: ``submit`` does the work at once and raises its exceptions."""
@@ -138,14 +152,11 @@ def workers(cluster: str | None = None, processes: int | None = None) -> Iterato
         return
     if cluster is None:
         context = multiprocessing.get_context("spawn")  # BLAS threads and gmsh do not survive a fork
-        others = set(multiprocessing.active_children())
         pool = _Processes(processes or os.cpu_count(), context, _begin)
         try:
             yield pool
         except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            for process in set(multiprocessing.active_children()) - others:
-                process.terminate()
+            pool.end()
             raise
         pool.shutdown()
         return
