@@ -18,8 +18,6 @@ EVERYWHERE = {
     "errors", "inputfile", "strictjson", "seal", "arrays", "bars", "frame", "shown", "allowance", "units", "origin",
     "output", "__main__",
 }  # fmt: skip
-# `shown` asks it what a notebook shows of scenes, results and runs; pyproject.toml declares this import, which goes up.
-NOTEBOOK = "partialslip.report.notebook"
 _SIZE = (7.4, 6.2)
 
 
@@ -34,7 +32,7 @@ def imports() -> dict[str, set[str]]:
     graph = grimp.build_graph(*ROOTS, exclude_type_checking_imports=True)
     found: dict[str, set[str]] = {}
     for module in graph.modules - {"partialslip"}:
-        there = {home(each) for each in graph.find_modules_directly_imported_by(module) - {NOTEBOOK}}
+        there = {home(each) for each in graph.find_modules_directly_imported_by(module)}
         found.setdefault(home(module), set()).update(there)
     hidden = EVERYWHERE | {"partialslip"}
     return {name: there - hidden - {name} for name, there in found.items() if name not in hidden}

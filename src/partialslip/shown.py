@@ -1,6 +1,7 @@
 """Display of objects: short reprs, notebook tables and plots."""
 
 import dataclasses
+import importlib
 import reprlib
 from collections.abc import Sized
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,8 @@ from partialslip.arrays import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+_DISPLAY = "partialslip.report.notebook"  # a name: what shows objects stands above them, and is loaded when it is asked
 
 
 class Short:
@@ -29,9 +32,7 @@ class Notebook:
     __slots__ = ()
 
     def _repr_html_(self) -> str:
-        from partialslip.report.notebook import html
-
-        return html(self)  # type: ignore[arg-type]
+        return str(_display().html(self))
 
 
 class Drawn(Notebook):
@@ -44,9 +45,12 @@ class Drawn(Notebook):
 
         A result alone does not know f: its plot shows q/p0. Returns the axes.
         """
-        from partialslip.report.notebook import plot
+        drawn: Axes = _display().plot(self, axes)
+        return drawn
 
-        return plot(self, axes)  # type: ignore[arg-type]
+
+def _display() -> Any:
+    return importlib.import_module(_DISPLAY)
 
 
 def short(record: Any) -> str:
