@@ -8,7 +8,7 @@ import pytest
 
 from partialslip import shipped_scenes
 from partialslip.cli import main
-from partialslip.output import pdf
+from partialslip.output import page
 from partialslip.scene.reading import parse_scene
 from partialslip_meshes.gmsh import DEBIAN_PACKAGES
 
@@ -31,7 +31,7 @@ def test_two_commands_set_up_one_runs_one_tests():
 
 def test_every_library_that_is_needed_is_set_up():
     assert all(f" {package}" in blocks("sh")[0] for package in DEBIAN_PACKAGES.values())
-    assert pdf.LIBRARIES in blocks("sh")[0]
+    assert page.LIBRARIES in blocks("sh")[0]
 
 
 def test_scene_in_the_readme_is_the_shipped_one(capsys):

@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 import partialslip
 from partialslip.condensed.threads import one_thread
 from partialslip_fem import Kept
-from partialslip_meshes.quiet import quiet
+from partialslip_meshes.files import quiet
 
 COARSE = ["fem.accuracy=5e-2", "fem.order=2"]
 SETTINGS = [  # of runs: adaptive and not, one body and two, both factors, with and without a closed form

@@ -1,12 +1,46 @@
-"""The files that meshio is going to open: the mesh, and those that it refers to."""
+"""Files that meshio opens: what they refer to is checked, what meshio prints is kept away, and point data."""
 
+import io
 import os
 import re
+import sys
+import threading
+import warnings
 from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
+from typing import Any
+
+import meshio
+import numpy as np
+import numpy.typing as npt
 
 from partialslip.errors import InputError
 from partialslip.inputfile import LARGEST_MESH, opened
+
+_one = threading.Lock()  # sys.stdout, sys.stderr and the warning filters are shared by all threads
+
+
+class _Caught:
+    """A stream that collects the output of its own thread and passes on the output of other threads."""
+
+    def __init__(self, printed: io.StringIO, stream: Any) -> None:
+        self._printed, self._stream, self._thread = printed, stream, threading.get_ident()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._printed if threading.get_ident() == self._thread else self._stream, name)
+
+
+@contextmanager
+def quiet() -> Iterator[io.StringIO]:
+    """Collect the output of this thread and suppress warnings; yields the stream with the output."""
+    printed = io.StringIO()
+    with _one, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        out, err = _Caught(printed, sys.stdout), _Caught(printed, sys.stderr)
+        with redirect_stdout(out), redirect_stderr(err):
+            yield printed
+
 
 _INCLUDES = re.compile(rb"^\*\s*INCLUDE\b[^\n]*=([^\n]*)", re.IGNORECASE | re.MULTILINE)  # Abaqus
 _ELSEWHERE = re.compile(rb"<DataItem\b[^>]*Format\s*=\s*[\"'](?:Binary|HDF)[\"'][^>]*>([^<]*)<", re.IGNORECASE)  # XDMF
@@ -38,3 +72,43 @@ def _referred(file: Path, pattern: re.Pattern[bytes], text: bytes) -> Iterator[P
             name = name.partition(":")[0]
         places = [Path(name), file.parent / name] if name else []
         yield from [place for place in places if os.path.lexists(place)] or places[1:]
+
+
+# Suffixes of meshio's formats with point data. Readers of other formats may not terminate.
+FORMATS = {".vtu", ".vtk", ".xdmf", ".xmf", ".msh", ".med", ".e", ".exo", ".ex2"}
+
+
+def read_point_data(path: Path) -> tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]:
+    """Points (n, 3), and values (n,) by name, of the file ``path``, whose suffix tells the format.
+
+    If the mesh has line cells, only their points are returned.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read.
+    """
+    mesh = _read(path)
+    try:
+        points = np.asarray(mesh.points, dtype=float)
+        points = np.column_stack([points, np.zeros((len(points), 3 - points.shape[1]))])
+        data = {name: np.asarray(values, dtype=float) for name, values in mesh.point_data.items()}
+        lines = [block.data.ravel() for block in mesh.cells if block.type.startswith("line")]
+        on_line = np.unique(np.concatenate(lines)).astype(int) if lines else np.arange(len(points))
+        scalars = {name: values.reshape(len(points), -1) for name, values in data.items()}
+        return points[on_line], {name: v[on_line, 0] for name, v in scalars.items() if v.shape[1] == 1}
+    except (ValueError, IndexError, TypeError):
+        raise InputError(f"{path}: points, lines and point data must have matching sizes") from None
+
+
+def _read(path: Path) -> meshio.Mesh:
+    """Read ``path``; turn meshio's exits and exceptions into InputError."""
+    check_files(path, str(path))
+    try:
+        with quiet():
+            return meshio.read(path)
+    except ImportError as error:
+        raise InputError(f"{path}: cannot be read: the package {error.name} is missing") from None
+    except (Exception, SystemExit) as error:
+        reason = " ".join(str(error).split())[:100] if not isinstance(error, SystemExit) else ""
+        raise InputError(f"{path}: cannot be read{f': {reason}' if reason else ''}") from None

@@ -10,9 +10,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from partialslip.errors import InputError, MissingLibraryError
-from partialslip_meshes.files import check_files
+from partialslip_meshes.files import check_files, quiet
 from partialslip_meshes.mesh import Mesh
-from partialslip_meshes.quiet import quiet
 
 if TYPE_CHECKING:
     import meshio

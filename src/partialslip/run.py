@@ -20,8 +20,8 @@ from partialslip.judge import Comparison, Conclusion, Outcome, Verdict, compare,
 from partialslip.judge.reference import ALL_EFFECTS, METHODS, reference, reference_among
 from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
-from partialslip.result.sliding import sliding
 from partialslip.result.state import State
+from partialslip.result.traction import sliding
 from partialslip.rig import Rig, key_of, load_rig
 from partialslip.scene import Effects, Scene
 from partialslip.scene.reading import AnyScene, as_scene

@@ -8,7 +8,7 @@ import hashlib
 import json
 from typing import Any
 
-from partialslip.output.json import json_text
+from partialslip.output.files import json_text
 
 KEY = "sum"
 

@@ -9,7 +9,7 @@ import partialslip
 from partialslip.errors import InputError
 from partialslip.fatigue.cycle import phases_of
 from partialslip.fatigue.places import averaged, largest_at
-from partialslip.result.stresses import StressAt
+from partialslip.result.fields import StressAt
 
 CONSTANTS = {
     "k_findley": 0.3,

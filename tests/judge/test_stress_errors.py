@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from partialslip.judge.means import norm_errors
-from partialslip.judge.stresses import inside_error, surface_error
+from partialslip.judge.measures import inside_error, surface_error
 from partialslip.result import StressAt, SurfaceStress
 
 

@@ -11,7 +11,7 @@ from partialslip.cli import main
 from partialslip.halfplane import contact, stick_zone
 from partialslip.halfplane.noise import noise_of
 from partialslip.record import record
-from partialslip.report.profile import profile_svg
+from partialslip.report.figure import profile_svg
 from partialslip.scene.measured import refitted, smoothest
 
 SCENE = """

@@ -10,7 +10,7 @@ import pytest
 
 from partialslip.errors import InputError
 from partialslip.score import calculix
-from partialslip.score.calculix_faces import FACE_CORNERS
+from partialslip.score.calculix import FACE_CORNERS
 
 FRD = (Path(__file__).parent / "calculix.frd").read_text()
 

@@ -17,7 +17,7 @@ import msgspec
 from partialslip.errors import InputError
 from partialslip.inputfile import LARGEST_MESH, check_replaceable, checksum, read_bytes, reason
 from partialslip.origin import made_now, source_checksum
-from partialslip.output.folders import make_folder
+from partialslip.output.lock import make_folder
 from partialslip.scene import Scene
 from partialslip.strictjson import decoded
 

@@ -11,7 +11,7 @@ import msgspec
 from partialslip.benchmark.problem import EDITION, Problem
 from partialslip.benchmark.standing import standing
 from partialslip.benchmark.submission import Submission, check_apart
-from partialslip.output.template import template
+from partialslip.output.page import template
 
 _LETTER, _MARGIN = 6.6, 12.0  # width of a letter and of both margins of a cell; the text is fitted to its cell
 _INK, _PAPER, _NONE = "#ffffff", "#333333", "#6b6b6b"

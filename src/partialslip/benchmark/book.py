@@ -14,8 +14,7 @@ from partialslip.benchmark.problem import EDITION, SETTINGS, Problem, read_froze
 from partialslip.benchmark.scoreboard import Board, scoreboard
 from partialslip.benchmark.submission import Submission
 from partialslip.origin import Made, origin_lines
-from partialslip.output.csv import csv_text
-from partialslip.output.json import json_text
+from partialslip.output.files import csv_text, json_text
 from partialslip.output.page import render_page
 from partialslip.report import rows
 from partialslip.report.sketch import sketch_svg

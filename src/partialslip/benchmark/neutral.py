@@ -11,7 +11,7 @@ from partialslip.errors import InputError
 from partialslip.export.abaqus import abaqus_deck
 from partialslip.export.calculix import calculix_deck
 from partialslip.export.model import Model, modelled
-from partialslip.output.json import json_text
+from partialslip.output.files import json_text
 
 _FORMATS = (".msh", ".inp", ".vtu")
 _WITH_H5PY = (".med",)

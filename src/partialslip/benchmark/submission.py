@@ -14,8 +14,7 @@ import tomli_w
 from partialslip.benchmark.problem import Problem, Target
 from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes, read_text
-from partialslip.output.files import write_texts
-from partialslip.output.json import json_text
+from partialslip.output.files import json_text, write_texts
 from partialslip.output.lock import locked
 from partialslip.output.place import NAME as REQUEST
 from partialslip.scene.limits import NO_TEXT

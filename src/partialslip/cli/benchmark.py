@@ -188,7 +188,7 @@ def _build(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import output
     from partialslip.errors import MissingLibraryError
     from partialslip.output.files import write_files, write_texts
-    from partialslip.output.pdf import check_pdf, write_pdf
+    from partialslip.output.page import check_pdf, write_pdf
 
     check_folder(options.out)
     check_report(options)

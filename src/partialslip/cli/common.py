@@ -71,7 +71,7 @@ def print_long_path(scene: "Scene", methods: Sequence[str]) -> None:
 def check_report(options: "argparse.Namespace") -> None:
     """Raise MissingLibraryError if ``--pdf`` is given and a library is missing, before anything is solved."""
     if options.pdf:
-        from partialslip.output.pdf import check_pdf
+        from partialslip.output.page import check_pdf
 
         check_pdf("--pdf")
 

@@ -57,8 +57,7 @@ def _cost(options: argparse.Namespace) -> int:
 
     from partialslip.batch.ledger import Ledger
     from partialslip.cli.consoles import messages, output, working
-    from partialslip.output.csv import csv_text
-    from partialslip.output.files import write_texts
+    from partialslip.output.files import csv_text, write_texts
     from partialslip.output.tables import print_table
     from partialslip.report.page import Section
     from partialslip.study.cost import ladder

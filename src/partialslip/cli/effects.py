@@ -43,8 +43,7 @@ def _effects(options: argparse.Namespace) -> int:
     scene = partialslip.load_scene(options.scene, options.overrides)
 
     from partialslip.cli.consoles import output, working
-    from partialslip.output.files import write_texts
-    from partialslip.output.json import json_text
+    from partialslip.output.files import json_text, write_texts
     from partialslip.output.tables import print_table
     from partialslip.study.effects import worth
     from partialslip.study.effects.figure import effects_svg

@@ -79,8 +79,7 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", plac
     from partialslip.batch.ledger import Ledger
     from partialslip.batch.sweep import workers
     from partialslip.cli.consoles import counting, messages, output
-    from partialslip.output.csv import csv_text
-    from partialslip.output.files import write_texts
+    from partialslip.output.files import csv_text, write_texts
     from partialslip.output.tables import print_table
     from partialslip.report.page import Section
     from partialslip.study.size import sizes, tables

@@ -4,9 +4,11 @@ from partialslip.fatigue.assessment import Assessment as Assessment
 from partialslip.fatigue.assessment import Rating as Rating
 from partialslip.fatigue.assessment import Spot as Spot
 from partialslip.fatigue.assessment import assess as assess
+from partialslip.fatigue.criteria import Ruiz as Ruiz
 from partialslip.fatigue.criteria import fatemi_socie as fatemi_socie
 from partialslip.fatigue.criteria import findley as findley
 from partialslip.fatigue.criteria import principal_range as principal_range
+from partialslip.fatigue.criteria import ruiz as ruiz
 from partialslip.fatigue.criteria import smith_watson_topper as smith_watson_topper
 from partialslip.fatigue.criteria import with_zz as with_zz
 from partialslip.fatigue.edges import Coefficient as Coefficient
@@ -15,5 +17,3 @@ from partialslip.fatigue.edges import edges as edges
 from partialslip.fatigue.invariants import crossland as crossland
 from partialslip.fatigue.invariants import dang_van as dang_van
 from partialslip.fatigue.planes import Critical as Critical
-from partialslip.fatigue.ruiz import Ruiz as Ruiz
-from partialslip.fatigue.ruiz import ruiz as ruiz

@@ -8,12 +8,12 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
+from partialslip.fatigue.criteria import Ruiz, ruiz
 from partialslip.fatigue.cycle import settled, stress_path, unknown_between
 from partialslip.fatigue.edges import Edge, edges
 from partialslip.fatigue.named import RUIZ, Criterion, beyond, check_distance, chosen, criterion
 from partialslip.fatigue.places import OVER, averaged, depths, largest_at, surface_points
 from partialslip.fatigue.planes import Critical
-from partialslip.fatigue.ruiz import Ruiz, ruiz
 from partialslip.result import Result
 from partialslip.run import with_stresses
 from partialslip.scene import Scene

@@ -6,9 +6,8 @@ from pathlib import Path
 from partialslip.fatigue import tables
 from partialslip.fatigue.assessment import Assessment
 from partialslip.fatigue.figure import criteria_svg, planes_svg, stress_svg
-from partialslip.output.files import write_texts
-from partialslip.output.json import json_text
-from partialslip.output.template import template
+from partialslip.output.files import json_text, write_texts
+from partialslip.output.page import template
 from partialslip.report.page import Section
 
 _CURVES = {"surface": "along-surface.csv", "depth": "over-depth.csv"}

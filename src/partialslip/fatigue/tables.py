@@ -12,7 +12,7 @@ from partialslip.fatigue.assessment import Assessment, Rating, Spot, rough_point
 from partialslip.fatigue.cycle import dense, stress_path
 from partialslip.fatigue.edges import Coefficient
 from partialslip.fatigue.places import OVER, depths, surface_points
-from partialslip.output.csv import csv_text
+from partialslip.output.files import csv_text
 from partialslip.report.amounts import scale
 from partialslip.units import Dimension
 

@@ -16,7 +16,7 @@ from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import TOO_STEEP, drive, stick_zones
 from partialslip.halfplane.uneven import press
 from partialslip.result import StickZone
-from partialslip.result.points import AtPoints
+from partialslip.result.fields import AtPoints
 from partialslip.scene import FlatRounded, Pressing, Scene
 from partialslip.scene import Hertz as HertzProfile
 from partialslip.scene.profiles import Curvature

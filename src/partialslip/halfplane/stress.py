@@ -17,7 +17,7 @@ from partialslip.halfplane.traction import half_range
 from partialslip.halfplane.tractions import sample
 from partialslip.halfplane.turning import Followed, Part, Reached, Turning, half_cycle
 from partialslip.result import StickZone, SurfaceStress
-from partialslip.result.points import AtPoints
+from partialslip.result.fields import AtPoints
 
 _SURFACE = 1e-30  # depth of points on the surface, as a fraction of a
 _APART = 1e-12  # distance below which breaks are merged, as a fraction of a

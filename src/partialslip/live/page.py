@@ -15,7 +15,7 @@ from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_table import table
 from partialslip.map.grid import Line, stick_map
 from partialslip.output.labels import label_places
-from partialslip.output.template import template
+from partialslip.output.page import template
 from partialslip.scene import Hertz, Scene
 from partialslip.units import SI
 

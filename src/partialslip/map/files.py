@@ -8,8 +8,7 @@ from partialslip.map.figure import ends_svg, map_svg
 from partialslip.map.grid import StickMap
 from partialslip.map.varying import VaryingMap
 from partialslip.map.varying_figure import varying_svg
-from partialslip.output.csv import csv_text
-from partialslip.output.files import write_texts
+from partialslip.output.files import csv_text, write_texts
 from partialslip.report import rows
 
 

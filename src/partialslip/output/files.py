@@ -1,17 +1,55 @@
-"""Write files atomically: a stopped write leaves no partial file."""
+"""Files: written whole or not at all; tables as CSV, data as JSON."""
 
+import csv
 import filecmp
 import glob
+import io
+import itertools
 import os
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from partialslip.errors import InputError
+import msgspec
+
+from partialslip.errors import InputError, printable
 from partialslip.inputfile import check_replaceable
-from partialslip.output.folders import make_folder
-from partialslip.output.lock import lock
+from partialslip.output.lock import lock, make_folder
+
+_FORMULA = ("=", "+", "-", "@")  # what a formula begins with
+
+
+def csv_text(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """Return a table with headings ``head`` and ``rows`` as the text of a CSV file.
+
+    Text that a spreadsheet would take for a formula, such as the name of a file that begins with =, begins with an
+    apostrophe instead.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerows([_plain(cell) for cell in row] for row in itertools.chain([head], rows))
+    return text.getvalue()
+
+
+def _plain(cell: object) -> object:
+    """Return ``cell``; text without control characters, and with an apostrophe if it would be a formula. Numbers are
+    none, in text neither."""
+    if not isinstance(cell, str):
+        return cell
+    cell = printable(cell)
+    if not cell.startswith(_FORMULA):
+        return cell
+    try:
+        float(cell)
+    except ValueError:
+        return f"'{cell}"
+    return cell
+
+
+def json_text(data: object) -> str:
+    """Return ``data``, of types known to msgspec, as indented JSON text; null in place of NaN and infinity."""
+    return msgspec.json.format(msgspec.json.encode(data), indent=1).decode() + "\n"
 
 
 def write_files(folder: Path, files: Mapping[str, Callable[[Path], object]]) -> list[Path]:

@@ -1,4 +1,4 @@
-"""Lock a folder, so that one process at a time writes to it."""
+"""Make folders, and lock a folder, so that one process at a time writes to it."""
 
 import contextlib
 import errno
@@ -10,7 +10,6 @@ from pathlib import Path
 
 from partialslip.errors import InputError
 from partialslip.inputfile import reason
-from partialslip.output.folders import make_folder
 
 try:
     import fcntl
@@ -24,6 +23,34 @@ _BEYOND = 1 << 30  # byte locked on Windows: beyond the text, because locked byt
 
 class FolderInUseError(InputError):
     """Another process writes to the folder."""
+
+
+def make_folder(folder: Path) -> None:
+    """Make ``folder`` and its parents, those that do not exist. Any number of parents may be missing.
+
+    Raises
+    ------
+    OSError
+        If a folder cannot be made. Says so if the working folder has been deleted.
+    """
+    try:
+        for each in reversed([folder, *folder.parents]):
+            try:
+                os.mkdir(each)
+            except OSError:  # is there; in a folder that is there, but read-only, too
+                if not os.path.isdir(each):
+                    raise
+    except FileNotFoundError:
+        if not folder.is_absolute():
+            _check_working_folder()
+        raise
+
+
+def _check_working_folder() -> None:
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        raise OSError(errno.ESTALE, "the working folder has been deleted") from None
 
 
 @contextmanager

@@ -9,9 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.origin import Made, made_now
-from partialslip.output.csv import csv_text
-from partialslip.output.files import write_files, write_texts
-from partialslip.output.pdf import write_pdf
+from partialslip.output.files import csv_text, write_files, write_texts
+from partialslip.output.page import write_pdf
 from partialslip.record import record
 from partialslip.report.page import run_page
 from partialslip.run import Run

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from partialslip.judge import Comparison
-from partialslip.output.template import template
+from partialslip.output.page import template
 from partialslip.report import answer, rows
 from partialslip.report.figure import draw_run, draw_tractions
 from partialslip.result import Result

@@ -7,8 +7,7 @@ from partialslip.origin import Made, origin_lines
 from partialslip.output.page import render_page
 from partialslip.report import answer, rows
 from partialslip.report.amounts import amounts
-from partialslip.report.figure import mesh_svg, traction_svg
-from partialslip.report.profile import profile_svg
+from partialslip.report.figure import mesh_svg, profile_svg, traction_svg
 from partialslip.report.sketch import sketch_svg
 from partialslip.run import Run
 from partialslip.scene import Scene

@@ -4,6 +4,7 @@ from partialslip.result.cost import Clock as Clock
 from partialslip.result.cost import Cost as Cost
 from partialslip.result.fields import DeformedBody as DeformedBody
 from partialslip.result.fields import Slip as Slip
+from partialslip.result.fields import StressAt as StressAt
 from partialslip.result.fields import SurfaceStress as SurfaceStress
 from partialslip.result.result import FRICTIONLESS as FRICTIONLESS
 from partialslip.result.result import PATH_DEPENDENT as PATH_DEPENDENT
@@ -13,5 +14,4 @@ from partialslip.result.result import Result as Result
 from partialslip.result.state import State as State
 from partialslip.result.state import load_state as load_state
 from partialslip.result.stick_zone import StickZone as StickZone
-from partialslip.result.stresses import StressAt as StressAt
 from partialslip.result.traction import Traction as Traction

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Literal
 from partialslip.arrays import Array
 from partialslip.frame import frame
 from partialslip.result.cost import Cost
-from partialslip.result.fields import DeformedBody, Slip, SurfaceStress
+from partialslip.result.fields import DeformedBody, Slip, StressAt, SurfaceStress
 from partialslip.result.state import State
-from partialslip.result.stresses import StressAt
 from partialslip.result.traction import Traction
 from partialslip.shown import Drawn
 

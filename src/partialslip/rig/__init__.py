@@ -2,6 +2,6 @@
 
 from partialslip.rig.file import load_rig as load_rig
 from partialslip.rig.file import write_rig as write_rig
-from partialslip.rig.key import key_of as key_of
 from partialslip.rig.rig import Rig as Rig
 from partialslip.rig.rig import Terms as Terms
+from partialslip.rig.rig import key_of as key_of

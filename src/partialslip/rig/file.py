@@ -10,8 +10,7 @@ import numpy as np
 from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes
 from partialslip.output.files import write_texts
-from partialslip.rig.key import key_of
-from partialslip.rig.rig import Rig, Terms
+from partialslip.rig.rig import Rig, Terms, key_of
 from partialslip.scene import Scene
 from partialslip.seal import edited, sealed_text
 from partialslip.strictjson import converted, parsed

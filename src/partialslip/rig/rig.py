@@ -9,13 +9,17 @@ where A is the compliance of the pair and xx, yy and xy are polynomials in x/rea
 loads, friction or, without a pad, on the profile.
 """
 
+import hashlib
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+import msgspec
 import numpy as np
 from numpy.polynomial import polynomial
 
 from partialslip.arrays import Array
+from partialslip.inputfile import LARGEST_MESH, checksum
+from partialslip.scene import Scene
 
 
 class Terms(NamedTuple):
@@ -102,3 +106,20 @@ class Rig:
         """Coefficients (..., k) of u/A under tractions with the moments ``p`` and ``q`` (..., k)."""
         result: Array = q @ self.terms.xx + p @ self.terms.xy.T
         return result
+
+
+def key_of(scene: Scene) -> str:
+    """Checksum of the bodies of ``scene``, their supports and meshes, E, nu and plane, and the profile of a pad.
+
+    Raises
+    ------
+    InputError
+        If a mesh file cannot be read.
+    """
+    bodies = msgspec.to_builtins(scene.bodies)
+    bodies.pop("equivalent", None)
+    for name, body in scene.bodies:
+        if body.mesh is not None:
+            bodies[name.removeprefix("bodies.")]["mesh"] = checksum(body.mesh, LARGEST_MESH)
+    parts = [bodies, scene.material, scene.profile if scene.bodies.pad else None]
+    return hashlib.sha256(msgspec.json.encode(parts, order="sorted")).hexdigest()[:16]

@@ -1,8 +1,4 @@
-"""Read CalculiX results: contact stresses of ``*CONTACT FILE`` in .frd and of ``*CONTACT PRINT`` (CSTR) in .dat.
-
-CSHEAR1 acts along x, from the slave surface on the master surface (observed in runs of version 2.20): it equals q if
-the slave is the lower body. Formats: manuals of CalculiX GraphiX (chapter *Result Format*) and CalculiX CrunchiX.
-"""
+"""Read CalculiX results: contact stresses of ``*CONTACT FILE`` in .frd and of ``*CONTACT PRINT`` (CSTR) in .dat."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -12,8 +8,26 @@ import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.score.calculix_faces import FACE_CORNERS
 from partialslip.units import SYSTEMS, Units
+
+Corners = tuple[tuple[int, ...], ...]
+
+_HEXAHEDRON: Corners = ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0))
+_WEDGE: Corners = ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5))
+_TETRAHEDRON: Corners = ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0))
+# Plane elements are expanded to solids, whose first two faces are the plane ones.
+_TRIANGLE: Corners = ((), (), (0, 1), (1, 2), (2, 0))
+_QUADRILATERAL: Corners = ((), (), (0, 1), (1, 2), (2, 3), (3, 0))
+
+#: Indices of a face's corners among the nodes of the element: ``FACE_CORNERS[type][face - 1]``.
+FACE_CORNERS: dict[int, Corners] = {
+    1: _HEXAHEDRON, 4: _HEXAHEDRON,
+    2: _WEDGE, 5: _WEDGE,
+    3: _TETRAHEDRON, 6: _TETRAHEDRON,
+    7: _TRIANGLE, 8: _TRIANGLE,
+    9: _QUADRILATERAL, 10: _QUADRILATERAL,
+}  # fmt: skip
+
 
 _CONTACT = ("CPRESS", "CSHEAR1")
 _STRESS = " contact stress (slave "

@@ -17,7 +17,7 @@ from partialslip.inputfile import read_text
 from partialslip.judge import Conclusion, Outcome
 from partialslip.judge.reference import REFERENCES
 from partialslip.output.files import write_texts
-from partialslip.output.pdf import write_pdf
+from partialslip.output.page import write_pdf
 from partialslip.output.place import placed
 from partialslip.plan import plan
 from partialslip.report.figure import traction_svg

@@ -12,9 +12,7 @@ from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes
 from partialslip.judge import NO_BAR, Outcome
 from partialslip.origin import versions
-from partialslip.output.csv import csv_text
-from partialslip.output.files import write_texts
-from partialslip.output.json import json_text
+from partialslip.output.files import csv_text, json_text, write_texts
 from partialslip.output.tables import print_table
 from partialslip.report import rows
 from partialslip.strictjson import decoded

@@ -12,7 +12,7 @@ from msgspec.structs import replace
 
 from partialslip.errors import InputError
 from partialslip.judge import cell_errors
-from partialslip.output.csv import csv_text
+from partialslip.output.files import csv_text
 from partialslip.plan import Effect, Plan, plan, reduced
 from partialslip.report.page import Section
 from partialslip.result import Regime, Result

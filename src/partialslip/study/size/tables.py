@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from partialslip.output.csv import csv_text
+from partialslip.output.files import csv_text
 from partialslip.scene import Scene
 from partialslip.study.size.axes import Axis
 from partialslip.study.size.case import Sized
