@@ -7,7 +7,7 @@ import sys
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "invariances"))
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "helpers"))
 from pairs import trials
 
 

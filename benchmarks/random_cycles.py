@@ -13,8 +13,8 @@ import numpy as np
 
 import partialslip
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "fem"))
-from test_random_cycles import FINEST, complaints, duality_gap, trials
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "helpers"))
+from random_marches import FINEST, complaints, duality_gap, trials
 
 
 @dataclass

@@ -9,7 +9,7 @@ Programs that tests start and stop by Ctrl-C would ignore it if this one did, as
 
 More than half of all meshes of the tests have been made before: they are remembered, but for tests of meshing itself.
 
-Every test that is marked as a deliberate fault fails if the fault does not bite (``tests/faults/biting.py``).
+Every test that is marked as a deliberate fault fails if the fault does not bite (``tests/helpers/biting.py``).
 """
 
 import functools

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from cell_contact import cells, loads
 
 from partialslip.arrays import runs, submatrix
 from partialslip.condensed import bounded, constant
@@ -12,7 +13,6 @@ from partialslip.condensed.constant import march
 from partialslip.condensed.ends import stick_zone
 from partialslip.condensed.path import Path
 from partialslip.condensed.path_following import Bounds, Follower
-from partialslip.halfplane.cells import compliance, forces, graded
 from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.hertz import Hertz
@@ -38,19 +38,6 @@ def close(one, other):
 
 def solved(path, factored=None, near=None):
     return march(C, STRETCH, BOUND, path, factored, near)
-
-
-def cells(shape=None, points=(-1, 1), size=1e-2, growth=0.1):
-    """Compliance, displacements under tension and bound on graded cells: a = f = A = 1, forces in f P."""
-    vertices = graded(np.array(points, float), size, growth)
-    x = (vertices[1:] + vertices[:-1]) / 2
-    return vertices, compliance(vertices / 2), np.array([x, x**2 / 2]), forces(shape or Hertz(), vertices)
-
-
-def loads(Qf, sf, **more):
-    """Fully reversed loads (Q_f, s_f), scaled as :func:`cells` is: p0 = 2 P/(pi a)."""
-    Q, strain = Qf, sf / (2 * np.pi)
-    return Path(((-Q, -strain / 2, 0.0), (Q, strain / 2, 0.0)), (0, 1), True, 60, 1, settled=1e-7, **more)
 
 
 def followed(tangential, stretch, bound, path):

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_constant import cells, loads
+from cell_contact import cells, loads
 
 from partialslip.condensed import history
 from partialslip.condensed.constant import march

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from pairs import SIZE, restart
+from random_marches import CERTIFIED, forces
 from scipy.interpolate import PPoly
-from test_random_cycles import CERTIFIED, forces
 
 import partialslip
 from partialslip.bars import CERTIFICATE_BAR

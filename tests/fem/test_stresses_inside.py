@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.near import places
+from near import places
 
 import partialslip
 from partialslip import load_scene

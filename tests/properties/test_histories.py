@@ -7,7 +7,7 @@ from coulomb import recorded
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from pairs import answer, apart, guise, loads, solved, times
-from test_random_cycles import forces
+from random_marches import forces
 
 from partialslip import halfplane, load_scene
 from partialslip.halfplane.cells import on_cells
