@@ -29,6 +29,7 @@ from partialslip.scene.reading import load_scene, parse_scene
 
 DOCS = Path(__file__).parents[1] / "docs"
 SHIPPED = "src/partialslip/scene/shipped/fretting-aluminium.toml"
+HEAVY = {"howto/equivalent.md", "howto/fatigue.md", "howto/benchmark.md", "howto/python.md"}  # run with the slow tests
 BLOCK = re.compile(r"^(?:<!-- (not run: [^\n]+|slow) -->\n)?```(\w+)\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
 NUMBER = r"-?\d+(?:\.\d+)?e[-+]\d+|-?\d+\.\d+"
 PARTS = re.compile(rf"(\.\.\.|(?<![\w.])(?:{NUMBER})(?![\w.]))")
@@ -171,7 +172,9 @@ def run_page(name, folder, slow):
     return count
 
 
-@pytest.mark.parametrize("name", PAGES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in HEAVY else name for name in PAGES]
+)
 def test_page_runs(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     run_page(name, tmp_path, slow=False)

@@ -44,6 +44,7 @@ def page(built, name):
     return (built / f"{name}.html").read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_every_page_is_built(built):
     pages = [path.relative_to(DOCS).with_suffix("") for path in DOCS.rglob("*.md") if "_build" not in path.parts]
     assert len(pages) > 20
@@ -52,6 +53,7 @@ def test_every_page_is_built(built):
     assert [name for name in pages if name.name != "index" and f'href="{name.as_posix()}.html"' not in contents] == []
 
 
+@pytest.mark.slow
 def test_pages_need_no_network(built):
     for path in built.rglob("*.html"):
         needed = re.findall(
@@ -61,6 +63,7 @@ def test_pages_need_no_network(built):
     assert not any("url(http" in path.read_text("utf-8") for path in built.rglob("*.css"))
 
 
+@pytest.mark.slow
 def test_formulas_are_markup(built):
     theory = page(built, "theory")
     assert theory.count("<math ") > 150
@@ -70,6 +73,7 @@ def test_formulas_are_markup(built):
     )
 
 
+@pytest.mark.slow
 def test_every_command_is_in_the_reference(built, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "100")
     text = page(built, "reference/commands")
@@ -91,6 +95,7 @@ def test_every_command_is_in_the_reference(built, capsys, monkeypatch):
         assert [option for option in options if option not in text] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["", ".halfplane", ".fatigue", ".score", ".export", ".verify"])
 def test_all_that_is_handed_out_is_in_the_reference(built, name):
     module = importlib.import_module(f"partialslip{name}")

@@ -1,4 +1,4 @@
-"""Files that meshio opens: what they refer to is checked, what meshio prints is kept away, and point data."""
+"""Files that meshio opens: what they refer to is checked, and what meshio prints is kept away."""
 
 import io
 import os
@@ -10,10 +10,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
-
-import meshio
-import numpy as np
-import numpy.typing as npt
 
 from partialslip.errors import InputError
 from partialslip.inputfile import LARGEST_MESH, opened
@@ -72,43 +68,3 @@ def _referred(file: Path, pattern: re.Pattern[bytes], text: bytes) -> Iterator[P
             name = name.partition(":")[0]
         places = [Path(name), file.parent / name] if name else []
         yield from [place for place in places if os.path.lexists(place)] or places[1:]
-
-
-# Suffixes of meshio's formats with point data. Readers of other formats may not terminate.
-FORMATS = {".vtu", ".vtk", ".xdmf", ".xmf", ".msh", ".med", ".e", ".exo", ".ex2"}
-
-
-def read_point_data(path: Path) -> tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]:
-    """Points (n, 3), and values (n,) by name, of the file ``path``, whose suffix tells the format.
-
-    If the mesh has line cells, only their points are returned.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read.
-    """
-    mesh = _read(path)
-    try:
-        points = np.asarray(mesh.points, dtype=float)
-        points = np.column_stack([points, np.zeros((len(points), 3 - points.shape[1]))])
-        data = {name: np.asarray(values, dtype=float) for name, values in mesh.point_data.items()}
-        lines = [block.data.ravel() for block in mesh.cells if block.type.startswith("line")]
-        on_line = np.unique(np.concatenate(lines)).astype(int) if lines else np.arange(len(points))
-        scalars = {name: values.reshape(len(points), -1) for name, values in data.items()}
-        return points[on_line], {name: v[on_line, 0] for name, v in scalars.items() if v.shape[1] == 1}
-    except (ValueError, IndexError, TypeError):
-        raise InputError(f"{path}: points, lines and point data must have matching sizes") from None
-
-
-def _read(path: Path) -> meshio.Mesh:
-    """Read ``path``; turn meshio's exits and exceptions into InputError."""
-    check_files(path, str(path))
-    try:
-        with quiet():
-            return meshio.read(path)
-    except ImportError as error:
-        raise InputError(f"{path}: cannot be read: the package {error.name} is missing") from None
-    except (Exception, SystemExit) as error:
-        reason = " ".join(str(error).split())[:100] if not isinstance(error, SystemExit) else ""
-        raise InputError(f"{path}: cannot be read{f': {reason}' if reason else ''}") from None

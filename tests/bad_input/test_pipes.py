@@ -16,7 +16,7 @@ from partialslip.cli import main
 from partialslip.scene.measured import read_points
 from partialslip.verify.document import read_study
 from partialslip_meshes import read as read_mesh
-from partialslip_meshes.files import read_point_data
+from partialslip_meshes.pointdata import read_point_data
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes in the file system")
 SECONDS = 30  # after which a reader that waits is ended

@@ -24,7 +24,7 @@ _FLAT = 0.05  # of the points' extent along x: largest extent across
 
 def check(file: Path) -> None:
     """Raise InputError if ``file`` has no known format or cannot be read."""
-    from partialslip_meshes.files import FORMATS
+    from partialslip_meshes.pointdata import FORMATS
 
     if file.suffix.lower() not in (*TABLES, ".frd", ".dat", *FORMATS):
         raise InputError(f"{file}: must end in {', '.join(TABLES)}, .frd, .dat or {', '.join(sorted(FORMATS))}")
@@ -105,7 +105,7 @@ def text(file: Path) -> str:
 
 def _point_data(file: Path, pressures: tuple[str, ...]) -> dict[str, Array]:
     """Columns x, ``pressures`` and shear of a file of meshio with point data."""
-    from partialslip_meshes.files import read_point_data
+    from partialslip_meshes.pointdata import read_point_data
 
     check(file)
     points, data = read_point_data(file)
