@@ -5,9 +5,9 @@ import pytest
 
 import partialslip
 from partialslip.halfplane.contact import Contact, contact
-from partialslip.halfplane.given import Given
 from partialslip.halfplane.loading import loading
 from partialslip.halfplane.punch import Punch, _unit
+from partialslip.halfplane.shape import Given
 from partialslip.halfplane.tables import table_error
 from partialslip.record import record
 from partialslip.report.answer import answers

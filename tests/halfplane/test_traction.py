@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-from partialslip.halfplane.adhered import adhered
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.loading import half_cycle
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone
-from partialslip.halfplane.traction import half_range
+from partialslip.halfplane.traction import adhered, half_range
 from partialslip.result import StickZone
 
 LOADS = [(0.19, 0.4), (0.75, 2.4), (0.4, 4.03), (0.3, 8.0), (0.0, 3.0), (0.9, 20.0), (0.4, 87.8), (0.5, 2.3431457535)]

@@ -17,7 +17,7 @@ from partialslip.origin import made_now, origin_lines
 from partialslip.output.svg import with_dark_mode
 from partialslip.plan import plan
 from partialslip.report import files
-from partialslip.report.amounts import amounts
+from partialslip.report.answer import amounts
 from partialslip.report.figure import draw_errors, mesh_svg
 from partialslip.report.page import Section, run_page, study_page
 from partialslip.report.sketch import sketch_svg

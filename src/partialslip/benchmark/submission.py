@@ -17,8 +17,8 @@ from partialslip.inputfile import read_bytes, read_text
 from partialslip.output.files import json_text, write_texts
 from partialslip.output.lock import locked
 from partialslip.output.place import NAME as REQUEST
-from partialslip.scene.limits import NO_TEXT
 from partialslip.scene.reading import parse_toml
+from partialslip.scene.table import NO_TEXT
 from partialslip.strictjson import converted, decoded
 
 _LARGEST = 2**20  # bytes of a file

@@ -10,7 +10,7 @@ from partialslip.fatigue.assessment import Assessment
 from partialslip.fatigue.planes import stresses_on
 from partialslip.fatigue.tables import curve
 from partialslip.output.svg import svg
-from partialslip.report.amounts import scale
+from partialslip.report.answer import scale
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

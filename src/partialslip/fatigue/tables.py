@@ -13,7 +13,7 @@ from partialslip.fatigue.cycle import dense, stress_path
 from partialslip.fatigue.edges import Coefficient
 from partialslip.fatigue.places import OVER, depths, surface_points
 from partialslip.output.files import csv_text
-from partialslip.report.amounts import scale
+from partialslip.report.answer import scale
 from partialslip.units import Dimension
 
 RATINGS = ("criterion", "unit", "surface", "x/a", "angle", "tilt", "largest", "x/a", "depth/a")

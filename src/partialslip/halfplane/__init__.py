@@ -9,7 +9,6 @@
 (array([0.220218, 0.319874, 0.419531]), array([0.220218, 0.120562, 0.020906]))
 """
 
-from partialslip.halfplane.adhered import adhered as adhered
 from partialslip.halfplane.contact import Contact as Contact
 from partialslip.halfplane.contact import contact as contact
 from partialslip.halfplane.contact import contact_of as contact_of
@@ -19,6 +18,7 @@ from partialslip.halfplane.loop import Loop as Loop
 from partialslip.halfplane.loop import hysteresis as hysteresis
 from partialslip.halfplane.method import solve as solve
 from partialslip.halfplane.stress import Stress as Stress
+from partialslip.halfplane.traction import adhered as adhered
 from partialslip.halfplane.zones import stick_zone as stick_zone
 from partialslip.result import StickZone as StickZone
 

@@ -9,10 +9,9 @@ import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.halfplane.given import Given
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch, punch_force
-from partialslip.halfplane.shape import Shape
+from partialslip.halfplane.shape import Given, Shape
 from partialslip.halfplane.steady import TOO_STEEP, drive, stick_zones
 from partialslip.halfplane.uneven import press
 from partialslip.result import StickZone

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from partialslip.origin import Made, origin_lines
 from partialslip.output.page import render_page
 from partialslip.report import answer, rows
-from partialslip.report.amounts import amounts
+from partialslip.report.answer import amounts
 from partialslip.report.figure import mesh_svg, profile_svg, traction_svg
 from partialslip.report.sketch import sketch_svg
 from partialslip.run import Run

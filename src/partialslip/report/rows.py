@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping
 
+import msgspec
 import numpy as np
 
 from partialslip.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
@@ -342,3 +343,22 @@ def _memory(spent: Cost) -> str:
         return f", peak memory not known: {spent.peak_rss_unknown}" if spent.peak_rss_unknown else ""
     before = "" if spent.start_rss_mb is None else f" ({spent.start_rss_mb:.0f} MB before the method)"
     return f", peak memory {spent.peak_rss_mb:.0f} MB{before}"
+
+
+class Sheet(msgspec.Struct, frozen=True):
+    """Texts of tables: ``title``, ``settings`` and ``effects`` of a scene, and facts about the ``methods``."""
+
+    title: str
+    settings: tuple[tuple[str, str], ...]
+    effects: tuple[tuple[str, str, str], ...]
+    methods: tuple[tuple[str, str, str], ...]
+
+
+def sheet(run: Run) -> Sheet:
+    """Return the sheet of ``run``."""
+    return Sheet(
+        run.scene.title,
+        tuple(settings_of_tables(run.scene)),
+        tuple(effects(run.plan)),
+        tuple(methods(run.results, compared=True, units=run.scene.units)),
+    )

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from partialslip.output.svg import with_dark_mode
-from partialslip.report.amounts import scale
+from partialslip.report.answer import scale
 from partialslip.scene import Scene
 from partialslip.scene.bodies import Body
 from partialslip.scene.profiles import FlatRounded

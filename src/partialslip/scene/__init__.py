@@ -5,8 +5,6 @@ Signs: positive ``dQ`` and positive ``dsigma`` add up at x -> +a, so that the st
 
 from partialslip.scene.bodies import Bodies as Bodies
 from partialslip.scene.bodies import Body as Body
-from partialslip.scene.limits import LARGEST as LARGEST
-from partialslip.scene.limits import SMALLEST as SMALLEST
 from partialslip.scene.loads import Load as Load
 from partialslip.scene.materials import Constants as Constants
 from partialslip.scene.materials import Elastic as Elastic
@@ -22,4 +20,6 @@ from partialslip.scene.settings import WIDTHS as WIDTHS
 from partialslip.scene.settings import Effects as Effects
 from partialslip.scene.settings import Fatigue as Fatigue
 from partialslip.scene.settings import Fem as Fem
+from partialslip.scene.table import LARGEST as LARGEST
+from partialslip.scene.table import SMALLEST as SMALLEST
 from partialslip.scene.table import Table as Table

@@ -8,8 +8,7 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices
 from partialslip.errors import InputError
-from partialslip.scene.limits import ROUGH
-from partialslip.scene.table import Positive, Table
+from partialslip.scene.table import ROUGH, Positive, Table
 
 _FEW, _MOST = 2, 1000
 _LISTS = ("Q", "sigma", "sigma_slope", "P", "M", "e")

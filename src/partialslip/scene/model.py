@@ -12,12 +12,11 @@ import numpy.typing as npt
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.scene.bodies import Bodies
-from partialslip.scene.limits import LARGEST, NO_TEXT, SMALLEST, STEEPEST
 from partialslip.scene.loads import Load
 from partialslip.scene.materials import Material
 from partialslip.scene.profiles import FlatRounded, Hertz, Profile
 from partialslip.scene.settings import Effects, Fatigue, Fem
-from partialslip.scene.table import Table
+from partialslip.scene.table import LARGEST, NO_TEXT, SMALLEST, STEEPEST, Table
 from partialslip.shown import Notebook, short
 from partialslip.units import UNITS, System, Units
 

@@ -9,10 +9,9 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.scene.limits import ROUGH
-from partialslip.scene.limits import STEEPEST as STEEPEST
 from partialslip.scene.measured import Measured
-from partialslip.scene.table import Positive, Table
+from partialslip.scene.table import ROUGH, Positive, Table
+from partialslip.scene.table import STEEPEST as STEEPEST
 
 _SHARP = 0.05  # step of curvature, relative to the largest curvature, above which a point is a kink
 

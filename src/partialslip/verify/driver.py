@@ -22,7 +22,7 @@ from partialslip.output.place import placed
 from partialslip.plan import plan
 from partialslip.report.figure import traction_svg
 from partialslip.report.files import PAGE, PDF, tractions_csv, write_page
-from partialslip.report.sheet import Sheet, sheet
+from partialslip.report.rows import Sheet, sheet
 from partialslip.report.sketch import sketch_svg
 from partialslip.result import Result
 from partialslip.run import compared

@@ -6,7 +6,7 @@ from typing import Any
 import msgspec
 
 from partialslip.origin import Made
-from partialslip.report.sheet import Sheet
+from partialslip.report.rows import Sheet
 from partialslip.verify.case import CaseVerdict
 from partialslip.verify.formulas import Formula
 from partialslip.verify.ladder import Convergence
