@@ -1,18 +1,21 @@
 """Estimates of errors against true errors, on random scenes whose answers are known.
 
-python benchmarks/estimates.py run FILE [--method fem] [--seed 1] [--count 100] [--finest 1e-7] [--coarsest 1e-3]
-                                        [--turning]
+python benchmarks/estimates.py run FILE [--method fem march] [--group steady] [--seed 1] [--count 100]
+                                        [--finest 1e-7] [--coarsest 1e-3]
 python benchmarks/estimates.py show FILE...
 
-Truth is the exact steady state, and for q1 and q2 the exact first loading where the steady state keeps that; elsewhere
-the march at the finest accuracy that it reaches. --turning: large tension under which slip turns round on the way. FILE
-(JSON lines) keeps what is done: a run that was stopped goes on.
+Groups of scenes: steady (loads of all kinds), turning (large tension under which slip turns round on the way), plain
+(Hertz and flat-rounded), table (x^4, x^6 and curvatures with noise), varying (P, M or e), unlike (materials), finite
+(bodies). Truth is the exact steady state, and for q1 and q2 the exact first loading where the steady state keeps that.
+Elsewhere it is the march at the finest accuracy that it reaches; for finite bodies finite elements of another order on
+finer meshes. FILE (JSON lines) keeps what is done: a run that was stopped goes on.
 """
 
 import argparse
 import json
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +26,7 @@ import partialslip
 from partialslip import Result, Scene
 from partialslip.arrays import Array
 from partialslip.condensed.threads import one_thread
+from partialslip.errors import InputError
 from partialslip.gradual import turns_round
 from partialslip.halfplane import contact
 from partialslip.halfplane.steady import stick_zone, transition
@@ -36,47 +40,145 @@ KINDS = (
     "reversed", "off centre",
 )  # fmt: skip
 PROFILES = ("hertz", "flat-rounded", "hertz", "tabulated", "hertz")
+_TURNLESS = ("reversed", "mean", "off centre", "reversed", "mean")  # redrawn where slip turns round
+# Kinds of loads and profiles of each group; their counts have no common divisor.
+GROUPS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "steady": (KINDS, PROFILES),
+    "turning": (("turning",), PROFILES),
+    "plain": (_TURNLESS, ("hertz", "flat-rounded")),
+    "table": (_TURNLESS, ("x^4", "x^6", "noisy")),
+    "varying": (("P varies", "M varies", "e and P vary"), ("hertz", "flat-rounded")),
+    "unlike": (("pressed", "cycle"), ("hertz", "hertz", "flat-rounded")),
+    "finite": (("pad", "block"), ("hertz", "hertz", "flat-rounded")),
+}
 NUS = (0.0, 0.2, 0.3, 0.4, 0.45, 0.49, 0.499, 0.4999)
+TRUTH_OF_UNLIKE = 2e-5  # the same, where stages of pressing are many
+FINER = 20.0  # accuracy of finite bodies over that of their truth
 TRUTH = 1e-5  # asked of the march where it is the truth: its finest mesh, in not too many steps
 KNOWN = 0.5  # of an estimate: where the march is not known to that, it is no truth
 SETTLED = 1e-3  # of the accuracy: a change of q in the last cycle that is none
 WEIGHT = 2.5  # of cheap accuracies
 
 
-def drawn(seed: int, number: int, finest: float, coarsest: float, kinds: Sequence[str] = KINDS) -> tuple[str, Scene]:
-    """Kind, of ``kinds``, and scene of that ``seed`` and ``number``."""
+def drawn(seed: int, number: int, finest: float, coarsest: float, group: str = "steady") -> tuple[str, Scene]:
+    """Kind and scene of the ``group`` of that ``seed`` and ``number``."""
     random = np.random.default_rng([seed, number])
-    kind, profile = kinds[number % len(kinds)], PROFILES[number % len(PROFILES)]
-    E, R, a = 70e9, 0.02, 1e-3
+    kinds, profiles = GROUPS[group]
+    kind, profile = kinds[number % len(kinds)], profiles[number % len(profiles)]
+    R, a = 0.02, 1e-3
     plane, nu = ("stress", 0.3) if random.random() < 0.2 else ("strain", float(random.choice(NUS)))
     data: dict[str, Any] = {
-        "name": f"estimates-{seed}-{number}",
-        "material": {"E": E, "nu": nu, "plane": plane},
+        "name": f"estimates-{group}-{seed}-{number}",
+        "material": {"E": 70e9, "nu": nu, "plane": plane},
         "friction": {"f": float(random.uniform(0.1, 0.9))},
         "profile": {"kind": "hertz", "R": R},
         "load": {"a": a},
         "fem": {"accuracy": float(coarsest * (finest / coarsest) ** (random.random() ** WEIGHT))},
     }
     if profile != "hertz":
-        A = parse_scene(data).material.A
-        flat = float(random.uniform(0.1, 0.8))
-        psi = math.acos(flat)
-        x = np.linspace(0, 1.6, 5) * a
-        gap = x**2 / (2 * R) * (1 + random.uniform(0, 1) * (x / a) ** 2)
-        data["profile"] = {"kind": "tabulated", "x": x.tolist(), "gap": gap.tolist()}
-        P = math.pi * a**2 / (2 * A * R)
-        if profile == "flat-rounded":
-            data["profile"], P = {"kind": profile, "R": R, "b": flat * a}, a**2 / (A * R) * (psi - math.sin(psi) * flat)
+        data["profile"], P = shaped(random, profile, R, a, parse_scene(data).material.A)
         data["load"] = {"P": P}
     scene = parse_scene(data)
     pressed, f = contact(scene), scene.friction.f
+    if group in LOADS:
+        data["load"] = {"P": pressed.P, **LOADS[group](random, kind, pressed.P, pressed.a, f)}
+    if group == "unlike":  # of about the same half-width
+        stiffer = float(random.uniform(1.0, 5.0))
+        upper, lower = ({"E": 70e9 * by, "nu": float(random.uniform(0.0, 0.45))} for by in (stiffer, 1.0))
+        data["material"] = {"upper": upper, "lower": lower, "plane": plane}
+    if group == "finite":
+        data["bodies"] = bodies(random, kind, pressed.a)
+    if group in LOADS:
+        scene = parse_scene(data)
+        while group == "varying" and not known(scene):
+            scene = scene.replace(load={"M": None, "e": None} | varying(random, kind, pressed.P, pressed.a, f))
+        return kind, scene
     Q, sigma = loads(random, kind, pressed.shape)
+    while group in ("plain", "table") and _turns(Q, sigma, pressed.shape):
+        Q, sigma = loads(random, kind, pressed.shape)
     turned = random.choice([-1.0, 1.0], 2)
     Q, sigma = turned[0] * f * pressed.P * Q, turned[1] * f * pressed.p0 * sigma
     data["load"] |= {"Q": Q.tolist(), "sigma": sigma.tolist()}
     if kind in ("marched", "mean"):
         data["load"]["cycles"] = {"marched": 8, "mean": 6}[kind]
     return kind, parse_scene(data)
+
+
+def shaped(random: np.random.Generator, profile: str, R: float, a: float, A: float) -> tuple[dict[str, Any], float]:
+    """Return a profile that is not Hertz's, and the P of a contact of about the half-width ``a``."""
+    P = math.pi * a**2 / (2 * A * R)
+    if profile in ("flat-rounded", "tabulated"):  # one random number, whatever is drawn: scenes of earlier runs stay
+        flat = float(random.uniform(0.1, 0.8))
+        psi = math.acos(flat)
+        if profile == "flat-rounded":
+            return {"kind": profile, "R": R, "b": flat * a}, a**2 / (A * R) * (psi - math.sin(psi) * flat)
+        x = np.linspace(0, 1.6, 5) * a
+        gap = x**2 / (2 * R) * (1 + random.uniform(0, 1) * (x / a) ** 2)
+        return {"kind": "tabulated", "x": x.tolist(), "gap": gap.tolist()}, P
+    most = 40 if profile == "noisy" else 140  # with noise each point of the contact is a kink for the mesh
+    x = np.linspace(0, random.uniform(1.25, 1.8), int(random.integers(25, most + 1)))
+    power = {"x^4": 4, "x^6": 6, "noisy": 2}[profile]
+    if profile == "noisy":  # of the curvature, which stays positive
+        slopes = np.cumsum(random.uniform(0.2, 1.8, len(x) - 1) * np.diff(x))
+        gap = np.concatenate([[0.0], np.cumsum(slopes * np.diff(x))])
+    else:
+        gap = x**power / power
+    # P of a power of x; about the same with noise
+    share = {2: 1 / 2, 4: 3 / 8, 6: 5 / 16}[power] * math.pi / A
+    return {"kind": "tabulated", "x": (x * a).tolist(), "gap": (gap * a**2 / R).tolist()}, share * a**2 / R
+
+
+def _turns(Q: Array, sigma: Array, shape: Any) -> bool:
+    """Whether slip turns round under Q in f P and sigma in f p0."""
+    Qf, sf = abs(Q[1] - Q[0]) / 2, abs(sigma[1] - sigma[0])
+    zone = stick_zone(Qf, sf, shape)
+    return bool(turns_round(Qf, sf, zone.s, zone.centre, zone.half_width))
+
+
+def varying(random: np.random.Generator, kind: str, P: float, a: float, f: float) -> dict[str, Any]:
+    """P, M or e, Q and sigma at two load points. Q does not follow P."""
+    forces = P * (np.array([random.uniform(0.5, 0.95), 1.0]) if "P" in kind else np.ones(2))
+    load: dict[str, Any] = {"P": forces.tolist(), "cycles": 6}
+    if kind == "M varies":
+        load["M"] = (random.uniform(-0.1, 0.1, 2) * P * a).tolist()
+    elif kind == "e and P vary":
+        load["e"] = (random.uniform(-0.1, 0.1, 2) * a).tolist()
+    Q = f * forces * np.array([-1.0, 1.0]) * random.uniform(0.2, 0.85, 2)
+    sigma = f * P / a * random.uniform(0.0, 0.2) * np.array([-1.0, 1.0])
+    return load | {"Q": Q.tolist(), "sigma": (sigma * random.choice([-1.0, 1.0])).tolist()}
+
+
+def known(scene: Scene) -> bool:
+    """Whether the steady state is known in closed form, as slip does not turn round."""
+    try:
+        return not partialslip.run(scene, ["exact"]).results["exact"].path_dependent
+    except InputError:
+        return False
+
+
+def unlike(random: np.random.Generator, kind: str, P: float, a: float, f: float) -> dict[str, Any]:
+    """No Q, or Q of both signs."""
+    del a
+    return {"Q": (f * P * random.uniform(0.1, 0.7, 2) * [-1, 1]).tolist()} if kind == "cycle" else {}
+
+
+def finite(random: np.random.Generator, kind: str, P: float, a: float, f: float) -> dict[str, Any]:
+    """Q of both signs and tension that is not large."""
+    del kind
+    ways = np.array([-1.0, 1.0])
+    sigma = f * P / a * random.uniform(0.0, 0.3) * random.choice(ways)
+    return {"Q": (f * P * random.uniform(0.2, 0.8) * ways).tolist(), "sigma": (sigma * ways).tolist()}
+
+
+LOADS = {"varying": varying, "unlike": unlike, "finite": finite}
+
+
+def bodies(random: np.random.Generator, kind: str, a: float) -> dict[str, Any]:
+    """A pad or a block, held by its back or by its sides, on a specimen that may be pulled."""
+    lower: dict[str, Any] = {"width": 40 * a, "height": float(random.uniform(4, 12)) * a, "support": "roller"}
+    upper = {"kind": kind, "width": 2 * float(random.uniform(3, 8)) * a, "height": float(random.uniform(4, 10)) * a}
+    upper["support"] = str(random.choice(["clamped", "sides"]))
+    return {"upper": upper, "lower": lower | {"pulled": bool(random.random() < 0.5)}}
 
 
 def loads(random: np.random.Generator, kind: str, shape: Any) -> tuple[Array, Array]:
@@ -111,19 +213,19 @@ def loads(random: np.random.Generator, kind: str, shape: Any) -> tuple[Array, Ar
     return Q, sigma
 
 
-def true_errors(scene: Scene, kind: str, found: Result) -> dict[str, float]:
+def true_errors(scene: Scene, kind: str, group: str, found: Result) -> dict[str, float]:
     """Errors by key, without those that nothing is known of."""
+    if group in ("unlike", "finite"):
+        return against(scene, found, finest(scene, group))
     exact = partialslip.run(scene, ["exact"]).results["exact"]
     compared = compare(found, exact, scene, None)
     errors = {"a": compared.a, "p": compared.p}
     if (found.last_cycle_change or 0.0) <= SETTLED * scene.fem.accuracy:
         errors |= {key: getattr(compared, key) for key in ("m", "n", "q") if key not in exact.undetermined}
-    left, right = found.ends[1]
-    errors |= {"left": abs(left + exact.a) / exact.a, "right": abs(right - exact.a) / exact.a}
+    errors |= off_ends(found, exact)
     truth = exact if not {"q1", "q2"} & {*exact.undetermined} else None
     if kind == "marched" and found.method != "march":
-        finer = replace(scene, fem=replace(scene.fem, accuracy=TRUTH))
-        truth = partialslip.run(finer, ["march"]).results["march"]
+        truth = finest(scene, group)
     if truth and truth.traction.levels_at and found.traction.levels_at:
         levels = norm_errors(found.traction, truth.traction, scene.friction.f, ("q1", "q2"))
         errors |= {
@@ -132,25 +234,62 @@ def true_errors(scene: Scene, kind: str, found: Result) -> dict[str, float]:
     return {key: error for key, error in errors.items() if error is not None}
 
 
+@cache
+def finest(scene: Scene, group: str) -> Result:
+    """The march at the finest accuracy that it reaches; of finite bodies, finer elements of another order."""
+    if group == "finite":
+        fem = replace(scene.fem, accuracy=scene.fem.accuracy / FINER, order=3)
+        return partialslip.run(replace(scene, fem=fem), ["fem"]).results["fem"]
+    finer = replace(scene, fem=replace(scene.fem, accuracy=TRUTH_OF_UNLIKE if group == "unlike" else TRUTH))
+    return partialslip.run(finer, ["march"]).results["march"]
+
+
+def against(scene: Scene, found: Result, truth: Result) -> dict[str, float]:
+    """Errors by key where ``truth`` is known well enough."""
+    compared = compare(found, truth, scene, None)
+    errors = {key: getattr(compared, key) for key in ("a", "m", "n", "p", "q")} | off_ends(found, truth)
+    if found.traction.levels_at and truth.traction.levels_at:
+        errors |= norm_errors(found.traction, truth.traction, scene.friction.f, ("q1", "q2"))
+    return {
+        key: error for key, error in errors.items()
+        if error is not None and truth.estimate.get(key, 0.0) <= KNOWN * found.estimate.get(key, 0.0)
+    }  # fmt: skip
+
+
+def off_ends(found: Result, truth: Result) -> dict[str, float]:
+    """Errors of the ends of the contact, the larger of both load points."""
+    off = np.abs(np.subtract(found.ends, truth.ends)).max(axis=0) / truth.a
+    return {"left": float(off[0]), "right": float(off[1])}
+
+
 def rows(
-    method: str, seed: int, numbers: Iterable[int], finest: float, coarsest: float, kinds: Sequence[str]
+    methods: Sequence[str], seed: int, numbers: Iterable[int], finest: float, coarsest: float, group: str
 ) -> Iterator[dict[str, Any]]:
-    """One row a scene."""
+    """One row a scene and method."""
     for number in numbers:
-        kind, scene = drawn(seed, number, finest, coarsest, kinds)
-        result = partialslip.run(scene, [method]).results[method]
-        yield {
-            "method": method, "seed": seed, "number": number, "kind": kind, "profile": type(scene.profile).__name__,
-            "nu": scene.material.nu, "accuracy": scene.fem.accuracy, "regime": result.regime,
-            "true": true_errors(scene, kind, result), "estimate": {k: float(v) for k, v in result.estimate.items()},
-            "shares": {source: dict(share) for source, share in result.shares.items()},
-            "certificate": dict(result.certificate), "counts": dict(result.counts), "cpu_s": result.cost.cpu_s,
-        }  # fmt: skip
+        kind, scene = drawn(seed, number, finest, coarsest, group)
+        for method in methods:
+            result = partialslip.run(scene, [method]).results[method]
+            yield {
+                "method": method, "seed": seed, "number": number, "group": group, "kind": kind,
+                "profile": type(scene.profile).__name__, "nu": scene.material.nu, "accuracy": scene.fem.accuracy,
+                "regime": result.regime, "true": true_errors(scene, kind, group, result),
+                "estimate": {k: float(v) for k, v in result.estimate.items()},
+                "shares": {source: dict(share) for source, share in result.shares.items()},
+                "certificate": dict(result.certificate), "counts": dict(result.counts), "cpu_s": result.cost.cpu_s,
+            }  # fmt: skip
 
 
 def show(found: list[dict[str, Any]]) -> None:
+    """Print a table for each group and method."""
+    for group, method in sorted({(row.get("group", "steady"), row["method"]) for row in found}):
+        some = [row for row in found if (row.get("group", "steady"), row["method"]) == (group, method)]
+        print(f"{group}, {method}: {len(some)} scenes, {sum(row['cpu_s'] for row in some):.0f} CPU s")
+        table(some)
+
+
+def table(found: list[dict[str, Any]]) -> None:
     """By accuracy and quantity: how often the estimate is below the true error, the worst ratio, the median."""
-    print(f"{len(found)} scenes, {sum(row['cpu_s'] for row in found):.0f} CPU s")
     print("        accuracy   key count  below worst true/est median est/true missed")
     decades = sorted({math.floor(math.log10(row["accuracy"]) + 1e-9) for row in found}, reverse=True)
     for decade in (None, *decades):
@@ -180,20 +319,19 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=["run", "show"])
     parser.add_argument("files", nargs="+", type=Path, metavar="FILE")
-    parser.add_argument("--method", choices=["fem", "march"], default="fem")
+    parser.add_argument("--method", choices=["fem", "march"], default=["fem"], nargs="+")
+    parser.add_argument("--group", choices=GROUPS, default="steady")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--finest", type=float, default=1e-7)
     parser.add_argument("--coarsest", type=float, default=1e-3)
-    parser.add_argument("--turning", action="store_true")
     given = parser.parse_args()
-    kinds = ("turning",) if given.turning else KINDS
     if given.what == "run":
         path = given.files[0]
-        done = {(row["method"], row["seed"], row["number"]) for row in read(path)}
-        todo = [n for n in range(given.count) if (given.method, given.seed, n) not in done]
+        done = {(row["method"], row["seed"], row["number"], row.get("group", "steady")) for row in read(path)}
+        todo = [n for n in range(given.count) if any((m, given.seed, n, given.group) not in done for m in given.method)]
         with path.open("a", encoding="utf-8") as file:
-            for row in rows(given.method, given.seed, todo, given.finest, given.coarsest, kinds):
+            for row in rows(given.method, given.seed, todo, given.finest, given.coarsest, given.group):
                 print(json.dumps(row), file=file, flush=True)
     show([row for path in given.files for row in read(path)])
 

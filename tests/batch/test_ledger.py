@@ -60,6 +60,21 @@ def test_a_file_of_the_user_is_left_as_it_is(tmp_path, name):
     assert path.read_bytes() == TEXTS[name]
 
 
+@pytest.mark.parametrize("value", [None, 3, [], "x"])
+def test_a_sound_line_of_another_program_is_refused(tmp_path, value):
+    """Its checksum is right, but its run is none."""
+    path, scene, over = tmp_path / "ledger.jsonl", partialslip.load_scene("hertz-shear"), {"friction.f": [0.6]}
+    partialslip.sweep(scene, over, "exact", ledger=path)
+    entry = json.loads(path.read_bytes())
+    del entry["sum"]
+    path.write_bytes(module._sealed(json.dumps(entry | {"labels": value})) + b"\n")
+    before = path.read_bytes()
+    with pytest.raises(partialslip.InputError, match=r"ledger.jsonl: entry \w+: .*; remove its line") as refused:
+        partialslip.sweep(scene, over, "exact", ledger=path)
+    assert "\n" not in str(refused.value)
+    assert path.read_bytes() == before
+
+
 @pytest.mark.parametrize("name", TEXTS)
 def test_text_behind_entries_is_left_as_it_is(tmp_path, name):
     path = tmp_path / "ledger.jsonl"

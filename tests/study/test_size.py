@@ -423,7 +423,7 @@ def test_entries_without_equivalent_half_planes_are_read():
     """Those of older ledgers."""
     old = made.solved(scene(), {"load.P": 1.0, "accuracy": 1.0}, {"p": None, "q": None}, exact={"a": 1.0},
                       fem={"a": 1.1, "estimate": {}, "counts": {"dofs": 1}})  # fmt: skip
-    found = Sized.of(msgspec.to_builtins(old))
+    found = msgspec.convert(msgspec.to_builtins(old), Sized)
     assert size.along(read("load.P=1,2"), [found]).off["a"] == pytest.approx(0.1)
     assert size.along(read("load.P=1,2"), [found], "equivalent").size.size == 0
 

@@ -111,7 +111,7 @@ def sweep(
     with _told(progress, scene.name) as tell, workers(cluster, cores) as executor:
         work_through(sorted(tasks, key=_geometry), known, executor, tell)
     rows = [
-        _row(point, Solved.of(known[task.key]), first)
+        _row(point, known.read(task.key, Solved), first)
         for point, task, first in zip(points, tasks, leading, strict=True)
     ]
     keys = dict.fromkeys(key for row in rows for key in row)

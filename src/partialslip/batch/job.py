@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -93,11 +93,6 @@ class Solved(msgspec.Struct, frozen=True, kw_only=True):
     run: Record | None = None
     error: str = ""
     process: ProcessCost | None = None
-
-    @classmethod
-    def of(cls, entry: Mapping[str, Any]) -> Self:
-        """Convert an ``entry`` of a ledger to this type."""
-        return msgspec.convert(entry, cls)
 
 
 def solve(job: Job, keep: "Kept | None" = None) -> Solved:

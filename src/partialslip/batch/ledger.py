@@ -10,7 +10,7 @@ import json
 import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -20,6 +20,8 @@ from partialslip.origin import made_now, source_checksum
 from partialslip.output.lock import make_folder
 from partialslip.scene import Scene
 from partialslip.strictjson import decoded
+
+_Kind = TypeVar("_Kind")
 
 _LARGEST = 2**32  # bytes of a file
 
@@ -72,6 +74,21 @@ class Ledger:
 
     def __getitem__(self, key: str) -> dict[str, Any]:
         return self._entries[key]
+
+    def read(self, key: str, kind: type[_Kind]) -> _Kind:
+        """Return the entry under ``key`` as a ``kind``.
+
+        Raises
+        ------
+        InputError
+            If the entry has other fields, as one that some other program has written.
+        """
+        try:
+            return msgspec.convert(self._entries[key], kind)
+        except msgspec.ValidationError as error:
+            raise InputError(
+                f"{self._path}: entry {key}: {error!s:.300}; remove its line to solve the case again"
+            ) from None
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
         return iter(self._entries.values())

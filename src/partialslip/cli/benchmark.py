@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from partialslip.benchmark import Problem, Submission
     from partialslip.cli.common import Commands
 
+_LACKING = "an answer without a headline target"
 _PROBLEMS = "numbers of problems, or patterns such as PS-0*, separated by commas (default: all)"
 
 
@@ -36,6 +37,7 @@ def add(commands: "Commands") -> None:
 
     runs = parts.add_parser("run", help="answer problems with a method of partialslip",
                             description="Answer problems with a method of partialslip, and write the answers.",
+                            unjudged=_LACKING,
                             examples=["partialslip benchmark run --code exact",
                                       "partialslip benchmark run --code fem-1e-4 --problems PS-0*"])  # fmt: skip
     runs.add_argument("--code", required=True, metavar="CODE", help="exact, march, fem-1e-3, fem-1e-4, fem-1e-5, "
@@ -61,6 +63,7 @@ def add(commands: "Commands") -> None:
     scores = parts.add_parser("score", help="grade the answers of a code",
                               description="Grade the answers of a code: a folder with meta.toml and PS-01.json and "
                               "so on.",
+                              unjudged=_LACKING,
                               examples=["partialslip benchmark score my-answers",
                                         "partialslip benchmark score my-answers --problems PS-0*"])  # fmt: skip
     scores.add_argument("folder", metavar="FOLDER", help="folder with the answers")

@@ -155,7 +155,7 @@ def _verify(
 ) -> Verification:
     ledger = _ledger(folder)
     write_verdicts(folder, settings, {}, finished=False)
-    finished = {entry["case"] for entry in ledger}
+    finished = {str(entry.get("case")) for entry in ledger}
     again = tuple(case for case, key in keys.items() if case in finished and key not in ledger)
     scenes = None if settings.suite == "stress" else folder / _SCENES
     work = partial(solve_and_judge, folder=scenes, ladder=settings.ladder)
@@ -163,7 +163,7 @@ def _verify(
     try:
         with workers(processes=min(processes or os.cpu_count() or 1, len(tasks))) as executor:
             sweep(tasks, ledger, executor, progress)
-        entries = {case: Entry.of(ledger[key]) for case, key in keys.items()}
+        entries = {case: ledger.read(key, Entry) for case, key in keys.items()}
         figures, sketches = (_figures(folder / _SCENES, entries, name) for name in (_FIGURE, _SKETCH))
         page = document(Account(settings, entries, figures, sketches, studies))
         files, missing = write_page(page, folder), ""
@@ -286,7 +286,7 @@ def _ledger(folder: Path) -> Ledger:
 
 def _verdicts(ledger: Ledger, keys: Mapping[str, str]) -> dict[str, list[CaseVerdict]]:
     """Return the verdicts in the ledger by case, in the order of ``keys``."""
-    return {case: list(Entry.of(ledger[key]).verdicts) for case, key in keys.items() if key in ledger}
+    return {case: list(ledger.read(key, Entry).verdicts) for case, key in keys.items() if key in ledger}
 
 
 def _figures(folder: Path, entries: Mapping[str, Entry], name: str) -> dict[str, str]:

@@ -1,8 +1,5 @@
 """Settings of a verification, and the ledger's entries of finished cases."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import msgspec
 
 from partialslip.origin import Made
@@ -89,8 +86,3 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True):
     formulas: tuple[Formula, ...] = ()
     ladder: tuple[Convergence, ...] = ()
     made: Made | None = None
-
-    @classmethod
-    def of(cls, entry: Mapping[str, Any]) -> "Entry":
-        """Convert an ``entry`` of a ledger to this type."""
-        return msgspec.convert(entry, cls)

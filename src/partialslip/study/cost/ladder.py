@@ -153,10 +153,10 @@ def measure(
         progress(number, len(runs), setting, sum(seconds.get(each, usual) for each in unsolved))
         if key not in ledger:
             ledger.add(key, solve_apart(case))
-        if process := Solved.of(ledger[key]).process:
+        if process := ledger.read(key, Solved).process:
             seconds[setting] = process.wall_s
     progress(len(runs), len(runs), "", 0.0)
-    return points(Solved.of(ledger[key]) for key in keys)
+    return points(ledger.read(key, Solved) for key in keys)
 
 
 def points(entries: Iterable[Solved]) -> list[Point]:

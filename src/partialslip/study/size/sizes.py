@@ -63,7 +63,7 @@ def measure(
     sweep([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
     finer = [_COARSER**-k for k in range(1, _FINER + 1)] if control else []
     for accuracy in (each for each in finer if each * scene.fem.accuracy >= _FINEST):
-        points = _by_point(axes, (Sized.of(ledger[case.key]) for case in asked))
+        points = _by_point(axes, (ledger.read(case.key, Sized) for case in asked))
         unclear = {point for point, meshes in points.items() if not _clear(meshes)}
         asked += [
             case
@@ -71,7 +71,7 @@ def measure(
             if tuple(case.labels[each.name] for each in axes) in unclear
         ]
         sweep([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
-    return [Sized.of(ledger[case.key]) for case in asked]
+    return [ledger.read(case.key, Sized) for case in asked]
 
 
 @dataclass(frozen=True)
