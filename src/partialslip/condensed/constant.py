@@ -223,6 +223,8 @@ class _Contact:
         self._follower = self._follower or Follower(self.factored.C, self.factored.inverse)
         # a state of another mesh has the load, and keeps the bounds, to an error of that mesh only
         start = np.clip(start, -self._bound, self._bound)
+        if (mirrored := self._mirrored(start, load, change)) is not None:
+            return mirrored
         off = float(load[0] - change[0]) - float(start.sum())
         Q = float(change[0]) + (off if abs(off) > _AT * float(self._bound.sum()) else 0.0)
         try:
@@ -230,6 +232,21 @@ class _Contact:
         except SlidesError:  # so near to sliding that rounding lets no node stick: a step still has an answer
             return _Done(start, load, change, self._one_step(start, float(load[0]), change, None))
         found = Solution(leg.forces, leg.rest, leg.residual, leg.imbalance, 1, leg.pivots)
+        return _Done(start, load, change, found, leg)
+
+    def _mirrored(self, start: Array, load: Array, change: Array) -> _Done | None:
+        """The mirror image of the leg before, if this leg begins at minus the loads and the forces of that one, to what
+        ends the cycles, and goes the other way; None if not."""
+        before = self.legs[-1] if self.legs else None
+        if before is None or before.leg is None or not self._path.settled:
+            return None
+        loads = np.abs(change[:3] + before.change[:3]), np.abs(load[:3] + before.load[:3])
+        if any((off > _AT * np.abs(change[:3])).any() for off in loads):
+            return None
+        if (np.abs(start + before.start) > self._path.settled * self._bound).any():
+            return None
+        leg = before.leg.mirrored
+        found = replace(before.found, x=leg.forces, rest=leg.rest, iterations=0, changes=0)
         return _Done(start, load, change, found, leg)
 
     def _completed(self, history: History) -> History:

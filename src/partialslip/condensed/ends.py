@@ -61,7 +61,7 @@ def stick_zone(
     cell_forces : callable
         Takes forces of the nodes in contact to integrals over the cells.
     changed : (n,) array, optional
-        When nodes last began to slip or to stick; nan where they did neither.
+        When nodes last began to slip or to stick; nan where they did neither, or do not in the steady state.
     unsteady : (n,) array, optional
         Room that counts as none.
     """

@@ -26,6 +26,7 @@ from partialslip.condensed.steps import follow_or_step
 from partialslip.condensed.threads import one_thread
 from partialslip.halfplane.cell_stress import CellStresses
 from partialslip.halfplane.cells import compliance, graded, norm_parts, off_cells, on_cells, relative_change
+from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.pressing import NormalLoads
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding, without_shear
@@ -235,7 +236,7 @@ def _solve_level(
 
         def zone(of: History) -> StickInterval:
             if not of.path.presses_anew:
-                return stick_zone(x, of.bound, of.change, vertices, lambda values: values, of.changed, of.unsteady)
+                return stick_zone(x, of.bound, of.change, vertices, lambda values: values, of.lasting, of.unsteady)
             on = np.flatnonzero(of.bound > 0)
 
             def spread(values: Array) -> Array:
@@ -244,7 +245,7 @@ def _solve_level(
                 return every
 
             here = of.of(on)
-            found = stick_zone(x[on], here.bound, here.change, vertices, spread, here.changed, here.unsteady)
+            found = stick_zone(x[on], here.bound, here.change, vertices, spread, here.lasting, here.unsteady)
             return within(found, normal.common, vertices)
 
         def errors(of: History, gradual: History) -> dict[str, float]:
@@ -394,7 +395,14 @@ def _result(
         notes=found.notes + notes + doubts(change, errors, _accuracy(scene)),
         contact_ends=(normal.first.ends, normal.second.ends) if anew or frame.centre else None,
         end_slips=found.slips,
+        permanent=_placed(frame, found.permanent) if found.permanent else None,
     )
+
+
+def _placed(frame: Contact, ends: tuple[float, float]) -> tuple[float, float]:
+    """Places of two ``ends``, m, from half-widths of the ``frame``."""
+    left, right = frame.places(ends).tolist()
+    return left, right
 
 
 def _state(normal: NormalLoads, level: _Level, places: Array, errors: dict[str, float]) -> State:
