@@ -4,17 +4,18 @@ python benchmarks/estimates.py run FILE [--method fem march] [--group steady] [-
                                         [--finest 1e-7] [--coarsest 1e-3]
 python benchmarks/estimates.py show FILE...
 
-Groups of scenes: steady (loads of all kinds), turning (large tension under which slip turns round on the way), plain
-(Hertz and flat-rounded), table (x^4, x^6 and curvatures with noise), varying (P, M or e), unlike (materials), finite
-(bodies). Truth is the exact steady state, and for q1 and q2 the exact first loading where the steady state keeps that.
-Elsewhere it is the march at the finest accuracy that it reaches; for finite bodies finite elements of another order on
-finer meshes. FILE (JSON lines) keeps what is done: a run that was stopped goes on.
+Groups of scenes: steady (loads of all kinds), turning (large tension under which slip turns round on the way, a third
+with mean loads), plain (Hertz and flat-rounded), table (x^4, x^6 and curvatures with noise), varying (P, M or e),
+unlike (materials), finite (bodies). Truth is the exact steady state, and for q1 and q2 the exact first loading where
+the steady state keeps that. Elsewhere it is the march at the finest accuracy that it reaches; for finite bodies finite
+elements of another order on finer meshes. FILE (JSON lines) keeps what is done: a run that was stopped goes on.
 """
 
 import argparse
 import json
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,9 @@ from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
 from partialslip.gradual import turns_round
 from partialslip.halfplane import contact
+from partialslip.halfplane.gradual_path.half_cycle import steady
+from partialslip.halfplane.gradual_path.room import room
+from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.steady import stick_zone, transition
 from partialslip.judge import compare
 from partialslip.judge.means import norm_errors
@@ -39,12 +43,13 @@ KINDS = (
     "reversed", "mean", "marched", "mean", "narrow strip", "reversed", "mean", "tiny zone", "marched", "mean",
     "reversed", "off centre",
 )  # fmt: skip
+TURNING = ("turning", "turning", "turning mean")
 PROFILES = ("hertz", "flat-rounded", "hertz", "tabulated", "hertz")
 _TURNLESS = ("reversed", "mean", "off centre", "reversed", "mean")  # redrawn where slip turns round
 # Kinds of loads and profiles of each group; their counts have no common divisor.
 GROUPS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "steady": (KINDS, PROFILES),
-    "turning": (("turning",), PROFILES),
+    "turning": (TURNING, PROFILES),
     "plain": (_TURNLESS, ("hertz", "flat-rounded")),
     "table": (_TURNLESS, ("x^4", "x^6", "noisy")),
     "varying": (("P varies", "M varies", "e and P vary"), ("hertz", "flat-rounded")),
@@ -189,12 +194,17 @@ def loads(random: np.random.Generator, kind: str, shape: Any) -> tuple[Array, Ar
         zone = np.array((1 - c) * random.uniform(0.2, 0.95)), np.array(c), np.array(-1)
         found = shape.conditions(*zone)
         return float(found.Qf) * ways, float(found.sf) / 2 * ways
-    if kind == "turning":
+    if kind in TURNING:
         while True:  # until slip turns round in a single step's zone
             Qf, sf = random.uniform(0.1, 0.98), random.uniform(1, 14)
             zone = stick_zone(Qf, sf, shape)
-            if turns_round(Qf, sf, zone.s, zone.centre, zone.half_width):
+            if not turns_round(Qf, sf, zone.s, zone.centre, zone.half_width):
+                continue
+            if kind == "turning":
                 return Qf * ways, sf / 2 * ways
+            with suppress(LostError):
+                Q = random.uniform(-0.9, 0.9) * room(steady(Loads(sf, math.pi * Qf), shape))
+                return Q + Qf * ways, sf * (random.uniform(-0.5, 0.5) + ways / 2)
     Qf = 10 ** random.uniform(-5, -2.5) if kind == "narrow strip" else random.uniform(0.1, 0.85)
     at = float(transition(Qf, shape))
     if kind == "reversed":

@@ -180,6 +180,7 @@ def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Arra
             fitted[2:4] += _PUNCHED * sizes[:4].max() if solution.slips_when_pressed else _COUPLED * sizes[2:4]
         if solution.history and solution.history.turns:
             fitted[2:4] = _TURNED * fitted[2:4] + _of_caught(solution, sizes[2:4])
+            fitted[2:4] += np.array(solution.stick.strips) / solution.half_width
         errors |= dict(zip("mn", fitted[2:4].tolist(), strict=True))
     if solution.history:
         half, *both = _norms(solution)

@@ -225,21 +225,22 @@ class MeshSolution:
 
     def tension(self, f: float) -> float:
         """Largest -p at both load points in cells of which, as of the cells on both sides, all nodes are pressed; 0 if
-        there is none. In the last cells of a contact the error of the mesh makes p negative, in others only rounding:
-        nodal forces of a traction that oscillates within the cells may still be positive. Linear elements cannot
-        oscillate within cells: beside a peak narrower than a cell only the traction recovered from their forces is
-        negative. ``f`` is the coefficient of friction."""
+        there is none. Only the part of -p counts by which p is below the straight line that fits p in the cell: p
+        oscillates there. In the last cells of a contact the error of the mesh makes p negative, in others rounding
+        only: nodal forces of a traction that oscillates within the cells may still be positive. Beside a peak narrower
+        than a cell the traction recovered from the forces is negative without such an oscillation. ``f`` is the
+        coefficient of friction."""
         order, both = self.lower.order, self.pressures(f)
-        if order == 1:
-            return 0.0
+        straight = np.vander(self.lower.x[: order + 1] - self.lower.x[0], 2)
+        fit = straight @ np.linalg.pinv(straight)
         tractions = both or (self.pressure(),)
         most = 0.0
         for pressure in tractions:
             values = pressure(self.lower.x)
             touching = np.abs(self.lower.mass @ values) > _TOUCHES * self.lower.weights * np.abs(values).max()
             inner = np.lib.stride_tricks.sliding_window_view(touching, 3 * order + 1)[::order].all(axis=1)
-            cells = np.lib.stride_tricks.sliding_window_view(values, order + 1)[order:-order:order]
-            most = max(most, float(-cells[inner].min(initial=0.0)))
+            cells = np.lib.stride_tricks.sliding_window_view(values, order + 1)[order:-order:order][inner]
+            most = max(most, float(np.minimum(-cells, cells @ fit.T - cells).max(initial=0.0)))
         return most
 
     def shear(self, forces: Array) -> PPoly:

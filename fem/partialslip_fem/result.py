@@ -118,6 +118,7 @@ def to_result(
         + doubts(change, estimate, accuracy),
         bodies=tuple(deformed(body, L, unit, stress, origin) for body in displaced),
         end_slips=found.slips,
+        permanent=(found.permanent[0] * L + origin, found.permanent[1] * L + origin) if found.permanent else None,
         contact_ends=((left1 * L + origin, right1 * L + origin), (left2 * L + origin, right2 * L + origin)),
         state=_state(scene, problem, solution, estimate if adapted.errors else {}),
         stress_at=StressAt(BodyStresses.of(scene, problem, solution).inside) if known_inside else None,

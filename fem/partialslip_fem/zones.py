@@ -47,7 +47,7 @@ def stick_zone_of(
     """
     bound, change = growth or (history.bound, history.change)
     forces_of = partial(_forces_of, line, nodes)
-    return stick_zone(line.x[nodes], bound, change, line.x[:: line.order], forces_of, history.changed, history.unsteady)
+    return stick_zone(line.x[nodes], bound, change, line.x[:: line.order], forces_of, history.lasting, history.unsteady)
 
 
 def growth_when_pressed(first: Pressed | None, nodes: Indices, problem: Problem) -> tuple[Array, Array] | None:

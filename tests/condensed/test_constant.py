@@ -153,6 +153,38 @@ def test_permanent_stick_zone():
         assert (history.never_slips <= ~history.slips).all()
 
 
+def half_cycles(monkeypatch, mirrored):
+    """History of a drifting zone whose half cycles are ``mirrored`` as told; event by event, and at rest."""
+    _, *problem = cells()
+    with monkeypatch.context() as patched:
+        patched.setattr(constant._Contact, "_mirrored", mirrored)
+        return march(*problem, loads(0.62, 7.5))
+
+
+def test_half_cycles_are_mirror_images(monkeypatch):
+    """A half cycle that begins where the one before began, mirrored, is not followed."""
+    found = half_cycles(monkeypatch, constant._Contact._mirrored)
+    whole = half_cycles(monkeypatch, lambda *_: None)
+    assert found.turns
+    assert found.events < whole.events
+    assert found.q2 == pytest.approx(-found.q1, abs=1e-15)
+    for key in ("q1", "q2", "slip", "changed"):
+        assert getattr(found, key) == pytest.approx(getattr(whole, key), abs=1e-7, nan_ok=True), key
+    assert found.dissipated == pytest.approx(whole.dissipated, rel=1e-6)
+
+
+@pytest.mark.fault
+def test_mirror_images_of_half_cycles_that_begin_elsewhere(monkeypatch):
+    """The loads are reversed, the forces are not yet: q is that of the first half cycle."""
+    right = constant._Contact._mirrored
+
+    def blind(self, start, load, change):
+        return right(self, -self.legs[-1].start if self.legs else start, load, change)
+
+    whole = half_cycles(monkeypatch, lambda *_: None)
+    assert np.abs(half_cycles(monkeypatch, blind).q2 - whole.q2).max() > 1e-6
+
+
 def test_half_a_cycle_begins_with_the_zone_known_from_elsewhere():
     path = replace(along(0.6, 0.1, 1, back=-1.0), half=True)
     cold = solved(path)

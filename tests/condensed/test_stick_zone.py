@@ -89,3 +89,15 @@ def test_the_finest_places_of_a_mesh():
     points = np.array([-1.0, -0.3, 0.41, 1.0])
     assert ends.finest(graded(points, 1e-4, 0.1)) == [-0.3, 0.41]
     assert ends.finest(np.linspace(-1, 1, 50)) == []
+
+
+@pytest.mark.parametrize("count", [0, 1, 3])
+def test_an_end_that_passed_few_nodes_is_unsure_by_what_it_passed(count):
+    """Too few nodes tell that the end moved outwards; the strip over which they slipped does."""
+    some = room(-0.31, 0.52)
+    inside = np.flatnonzero(some > 0)
+    changed = np.full(len(X), np.nan)
+    changed[inside[:count]] = 0.5
+    zone = stick_zone(X, BOUND, 2 * BOUND - some, VERTICES, lambda forces: forces, changed)
+    assert zone.moved == (False, False)
+    assert zone.strips == pytest.approx((count * 0.025, 0.0), abs=1e-12)

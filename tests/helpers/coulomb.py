@@ -1,7 +1,8 @@
 """Coulomb's law in every load step of a march, checked on forces, compliances and loads alone.
 
-A leg that is followed event by event is no step: nodes slip and stick again on it. Of such legs displacements, bounds
-and equilibrium are checked here, and Coulomb's law on the way in test_path_following.py.
+A leg that is followed event by event is no step, and neither is its mirror image: nodes slip and stick again on it. Of
+such legs displacements, bounds and equilibrium are checked here, and Coulomb's law on the way in
+test_path_following.py.
 
 Nothing here knows the solver's active sets, rigid shifts, residuals and certificates, nor which steps the solver takes
 over from other steps: each step is looked at with the forces that it begins with.
@@ -164,6 +165,10 @@ def recorded():
         legs.append(true_leg(follower, *given))
         return legs[-1]
 
+    def image(leg):
+        legs.append(true_image(leg))
+        return legs[-1]
+
     def straight(true, C, stretch, bound, *others):
         making.append((C, stretch, None, bound))
         found = true(C, stretch, bound, *others)
@@ -178,9 +183,10 @@ def recorded():
         making.append((C.xx, np.array([stretch[0], bent]), None if C.xy is None else C.xy / f, None))
         return true(C, gap, stretch, bent, f, *others, **more)
 
-    true_leg = path_following.Follower.leg
+    true_leg, true_image = path_following.Follower.leg, path_following.Leg.mirrored.fget
     with ExitStack() as patched:
         patched.enter_context(patch.object(path_following.Follower, "leg", leg))
+        patched.enter_context(patch.object(path_following.Leg, "mirrored", property(image)))
         for module in (constant, varying, coupled):
             patched.enter_context(patch.object(module, "follow", partial(following, module.follow)))
         for module, march in ((constant, straight), (varying, anew), (coupled, unlike)):

@@ -84,6 +84,7 @@ def test_the_reference_among_results():
     assert reference_among(SCENE, [ALL_EFFECTS, *METHODS]) == ALL_EFFECTS
     assert reference_among(SCENE, ["mine"]) is None
     assert reference_among(SCENE, []) is None
+    assert reference_among(hertz(0.6, 7), ["march"]) == "march"
     assert reference_among(hertz(0.6, 7), METHODS) == "exact"
     assert reference_among(hertz(0.6, 0.0, "bodies.lower={width=0.02, height=0.01}"), METHODS) == "exact"
 

@@ -24,6 +24,7 @@ _AT = 1e-12  # distance from the bound, relative, at which a node is on it
 _LEFT = 0.9, 0.5  # of a leg: where slip on the way is looked at
 _STAGES = 32  # fewest stages between load points at which forces are kept where slip turns round
 _SLIGHT = 1e-6  # of the longest path of slip: what mean loads let slip less in each cycle
+_MIRRORED = 1e-10  # of the bound: what forces may be off where a leg is taken for the mirror image of the one before
 _EXPECTED = 8  # cycles for which factors are prepared
 
 
@@ -223,6 +224,8 @@ class _Contact:
         self._follower = self._follower or Follower(self.factored.C, self.factored.inverse)
         # a state of another mesh has the load, and keeps the bounds, to an error of that mesh only
         start = np.clip(start, -self._bound, self._bound)
+        if (mirrored := self._mirrored(start, load, change)) is not None:
+            return mirrored
         off = float(load[0] - change[0]) - float(start.sum())
         Q = float(change[0]) + (off if abs(off) > _AT * float(self._bound.sum()) else 0.0)
         try:
@@ -230,6 +233,23 @@ class _Contact:
         except SlidesError:  # so near to sliding that rounding lets no node stick: a step still has an answer
             return _Done(start, load, change, self._one_step(start, float(load[0]), change, None))
         found = Solution(leg.forces, leg.rest, leg.residual, leg.imbalance, 1, leg.pivots)
+        return _Done(start, load, change, found, leg)
+
+    def _mirrored(self, start: Array, load: Array, change: Array) -> _Done | None:
+        """The mirror image of the leg before, if this leg begins at minus the loads and the forces of that one, to
+        rounding, and goes the other way; None if not."""
+        before = self.legs[-1] if self.legs else None
+        if before is None or before.leg is None or not self._path.settled:
+            return None
+        loads = np.abs(change[:3] + before.change[:3]), np.abs(load[:3] + before.load[:3])
+        if any((off > _AT * np.abs(change[:3])).any() for off in loads):
+            return None
+        off = np.abs(start + before.start)
+        if (off > min(self._path.settled, _MIRRORED) * self._bound).any():
+            return None
+        leg = before.leg.mirrored
+        residual = before.found.residual + off
+        found = replace(before.found, x=leg.forces, rest=leg.rest, residual=residual, iterations=0, changes=0)
         return _Done(start, load, change, found, leg)
 
     def _completed(self, history: History) -> History:

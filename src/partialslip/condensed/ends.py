@@ -32,13 +32,15 @@ ROUNDED, CORNER = 3 / 2, 1 / 2  # powers of the distance with which the normal f
 class StickInterval:
     """Interval [``left``, ``right``] in which dq is less than the bounds allow, the ``signs`` of dq on its left and
     right, and which ends have ``moved`` outwards last, over points that slipped before. ``caught`` are ends that moved,
-    as the loads tell at which the nodes beside them stuck again; nan where no nodes did."""
+    as the loads tell at which the nodes beside them stuck again; nan where no nodes did. ``strips`` are lengths
+    beside the ends over which so few nodes slipped before that the end is read as if none had."""
 
     left: float
     right: float
     signs: tuple[int, int]
     moved: tuple[bool, bool] = (False, False)
     caught: tuple[float, float] = (math.nan, math.nan)
+    strips: tuple[float, float] = (0.0, 0.0)
 
 
 def stick_zone(
@@ -61,7 +63,7 @@ def stick_zone(
     cell_forces : callable
         Takes forces of the nodes in contact to integrals over the cells.
     changed : (n,) array, optional
-        When nodes last began to slip or to stick; nan where they did neither.
+        When nodes last began to slip or to stick; nan where they did neither, or do not in the steady state.
     unsteady : (n,) array, optional
         Room that counts as none.
     """
@@ -92,7 +94,18 @@ def stick_zone(
     if changed is None:
         return StickInterval(left, max(right, left), signs, moved)
     caught = _caught_up(x, changed, sticks), _caught_up(x, changed, sticks[::-1])
-    return StickInterval(left, max(right, left), signs, moved, caught)
+    strips = tuple(
+        0.0 if outwards else _strip(x, changed, inside)
+        for outwards, inside in zip(moved, (sticks, sticks[::-1]), strict=True)
+    )
+    return StickInterval(left, max(right, left), signs, moved, caught, (strips[0], strips[1]))
+
+
+def _strip(x: Array, changed: Array, inside: Indices) -> float:
+    """Distance from the first node ``inside`` the stick zone, from an end on, to the first one of the next nodes that
+    has not slipped; 0 if the first one has not."""
+    still = np.flatnonzero(~np.isfinite(changed[inside[: _RUN + 1]]))
+    return abs(float(x[inside[still[0]]] - x[inside[0]])) if len(still) else 0.0
 
 
 def _caught_up(x: Array, changed: Array, inside: Indices) -> float:

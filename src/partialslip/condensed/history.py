@@ -21,6 +21,7 @@ _REPEATS = 3e-14  # change of a node's q over a cycle, relative to the largest s
 _LIMIT = 10.0  # changes of the last cycle that may lie between it and the limit, however few cycles went before
 _NEAR = 1e-6  # change over a cycle, in f p, that ends cycles near enough to the limit for ratios of changes to tell it
 _BESIDE = 5  # neighbouring nodes of which the one that moves most tells how far the steady state is
+_CREEPS = 0.5  # of the path of slip in a cycle: net slip from which on a node creeps
 _SLIPS = 1e-9  # distance of |dq| from the bound, relative, at which a node slips
 
 
@@ -207,6 +208,25 @@ class History:
         most = self.slipped.sum(axis=0)
         never: Mask = most <= _SLIPS * float(most.max())
         return never
+
+    @property
+    def creeps(self) -> Mask | None:
+        """Nodes that slip farther one way than back in the last cycle, (n,): they come to their place under mean loads,
+        and do not slip in the steady state. None where this is not known."""
+        if self.slipped is None:
+            return None
+        forth, back = self.slipped
+        creeps: Mask = np.abs(forth - back) > _CREEPS * (forth + back)
+        return creeps
+
+    @property
+    def lasting(self) -> Array | None:
+        """``changed``, and nan at nodes that creep: when nodes began to slip, or to stick, that do so in every cycle.
+        None if this is not known."""
+        if self.changed is None or self.creeps is None:
+            return self.changed
+        result: Array = np.where(self.creeps, np.nan, self.changed)
+        return result
 
     @property
     def opposing(self) -> int:

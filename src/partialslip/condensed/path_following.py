@@ -12,7 +12,7 @@ forces.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -113,6 +113,12 @@ class Leg:
     imbalance: float
     events: int
     pivots: int
+
+    @property
+    def mirrored(self) -> "Leg":
+        """The leg from minus the forces under minus the loads, without events of its own."""
+        turned = {key: -getattr(self, key) for key in ("forces", "rest", "stages")}
+        return replace(self, lowest=-self.highest, highest=-self.lowest, events=0, pivots=0, **turned)
 
     @property
     def slipped(self) -> Array:

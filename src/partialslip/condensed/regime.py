@@ -1,7 +1,10 @@
 """Regime in which a history ends, and notes on the result."""
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
+
+import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.bars import Asked
@@ -17,14 +20,16 @@ _RATCHETS = 1e-3  # net slip of a cycle, relative to the slip of half a cycle, a
 
 
 class SteadyState(NamedTuple):
-    """``regime``, ``centre`` and ``half_width`` of the stick zone (None if nothing sticks), ``notes``, and how the ends
-    of the contact slip, where the pressure varies."""
+    """``regime``, ``centre`` and ``half_width`` of the stick zone (None if nothing sticks), ``notes``, how the ends of
+    the contact slip, where the pressure varies, and the ends of the zone that never slips, (nan, nan) if there is none,
+    None if it is not known."""
 
     regime: Regime
     centre: float | None
     half_width: float | None
     notes: tuple[str, ...]
     slips: tuple[EndSlip, EndSlip] | None = None
+    permanent: tuple[float, float] | None = None
 
 
 def steady_state(
@@ -83,7 +88,30 @@ def steady_state(
         notes += (f"slip and dissipated energy are rough: {steps} from load point to load point (load.steps)",)
     if apart:
         return SteadyState(regime, None, None, notes, slips)
-    return SteadyState(regime, (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, notes, slips)
+    permanent = never_slips(x, history, stick) if x is not None and history.turns and regime != "ratchets" else None
+    centre, half = (stick.right + stick.left) / 2, (stick.right - stick.left) / 2
+    return SteadyState(regime, centre, half, notes, slips, permanent)
+
+
+def never_slips(x: Array, history: History, stick: StickInterval) -> tuple[float, float] | None:
+    """Left and right end of the zone that never slips in a steady cycle in which slip turns round: the widest group of
+    nodes ``x`` (n,), ascending, in the ``stick`` zone that do not slip on any leg of the ``history``. An end is half
+    way between nodes, or that of the stick zone where no node slips beside it. (nan, nan) if all nodes slip, None if
+    the slip on the way is not known."""
+    if history.never_slips is None or history.creeps is None:
+        return None
+    inside = np.flatnonzero((x > stick.left) & (x < stick.right))
+    if not len(inside):
+        return None
+    still = np.pad((history.never_slips | history.creeps)[inside], 1).astype(np.int8)
+    starts, stops = np.flatnonzero(np.diff(still) == 1), np.flatnonzero(np.diff(still) == -1)
+    if not len(starts):
+        return math.nan, math.nan
+    places = x[inside]
+    borders = np.array([stick.left, *(places[1:] + places[:-1]) / 2, stick.right])
+    left, right = borders[starts], borders[stops]
+    widest = int(np.argmax(right - left))
+    return float(left[widest]), float(right[widest])
 
 
 def steps_of_coupled(history: History | None, errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:

@@ -19,13 +19,14 @@ from partialslip.condensed import constant, varying
 from partialslip.condensed.ends import StickInterval, apart, finest, kinks, stick_zone, turning_points, within
 from partialslip.condensed.history import SHEARS, History, certificate, last_cycle_change
 from partialslip.condensed.path import Path, load_path, stretched
-from partialslip.condensed.regime import doubts, steady_state
+from partialslip.condensed.regime import doubts, never_slips, steady_state
 from partialslip.condensed.restart import begun, known_to
 from partialslip.condensed.step_errors import of_steps, steps_matter
 from partialslip.condensed.steps import follow_or_step
 from partialslip.condensed.threads import one_thread
 from partialslip.halfplane.cell_stress import CellStresses
 from partialslip.halfplane.cells import compliance, graded, norm_parts, off_cells, on_cells, relative_change
+from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.pressing import NormalLoads
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding, without_shear
@@ -51,8 +52,9 @@ _MOVED, _CUBIC, _CUBIC_OF_SOFT = 0.1, 0.15, 0.05
 # The same part in a narrow stick zone, which its surroundings move as a whole. Cells nearby are reduced with the zone:
 # only growth is halved from mesh to mesh, and errors are of second order in it
 _CARRIED = 1 / 3
-# The same where slip turns round; also, at an end that moves over cells that slipped, parts of the cell's size
-_TURNED, _CAUGHT_UP = 2.0, 0.5
+# The same where slip turns round; also, at an end that moves over cells that slipped, parts of the cell's size; and
+# parts of the change of q, which is locked in where the zone has moved, by the share of such points (measured)
+_TURNED, _CAUGHT_UP, _LOCKED = 2.0, 0.5, 0.2
 _FITTED, _SOFTEST = 4, 1e-3  # cells inside an end of the stick zone from which its stiffness is found; least stiffness
 _CHANGED = (0.4, 0.35)  # errors of q, q1 and q2 as parts of the change to the second mesh and to later meshes
 _JUDGED = ("m", "n", "q", "q1", "q2")
@@ -235,7 +237,7 @@ def _solve_level(
 
         def zone(of: History) -> StickInterval:
             if not of.path.presses_anew:
-                return stick_zone(x, of.bound, of.change, vertices, lambda values: values, of.changed, of.unsteady)
+                return stick_zone(x, of.bound, of.change, vertices, lambda values: values, of.lasting, of.unsteady)
             on = np.flatnonzero(of.bound > 0)
 
             def spread(values: Array) -> Array:
@@ -244,7 +246,7 @@ def _solve_level(
                 return every
 
             here = of.of(on)
-            found = stick_zone(x[on], here.bound, here.change, vertices, spread, here.changed, here.unsteady)
+            found = stick_zone(x[on], here.bound, here.change, vertices, spread, here.lasting, here.unsteady)
             return within(found, normal.common, vertices)
 
         def errors(of: History, gradual: History) -> dict[str, float]:
@@ -287,13 +289,26 @@ def _mesh_errors(normal: NormalLoads, level: _Level, before: _Level, growth: flo
     between = np.maximum(_CUBIC, _CUBIC_OF_SOFT / _stiffness(level)) * growth**3 * np.minimum(_NEAR * gap, 1.0)
     part = _CARRIED if _NEAR * gaps[1] < 1 else _MOVED
     known = np.maximum(unseen, np.maximum(part * moved, between))
-    if level.history.turns:
-        known = _TURNED * known + _CAUGHT_UP * size * np.array(level.stick.moved)
-    known *= normal.frame.a / normal.largest.a
-    return dict(zip("mn", known.tolist(), strict=True)) | {
+    changes = {
         key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices, 2 if key == "q" else 1)
         for key, of in SHEARS.items()
     }
+    if level.history.turns:
+        known = _TURNED * known + _CAUGHT_UP * size * np.array(level.stick.moved)
+        known = np.maximum(known, _LOCKED * _passed(level) * changes["q"]) + level.stick.strips
+    known *= normal.frame.a / normal.largest.a
+    return dict(zip("mn", known.tolist(), strict=True)) | changes
+
+
+def _passed(level: _Level) -> float:
+    """Share of the stick zone whose points slip on the way."""
+    assert level.stick
+    assert level.history
+    still = never_slips((level.vertices[1:] + level.vertices[:-1]) / 2, level.history, level.stick)
+    if still is None or level.stick.left == level.stick.right:
+        return 0.0
+    width = 0.0 if np.isnan(still[0]) else still[1] - still[0]
+    return 1.0 - width / (level.stick.right - level.stick.left)
 
 
 def _stiffness(level: _Level) -> Array:
@@ -394,7 +409,14 @@ def _result(
         notes=found.notes + notes + doubts(change, errors, _accuracy(scene)),
         contact_ends=(normal.first.ends, normal.second.ends) if anew or frame.centre else None,
         end_slips=found.slips,
+        permanent=_placed(frame, found.permanent) if found.permanent else None,
     )
+
+
+def _placed(frame: Contact, ends: tuple[float, float]) -> tuple[float, float]:
+    """Places of two ``ends``, m, from half-widths of the ``frame``."""
+    left, right = frame.places(ends).tolist()
+    return left, right
 
 
 def _state(normal: NormalLoads, level: _Level, places: Array, errors: dict[str, float]) -> State:

@@ -54,5 +54,6 @@ def reference_among(scene: Scene, methods: Iterable[str]) -> str | None:
     what half-planes leave out.
     """
     known = set(methods)
-    first = () if scene.finite or not scene.material.alike else (reference(scene).method,)
+    alone = len(known) == 1  # what is known exactly of the scene, which may take seconds, then decides nothing
+    first = () if alone or scene.finite or not scene.material.alike else (reference(scene).method,)
     return next((name for name in (ALL_EFFECTS, *first, *METHODS) if name in known), None)
