@@ -6,10 +6,11 @@ import event_cells
 import numpy as np
 import pytest
 
+from partialslip.halfplane.gradual_path import half_cycle
 from partialslip.halfplane.gradual_path.certificate import certificate, certify
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
 from partialslip.halfplane.gradual_path.inner_rates import other_root
-from partialslip.halfplane.gradual_path.stage import Loads
+from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.hertz import Hertz
 
 LOADS = Loads(7.2, np.pi * 0.9975)
@@ -50,6 +51,8 @@ def test_both_intervals_move_alike():
         pytest.param(0.9, 14.0, marks=pytest.mark.slow),  # on its way back b passes where it began
         pytest.param(0.85, 9.0, marks=pytest.mark.slow),  # half cycles tend slowly to the steady one
         pytest.param(0.47450296749, 19.4127801131, marks=pytest.mark.slow),  # breaks two widths of the drift before
+        pytest.param(0.3827638404516185, 16.617226290315028, marks=pytest.mark.slow),  # no point sticks throughout
+        pytest.param(0.75640025965298385, 11.57815391228589, marks=pytest.mark.slow),  # the same, from mixed states
     ],
 )
 def test_hard_ways_are_followed(Qf, sf):
@@ -63,6 +66,17 @@ def test_the_inner_zone_closes_when_event_driven_cells_say_so():
     x, q, closes = event_cells.follow(200, 0.85, 9.0)
     assert closes == pytest.approx(half.phases[0].last.progress, abs=2e-2)
     assert np.abs(q - half.last.q(x)).mean() < 5e-3
+
+
+@pytest.mark.slow
+@pytest.mark.fault
+def test_a_mean_of_Q_that_stays_is_seen(monkeypatch):
+    """Deliberate fault: where each point slips in a half cycle, a mean of Q that a state has is left. It comes back
+    with the other sign in each half cycle: nothing else takes it away."""
+    monkeypatch.setattr(half_cycle, "_centred", lambda loads, *_: loads)
+    monkeypatch.setattr(half_cycle, "_CYCLES", 12)  # nine suffice
+    with pytest.raises(LostError):
+        steady(Loads(16.617226290315028, np.pi * 0.3827638404516185), Hertz())
 
 
 @pytest.mark.slow

@@ -16,18 +16,18 @@ from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 
-_CYCLES = 200
+_CYCLES = 60
 _SETTLED, _NEAR = 1e-13, 1e-8
 _CLOSE = 1e-12  # change of the middle where a zone inside is followed
 _PROBES = (1 - np.cos(np.pi * (np.arange(200) + 0.5) / 200)) / 2  # places between the outer ends
-_OF_Q = 5e-3  # change of the outer ends that counts as much as one of q by 1: q rises there like a square root
+_OF_Q = 2e-3  # change of the outer ends that counts as much as one of q by 1: q rises there like a square root
 _NEARLY = 1e-8  # change of the zone's middle from which on a zone inside is followed
 _SAME = 1e-9  # by how much a zone is wider than the one that drifts where it drifts at once
-_STALLED, _ROUGH = 4, 1e-6  # half cycles in which changes below a size become no smaller
+_CENTRED = 1e-11  # mean of Q that is rounding
 _LEAST, _MOST = 0.05, 0.8  # shares of the half cycle before in a mixture
 _FINE = 1e-11  # change of the middle below which the interpolation of a mixture shows
 _HALVINGS = 12  # of the way between two stages
-_NARROWEST = 0.02  # half-width of a stick zone that drifts: narrower ones travel more than fifty times their width
+_NARROWEST = 1e-4  # half-width of a stick zone that drifts: narrower ones lose their digits
 
 
 class HalfCycle:
@@ -53,7 +53,7 @@ class HalfCycle:
         self.loads, self.start, c = loads, start, loads.least
         first, last = start.parts[0], start.parts[-1]
         # points on the bound on which the first rate pushes slip at once
-        left = min(first.high, 1 - 2 * c) if first.smooth is None and first.factor < 0 else -1.0
+        left = max(min(first.high, 1 - 2 * c), -1.0) if first.smooth is None and first.factor < 0 else -1.0
         self.phases: list[Phase] = []
         before: Leading = Resting(Stage(0.0, Zone(left, 1.0), start))
         self.opens = last.smooth is None and before.last.zone.centre - c - last.low > SHUT
@@ -181,6 +181,19 @@ def stuck(stages: list[Stage]) -> tuple[float, float]:
     return max(stage.zone.left for stage in stages), min(stage.sticks[0].right for stage in stages)
 
 
+def once(loads: Loads, shape: Shape) -> Tractions:
+    """Half of the change of q by a single step of the ``loads``, on a pressure ``shape``."""
+    zone = stick_zone(loads.shear / math.pi, loads.tension, shape)
+
+    def half(from_low: Array, from_high: Array) -> Array:
+        del from_high
+        return half_range(zone.left + from_low, zone, shape)
+
+    middle = Smooth(zone.left, zone.right, half)
+    pieces = Part(-1.0, zone.left, zone.s), Part(zone.left, zone.right, 0.0, middle), Part(zone.right, 1.0, 1.0)
+    return Tractions.of(shape, pieces)
+
+
 def steady(loads: Loads, shape: Shape, parts: bool = True) -> HalfCycle:
     """Return the steady half cycle, to which half cycles tend.
 
@@ -198,21 +211,13 @@ def steady(loads: Loads, shape: Shape, parts: bool = True) -> HalfCycle:
     LostError
         If retreat and drift do not lead to the end of the half cycle.
     """
-    zone = stick_zone(loads.shear / math.pi, loads.tension, shape)
-
-    def half(from_low: Array, from_high: Array) -> Array:
-        del from_high
-        return half_range(zone.left + from_low, zone, shape)
-
-    once = Smooth(zone.left, zone.right, half)
-    pieces = Part(-1.0, zone.left, zone.s), Part(zone.left, zone.right, 0.0, once), Part(zone.right, 1.0, 1.0)
-    start = -Tractions.of(shape, pieces)
+    if loads.least < _NARROWEST:
+        raise LostError(f"a zone of the half-width {loads.least:.2g} a drifts")
+    start = -once(loads, shape)
     shares = np.append(np.geomspace(1e-4, 0.1, 12), np.linspace(0.1, 1, 64)[1:])
     tried = stick_zones(shares * loads.shear / math.pi, shares * loads.tension, shape)
     narrow = np.flatnonzero(tried.half_width < loads.least)
-    if loads.least < _NARROWEST:
-        raise LostError
-    guess = float(tried.centre[narrow[0]]) if len(narrow) else zone.centre
+    guess = float(tried.centre[narrow[0]]) if len(narrow) else Zone(start.parts[0].high, start.parts[-1].low).centre
     found = HalfCycle(loads, start, guess, parts=False)
     found = _repeated(found, parts=False)
     return _repeated(found, parts=True) if parts else found
@@ -228,19 +233,23 @@ def _moved(one: Tractions, other: Tractions) -> float:
 
 
 def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
-    """The half cycle after which the zone's middle changes no longer; a zone inside is followed if it ``parts``.
+    """The half cycle that begins with minus the tractions at its end; a zone inside is followed if it ``parts``.
 
     Half cycles tend to the steady one by a factor that may be as large as -0.5 where a zone inside slips. There the
     next one begins from a mixture of the two states before, in which the middle would not change (secant method). The
     last ones are true half cycles, each from the end of the one before.
+
+    Raises
+    ------
+    LostError
+        If the state still changes after the last of these half cycles.
     """
-    changes: list[float] = []
-    mixes, least, since = True, np.inf, 0  # change, and half cycles since it became smaller
+    loads, least = found.loads, np.inf  # smallest change
     begin, middle = -found.settled, found.last.zone.centre
     last: tuple[Tractions, float, float] | None = None  # state and middle after the half cycle before, and its change
     for _ in range(_CYCLES):
         try:
-            found = HalfCycle(found.loads, begin, found, parts)
+            found = HalfCycle(_centred(loads, found, begin), begin, found, parts)
         except LostError:
             if not last or begin is last[0]:
                 raise
@@ -249,21 +258,23 @@ def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
             continue
         state, after = -found.settled, found.last.zone.centre
         change = after - middle
-        changes.append(max(abs(change), _moved(begin, state)) if found.parted else abs(change))
+        size = max(abs(change), _moved(begin, state)) if found.parted else abs(change)
         settled = _SETTLED if not found.opens else _CLOSE if found.parted else _NEARLY
-        if changes[-1] < least / 2:
-            least, since = changes[-1], 0
-        since += 1
-        if found.parted and since > _STALLED and least < _ROUGH:
-            if not mixes:
-                break
-            mixes, since = False, 0
-        if changes[-1] < settled or min(changes[:-1], default=np.inf) < min(changes[-1], _NEAR):
-            break
+        if size < settled or least < min(size, _NEAR):  # the rest is rounding
+            return found
+        least = min(least, size)
         begin, middle = state, after
-        if mixes and last and found.parted and abs(change) > _FINE:
+        if last and found.parted and abs(change) > _FINE:
             share = change / (change - last[2]) if change != last[2] else 0.0
             if _LEAST < abs(share) < _MOST and (mixed := state.toward(last[0], share)):
-                begin, middle, changes = mixed, after + share * (last[1] - after), []
+                begin, middle = mixed, after + share * (last[1] - after)
         last = state, after, change
-    return found
+    raise LostError(f"half cycles still change by {least:.1e}")
+
+
+def _centred(loads: Loads, before: HalfCycle, begin: Tractions) -> Loads:
+    """Loads of a half cycle after which Q has no mean. Where some point never slips, the settled state is free of it;
+    where each point slips, it would come back with the other sign in each half cycle, for ever."""
+    low, high = before.stuck
+    mean = begin.force + loads.shear / 2
+    return loads if low < high or abs(mean) < _CENTRED else loads._replace(shear=loads.shear - mean)

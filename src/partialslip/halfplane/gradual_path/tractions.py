@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.halfplane.gradual_path.graded import Smooth
+from partialslip.halfplane.gradual_path.graded import Smooth, spans
 from partialslip.halfplane.shape import Shape
 
 _LAST, _DECAYED = 4, 1e-10  # coefficients in a window that have decayed where q is smooth
@@ -82,6 +82,13 @@ class Tractions:
     def __call__(self, x: Array) -> Array:
         """q at ``x``."""
         return -self.less(0.0, x)
+
+    @property
+    def force(self) -> float:
+        """Integral of q."""
+        ends = np.array([-1.0, *sorted({*self.cuts, *self.shape.strong_kinks}), 1.0])
+        from_low, _, weights = spans(ends[:-1], ends[1:])
+        return float(weights.ravel() @ self((ends[:-1, None] + from_low).ravel()))
 
     def within(self, low: float, high: float, from_low: Array, from_high: Array) -> Array:
         """q at distances from two places, which keep their digits."""
