@@ -15,6 +15,6 @@ from partialslip.verify.driver import verify_suite as verify_suite
 from partialslip.verify.hard_cases.catalogue import FAMILIES as FAMILIES
 from partialslip.verify.hard_cases.catalogue import hard_cases as hard_cases
 from partialslip.verify.hard_cases.catalogue import shipped as shipped
-from partialslip.verify.stress import stress_case as stress_case
+from partialslip.verify.suites import stress_case as stress_case
 from partialslip.verify.suites import stress_suite as stress_suite
 from partialslip.verify.suites import suite as suite
