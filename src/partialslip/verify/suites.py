@@ -66,11 +66,11 @@ def book() -> list[Case]:
     """Return the problems of the benchmark as cases, by every method that solves them; the reference is the method
     that their targets come from."""
     from partialslip.benchmark import read_problems
-    from partialslip.benchmark.freeze import ways
+    from partialslip.benchmark.freeze import derivations
 
     cases = []
     for number, problem in read_problems().items():
-        methods = tuple(dict.fromkeys(way.method for way in ways(problem)))
+        methods = tuple(dict.fromkeys(way.method for way in derivations(problem)))
         scene, unlike = problem.scene, not problem.scene.material.alike
         reference = "" if scene.finite else next(known for known in REFERENCES if known in methods)
         if unlike:  # the load steps of coupled bodies are as asked for
