@@ -22,7 +22,7 @@ from partialslip.benchmark import (
 )
 from partialslip.benchmark.grade import HEADLINE, NOT_OFFERED
 from partialslip.benchmark.measured import GROUPS
-from partialslip.benchmark.standing import _ORDER
+from partialslip.benchmark.scoreboard import _ORDER
 from partialslip.cli import main
 from partialslip.errors import InputError
 

@@ -11,7 +11,7 @@ import pytest
 from partialslip.benchmark import read_problems, turning
 from partialslip.benchmark.codes.calculix import Calculix
 from partialslip.benchmark.codes.getfem import GetFEM
-from partialslip.benchmark.freeze import ways
+from partialslip.benchmark.freeze import derivations
 from partialslip.benchmark.increments import gradual
 from partialslip.benchmark.neutral import files
 from partialslip.benchmark.turning import event_by_event, turns_round
@@ -23,7 +23,7 @@ PROBLEMS = read_problems()
 NUMBER = "PS-27"
 PROBLEM = PROBLEMS[NUMBER]
 CYCLIC = [number for number, problem in PROBLEMS.items() if {"m", "dq@0.5"} <= problem.targets.keys()]
-CLOSED = [number for number in CYCLIC if ways(PROBLEMS[number])[0].method == "exact"]
+CLOSED = [number for number in CYCLIC if derivations(PROBLEMS[number])[0].method == "exact"]
 READING = runpy.run_path(str(Path(__file__).parents[2] / "benchmarks" / "peers" / "increments.py"))
 
 

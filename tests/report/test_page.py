@@ -139,7 +139,9 @@ def test_a_study_has_the_same_frame():
 def test_a_study_of_cost_writes_its_page(tmp_path, monkeypatch):
     def point(series, error, cpu_s, **counts):
         errors = dict.fromkeys("amnpq", error)
-        return ladder.Point(series, f"{error:g}", errors, cpu_s, cpu_s + 1, 0.1, cpu_s, 100.0, {"mesh": cpu_s}, counts)
+        return ladder.CostPoint(
+            series, f"{error:g}", errors, cpu_s, cpu_s + 1, 0.1, cpu_s, 100.0, {"mesh": cpu_s}, counts
+        )
 
     found = [point("exact", 1e-15, 0.1)]
     found += [point("P4, adapted", 10.0**-k, float(k), dofs=1000 * k) for k in (2, 3, 4)]

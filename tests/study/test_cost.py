@@ -19,7 +19,7 @@ SCENE = partialslip.load_scene("hertz-large-tension")
 
 
 def point(series, cpu, error, dofs=1000):
-    return cost.Point(
+    return cost.CostPoint(
         series, "", {"m": error, "n": error, "q": 10 * error}, cpu, 2 * cpu, 0, cpu, 100, {}, {"dofs": dofs}
     )
 

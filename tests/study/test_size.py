@@ -28,7 +28,7 @@ from partialslip.study.size.axes import axis as read
 from partialslip.study.size.axes import cases as make
 from partialslip.study.size.case import METHODS, Sized, solve_case
 from partialslip.study.size.figure import grid_svg, size_svg
-from partialslip.study.size.law import Point, trend
+from partialslip.study.size.law import PointStatus, trend
 
 BLOCKS = {"upper": {"width": 1.0, "height": 1.0}, "lower": {"width": 1.0, "height": 1.0}}
 
@@ -257,9 +257,16 @@ def test_every_point_is_fitted_or_says_why_not():
     mesh = np.where(X == 64, 1e-4, 0.0)
     off = np.where(X == 16, np.nan, 0.3 * X**-2.0)
     points = trend(made_sizes(off, mesh), "m").points
-    assert points == (Point.SMALLER, Point.FITTED, Point.NO_VALUE, Point.FITTED, Point.UNCLEAR, Point.FITTED)
-    assert trend(made_sizes(off, np.where(X > 8, 1.0, 0.0)), "m").points[:2] == (Point.FEW, Point.FEW)
-    assert trend(made_sizes(off, np.nan), "m").points[0] is Point.UNKNOWN
+    assert points == (
+        PointStatus.SMALLER,
+        PointStatus.FITTED,
+        PointStatus.NO_VALUE,
+        PointStatus.FITTED,
+        PointStatus.UNCLEAR,
+        PointStatus.FITTED,
+    )
+    assert trend(made_sizes(off, np.where(X > 8, 1.0, 0.0)), "m").points[:2] == (PointStatus.FEW, PointStatus.FEW)
+    assert trend(made_sizes(off, np.nan), "m").points[0] is PointStatus.UNKNOWN
 
 
 def test_the_command_prints_and_writes_what_was_found(tmp_path, monkeypatch, capsys):
@@ -330,7 +337,7 @@ def test_table_csv_and_figure_mark_the_same_points():
     marks = {row[0]: row[1][-1] for row in rows}
     assert marks == {"2": "-", "4": "f", "8": "f", "16": "f", "32": "e", "64": "e", "128": "e"}
     points = list(csv.DictReader(tables.points_csv(study).splitlines()))
-    assert [row["point"] for row in points if row["quantity"] == "a"] == ["fitted"] * 3 + [Point.UNCLEAR] * 3
+    assert [row["point"] for row in points if row["quantity"] == "a"] == ["fitted"] * 3 + [PointStatus.UNCLEAR] * 3
     assert points[-1]["point"] == "too narrow"
     laws = list(csv.DictReader(tables.laws_csv(study).splitlines()))
     assert [laws[0][key] for key in ("quantity", "kind", "low", "high")] == ["a", "interpolated", "4.0", "8.0"]

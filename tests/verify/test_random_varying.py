@@ -10,7 +10,7 @@ from partialslip.judge import Outcome
 from partialslip.verify.case import run_case
 from partialslip.verify.random_scenes import draw
 from partialslip.verify.random_varying import SHARE, WAYS, draw_varying, varies
-from partialslip.verify.stress import stress_case
+from partialslip.verify.suites import stress_case
 
 SEED = 4
 NUMBERS = [number for number in range(150) if varies(SEED, number)]

@@ -8,8 +8,7 @@ from partialslip import InputError, shipped_scenes
 from partialslip.benchmark import read_problems
 from partialslip.verify.hard_cases.catalogue import hard_cases
 from partialslip.verify.random_scenes import kind_of
-from partialslip.verify.stress import stress_numbers
-from partialslip.verify.suites import stress_suite, suite
+from partialslip.verify.suites import stress_numbers, stress_suite, suite
 
 HARD = [case.name for case in hard_cases()]
 

@@ -26,8 +26,7 @@ from partialslip.scene.reading import load_scene
 from partialslip.verify import Case, driver, run_case, stress_suite, suite
 from partialslip.verify.hard_cases.given_meshes import shifted
 from partialslip.verify.random_scenes import KINDS, PROFILES, draw
-from partialslip.verify.stress import stress_numbers
-from partialslip.verify.suites import _same
+from partialslip.verify.suites import _same, stress_numbers
 from partialslip.verify.verdicts import VerificationRecord
 
 ROOT = Path(__file__).parents[2]

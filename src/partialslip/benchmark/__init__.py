@@ -16,9 +16,9 @@ from partialslip.benchmark.problem import Source as Source
 from partialslip.benchmark.problem import Target as Target
 from partialslip.benchmark.problem import read_problems as read_problems
 from partialslip.benchmark.scoreboard import Board as Board
+from partialslip.benchmark.scoreboard import Standing as Standing
 from partialslip.benchmark.scoreboard import scoreboard as scoreboard
-from partialslip.benchmark.standing import Standing as Standing
-from partialslip.benchmark.standing import standing as standing
+from partialslip.benchmark.scoreboard import standing as standing
 from partialslip.benchmark.submission import Answer as Answer
 from partialslip.benchmark.submission import Meta as Meta
 from partialslip.benchmark.submission import Rung as Rung

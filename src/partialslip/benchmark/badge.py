@@ -9,7 +9,7 @@ from typing import NamedTuple
 import msgspec
 
 from partialslip.benchmark.problem import EDITION, Problem
-from partialslip.benchmark.standing import standing
+from partialslip.benchmark.scoreboard import standing
 from partialslip.benchmark.submission import Submission, check_apart
 from partialslip.output.page import template
 
@@ -49,7 +49,7 @@ def badge_names(submissions: Sequence[Submission]) -> list[str]:
 
 def badge(submission: Submission, problems: Mapping[str, Problem] | None = None) -> str:
     """Return the badge of a ``submission``: edition, code, how many problems count, and the grade of each group
-    (:func:`partialslip.benchmark.standing.standing`), over the ``problems`` or the whole edition."""
+    (:func:`partialslip.benchmark.scoreboard.standing`), over the ``problems`` or the whole edition."""
     found = standing(submission, problems)
     texts = [
         (f"contact benchmark {EDITION}", _PAPER),

@@ -31,7 +31,7 @@ _PIECES = 31  # points of a tabulated parabola
 
 
 @dataclass(frozen=True)
-class Way:
+class Derivation:
     """A way to the targets: a ``method`` with ``changes`` of the scene, in ``words``. A ``rough`` way confirms values
     to its own estimate of its error only, and does not say how sure they are."""
 
@@ -44,17 +44,17 @@ class Way:
 Found = Mapping[str, Quantity]
 
 
-def ways(problem: Problem) -> tuple[Way, ...]:
+def derivations(problem: Problem) -> tuple[Derivation, ...]:
     """Ways that find the targets of ``problem``: the first gives the values, the others check them."""
     scene = problem.scene
-    march = Way("march", "march", {"fem.accuracy": _FINE})
-    fem = Way("fem", "fem", {"fem.accuracy": _FINE})
+    march = Derivation("march", "march", {"fem.accuracy": _FINE})
+    fem = Derivation("fem", "fem", {"fem.accuracy": _FINE})
     if scene.finite:
         others = {"fem.accuracy": _FINE / 10, "fem.lower_size": 0.8}
         return (
-            Way("fem", "fem", {"fem.accuracy": _FINE / 10}),
-            Way("fem", "fem on meshes that do not match", others),
-            Way("equivalent", "equivalent half-planes", {"fem.accuracy": _FINE}, rough=True),
+            Derivation("fem", "fem", {"fem.accuracy": _FINE / 10}),
+            Derivation("fem", "fem on meshes that do not match", others),
+            Derivation("equivalent", "equivalent half-planes", {"fem.accuracy": _FINE}, rough=True),
         )
     if not scene.material.alike:
         if not any(scene.load.Q):
@@ -65,12 +65,12 @@ def ways(problem: Problem) -> tuple[Way, ...]:
         stepped = {"profile": table, "load.steps": 64, "fem.accuracy": 2e-3}
         return (
             march,
-            Way("march", "march, pressed in 128 steps", stepped),
-            Way("fem", "fem", {"fem.accuracy": 1e-4}, rough=True),
+            Derivation("march", "march, pressed in 128 steps", stepped),
+            Derivation("fem", "fem", {"fem.accuracy": 1e-4}, rough=True),
         )
     if reference(scene).method != "exact":
         return fem, march
-    return Way("exact", _GRADUAL if turns_round(scene) else "closed form"), march, fem
+    return Derivation("exact", _GRADUAL if turns_round(scene) else "closed form"), march, fem
 
 
 def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: None) -> tuple[dict[str, Target], str]:
@@ -85,21 +85,21 @@ def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: N
     progress : callable, optional
         Called with a line of text from time to time.
     """
-    first, *others = ways(problem)
+    first, *others = derivations(problem)
     progress(f"{problem.number}: {first.words}")
     result = _solved(problem, first)
     values = quantities(problem.scene, result, problem.places)
-    checks: list[tuple[Way, Result, Found]] = []
+    checks: list[tuple[Derivation, Result, Found]] = []
     for way in others:
         progress(f"{problem.number}: {way.words}")
         other = _solved(problem, way)
         checks.append((way, other, quantities(problem.scene, other, problem.places, result.a)))
     if first.method == "exact" and problem.scene.presses_anew and "slip" in values:
-        extrapolated = Way("fem", "fem, extrapolated from 16, 64 and 256 load steps")
+        extrapolated = Derivation("fem", "fem, extrapolated from 16, 64 and 256 load steps")
         progress(f"{problem.number}: {extrapolated.words}")
         checks.append((extrapolated, result, _slip(problem, result.a)))
     if first.words == _GRADUAL:
-        followed = Way("events", "boundary elements, event by event,")
+        followed = Derivation("events", "boundary elements, event by event,")
         progress(f"{problem.number}: {followed.words}")
         found = event_by_event(problem.scene, problem.places)
         checks.append((followed, result, {key: values[key]._replace(value=value) for key, value in found.items()}))
@@ -121,7 +121,7 @@ def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: N
     return targets, result.regime
 
 
-def _solved(problem: Problem, way: Way) -> Result:
+def _solved(problem: Problem, way: Derivation) -> Result:
     return run(problem.scene.replace(way.changes), way.method)[way.method]
 
 
@@ -130,7 +130,7 @@ def _slip(problem: Problem, a: float) -> dict[str, Quantity]:
     found = []
     for steps in _STEPS:
         changes = {"fem.size": 0.01, "fem.order": 2, "load.steps": steps}
-        found.append(quantities(problem.scene, _solved(problem, Way("fem", "", changes)), problem.places, a))
+        found.append(quantities(problem.scene, _solved(problem, Derivation("fem", "", changes)), problem.places, a))
     result = {}
     for key in ("slip", "dissipated"):
         first, second, last = (each[key].value for each in found)
@@ -159,7 +159,12 @@ def _has_ends(values: Found) -> bool:
 
 
 def _target(
-    problem: Problem, key: str, way: Way, result: Result, quantity: Quantity, checks: list[tuple[Way, Result, Found]]
+    problem: Problem,
+    key: str,
+    way: Derivation,
+    result: Result,
+    quantity: Quantity,
+    checks: list[tuple[Derivation, Result, Found]],
 ) -> Target:
     exact = way.method == "exact"
     said, counted = [], []

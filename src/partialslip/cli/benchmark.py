@@ -157,8 +157,7 @@ def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> in
     """Print the grades of a submission, with the target that decides. Returns the exit code: 4 if an answer lacks a
     headline target."""
     from partialslip.benchmark.measured import GROUPS
-    from partialslip.benchmark.scoreboard import grades
-    from partialslip.benchmark.standing import standing
+    from partialslip.benchmark.scoreboard import grades, standing
     from partialslip.cli.consoles import output
     from partialslip.judge.outcome import UNJUDGED
     from partialslip.output.tables import print_table

@@ -23,7 +23,7 @@ from partialslip.errors import InputError
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
-    from partialslip.study.cost.ladder import Point
+    from partialslip.study.cost.ladder import CostPoint
 
 
 def add(topics: "Commands") -> None:
@@ -119,7 +119,7 @@ def _progress(done: int, total: int, setting: str, left: float) -> str:
     return f"run {done + 1} of {total}: {setting}{'' if math.isnan(left) else f', {left:.0f} s left'}"
 
 
-def _row(point: "Point", front: bool) -> list[str]:
+def _row(point: "CostPoint", front: bool) -> list[str]:
     errors = [_number(point.errors.get(key, math.nan), ".1e") for key in ("m", "n", "q")]
     unknowns = f"{point.counts['dofs']:,}" if "dofs" in point.counts else ""
     costs = [f"{point.cpu_s:.3g}", f"{point.process_s:.2f}"]
@@ -130,7 +130,7 @@ def _number(value: float, form: str) -> str:
     return "" if math.isnan(value) else format(value, form)
 
 
-def _against(found: "list[Point]", peers: "list[Point]") -> list[str]:
+def _against(found: "list[CostPoint]", peers: "list[CostPoint]") -> list[str]:
     """Return lines that compare the finite elements of partialslip with each peer."""
     from partialslip.study.cost.ladder import against
 

@@ -12,9 +12,9 @@ from partialslip.verify.case import run_case as run_case
 from partialslip.verify.case import solve_case as solve_case
 from partialslip.verify.driver import Verification as Verification
 from partialslip.verify.driver import verify_suite as verify_suite
-from partialslip.verify.hard_cases.catalogue import families as families
+from partialslip.verify.hard_cases.catalogue import FAMILIES as FAMILIES
 from partialslip.verify.hard_cases.catalogue import hard_cases as hard_cases
 from partialslip.verify.hard_cases.catalogue import shipped as shipped
-from partialslip.verify.stress import stress_case as stress_case
+from partialslip.verify.suites import stress_case as stress_case
 from partialslip.verify.suites import stress_suite as stress_suite
 from partialslip.verify.suites import suite as suite

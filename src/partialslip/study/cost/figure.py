@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from partialslip.output.svg import svg
-from partialslip.study.cost.ladder import Point, errors_of, front, slope
+from partialslip.study.cost.ladder import CostPoint, errors_of, front, slope
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,7 +18,7 @@ _LINES = ("-", "--", ":", "-.")
 _HATCHES = ("", "////", "....", "xxxx", "----", "\\\\\\\\", "oooo", "++++")
 
 
-def errors_svg(points: Sequence[Point], peers: Sequence[Point], title: str) -> str:
+def errors_svg(points: Sequence[CostPoint], peers: Sequence[CostPoint], title: str) -> str:
     """Return errors of n and q against CPU seconds of the whole process as SVG.
 
     ``points`` are results of partialslip, ``peers`` of other codes.
@@ -55,7 +55,7 @@ def errors_svg(points: Sequence[Point], peers: Sequence[Point], title: str) -> s
     return svg(draw, (10.5, 4.4))
 
 
-def phases_svg(points: Sequence[Point], title: str) -> str:
+def phases_svg(points: Sequence[CostPoint], title: str) -> str:
     """Return CPU seconds of the finite elements by phase, and over the unknowns, as SVG; ``points`` as measured."""
     found = sorted((point for point in points if point.series == "P4, adapted"), key=lambda point: point.counts["dofs"])
     names = list(dict.fromkeys(name for point in found for name in point.phases))
@@ -88,8 +88,8 @@ def phases_svg(points: Sequence[Point], title: str) -> str:
     return svg(draw, (10.5, 4.4))
 
 
-def _by_series(points: Sequence[Point]) -> dict[str, list[Point]]:
-    found: dict[str, list[Point]] = {}
+def _by_series(points: Sequence[CostPoint]) -> dict[str, list[CostPoint]]:
+    found: dict[str, list[CostPoint]] = {}
     for point in points:
         found.setdefault(point.series, []).append(point)
     return found

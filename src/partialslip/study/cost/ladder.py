@@ -43,7 +43,7 @@ _SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)
 
 
 @dataclass(frozen=True)
-class Point:
+class CostPoint:
     """Medians over the repeats of one setting.
 
     Parameters
@@ -127,7 +127,7 @@ def _case(scene: Scene, methods: tuple[str, ...], series: str, setting: str, fem
 
 def measure(
     scene: Scene, ledger: Ledger, repeats: int, progress: Callable[[int, int, str, float], None] = lambda *_: None
-) -> list[Point]:
+) -> list[CostPoint]:
     """Solve the ladder of ``scene``, one new process per job. Jobs in ``ledger`` are not solved again.
 
     Parameters
@@ -159,7 +159,7 @@ def measure(
     return points(ledger.read(key, Solved) for key in keys)
 
 
-def points(entries: Iterable[Solved]) -> list[Point]:
+def points(entries: Iterable[Solved]) -> list[CostPoint]:
     """Return medians of the ``entries`` of a ledger by setting."""
     by_setting: dict[tuple[str, str], list[Solved]] = {}
     for entry in entries:
@@ -168,12 +168,12 @@ def points(entries: Iterable[Solved]) -> list[Point]:
     return [_point(series, setting, found) for (series, setting), found in by_setting.items()]
 
 
-def _point(series: str, setting: str, entries: Sequence[Solved]) -> Point:
+def _point(series: str, setting: str, entries: Sequence[Solved]) -> CostPoint:
     runs = [entry.run for entry in entries if entry.run]
     comparison = next(iter(runs[0].comparison.values()), None)
     costs = [_method(run).cost for run in runs]
     processes = [entry.process for entry in entries if entry.process]
-    return Point(
+    return CostPoint(
         series=series,
         setting=setting,
         errors={key: error for key in KEYS if (error := comparison.errors[key]) is not None} if comparison else {},
@@ -210,7 +210,7 @@ class _Peer(_Scene):
     peak_rss_mb: float
 
 
-def read_peers(path: Path, scene: str) -> list[Point]:
+def read_peers(path: Path, scene: str) -> list[CostPoint]:
     """Read other codes' results for ``scene`` from the file ``path``, one JSON object per line.
 
     Keys: ``scene``, ``method``, ``setting``, ``element_size``, ``dofs``, ``errors``, ``cpu_s``, ``process_cpu_s``,
@@ -231,7 +231,7 @@ def read_peers(path: Path, scene: str) -> list[Point]:
         if decoded(line, _Scene, told).scene == scene:
             peer = decoded(line, _Peer, told)
             found.append(
-                Point(
+                CostPoint(
                     series=f"{peer.method}, {_short(peer.setting)}",
                     setting=f"h = {peer.element_size:g} a",
                     errors={key: off for key in KEYS if (off := peer.errors.get(key)) is not None},
@@ -251,7 +251,7 @@ def _short(setting: str) -> str:
     return setting.split(", growth")[0].replace(" to the ends", "").replace("surface-to-surface ", "")
 
 
-def front(points: Iterable[Point]) -> list[Point]:
+def front(points: Iterable[CostPoint]) -> list[CostPoint]:
     """Return the Pareto front of ``points``, cheapest first: CPU seconds of the process against errors of m and n."""
     best, found = np.inf, []
     for point in sorted((point for point in points if point.errors), key=lambda point: (point.process_s, point.ends)):
@@ -268,10 +268,10 @@ def slope(x: Sequence[float], y: Sequence[float]) -> float:
     return float(np.polyfit(np.log(x), np.log(np.maximum(y, 1e-300)), 1)[0])
 
 
-def slopes(points: Iterable[Point]) -> dict[str, dict[str, float]]:
+def slopes(points: Iterable[CostPoint]) -> dict[str, dict[str, float]]:
     """Return exponents of the errors of m, n and q and of CPU seconds against unknowns, by series of finite elements
     among ``points``."""
-    by_series: dict[str, list[Point]] = {}
+    by_series: dict[str, list[CostPoint]] = {}
     for point in points:
         if "dofs" in point.counts:
             by_series.setdefault(point.series, []).append(point)
@@ -285,12 +285,12 @@ def slopes(points: Iterable[Point]) -> dict[str, dict[str, float]]:
     }
 
 
-def against(ours: Sequence[Point], peer: Sequence[Point], key: str) -> dict[str, float]:
+def against(ours: Sequence[CostPoint], peer: Sequence[CostPoint], key: str) -> dict[str, float]:
     """Compare points of partialslip with points of another code.
 
     Parameters
     ----------
-    ours, peer : sequence of Point
+    ours, peer : sequence of CostPoint
     key : str
         Quantity whose error is compared.
 
@@ -312,7 +312,7 @@ def against(ours: Sequence[Point], peer: Sequence[Point], key: str) -> dict[str,
     }
 
 
-def table(points: Sequence[Point]) -> tuple[list[str], list[list[float | str]]]:
+def table(points: Sequence[CostPoint]) -> tuple[list[str], list[list[float | str]]]:
     """Return headings and rows for a CSV file with all values of ``points``."""
     phases = list(dict.fromkeys(phase for point in points for phase in point.phases))
     counts = list(dict.fromkeys(count for point in points for count in point.counts))
@@ -332,6 +332,6 @@ def table(points: Sequence[Point]) -> tuple[list[str], list[list[float | str]]]:
     return head, rows
 
 
-def errors_of(points: Iterable[Point], key: str) -> Array:
+def errors_of(points: Iterable[CostPoint], key: str) -> Array:
     """Return CPU seconds of the process and error in ``key``, (k, 2), of the ``points`` with an error in ``key``."""
     return np.array([[point.process_s, point.errors[key]] for point in points if key in point.errors]).reshape(-1, 2)

@@ -9,9 +9,9 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.output.svg import svg
-from partialslip.study.size.law import LEVELS, Kind, Needed, Point, Trend
+from partialslip.study.size.law import LEVELS, Kind, Needed, PointStatus, Trend
 from partialslip.study.size.sizes import EQUIVALENT, HALF_PLANE, QUANTITIES
-from partialslip.study.size.tables import Model, SizeStudy, heading
+from partialslip.study.size.tables import SizeModel, SizeStudy, heading
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,7 +80,7 @@ def _draw_quantity(axes: "Axes", study: SizeStudy, quantity: str) -> None:
     axes.set_title("\n".join(title), loc="left", fontsize=8.5)
 
 
-def _draw_trend(axes: "Axes", study: SizeStudy, model: Model, trend: Trend) -> None:
+def _draw_trend(axes: "Axes", study: SizeStudy, model: SizeModel, trend: Trend) -> None:
     """Draw points, law and needed sizes of one quantity of one model."""
     size, off, style = model.sizes.size, model.sizes.off[trend.quantity], _MODELS[model.name]
     for needed in trend.needed:
@@ -89,7 +89,7 @@ def _draw_trend(axes: "Axes", study: SizeStudy, model: Model, trend: Trend) -> N
         for reach, line in (((min(law.sizes), max(law.sizes)), style["ls"]), ((size.min(), _farthest(study)), ":")):
             ends = np.array(reach)
             axes.plot(ends, law.C * ends**-law.k, color="black", ls=line, lw=0.9, zorder=1)
-    fitted = np.array([point is Point.FITTED for point in trend.points])
+    fitted = np.array([point is PointStatus.FITTED for point in trend.points])
     for which, fill in ((~fitted, "white"), (fitted, "black")):
         shown = np.where(off > 0, off, np.nan)[which]
         axes.plot(size[which], shown, style["marker"], mec="black", mfc=fill, ms=5, zorder=3)
@@ -179,8 +179,8 @@ def _keys(study: SizeStudy) -> "list[Line2D]":
         points = {point for trend in model.trends for point in trend.points}
         name, point = model.name, _POINT | {"marker": _MODELS[model.name]["marker"]}
         entries += [
-            (f"{name}, fitted", {"mfc": "black", **point}, Point.FITTED in points),
-            (f"{name}, not fitted", {"mfc": "white", **point}, bool(points - {Point.FITTED})),
+            (f"{name}, fitted", {"mfc": "black", **point}, PointStatus.FITTED in points),
+            (f"{name}, not fitted", {"mfc": "white", **point}, bool(points - {PointStatus.FITTED})),
         ]
     for model in study.models:
         fitted = any(trend.law for trend in model.trends)

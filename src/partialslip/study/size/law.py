@@ -16,7 +16,7 @@ _FEWEST = 3  # points of a law
 _SHARE = 0.95  # of confidence
 
 
-class Point(StrEnum):
+class PointStatus(StrEnum):
     """What the law makes of a point; the text says why a point is not fitted."""
 
     FITTED = "fitted"
@@ -132,7 +132,7 @@ class Trend:
     Parameters
     ----------
     quantity : str
-    points : tuple of Point
+    points : tuple of PointStatus
         One per size.
     law : Law or None
     needed : tuple of Needed
@@ -140,7 +140,7 @@ class Trend:
     """
 
     quantity: str
-    points: tuple[Point, ...]
+    points: tuple[PointStatus, ...]
     law: Law | None
     needed: tuple[Needed, ...]
 
@@ -163,13 +163,15 @@ def trend(sizes: Sizes, quantity: str) -> Trend:
     at = np.flatnonzero(clear)
     used = at[len(at) // 2 :] if len(at) >= 2 * _FEWEST else at[-_FEWEST:]
     fitted = np.isin(np.arange(len(size)), used) & (len(used) >= _FEWEST)
-    clear_but = Point.SMALLER if fitted.any() else Point.FEW
+    clear_but = PointStatus.SMALLER if fitted.any() else PointStatus.FEW
     which = [fitted, clear, known & np.isnan(mesh), known]
-    points = np.select(which, [Point.FITTED, clear_but, Point.UNKNOWN, Point.UNCLEAR], Point.NO_VALUE)
+    points = np.select(
+        which, [PointStatus.FITTED, clear_but, PointStatus.UNKNOWN, PointStatus.UNCLEAR], PointStatus.NO_VALUE
+    )
     law = _fit(size[fitted], off[fitted]) if fitted.any() else None
     order = np.flatnonzero(known)
     needed = tuple(_needed(level, size[order], off[order], mesh[order], clear[order], law) for level in LEVELS)
-    return Trend(quantity, tuple(map(Point, points)), law, needed)
+    return Trend(quantity, tuple(map(PointStatus, points)), law, needed)
 
 
 def _fit(size: Array, off: Array) -> Law:

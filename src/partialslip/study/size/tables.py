@@ -8,11 +8,17 @@ from partialslip.output.files import csv_text
 from partialslip.scene import Scene
 from partialslip.study.size.axes import Axis
 from partialslip.study.size.case import Sized
-from partialslip.study.size.law import LEVELS, Kind, Point, Trend, trends
+from partialslip.study.size.law import LEVELS, Kind, PointStatus, Trend, trends
 from partialslip.study.size.sizes import EQUIVALENT, HALF_PLANE, QUANTITIES, Sizes, along, refused
 
 Rows = list[tuple[str, ...]]
-_MARKS = {Point.FITTED: "f", Point.SMALLER: "s", Point.UNCLEAR: "e", Point.UNKNOWN: "u", Point.FEW: "x"}
+_MARKS = {
+    PointStatus.FITTED: "f",
+    PointStatus.SMALLER: "s",
+    PointStatus.UNCLEAR: "e",
+    PointStatus.UNKNOWN: "u",
+    PointStatus.FEW: "x",
+}
 HALF_PLANES = "half-planes"  # heading of the names of models
 _LISTED = 3  # largest number of sizes that are listed
 _MEANINGS = {
@@ -24,7 +30,7 @@ _MEANINGS = {
 
 
 @dataclass(frozen=True)
-class Model:
+class SizeModel:
     """How far half-planes are from bodies of a size.
 
     Parameters
@@ -56,7 +62,7 @@ class SizeStudy:
     ----------
     scene : Scene
     axis : Axis
-    models : tuple of Model
+    models : tuple of SizeModel
         The half-plane, then equivalent half-planes if a case has them.
     remarks : tuple of str
         Cases that failed or have no equivalent half-planes, and why.
@@ -64,7 +70,7 @@ class SizeStudy:
 
     scene: Scene
     axis: Axis
-    models: tuple[Model, ...]
+    models: tuple[SizeModel, ...]
     remarks: tuple[str, ...]
 
     @property
@@ -81,7 +87,7 @@ class SizeStudy:
 def size_study(scene: Scene, axis: Axis, entries: Sequence[Sized]) -> SizeStudy:
     """Evaluate the ``entries`` of a ledger for a sweep of ``scene`` along ``axis``."""
     sweeps = [along(axis, entries, name) for name in (HALF_PLANE, EQUIVALENT)]
-    models = tuple(Model(each, trends(each)) for each in sweeps if each.name == HALF_PLANE or each.size.size)
+    models = tuple(SizeModel(each, trends(each)) for each in sweeps if each.name == HALF_PLANE or each.size.size)
     return SizeStudy(scene, axis, models, tuple(remarks([axis], entries)))
 
 
@@ -110,7 +116,7 @@ def heading(study: SizeStudy) -> str:
     return f"{study.scene.name}: half-planes against finite elements, over {study.label}"
 
 
-def differences_table(study: SizeStudy, model: Model) -> tuple[tuple[str, ...], Rows]:
+def differences_table(study: SizeStudy, model: SizeModel) -> tuple[tuple[str, ...], Rows]:
     """Return headings and rows of the differences by size; a letter says whether the law is fitted to a difference."""
     found = model.sizes
     points = {trend.quantity: trend.points for trend in model.trends}
@@ -171,8 +177,8 @@ def notes(study: SizeStudy) -> list[str]:
     return [*lines, *study.remarks]
 
 
-def _fitted(point: Point) -> str:
-    return f"{point}" if point is Point.FITTED else f"not fitted: {point}"
+def _fitted(point: PointStatus) -> str:
+    return f"{point}" if point is PointStatus.FITTED else f"not fitted: {point}"
 
 
 def points_csv(study: SizeStudy) -> str:
@@ -209,7 +215,7 @@ def laws_csv(study: SizeStudy) -> str:
     return csv_text(head, rows)
 
 
-def _marked(difference: float, point: Point) -> str:
+def _marked(difference: float, point: PointStatus) -> str:
     if point in _MARKS:
         return f"{difference:.1e} {_MARKS[point]}"
     return "-" if math.isnan(difference) else f"{difference:.1e}"

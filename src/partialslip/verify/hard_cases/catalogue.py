@@ -1,33 +1,14 @@
 """The catalogue of hard cases: scenes on which contact codes fail, reasons, and bars for each method.
 
-Cases are grouped in families, a module each with a ``TITLE``, the reason ``HARD`` and ``cases()``.
+Cases are grouped in families by what is hard: loads, load histories, bodies or meshes, a module each.
 """
 
 import textwrap
-from dataclasses import dataclass, replace
-from typing import Any
 
 from partialslip.scene.reading import load_scene, shipped_scenes
 from partialslip.verify.case import Case
-from partialslip.verify.hard_cases import (
-    beside,
-    cycles,
-    few_nodes,
-    friction,
-    huge_tension,
-    mean_loads,
-    meshes,
-    mirrored,
-    near_sliding,
-    near_stuck,
-    no_shear,
-    no_tension,
-    poisson,
-    sharp,
-    transition,
-    turning,
-    varying_pressure,
-)
+from partialslip.verify.hard_cases import bodies, histories, loads, meshes
+from partialslip.verify.hard_cases.scenes import Family
 
 _HEAD = """# Hard cases
 
@@ -44,43 +25,25 @@ Unless an entry has other bars, every result must meet these requirements:
 - Pressure is within ten times and shear within fifteen times this accuracy (relative L2 of cell averages)."""
 
 
-_FAMILIES = {
-    "near-sliding": near_sliding,
-    "near-stuck": near_stuck,
-    "transition": transition,
-    "huge-tension": huge_tension,
-    "no-shear": no_shear,
-    "no-tension": no_tension,
-    "beside": beside,
-    "poisson": poisson,
-    "friction": friction,
-    "sharp": sharp,
-    "mean-loads": mean_loads,
-    "cycles": cycles,
-    "varying-pressure": varying_pressure,
-    "few-nodes": few_nodes,
-    "meshes": meshes,
-    "mirrored": mirrored,
-    "turning": turning,
-}
-
-
-@dataclass(frozen=True)
-class Family:
-    """Cases that are hard for one common reason.
-
-    Parameters
-    ----------
-    name, title : str
-    hard : str
-        Why the cases are hard, and how other codes fail.
-    cases : tuple of Case
-    """
-
-    name: str
-    title: str
-    hard: str
-    cases: tuple[Case, ...]
+FAMILIES: tuple[Family, ...] = (  # in the order of the page
+    loads.near_sliding,
+    loads.near_stuck,
+    loads.at_transition,
+    loads.huge_tension,
+    loads.no_shear,
+    loads.no_tension,
+    loads.beside,
+    bodies.poisson,
+    bodies.friction,
+    bodies.sharp,
+    histories.mean_loads,
+    histories.cycles,
+    histories.varying_pressure,
+    meshes.few_nodes,
+    meshes.poor_meshes,
+    loads.mirrored,
+    histories.turning,
+)
 
 
 def shipped() -> list[Case]:
@@ -88,25 +51,15 @@ def shipped() -> list[Case]:
     return [Case(name, load_scene(name)) for name in shipped_scenes()]
 
 
-def families() -> list[Family]:
-    """Return the whole catalogue."""
-    return [_family(name, module) for name, module in _FAMILIES.items()]
-
-
-def _family(name: str, module: Any) -> Family:
-    hard = " ".join(module.HARD.split())
-    return Family(name, module.TITLE, hard, tuple(replace(case, hard=hard) for case in module.cases()))
-
-
 def hard_cases() -> list[Case]:
     """Return the cases of all families."""
-    return [case for family in families() for case in family.cases]
+    return [case for family in FAMILIES for case in family.cases]
 
 
 def document() -> str:
     """Return the catalogue as Markdown, the text of docs/hard-cases.md."""
     lines = [_HEAD]
-    for family in families():
+    for family in FAMILIES:
         lines += [f"## {family.title}", _filled(family.hard)]
         lines += ["\n".join(map(_listed, family.cases))]
     return "\n\n".join(lines) + "\n"

@@ -1,7 +1,8 @@
-"""Scenes of the hard cases, and settings that several families share."""
+"""A family of hard cases, their scenes, and settings that several families share."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,36 @@ from partialslip.halfplane.contact import contact
 from partialslip.judge import Bar
 from partialslip.scene import Scene
 from partialslip.scene.reading import parse_scene
+from partialslip.verify.case import Case
+
+
+@dataclass(frozen=True)
+class Family:
+    """Cases that are hard for one common reason.
+
+    Parameters
+    ----------
+    title : str
+    hard : str
+        Why the cases are hard, and how other codes fail.
+    make : callable
+        Makes the cases.
+    """
+
+    title: str
+    hard: str
+    make: Callable[[], Iterator[Case]]
+
+    @property
+    def cases(self) -> tuple[Case, ...]:
+        """The cases, with the reason."""
+        return tuple(replace(case, hard=self.hard) for case in self.make())
+
+
+def family(title: str, hard: str) -> Callable[[Callable[[], Iterator[Case]]], Family]:
+    """Make a :class:`Family` of the function that makes its cases; line breaks in ``hard`` do not count."""
+    return lambda make: Family(title, " ".join(hard.split()), make)
+
 
 # Accuracies of load histories in many steps: errors of steps decrease with their number only, and each step costs.
 MANY_STEPS: Mapping[str, Any] = {"accuracy": 1e-2}
