@@ -5,9 +5,9 @@ python benchmarks/turning_slip.py [--one-way 150] [--plain 70] [--far 20] [--inn
 Every third profile is flat and rounded, the others are Hertz's. Loads are drawn until each group is full:
 
 - one-way: slip does not turn round, and one step holds;
-- plain: the zone drifts, by less than its width;
-- far: it drifts by more than its width, and no zone inside slips;
-- inner: a zone inside the stick zone slips as a half cycle begins.
+- plain: the zone drifts, by less than its width, and no zone inside slips;
+- far: it drifts by more than its width;
+- inner: it drifts by less, and a zone inside it slips as a half cycle begins.
 
 A mean of Q changes nothing but what is locked in, up to its bound. So many of the first loads under which some points
 never slip and slip turns round show this bound over the room that many stages of the way leave.
@@ -54,9 +54,9 @@ def kind_of(Qf, sf, shape):
     try:
         found = steady(Loads(sf, math.pi * Qf), shape, parts=False)
     except LostError:
-        return "far" if 4 * Qf / sf < 0.05 else "plain"
+        return "plain"
     travel = max((phase.travel for phase in found.phases if isinstance(phase, Drifting)), default=0.0)
-    return "inner" if found.opens else "far" if travel > 1 else "plain"
+    return "far" if travel > 1 else "inner" if found.opens else "plain"
 
 
 def solved(kind, Qf, sf, shape):

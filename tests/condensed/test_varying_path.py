@@ -118,3 +118,32 @@ def test_one_step_where_slip_turns_round(monkeypatch):
     monkeypatch.setattr(marching, "follow_or_step", lambda along, path, *_: (along(path), {}))
     found = march(1e-6)
     assert abs(found.m / found.a - 0.7245161751) > 5 * found.estimate["m"]
+
+
+def narrow():
+    """The fem result of a contact near sliding that grows by 1.6e-4 a, so that small elements touch and open."""
+    scene = parse_scene({
+        "name": "narrow", "material": {"E": 1347203060.0447671, "nu": 0.49999},
+        "profile": {"kind": "hertz", "R": 5.248609683542675}, "friction": {"f": 0.0596601601614902},
+        "load": {
+            "P": [15275.572883779996, 15280.4682811554], "Q": [-875.3235582895744, 875.3235582895744],
+            "sigma": [307842.9919628372, -307842.9919628372], "cycles": 3,
+        },
+        "fem": {"accuracy": 1e-4},
+    })  # fmt: skip
+    return run(scene, ["fem"])["fem"]
+
+
+def test_rounding_of_small_elements_is_corrected_on_the_way():
+    """The zone is that of constant pressure, where exact gives m = -0.706828 a and n = 0.920919 a."""
+    found = narrow()
+    assert found.certificate["kkt"] < 1e-10
+    assert (found.m / found.a, found.n / found.a) == pytest.approx((-0.706828, 0.920919), abs=5e-4)
+
+
+@pytest.mark.fault
+def test_rounding_of_small_elements_that_is_left(monkeypatch):
+    """Deliberate fault: rounding that the events of small elements add up is not corrected."""
+    monkeypatch.setattr(path_following, "_ADDED", np.inf)
+    monkeypatch.setattr(path_following, "_SEEN", 0.0)
+    assert narrow().certificate["kkt"] > 1e-9

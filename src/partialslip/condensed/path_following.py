@@ -27,6 +27,7 @@ _EPS = float(np.finfo(float).eps)
 _AT = 1e-12  # distance from the bound, relative: a thousand roundings of the forces that many events add up
 _CHECKED = 64  # pivots after which the rates are checked by a product with C, at the cost of one more pivot
 _DRIFT = 1e-11  # error of the rates, relative to their sum, from which on the tableau is set up anew
+_ADDED, _SEEN = 1e-13, 1e-9  # errors that events add up, in the bounds: corrected on the way; left to be seen
 _GIVE = 8  # rounds in which nodes that corrections push beyond their bounds are let slip
 _MOST = 50  # pivots per node in a leg: a stick zone that crosses the contact moves each node in and out once
 
@@ -284,9 +285,9 @@ class _Leg:
         these are left to be seen. Nodes that stick at their bounds, and would get beyond them, slip a little instead:
         a force that is cut off at its bound is an error at all others."""
         tableau, sticks, off = self._tableau, self._tableau.sticks, self._off()
-        if (np.abs(off) / self._diagonal).max() > _DRIFT * float(self._bound.sum()):
+        if (np.abs(off) / self._diagonal).max() > _SEEN * float(self._bound.sum()):
             return
-        p = alone = tableau.solve(-off, self._Q - float((self._forces - self._start).sum()))
+        p = alone = tableau.solve(-off, self._at * self._Q - float((self._forces - self._start).sum()))
         give, slip = np.empty(0, dtype=np.int64), off[:0]
         for _ in range(_GIVE):
             forces = self._forces - np.where(sticks, p[:-1], 0.0)
@@ -310,7 +311,7 @@ class _Leg:
 
     def _off(self) -> Array:
         """Errors of the displacements (n,): the way from the beginning, by a product with C, less what is added up."""
-        result: Array = self._C @ (self._forces - self._start) - self._g - self._shift - self._rest
+        result: Array = self._C @ (self._forces - self._start) - self._at * self._g - self._shift - self._rest
         return result
 
     def _begin(self) -> None:
@@ -409,7 +410,8 @@ class _Leg:
             )
 
     def _check(self) -> None:
-        """Set the tableau up anew if a product with C shows errors of its rates."""
+        """Set the tableau up anew if a product with C shows errors of its rates, and correct what the events have added
+        up before it is too much to be rounding: the smaller the elements, the more it is."""
         rate, tableau = self._rate(), self._tableau
         rest = np.where(tableau.sticks, 0.0, self._p[:-1])
         off = np.abs(self._C @ rate - self._g - self._p[-1] - rest) / self._diagonal
@@ -417,6 +419,8 @@ class _Leg:
             tableau.restart(np.flatnonzero(~tableau.sticks))
             self._solve()
             self._settle()
+        if (np.abs(self._off()) / self._diagonal).max() > _ADDED * float(self._bound.sum()):
+            self._refine()
         self._checked = tableau.pivots
 
     def _next(self, end: float) -> tuple[int | None, int, float]:
