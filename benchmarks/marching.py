@@ -14,13 +14,13 @@ from partialslip.condensed.ends import stick_zone as read_zone
 from partialslip.condensed.history import History
 from partialslip.condensed.path import Path
 from partialslip.condensed.threads import one_thread
-from partialslip.halfplane.cells import compliance, forces, graded
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.loading import half_cycle
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range
+from partialslip.march.cells import compliance, forces, graded
 from partialslip.result import StickZone
 
 P0 = 2 / np.pi  # a = P = 1

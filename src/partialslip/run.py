@@ -392,7 +392,7 @@ def _method(
 
         return solve_exactly
     if name == "march":
-        from partialslip.halfplane.marching import solve as solve_by_marching
+        from partialslip.march.method import solve as solve_by_marching
 
         return partial(solve_by_marching, allowance=allowance)
     if name == "fem":

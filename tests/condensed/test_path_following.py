@@ -10,8 +10,8 @@ from partialslip.condensed.bounded import solve_bounded
 from partialslip.condensed.path_following import Bounds, Follower
 from partialslip.condensed.tableau import Tableau
 from partialslip.errors import PartialslipError
-from partialslip.halfplane.cells import compliance, forces
 from partialslip.halfplane.hertz import Hertz
+from partialslip.march.cells import compliance, forces
 
 CERTIFIED = 1e-11  # residuals, in f P: rounding errors of a few hundred pivots
 DRIFTS = (0.6434668934976868, 8.670889385947003)  # (Q_f, s_f): the stick zone drifts, points slip and stick again

@@ -5,7 +5,7 @@ import pytest
 
 from partialslip.condensed import ends
 from partialslip.condensed.ends import right_end, stick_zone
-from partialslip.halfplane.cells import graded
+from partialslip.march.cells import graded
 
 VERTICES = np.linspace(-1, 1, 81)
 X = (VERTICES[1:] + VERTICES[:-1]) / 2

@@ -8,8 +8,8 @@ from partialslip.condensed import path_following, varying_path
 from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path
 from partialslip.condensed.path_following import Bounds, Follower
-from partialslip.halfplane import marching
-from partialslip.halfplane.cells import compliance
+from partialslip.march import method as marching
+from partialslip.march.cells import compliance
 
 F = 0.5
 

@@ -14,7 +14,7 @@ from partialslip.condensed import constant, coupled, ends
 from partialslip.condensed.bounded import _BlockPivoting, solve_bounded
 from partialslip.condensed.constant import march as true_march
 from partialslip.condensed.ends import StickInterval
-from partialslip.halfplane import marching
+from partialslip.march import method as marching
 from partialslip.result.state import State
 from partialslip_fem import problem, solving
 

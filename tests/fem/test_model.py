@@ -90,7 +90,7 @@ def test_static_mean_load_sticks():
 @pytest.mark.slow
 def test_mean_loads_reach_the_steady_range_cycle_by_cycle():
     """Tractions change from cycle to cycle, ever less; the ends of the stick zone are those of the reversed loads of
-    the same changes from the second cycle on (tests/halfplane/test_marching.py)."""
+    the same changes from the second cycle on (tests/march/test_marching.py)."""
     overrides = ["load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]"]  # 0.1 .. 0.7 fP, 1 .. 5 f p0
     exact_m, exact_n = 0.749058362969, 0.370590356334  # dQ/(2fP) = 0.3, dsigma/(f p0) = 4
     steady, off = [], []

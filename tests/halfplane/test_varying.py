@@ -57,7 +57,7 @@ def test_the_bound_on_the_mean_where_fully_reversed_shear_ratchets():
 
 def test_the_bound_on_the_mean_holds_all_along_the_way():
     """Between the load points p may be low where q is not: marching in steps ratchets where both load points allow a
-    steady state (tests/halfplane/test_varying_march.py)."""
+    steady state (tests/march/test_varying_march.py)."""
     scene = varying((0.9, 0.9), 0.7, 8.0, (0.1, -0.1))
     cycle, f = steady_cycle(scene), scene.friction.f
     left, right = cycle.stick

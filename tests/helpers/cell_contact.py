@@ -3,8 +3,8 @@
 import numpy as np
 
 from partialslip.condensed.path import Path
-from partialslip.halfplane.cells import compliance, forces, graded
 from partialslip.halfplane.hertz import Hertz
+from partialslip.march.cells import compliance, forces, graded
 
 
 def cells(shape=None, points=(-1, 1), size=1e-2, growth=0.1):

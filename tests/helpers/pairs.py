@@ -20,8 +20,8 @@ from partialslip.arrays import Array
 from partialslip.condensed import constant, steps
 from partialslip.condensed.coupled import Relative
 from partialslip.condensed.history import History
-from partialslip.halfplane import marching
 from partialslip.judge import Q_BAR, cell_means
+from partialslip.march import method as marching
 from partialslip.result import Clock, Result
 from partialslip.scene import Scene
 from partialslip_fem import bodies, model, solving

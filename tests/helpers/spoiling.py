@@ -13,9 +13,9 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.condensed.path import load_path
 from partialslip.errors import InputError
-from partialslip.halfplane.cells import compliance, forces, graded
 from partialslip.halfplane.contact import contact
 from partialslip.halfplane.method import solve
+from partialslip.march.cells import compliance, forces, graded
 from partialslip.plan import plan
 from partialslip.result import Result
 from partialslip.scene import Scene

@@ -10,8 +10,8 @@ from pairs import answer, apart, guise, loads, solved, times
 from random_marches import forces
 
 from partialslip import halfplane, load_scene
-from partialslip.halfplane.cells import on_cells
 from partialslip.halfplane.steady import stick_zone
+from partialslip.march.cells import on_cells
 
 CLOSED = 1e-10  # residuals of a step, in f p0
 BASES = {name: load_scene(name) for name in ("hertz-large-tension", "flat-rounded")}

@@ -10,8 +10,8 @@ from scipy.interpolate import PPoly
 import partialslip
 from partialslip import InputError, load_scene, load_state, run
 from partialslip.cli import main
-from partialslip.halfplane import marching
 from partialslip.judge.measures import measures
+from partialslip.march import method as marching
 
 MEAN = ("load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]", "fem.accuracy=1e-3")
 

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.halfplane import loading, marching
+from partialslip.halfplane import loading
 from partialslip.judge import Outcome
+from partialslip.march import method as marching
 from partialslip.verify import FAMILIES, hard_cases, run_case
 from partialslip.verify.hard_cases.catalogue import document
 from partialslip_fem import estimate

@@ -10,9 +10,9 @@ from partialslip.arrays import Array
 from partialslip.condensed.path_following import Bounds, Follower, Leg
 from partialslip.gradual import may_turn_round
 from partialslip.halfplane import contact
-from partialslip.halfplane.cells import compliance, forces
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.turning import Turning, half_cycle
+from partialslip.march.cells import compliance, forces
 from partialslip.scene import Scene
 
 _CELLS = (128, 256)  # across the zone that drifts

@@ -13,9 +13,9 @@ from partialslip.equivalent.estimate import estimate
 from partialslip.equivalent.words import in_words
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import contact, tilted_contact
-from partialslip.halfplane.marching import solve as solve_by_marching
 from partialslip.halfplane.method import has_closed_form
 from partialslip.halfplane.method import solve as solve_exactly
+from partialslip.march.method import solve as solve_by_marching
 from partialslip.plan import Plan
 from partialslip.plan import plan as plan_of
 from partialslip.result import Clock, Result

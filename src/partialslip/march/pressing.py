@@ -8,9 +8,9 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.condensed.normal import Presses
-from partialslip.halfplane.cells import forces
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.mean import Mean, common
+from partialslip.march.cells import forces
 from partialslip.scene import Scene
 
 _STAGES = (0.25, 0.5, 0.75)  # of the way between load points, at which the contact is looked up

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from partialslip.halfplane.cells import compliance, forces, graded
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch
+from partialslip.march.cells import compliance, forces, graded
 
 POINTS = np.array([-1.0, -0.8, 0.2, 1.0])
 

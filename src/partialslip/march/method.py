@@ -24,15 +24,15 @@ from partialslip.condensed.restart import begun, known_to
 from partialslip.condensed.step_errors import of_steps, steps_matter
 from partialslip.condensed.steps import follow_or_step
 from partialslip.condensed.threads import one_thread
-from partialslip.halfplane.cell_stress import CellStresses
-from partialslip.halfplane.cells import compliance, graded, norm_parts, off_cells, on_cells, relative_change
 from partialslip.halfplane.contact import Contact
-from partialslip.halfplane.pressing import NormalLoads
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding, without_shear
 from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tractions import CellTractions
-from partialslip.halfplane.unlike import solve as solve_unlike
+from partialslip.march.cell_stress import CellStresses
+from partialslip.march.cells import compliance, graded, norm_parts, off_cells, on_cells, relative_change
+from partialslip.march.pressing import NormalLoads
+from partialslip.march.unlike import solve as solve_unlike
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, StressAt, Traction
 from partialslip.result.state import State

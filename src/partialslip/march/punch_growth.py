@@ -13,7 +13,7 @@ from scipy.special import ellipk, ellipkm1
 from partialslip.arrays import Array
 from partialslip.condensed.coupled import Relative, punched
 from partialslip.condensed.ends import stick_zone
-from partialslip.halfplane.cells import compliance, graded
+from partialslip.march.cells import compliance, graded
 
 _END, _GROWTH = 1e-8, 0.05  # size of cells at the punch's ends; growth
 _AT_STICK = (0.02, 0.002, 5e-4)  # sizes of cells at the stick zone's ends, in their distance from the punch's ends: the

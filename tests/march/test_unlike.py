@@ -8,9 +8,9 @@ import pytest
 import partialslip
 from partialslip import load_scene
 from partialslip.condensed import coupled
-from partialslip.halfplane import unlike
-from partialslip.halfplane.punch_growth import PunchGrowth, goodman_stick_zone, relative
-from partialslip.halfplane.unlike import dundurs
+from partialslip.march import unlike
+from partialslip.march.punch_growth import PunchGrowth, goodman_stick_zone, relative
+from partialslip.march.unlike import dundurs
 
 STEEL = ("material.upper.E=210e9", "material.upper.nu=0.3", "load.cycles=2")
 SHEARED = ("fem.accuracy=1e-2", *STEEL)

@@ -7,8 +7,8 @@ from varying_scenes import varying
 
 import partialslip
 from partialslip import InputError, load_scene
-from partialslip.halfplane import cell_stress
-from partialslip.halfplane.cells import graded
+from partialslip.march import cell_stress
+from partialslip.march.cells import graded
 
 OUT_OF_PHASE = {
     "load.Q": "[-1e5, 0, 1e5, 0]",

@@ -10,8 +10,8 @@ from partialslip import parse_scene, run
 from partialslip.condensed import varying as stepping
 from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path, stretched
-from partialslip.halfplane.cells import compliance, graded
 from partialslip.judge.verdict import Outcome
+from partialslip.march.cells import compliance, graded
 
 A1, A2 = 0.8, 1.0
 P1, P2 = (math.pi * a**2 / 2 for a in (A1, A2))

@@ -12,8 +12,8 @@ from partialslip.condensed.history import Steps
 from partialslip.condensed.phases import Phases
 from partialslip.condensed.piecewise import PiecewiseCauchy
 from partialslip.halfplane.contact import Contact, contact
-from partialslip.halfplane.pressing import NormalLoads
 from partialslip.halfplane.stress import Fields, Points, SlipZones, State
+from partialslip.march.pressing import NormalLoads
 
 _SLIPS = 1e-9  # distance of |q| from f p, relative, at which a cell slips
 _WINDOW = 5  # vertices of the polynomial through the resultants around a vertex

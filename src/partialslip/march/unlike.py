@@ -25,10 +25,10 @@ from partialslip.condensed.pressing import Pressed
 from partialslip.condensed.regime import doubts, steady_state, steps_of_coupled
 from partialslip.condensed.restart import begun, known_to
 from partialslip.condensed.step_errors import along_path, other_steps, pressed_together, summed
-from partialslip.halfplane.cells import graded, norm_parts, off_cells, on_cells, relative_change
-from partialslip.halfplane.pressing import NormalLoads
-from partialslip.halfplane.punch_growth import OnCells, PunchGrowth, relative
 from partialslip.halfplane.tractions import CoupledTractions
+from partialslip.march.cells import graded, norm_parts, off_cells, on_cells, relative_change
+from partialslip.march.pressing import NormalLoads
+from partialslip.march.punch_growth import OnCells, PunchGrowth, relative
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, Traction
 from partialslip.result.state import State
@@ -101,7 +101,7 @@ def solve(
 ) -> Result:
     """Solve ``scene``, two half-planes of unlike materials, by marching through the load history; SI units.
 
-    Parameters as for :func:`partialslip.halfplane.marching.solve`.
+    Parameters as for :func:`partialslip.march.method.solve`.
     """
     clock = Clock(allowance)
     path = load_path(scene, plan, start)
