@@ -16,7 +16,7 @@ from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 
-_CYCLES = 60
+_CYCLES, _STALLED = 60, 8  # most half cycles, and those in which the change does not become less: they do not settle
 _SETTLED, _NEAR = 1e-13, 1e-8
 _CLOSE = 1e-12  # change of the middle where a zone inside is followed
 _PROBES = (1 - np.cos(np.pi * (np.arange(200) + 0.5) / 200)) / 2  # places between the outer ends
@@ -247,7 +247,8 @@ def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
     loads, least = found.loads, np.inf  # smallest change
     begin, middle = -found.settled, found.last.zone.centre
     last: tuple[Tractions, float, float] | None = None  # state and middle after the half cycle before, and its change
-    for _ in range(_CYCLES):
+    nearest = 0
+    for number in range(_CYCLES):
         try:
             found = HalfCycle(_centred(loads, found, begin), begin, found, parts)
         except LostError:
@@ -262,7 +263,10 @@ def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
         settled = _SETTLED if not found.opens else _CLOSE if found.parted else _NEARLY
         if size < settled or least < min(size, _NEAR):  # the rest is rounding
             return found
-        least = min(least, size)
+        if size < least:
+            least, nearest = size, number
+        elif number - nearest >= _STALLED:
+            break
         begin, middle = state, after
         if last and found.parted and abs(change) > _FINE:
             share = change / (change - last[2]) if change != last[2] else 0.0
