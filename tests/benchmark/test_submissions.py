@@ -137,7 +137,10 @@ def test_tractions_of_any_code_make_an_answer(tmp_path):
     x = np.linspace(-1.05, 1.05, 2001) * exact.a
     table = np.column_stack([x, *exact.traction.at(x)])
     np.savetxt(tmp_path / "mine.csv", table, delimiter=",", header="x,p,dq", comments="")
+    np.savetxt(tmp_path / "named.csv", table, delimiter=",", header="where,CPRESS,change", comments="")
     found = answer_from(problem, tmp_path / "mine.csv")
+    named = answer_from(problem, tmp_path / "named.csv", {"x": "where", "p": "CPRESS", "dq": "change"})
+    assert named.values == found.values
     for key in ("a", "m", "n"):
         assert found.values[key] == pytest.approx(problem.targets[key].value, abs=2e-3 * exact.a)
 
@@ -152,6 +155,13 @@ def tables(tmp_path, monkeypatch):
     for name, factor in (("mine", 1.0), ("other", 1.01)):
         table = np.column_stack([x, *exact.traction.at(x)]) * [1.0, 1.0, factor]
         np.savetxt(tmp_path / f"{name}.csv", table, delimiter=",", header="x,p,dq", comments="")
+
+
+@pytest.mark.usefixtures("tables")
+def test_columns_are_named(capsys):
+    assert read_into("new", "mine", "--columns", "x=1,p=2,dq=3") == 0
+    assert read_into("other", "mine", "--columns", "x=1") == 2
+    assert "name them with --columns" in capsys.readouterr().err
 
 
 def read_into(folder, name, *words):

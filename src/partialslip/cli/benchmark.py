@@ -4,7 +4,16 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_force, add_pdf, check_folder, check_report, print_written, results_folder
+from partialslip.cli.common import (
+    add_columns,
+    add_force,
+    add_pdf,
+    check_folder,
+    check_report,
+    columns_of,
+    print_written,
+    results_folder,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -57,6 +66,7 @@ def add(commands: "Commands") -> None:
     reads.add_argument("-o", "--out", metavar="DIR", required=True, help="folder of the answers of one code")
     reads.add_argument("--code", metavar="NAME",
                        help="name of the code, for meta.toml in a new folder (default: name of the table)")  # fmt: skip
+    add_columns(reads)
     reads.add_argument("--force", action="store_true", help="replace another answer to the problem")
     reads.set_defaults(command=_read)
 
@@ -125,7 +135,7 @@ def _read(options: argparse.Namespace) -> int:
 
     problem, named = numbered(options.problem), options.code is not None
     code = options.code if named else Path(options.file).stem
-    answer = answer_from(problem, options.file)
+    answer = answer_from(problem, options.file, columns_of(options.columns))
     print_written(add_answer(problem.number, answer, options.out, code, named, options.force), output())
     return 0
 

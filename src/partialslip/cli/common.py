@@ -38,6 +38,22 @@ def add_force(parser: "argparse.ArgumentParser") -> None:
                         help="overwrite the files of another scene or other settings")  # fmt: skip
 
 
+def add_columns(parser: "argparse.ArgumentParser") -> None:
+    """Add ``--columns``, which :func:`columns_of` parses."""
+    parser.add_argument("--columns", metavar="NAMES",
+                        help="columns of x, p and dq by name or number (from 1): x=X,p=CPRESS,dq=S2-S1")  # fmt: skip
+
+
+def columns_of(text: str | None) -> dict[str, str] | None:
+    """Parse the value of ``--columns``."""
+    if text is None:
+        return None
+    pairs = [pair.partition("=") for pair in text.split(",")]
+    if not all(name.strip() and made.strip() for name, _, made in pairs):
+        raise InputError(f"--columns {text}: must be pairs NAME=COLUMN, for example x=X,p=CPRESS,dq=S2-S1")
+    return {name.strip(): made.strip() for name, _, made in pairs}
+
+
 def add_pdf(parser: "argparse.ArgumentParser") -> None:
     """Add ``--pdf`` to ``parser``."""
     parser.add_argument("--pdf", action="store_true", help="also write the report as report.pdf, A4")

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, TypeVar
 import partialslip
 from partialslip.bars import LARGEST, Asked, asked
 from partialslip.cli.common import (
+    add_columns,
     add_force,
     add_pdf,
     add_scene,
     add_verbose,
     check_folder,
     check_report,
+    columns_of,
     folder_if_wanted,
     origin,
     print_outcome,
@@ -49,8 +51,7 @@ def add(commands: "Commands") -> None:
     scores.add_argument("--factors", metavar="X,P,Q", default="1,1,1",
                         help="multiply x, p and q by these factors, after the units of the scene or of the columns: "
                         "1e-3,1e6,1e6 for mm and MPa in an SI scene; -1 changes the sign")  # fmt: skip
-    scores.add_argument("--columns", metavar="NAMES",
-                        help="columns of x, p and dq by name or number (from 1): x=X,p=CPRESS,dq=S2-S1")  # fmt: skip
+    add_columns(scores)
     scores.add_argument("--centre", choices=("given", "auto"), default="given",
                         help="auto puts x = 0 in the middle of the contact (default: given)")  # fmt: skip
     scores.add_argument("--order", metavar="1|2", default="1",
@@ -114,7 +115,7 @@ def _score(options: argparse.Namespace) -> int:
             factors=(factors[0], factors[1], factors[2]),
             order=int(options.order),
             at=(at[0], at[1]) if at else None,
-            columns=_columns(options.columns),
+            columns=columns_of(options.columns),
             centre=options.centre,
             progress=tell,
         )
@@ -132,16 +133,6 @@ def _bar(text: str) -> Asked:
         raise InputError(f"--bar {text}: must be {wanted}") from None
     assert found
     return found
-
-
-def _columns(text: str | None) -> dict[str, str] | None:
-    """Parse the value of ``--columns``."""
-    if text is None:
-        return None
-    pairs = [pair.partition("=") for pair in text.split(",")]
-    if not all(name.strip() and made.strip() for name, _, made in pairs):
-        raise InputError(f"--columns {text}: must be pairs NAME=COLUMN, for example x=X,p=CPRESS,dq=S2-S1")
-    return {name.strip(): made.strip() for name, _, made in pairs}
 
 
 def _numbers(text: str, kind: Callable[[str], _T], option: str, wanted: str, *counts: int) -> tuple[_T, ...]:
