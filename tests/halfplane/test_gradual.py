@@ -81,10 +81,8 @@ def test_methods_and_plan_of_what_may_turn_round(Qf, sf, known, turns):
     assert result.traction.q2 is not None
 
 
-def test_a_stick_zone_that_drifts_and_is_too_narrow_to_follow_is_refused(monkeypatch):
+def test_a_stick_zone_that_drifts_and_is_too_narrow_to_follow_is_refused():
     """Its way is not known: the result is that of one step, and says so."""
-    monkeypatch.setattr("partialslip.halfplane.gradual_path.half_cycle._NARROWEST", 0.02)
-    method._change.cache_clear()
     its = scene(0.1, 30.0)
     assert path_dependent(its)
     result = partialslip.run(its, ["exact"]).results["exact"]

@@ -27,7 +27,7 @@ _CENTRED = 1e-11  # mean of Q that is rounding
 _LEAST, _MOST = 0.05, 0.8  # shares of the half cycle before in a mixture
 _FINE = 1e-11  # change of the middle below which the interpolation of a mixture shows
 _HALVINGS = 12  # of the way between two stages
-_NARROWEST = 1e-4  # half-width of a stick zone that drifts: narrower ones lose their digits
+_NARROWEST = 0.02  # half-width of a stick zone that drifts: slip along its way costs stages as 1 over it
 
 
 class HalfCycle:
