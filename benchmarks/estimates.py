@@ -99,7 +99,7 @@ def drawn(seed: int, number: int, finest: float, coarsest: float, group: str = "
             scene = scene.replace(load={"M": None, "e": None} | varying(random, kind, pressed.P, pressed.a, f))
         return kind, scene
     Q, sigma = loads(random, kind, pressed.shape)
-    while group in ("plain", "table") and _turns(Q, sigma, pressed.shape):
+    while group in ("plain", "table") and _turns(abs(Q[1] - Q[0]) / 2, abs(sigma[1] - sigma[0]), pressed.shape):
         Q, sigma = loads(random, kind, pressed.shape)
     turned = random.choice([-1.0, 1.0], 2)
     Q, sigma = turned[0] * f * pressed.P * Q, turned[1] * f * pressed.p0 * sigma
@@ -133,9 +133,8 @@ def shaped(random: np.random.Generator, profile: str, R: float, a: float, A: flo
     return {"kind": "tabulated", "x": (x * a).tolist(), "gap": (gap * a**2 / R).tolist()}, share * a**2 / R
 
 
-def _turns(Q: Array, sigma: Array, shape: Any) -> bool:
-    """Whether slip turns round under Q in f P and sigma in f p0."""
-    Qf, sf = abs(Q[1] - Q[0]) / 2, abs(sigma[1] - sigma[0])
+def _turns(Qf: float, sf: float, shape: Any) -> bool:
+    """Whether slip turns round in a single step's zone."""
     zone = stick_zone(Qf, sf, shape)
     return bool(turns_round(Qf, sf, zone.s, zone.centre, zone.half_width))
 
@@ -197,8 +196,7 @@ def loads(random: np.random.Generator, kind: str, shape: Any) -> tuple[Array, Ar
     if kind in TURNING:
         while True:  # until slip turns round in a single step's zone
             Qf, sf = random.uniform(0.1, 0.98), random.uniform(1, 14)
-            zone = stick_zone(Qf, sf, shape)
-            if not turns_round(Qf, sf, zone.s, zone.centre, zone.half_width):
+            if not _turns(Qf, sf, shape):
                 continue
             if kind == "turning":
                 return Qf * ways, sf / 2 * ways

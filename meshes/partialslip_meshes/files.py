@@ -15,6 +15,10 @@ from partialslip.errors import InputError
 from partialslip.inputfile import LARGEST_MESH, opened
 
 _one = threading.Lock()  # sys.stdout, sys.stderr and the warning filters are shared by all threads
+_INCLUDES = re.compile(rb"^\*\s*INCLUDE\b[^\n]*=([^\n]*)", re.IGNORECASE | re.MULTILINE)  # Abaqus
+_ELSEWHERE = re.compile(rb"<DataItem\b[^>]*Format\s*=\s*[\"'](?:Binary|HDF)[\"'][^>]*>([^<]*)<", re.IGNORECASE)  # XDMF
+_REFERS = {".inp": _INCLUDES, ".xdmf": _ELSEWHERE, ".xmf": _ELSEWHERE}
+_MOST = 64  # files
 
 
 class _Caught:
@@ -36,12 +40,6 @@ def quiet() -> Iterator[io.StringIO]:
         out, err = _Caught(printed, sys.stdout), _Caught(printed, sys.stderr)
         with redirect_stdout(out), redirect_stderr(err):
             yield printed
-
-
-_INCLUDES = re.compile(rb"^\*\s*INCLUDE\b[^\n]*=([^\n]*)", re.IGNORECASE | re.MULTILINE)  # Abaqus
-_ELSEWHERE = re.compile(rb"<DataItem\b[^>]*Format\s*=\s*[\"'](?:Binary|HDF)[\"'][^>]*>([^<]*)<", re.IGNORECASE)  # XDMF
-_REFERS = {".inp": _INCLUDES, ".xdmf": _ELSEWHERE, ".xmf": _ELSEWHERE}
-_MOST = 64  # files
 
 
 def check_files(path: str | os.PathLike[str], named: str) -> None:

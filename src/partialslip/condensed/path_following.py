@@ -280,12 +280,13 @@ class _Leg:
             pivots=self._pivots,
         )
 
-    def _refine(self) -> None:
-        """Correct the rounding errors that the events have added up, by a product with C; errors that are more than
-        these are left to be seen. Nodes that stick at their bounds, and would get beyond them, slip a little instead:
-        a force that is cut off at its bound is an error at all others."""
+    def _refine(self, least: float = 0.0) -> None:
+        """Correct the rounding errors that the events have added up, by a product with C, if they are ``least`` of the
+        bounds or more; errors that are more than rounding are left to be seen. Nodes that stick at their bounds, and
+        would get beyond them, slip a little instead: a force that is cut off at its bound is an error at all others."""
         tableau, sticks, off = self._tableau, self._tableau.sticks, self._off()
-        if (np.abs(off) / self._diagonal).max() > _SEEN * float(self._bound.sum()):
+        whole = float(self._bound.sum())
+        if not least * whole <= float((np.abs(off) / self._diagonal).max()) <= _SEEN * whole:
             return
         p = alone = tableau.solve(-off, self._at * self._Q - float((self._forces - self._start).sum()))
         give, slip = np.empty(0, dtype=np.int64), off[:0]
@@ -297,8 +298,8 @@ class _Leg:
                 break
             give = np.union1d(give, beyond)
             columns = tableau.columns(give)
-            least = self._forces[give] - alone[give]
-            excess = least - np.clip(least, -self._bound[give], self._bound[give])
+            held = self._forces[give] - alone[give]
+            excess = held - np.clip(held, -self._bound[give], self._bound[give])
             slip = la.solve(columns[give], excess)
             p = alone + columns @ slip
         self._forces = np.clip(self._forces - np.where(sticks, p[:-1], 0.0), -self._bound, self._bound)
@@ -419,8 +420,7 @@ class _Leg:
             tableau.restart(np.flatnonzero(~tableau.sticks))
             self._solve()
             self._settle()
-        if (np.abs(self._off()) / self._diagonal).max() > _ADDED * float(self._bound.sum()):
-            self._refine()
+        self._refine(_ADDED)
         self._checked = tableau.pivots
 
     def _next(self, end: float) -> tuple[int | None, int, float]:

@@ -88,12 +88,12 @@ def steady_state(
         notes += (f"slip and dissipated energy are rough: {steps} from load point to load point (load.steps)",)
     if apart:
         return SteadyState(regime, None, None, notes, slips)
-    permanent = never_slips(x, history, stick) if x is not None and history.turns and regime != "ratchets" else None
+    permanent = permanent_zone(x, history, stick) if x is not None and history.turns and regime != "ratchets" else None
     centre, half = (stick.right + stick.left) / 2, (stick.right - stick.left) / 2
     return SteadyState(regime, centre, half, notes, slips, permanent)
 
 
-def never_slips(x: Array, history: History, stick: StickInterval) -> tuple[float, float] | None:
+def permanent_zone(x: Array, history: History, stick: StickInterval) -> tuple[float, float] | None:
     """Left and right end of the zone that never slips in a steady cycle in which slip turns round: the widest group of
     nodes ``x`` (n,), ascending, in the ``stick`` zone that do not slip on any leg of the ``history``. An end is half
     way between nodes, or that of the stick zone where no node slips beside it. (nan, nan) if all nodes slip, None if

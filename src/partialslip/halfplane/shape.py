@@ -17,6 +17,8 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 
 _THIN = 1e-12  # width of a slip zone below which the stiffness of the stick zone's end is that at this width
+_CHECKED = 1000  # points at which a given pressure is checked
+_EVEN = 1e-9  # tolerance of p(x) - p(-x), relative to the largest p, of an even pressure
 NARROW = 1e-5  # half-width of a stick zone below which right - left cancels
 
 
@@ -186,10 +188,6 @@ def _rule_for(ends: int) -> tuple[Array, Array, Array]:
 
 
 _RULES = ((40, (81, 3.2)), (160, (33, 3.0)), (np.inf, (11, 2.2)))  # largest number of ends, (nodes, span)
-
-
-_CHECKED = 1000  # points at which the pressure is checked
-_EVEN = 1e-9  # tolerance of p(x) - p(-x), relative to the largest p, of an even pressure
 
 
 class Given(Shape):

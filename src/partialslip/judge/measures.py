@@ -18,6 +18,10 @@ NORM = "norm"
 _SHEAR = ("m", "n", "dQ", "q", "q_max", "q1", "q2")  # quantities of friction in steady partial slip
 
 
+_NEAR = 3.0  # contact half-widths within which stresses inside are compared
+_POINTS = 60  # along each side of the square of points
+
+
 @dataclass(frozen=True)
 class Measure:
     """Difference between a result and the reference in one quantity.
@@ -147,10 +151,6 @@ def _q_max(traction: Traction) -> float:
     """Return the largest |q| = |dq|/2, Pa, at the points and breaks of the traction."""
     _, dq = traction.at(np.union1d(traction.x, traction.breaks))
     return float(np.abs(dq).max()) / 2
-
-
-_NEAR = 3.0  # contact half-widths within which stresses inside are compared
-_POINTS = 60  # along each side of the square of points
 
 
 def surface_error(result: Result, reference: Result) -> float | None:

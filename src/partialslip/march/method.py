@@ -19,7 +19,7 @@ from partialslip.condensed import constant, varying
 from partialslip.condensed.ends import StickInterval, apart, finest, kinks, stick_zone, turning_points, within
 from partialslip.condensed.history import SHEARS, History, certificate, last_cycle_change
 from partialslip.condensed.path import Path, load_path, stretched
-from partialslip.condensed.regime import doubts, never_slips, steady_state
+from partialslip.condensed.regime import doubts, permanent_zone, steady_state
 from partialslip.condensed.restart import begun, known_to
 from partialslip.condensed.step_errors import of_steps, steps_matter
 from partialslip.condensed.steps import follow_or_step
@@ -304,7 +304,7 @@ def _passed(level: _Level) -> float:
     """Share of the stick zone whose points slip on the way."""
     assert level.stick
     assert level.history
-    still = never_slips((level.vertices[1:] + level.vertices[:-1]) / 2, level.history, level.stick)
+    still = permanent_zone((level.vertices[1:] + level.vertices[:-1]) / 2, level.history, level.stick)
     if still is None or level.stick.left == level.stick.right:
         return 0.0
     width = 0.0 if np.isnan(still[0]) else still[1] - still[0]

@@ -11,6 +11,8 @@ from partialslip.arrays import Array, Indices
 from partialslip.errors import InputError
 from partialslip.shown import Short
 
+_LOAD_POINTS = (0.0, 0.5)  # phases of load points 1 and 2
+
 
 @dataclass(frozen=True)
 class AtPoints:
@@ -123,9 +125,6 @@ class DeformedBody(Short):
     lines: Mapping[str, Indices]
     displacements: Mapping[str, Array]
     stresses: Mapping[str, Array] = field(default_factory=dict)
-
-
-_LOAD_POINTS = (0.0, 0.5)  # phases of load points 1 and 2
 
 
 @dataclass(frozen=True)
