@@ -279,11 +279,26 @@ class _Refinement:
             sizes |= {
                 point: size for point in np.linspace(low, high, count + 2)[1:-1].tolist() if size > sizes[points[0]]
             }
+        sizes |= self._at_kinks_of_friction(grading, contact, coarsest)
         # two vertices far nearer to each other than elements are wide make an element without an area
         kept = apart(sorted(sizes, key=lambda point: sizes[point]), _MERGED * min(sizes.values()))
         for point in set(sizes).difference(kept):
             del sizes[point]
         return grading
+
+    def _at_kinks_of_friction(
+        self, grading: Grading, contact: tuple[float, float], coarsest: float
+    ) -> dict[float, float]:
+        """Element sizes at kinks of the coefficient of friction that leave an error within an element. A vertex there
+        suffices, and elements are hardly larger than the distance of two kinks."""
+        a, (places, jumps) = self.solution.half_width, self.problem.friction_kinks
+        inside = (places > contact[0]) & (places < contact[1])
+        size = grading.at(places) * coarsest / a
+        inside &= jumps * a * size**2 > self.goal.accuracy
+        kept, sizes = places[inside], size[inside] * a
+        apart = np.diff(kept, prepend=-np.inf, append=np.inf)
+        sizes = np.minimum(sizes, np.minimum(apart[1:], apart[:-1]))
+        return dict(zip(kept.tolist(), (sizes / coarsest).tolist(), strict=True))
 
     def _keep_steps(self) -> None:
         """Keep the load steps of the present solution for all meshes to come, and their errors."""

@@ -53,6 +53,7 @@ PASSING = 20.0
 
 _KNOWN = 0.3  # error away from the ends on the way to smaller elements there, in the next mesh's element size
 _NO_GAP = 1e-100  # distance of zone ends that coincide: element sizes are divided by it
+_SHARP = 1e-2  # jump of the slope of f, in f/a, of a kink that the fit of an end must not reach across
 _REACHED = 1.01  # element sizes within this factor of the goal count as having reached it
 
 
@@ -184,13 +185,14 @@ def _corner(solution: MeshSolution, problem: Problem) -> float:
 
 
 def gaps(solution: MeshSolution, problem: Problem) -> Array:
-    """Distances of each zone end to the zone ends, profile kinks and points where slip turns round beside it, (2, k),
-    in contact half-widths.
+    """Distances of each zone end to the zone ends, kinks of the profile and of the coefficient of friction, and points
+    where slip turns round beside it, (2, k), in contact half-widths.
 
     Row 0: from each end of the stick zone to the other end of the stick zone; infinite for other ends. Row 1: to the
     nearest of all other ends and kinks.
     """
-    kinks = [*problem.kinks, *solution.turning]
+    places, jumps = problem.friction_kinks
+    kinks = [*problem.kinks, *places[jumps * solution.half_width > _SHARP], *solution.turning]
     apart = np.abs(solution.zone_ends[:, None] - np.array([*solution.zone_ends, *kinks]))
     np.fill_diagonal(apart, np.inf)
     across = np.full(len(solution.zone_ends), np.inf)

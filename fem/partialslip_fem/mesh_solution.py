@@ -214,23 +214,22 @@ class MeshSolution:
         """p along the contact line at load point 2."""
         return traction(self.lower, self.pressing.x)
 
-    def pressures(self, f: float) -> tuple[PPoly, PPoly] | None:
-        """p at load points 1 and 2 for the coefficient of friction ``f``; None if p is the same at both."""
+    def pressures(self) -> tuple[PPoly, PPoly] | None:
+        """p at load points 1 and 2; None if p is the same at both."""
         if self.first is not None:
             return traction(self.lower, self.first), self.pressure()
         if not self.history or not self.coupled:
             return None
-        first, second = (self.shear(bound / f) for bound in self.history.bounds)
+        first, second = (self.shear(forces) for forces in self.history.pressures)
         return first, second
 
-    def tension(self, f: float) -> float:
+    def tension(self) -> float:
         """Largest -p at both load points in cells of which, as of the cells on both sides, all nodes are pressed; 0 if
         there is none. Only the part of -p counts by which p is below the straight line that fits p in the cell: p
         oscillates there. In the last cells of a contact the error of the mesh makes p negative, in others rounding
         only: nodal forces of a traction that oscillates within the cells may still be positive. Beside a peak narrower
-        than a cell the traction recovered from the forces is negative without such an oscillation. ``f`` is the
-        coefficient of friction."""
-        order, both = self.lower.order, self.pressures(f)
+        than a cell the traction recovered from the forces is negative without such an oscillation."""
+        order, both = self.lower.order, self.pressures()
         straight = np.vander(self.lower.x[: order + 1] - self.lower.x[0], 2)
         fit = straight @ np.linalg.pinv(straight)
         tractions = both or (self.pressure(),)

@@ -15,7 +15,7 @@ from partialslip.arrays import Array
 from partialslip.condensed.path import Path, load_path, lower_strain, scaled_pressing
 from partialslip.plan import Plan
 from partialslip.result.state import State
-from partialslip.scene import Hertz, Profile, Scene
+from partialslip.scene import Friction, Hertz, Profile, Scene
 from partialslip.scene.bodies import Body
 from partialslip_fem.corners import free_exponent, held_exponent, size
 from partialslip_fem.elasticity import ALL_AROUND, Held
@@ -147,8 +147,8 @@ class Problem:
         Gap at points x (k,), smooth except at its ``kinks``.
     kinks : tuple of float
         Points x where the gap's slope or curvature jumps, which meshes are graded to.
-    f : float
-        Coefficient of friction.
+    friction : Friction
+        Coefficient of friction, along the x of the scene, m.
     path : Path or None
         Load path; None without friction.
     parts : tuple of Part
@@ -180,6 +180,8 @@ class Problem:
         Whether the bodies turn until the pressure has no moment.
     origin : float
         Position of the origin of x in the scene.
+    length : float
+        Unit of length, m.
     pressing : two of (float, float), optional
         P and M at load points 1 and 2, where the pressure varies.
     largest : int
@@ -188,7 +190,7 @@ class Problem:
 
     gap: Callable[[Array], Array]
     kinks: tuple[float, ...]
-    f: float
+    friction: Friction
     path: Path | None
     parts: tuple[Part, ...]
     order: int
@@ -204,8 +206,24 @@ class Problem:
     accuracy: float = 1e-3
     turns: bool = False
     origin: float = 0.0
+    length: float = 1.0
     pressing: tuple[tuple[float, float], tuple[float, float]] | None = None
     largest: int = 2
+
+    @property
+    def f(self) -> float:
+        """Coefficient of friction; the largest where it varies along x."""
+        return self.friction.f
+
+    @property
+    def friction_kinks(self) -> tuple[Array, Array]:
+        """Points at which the coefficient of friction is not smooth, and the jumps of its slope there, over its largest
+        value, (k,) each."""
+        return np.array(self.friction.kinks) / self.length - self.origin, self.friction.jumps * self.length
+
+    def f_at(self, x: Array) -> Array | float:
+        """Coefficient of friction at ``x`` (k,); one number where it does not vary."""
+        return self.friction.at((x + self.origin) * self.length)
 
     @property
     def lines(self) -> tuple[float, ...]:
@@ -240,11 +258,11 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
     """
     P, A, L, origin = scene.P, scene.material.A, scene.length, scene.origin
     parts, at_ends = parts_of(scene, L), [scene.load.along[end] for end in scene.load.ends]
-    parabolic = isinstance(scene.profile, Hertz) and scene.even and not scene.presses_anew
+    parabolic = isinstance(scene.profile, Hertz) and scene.even and not (scene.presses_anew or scene.friction.varies)
     return Problem(
         gap=lambda x: scene.gap_at(x * L + origin) / (A * P),
         kinks=tuple((kink - origin) / L for kink in scene.profile.kinks),
-        f=scene.friction.f,
+        friction=scene.friction,
         path=load_path(scene, plan, start),
         parts=parts[:1] if scene.fem.lower_size == 1 and not plan.needs("coupling") and scene.mirrored else parts,
         order=scene.fem.elements,
@@ -260,6 +278,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         accuracy=scene.fem.accuracy,
         turns=plan.needs("moment"),
         origin=origin / L,
+        length=L,
         pressing=_at_load_points(scene) if scene.presses_anew else None,
         largest=scene.largest,
     )

@@ -41,7 +41,7 @@ def to_result(
     unit = scene.material.A * scene.P  # of displacement
     certified = _certificate(problem, solution, p0)
     weights = solution.lower.weights[solution.nodes]
-    history, pressures = solution.history, solution.pressures(problem.f)
+    history, pressures = solution.history, solution.pressures()
     change = last_cycle_change(history, weights, problem.f, p0) if history else None
     pushed = solution.slips_when_pressed
     found = steady_state(scene, history, solution.stick, solution.half_width, pushed, x, solution.common)
@@ -68,7 +68,7 @@ def to_result(
         p = rescaled(state.p, L / scene.P, 1 / L, -origin / L)
         return nodal_forces(solution.lower, p)[solution.nodes]
 
-    begins, doubted = begun(adapted.errors, history, weights, problem.f, start, forces)
+    begins, doubted = begun(adapted.errors, history, weights, start, forces)
     if begins:
         shares["start"] = begins
     known = found.centre is not None
@@ -133,11 +133,11 @@ def _state(scene: Scene, problem: Problem, solution: MeshSolution, errors: dict[
     if not solution.history:
         return None
     shear, bound = solution.history.end
-    p, q = (solution.shear(forces) for forces in (bound / scene.friction.f, shear))
+    p, q = (solution.shear(forces) for forces in (bound / solution.history.f, shear))
     L, origin = scene.length, problem.origin * scene.length
     p, q = (rescaled(each, scene.P / L, L, origin) for each in (p, q))
     Q, sigma, slope = scene.load.along[-1]
-    error = known_to(errors, solution.history, solution.lower.weights[solution.nodes], problem.f)
+    error = known_to(errors, solution.history, solution.lower.weights[solution.nodes])
     return State(scene.pressing[-1].P, scene.material.A, Q, sigma, p, q, slope, error)
 
 
@@ -145,7 +145,7 @@ def _certificate(problem: Problem, solution: MeshSolution, p0: float) -> dict[st
     """Largest residual of normal contact and friction and largest tension, in p0; of equilibrium, relative to P."""
     weights = solution.lower.weights
     pressing = solution.pressing
-    residual = max(float((pressing.residual / weights).max()), solution.tension(problem.f))
+    residual = max(float((pressing.residual / weights).max()), solution.tension())
     normal = {"kkt": residual / p0, "equilibrium": pressing.imbalance}
     if not solution.history:
         return normal

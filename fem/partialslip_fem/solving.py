@@ -115,7 +115,7 @@ def solve_contact(
         ends_at_1: tuple[float, float] | tuple[()] = ()
         at_first = forces.first
         if history and both and at_first is None:
-            at_first = on_line(history.bounds[0]) / problem.f
+            at_first = on_line(history.pressures[0])
         if at_first is not None:
             ends_at_1 = ends_under(at_first, on_line(history.q1) if history else None)
         growth = growth_when_pressed(forces.pressed, nodes, problem)
@@ -192,10 +192,10 @@ def _contact_forces(
             line.x, line.weights, ends, partial(resultants, line), problem.similar, problem.nearly_similar, reach, trail
         )
         near = BARS["q"] * problem.accuracy
-        loaded = C, gap, stretch, moved[1], problem.f
+        loaded = C, gap, stretch, moved[1], problem.f_at(line.x)
         history, pressing, first = coupled.march(*loaded, path, pressed, along, near)
         nodes = np.flatnonzero(history.bound > 0)
-        most = np.maximum(*history.bounds) / problem.f if problem.pressing else None
+        most = np.maximum(*history.pressures) if problem.pressing else None
         left: step_errors.Errors = {}
         if check and path.moves:
             finer, *_ = coupled.march(*loaded, step_errors.other_steps(path), pressed, replace(along, trail=None), near)
@@ -216,7 +216,7 @@ def _contact_forces(
     assert C.xx is not None
     slipping = before.slipping(line.x[nodes]) if before else None
     tangential = shared.tangential(C.xx, nodes)
-    known = tangential.C, moved[:, nodes], problem.f * pressing.x[nodes]
+    known = tangential.C, moved[:, nodes], pressing.x[nodes], problem.f_at(line.x[nodes])
     history = constant.march(*known, path, tangential, slipping, problem.order)
     return _ContactForces(pressing, history, nodes)
 
@@ -225,8 +225,8 @@ def _path_errors(problem: Problem, line: Body, history: History, finer: History)
     """Errors of the load steps of coupled bodies; ``history`` and ``finer`` at all nodes of the contact ``line``."""
 
     def ends(each: History) -> tuple[float, ...]:
-        forces = zip(each.bounds, (each.q1, each.q2), strict=True)
-        return tuple(end for bound, q in forces for end in contact_ends(line, bound / problem.f, q, problem.beta))
+        forces = zip(each.pressures, (each.q1, each.q2), strict=True)
+        return tuple(end for p, q in forces for end in contact_ends(line, p, q, problem.beta))
 
     on = [np.flatnonzero(each.bound > 0) for each in (history, finer)]
     zones = stick_zone_of(line, on[0], history.of(on[0])), stick_zone_of(line, on[1], finer.of(on[1]))
@@ -259,9 +259,10 @@ def _under_varying_pressure(
             holding = Presses(C.xx, gap, line.x if problem.turns else None)
 
         moved = np.array([lower.stretch[0], stretched(line.x, problem.origin)[1]])
+        f = problem.f_at(line.x)
 
         def along(path: Path) -> History:
-            return varying.march(line.x, C.xx, moved, problem.f, holding, path, problem.order)  # type: ignore[arg-type]
+            return varying.march(line.x, C.xx, moved, f, holding, path, problem.order)  # type: ignore[arg-type]
 
         def errors(history: History, gradual: History) -> step_errors.Errors:
             on = [np.flatnonzero(each.bound > 0) for each in (history, gradual)]

@@ -84,7 +84,7 @@ class BodyStresses:
     @classmethod
     def of(cls, scene: Scene, problem: Problem, solution: MeshSolution) -> "BodyStresses":
         """Stresses of both bodies in ``solution`` of ``problem``, the scaled ``scene``."""
-        phases, shears, normals = _steps(scene, problem, solution)
+        phases, shears, normals = _steps(scene, solution)
         both = [traction(solution.lower, each) for each in (*normals, *shears)]
         clamped = problem.far_field == "box" and not all(part.finite for part in problem.parts)
         return cls(
@@ -146,14 +146,14 @@ class BodyStresses:
         )
 
 
-def _steps(scene: Scene, problem: Problem, solution: MeshSolution) -> tuple[Phases, list[Array], list[Array]]:
+def _steps(scene: Scene, solution: MeshSolution) -> tuple[Phases, list[Array], list[Array]]:
     """Load steps, and the forces along x and across on the nodes of the contact line at these steps."""
     history, load = solution.history, scene.load
     if history:
         steps = history.around
         shears = [solution.on_line(each) for each in steps.forces]
         bounds = np.broadcast_to(steps.bounds, steps.forces.shape)
-        return Phases(load, steps.ways), shears, [solution.on_line(each) / problem.f for each in bounds]
+        return Phases(load, steps.ways), shears, [solution.on_line(each / history.f) for each in bounds]
     second = solution.pressing.x
     first = second if solution.first is None else solution.first
     # between the load points the pressure was not solved for

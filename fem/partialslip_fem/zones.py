@@ -55,7 +55,7 @@ def growth_when_pressed(first: Pressed | None, nodes: Indices, problem: Problem)
     if not first or not problem.path or problem.path.moves:
         return None
     p, q = first.growth
-    return problem.f * np.maximum(p[nodes], 0.0), 2 * q[nodes]
+    return first.f[nodes] * np.maximum(p[nodes], 0.0), 2 * q[nodes]
 
 
 def shear_kinks(problem: Problem, line: Body, nodes: Indices, history: History) -> tuple[float, ...]:

@@ -6,15 +6,18 @@ only small steps do. Formulas are for similar half-planes and loads in phase; sc
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from partialslip.arrays import Array, Mask
+from partialslip.errors import InputError
 from partialslip.scene import Hertz, Scene
 
 # Hertz, large tension: slip does not reverse for Qf <= _QF and _SLOPE Qf <= sf <= _SF, a box inside the exact domain of
 # `turns_round` (checked in tests/halfplane/test_gradual.py).
 _QF, _SLOPE, _SF = 0.44, 6.0, 10.0
+_ROUNDING = 1e-9  # of the force that friction carries
 _Numbers = Array | float
 
 
@@ -52,7 +55,7 @@ def may_turn_round(scene: Scene) -> bool:
         return True
     if f == 0 or scene.slides:
         return False
-    if scene.presses_anew or load.dslope:
+    if scene.presses_anew or load.dslope or scene.friction.varies:
         return True
     if load.dsigma == 0:
         return False
@@ -63,12 +66,22 @@ def may_turn_round(scene: Scene) -> bool:
     return not (small_tension(scene) or (Qf <= _QF and _SLOPE * Qf <= sf <= _SF))
 
 
+def require_carried(Q: Sequence[float], most: float) -> None:
+    """Raise InputError if friction, which carries at ``most`` int f p dx, does not carry all of ``Q`` (any unit). Where
+    f does not vary along x this is known from the scene (:attr:`partialslip.scene.Scene.slides`).
+    """
+    largest = max(map(abs, Q), default=0.0)
+    if largest > most * (1 + _ROUNDING):
+        carried = f"{most / largest:.4g} of its largest value"
+        raise InputError(f"friction.f: must carry load.Q: it carries {carried}, and the contact slides")
+
+
 def small_tension(scene: Scene) -> bool:
     """Whether both ends of a Hertz contact of half-planes slip the same way at all loads: dsigma a < 4 dQ/pi."""
     load, f = scene.load, scene.friction.f
     if not isinstance(scene.profile, Hertz) or scene.finite or not scene.mirrored or scene.slides or f == 0:
         return False
-    if scene.presses_anew or load.dslope:
+    if scene.presses_anew or load.dslope or scene.friction.varies:
         return False
     a = math.sqrt(2 / math.pi) * scene.length
     return load.in_phase and 0 < abs(load.dsigma) * a < 4 / math.pi * abs(load.dQ)

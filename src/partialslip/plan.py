@@ -138,7 +138,8 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
     coupled = forced.get("coupling", not scene.mirrored)
     tangential = any(Q) or bool(stretched) or forced.get("shear", False) or forced.get("tension", False)
     friction = forced.get("friction", tangential or coupled) and not (scene.slides or scene.free)
-    why = f"tangential loads act and f = {f:g}" if tangential else f"pressure moves the surfaces along x and f = {f:g}"
+    drives = "tangential loads act" if tangential else "pressure moves the surfaces along x"
+    why = f"{drives} and f = {scene.friction.shown}"
     if not (tangential or coupled):
         no_friction = "no tangential load acts"
     elif f == 0:
@@ -162,7 +163,8 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
         "friction": (friction, why, no_friction),
         "shear": (any(Q), f"Q goes between {scene.units.span(Q, 'N/m')}", "Q = 0 at every load point"),
         "tension": (bool(stretched), ", ".join(stretched),
-                    "sigma = 0 at every load point: the problem is symmetric in x up to sign"),
+                    "sigma = 0 at every load point"
+                    + ": the problem is symmetric in x up to sign" * (not scene.friction.varies)),
         "opposing-slip": (friction and (coupled or ((load.dsigma != 0 or load.dslope != 0) and not small)),
                           "pressure drags the ends of the contact opposite ways" if coupled else opposing,
                           no_friction if not friction else small or

@@ -296,7 +296,7 @@ def _slid(scene: Scene, result: Result) -> Result:
     if result.regime != "sliding" or not scene.material.alike:
         return result
     if signs := scene.sliding_signs:
-        return dataclasses.replace(result, traction=sliding(result.traction, scene.friction.f, signs))
+        return dataclasses.replace(result, traction=sliding(result.traction, scene.friction.at, signs))
     return dataclasses.replace(result, undetermined={**result.undetermined, **dict.fromkeys(("q", "q1", "q2"), _ONE)})
 
 

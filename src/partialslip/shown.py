@@ -63,7 +63,8 @@ def short(record: Any) -> str:
     """
     if isinstance(record, msgspec.Struct):
         infos = msgspec.structs.fields(record)
-        fields = {each.name: getattr(record, each.name) for each in infos if getattr(record, each.name) != each.default}
+        values = [(each, getattr(record, each.name)) for each in infos]
+        fields = {each.encode_name: value for each, value in values if value != each.default}
     elif isinstance(record, tuple):
         fields = record._asdict()  # type: ignore[attr-defined]
     else:

@@ -37,7 +37,7 @@ def close(one, other):
 
 
 def solved(path, factored=None, near=None):
-    return march(C, STRETCH, BOUND, path, factored, near)
+    return march(C, STRETCH, BOUND, 1.0, path, factored, near)
 
 
 def followed(tangential, stretch, bound, path):
@@ -59,7 +59,7 @@ def test_legs_in_one_step_are_those_that_are_gradual(shape):
     for _ in range(100):
         Q, strain = random.uniform(-0.95, 0.95, 2), random.uniform(-1.5, 1.5, 2)
         path = Path(tuple((float(q), float(s), 0.0) for q, s in zip(Q, strain, strict=True)), (0, 1), True, 1, 1)
-        history = march(*problem, path)
+        history = march(*problem, 1.0, path)
         for point, forces_ in zip(history.points, followed(*problem, path), strict=True):
             assert point.x == pytest.approx(forces_, abs=1e-12)
         taken.append(history.turns)
@@ -72,7 +72,7 @@ def test_drifting_zone(Qf, sf):
     exact = steady(Loads(sf, np.pi * Qf), Hertz()).last
     vertices, *problem = cells(points=(-1, *exact.zone, 1), size=1e-3, growth=0.07)
     x = problem[1][0]
-    history = march(*problem, loads(Qf, sf))
+    history = march(*problem, 1.0, loads(Qf, sf))
     assert history.turns
     assert history.cycles > 1
     zone = stick_zone(x, history.bound, history.change, vertices, lambda each: each, history.changed)
@@ -88,7 +88,7 @@ def drifted(unsteady=None, Qf=0.55, sf=7.0):
     """The exact left end, which drifts, and the zone in cells of 1e-3 a at the ends, without the ``unsteady`` room."""
     exact = steady(Loads(sf, np.pi * Qf), Hertz()).last
     vertices, *problem = cells(points=(-1, *exact.zone, 1), size=1e-3, growth=0.07)
-    history = march(*problem, loads(Qf, sf))
+    history = march(*problem, 1.0, loads(Qf, sf))
     bound, change = history.bound, history.change
     return exact.zone.left, stick_zone(
         problem[1][0], bound, change, vertices, lambda each: each, history.changed, unsteady and unsteady * bound
@@ -117,12 +117,12 @@ def test_room_of_a_drifting_end_taken_for_gone():
 def test_half_a_cycle_where_slip_does_not_turn_round():
     """The first loading determines the cycle; where it does not, cycles follow until nothing changes."""
     _, *problem = cells()
-    plain, half = (march(*problem, loads(0.3, 4.0, half=half)) for half in (False, True))
+    plain, half = (march(*problem, 1.0, loads(0.3, 4.0, half=half)) for half in (False, True))
     close(plain, half)
     assert plain.dissipated == pytest.approx(half.dissipated, rel=1e-12)
     assert (half.load_steps, plain.load_steps) == (1, 3)
     assert not plain.turns
-    turned = march(*problem, loads(0.6, 7.0, half=True))
+    turned = march(*problem, 1.0, loads(0.6, 7.0, half=True))
     assert not turned.path.half
     assert turned.turns
     assert turned.repeats
@@ -132,7 +132,7 @@ def test_half_a_cycle_where_slip_does_not_turn_round():
 def test_stages_do_not_change_the_result(Qf, sf):
     """Load steps are stages at which forces are kept: they lie on the way, and change nothing."""
     _, *problem = cells()
-    one, many = (march(*problem, replace(loads(Qf, sf), substeps=count)) for count in (1, 5))
+    one, many = (march(*problem, 1.0, replace(loads(Qf, sf), substeps=count)) for count in (1, 5))
     for key in ("q1", "q2", "slip", "net_slip", "dissipated"):
         assert getattr(one, key) == pytest.approx(getattr(many, key), abs=1e-12), key
     assert {*np.linspace(0.2, 1, 5).round(12)} <= {*np.round(many.around.ways[0], 12)}
@@ -148,7 +148,7 @@ def test_permanent_stick_zone():
     """Where the zone drifts, nodes slip, and stick again: fewer never slip than stick at the load points."""
     _, *problem = cells()
     for load, same in (((0.3, 4.0), True), ((0.6, 7.0), False)):
-        history = march(*problem, loads(*load))
+        history = march(*problem, 1.0, loads(*load))
         assert (history.never_slips == ~history.slips).all() == same
         assert (history.never_slips <= ~history.slips).all()
 
@@ -158,7 +158,7 @@ def half_cycles(monkeypatch, mirrored):
     _, *problem = cells()
     with monkeypatch.context() as patched:
         patched.setattr(constant._Contact, "_mirrored", mirrored)
-        return march(*problem, loads(0.62, 7.5))
+        return march(*problem, 1.0, loads(0.62, 7.5))
 
 
 def test_half_cycles_are_mirror_images(monkeypatch):
@@ -248,7 +248,7 @@ def test_one_step_taken_for_enough(monkeypatch):
     vertices, *problem = cells(points=(-1, *exact, 1), size=1e-3, growth=0.07)
 
     def off():
-        found = march(*problem, loads(0.55, 7.0))
+        found = march(*problem, 1.0, loads(0.55, 7.0))
         zone = stick_zone(problem[1][0], found.bound, found.change, vertices, lambda each: each, found.changed)
         return abs(zone.left - exact.left), max(step.residual.max() for step in found.points)
 
@@ -264,7 +264,7 @@ def test_rates_asked_for_at_the_end_of_the_leg_alone(monkeypatch):
     """Deliberate fault: at the beginning of the half-cycle points are not looked at. At (0.584, 2.6) slip at the left
     end turns round early; at the end all nodes slip on as they have, and one step seems enough."""
     _, *problem = cells()
-    true = march(*problem, loads(0.584, 2.6))
+    true = march(*problem, 1.0, loads(0.584, 2.6))
     real = constant.solve_bounded
 
     def nothing_pushed(tangential, g, lower, *rest):
@@ -273,7 +273,7 @@ def test_rates_asked_for_at_the_end_of_the_leg_alone(monkeypatch):
 
     monkeypatch.setattr(constant, "solve_bounded", nothing_pushed)
     monkeypatch.setattr(constant._Contact, "_agrees", lambda *_: True)
-    wrong = march(*problem, loads(0.584, 2.6))
+    wrong = march(*problem, 1.0, loads(0.584, 2.6))
     assert true.turns
     assert not wrong.turns
     assert np.abs(wrong.change - true.change).max() > 5e-4 * problem[-1].max()

@@ -42,9 +42,9 @@ def test_skipped_cycles_change_nothing(Qf, sf, monkeypatch):
     _, *problem = cells(growth=0.2)
     path = loads(Qf, sf)
     path = replace(path, cycle=tuple((Q + 0.03, strain, slope) for Q, strain, slope in path.cycle))
-    hastened = march(*problem, path)
+    hastened = march(*problem, 1.0, path)
     monkeypatch.setattr(history, "limit", lambda *_: None)
-    plain = march(*problem, path)
+    plain = march(*problem, 1.0, path)
     for key in ("q1", "q2"):
         assert getattr(hastened, key) == pytest.approx(getattr(plain, key), abs=1e-6 * problem[-1].max())
     assert hastened.load_steps < plain.load_steps

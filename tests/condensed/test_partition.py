@@ -19,7 +19,7 @@ def step():
     alike = 3 - np.log((x[:, None] - x) ** 2 + 1e-3) / 2 + 1e-2 * np.eye(N)
     coupling = 0.05 * np.tanh(20 * (x[:, None] - x))
     C = Relative(alike, alike, coupling)
-    return _Step(alike, alike, coupling, C.opening, 0.3, 1.0, 3 * x**2, 0.1, 0.2 * x, C.factors)
+    return _Step(alike, alike, coupling, C.opening, np.full(N, 0.3), 1.0, 3 * x**2, 0.1, 0.2 * x, C.factors)
 
 
 def partition(random, opens, core):

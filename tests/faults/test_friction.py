@@ -26,9 +26,9 @@ STIFF = ("material.upper.E=728e9", "material.upper.nu=0.3")
 def march_with(change):
     """A march along a path whose load points have been changed, and that says nothing of it."""
 
-    def march(C, x, bound, path, *_):
+    def march(C, x, normal, f, path, *_):
         changed = replace(path, cycle=tuple((*change(Q, strain), slope) for Q, strain, slope in path.cycle))
-        return replace(true_march(C, x, bound, changed), path=path)
+        return replace(true_march(C, x, normal, f, changed), path=path)
 
     return march
 
@@ -50,7 +50,7 @@ def test_tension_left_out(monkeypatch, sound, red):
 @pytest.mark.fault
 def test_friction_silently_smaller(monkeypatch, sound, red):
     scene = sound(LARGE)
-    monkeypatch.setattr(constant, "march", lambda C, x, bound, path, *_: true_march(C, x, 0.9 * bound, path))
+    monkeypatch.setattr(constant, "march", lambda C, x, normal, f, path, *_: true_march(C, x, normal, 0.9 * f, path))
     red.comparison("q", scene)
 
 
@@ -72,7 +72,7 @@ def test_bound_of_the_pressure_before(monkeypatch, red):
         on = np.flatnonzero(before > 0)
         if len(on) == 0:
             return p, q
-        bound, free = step.f * before[on], (step.kept - step.xy @ p.x)[on]
+        bound, free = step.f[on] * before[on], (step.kept - step.xy @ p.x)[on]
         held = solve_bounded(step.xx[np.ix_(on, on)], free, -bound, bound, step.Q)
         return p, held.spread(on, len(before))
 
@@ -92,10 +92,12 @@ def test_bound_of_the_pressure_before(monkeypatch, red):
 def test_history_not_committed_between_steps(monkeypatch, sound, red):
     """Every step starts from nothing: reversed proportional loads cannot tell, a mean load does."""
 
-    def forgetful(C, x, bound, path, *_):
-        alone = [true_march(C, x, bound, replace(path, cycle=(load,), ends=(0, 0), cycles=1)) for load in path.cycle]
+    def forgetful(C, x, normal, f, path, *_):
+        alone = [
+            true_march(C, x, normal, f, replace(path, cycle=(load,), ends=(0, 0), cycles=1)) for load in path.cycle
+        ]
         first, second = (alone[end].q2 for end in path.ends)
-        return replace(true_march(C, x, bound, path), q1=first, q2=second)
+        return replace(true_march(C, x, normal, f, path), q1=first, q2=second)
 
     scene = sound(LARGE, *MEAN)
     monkeypatch.setattr(constant, "march", forgetful)
@@ -127,7 +129,7 @@ def test_restart_off_by_a_millionth(monkeypatch, red):
 def test_stick_that_is_a_stiff_spring(monkeypatch, sound, red):
     """Penalty: what sticks creeps in proportion to its traction, here by about a hundredth of the slip."""
     scene = sound(LARGE)
-    springs = lambda C, x, bound, path, *_: true_march(C + 0.01 * np.diag(1 / bound), x, bound, path)  # noqa: E731
+    springs = lambda C, x, normal, f, path, *_: true_march(C + 0.01 * np.diag(1 / (f * normal)), x, normal, f, path)  # noqa: E731
     monkeypatch.setattr(constant, "march", springs)
     red.comparison("n", scene)
 

@@ -143,7 +143,7 @@ def recorded():
     """The marches that are followed meanwhile: on all meshes, and with all choices of steps."""
     marches, making, legs = [], [], []
 
-    def following(true, path, advance, before, **how):
+    def following(true, path, advance, before, f, **how):
         (C, stretch, across, bound), done = making[-1], []
         at_first = bound
 
@@ -157,7 +157,7 @@ def recorded():
             bound = after
             return found, after
 
-        found = true(path, stepping, before, **how)
+        found = true(path, stepping, before, f, **how)
         marches.append(March(C, stretch, across, at_first is not None, done, found))
         return found
 
@@ -169,9 +169,9 @@ def recorded():
         legs.append(true_image(leg))
         return legs[-1]
 
-    def straight(true, C, stretch, bound, *others):
-        making.append((C, stretch, None, bound))
-        found = true(C, stretch, bound, *others)
+    def straight(true, C, stretch, normal, f, *others):
+        making.append((C, stretch, None, f * normal))
+        found = true(C, stretch, normal, f, *others)
         marches[-1].history = found  # with what is known of its legs
         return found
 

@@ -297,3 +297,16 @@ def test_template_is_filled_in_and_scored(exact, tmp_path, capsys):
     rows = "".join(f"{a!r},{b!r},{c!r}\n" for a, b, c in np.column_stack([x, *result.traction.at(x)]).tolist())
     (tmp_path / "full.csv").write_text(f"{head}x,p,dq\n{rows}", "utf-8")
     assert errors(scene, tmp_path / "full.csv")[1].n < 1e-3
+
+
+def test_friction_that_varies_along_the_contact(tmp_path):
+    """The room is that up to f(x) p; with the largest f alone, neither end would be found."""
+    scene = load_scene("hertz-shear")
+    a = run(scene, ["exact"]).results["exact"].a
+    varying = scene.replace(friction={"f": [0.6, 0.4], "x": [-a, a]})
+    result = run(varying, ["exact"]).results["exact"]
+    path = written(tmp_path / "t.csv", sampled(result, 401))
+    seen, comparison = errors(varying, path)
+    assert (comparison.m, comparison.n) == pytest.approx((0, 0), abs=5e-5)
+    assert seen.settings["f_seen"] == pytest.approx(0.6, rel=1e-3)
+    assert score(scene.replace(friction={"f": 0.6}), path).results[path.name].m is None

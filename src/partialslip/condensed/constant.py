@@ -19,6 +19,7 @@ from partialslip.condensed.bounded import Factored, Sides, Solution, solve_bound
 from partialslip.condensed.history import History, Steps, follow, resting, still
 from partialslip.condensed.path import Path
 from partialslip.condensed.path_following import Bounds, Follower, Leg, SlidesError, noise
+from partialslip.gradual import require_carried
 
 _AT = 1e-12  # distance from the bound, relative, at which a node is on it
 _LEFT = 0.9, 0.5  # of a leg: where slip on the way is looked at
@@ -31,7 +32,8 @@ _EXPECTED = 8  # cycles for which factors are prepared
 def march(
     tangential: Array,
     stretch: Array,
-    bound: Array,
+    normal: Array,
+    f: Array | float,
     path: Path,
     factored: Factored | None = None,
     near: Sides | None = None,
@@ -46,8 +48,10 @@ def march(
     stretch : (2, n) array
         Displacements of the lower surface along x under the tension that strains it by 1, and under the tension that
         strains it by x (:func:`partialslip.condensed.path.stretched`).
-    bound : (n,) array
-        f times the normal forces.
+    normal : (n,) array
+        Normal forces.
+    f : float or (n,) array
+        Coefficient of friction.
     path : Path
         ``substeps`` are the stages of each leg that :attr:`History.around` has at least.
     factored : Factored, optional
@@ -60,15 +64,16 @@ def march(
         the loads are in phase. At the end of the leg these nodes are beside the ends of the contact; beside the stick
         zone a single one that has slipped shows that its end takes points back.
     """
-    factored = factored or Factored(tangential)
+    factored, bound = factored or Factored(tangential), f * normal
+    require_carried([load[0] for load in path.cycle], float(bound.sum()))
     path = replace(path, ways=((1.0,),) * (1 + len(path.cycle)))
     if path.half:
-        contact = _Contact(factored, stretch, bound, path, near, few)
+        contact = _Contact(factored, stretch, bound, f, path, near, few)
         history = contact.followed()
         if not contact.legs[0].turns:
             return history
         path = replace(path, half=False)
-    return _Contact(factored, stretch, bound, path, near, few).followed()
+    return _Contact(factored, stretch, bound, f, path, near, few).followed()
 
 
 @dataclass(frozen=True)
@@ -114,11 +119,20 @@ class _Done:
 
 
 class _Contact:
-    """Legs of a path in turn; arguments as for :func:`march`."""
+    """Legs of a path in turn; arguments as for :func:`march`, and ``bound``, f times the normal
+    forces."""
 
     def __init__(
-        self, factored: Factored, stretch: Array, bound: Array, path: Path, near: Sides | None, few: int
+        self,
+        factored: Factored,
+        stretch: Array,
+        bound: Array,
+        f: Array | float,
+        path: Path,
+        near: Sides | None,
+        few: int,
     ) -> None:
+        self._f = f
         self._few = few if path.in_phase else 0
         self.factored, self._stretch, self._bound, self._path, self._near = factored, stretch, bound, path, near
         self.legs: list[_Done] = []
@@ -134,7 +148,7 @@ class _Contact:
         """Follow the path."""
         before = self._path.before
         begin = resting(0 * self._bound if before is None else before)
-        history = follow(self._path, self._advance, begin, hastens=self._path.settled > 0)
+        history = follow(self._path, self._advance, begin, self._f, hastens=self._path.settled > 0)
         return self._completed(history)
 
     def _advance(self, before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:

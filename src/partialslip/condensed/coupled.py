@@ -77,14 +77,15 @@ class Relative:
 @dataclass(frozen=True)
 class _Step:
     """Problem of one load step: p sums to ``P`` over the ``gap`` (n,) before loading, q sums to ``Q``, and nodes that
-    stick have the relative displacement ``kept`` (n,) along x, up to a rigid shift. ``factors`` are those of the
+    stick have the relative displacement ``kept`` (n,) along x, up to a rigid shift; ``f`` (n,) are coefficients of
+    friction. ``factors`` are those of the
     compliances, which many steps share."""
 
     xx: Array
     yy: Array
     xy: Array
     yx: Array
-    f: float
+    f: Array
     P: float
     gap: Array
     Q: float
@@ -102,7 +103,7 @@ class _Step:
         n, pushed = len(self.gap), self.gap + self.yx @ q.x
         pressed = solve_bounded(self.yy, -pushed, np.zeros(n), np.full(n, np.inf), self.P, p.sides)
         on = np.flatnonzero(pressed.x > 0)
-        bound = self.f * pressed.x[on]
+        bound = self.f[on] * pressed.x[on]
         free = (self.kept - self.xy @ pressed.x)[on]
         held = solve_bounded(submatrix(self.xx, on, on), free, -bound, bound, self.Q, q.sides[on])
         sheared = held.spread(on, n)
@@ -193,7 +194,7 @@ class _Step:
             return partition.solve
         on, sticks = np.flatnonzero(touch), np.flatnonzero(touch & (slip == 0))
         i, end = len(on), len(on) + len(sticks)
-        dragged = self.f * slip[on]
+        dragged = self.f[on] * slip[on]
         matrix = np.zeros((end + 2, end + 2))
         matrix[:i, :i] = submatrix(self.yy, on, on) + submatrix(self.yx, on, on) * dragged
         matrix[:i, i:end] = submatrix(self.yx, on, sticks)
@@ -236,15 +237,15 @@ class Line:
     stages: Callable[[float], Stages] | None = None
 
 
-def press(C: Relative, gap: Array, f: float, line: Line | None, least: int, accuracy: float, P: float = 1.0) -> Pressed:
+def press(C: Relative, gap: Array, f: Array, line: Line | None, least: int, accuracy: float, P: float = 1.0) -> Pressed:
     """Press the bodies together under a force from 0 to ``P``, with friction and without Q.
 
     Nodes that stick keep their displacement. Under a parabolic gap bodies are pressed in one small step from an
     earlier stage, known from flat punches about its vertex (:mod:`partialslip.condensed.pressing`). Others are pressed
     in at least ``least`` steps, doubled until q changes by less than ``accuracy`` (relative L2), or up to the limit.
 
-    ``C`` are the compliances, ``gap`` (n,) the gap before loading, ``f`` the coefficient of friction, ``line`` the
-    nodes.
+    ``C`` are the compliances, ``gap`` (n,) the gap before loading, ``f`` (n,) the coefficients of friction, ``line``
+    the nodes.
     """
     assert C.xx is not None
     assert C.xy is not None
@@ -308,7 +309,7 @@ def _moved(line: Line, forces: Pair, others: Pair) -> float:
 def _similar(
     C: Relative,
     gap: Array,
-    f: float,
+    f: Array,
     line: Line,
     vertex: float,
     last: Pair,
@@ -342,7 +343,7 @@ def _similar(
 
 
 def _nearly_similar(
-    C: Relative, gap: Array, f: float, line: Line, reach: float, step: _Press, off: Callable[[Array, Array], float]
+    C: Relative, gap: Array, f: Array, line: Line, reach: float, step: _Press, off: Callable[[Array, Array], float]
 ) -> Pressed | None:
     """Press bodies of a size, whose contact has about the half-width ``reach``, with all punches and half of the last
     step after all but one and the whole last step. The difference is the error estimate; None if it is large."""
@@ -384,7 +385,7 @@ def punched(C: Relative, f: float, sides: Sides) -> tuple[Array, Array]:
     assert C.xy is not None
     zero = np.zeros(len(C.yy))
     guess = replace(resting(zero), x=zero + 1 / len(zero)), replace(resting(zero), rest=-sides.astype(float))
-    p, q = _solve(_Step(C.xx, C.yy, C.xy, C.opening, f, 1.0, zero, 0.0, zero), [guess])
+    p, q = _solve(_Step(C.xx, C.yy, C.xy, C.opening, zero + f, 1.0, zero, 0.0, zero), [guess])
     return p.x, q.x
 
 
@@ -398,7 +399,7 @@ def march(
     gap: Array,
     stretch: Array,
     bent: Array,
-    f: float,
+    f: Array | float,
     path: Path,
     pressed: Array | None = None,
     line: Line | None = None,
@@ -418,7 +419,7 @@ def march(
         Displacements of the lower surface, along x and y, under the tension that strains a long body by 1.
     bent : (n,) array
         Displacements along x under the tension that strains the surface by x; there are none along y.
-    f : float
+    f : float or (n,) array
         Coefficient of friction.
     path : Path
     pressed : (n,) array, optional
@@ -430,7 +431,7 @@ def march(
     """
     assert C.xx is not None
     xx, xy = C.xx, C.xy if C.xy is not None else 0 * C.xx
-    full = replace(C, xy=xy)
+    full, f = replace(C, xy=xy), 0 * gap + f
     gap = gap - path.begin[1] * stretch[1]
     first: Pressed | None = None
     if pressed is None:
@@ -456,7 +457,7 @@ def march(
         done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
         return sheared, f * normal.x
 
-    history = follow(path, advance, done[0][1])
+    history = follow(path, advance, done[0][1], f)
     last, _ = done[-cycle:][sum(len(way) for way in path.fractions[1 : path.ends[1] + 2]) - 1]
     together = replace(
         last,

@@ -53,6 +53,8 @@ class History:
         Work against friction over the last cycle.
     end : two (n,) arrays
         Tangential forces, and f times the normal forces, at the end of the path.
+    f : float or (n,) array
+        Coefficient of friction.
     load_steps : int
         Number of load steps solved; at constant pressure, of legs.
     slipped : (2, n) array or None
@@ -82,6 +84,7 @@ class History:
     end: tuple[Array, Array]
     load_steps: int
     around: "Steps"
+    f: Array | float = 1.0
     room: Array | None = None
     slipped: Array | None = None
     held: Mask | None = None
@@ -97,7 +100,7 @@ class History:
         fields: dict[str, Any] = {key: getattr(self, key)[nodes] for key in ("q1", "q2", "slip", "net_slip")} | {
             key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "bounds", "end")
         }
-        fields["around"] = self.around.of(nodes)
+        fields["around"], fields["f"] = self.around.of(nodes), at_nodes(self.f, nodes)
         some = {key: getattr(self, key) for key in ("room", "slipped", "held", "changed")}
         fields |= {key: each[..., nodes] for key, each in some.items() if each is not None}
         return replace(self, points=points, **fields)
@@ -118,6 +121,11 @@ class History:
         known = (self.bounds[0] + self.bounds[1]) / 2
         result: Array = known if self.room is None else (self.room + np.abs(self.change)) / 2
         return result
+
+    @property
+    def pressures(self) -> tuple[Array, Array]:
+        """Normal forces at load points 1 and 2."""
+        return self.bounds[0] / self.f, self.bounds[1] / self.f
 
     @property
     def change(self) -> Array:
@@ -245,6 +253,11 @@ class History:
         return sum(step.changes for step in self.points)
 
 
+def at_nodes(f: Array | float, nodes: npt.NDArray[np.int64]) -> Array | float:
+    """Coefficients of friction ``f`` at some ``nodes`` (indices); one number stays."""
+    return f[nodes] if isinstance(f, np.ndarray) else f
+
+
 SHEARS: dict[str, Callable[[History], Array]] = {
     "q": lambda history: history.change,
     "q1": lambda history: history.q1,
@@ -288,21 +301,21 @@ def still(before: Solution) -> Solution:
     return replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0)
 
 
-def follow(path: Path, advance: Advance, before: Solution, hastens: bool = False) -> History:
+def follow(path: Path, advance: Advance, before: Solution, f: Array | float, hastens: bool = False) -> History:
     """Follow the path: to the last load point, then cycle after cycle, until a cycle repeats or all cycles are done. If
     the first loading determines the cycle (``path.half``), only the first loading is solved.
 
     ``advance(before, load, change) -> (solution, bound)`` solves one step: from the solution before the step, the loads
     after the step and their change, to the solution after the step, whose ``rest`` is minus the slip, and f times the
-    normal forces. ``hastens``: whether cycles that lead to the steady state may skip those of which the limit is known
-    (:func:`partialslip.condensed.limit.limit`).
+    normal forces, with the coefficient of friction ``f``, (n,) or one number. ``hastens``: whether cycles that lead to
+    the steady state may skip those of which the limit is known (:func:`partialslip.condensed.limit.limit`).
     """
     first, *ways = path.fractions
     load = np.array(path.begin)
     went = [_go(advance, before, load, np.array(path.cycle[-1]), first)]
     points, taken = [certified([step for step, _ in went[0]])], len(first)
     if path.half:
-        return _reversed(path, points[0], went[0])
+        return replace(_reversed(path, points[0], went[0]), f=f)
     ended = [points[0].x]  # cycles, since some were skipped
     for _ in range(path.cycles):
         went = []
@@ -350,6 +363,7 @@ def follow(path: Path, advance: Advance, before: Solution, hastens: bool = False
         end=(ends[-1][0].x, ends[-1][1]),
         load_steps=taken,
         around=Steps(tuple(ways), forces, bounds),
+        f=f,
         **anew,
     )
 

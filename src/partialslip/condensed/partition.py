@@ -55,9 +55,9 @@ class Factors:
         self._missed = 0.0
         self.made = 0
 
-    def partition(self, touch: Mask, slip: Sides, f: float) -> "Partition | None":
+    def partition(self, touch: Mask, slip: Sides, f: Array) -> "Partition | None":
         """The linear system of nodes (n,) that ``touch``, and slip where ``slip`` is the sign of q, with the friction
-        ``f``; None if it is better solved directly."""
+        ``f`` (n,); None if it is better solved directly."""
         sticks, count = touch & (slip == 0), int(np.count_nonzero(touch))
         every = count + int(np.count_nonzero(sticks))
         first, last = longest(sticks)
@@ -144,15 +144,15 @@ class Nested:
 
 class Partition:
     """The linear system of nodes (n,) that ``touch``, and slip where ``slip`` is the sign of q; ``by`` a factor, with
-    the coefficient of friction ``f``."""
+    the coefficients of friction ``f`` (n,)."""
 
-    def __init__(self, by: Nested, touch: Mask, slip: Sides, f: float) -> None:
+    def __init__(self, by: Nested, touch: Mask, slip: Sides, f: Array) -> None:
         order = by.order[: int(np.flatnonzero(touch[by.order])[-1]) + 1]
         touches, slips = touch[order], slip[order]
         self._by, self._n, self._order = by, len(touch), order
         self._begin, matrix = by.tail(by.core(touch & (slip == 0)), len(order))
         on = np.flatnonzero(touches[self._begin :])
-        self._drag = f * slips[self._begin :][on]
+        self._drag = (f[order] * slips)[self._begin :][on]
         sticks = on[self._drag == 0]
         self._along_y, self._along_x, self._all_x = 2 * on, 2 * sticks + 1, 2 * on + 1
         self._rows = np.concatenate([self._along_y, self._along_x])

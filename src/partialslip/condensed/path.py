@@ -102,7 +102,9 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | No
         presses = scaled_pressing(scene)
         loads = [(*each, *down) for each, down in zip(along, (presses[-1], *presses), strict=True)]
         changes = np.abs(np.diff([loads[0], loads[-1], *loads[1:]], axis=0))
-        one_way = scene.even and bool((changes[:, 0] >= scene.friction.f * changes[:, 3]).all())
+        one_way = (
+            scene.even and not scene.friction.varies and bool((changes[:, 0] >= scene.friction.f * changes[:, 3]).all())
+        )
     begin, *cycle = loads
     # under mean loads the change of a cycle falls with its number only, and little of q changes
     accuracy = scene.fem.accuracy

@@ -42,21 +42,21 @@ _INNER = 0.8  # the same, where the slope at the last node begins
 class Pressed:
     """Bodies pressed together: ``normal`` and ``tangential`` forces, number of ``steps``, and ``errors`` due to the
     steps, of q (relative L2) and a (relative). ``growth`` are the increments (n,) of the forces along y and x at the
-    end of pressing: nodes at which these are within the bound with ``f`` have stuck since they touched. They are those
-    under a flat punch between ``corners``, if there are any."""
+    end of pressing: nodes at which these are within the bound with ``f`` (n,) have stuck since they touched. They are
+    those under a flat punch between ``corners``, if there are any."""
 
     normal: Solution
     tangential: Solution
     steps: int
     errors: dict[str, float]
     growth: tuple[Array, Array]
-    f: float
+    f: Array
     corners: tuple[float, float] | None = None
 
     def slipped(self) -> bool:
         """Whether any node has slipped."""
         p, q = self.growth
-        return bool((np.abs(q)[p > 0] >= (1 - _STICKS) * self.f * p[p > 0]).any())
+        return bool((np.abs(q)[p > 0] >= (1 - _STICKS) * self.f[p > 0] * p[p > 0]).any())
 
     def scaled(self, stick: StickInterval, left: float, right: float) -> StickInterval:
         """Stick zone of the contact from ``left`` to ``right``, from that of the ``growth``: it is the same part of the

@@ -27,7 +27,6 @@ def begun(
     errors: Mapping[str, float],
     history: History | None,
     weights: Array,
-    f: float,
     start: State | None,
     forces: Callable[[State], Array],
 ) -> tuple[Errors, tuple[str, ...]]:
@@ -41,15 +40,13 @@ def begun(
     history : History or None
     weights : (n,) array
         Factors that turn tractions at the nodes of the history into forces.
-    f : float
-        Coefficient of friction.
     start : State or None
     forces : callable
         ``forces(state) -> (n,)``: normal forces of a state on the nodes of the history.
     """
     if not (start and history):
         return {}, ()
-    here, pressed = history.end[1] / f, _norm(history.bound, weights) / f
+    here, pressed = history.end[1] / history.f, _norm(history.bound / history.f, weights)
     notes: tuple[str, ...] = ()
     if (other := _norm(forces(start) - here, weights) / _norm(here, weights)) > _ANOTHER:
         notes = (f"p of the state at the beginning is off by {other:.0%}: it seems to be the state of another contact",)
@@ -61,15 +58,15 @@ def begun(
     shares = {key: start.q_error * pressed / norm for key, norm in norms.items() if norm > 0}
     if "q" in shares:
         largest = float((history.bound / weights).max())  # f p0
-        shares["q"] *= min((last_cycle_change(history, weights, f, largest / f) or 0.0), 1.0)
+        shares["q"] *= min((last_cycle_change(history, weights, 1.0, largest) or 0.0), 1.0)
         shares |= dict.fromkeys("mn", shares["q"] / BARS["q"])
     return {key: share for key, share in shares.items() if key in errors}, notes
 
 
-def known_to(errors: Mapping[str, float], history: History, weights: Array, f: float) -> float | None:
+def known_to(errors: Mapping[str, float], history: History, weights: Array) -> float | None:
     """Error of q at the end of the path, its L2 norm relative to that of p, from all ``errors`` of q1 and q2; None if
     these are not known. Arguments as for :func:`begun`."""
-    pressed = _norm(history.bound, weights) / f
+    pressed = _norm(history.bound / history.f, weights)
     norms = _norms(history, weights)
     return max((errors[key] * norms[key] / pressed for key in ("q1", "q2") if key in errors), default=None)
 

@@ -24,6 +24,7 @@ from partialslip.condensed.history import History, follow, resting
 from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path
 from partialslip.condensed.path_following import SlidesError
+from partialslip.gradual import require_carried
 
 _INSIDE = 0.4  # of the distance from the end at the beginning of a step: where the ratio L is taken
 _FEW = 3  # nodes that touch on one side from which on L is linear, and not constant
@@ -34,7 +35,7 @@ def march(
     x: Array,
     tangential: Array,
     stretch: Array,
-    f: float,
+    f: Array | float,
     press: Presses,
     path: Path,
     few: int = 0,
@@ -48,7 +49,7 @@ def march(
         Nodes of the contact line.
     tangential, stretch
         As for :func:`partialslip.condensed.history.march`, at all nodes.
-    f : float
+    f : float or (n,) array
         Coefficient of friction.
     press : Presses
         Normal forces (n,) under any P and M. Where surfaces stick while the contact grows, they must come from the
@@ -74,7 +75,9 @@ def march(
         normal = press(P, M)
         near = sides[-cycle] if len(sides) >= first + cycle else before.sides
         free = tangential @ before.x + change[1] * stretch[0] + change[2] * stretch[1] - drift
-        step = _Step(x, tangential, free, f * normal.x, Q, attached)
+        bound = f * normal.x
+        require_carried([Q], float(bound.sum()))
+        step = _Step(x, tangential, free, bound, Q, attached)
         found = step.solve(pressed[-1].x, normal.x, near)
         moved = tangential @ found.x - free
         sticks = (normal.x > 0) & (found.sides == 0)
@@ -82,9 +85,9 @@ def march(
         drift = np.where(attached & (normal.x <= 0), moved - moved[sticks].mean(), 0.0) if sticks.any() else 0 * x
         pressed.append(normal)
         sides.append(found.sides)
-        return found, f * normal.x
+        return found, bound
 
-    return follow(path, advance, resting(0 * x if path.before is None else path.before))
+    return follow(path, advance, resting(0 * x if path.before is None else path.before), f)
 
 
 def _spanned(forces: Array) -> Mask:

@@ -13,7 +13,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.equivalent.data import Data, chebyshev_coefficients, nodes
 from partialslip.halfplane import Contact, contact, contact_of
-from partialslip.halfplane.contact import tilted_contact
+from partialslip.halfplane.contact import rubbing, tilted_contact
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.rig import Rig
 from partialslip.scene import Scene
@@ -100,8 +100,9 @@ def estimate(
 def _look(seen: Scene, second: Contact | None = None, mean: Contact | None = None) -> _Look:
     """Half-planes of the scene ``seen``, with other contacts if given."""
     one, two = seen.end_pressing
-    second, mean = second or contact(seen, two), mean or contact(seen, one.towards(two, 0.5))
-    load, f = seen.load, seen.friction.f
+    second = second or contact(seen, two)
+    mean = rubbing(mean, seen) if mean else contact(seen, one.towards(two, 0.5))
+    load, f = seen.load, mean.f
     sticks = f > 0 and not seen.slides
     change = loading(mean, f, load.dQ, load.dsigma, load.dslope, bound=2) if sticks else None
     return _Look(second, mean, None if change and change.nothing else change, f)

@@ -47,7 +47,7 @@ def stick_zone(scene: Scene, rig: Rig, dQ: npt.ArrayLike, dsigma: npt.ArrayLike)
     rig = _shortened(rig, max(map(abs, pressed.ends)))
     loads = np.broadcast_arrays(np.asarray(dQ, float), np.asarray(dsigma, float))
     if not (shape := loads[0].shape):
-        one_step_zone(pressed, scene.friction.f, dQ, dsigma)  # raises if the contact slides
+        one_step_zone(pressed, pressed.f, dQ, dsigma)  # raises if the contact slides
     flat_Q, flat_sigma = (load.ravel() for load in loads)
     centre, c, s = np.empty(flat_Q.size), np.empty(flat_Q.size), np.empty(flat_Q.size, int)
     for start in range(0, flat_Q.size, _CHUNK):
@@ -69,7 +69,7 @@ def _shortened(rig: Rig, farthest: float) -> Rig:
 
 def _solved(scene: Scene, rig: Rig, pressed: Contact, dQ: Array, dsigma: Array) -> tuple[Array, Array, Array]:
     """Centres and half-widths of the stick zones, m, and s, for loads (k,)."""
-    f, unit = scene.friction.f, scene.friction.f * pressed.p0
+    f, unit = pressed.f, pressed.f * pressed.p0
     slope = np.zeros_like(dQ)
     sigma = dsigma.copy()
     zone = one_step_zone(pressed, f, dQ, sigma)
@@ -140,7 +140,7 @@ def _moments(
         width = np.maximum(1 - side * e - c, 0.0)[:, None]
         beyond = width * (1 - np.cos(phi)) / 2
         t = e[:, None] + side * (c[:, None] + beyond)
-        p = pressed.shape.pressure(t) * width * np.sin(phi) / 2 * factors * np.pi / 2 * sign[:, None]
+        p = pressed.friction_bound.pressure(t) * width * np.sin(phi) / 2 * factors * np.pi / 2 * sign[:, None]
         tau = 1 + beyond / c[:, None]
         root = np.sqrt(beyond / c[:, None] * (tau + 1))
         root = np.where(root == 0, np.inf, root)  # no slip zone

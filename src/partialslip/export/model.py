@@ -177,6 +177,7 @@ def _check(scene: Scene) -> None:
     """Raise InputError if ``scene`` cannot be exported."""
     if not scene.profile.even:
         raise InputError("profile.x: must begin at 0 to export; only even gaps")
+    scene.require_uniform_friction("to export")
     if any(scene.load.sigma_slope):
         raise InputError(f"load.sigma_slope = {list(scene.load.sigma_slope)}: must be 0 or left out to export")
     if scene.meshed:

@@ -83,8 +83,7 @@ def edges(scene: Scene, result: Result, adhered: Result | None = None) -> tuple[
     if scene.presses_anew or scene.friction.f == 0:
         return ()
     left, right = result.ends[1]
-    f = scene.friction.f
-    marks = np.array([left, right, *scene.profile.kinks])
+    marks = np.array([left, right, *scene.profile.kinks, *scene.friction.kinks])
     stick = (-result.m, result.n) if result.m is not None and result.n is not None else None
     found = []
     for side, end, inwards in ((0, left, 1.0), (1, right, -1.0)):
@@ -96,8 +95,10 @@ def edges(scene: Scene, result: Result, adhered: Result | None = None) -> tuple[
         slip, K_S = None, None
         if stick is not None:
             slip = float(abs(stick[side] - end))
-            K_S = _fitted(lambda x: _reserve(result, f, x), stick[side], inwards, np.append(marks, stick), 0.5)
-        predicted = None if K_T is None else float(abs(K_T.value) / (f * K_N.value))
+            K_S = _fitted(
+                lambda x: _reserve(result, scene.friction.at(x), x), stick[side], inwards, np.append(marks, stick), 0.5
+            )
+        predicted = None if K_T is None else float(abs(K_T.value) / (scene.friction.at(end) * K_N.value))
         found.append(Edge(SIDES[side], K_N, K_T, predicted, slip, K_S))
     return found[0], found[1]
 
@@ -113,7 +114,7 @@ def _of_adhered(adhered: Result, side: int, inwards: float, marks: Array) -> Coe
     return _fitted(lambda x: adhered.traction.at(x)[1], end + inwards * slip / 2, inwards, marks, -0.5)
 
 
-def _reserve(result: Result, f: float, x: Array) -> Array:
+def _reserve(result: Result, f: Array | float, x: Array) -> Array:
     p, dq = result.traction.at(x)
     return f * p - np.abs(dq) / 2
 

@@ -11,8 +11,8 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch, punch_force
-from partialslip.halfplane.shape import Given, Shape
-from partialslip.halfplane.steady import TOO_STEEP, drive, stick_zones
+from partialslip.halfplane.shape import Bound, Given, Shape
+from partialslip.halfplane.steady import TOO_STEEP, UNEVEN_FRICTION, drive, stick_zones
 from partialslip.halfplane.uneven import press
 from partialslip.result import StickZone
 from partialslip.result.fields import AtPoints
@@ -24,19 +24,23 @@ _INSIDE = np.cos(np.arange(1, 200) / 200 * np.pi)  # places, in a, at which a ho
 # Of the flat's half-width: narrower corners, which carry the load, are not told from the ends of the flat. With
 # d = a/b - 1 rounding leaves p an error of 1e-16/(2 d)^(3/2), and no method makes cells much smaller than this.
 _HARDLY = 1e-7
+_SAME = 1e-9  # relative difference of two coefficients of friction that is rounding
 
 
 @dataclass(frozen=True, repr=False)
 class Contact:
     """Two half-planes pressed together: contact half-width ``a`` (m), normal force ``P`` (N/m), ``shape``, the scaled
     pressure (:mod:`partialslip.halfplane.shape`), middle of the contact ``centre`` (m), and ``tilt`` (rad), the angle
-    by which the bodies have turned."""
+    by which the bodies have turned. ``f`` is the coefficient of friction of the scene, and where it varies along x its
+    mean over the pressure; ``bound`` is then f(x) p over f p0 (None if f does not vary)."""
 
     a: float
     P: float
     shape: Shape
     centre: float = 0.0
     tilt: float = 0.0
+    f: float = math.nan
+    bound: Shape | None = None
 
     def __repr__(self) -> str:
         shape = type(self.shape).__name__
@@ -46,6 +50,11 @@ class Contact:
     def p0(self) -> float:
         """2 P/(pi a), Pa; for Hertz the largest pressure."""
         return 2 * self.P / (math.pi * self.a)
+
+    @property
+    def friction_bound(self) -> Shape:
+        """Largest shear traction, over f p0: the scaled pressure, unless f varies along x."""
+        return self.bound or self.shape
 
     @property
     def moment(self) -> float:
@@ -91,6 +100,20 @@ def contact(scene: Scene, pressing: Pressing | None = None) -> Contact:
         If the materials differ, the contact extends beyond the table of the profile, or P is too small for the contact
         to extend beyond the flat.
     """
+    return rubbing(_pressed(scene, pressing), scene)
+
+
+def rubbing(pressed: Contact, scene: Scene) -> Contact:
+    """The contact ``pressed`` with the friction of the ``scene``."""
+    friction, shape = scene.friction, pressed.shape
+    if not friction.varies:
+        return replace(pressed, f=friction.f)
+    kinks = *shape.kinks, *pressed.scaled(friction.kinks).tolist()
+    bound = Bound(lambda x: friction.at(pressed.places(x)) * shape.pressure(x), kinks)
+    return replace(pressed, f=bound.scale, bound=bound)
+
+
+def _pressed(scene: Scene, pressing: Pressing | None) -> Contact:
     if not scene.material.alike:
         raise InputError(
             "material.upper, material.lower: the bodies differ; must be of one material for exact, use march or fem"
@@ -145,10 +168,10 @@ def tilted_contact(scene: Scene, P: float, tilt: float) -> Contact:
     if tilt == 0:
         return contact(scene, Pressing(P, None))
     if isinstance(profile, HertzProfile):
-        even = contact(scene, Pressing(P, None))
-        return replace(even, centre=tilt * profile.R, tilt=tilt)
-    turned = _uneven(scene, profile.curvature.tilted(tilt), Pressing(P, None))
-    return replace(turned, tilt=tilt)
+        turned = replace(_pressed(scene, Pressing(P, None)), centre=tilt * profile.R)
+    else:
+        turned = _uneven(scene, profile.curvature.tilted(tilt), Pressing(P, None))
+    return rubbing(replace(turned, tilt=tilt), scene)
 
 
 def _uneven(scene: Scene, gap: Curvature, pressing: Pressing) -> Contact:
@@ -224,7 +247,7 @@ def one_step_zone(
     ----------
     contact : Contact
     f : array_like
-        Coefficient of friction.
+        Coefficient of friction; :attr:`Contact.f` where it varies along x.
     dQ, dsigma : array_like
         Changes of the shear force (N/m) and of the differential bulk tension (Pa) over half a cycle, of any sign.
     dslope : array_like
@@ -247,6 +270,9 @@ def one_step_zone(
     f_, dQ_, dsigma_, dslope_ = arrays
     if not (f_ > 0).all():
         raise InputError(f"f = {f_[~(f_ > 0)].flat[0]}: must be > 0")
+    if contact.bound and not (other := np.abs(f_ - contact.f) <= _SAME * contact.f).all():
+        wrong = f_[~other].flat[0]
+        raise InputError(f"f = {wrong}: must be contact.f, {contact.f:.17g}, the mean of f where it varies along x")
     at_middle = dsigma_ + dslope_ * contact.centre
     Qf, sf = dQ_ / (2 * f_ * contact.P), np.abs(at_middle) / (f_ * contact.p0)
     gf = dslope_ * contact.a / (f_ * contact.p0)
@@ -256,14 +282,15 @@ def one_step_zone(
     turn = np.where(drive(Qf, gf) < 0, -1, 1)
     Qf, gf = (np.where(slides, 0.0, turn * each) for each in (Qf, gf))
     mirror = np.where((turn < 0) == (at_middle < 0), 1, -1)
-    if contact.shape.even:
-        centre, half_width, s = stick_zones(Qf, sf, contact.shape, gf, checked)
+    bound = contact.friction_bound
+    if bound.even:
+        centre, half_width, s = stick_zones(Qf, sf, bound, gf, checked)
     else:
         centre, half_width, s = np.empty(Qf.shape), np.empty(Qf.shape), np.empty(Qf.shape, dtype=np.int64)
-        for way, shape in ((1, contact.shape), (-1, contact.shape.mirrored)):
+        for way, shape in ((1, bound), (-1, bound.mirrored)):
             here = mirror == way
             centre[here], half_width[here], s[here] = stick_zones(Qf[here], sf[here], shape, gf[here], checked)
     if np.ndim(half_width) == 0 and np.isnan(half_width):
-        raise InputError(f"dslope = {dslope_}: {TOO_STEEP}")
+        raise InputError(f"dslope = {dslope_}: {TOO_STEEP}" if bound.convex else UNEVEN_FRICTION)
     a = np.where(slides, np.nan, contact.a)
     return StickZone((contact.centre + mirror * centre * a)[()], (half_width * a)[()], np.where(slides, 0, s)[()])

@@ -141,7 +141,7 @@ def _bounded(pressed: Contact, f: float, load: Load, found: Levels) -> bool:
     at a load point."""
     p, (q1, q2) = found.cycle.shape.pressure(_PLACES), found.unbounded(_PLACES)
     so_far = [np.zeros_like(p)]
-    if found.cycle.zone.s < 0 or found.cycle.gf:
+    if found.cycle.zone.s < 0 or found.cycle.gf or not found.cycle.shape.convex:
         changes = load.dQ, load.dsigma, load.dslope
         stages = [loading(pressed, f, *(share * change for change in changes), bound=2) for share in _SHARES.tolist()]
         so_far += [stage.traction(_PLACES) for stage in stages]

@@ -15,7 +15,7 @@ from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.room import mean_load_bound
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.slip import dissipation, slip
-from partialslip.halfplane.steady import NARROWEST, TOO_STEEP, drive, stick_zone, stick_zones
+from partialslip.halfplane.steady import NARROWEST, TOO_STEEP, UNEVEN_FRICTION, drive, stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
 
@@ -111,7 +111,7 @@ class Loading:
     def left_end_turns(self, half_width: float | None = None) -> bool:
         """Whether slip in the left slip zone reverses under gradual loading before the stick zone has ``half_width``
         (default: the final one); see :func:`partialslip.gradual.left_end_turns`."""
-        if self.gf:
+        if not self._simple:
             return self.turns_round
         half_width = self.zone.half_width if half_width is None else half_width
         return bool(left_end_turns(self.Qf, self.sf, self.zone.s, half_width))
@@ -145,7 +145,12 @@ class Loading:
     @property
     def one_way(self) -> bool:
         """Whether dq has one sign, so that gross sliding is all that bounds the mean of Q."""
-        return self.zone.s > 0 and self.gf <= 0
+        return self.zone.s > 0 and self.gf <= 0 and self.shape.convex
+
+    @property
+    def _simple(self) -> bool:
+        """Whether two inequalities tell if slip turns round: the tension does not vary along x, and nor does f."""
+        return not self.gf and self.shape.convex
 
     @property
     def worn(self) -> Worn:
@@ -156,7 +161,7 @@ class Loading:
     @cached_property
     def turns_round(self) -> bool:
         """Whether slip reverses during half a cycle of gradual loading; see :func:`partialslip.gradual.turns_round`."""
-        if self.gf:
+        if not self._simple:
             return self._reverses()
         return bool(turns_round(self.Qf, self.sf, self.zone.s, self.zone.centre, self.zone.half_width))
 
@@ -204,7 +209,7 @@ def loading(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float 
     gf = 2 * dslope * pressed.a / (bound * f * pressed.p0)
     turn = -1 if drive(Qf, gf) < 0 else 1
     mirror = turn * (-1 if at_middle < 0 else 1)
-    found = Loading(pressed.shape, turn * Qf, sf, turn, mirror, bound, _NOTHING, turn * gf)
+    found = Loading(pressed.friction_bound, turn * Qf, sf, turn, mirror, bound, _NOTHING, turn * gf)
     return found if found.nothing else _solved(found)
 
 
@@ -223,5 +228,5 @@ def half_cycle(Qf: float, sf: float, shape: Shape, gf: float = 0.0) -> Loading:
 def _solved(found: Loading) -> Loading:
     zone = stick_zone(found.Qf, found.sf, found.seen, found.gf)
     if math.isnan(zone.half_width):
-        raise InputError(f"load.sigma_slope: {TOO_STEEP}")
+        raise InputError(f"load.sigma_slope: {TOO_STEEP}" if found.shape.convex else UNEVEN_FRICTION)
     return replace(found, zone=zone)

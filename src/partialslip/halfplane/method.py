@@ -10,7 +10,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.gradual import may_turn_round
+from partialslip.gradual import may_turn_round, require_carried
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.levels import Levels, levels
 from partialslip.halfplane.loading import Loading, loading
@@ -54,7 +54,7 @@ def solve(
     """
     del progress
     clock = Clock()
-    f, load = scene.friction.f, scene.load
+    load = scene.load
     if not load.in_phase:
         raise InputError("load.sigma: out of phase with load.Q; must be in phase for the exact method, use march")
     if scene.presses_anew:
@@ -62,7 +62,7 @@ def solve(
             require_closed_form(scene)
         return solve_varying(scene, plan, start is not None, clock)
     pressed, regime, cycle = _steady_state(scene, plan, clock)
-    a, p0 = pressed.a, pressed.p0
+    a, p0, f = pressed.a, pressed.p0, pressed.f
     found = _levels(scene, pressed, regime, cycle, start)
     turns = cycle is not None and not cycle.holds
     tractions = ExactTractions(pressed, f, cycle, found if isinstance(found, Levels) else None)
@@ -150,13 +150,14 @@ def _change(scene: Scene) -> _Change:
     :func:`solve`."""
     cpu, wall = time.process_time(), time.perf_counter()
     pressed, load = contact(scene), scene.load
-    cycle = half_cycle(pressed, scene.friction.f, load.dQ, load.dsigma, load.dslope)
+    require_carried([Q for Q, _ in load.points], pressed.f * scene.P)
+    cycle = half_cycle(pressed, pressed.f, load.dQ, load.dsigma, load.dslope)
     return _Change(pressed, cycle, time.process_time() - cpu, time.perf_counter() - wall)
 
 
 def _steady_state(scene: Scene, plan: Plan, clock: Clock) -> tuple[Contact, Regime, Loading | Turning | None]:
     """Contact, regime, and change from load point 1 to 2 (None if nothing sticks)."""
-    load, limit = scene.load, scene.friction.f * scene.P
+    load = scene.load
     if scene.free:
         return contact(scene), "frictionless", None
     if scene.slides:
@@ -172,7 +173,7 @@ def _steady_state(scene: Scene, plan: Plan, clock: Clock) -> tuple[Contact, Regi
     # where dq has one sign the bound is gross sliding, ruled out above; a zero mean is within any bound, even one that
     # rounding makes negative
     mean = abs(load.Q_mean)
-    if not cycle.one_way and mean > 0 and mean > limit * cycle.mean_load_bound:
+    if not cycle.one_way and mean > 0 and mean > pressed.f * scene.P * cycle.mean_load_bound:
         return pressed, "ratchets", cycle
     return pressed, ("small tension" if cycle.zone.s > 0 else "large tension"), cycle
 
@@ -191,7 +192,7 @@ def _levels(
         return "the path goes on from a state, which the closed form cannot follow"
     if not scene.friction.f and isinstance(cycle, Loading):
         return Levels(cycle, cycle, 1)
-    return levels(pressed, scene.friction.f, scene.load, cycle)
+    return levels(pressed, pressed.f, scene.load, cycle)
 
 
 def _breaks(scene: Scene, pressed: Contact, cycle: Loading | Turning | None, found: Levels | str) -> Array:
@@ -203,18 +204,18 @@ def _breaks(scene: Scene, pressed: Contact, cycle: Loading | Turning | None, fou
 
 
 def _limits(scene: Scene, pressed: Contact, cycle: Loading | Turning | None) -> dict[str, float]:
-    limit = scene.friction.f * scene.P
+    limit = pressed.f * scene.P
     limits = {"Q_sliding": limit}
     if cycle:
         if not cycle.gf:
-            limits["dsigma_transition"] = float(transition(cycle.Qf, cycle.seen)) * scene.friction.f * pressed.p0
+            limits["dsigma_transition"] = float(transition(cycle.Qf, cycle.seen)) * pressed.f * pressed.p0
         limits["Q_mean"] = limit * cycle.mean_load_bound
     return limits
 
 
 def _slip(scene: Scene, pressed: Contact, cycle: Loading | Turning) -> Slip:
     x, slips, dissipated = cycle.worn
-    stress, unit = scene.friction.f * pressed.p0, scene.material.A * scene.friction.f * pressed.p0 * pressed.a
+    stress, unit = pressed.f * pressed.p0, scene.material.A * pressed.f * pressed.p0 * pressed.a
     return Slip(
         pressed.centre + pressed.a * x,
         unit * slips,

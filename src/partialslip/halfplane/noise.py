@@ -88,7 +88,7 @@ def _solved(scene: Scene) -> Array:
     ends = np.nan, np.nan
     if load.in_phase and not (scene.presses_anew or scene.free or scene.slides) and scene.material.alike:
         try:
-            zone = stick_zone(pressed, scene.friction.f, load.dQ, load.dsigma, load.dslope)
+            zone = stick_zone(pressed, pressed.f, load.dQ, load.dsigma, load.dslope)
             ends = float(zone.m), float(zone.n)
         except InputError:  # loads without a closed form
             pass

@@ -68,6 +68,12 @@ class Shape:
         return self.kinks
 
     @property
+    def convex(self) -> bool:
+        """Whether this is the pressure under a convex profile: the ends of the contact then slip before points
+        inside."""
+        return True
+
+    @property
     def mirrored(self) -> "Shape":
         """The mirror image."""
         return self if self.even else Mirrored(self)
@@ -141,6 +147,10 @@ class Mirrored(Shape):
     def __init__(self, of: Shape) -> None:
         self._of = of
         self.kinks = tuple(-kink for kink in reversed(of.kinks))
+
+    @property
+    def convex(self) -> bool:
+        return self._of.convex
 
     @property
     def mirrored(self) -> Shape:
@@ -226,3 +236,12 @@ class Given(Shape):
             raise InputError(f"pressure: must return one value for each point, {np.size(x)}, not {values.shape}")
         result: Array = np.where(np.abs(x) < 1, values.reshape(np.shape(x)) / self.scale, 0.0)
         return result
+
+
+class Bound(Given):
+    """Friction bound f(x) p where the coefficient of friction f varies along the contact: ``function`` is f times the
+    scaled pressure, and ``scale`` the mean of f over the pressure."""
+
+    @property
+    def convex(self) -> bool:
+        return False

@@ -96,7 +96,7 @@ def constant(scene: Scene, pressed: Contact, found: Levels) -> Around:
     other = _merged((known, (-2.0 if found.known else 2.0, change)))
     first, second = (other, (known,)) if found.known else ((known,), other)
     unknown = "" if found.cycle.holds else "slip reverses"
-    fields = Fields(scene.friction.f, (State(pressed, first), State(pressed, second)))
+    fields = Fields(pressed.f, (State(pressed, first), State(pressed, second)))
     return Around(load, fields, _Constant(scene, pressed, found.cycle), unknown)
 
 
@@ -119,9 +119,10 @@ def without_shear(scene: Scene) -> Around:
 def sliding(scene: Scene) -> Around | None:
     """Stresses at the load points of a contact that slides at both, with q = f p; None where Q is larger, or smaller at
     a load point: q is then not known."""
-    f, found = scene.friction.f, []
+    found = []
     for point, state in zip(scene.load.ends, _ends(scene), strict=True):
         Q, contact = scene.load.points[point][0], state.pressed
+        f = contact.f
         if abs(abs(Q) - f * contact.P) > _SLIDING * f * contact.P:
             return None
         nothing = StickZone(-np.inf, 0.0, 1)
@@ -147,7 +148,7 @@ class _Constant:
     cycle: Loading | Turning
 
     def __call__(self, *, back: bool, share: float) -> tuple[Contact, _Sum]:
-        load, f = self.scene.load, self.scene.friction.f
+        load, f = self.scene.load, self.pressed.f
         loads = share * load.dQ, share * load.dsigma, share * load.dslope
         cycle, pressed = self.cycle, self.pressed
         change = cycle.part(share) if isinstance(cycle, Turning) else loading(pressed, f, *loads, bound=2)

@@ -16,6 +16,10 @@ NARROWEST = 1e-100  # half-width: smaller stick zones are reported with this one
 TOO_STEEP = (
     "exact does not hold: the tension varies so much along x that points inside slip before the ends do; use march"
 )
+UNEVEN_FRICTION = (
+    "friction.f: must vary less along x for exact: points inside slip before the ends do, and more than one zone "
+    "sticks; use march"
+)
 _CHUNK = 2**14  # stick zones at a time: their arrays fit the processor's cache
 _CLOSE = 1e-9  # Newton step after which only rounding errors remain
 _SETTLED = 1e-13  # residual of Qf
@@ -35,10 +39,11 @@ def stick_zones(
     Qf: Array | float, sf: Array | float, shape: Shape, gf: Array | float = 0.0, checked: bool = True
 ) -> StickZone[Array]:
     """Stick zones for \\|``Qf``\\| < 1, ``sf`` >= 0 and Qf + ``gf``/8 >= 0, as fractions of a; arrays of the broadcast
-    shape. NaN where gf is so large that there is no such stick zone.
+    shape. NaN where gf is so large, or the friction bound so uneven, that there is no such stick zone.
 
     Other signs follow by symmetry: mirroring x reverses dQ and dslope and keeps dsigma; reversing q reverses all.
-    Whether the zones hold under ``gf`` takes most of the time and can be left unchecked, for iterates.
+    Whether the zones hold under ``gf``, or under a bound that is not the pressure of a convex profile, takes most of
+    the time and can be left unchecked, for iterates.
 
     Raises
     ------
@@ -108,8 +113,8 @@ def _solve(Qf: Array, sf: Array, shape: Shape, gf: Array | None = None, checked:
         active = active[~(close | exact)]
     if len(active):
         edge[active], c[active] = _bracketed(Qf[active], sf[active], shape, _of(gf, active))
-    if gf is not None and checked:
-        edge[~_holds(edge, c, Qf, sf, shape, gf)] = np.nan
+    if checked and (gf is not None or not shape.convex):
+        edge[~_holds(edge, c, Qf, sf, shape, np.zeros_like(Qf) if gf is None else gf)] = np.nan
         c[np.isnan(edge)] = np.nan
     return edge, c
 

@@ -68,7 +68,8 @@ class Shear:
     def traction(self, x: Array) -> Array:
         """q at ``x`` (scaled), in f p0."""
         centre, c = self._scaled
-        shape = self.contact.shape if self.mirror > 0 else self.contact.shape.mirrored
+        bound = self.contact.friction_bound
+        shape = bound if self.mirror > 0 else bound.mirrored
         zone = StickZone(self.mirror * centre, c, int(self.stick.s))
         return self.turn * half_range(self.mirror * x, zone, shape, self.gf)
 
@@ -147,7 +148,7 @@ class SlipZones:
     def traction(self, x: Array) -> Array:
         """q at ``x`` (scaled), in f p0."""
         sign = np.where(x < self.left, self.signs[0], np.where(x > self.right, self.signs[1], 0))
-        return sign * self.contact.shape.pressure(x)
+        return sign * self.contact.friction_bound.pressure(x)
 
     def stresses(self, unit: float, T: Complex, T_z: Complex, at: "Points") -> Array:
         """Stresses (3, k), Pa, at points, from the Cauchy integrals of q in ``unit``."""
@@ -224,7 +225,8 @@ class Fields:
                 if isinstance(of, Contact):
                     made[of] = of.p0 * under_pressure(value, -at.depth / of.a * slope, at.side)
                 else:
-                    made[of] = of.stresses(self.f * contact.p0, value, slope, at)
+                    f = contact.f if contact.bound else self.f
+                    made[of] = of.stresses(f * contact.p0, value, slope, at)
             return made[of]
 
         result = np.empty((len(states), 3, len(at.x)))
@@ -250,7 +252,7 @@ class Fields:
             groups.setdefault(each if isinstance(each, Contact) else each.contact, []).append(each)
         for contact, group in groups.items():
             ends = [place for each in group if not isinstance(each, Contact) for place in each.breaks]
-            inner = np.sort([place for place in (*contact.shape.kinks, *ends) if abs(place) < 1 - _APART])
+            inner = np.sort([place for place in (*contact.friction_bound.kinks, *ends) if abs(place) < 1 - _APART])
             inner = inner[np.diff(inner, prepend=-1.0) > _APART]
             rows = [each.shape.pressure if isinstance(each, Contact) else each.traction for each in group]
             cauchy = Cauchy(

@@ -45,8 +45,8 @@ def table_error(scene: Scene, pressed: Contact, cycle: Loading | Turning | None)
         moved = other.centre - pressed.centre + (other.a - a) * np.array([-1, 1])
         errors["left"], errors["right"] = (np.abs(moved) / a).tolist()
     if cycle and not cycle.nothing:
-        f, load = scene.friction.f, scene.load
-        coarse_cycle = half_cycle(other, f, load.dQ, load.dsigma, load.dslope)
+        load = scene.load
+        coarse_cycle = half_cycle(other, other.f, load.dQ, load.dsigma, load.dslope)
         ends, moved = np.array(cycle.ends), pressed.scaled(other.centre + np.array(coarse_cycle.ends) * other.a)
         errors["m"], errors["n"] = np.abs(moved - ends).tolist()
         dq, coarse_dq = (

@@ -227,7 +227,8 @@ def half_cycle(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: flo
         return once
     try:
         way = steady(Loads(once.sf, math.pi * once.Qf), once.seen)
-        holds = not way.parted or certificate(way).worst < _HELD
+        sure = not way.parted and pressed.friction_bound.convex
+        holds = sure or certificate(way).worst < _HELD
     except LostError:
         return once
     return Turning(once, way) if holds else once

@@ -215,6 +215,8 @@ def steady_cycle(scene: Scene) -> Cycle:
 
 def closed_form(scene: Scene) -> str:
     """Why there is no closed form of the steady cycle of ``scene``, whose pressure varies; empty if there is one."""
+    if scene.friction.varies:
+        return "the coefficient of friction varies along x, and the pressure in time: there is no closed form"
     cycle = steady_cycle(scene)
     if cycle.change:
         return ""

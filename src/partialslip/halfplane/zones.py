@@ -9,7 +9,7 @@ from partialslip.gradual import turns_round
 from partialslip.halfplane.contact import Contact, one_step_zone
 from partialslip.halfplane.gradual_table import tabled
 from partialslip.halfplane.hertz import Hertz
-from partialslip.halfplane.turning import Turning, half_cycle
+from partialslip.halfplane.turning import half_cycle
 from partialslip.result import StickZone
 
 
@@ -40,7 +40,7 @@ def stick_zone(
     ----------
     contact : Contact
     f : array_like
-        Coefficient of friction.
+        Coefficient of friction; :attr:`Contact.f` where it varies along x.
     dQ, dsigma : array_like
         Changes of the shear force (N/m) and of the differential bulk tension (Pa) over half a cycle, of any sign.
     dslope : array_like
@@ -65,10 +65,12 @@ def stick_zone(
         & (dslope_ == 0)
         & ~zone.slides
     )
+    if not contact.friction_bound.convex:
+        turned = ~zone.slides & (dslope_ == 0)
     if not turned.any():
         return zone
     centre, half_width, s = (np.array(values) for values in zone)
-    if turned.ndim and isinstance(contact.shape, Hertz):
+    if turned.ndim and isinstance(contact.friction_bound, Hertz):
         found = tabled(Qf[turned], sf[turned])
         side = contact.a * np.where(dQ_ * dsigma_ < 0, -1, 1)[turned]
         centre[turned], half_width[turned], s[turned] = (
@@ -79,12 +81,12 @@ def stick_zone(
         turned &= np.isnan(centre)
     for index in map(tuple, np.argwhere(turned)):
         cycle = half_cycle(contact, *(float(load[index]) for load in loads))
-        if not isinstance(cycle, Turning) and turned.ndim == 0:
+        if not cycle.holds and turned.ndim == 0:
             raise InputError(
                 f"dQ = {dQ_}, dsigma = {dsigma_}: slip turns round on the way, and the zone of gradual loads is not "
                 "known; one_step_zone has that of a single step"
             )
-        known = cycle.zone if isinstance(cycle, Turning) else StickZone(np.nan, np.nan, cycle.zone.s)
+        known = cycle.zone if cycle.holds else StickZone(np.nan, np.nan, cycle.zone.s)
         centre[index] = contact.centre + cycle.mirror * known.centre * contact.a
         half_width[index], s[index] = known.half_width * contact.a, known.s
     return StickZone(centre[()], half_width[()], s[()])

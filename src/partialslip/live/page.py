@@ -69,6 +69,7 @@ def _check(scene: Scene) -> None:
         raise InputError("material.upper, material.lower: the bodies differ; must be of one material for a live page")
     if scene.friction.f == 0:
         raise InputError("friction.f = 0: must be > 0 for a live page: without friction there is no stick zone")
+    scene.require_uniform_friction("for a live page")
     if not scene.load.in_phase:
         raise InputError(f"load: {scene.varying} are out of phase; must be in phase for a live page")
 

@@ -148,9 +148,10 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
 
 
 def require_friction(scene: Scene) -> None:
-    """Raise InputError if ``scene`` has no friction."""
+    """Raise InputError if ``scene`` has no friction, or if its coefficient varies along x."""
     if scene.friction.f == 0:
         raise InputError("friction.f = 0: must be > 0 for a map: without friction there is no stick zone")
+    scene.require_uniform_friction("for a map")
 
 
 def _mapped(shape: Shape, top: float, progress: Callable[[str], None]) -> StickMap:

@@ -26,8 +26,8 @@ class CellStresses:
 
     Parameters
     ----------
-    f : float
-        Coefficient of friction.
+    f : float or (c + 1,) array
+        Coefficient of friction, at the vertices where it varies along x.
     frame : Contact
         Scales the ``vertices``.
     vertices : (c + 1,) array
@@ -39,7 +39,7 @@ class CellStresses:
         Shear forces and friction bounds of cells, in P of the ``frame``.
     """
 
-    f: float
+    f: Array | float
     frame: Contact
     vertices: Array
     phases: Phases
@@ -67,7 +67,8 @@ class CellStresses:
             signs = int(np.sign(force[first - 1])), int(np.sign(force[last % len(force)]))
             zones = SlipZones(pressed, inner[0], inner[1], signs)
             states.append(State(pressed, ((1.0, zones),), sigma, slope))
-        return cls(scene.friction.f, normal.frame, vertices, phases, tuple(states), steps)
+        f = scene.friction.at(normal.frame.places(vertices))
+        return cls(f, normal.frame, vertices, phases, tuple(states), steps)
 
     def inside(self, x: Array, y: Array, phases: Array) -> Array:
         """Stresses (s, 3, k), Pa, at points (``x``, ``y``), m, (k,) each, and ``phases`` (s,) from 0 to 1."""
@@ -86,7 +87,7 @@ class CellStresses:
 
     @cached_property
     def _pressed(self) -> Fields:
-        return Fields(self.f, self.states[-1:])
+        return Fields(self.states[-1].pressed.f, self.states[-1:])
 
     @cached_property
     def _sheared(self) -> PiecewiseCauchy:

@@ -43,7 +43,8 @@ _CELLS, _SOMEWHERE = 4.0, 0.5  # a zone of fewer cells is unresolved: the error 
 _NEAR = 10.0  # cells at ends closer to each other than a/10 are reduced in proportion
 _SMALLEST = 1e-9  # in a: closer ends are merged, and smaller cells are not requested
 _INNER = 8.0  # size of cells at kinks of q over the size at the ends: kinks hardly affect m and n
-_PASSING = 32.0  # the same at kinks that neither q1 nor q2 has
+_PASSING = 32.0  # the same at kinks that neither q1 nor q2 has, and at kinks of the coefficient of friction
+_SHARP = 1e-2  # jumps of its slope, in f/a, from which on it has a kink
 _SHARE = 1 / 3  # largest part of the remaining CPU seconds for one mesh
 _WORK = 5e11  # limit of cells^3 times load steps of a mesh
 # Errors of m and n, as parts of the change from mesh to mesh and of growth^3; the same part of ends that are soft, over
@@ -124,6 +125,8 @@ def solve(
     path = load_path(scene, plan, start)
     ends = [*normal.ends, *normal.within(scene.profile.kinks)]
     inner = normal.within(finest(start.q.x)) if start else []
+    sharp = scene.friction.jumps * normal.frame.a > _SHARP
+    passing = normal.within(np.array(scene.friction.kinks)[sharp].tolist())
     level: _Level | None = None
     errors: dict[str, float] = {}
     shares: dict[str, dict[str, float]] = {}
@@ -132,7 +135,7 @@ def solve(
     # a path out of phase takes more than one coarse mesh to find its stick zone
     coarse = 2 if path and not path.in_phase and len(_MESHES) > 1 else 1
     for size, growth in (*_MESHES[:1] * coarse, *_MESHES[1:]):
-        cells = _cells(ends, inner, level, size, growth)
+        cells = _cells(ends, inner, passing, level, size, growth)
         if level and level.history:
             work, likely = level.history.load_steps * len(cells) ** 3, spent * (len(cells) / len(level.vertices)) ** 3
             if work > _WORK or (meshes > 1 and likely > _SHARE * clock.remaining()):
@@ -166,7 +169,7 @@ def solve(
     def forces(state: State) -> Array:
         return on_cells(state.p, places) / scene.P
 
-    known, notes = begun(errors, level.history, widths, scene.friction.f, start, forces)
+    known, notes = begun(errors, level.history, widths, start, forces)
     if known:
         shares["start"] = known
         errors = {key: error + known.get(key, 0.0) for key, error in errors.items()}
@@ -194,17 +197,19 @@ def _accuracy(scene: Scene) -> float:
     return scene.fem.accuracy
 
 
-def _cells(ends: list[float], inner: list[float], level: _Level | None, size: float, growth: float) -> Array:
+def _cells(
+    ends: list[float], inner: list[float], passing: list[float], level: _Level | None, size: float, growth: float
+) -> Array:
     """Ends of cells (c + 1,) of ``size`` at the ``ends`` and at the stick zone's ends on the previous ``level``, and of
-    a larger size at ``inner`` kinks of q and at the kinks on that level.
+    a larger size at ``inner`` kinks of q and at the kinks on that level, the largest at those that are ``passing``.
 
     Cells are small compared with the distance of neighbouring ends: q is steep in narrow slip zones and stick zones.
     """
     fine: Array = np.sort(apart([*ends, *(level.zone if level else ())], _SMALLEST))
     gaps = np.diff(fine)
     gap = np.minimum(np.append(gaps, np.inf), np.append(np.inf, gaps))
-    passing = level.passing if level else []
-    lasting = [kink for kink in (level.kinks if level else ()) if kink not in passing]
+    lasting = [kink for kink in (level.kinks if level else ()) if not level or kink not in level.passing]
+    passing = [*passing, *(level.passing if level else ())]
     known = apart([*inner, *lasting], _INNER * size, fine.tolist())
     points = np.array(apart(passing, _PASSING * size, known))
     sizes = np.full(len(points), _PASSING * size)
@@ -233,6 +238,7 @@ def _solve_level(
         normally = compliance(vertices / 2)  # scaling lengths adds a rigid shift only
         tangential = normally + added(frame.places(vertices)) if added else normally
     with clock.phase("contact"):
+        f = scene.friction.at(frame.places(x))
         moved = stretched(x * frame.a / scene.length, frame.centre / scene.length)
 
         def zone(of: History) -> StickInterval:
@@ -254,11 +260,10 @@ def _solve_level(
 
         if path.presses_anew:
             presses = normal.presses(vertices, normally)
-            along = partial(varying.march, x, tangential, moved, scene.friction.f, presses)
+            along = partial(varying.march, x, tangential, moved, f, presses)
             history, stepped = follow_or_step(along, path, _accuracy(scene), errors if choose else None)
         else:
-            bound = scene.friction.f * normal.forces(frame, vertices)
-            history, stepped = constant.march(tangential, moved, bound, path), {}
+            history, stepped = constant.march(tangential, moved, normal.forces(frame, vertices), f, path), {}
         inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in reversed(history.visited)]
         if history.turns and history.never_slips is not None:
             inner.append(turning_points(x, history.never_slips, history.slips))
@@ -425,7 +430,7 @@ def _state(normal: NormalLoads, level: _Level, places: Array, errors: dict[str, 
     assert level.history
     scene = normal.scene
     shear, bound = level.history.end
-    pressed = normal.forces(normal.last, level.vertices) if scene.presses_anew else bound / scene.friction.f
+    pressed = normal.forces(normal.last, level.vertices) if scene.presses_anew else bound / level.history.f
     p, q = (off_cells(scene.P * forces, places) for forces in (pressed, shear))
-    error = known_to(errors, level.history, np.diff(level.vertices), scene.friction.f)
+    error = known_to(errors, level.history, np.diff(level.vertices))
     return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q, scene.load.along[-1][2], error)

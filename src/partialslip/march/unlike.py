@@ -133,7 +133,7 @@ def solve(
     def forces(state: State) -> Array:
         return on_cells(state.p, places) / scene.P
 
-    known, notes = begun(errors, level.history, widths, scene.friction.f, start, forces)
+    known, notes = begun(errors, level.history, widths, start, forces)
     if known:
         shares["start"] = known
         errors = {key: error + known.get(key, 0.0) for key, error in errors.items()}
@@ -156,7 +156,7 @@ class _Problem:
     def of(cls, scene: Scene, plan: Plan, start: State | None) -> "_Problem":
         coupled_at_all = plan.needs("coupling") and plan.needs("friction")
         beta = dundurs(scene) if coupled_at_all else 0.0
-        similar = isinstance(scene.profile, Hertz) and not scene.presses_anew and start is None
+        similar = isinstance(scene.profile, Hertz) and not (scene.presses_anew or start or scene.friction.varies)
         punch = PunchGrowth.of(beta, scene.friction.f) if beta and similar else None
         return cls(scene, beta, _extent(scene), start, punch)
 
@@ -226,9 +226,9 @@ def _solve_on(problem: _Problem, path: Path | None, vertices: Array, clock: Cloc
         line = coupled.Line(x, widths, ends, None, problem.punch is not None, stages=stages)
         moved = stretched(x, scene.origin / L)
         stretch, near = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
-        history, pressing, first = coupled.march(C, gap, stretch, moved[1], scene.friction.f, path, begins, line, near)
-        f = scene.friction.f
-        at_points = tuple(ends(bound / f, q) for bound, q in zip(history.bounds, (history.q1, history.q2), strict=True))
+        f = scene.friction.at(x * L + scene.origin)
+        history, pressing, first = coupled.march(C, gap, stretch, moved[1], f, path, begins, line, near)
+        at_points = tuple(ends(p, q) for p, q in zip(history.pressures, (history.q1, history.q2), strict=True))
         level = _Level(vertices, pressing, history, first, at_points, None, ())  # type: ignore[arg-type]
         return replace(level, stick=_stick_zone(level, problem.punch), kinks=_kinks(level))
 
@@ -241,7 +241,7 @@ def _stick_zone(level: _Level, punch: PunchGrowth | None) -> StickInterval:
     if still and not history.path.moves:
         assert level.pressed
         p, q = level.pressed.growth
-        bound, change = level.pressed.f * np.maximum(p[on], 0.0), 2 * q[on]
+        bound, change = level.pressed.f[on] * np.maximum(p[on], 0.0), 2 * q[on]
 
     def forces(values: Array) -> Array:
         every = np.zeros(len(level.x))
@@ -357,7 +357,7 @@ def _result(
     anew = level.common if scene.presses_anew else None
     found = steady_state(scene, history, level.stick, a, pushed, level.x, anew)
     known = history is not None and found.centre is not None
-    forces = (history.bounds[0] / f, history.bounds[1] / f) if history else (pressing.x, pressing.x)
+    forces = history.pressures if history else (pressing.x, pressing.x)
     shear = (history.q1, history.q2) if history else (0 * level.x, 0 * level.x)
     tractions = CoupledTractions.of(level.vertices, level.ends, forces, shear, L, stress, scene.origin)
     on = np.flatnonzero((forces[0] > 0) | (forces[1] > 0))
@@ -418,6 +418,6 @@ def _state(scene: Scene, level: _Level, errors: dict[str, float]) -> State:
     assert level.history
     places = level.vertices * scene.length + scene.origin
     shear, bound = level.history.end
-    p, q = (off_cells(scene.P * each, places) for each in (bound / scene.friction.f, shear))
-    error = known_to(errors, level.history, np.diff(level.vertices), scene.friction.f)
+    p, q = (off_cells(scene.P * each, places) for each in (bound / level.history.f, shear))
+    error = known_to(errors, level.history, np.diff(level.vertices))
     return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q, scene.load.along[-1][2], error)

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from itertools import cycle
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from partialslip.judge.reference import ALL_EFFECTS
 from partialslip.output.svg import svg
 from partialslip.result import Result
 from partialslip.run import Run
-from partialslip.scene import Scene, Tabulated
+from partialslip.scene import Friction, Scene, Tabulated
 from partialslip.scene.measured import read_points
 
 if TYPE_CHECKING:
@@ -72,10 +72,10 @@ def mesh_svg(run: Run) -> str:
 def draw_run(axes: "Axes", run: Run) -> None:
     """Draw the tractions of all methods of ``run`` on ``axes``, scaled by the reference."""
     first = run.reference or next(iter(run.results))
-    draw_tractions(axes, {first: run.results[first]} | run.results, run.scene.friction.f)
+    draw_tractions(axes, {first: run.results[first]} | run.results, run.scene.friction)
 
 
-def draw_tractions(axes: "Axes", results: Mapping[str, Result], f: float | None = None) -> None:
+def draw_tractions(axes: "Axes", results: Mapping[str, Result], friction: Friction | None = None) -> None:
     """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of all methods: lines for a closed form, markers for a mesh.
 
     Parameters
@@ -83,12 +83,12 @@ def draw_tractions(axes: "Axes", results: Mapping[str, Result], f: float | None 
     axes : matplotlib Axes
     results : mapping of str to Result
         By method. The first result gives the scales and the stick zone.
-    f : float, optional
-        Coefficient of friction; without it q/p0 is drawn, without the friction bound.
+    friction : Friction, optional
+        Friction of the scene; without it q/p0 is drawn, without the friction bound.
     """
     reference = next(iter(results.values()))
     a, p0 = reference.a, reference.p0
-    unit, shear = (p0, "q/p0") if f is None else (f * p0, "q/(f p0)")
+    unit, shear = (p0, "q/p0") if friction is None else (friction.f * p0, "q/(f p0)")
     if reference.m is not None and reference.n is not None:
         axes.axvspan(-reference.m / a, reference.n / a, color="0.88", lw=0, label="stick zone [-m, n]")
     shears = bool(reference.traction.dq.any())
@@ -104,8 +104,13 @@ def draw_tractions(axes: "Axes", results: Mapping[str, Result], f: float | None 
                 axes.plot(x / a, first / p0, color="0.45", lw=1, ls=":", label=f"p/p0 at load point 1, {name}")
                 axes.plot(x / a, bound / p0, color="0.45", lw=0.8, ls=line, label="mean of both, bounds q/f")
             if shears:
-                if f is not None:
-                    axes.plot(x / a, -bound / p0, color="0.45", lw=1 if line == "--" else 0.8, ls=line)
+                if friction is not None:
+                    share = friction.at(x) / (friction.f or 1.0)
+                    style: dict[str, Any] = {"color": "0.45", "lw": 1 if line == "--" else 0.8, "ls": line}
+                    if friction.varies:
+                        style["ls"] = (0, (1, 1))
+                        axes.plot(x / a, bound * share / p0, **style, label="bounds ±f(x) p/(f p0)")
+                    axes.plot(x / a, -bound * share / p0, **style)
                 axes.plot(x / a, q / unit, color="black", lw=1.4, label=f"{shear}, {name}")
         else:
             x = _spread(result)

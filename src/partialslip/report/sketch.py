@@ -191,7 +191,7 @@ def _axes(scene: Scene) -> list[str]:
     if isinstance(profile, FlatRounded):
         data += [f"b = {scene.units.length(profile.b)}"]
         data += [f"crown = {scene.units.length(profile.crown)}"] if profile.crown else []
-    data.append(f"f = {scene.friction.f:g}")
+    data.append(f"f = {scene.friction.shown}")
     kinds = {"material": "other" if material.upper or material.lower else "both"}
     stiffness = [
         f"{kinds.get(name) or name.removeprefix('material.')}: E = {scene.units.text(each.E, 'Pa', 4)}, ν = {each.nu:g}"

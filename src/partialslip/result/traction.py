@@ -80,20 +80,22 @@ class Sliding:
     ----------
     traction : Traction
         The pressure counts.
-    f : float
+    f : callable
+        ``f(x)``: coefficient of friction at points, m.
     signs : (int, int)
         Signs of q at load points 1 and 2.
     """
 
     traction: Traction
-    f: float
+    f: Callable[[Array], Array | float]
     signs: tuple[int, int]
 
     def levels_at(self, x: Array) -> tuple[Array, Array]:
         """q1 and q2 at ``x`` (m), Pa."""
         of = self.traction
         p1, p2 = of.pressures_at(x) if of.pressures_at else (of.at(x)[0],) * 2
-        return self.signs[0] * self.f * p1, self.signs[1] * self.f * p2
+        f = self.f(x)
+        return self.signs[0] * f * p1, self.signs[1] * f * p2
 
     def at(self, x: Array) -> tuple[Array, Array]:
         """p at load point 2 and dq at ``x`` (m), Pa."""
@@ -101,7 +103,7 @@ class Sliding:
         return self.traction.at(x)[0], q2 - q1
 
 
-def sliding(traction: Traction, f: float, signs: tuple[int, int]) -> Traction:
+def sliding(traction: Traction, f: Callable[[Array], Array | float], signs: tuple[int, int]) -> Traction:
     """Return ``traction`` with the shear of a contact that slides at both load points, in the directions ``signs``."""
     slides = Sliding(traction, f, signs)
     q1, q2 = slides.levels_at(traction.x)

@@ -19,6 +19,7 @@ DIMENSIONS: dict[str, Dimension] = {
     "profile.gap": "m",
     **{f"profile.measured.{key}": "m" for key in ("unit", "smooth", "noise", "offset", "misfit")},
     "friction.f": "1",
+    "friction.x": "m",
     "load.P": "N/m",
     "load.a": "m",
     "load.p0": "Pa",

@@ -1,9 +1,10 @@
 """The scene as a whole. Signs: positive ``dQ`` and positive ``dsigma`` add up at x -> +a, so that the stick zone moves
 towards -a."""
 
+import itertools
 import math
-from collections.abc import Mapping
-from typing import Annotated, Any, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import msgspec
 import numpy as np
@@ -24,6 +25,11 @@ from partialslip.units import UNITS, System, Units
 _FARTHEST = 1e3
 
 
+Coefficients = Annotated[
+    tuple[Annotated[float, msgspec.Meta(gt=0, le=1000)], ...], msgspec.Meta(min_length=2, max_length=100)
+]
+
+
 class Pressing(NamedTuple):
     """Normal force ``P`` (N/m), and moment ``M`` (N) of the pressure about x = 0, None if the bodies do not turn."""
 
@@ -39,9 +45,64 @@ class Pressing(NamedTuple):
 
 
 class Friction(Table, frozen=True, kw_only=True):
-    """Coulomb friction with the coefficient ``f``: |q| <= f p. With f = 0 any shear force makes the contact slide."""
+    """Coulomb friction with the coefficient ``f``: |q| <= f p. With f = 0 any shear force makes the contact slide.
 
-    f: Annotated[float, msgspec.Meta(ge=0, le=1000)]
+    Where f varies along the contact, it is given as numbers at ``x`` (m, ascending), between which it is linear; beyond
+    the first and the last x it stays. The property ``f`` is then the largest of them, the unit of tractions.
+    """
+
+    given: Annotated[float, msgspec.Meta(ge=0, le=1000)] | Coefficients = msgspec.field(name="f")
+    x: Annotated[tuple[float, ...], msgspec.Meta(min_length=2, max_length=100)] | None = None
+
+    if TYPE_CHECKING:  # keys are those of a scene file
+
+        def __init__(self, *, f: float | Sequence[float], x: Sequence[float] | None = None) -> None: ...
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.given, tuple):
+            if self.x is not None:
+                raise InputError("friction.x: must be left out where friction.f is one number")
+            return
+        if self.x is None:
+            raise InputError("friction.x: missing; must give the places of the numbers of friction.f")
+        if len(self.x) != len(self.given):
+            raise InputError(
+                f"friction.x: must have as many numbers as friction.f, {len(self.given)}, not {len(self.x)}"
+            )
+        for i, (before, x) in enumerate(itertools.pairwise(self.x)):
+            if not x > before:
+                raise InputError(f"friction.x[{i + 1}] = {x}: must be > friction.x[{i}] = {before}")
+
+    @property
+    def f(self) -> float:
+        """Coefficient of friction; the largest where it varies."""
+        return max(self.given) if isinstance(self.given, tuple) else self.given
+
+    @property
+    def varies(self) -> bool:
+        """Whether the coefficient varies along the contact."""
+        return isinstance(self.given, tuple) and len(set(self.given)) > 1
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Places at which the coefficient is not smooth, m."""
+        return self.x if self.varies and self.x else ()
+
+    @property
+    def jumps(self) -> Array:
+        """Jumps of the slope of the coefficient at its kinks, over the largest coefficient, (k,), 1/m."""
+        x = np.array(self.kinks)
+        slopes = np.diff(np.asarray(self.at(x)) / self.f) / np.diff(x) if len(x) else x
+        return np.abs(np.diff(slopes, prepend=0.0, append=0.0))[: len(x)]
+
+    @property
+    def shown(self) -> str:
+        """The coefficient as text."""
+        return f"{min(self.given):g} to {self.f:g}" if self.varies else f"{self.f:g}"  # type: ignore[arg-type]
+
+    def at(self, x: npt.ArrayLike) -> Array | float:
+        """Coefficient at ``x`` (m, of any shape); one number where it does not vary."""
+        return np.interp(x, self.x, self.given) if self.varies and self.x else self.f  # type: ignore[arg-type]
 
 
 class Scene(Notebook, Table, frozen=True, kw_only=True):
@@ -127,6 +188,12 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         for key in ("M", "e", "sigma_slope"):
             if np.any(getattr(self.load, key) or 0.0):
                 raise InputError(f"load.{key} = {getattr(self.load, key)}: must be 0 or left out {purpose}")
+
+    def require_uniform_friction(self, purpose: str) -> None:
+        """Raise InputError if the coefficient of friction varies along x, which the ``purpose`` (in words) does not
+        know."""
+        if self.friction.varies:
+            raise InputError(f"friction.f = {self.friction.shown}: must be one number {purpose}")
 
     def _check_pad(self, name: str, width: float, height: float) -> None:
         if not width <= 2 * self.profile.widest:

@@ -90,7 +90,8 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     slips = f > 0 and bool(np.abs(dq).max() > max(ZERO_LEVEL * p0, NOISE_FACTOR * noise(dq, x)))
     seen = [contact.first > 0 and contact.last + 1 < len(x) for contact in contacts]
     spread = max(blur((contact.left, contact.right), whole) for contact, whole in zip(contacts, seen, strict=True))
-    told = x[inside], p[inside], dq[inside]
+    bound = p * scene.friction.at(x) / f if scene.friction.varies else p  # over the largest f
+    told = x[inside], bound[inside], dq[inside]
     stick = _stick_zone(*told, f, p0, cells, None if _pressed(scene) else spread) if slips else None
     # a point that is out of contact at a load point does not stick
     both = max(contact.left for contact in contacts), min(contact.right for contact in contacts)
@@ -208,7 +209,8 @@ def _widths(samples: Samples) -> Array:
 def _stick_zone(
     x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool, spread: float | None
 ) -> SeenStickZone | None:
-    """Stick zone from 2 f p - |dq| at the points in contact, ``p`` being the mean pressure; None if nothing sticks.
+    """Stick zone from 2 f p - |dq| at the points in contact; None if nothing sticks. ``p`` is the mean pressure, and
+    where f varies the friction bound over the largest f.
 
     The room 2 f p - |dq| grows from the ends of the stick zone like a square root, where they drifted with the power
     3/2; ``spread`` is the length over which the contact's ends are spread. Where the bodies were only pressed (None)
