@@ -41,6 +41,7 @@ FAMILIES: tuple[Family, ...] = (  # in the order of the page
     histories.varying_pressure,
     meshes.few_nodes,
     meshes.poor_meshes,
+    loads.uneven_friction,
     loads.mirrored,
     histories.turning,
 )

@@ -117,6 +117,29 @@ def beside() -> Iterator[Case]:
 
 
 @family(
+    "A coefficient of friction that varies along the contact",
+    """
+The bound f(x) p is not the pressure under any profile. It has kinks where f has them, beside or inside the slip zones.
+A reading of the end of the stick zone that reaches across a kink is off, and so is an element with a kink inside. The
+largest f, or its mean, in place of f(x) moves both ends. Where f steps down, the end of the stick zone hardly moves
+under other loads. Where f dips in the middle, points there slip before the ends do if the dip is deep: more than one
+zone sticks, and formulas with one zone give tractions beyond the bound.
+""",
+)
+def uneven_friction() -> Iterator[Case]:
+    for name, f, x, Qf, sf in (
+        ("slope", (0.6, 0.4), (-1.0, 1.0), 0.6, 1.5),
+        ("step", (0.6, 0.6, 0.4, 0.4), (-1.0, 0.57, 0.58, 1.0), 0.6, 0.0),
+        ("dip", (0.6, 0.3, 0.6), (-1.0, 0.0, 1.0), 0.5, 1.0),
+        ("slip-turns-round", (0.55, 0.45), (-1.0, 1.0), 0.55, 7.0),
+    ):
+        scene = hard_scene(f"uneven-friction-{name}", Qf, sf)
+        half_width = scene.load.a or 0.0
+        friction = {"f": f, "x": [half_width * place for place in x]}
+        yield Case(scene.name, scene.replace(friction=friction))
+
+
+@family(
     "Mirrored loads",
     """
 If Q changes sign and sigma does not, the stick zone moves to the other side. This case alone detects a sign that is
