@@ -98,7 +98,7 @@ class Friction(Table, frozen=True, kw_only=True):
     @property
     def shown(self) -> str:
         """The coefficient as text."""
-        return f"{min(self.given):g} to {self.f:g}" if self.varies else f"{self.f:g}"  # type: ignore[arg-type]
+        return f"{min(self.given):.10g} to {self.f:.10g}" if self.varies else f"{self.f:.10g}"  # type: ignore[arg-type]
 
     def at(self, x: npt.ArrayLike) -> Array | float:
         """Coefficient at ``x`` (m, of any shape); one number where it does not vary."""

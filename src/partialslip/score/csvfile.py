@@ -130,7 +130,7 @@ def template(scene: Scene, a: float) -> str:
         "# Instead of dq: q (half of it), or q1 and q2. "
         f"Nodal forces per depth, {forces}: {of_Fn}, and dFt or Ft1, Ft2.\n"
         f"# The scene: {P}, dQ = {units.labelled(load.dQ, 'N/m', 10)}, "
-        f"dsigma = {units.labelled(load.dsigma, 'Pa', 10)}, f = {scene.friction.f:.10g}\n"
+        f"dsigma = {units.labelled(load.dsigma, 'Pa', 10)}, f = {scene.friction.shown}\n"
         f"{','.join(units.heading(name, DIMENSIONS[name]) for name in names)}\n"
     )
     return head + "".join(f"{point:.9e}{',0' * (len(names) - 1)}\n" for point in x)
