@@ -19,7 +19,7 @@ from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.graded import DEGREES, RESTS, SHARES, integrals, place, powers, spans
 
 _WIDTHS = 4  # of the zone, after which a break of its beginning is seen no more
-_TAIL, _SHORTEST = 5e-10, 0.2  # last coefficients of h above which a panel is halved, and panels that are not
+_TAIL, _SHORTEST = 5e-10, 0.02  # last coefficients of h above which a panel is halved, and panels that are not
 
 _Solver = Callable[[Array], Array]
 
