@@ -6,11 +6,13 @@ import event_cells
 import numpy as np
 import pytest
 
+from partialslip.halfplane.gradual_path import certificate as certificates
 from partialslip.halfplane.gradual_path import half_cycle
 from partialslip.halfplane.gradual_path.certificate import certificate, certify
-from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
+from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady, stuck
 from partialslip.halfplane.gradual_path.inner_rates import other_root
-from partialslip.halfplane.gradual_path.stage import Loads, LostError
+from partialslip.halfplane.gradual_path.retreat import Zone
+from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage, common
 from partialslip.halfplane.hertz import Hertz
 
 LOADS = Loads(7.2, np.pi * 0.9975)
@@ -53,10 +55,41 @@ def test_both_intervals_move_alike():
         pytest.param(0.47450296749, 19.4127801131, marks=pytest.mark.slow),  # breaks two widths of the drift before
         pytest.param(0.3827638404516185, 16.617226290315028, marks=pytest.mark.slow),  # no point sticks throughout
         pytest.param(0.75640025965298385, 11.57815391228589, marks=pytest.mark.slow),  # the same, from mixed states
+        pytest.param(0.40770240756657306, 15.993849408989083, marks=pytest.mark.slow),  # half cycles grew
     ],
 )
 def test_hard_ways_are_followed(Qf, sf):
     assert certificate(steady(Loads(sf, np.pi * Qf), Hertz())).worst < 1e-9
+
+
+def test_points_that_change_from_one_interval_to_the_other_have_slipped():
+    """Two intervals stick, (-0.9, -0.3) and (0.1, 0.9); then one, (-0.4, 0.8). If the left interval has vanished, the
+    points between -0.4 and -0.3 were in the inner zone meanwhile, and so were those up to 0.1; if the inner zone has
+    closed at -0.5, the points of the left one are left of there."""
+    q = parted()[0].start
+    begin = Stage(0.0, Zone(-0.9, 0.9), q, Zone(-0.3, 0.1))
+    vanished, closed = Stage(0.5, Zone(-0.4, 0.8), q), Stage(0.5, Zone(-0.7, 0.8), q, Zone(-0.5, -0.5))
+    assert stuck([begin, vanished]) == (0.1, 0.8)
+    assert stuck([begin, closed, Stage(1.0, Zone(-0.6, 0.7), q)]) == (-0.6, -0.5)
+    low, high = stuck([begin, vanished, Stage(1.0, Zone(-0.6, 0.05), q)])
+    assert low > high
+
+
+@pytest.mark.slow
+@pytest.mark.fault
+def test_points_of_a_vanished_interval_that_count_as_stuck_are_seen(monkeypatch):
+    """Deliberate fault: what the left interval and the zone after it have in common sticks throughout."""
+
+    def overlap(before, after):
+        return common((one, other) for one in before.sticks for other in after.sticks)
+
+    loads = Loads(15.993849408989083, np.pi * 0.40770240756657306)
+    before = steady(loads, Hertz(), parts=False)
+    half = HalfCycle(loads, -before.settled, before)
+    way = [half.phases[0].at(0.05 * half.phases[0].last.progress), half.phases[0].last]
+    assert certify(loads, way).stick < 1e-8
+    monkeypatch.setattr(certificates, "lasting", overlap)
+    assert certify(loads, way).stick > 1e-4
 
 
 @pytest.mark.slow

@@ -19,7 +19,7 @@ from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.graded import DEGREES, RESTS, SHARES, integrals, place, powers, spans
 
 _WIDTHS = 4  # of the zone, after which a break of its beginning is seen no more
-_TAIL, _SHORTEST = 5e-10, 0.2  # last coefficients of h above which a panel is halved, and panels that are not
+_TAIL, _SHORTEST = 5e-10, 0.02  # last coefficients of h above which a panel is halved, and panels that are not
 
 _Solver = Callable[[Array], Array]
 
@@ -92,13 +92,15 @@ class Drift:
             here = np.flatnonzero(last > first)
             if not len(here):
                 continue
+            # most points see the panel from its beginning up to one travel: the density there is computed once
             first, last, at = first[here], last[here], place_[here]
-            from_first, to_last, weights = spans(first, last)
-            left, right = (first - at)[:, None] + from_first, (at + 1 - last)[:, None] + to_last
-            share, rest = ((first - low)[:, None] + from_first), (high - last)[:, None] + to_last
+            seen, which = np.unique(first + 1j * last, return_inverse=True)
+            from_first, to_last, weights = spans(seen.real, seen.imag)
+            share, rest = (seen.real - low)[:, None] + from_first, (high - seen.imag)[:, None] + to_last
             s, slope = place(share / (high - low), rest / (high - low))
-            values = np.polynomial.chebyshev.chebval(2 * s - 1, density) / slope / (high - low)
-            result[here] += (weights * np.sqrt(left / right) * values).sum(axis=1)
+            weights *= np.polynomial.chebyshev.chebval(2 * s - 1, density) / slope / (high - low)
+            left, right = (first - at)[:, None] + from_first[which], (at + 1 - last)[:, None] + to_last[which]
+            result[here] += np.einsum("ki,ki->k", weights[which], np.sqrt(left / right))
         return self._tension / 4 * result
 
     def _solve(self) -> None:

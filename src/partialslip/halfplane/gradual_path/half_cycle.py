@@ -1,6 +1,8 @@
 """Half a cycle under gradual loads, and the steady cycle; scaled as in :mod:`partialslip.halfplane.shape`."""
 
+import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -10,7 +12,7 @@ from partialslip.halfplane.gradual_path.inner import Parted
 from partialslip.halfplane.gradual_path.inner_way import SHUT
 from partialslip.halfplane.gradual_path.phases import Drifting, Leading, Phase, Resting, Retreating
 from partialslip.halfplane.gradual_path.retreat import Retreat, Zone
-from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage, lasting
+from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage, common, lasting
 from partialslip.halfplane.gradual_path.tractions import Part, Tractions
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone, stick_zones
@@ -27,6 +29,7 @@ _CENTRED = 1e-11  # mean of Q that is rounding
 _LEAST, _MOST = 0.05, 0.8  # shares of the half cycle before in a mixture
 _FINE = 1e-11  # change of the middle below which the interpolation of a mixture shows
 _HALVINGS = 12  # of the way between two stages
+_NONE = Zone(1.0, -1.0)  # of no points
 _NARROWEST = 0.02  # half-width of a stick zone that drifts: slip along its way costs stages as 1 over it
 
 
@@ -136,7 +139,7 @@ class HalfCycle:
     def stuck_until(self, stage: Stage) -> tuple[float, float]:
         """Ends of the interval of points that have not slipped up to a ``stage``."""
         before = [each for phase in self.phases for each in (phase.first, phase.last)]
-        return stuck([stage, *(each for each in before if each.progress <= stage.progress)])
+        return stuck([*(each for each in before if each.progress <= stage.progress), stage])
 
     @property
     def settled(self) -> Tractions:
@@ -144,7 +147,7 @@ class HalfCycle:
         of a linear rest that they are continuous."""
         q, (low, high) = self.last.q, self.stuck
         if low >= high:
-            return q
+            return q.joined()
 
         def mean(from_low: Array, from_high: Array) -> Array:
             ends = (low, high, from_low, from_high)
@@ -166,8 +169,8 @@ def between(phase: Phase, first: Stage, last: Stage, share: float, halvings: int
     """Stages of a ``phase`` after the ``first`` up to the ``last``, so many that neighbours have a ``share`` of their
     stick zones in common; the way from ``first`` to ``last`` is halved no more than ``halvings`` times."""
     widths = [sum(zone.right - zone.left for zone in zones) for zones in (first.sticks, last.sticks)]
-    common = sum(zone.right - zone.left for zone in lasting(first, last))
-    if halvings == 0 or common >= share * min(widths):
+    kept = sum(zone.right - zone.left for zone in lasting(first, last))
+    if halvings == 0 or kept >= share * min(widths):
         return [last]
     middle = phase.at((first.progress + last.progress) / 2)
     return [
@@ -176,9 +179,13 @@ def between(phase: Phase, first: Stage, last: Stage, share: float, halvings: int
     ]
 
 
-def stuck(stages: list[Stage]) -> tuple[float, float]:
-    """Ends of the interval of points that stick at all ``stages``; of two, where a zone inside slips, the left one."""
-    return max(stage.zone.left for stage in stages), min(stage.sticks[0].right for stage in stages)
+def stuck(stages: Sequence[Stage]) -> tuple[float, float]:
+    """Ends of the interval of points that stick at all ``stages``, ascending, with the ends of phases among these; of
+    two, where a zone inside slips, the left one."""
+    zones: Sequence[Zone] = stages[0].sticks
+    for before, after in itertools.pairwise(stages):
+        zones = common(itertools.product(zones, lasting(before, after)))
+    return zones[0] if zones else _NONE
 
 
 def once(loads: Loads, shape: Shape) -> Tractions:

@@ -71,4 +71,4 @@ class Parted:
             *(added(Part(*span, -1.0), B, R) for span in itertools.pairwise(cuts)),
             Part(right, 1.0, 1.0),
         ]
-        return Stage(progress, Zone(left, right), Tractions.of(q.shape, parts), Zone(low, high))
+        return Stage(progress, Zone(left, right), Tractions.of(q.shape, parts), Zone(low, low if shut else high))

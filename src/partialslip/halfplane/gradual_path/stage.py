@@ -1,6 +1,7 @@
 """Loads of half a cycle, and states along its way; scaled as in :mod:`partialslip.halfplane.shape`."""
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from partialslip.halfplane.gradual_path.retreat import Zone
@@ -41,14 +42,20 @@ class Stage(NamedTuple):
 
 
 def lasting(before: Stage, after: Stage) -> list[Zone]:
-    """Intervals that stick from one stage to the next: points that change from the left interval to the right one,
-    where a zone between them slips, do not."""
+    """Intervals that stick from one stage to a later one; between both, no other phase begins. Points that change from
+    the left interval to the right one, where a zone between them slips, do not stick. That zone has closed if its width
+    is 0 at the last stage of the phase, and if there is none any more, the left interval has vanished."""
     early, late = before.sticks, after.sticks
-    if len(early) == len(late):
-        pairs = list(zip(early, late, strict=True))
-    elif before.inner and after.zone.left > before.inner.left:  # the left interval has vanished
+    if before.inner and before.inner.right > before.inner.left and not after.inner:
         pairs = [(early[1], after.zone)]
+    elif len(early) == len(late):
+        pairs = list(zip(early, late, strict=True))
     else:
         pairs = [(one, other) for one in early for other in late]
-    common = (Zone(max(one.left, other.left), min(one.right, other.right)) for one, other in pairs)
-    return [zone for zone in common if zone.right > zone.left]
+    return common(pairs)
+
+
+def common(pairs: Iterable[tuple[Zone, Zone]]) -> list[Zone]:
+    """Intervals that both zones of a pair have in common."""
+    found = (Zone(max(one.left, other.left), min(one.right, other.right)) for one, other in pairs)
+    return [zone for zone in found if zone.right > zone.left]
