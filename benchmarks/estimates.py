@@ -1,7 +1,7 @@
 """Estimates of errors against true errors, on random scenes whose answers are known.
 
 python benchmarks/estimates.py run FILE [--method fem march] [--group steady] [--seed 1] [--count 100]
-                                        [--finest 1e-7] [--coarsest 1e-3]
+                                        [--finest 1e-7] [--coarsest 1e-3] [--limit 60] [--truth 180]
 python benchmarks/estimates.py show FILE...
 
 Groups of scenes: steady (loads of all kinds), turning (large tension under which slip turns round on the way, a third
@@ -9,13 +9,16 @@ with mean loads), plain (Hertz and flat-rounded), table (x^4, x^6 and curvatures
 unlike (materials), finite (bodies). Truth is the exact steady state, and for q1 and q2 the exact first loading where
 the steady state keeps that. Elsewhere it is the march at the finest accuracy that it reaches; for finite bodies finite
 elements of another order on finer meshes. FILE (JSON lines) keeps what is done: a run that was stopped goes on.
+A scene that takes a method more CPU seconds than the limit is counted and left; so is a truth that takes too long.
 """
 
 import argparse
+import dataclasses
 import json
 import math
+import signal
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -63,6 +66,26 @@ TRUTH = 1e-5  # asked of the march where it is the truth: its finest mesh, in no
 KNOWN = 0.5  # of an estimate: where the march is not known to that, it is no truth
 SETTLED = 1e-3  # of the accuracy: a change of q in the last cycle that is none
 WEIGHT = 2.5  # of cheap accuracies
+
+
+class OverTime(BaseException):
+    """The limit of CPU seconds is over. No handler of errors takes it for one."""
+
+
+@contextmanager
+def limited(seconds: float) -> Iterator[None]:
+    """Raise :class:`OverTime` after that many CPU seconds of this process."""
+
+    def over(*_: object) -> None:
+        raise OverTime
+
+    before = signal.signal(signal.SIGPROF, over)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
 
 
 def drawn(seed: int, number: int, finest: float, coarsest: float, group: str = "steady") -> tuple[str, Scene]:
@@ -228,7 +251,8 @@ def true_errors(scene: Scene, kind: str, group: str, found: Result) -> dict[str,
     exact = partialslip.run(scene, ["exact"]).results["exact"]
     compared = compare(found, exact, scene, None)
     errors = {"a": compared.a, "p": compared.p}
-    if (found.last_cycle_change or 0.0) <= SETTLED * scene.fem.accuracy:
+    # cycles run until nothing changes, or as many as asked for
+    if scene.load.cycles is None or (found.last_cycle_change or 0.0) <= SETTLED * scene.fem.accuracy:
         errors |= {key: getattr(compared, key) for key in ("m", "n", "q") if key not in exact.undetermined}
     errors |= off_ends(found, exact)
     truth = exact if not {"q1", "q2"} & {*exact.undetermined} else None
@@ -247,7 +271,9 @@ def finest(scene: Scene, group: str) -> Result:
     """The march at the finest accuracy that it reaches; of finite bodies, finer elements of another order."""
     if group == "finite":
         fem = replace(scene.fem, accuracy=scene.fem.accuracy / FINER, order=3)
-        return partialslip.run(replace(scene, fem=fem), ["fem"]).results["fem"]
+        truth = partialslip.run(replace(scene, fem=fem), ["fem"]).results["fem"]
+        # within a cell elements resolve more than its mean: means are taken over the cells of the result
+        return dataclasses.replace(truth, traction=dataclasses.replace(truth.traction, cells=None))
     finer = replace(scene, fem=replace(scene.fem, accuracy=TRUTH_OF_UNLIKE if group == "unlike" else TRUTH))
     return partialslip.run(finer, ["march"]).results["march"]
 
@@ -271,17 +297,32 @@ def off_ends(found: Result, truth: Result) -> dict[str, float]:
 
 
 def rows(
-    methods: Sequence[str], seed: int, numbers: Iterable[int], finest: float, coarsest: float, group: str
+    methods: Sequence[str],
+    seed: int,
+    numbers: Iterable[int],
+    accuracies: tuple[float, float],
+    group: str,
+    limits: tuple[float, float],
 ) -> Iterator[dict[str, Any]]:
-    """One row a scene and method."""
+    """One row a scene and method; ``limits`` of a method and of the truth in CPU seconds."""
     for number in numbers:
-        kind, scene = drawn(seed, number, finest, coarsest, group)
+        kind, scene = drawn(seed, number, *accuracies, group)
         for method in methods:
-            result = partialslip.run(scene, [method]).results[method]
-            yield {
+            row = {
                 "method": method, "seed": seed, "number": number, "group": group, "kind": kind,
                 "profile": type(scene.profile).__name__, "nu": scene.material.nu, "accuracy": scene.fem.accuracy,
-                "regime": result.regime, "true": true_errors(scene, kind, group, result),
+            }  # fmt: skip
+            try:
+                with limited(limits[0]):
+                    result = partialslip.run(scene, [method]).results[method]
+            except OverTime:
+                yield row | {"over": True, "true": {}, "estimate": {}, "cpu_s": limits[0]}
+                continue
+            true: dict[str, float] = {}
+            with suppress(OverTime), limited(limits[1]):
+                true = true_errors(scene, kind, group, result)
+            yield row | {
+                "regime": result.regime, "true": true,
                 "estimate": {k: float(v) for k, v in result.estimate.items()},
                 "shares": {source: dict(share) for source, share in result.shares.items()},
                 "certificate": dict(result.certificate), "counts": dict(result.counts), "cpu_s": result.cost.cpu_s,
@@ -292,7 +333,9 @@ def show(found: list[dict[str, Any]]) -> None:
     """Print a table for each group and method."""
     for group, method in sorted({(row.get("group", "steady"), row["method"]) for row in found}):
         some = [row for row in found if (row.get("group", "steady"), row["method"]) == (group, method)]
+        over, unknown = sum("over" in row for row in some), sum(not row["true"] for row in some)
         print(f"{group}, {method}: {len(some)} scenes, {sum(row['cpu_s'] for row in some):.0f} CPU s")
+        print(f"  over the limit: {over}; else without a truth: {unknown - over}")
         table(some)
 
 
@@ -333,13 +376,16 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--finest", type=float, default=1e-7)
     parser.add_argument("--coarsest", type=float, default=1e-3)
+    parser.add_argument("--limit", type=float, default=60.0, metavar="CPU_SECONDS")
+    parser.add_argument("--truth", type=float, default=180.0, metavar="CPU_SECONDS")
     given = parser.parse_args()
     if given.what == "run":
         path = given.files[0]
         done = {(row["method"], row["seed"], row["number"], row.get("group", "steady")) for row in read(path)}
         todo = [n for n in range(given.count) if any((m, given.seed, n, given.group) not in done for m in given.method)]
         with path.open("a", encoding="utf-8") as file:
-            for row in rows(given.method, given.seed, todo, given.finest, given.coarsest, given.group):
+            accuracies, limits = (given.finest, given.coarsest), (given.limit, given.truth)
+            for row in rows(given.method, given.seed, todo, accuracies, given.group, limits):
                 print(json.dumps(row), file=file, flush=True)
     show([row for path in given.files for row in read(path)])
 

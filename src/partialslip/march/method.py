@@ -53,9 +53,10 @@ _MOVED, _CUBIC, _CUBIC_OF_SOFT = 0.1, 0.15, 0.05
 # The same part in a narrow stick zone, which its surroundings move as a whole. Cells nearby are reduced with the zone:
 # only growth is halved from mesh to mesh, and errors are of second order in it
 _CARRIED = 1 / 3
-# The same where slip turns round; also, at an end that moves over cells that slipped, parts of the cell's size; and
-# parts of the change of q, which is locked in where the zone has moved, by the share of such points (measured)
-_TURNED, _CAUGHT_UP, _LOCKED = 2.0, 0.5, 0.2
+# Where slip turns round, besides: at an end that moves over cells that slipped, a part of the cell's size; at least a
+# part of the error of q, which is locked in where the zone has moved, by the share of such points; errors of q, q1 and
+# q2 over those of other scenes (measured)
+_CAUGHT_UP, _LOCKED, _TURNED = 0.25, 0.13, 1.5
 _FITTED, _SOFTEST = 4, 1e-3  # cells inside an end of the stick zone from which its stiffness is found; least stiffness
 _CHANGED = (0.4, 0.35)  # errors of q, q1 and q2 as parts of the change to the second mesh and to later meshes
 _JUDGED = ("m", "n", "q", "q1", "q2")
@@ -134,7 +135,9 @@ def solve(
     meshes, iterations, spent = 0, 0, 0.0
     # a path out of phase takes more than one coarse mesh to find its stick zone
     coarse = 2 if path and not path.in_phase and len(_MESHES) > 1 else 1
-    for size, growth in (*_MESHES[:1] * coarse, *_MESHES[1:]):
+    planned, turned = [*_MESHES[:1] * coarse, *_MESHES[1:]], False
+    while planned:
+        size, growth = planned.pop(0)
         cells = _cells(ends, inner, passing, level, size, growth)
         if level and level.history:
             work, likely = level.history.load_steps * len(cells) ** 3, spent * (len(cells) / len(level.vertices)) ** 3
@@ -149,6 +152,10 @@ def solve(
         meshes, iterations = meshes + 1, iterations + (level.history.iterations if level.history else 0)
         if level.stick is None:
             break
+        if level.history and level.history.turns and not turned and planned:
+            # cells are fine where the zone was thought to end without it: begin anew, at these ends
+            turned, coarse, planned = True, meshes + 1, [*_MESHES]
+            continue
         if before and meshes > coarse:
             first = meshes == coarse + 1
             if first:
@@ -299,7 +306,8 @@ def _mesh_errors(normal: NormalLoads, level: _Level, before: _Level, growth: flo
         for key, of in SHEARS.items()
     }
     if level.history.turns:
-        known = _TURNED * known + _CAUGHT_UP * size * np.array(level.stick.moved)
+        changes = {key: _TURNED * change for key, change in changes.items()}
+        known = known + _CAUGHT_UP * size * np.array(level.stick.moved)
         known = np.maximum(known, _LOCKED * _passed(level) * changes["q"]) + level.stick.strips
     known *= normal.frame.a / normal.largest.a
     return dict(zip("mn", known.tolist(), strict=True)) | changes
