@@ -16,7 +16,7 @@ ROOTS = ("partialslip", "partialslip_fem", "partialslip_meshes")
 # What nearly every package uses; its arrows would hide the others.
 EVERYWHERE = {
     "errors", "inputfile", "strictjson", "seal", "arrays", "bars", "frame", "shown", "allowance", "units", "origin",
-    "output", "__main__",
+    "convergence", "output", "__main__",
 }  # fmt: skip
 _SIZE = (7.4, 6.2)
 

@@ -172,8 +172,16 @@ def run_page(name, folder, slow):
     return count
 
 
+WHOLE = [name for name, found in PAGES.items() if any(block.mark == "slow" for block in found)]  # by the slow tests
+
+
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.slow) if name in HEAVY else name for name in PAGES]
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow) if name in HEAVY else name
+        for name in PAGES
+        if not (name in HEAVY and name in WHOLE)
+    ],
 )
 def test_page_runs(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -181,7 +189,7 @@ def test_page_runs(name, tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name, found in PAGES.items() if any(b.mark == "slow" for b in found)])
+@pytest.mark.parametrize("name", WHOLE)
 def test_whole_page_runs(name, tmp_path, monkeypatch):
     codes = {line.split()[0] for block in PAGES[name] if block.mark == "slow" for line in block.code.splitlines()}
     if missing := [code for code in codes & set(ALONE) if not shutil.which(code)]:

@@ -258,19 +258,34 @@ def slow(first, end, step=1):
     return pytest.param(range(first, end, step), marks=pytest.mark.slow)
 
 
-# Of 7,000 scenes the first 1,600 showed all that was wrong once, but for scenes that nearly stick: of these more. Since
-# zones inside the stick zone are followed, which takes seconds, 640 are tried. Number 70 once went on for ever.
+# Of 7,000 scenes the first 1,600 showed all that was wrong once, but for scenes that nearly stick: of these more.
+# Gradual loads whose slip turns round are followed, which takes seconds a scene: of these the first 214, four of each
+# kind on each profile; number 70 once went on for ever. More of them are in test_certificate, in test_gradual_table and
+# in ``verify --suite stress``.
 NEARLY_STUCK = slow(KINDS.index("near-stuck"), 7_500, len(KINDS))
+FOLLOWED = 214
+
+
+def tried(number):
+    """Whether exact solves the random scene of that number, in less than seconds if others like it are tried."""
+    kind = kind_of(number)
+    if kind == "out of phase" or number < FOLLOWED or kind == "near-stuck":
+        return kind != "out of phase"
+    scene = draw(SEED, number).scene
+    return (
+        scene.slides
+        or not loading(contact(scene), scene.friction.f, scene.load.dQ, scene.load.dsigma, bound=2).turns_round
+    )
 
 
 @pytest.mark.parametrize(
     "numbers",
-    [(*range(17), 18, 19), *(slow(first, first + 107) for first in range(0, 640, 107)), NEARLY_STUCK],
+    [(*range(17), 18, 19), slow(0, 107), slow(107, FOLLOWED), slow(FOLLOWED, 640), NEARLY_STUCK],
     ids=str,
 )
 def test_random_scenes(numbers):
     """Nothing raises, everything is finite, and the paper's inequalities hold."""
-    found = list(trials(of_random_scene, (number for number in numbers if kind_of(number) != "out of phase")))
+    found = list(trials(of_random_scene, filter(tried, numbers)))
     assert not found, "\n".join(map(str, found))
 
 

@@ -7,7 +7,6 @@ import pytest
 import spoiling
 
 from partialslip import load_scene
-from partialslip.scene.reading import shipped_scenes
 
 method = importlib.import_module("partialslip.score.method")
 ends = importlib.import_module("partialslip.score.ends")
@@ -80,10 +79,11 @@ def test_a_running_mean_is_taken_for_a_drift(monkeypatch):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("sampling", spoiling.SAMPLINGS)
-@pytest.mark.parametrize("name", shipped_scenes())
+@pytest.mark.parametrize("name", ["hertz-shear", "hertz-small-tension", "hertz-large-tension", "flat-rounded"])
 def test_all_spoiled_tables(name, sampling):
-    """Printed with -s: how many tables are read, withheld and wrong, by way of spoiling. Of 1,595 tables four are off
-    by three to six times their estimates, none by more than a hundredth of a spacing."""
+    """Printed with -s: how many tables are read, withheld and wrong, by way of spoiling. Of 1,595 tables of all six
+    shipped scenes four were off by three to six times their estimates, none by more than a hundredth of a spacing. The
+    other two scenes have the tractions of one of these, with other loads."""
     read = list(spoiling.readings(load_scene(name), sampling))
     print(*spoiling.counts(read), sep="\n")
     wrong = [reading for reading in read if not reading.honest]

@@ -1,4 +1,7 @@
-"""Ladders of meshes: observed order, extrapolated value and grid convergence index of each target (ASME V&V 20)."""
+"""Ladders of meshes: observed order, extrapolated value and grid convergence index of each target.
+
+The rule is that of :mod:`partialslip.convergence`. The formal order of a code is not known.
+"""
 
 import itertools
 import math
@@ -6,8 +9,8 @@ from typing import NamedTuple
 
 from partialslip.benchmark.problem import Problem
 from partialslip.benchmark.submission import Answer
+from partialslip.convergence import extrapolated, fitted_order, grid_convergence_index
 
-_SAFETY = 1.25  # factor of the index, for three meshes or more
 _CONSTANT = 0.01  # largest deviation of the ratios of sizes, relative
 _HIGHEST = 8.0  # order beyond which two values agree by chance
 NOT_MONOTONE, NO_RATIO, MISSING = "not monotone", "no constant ratio", "not given"
@@ -65,14 +68,14 @@ def _climb(problem: Problem, answer: Answer, key: str) -> Climb:
     if not (1 < ratios[1] < math.inf and abs(ratios[0] / ratios[1] - 1) <= _CONSTANT):
         return Climb(key, fine, off(fine), why=NO_RATIO)
     first, second = middle - coarse, fine - middle
-    if not (first * second > 0 and abs(second) < abs(first)):
+    if not (first * second > 0 and abs(second) < abs(first) < math.inf):
         return Climb(key, fine, off(fine), why=NOT_MONOTONE)
-    order = math.log(first / second) / math.log(ratios[1])
-    if order > _HIGHEST:
+    order = fitted_order((ratios[1], 1), (abs(first), abs(second)))
+    if order is None or not order <= _HIGHEST:
         return Climb(key, fine, off(fine), why=NOT_MONOTONE)
-    beyond = second * second / (first - second)  # second/(ratio^order - 1), which may be a division by zero
-    index = _SAFETY * abs(beyond) / target.scale
-    return Climb(key, fine, off(fine), order, fine + beyond, off(fine + beyond), index)
+    limit = extrapolated(coarse, middle, fine)
+    index = grid_convergence_index(abs(second), ratios[1], order) / target.scale
+    return Climb(key, fine, off(fine), order, limit, off(limit), index)
 
 
 def climb_rows(problem: Problem, answer: Answer, every: bool = False) -> list[tuple[str, ...]]:

@@ -1,13 +1,14 @@
-"""Refinement ladders: observed order of convergence and Roache's grid convergence index (GCI), by quantity.
+"""Refinement ladders: observed order of convergence and grid convergence index (GCI), by quantity.
 
 The ladder solves a scene by linear elements of one size along the contact, each size half the one before. The ends of
 contact and stick zone move by whole elements from mesh to mesh, so that the order of a single triple of meshes scatters
-widely. The order is therefore fitted to all changes of the ladder, and the index takes all changes into account:
+widely. The order is therefore fitted to all changes of the ladder, and the index takes all changes into account: the
+change to the finest mesh is the largest one that follows from any of them,
 
-    change_i = C h_i^p,   GCI = F_s max_i(change_i h^p / h_i^p) / (2^p - 1)
+    change_i = C h_i^p,   change = max_i(change_i h^p / h_i^p)
 
-with h the finest size, p the observed order, limited to 0.5 to 1 (the formal order of elements that do not resolve the
-ends), and the safety factor F_s: 1.25 if the observed order is within 0.5 to 1.5, else 3.
+with h the finest size and p the order that :mod:`partialslip.convergence` takes. The formal order is 1: elements of one
+size do not resolve the ends.
 """
 
 import itertools
@@ -16,7 +17,7 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.convergence import LOWEST, fitted_order, grid_convergence_index
 from partialslip.judge import compare
 from partialslip.result import Result
 from partialslip.run import run
@@ -26,8 +27,7 @@ from partialslip.verify.case import Case
 
 SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)  # in contact half-widths
 QUANTITIES = ("a", "m", "n", "p", "q")
-_LOWEST, _FORMAL, _HIGHEST = 0.5, 1.0, 1.5  # orders
-_SAFE, _UNSAFE = 1.25, 3.0  # safety factors
+_FORMAL = 1.0  # order
 
 
 class Convergence(msgspec.Struct, frozen=True):
@@ -83,20 +83,11 @@ def convergence(quantity: str, changes: Sequence[float], error: float | None) ->
     ``error`` is the true error of the finest mesh, if known.
     """
     steps = np.array(changes, float)
-    order = _order(steps)
-    used = float(np.clip(_LOWEST if order is None else order, _LOWEST, _FORMAL))
-    safety = _SAFE if order is not None and _LOWEST <= order <= _HIGHEST else _UNSAFE
-    finest = 0.5 ** (used * np.arange(len(steps))[::-1])  # of each change, by halving on to the finest mesh
-    gci = safety * float((steps * finest).max()) / (2**used - 1)
-    return Convergence(quantity, tuple(steps.tolist()), order, gci, error)
-
-
-def _order(steps: Array) -> float | None:
-    """Return the order fitted to the changes; None for fewer than two changes that do not vanish."""
-    known = steps > 0
-    if known.sum() < 2:
-        return None
-    return float(-np.polyfit(np.flatnonzero(known), np.log2(steps[known]), 1)[0])
+    sizes = 0.5 ** np.arange(len(steps))
+    order = fitted_order(sizes.tolist(), steps.tolist())
+    used = float(np.clip(LOWEST if order is None else order, LOWEST, _FORMAL))
+    change = float((steps * (sizes[-1] / sizes) ** used).max())
+    return Convergence(quantity, tuple(steps.tolist()), order, grid_convergence_index(change, 2, order, _FORMAL), error)
 
 
 def _solve(scene: Scene, size: float) -> Result:

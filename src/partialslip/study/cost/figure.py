@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from partialslip.convergence import power
 from partialslip.output.svg import svg
-from partialslip.study.cost.ladder import CostPoint, errors_of, front, slope
+from partialslip.study.cost.ladder import CostPoint, errors_of, front
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -78,7 +79,7 @@ def phases_svg(points: Sequence[CostPoint], title: str) -> str:
         for number, (series, of) in enumerate(_by_series(points).items()):
             data = np.array([[point.counts["dofs"], point.cpu_s] for point in of if "dofs" in point.counts])
             if len(data) > 1:
-                label = f"{series}: {slope(*data.T):.2f}"
+                label = f"{series}: {power(*data.T):.2f}"
                 style = {"ls": _LINES[number % len(_LINES)], "color": _GREYS[number % len(_GREYS)], "mfc": "white"}
                 growth.loglog(*data.T, next(marks), ms=5, lw=1, label=label, **style)
         growth.set(xlabel="unknowns of the last mesh", ylabel="CPU s of the method")

@@ -13,6 +13,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.batch.job import Job, Solved, solve_apart
 from partialslip.batch.ledger import Ledger
+from partialslip.convergence import power
 from partialslip.errors import InputError
 from partialslip.inputfile import read_text
 from partialslip.judge.reference import reference
@@ -261,13 +262,6 @@ def front(points: Iterable[CostPoint]) -> list[CostPoint]:
     return found
 
 
-def slope(x: Sequence[float], y: Sequence[float]) -> float:
-    """Return k of the power law ``y = C x^k``, by least squares in logarithms; NaN for fewer than two points."""
-    if len(x) < 2:
-        return float("nan")
-    return float(np.polyfit(np.log(x), np.log(np.maximum(y, 1e-300)), 1)[0])
-
-
 def slopes(points: Iterable[CostPoint]) -> dict[str, dict[str, float]]:
     """Return exponents of the errors of m, n and q and of CPU seconds against unknowns, by series of finite elements
     among ``points``."""
@@ -277,9 +271,9 @@ def slopes(points: Iterable[CostPoint]) -> dict[str, dict[str, float]]:
             by_series.setdefault(point.series, []).append(point)
     return {
         series: {
-            "m, n": slope(dofs := [point.counts["dofs"] for point in found], [point.ends for point in found]),
-            "q": slope(dofs, [point.errors.get("q", np.nan) for point in found]),
-            "CPU": slope(dofs, [point.cpu_s for point in found]),
+            "m, n": power(dofs := [point.counts["dofs"] for point in found], [point.ends for point in found]),
+            "q": power(dofs, [point.errors.get("q", np.nan) for point in found]),
+            "CPU": power(dofs, [point.cpu_s for point in found]),
         }
         for series, found in by_series.items()
     }
