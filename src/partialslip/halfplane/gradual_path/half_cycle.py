@@ -20,6 +20,7 @@ from partialslip.halfplane.traction import half_range
 
 _CYCLES, _STALLED = 60, 8  # most half cycles, and those in which the change does not become less: they do not settle
 _SETTLED, _NEAR = 1e-13, 1e-8
+_NO_LESS = 2  # half cycles without a smaller change, after which a change that is no longer near is rounding, too
 _CLOSE = 1e-12  # change of the middle where a zone inside is followed
 _PROBES = (1 - np.cos(np.pi * (np.arange(200) + 0.5) / 200)) / 2  # places between the outer ends
 _OF_Q = 2e-3  # change of the outer ends that counts as much as one of q by 1: q rises there like a square root
@@ -268,7 +269,8 @@ def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
         change = after - middle
         size = max(abs(change), _moved(begin, state)) if found.parted else abs(change)
         settled = _SETTLED if not found.opens else _CLOSE if found.parted else _NEARLY
-        if size < settled or least < min(size, _NEAR):  # the rest is rounding
+        rounding = least < min(size, _NEAR) and (size < _NEAR or number - nearest >= _NO_LESS)
+        if size < settled or rounding:
             return found
         if size < least:
             least, nearest = size, number
