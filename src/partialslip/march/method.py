@@ -53,10 +53,10 @@ _MOVED, _CUBIC, _CUBIC_OF_SOFT = 0.1, 0.15, 0.05
 # The same part in a narrow stick zone, which its surroundings move as a whole. Cells nearby are reduced with the zone:
 # only growth is halved from mesh to mesh, and errors are of second order in it
 _CARRIED = 1 / 3
-# Where slip turns round, besides: at an end that moves over cells that slipped, a part of the cell's size; at least a
-# part of the error of q, which is locked in where the zone has moved, by the share of such points; errors of q, q1 and
-# q2 over those of other scenes (measured)
-_CAUGHT_UP, _LOCKED, _TURNED = 0.25, 0.13, 1.5
+# Where slip turns round, besides: at an end that moves over cells that slipped, the distance of its two readings, at
+# least and at most these parts of the cell's size; at least a part of the error of q, which is locked in where the zone
+# has moved, by the share of such points; errors of q, q1 and q2 over those of other scenes (measured)
+_CAUGHT_UP, _LOCKED, _TURNED = (0.25, 2.0), 0.13, 1.5
 _FITTED, _SOFTEST = 4, 1e-3  # cells inside an end of the stick zone from which its stiffness is found; least stiffness
 _CHANGED = (0.4, 0.35)  # errors of q, q1 and q2 as parts of the change to the second mesh and to later meshes
 _JUDGED = ("m", "n", "q", "q1", "q2")
@@ -154,7 +154,7 @@ def solve(
             break
         if level.history and level.history.turns and not turned and planned:
             # cells are fine where the zone was thought to end without it: begin anew, at these ends
-            turned, coarse, planned = True, meshes + 1, [*_MESHES]
+            turned, coarse, planned, path = True, meshes + 1, [*_MESHES], level.history.path
             continue
         if before and meshes > coarse:
             first = meshes == coarse + 1
@@ -307,7 +307,10 @@ def _mesh_errors(normal: NormalLoads, level: _Level, before: _Level, growth: flo
     }
     if level.history.turns:
         changes = {key: _TURNED * change for key, change in changes.items()}
-        known = known + _CAUGHT_UP * size * np.array(level.stick.moved)
+        least, most = np.multiply.outer(_CAUGHT_UP, size)
+        readings = np.abs(np.subtract(level.stick.caught, level.zone))
+        caught = np.where(np.isnan(readings), least, np.clip(readings, least, most))
+        known = known + np.where(level.stick.moved, caught, 0.0)
         known = np.maximum(known, _LOCKED * _passed(level) * changes["q"]) + level.stick.strips
     known *= normal.frame.a / normal.largest.a
     return dict(zip("mn", known.tolist(), strict=True)) | changes
