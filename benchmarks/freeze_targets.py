@@ -9,7 +9,7 @@ from pathlib import Path
 
 import partialslip.benchmark
 from partialslip.benchmark.freeze import frozen_parts
-from partialslip.benchmark.problem import frozen_text, read, read_frozen, texts
+from partialslip.benchmark.problem import frozen_text, parse_problem, read_frozen, texts
 
 PATH = Path(partialslip.benchmark.__file__).parent / "targets.json"
 
@@ -21,7 +21,9 @@ def main(numbers: list[str]) -> None:
     for number, text in texts().items():
         if numbers and number not in numbers:
             continue
-        targets[number], regimes[number] = frozen_parts(read(number, text), lambda line: print(line, flush=True))
+        targets[number], regimes[number] = frozen_parts(
+            parse_problem(number, text), lambda line: print(line, flush=True)
+        )
         for key, target in targets[number].items():
             print(f"  {key:12} {target.value:.12g} +- {target.uncertainty:.0e}  {target.known}", flush=True)
         kept = {number: targets[number] for number in texts() if number in targets}

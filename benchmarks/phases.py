@@ -23,9 +23,9 @@ from scipy import sparse
 
 from partialslip import load_scene, plan
 from partialslip.condensed.threads import one_thread
+from partialslip.convergence import power
 from partialslip.output.svg import svg
 from partialslip.result import Clock
-from partialslip.study.cost.ladder import slope
 from partialslip_fem import factor
 from partialslip_fem.elasticity import body
 from partialslip_fem.mesh_solution import Adapted
@@ -151,9 +151,9 @@ def exponents(rows: Sequence[Row]) -> dict[str, float]:
     large = [row for row in rows if row.unknowns >= LARGE]
     of = [row.unknowns for row in large]
     return {
-        **{name: slope(of, [row.seconds[name] for row in large]) for name in PHASES},
-        "sum": slope(of, [sum(row.seconds.values()) for row in large]),
-        "floor": slope(of, [row.floor for row in large]),
+        **{name: power(of, [row.seconds[name] for row in large]) for name in PHASES},
+        "sum": power(of, [sum(row.seconds.values()) for row in large]),
+        "floor": power(of, [row.floor for row in large]),
     }
 
 

@@ -61,7 +61,7 @@ def scenes() -> dict[str, str]:
 def entry(name: str, scene: str, run: Run) -> str:
     """Section of a run: command, answer, errors, limits, slip and figure, in Markdown."""
     title = run.scene.title.rstrip(".")
-    found = [answer.heading(run), "\n".join(f"- {quantity}: {value}" for quantity, value in answer.answers(run))]
+    found = [answer.answer_heading(run), "\n".join(f"- {quantity}: {value}" for quantity, value in answer.answers(run))]
     lines = [*found, rows.units(run), *(table(run, each) for each in run.comparisons)]
     facts = fact(run.results[run.reference or "fem"])
     return _ENTRY.format(name=name, title=title, scene=scene, table="\n\n".join(lines), facts=facts)
@@ -69,7 +69,7 @@ def entry(name: str, scene: str, run: Run) -> str:
 
 def table(run: Run, method: str) -> str:
     """Errors of a method as a Markdown table."""
-    cells = [rows.headings(run, method), *rows.error_rows(run.comparisons[method])]
+    cells = [rows.error_headings(run, method), *rows.error_rows(run.comparisons[method])]
     lines = ["| " + " | ".join(row).rstrip() + " |" for row in cells]
     return "\n".join([lines[0], "|---" * len(cells[0]) + "|", *lines[1:]])
 

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 
 LOWEST = 0.5  # order below which an observed order is not trusted
-BEYOND = 0.5  # above the formal order: orders higher than that are not trusted
+ABOVE_FORMAL = 0.5  # above the formal order: orders higher than that are not trusted
 TRUSTED, NOT_TRUSTED = 1.25, 3.0  # safety factors
 
 
@@ -49,7 +49,7 @@ def grid_convergence_index(change: float, ratio: float, order: float | None, for
     formal : float
         Formal order of the method; by default unknown.
     """
-    trusted = order is not None and LOWEST <= order <= formal + BEYOND
+    trusted = order is not None and LOWEST <= order <= formal + ABOVE_FORMAL
     used = LOWEST if order is None else min(max(order, LOWEST), formal)
     rest = used * math.log(ratio)
     # change/(ratio^p - 1), where ratio^p may be larger than any number

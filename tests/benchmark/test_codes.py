@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from partialslip.benchmark import graded, read_problems, write_submission
-from partialslip.benchmark.codes import CODES, answers
+from partialslip.benchmark.codes import CODES, code_answers
 from partialslip.benchmark.codes.calculix import Calculix
 from partialslip.benchmark.codes.getfem import HOST as GETFEM
 from partialslip.benchmark.codes.getfem import GetFEM
@@ -50,7 +50,7 @@ def test_a_python_without_the_code_is_not_taken(name, tmp_path, monkeypatch):
         monkeypatch.setenv(VARIABLES[name], named)
         python_with.cache_clear()
         with pytest.raises(InputError, match=f"--code '{name}': is not installed"):
-            answers(name, {})
+            code_answers(name, {})
 
 
 def test_the_path_is_searched_for_a_python(tmp_path, monkeypatch):
@@ -77,7 +77,7 @@ def test_the_path_is_searched_for_a_python(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", ["getfem", "kratos"])
 def test_a_code_that_fails_answers_with_a_note(name, does, said, tmp_path, monkeypatch):
     stand_in(tmp_path, monkeypatch, name, does)
-    found = answers(name, {"PS-02": PROBLEMS["PS-02"]})
+    found = code_answers(name, {"PS-02": PROBLEMS["PS-02"]})
     assert found.meta.version == "9.9"
     answer = found.answers["PS-02"]
     assert answer.note.startswith(said)
@@ -99,7 +99,7 @@ def test_tractions_that_a_code_writes_become_its_answer(name, tmp_path, monkeypa
     np.savetxt(tmp_path / "made.csv", table, delimiter=",", header="x,p,p1,q1,q2", comments="")
     copy = f"import shutil; shutil.copy({str(tmp_path / 'made.csv')!r}, told['table'])"
     stand_in(tmp_path, monkeypatch, name, f"{copy}\nprint(json.dumps({{'unknowns': 7, 'gave_up': None}}))")
-    answer = answers(name, {"PS-02": problem}).answers["PS-02"]
+    answer = code_answers(name, {"PS-02": problem}).answers["PS-02"]
     assert answer.unknowns == 7
     found = graded(problem, answer)
     assert max(found.errors.values()) < 2e-3
@@ -113,7 +113,7 @@ def test_scripts_are_told_the_problem(name, tmp_path, monkeypatch):
     stand_in(tmp_path, monkeypatch, name, keep)
     scene = PROBLEMS["PS-24"].scene
     monkeypatch.setitem(CODES, name, GetFEM(0.2) if name == "getfem" else Kratos(0.2, 1))
-    answers(name, {"PS-24": PROBLEMS["PS-24"]})
+    code_answers(name, {"PS-24": PROBLEMS["PS-24"]})
     told = json.loads((tmp_path / "told.json").read_text("utf-8"))
     steps = [told["steps"][number] for number in told["points"]]
     assert [(step["P"], step["Q"], step["sigma"]) for step in steps] == [(scene.P, *load) for load in scene.load.points]
@@ -129,7 +129,7 @@ def test_scripts_are_told_the_problem(name, tmp_path, monkeypatch):
 
 def test_kratos_does_not_offer_bodies_that_turn(tmp_path, monkeypatch):
     stand_in(tmp_path, monkeypatch, "kratos", "sys.exit('must not be run')")
-    assert answers("kratos", {"PS-21": PROBLEMS["PS-21"]}).answers == {}
+    assert code_answers("kratos", {"PS-21": PROBLEMS["PS-21"]}).answers == {}
 
 
 @pytest.mark.parametrize(
@@ -148,7 +148,7 @@ def test_calculix_that_gives_up_answers_with_a_note(does, said, tmp_path, monkey
     program.chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
     monkeypatch.setitem(CODES, "calculix-penalty", Calculix(0.3, True))
-    found = answers("calculix-penalty", {"PS-02": PROBLEMS["PS-02"]})
+    found = code_answers("calculix-penalty", {"PS-02": PROBLEMS["PS-02"]})
     assert found.meta.version == "9.9"
     assert found.answers["PS-02"].note.startswith(said)
     assert not found.answers["PS-02"].values
@@ -163,7 +163,7 @@ def test_a_mesh_that_cannot_be_made_stops_no_other_problem(monkeypatch):
         return true(code, scene)
 
     monkeypatch.setattr(Own, "solve", solve)
-    found = answers("exact", two).answers
+    found = code_answers("exact", two).answers
     assert found["PS-01"].note == "gmsh cannot make the mesh: too coarse"
     assert graded(two["PS-02"], found["PS-02"]).overall.grade == "A"
 
@@ -186,7 +186,7 @@ def test_codes_that_are_installed_come_near(name, code, most, monkeypatch):
         pytest.skip(f"{name} is not installed")
     monkeypatch.setitem(CODES, name, code)
     problem = PROBLEMS["PS-23"]
-    answer = answers(name, {"PS-23": problem}).answers["PS-23"]
+    answer = code_answers(name, {"PS-23": problem}).answers["PS-23"]
     errors = graded(problem, answer).errors
     assert {"a", "m", "n"} <= errors.keys()
     assert max(errors.values()) < most

@@ -9,7 +9,7 @@ import msgspec
 import pytest
 
 from partialslip.benchmark import Answer, Meta, Rung, Submission, badge, badge_names, climbs, read_problems
-from partialslip.benchmark.codes import answers
+from partialslip.benchmark.codes import code_answers
 from partialslip.benchmark.submission import read_submission, write_submission
 from partialslip.errors import InputError
 
@@ -91,7 +91,7 @@ def test_a_ladder_that_is_none_is_said_to_be(change, said, tmp_path):
 
 
 def test_linear_elements_answer_on_a_ladder(tmp_path):
-    found = answers("fem-P1", {"PS-02": PROBLEM})
+    found = code_answers("fem-P1", {"PS-02": PROBLEM})
     answer = found.answers["PS-02"]
     assert [rung.h for rung in answer.ladder] == [0.04, 0.02, 0.01]
     assert [rung.unknowns for rung in answer.ladder] == sorted(rung.unknowns for rung in answer.ladder)

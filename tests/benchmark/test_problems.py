@@ -9,7 +9,7 @@ from partialslip import load_scene
 from partialslip.benchmark import read_problems
 from partialslip.benchmark.freeze import derivations, frozen_parts
 from partialslip.benchmark.measured import GROUPS, quantities
-from partialslip.benchmark.problem import EDITION, checksum, chosen, read_frozen, texts
+from partialslip.benchmark.problem import EDITION, chosen_problems, problem_checksum, read_frozen, texts
 from partialslip.errors import InputError
 from partialslip.run import run
 from partialslip.scene import Effects, Fatigue
@@ -23,7 +23,7 @@ def test_no_problem_and_no_target_moves_within_an_edition():
     frozen = read_frozen()
     assert frozen.edition == EDITION
     assert list(frozen.targets) == list(texts())
-    assert frozen.checksums == {number: checksum(number, frozen.targets[number]) for number in texts()}
+    assert frozen.checksums == {number: problem_checksum(number, frozen.targets[number]) for number in texts()}
 
 
 @pytest.mark.parametrize("number", CLOSED)
@@ -48,11 +48,11 @@ def test_every_target_has_a_size_and_says_how_it_is_known(number):
 
 
 def test_problems_are_chosen_by_patterns():
-    assert list(chosen(None)) == list(PROBLEMS)
-    assert list(chosen("PS-02")) == ["PS-02"]
-    assert list(chosen("PS-0?, PS-02")) == [number for number in PROBLEMS if number < "PS-10"]
+    assert list(chosen_problems(None)) == list(PROBLEMS)
+    assert list(chosen_problems("PS-02")) == ["PS-02"]
+    assert list(chosen_problems("PS-0?, PS-02")) == [number for number in PROBLEMS if number < "PS-10"]
     with pytest.raises(InputError, match=r"--problems 'PS-99': must be numbers of PS-0"):
-        chosen("PS-99")
+        chosen_problems("PS-99")
 
 
 @pytest.mark.slow

@@ -17,7 +17,7 @@ from partialslip.benchmark import (
     write_submission,
 )
 from partialslip.benchmark.book import book_page
-from partialslip.benchmark.codes import CODES, answers
+from partialslip.benchmark.codes import CODES, code_answers
 from partialslip.benchmark.codes.own import Own
 from partialslip.benchmark.table import answer_from
 from partialslip.cli import main
@@ -30,7 +30,7 @@ SOME = {"PS-02": read_problems()["PS-02"]}
 
 
 def test_answers_are_written_and_read_back(tmp_path):
-    found = answers("exact", SOME)
+    found = code_answers("exact", SOME)
     write_submission(found, tmp_path)
     again = read_submission(tmp_path, read_problems())
     assert again == found
@@ -40,8 +40,8 @@ def test_answers_are_written_and_read_back(tmp_path):
 
 
 def test_a_code_that_lacks_something_does_not_offer_it():
-    assert answers("equivalent", SOME).answers == {}
-    assert scoreboard(SOME, [answers("equivalent", SOME)]).rows[0][1] == "–"
+    assert code_answers("equivalent", SOME).answers == {}
+    assert scoreboard(SOME, [code_answers("equivalent", SOME)]).rows[0][1] == "–"
 
 
 def test_a_code_that_tried_and_failed_is_not_one_that_does_not_offer():
@@ -64,7 +64,7 @@ def test_a_code_that_tried_and_failed_is_not_one_that_does_not_offer():
     ],
 )
 def test_what_is_wrong_is_said_in_a_line(tmp_path, name, content, said):
-    write_submission(answers("exact", SOME), tmp_path)
+    write_submission(code_answers("exact", SOME), tmp_path)
     (tmp_path / name).write_text(content, "utf-8")
     with pytest.raises(InputError, match=said) as caught:
         read_submission(tmp_path, read_problems())
@@ -127,7 +127,7 @@ def test_commands(tmp_path, monkeypatch, capsys):
 def test_a_code_that_is_not_installed_is_said_to_be(monkeypatch):
     monkeypatch.setattr("shutil.which", lambda _: None)
     with pytest.raises(InputError, match="--code 'calculix-mortar': is not installed"):
-        answers("calculix-mortar", SOME)
+        code_answers("calculix-mortar", SOME)
 
 
 def test_tractions_of_any_code_make_an_answer(tmp_path):
@@ -216,8 +216,8 @@ def test_what_was_finished_before_an_interruption_is_kept(tmp_path, monkeypatch)
 
     monkeypatch.setattr(Own, "solve", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        answers("exact", two, folder=tmp_path)
-    found = answers("exact", two, folder=tmp_path)
+        code_answers("exact", two, folder=tmp_path)
+    found = code_answers("exact", two, folder=tmp_path)
     assert asked == ["PS-01", "PS-02", "PS-02"]
     assert read_submission(tmp_path, read_problems()) == found
     assert list(found.answers) == ["PS-01", "PS-02"]

@@ -133,7 +133,9 @@ def test_tolerance_in_metres(monkeypatch, red):
 def test_coupling_of_the_wrong_sign(monkeypatch, red):
     """The bodies' own coupling added where it is to be subtracted: unlike half-planes do not swap places any more."""
 
-    scene = partialslip.load_scene(LARGE, [SIZE, "material.upper.E=728e9", "material.upper.nu=0.3"])
+    scene = partialslip.load_scene(
+        LARGE, [SIZE, "material.upper.E=728e9", "material.upper.nu=0.3", "fem.accuracy=1e-4"]
+    )
 
     def off():
         """How far the half-widths of finite elements and march are apart."""

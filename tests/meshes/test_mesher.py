@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.batch.job import Job, solve
+from partialslip.batch.job import Job, solve_job
 from partialslip.cli import main
 from partialslip.errors import MissingLibraryError, PartialslipError
 from partialslip_meshes import block
@@ -163,8 +163,8 @@ def test_in_daemonic_workers_after_a_fork(expected):
 def test_in_daemonic_workers_that_are_spawned():
     case = Job(partialslip.load_scene("hertz-shear", ["fem.size=0.5"]), ("fem",))
     with multiprocessing.get_context("spawn").Pool(1) as pool:
-        (found,) = pool.map_async(solve, [case]).get(60)
-    assert found.run.methods["fem"].a == solve(case).run.methods["fem"].a
+        (found,) = pool.map_async(solve_job, [case]).get(60)
+    assert found.run.methods["fem"].a == solve_job(case).run.methods["fem"].a
 
 
 @posix

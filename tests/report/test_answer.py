@@ -60,7 +60,7 @@ def test_the_answer_of_the_exact_method():
     assert found["p0"] == f"{P0 / 1e6:.7g} MPa"
     largest = np.abs(EXACT.traction.q2).max() / 1e6
     assert found["largest |q1|"] == found["largest |q2|"] == f"{largest:.7g} MPa"
-    assert answer.heading(ran({"exact": EXACT})) == "exact: small tension"
+    assert answer.answer_heading(ran({"exact": EXACT})) == "exact: small tension"
 
 
 def test_what_the_reference_does_not_know_comes_from_another_method():
@@ -111,7 +111,7 @@ def test_march_alone_and_a_cycle_with_a_mean_give_stresses():
 def test_a_reversing_path_says_that_nothing_is_known_to_hold():
     scene = load_scene("hertz-shear", [*REVERSES, "fem.accuracy=1e-2"])
     found = run(scene, ["march", "exact"])
-    assert answer.heading(found).startswith("march: large tension; path-dependent: slip reverses")
+    assert answer.answer_heading(found).startswith("march: large tension; path-dependent: slip reverses")
     assert rows.verdict(found).startswith("not judged: m, n, q, q1, q2; asked: within 1 % of a, 10 % of p and q")
 
 

@@ -52,13 +52,13 @@ def test_what_was_measured_is_not_measured_again(tmp_path, monkeypatch):
     def apart(case):
         solved.append(case.labels["setting"])
         fem = {"cost": made.cost(float(len(solved)), mesh=0.1), "counts": {"dofs": 10}}
-        errors = dict.fromkeys(cost.KEYS, 1e-3)
+        errors = dict.fromkeys(cost.ERRORS, 1e-3)
         return made.solved(case.scene, case.labels, errors, ProcessCost(1.0, 0.5, 100.0, 1.0), exact=fem, fem=fem)
 
     monkeypatch.setattr(cost, "solve_apart", apart)
     monkeypatch.setattr(cost, "ladder", lambda scene: [Job(scene, ("exact", "fem"), {"series": "P4", "setting": "1"})])
-    cost.measure(SCENE, Ledger(tmp_path / "ledger.jsonl"), 1)
-    (found,) = cost.measure(SCENE, Ledger(tmp_path / "ledger.jsonl"), 3)
+    cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), 1)
+    (found,) = cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), 3)
     assert len(solved) == 3
     assert found.cpu_s == 2.0
 
@@ -68,7 +68,7 @@ def test_a_study_of_cost_says_what_runs_and_how_long_it_takes(tmp_path, monkeypa
     walls = {"accuracy 0.01": 1.0, "accuracy 1e-05": 9.0}
 
     def apart(case):
-        wall, errors = walls[case.labels["setting"]], dict.fromkeys(cost.KEYS, 1e-3)
+        wall, errors = walls[case.labels["setting"]], dict.fromkeys(cost.ERRORS, 1e-3)
         fem = {"cost": made.cost(wall), "counts": {"dofs": 10}}
         return made.solved(SCENE, case.labels, errors, ProcessCost(wall, 0.0, 100.0, wall), exact=fem, fem=fem)
 
@@ -76,7 +76,7 @@ def test_a_study_of_cost_says_what_runs_and_how_long_it_takes(tmp_path, monkeypa
     cases = [Job(SCENE, ("exact", "fem"), {"series": "P4, adapted", "setting": setting}) for setting in walls]
     monkeypatch.setattr(cost, "ladder", lambda _: cases)
     told = []
-    cost.measure(SCENE, Ledger(tmp_path / "ledger.jsonl"), 2, lambda *state: told.append(_progress(*state)))
+    cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), 2, lambda *state: told.append(_progress(*state)))
     assert told == [
         "run 1 of 4: P4, adapted, accuracy 0.01",
         "run 2 of 4: P4, adapted, accuracy 1e-05, 3 s left",

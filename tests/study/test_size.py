@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.batch.job import Job, solve
+from partialslip.batch.job import Job, solve_job
 from partialslip.batch.ledger import Ledger
 from partialslip.batch.sweep import Task, sweep, workers
 from partialslip.cli import main
@@ -26,7 +26,7 @@ from partialslip.study.size import sizes as size
 from partialslip.study.size import tables
 from partialslip.study.size.axes import axis as read
 from partialslip.study.size.axes import cases as make
-from partialslip.study.size.case import METHODS, Sized, solve_case
+from partialslip.study.size.case import COMPARED_METHODS, Sized, solve_sized
 from partialslip.study.size.figure import grid_svg, size_svg
 from partialslip.study.size.law import PointStatus, trend
 
@@ -104,9 +104,9 @@ def test_a_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
 
     def counted(job):
         solved.append(job.labels["number"])
-        return solve(job)
+        return solve_job(job)
 
-    monkeypatch.setattr("partialslip.batch.job.solve", counted)
+    monkeypatch.setattr("partialslip.batch.job.solve_job", counted)
     with ThreadPoolExecutor(1) as executor:
         sweep([case.task for case in cases[:4]], Ledger(path), executor)
         seen = []
@@ -202,7 +202,7 @@ X = 4.0 * 2.0 ** np.arange(6)  # up to 128
 def made_sizes(off, mesh=0.0, x=X, **more):
     """Return sizes with one change and one error of the mesh for all quantities."""
     off, mesh = (np.broadcast_to(each, x.shape).astype(float) for each in (off, mesh))
-    return size.Sizes("W", x, dict.fromkeys(size.QUANTITIES, off), dict.fromkeys(size.QUANTITIES, mesh), **more)
+    return size.Sizes("W", x, dict.fromkeys(size.DIFFERENCES, off), dict.fromkeys(size.DIFFERENCES, mesh), **more)
 
 
 def test_the_law_of_made_up_sizes_is_found():
@@ -343,8 +343,8 @@ def test_table_csv_and_figure_mark_the_same_points():
     assert [laws[0][key] for key in ("quantity", "kind", "low", "high")] == ["a", "interpolated", "4.0", "8.0"]
     assert tables.laws_table(study)[1][0][-1] == "4, 8, 16"
     assert [row[0] for row in tables.needed_table(study)[1]] == ["a", "p0"]
-    assert "not solved: bodies.*.width 2.0, accuracy 1.0: too narrow" in tables.notes(study)
-    assert "f: fitted" in tables.notes(study)
+    assert "not solved: bodies.*.width 2.0, accuracy 1.0: too narrow" in tables.size_notes(study)
+    assert "f: fitted" in tables.size_notes(study)
 
     drawn = xml.etree.ElementTree.fromstring(size_svg(study))
     texts = ["".join(text.itertext()).strip() for text in drawn.iter("{http://www.w3.org/2000/svg}text")]
@@ -376,7 +376,7 @@ def test_both_half_planes_have_their_laws():
     needed = {row[:2]: row[2] for row in tables.needed_table(study)[1]}
     assert needed["a", "equivalent"] == "16.8, interpolated"
     assert needed["a", "half-plane"] == "54.8, interpolated"
-    assert "no equivalent half-planes at 2 and 4: must be larger" in tables.notes(study)
+    assert "no equivalent half-planes at 2 and 4: must be larger" in tables.size_notes(study)
     points = list(csv.DictReader(tables.points_csv(study).splitlines()))
     assert [float(row["difference"]) for row in points if row["half-planes"] == "equivalent"] == pytest.approx(
         [800 * at**-4.0 for at in (8.0, 16.0, 32.0, 64.0)]
@@ -385,7 +385,7 @@ def test_both_half_planes_have_their_laws():
     assert {row["half-planes"]: round(float(row["k"]), 6) for row in laws if row["k"]} == {
         "half-plane": 2, "equivalent": 4,
     }  # fmt: skip
-    head, rows = size.table([axis], found)
+    head, rows = size.case_table([axis], found)
     column = head.index("equivalent: a")
     assert [row[column] for row in rows] == ["", "", *(left[at] for at in (8.0, 16.0, 32.0, 64.0))]
     assert [row[head.index("no equivalent")] for row in rows] == ["must be larger", "too large", "", "", "", ""]
@@ -408,8 +408,8 @@ def test_the_error_of_the_rig_is_an_error_of_the_mesh():
 def test_equivalent_half_planes_leave_a_tenth_of_the_difference():
     """Blocks of width 8 a. Without equivalent half-planes the case stands, and says why; half-planes need none."""
     (case,) = make(scene(accuracy=1e-2), [read("bodies.*.width+bodies.*.height=8a")])
-    assert case.methods == METHODS
-    found = solve_case(case)
+    assert case.methods == COMPARED_METHODS
+    found = solve_sized(case)
     off, left = (size.along(read("bodies.*.width+bodies.*.height=8a"), [found], name).off for name in
                  ("half-plane", "equivalent"))  # fmt: skip
     for quantity in ("a", "p", "m", "n", "q"):
@@ -418,11 +418,11 @@ def test_equivalent_half_planes_leave_a_tenth_of_the_difference():
     assert again.equivalent.comparison["equivalent"].errors["a"] == left["a"]
 
     (case,) = make(scene(accuracy=1e-2), [read("bodies.*.width+bodies.*.height=3a")])
-    found = solve_case(case)
+    found = solve_sized(case)
     assert found.run.comparison["fem"].errors["a"] > 0
     assert found.equivalent is None
     assert "must be larger compared with the contact" in found.refused
-    half_planes = solve_case(Job(scene().replace(bodies={"upper": None, "lower": None}), METHODS))
+    half_planes = solve_sized(Job(scene().replace(bodies={"upper": None, "lower": None}), COMPARED_METHODS))
     assert (half_planes.error, half_planes.refused, half_planes.equivalent) == ("", "", None)
 
 

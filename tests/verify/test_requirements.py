@@ -13,7 +13,7 @@ from partialslip.run import Run
 from partialslip.verify import REQUIREMENTS, Case, CaseVerdict, judge_case, number_of, requirement_of, run_case
 from partialslip.verify import case as module
 from partialslip.verify.case import Failure, conclusions, solve_case, whole
-from partialslip.verify.verdicts import nearest, print_verdicts, room
+from partialslip.verify.verdicts import bar_left, nearest, print_verdicts
 from partialslip_fem import model
 
 NAN = float("nan")
@@ -66,7 +66,7 @@ def test_each_requirement_sees_its_fault(number):
         quantity, number, f"{number}: {REQUIREMENTS[requirement_of(quantity)]}",
     )  # fmt: skip
     assert (seen.case, seen.method) == ("made", "fem")
-    assert min(verdicts, key=room) is seen
+    assert min(verdicts, key=bar_left) is seen
     assert nearest({"made": verdicts}) == [seen]
 
 
@@ -214,12 +214,12 @@ def test_a_verdict_without_work_has_none():
 def test_what_is_not_judged_is_nearer_to_no_bar_than_what_is():
     verdicts = found(SOUND, replace(CASE, bars={"fem.a": Bar(None, "none")}))
     by_quantity = {each.quantity: each for each in verdicts}
-    assert room(by_quantity["a"]) == (True, float("inf"))
-    assert room(by_quantity["finishes"]) == (True, float("inf"))
-    assert room(by_quantity["m"]) == (True, 1.0)
+    assert bar_left(by_quantity["a"]) == (True, float("inf"))
+    assert bar_left(by_quantity["finishes"]) == (True, float("inf"))
+    assert bar_left(by_quantity["m"]) == (True, 1.0)
     half = next(each for each in found(result(a=1.0005)) if each.quantity == "a")
     assert half.share == pytest.approx(0.5)
-    assert room(half) == (True, pytest.approx(0.5))
+    assert bar_left(half) == (True, pytest.approx(0.5))
 
 
 # what the verdicts amount to

@@ -51,7 +51,7 @@ class Job:
     @property
     def task(self) -> Task:
         """The job as a task of a sweep."""
-        return Task(self.key, solve, self)
+        return Task(self.key, solve_job, self)
 
 
 class ProcessCost(msgspec.Struct, frozen=True):
@@ -95,7 +95,7 @@ class Solved(msgspec.Struct, frozen=True, kw_only=True):
     process: ProcessCost | None = None
 
 
-def solve(job: Job, keep: "Kept | None" = None) -> Solved:
+def solve_job(job: Job, keep: "Kept | None" = None) -> Solved:
     """Solve ``job``; ``keep`` as in :func:`partialslip.run`."""
     return _solved(job, keep)[0]
 
@@ -112,7 +112,7 @@ class Sharing:
     """``do``, by default :func:`solve`, for a sweep, picklable: jobs in one process share factored meshes."""
 
     def __init__(self, do: "Callable[[Job, Kept | None], Solved] | None" = None) -> None:
-        self._do, self._sweep = do or solve, uuid.uuid4().hex
+        self._do, self._sweep = do or solve_job, uuid.uuid4().hex
 
     def __call__(self, job: Job) -> Solved:
         return self._do(job, _kept_in(self._sweep) if "fem" in job.methods else None)

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from partialslip.arrays import Array
 from partialslip.benchmark.measured import Quantity, quantities
 from partialslip.benchmark.problem import Problem, Target
-from partialslip.benchmark.turning import event_by_event, turns_round
+from partialslip.benchmark.turning import event_by_event, slip_reverses
 from partialslip.judge.means import means
 from partialslip.judge.reference import reference
 from partialslip.result import Result
@@ -70,7 +70,7 @@ def derivations(problem: Problem) -> tuple[Derivation, ...]:
         )
     if reference(scene).method != "exact":
         return fem, march
-    return Derivation("exact", _GRADUAL if turns_round(scene) else "closed form"), march, fem
+    return Derivation("exact", _GRADUAL if slip_reverses(scene) else "closed form"), march, fem
 
 
 def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: None) -> tuple[dict[str, Target], str]:

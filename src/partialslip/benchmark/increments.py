@@ -1,6 +1,6 @@
 """Increments of load steps for codes that count slip from the start of an increment."""
 
-from partialslip.benchmark.turning import turns_round
+from partialslip.benchmark.turning import slip_reverses
 from partialslip.scene import Scene
 
 _INCREMENTS = 16
@@ -12,7 +12,7 @@ def gradual(scene: Scene, increments: int | None = None) -> Scene:
     while it slips (P or M varies, or the pressure depends on the shear), and at least 64 where slip turns round."""
     if increments is None:
         anew = (scene.presses_anew or not scene.mirrored) and not scene.only_pressed
-        least = _TURNING if turns_round(scene) else _INCREMENTS if anew else 1
+        least = _TURNING if slip_reverses(scene) else _INCREMENTS if anew else 1
         increments = max(scene.load.steps, least)
     return scene if increments == scene.load.steps else scene.replace(load={"steps": increments})
 

@@ -110,10 +110,10 @@ class Problem(msgspec.Struct, frozen=True):
 def read_problems() -> dict[str, Problem]:
     """All problems by number, with their frozen targets."""
     frozen = read_frozen()
-    return {number: read(number, text, frozen) for number, text in texts().items()}
+    return {number: parse_problem(number, text, frozen) for number, text in texts().items()}
 
 
-def chosen(numbers: str | None) -> dict[str, Problem]:
+def chosen_problems(numbers: str | None) -> dict[str, Problem]:
     """Problems whose numbers match ``numbers``, patterns such as PS-0* separated by commas; None for all.
 
     Raises
@@ -161,19 +161,19 @@ def read_frozen() -> Frozen:
 def frozen_text(targets: Mapping[str, Mapping[str, Target]], regimes: Mapping[str, str]) -> str:
     """Content of the file of frozen ``targets`` and ``regimes``, with a checksum of each problem."""
     made = {number: dict(some) for number, some in sorted(targets.items())}
-    sums = {number: checksum(number, made[number]) for number in made}
+    sums = {number: problem_checksum(number, made[number]) for number in made}
     encoded = msgspec.json.encode(Frozen(EDITION, sums, dict(sorted(regimes.items())), made))
     return msgspec.json.format(encoded, indent=1).decode() + "\n"
 
 
-def checksum(number: str, targets: Mapping[str, Target]) -> str:
+def problem_checksum(number: str, targets: Mapping[str, Target]) -> str:
     """Checksum of a problem: its file, its scene and its targets."""
     text = texts()[number]
-    content = [text, scene_toml(read(number, text).scene, SETTINGS), dict(targets)]
+    content = [text, scene_toml(parse_problem(number, text).scene, SETTINGS), dict(targets)]
     return hashlib.sha256(msgspec.json.encode(content, order="sorted")).hexdigest()
 
 
-def read(number: str, text: str, frozen: Frozen | None = None) -> Problem:
+def parse_problem(number: str, text: str, frozen: Frozen | None = None) -> Problem:
     """Problem of the file ``text``, with what is ``frozen`` of it, if anything is."""
     file = msgspec.convert(tomllib.loads(text), _File)
     named = {"name": number.lower(), "title": file.title}

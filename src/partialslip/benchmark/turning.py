@@ -29,7 +29,7 @@ class _Half(NamedTuple):
     leg: Leg
 
 
-def turns_round(scene: Scene) -> bool:
+def slip_reverses(scene: Scene) -> bool:
     """Whether slip turns round between the load points of similar half-planes at constant pressure."""
     load = scene.load
     if scene.finite or not scene.mirrored or scene.presses_anew or not load.in_phase:

@@ -108,19 +108,19 @@ def _list(_: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from partialslip.benchmark.codes import answers, installed
-    from partialslip.benchmark.problem import chosen
+    from partialslip.benchmark.codes import code_answers, installed
+    from partialslip.benchmark.problem import chosen_problems
     from partialslip.benchmark.submission import META
     from partialslip.cli.consoles import counting, output
 
     check_folder(options.out)
     installed(options.code)
-    some = chosen(options.problems)
+    some = chosen_problems(options.problems)
     with (
         results_folder(options, "benchmark", f"benchmark-{options.code}", None) as (folder, passed),
         counting(options.code) as progress,
     ):
-        found = answers(options.code, some, progress, folder)
+        found = code_answers(options.code, some, progress, folder)
     console = output()
     code = _print_grades(found, some)
     print_written([folder / META, *(folder / f"{number}.json" for number in found.answers)], console, passed)
@@ -142,11 +142,11 @@ def _read(options: argparse.Namespace) -> int:
 
 def _score(options: argparse.Namespace) -> int:
     from partialslip.benchmark import CLIMB_HEADS, climb_rows, read_problems, read_submission
-    from partialslip.benchmark.problem import chosen
+    from partialslip.benchmark.problem import chosen_problems
     from partialslip.cli.consoles import output
     from partialslip.output.tables import print_table
 
-    submission, some = read_submission(options.folder, read_problems()), chosen(options.problems)
+    submission, some = read_submission(options.folder, read_problems()), chosen_problems(options.problems)
     code = _print_grades(submission, some)
     every = len(some) == 1
     rows = [
@@ -195,7 +195,7 @@ def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> in
 
 def _build(options: argparse.Namespace) -> int:
     from partialslip.benchmark import badge, badge_names, book_page, book_zip, read_problems, read_submission
-    from partialslip.benchmark.problem import chosen
+    from partialslip.benchmark.problem import chosen_problems
     from partialslip.cli.common import origin
     from partialslip.cli.consoles import output
     from partialslip.errors import MissingLibraryError
@@ -204,7 +204,7 @@ def _build(options: argparse.Namespace) -> int:
 
     check_folder(options.out)
     check_report(options)
-    some = chosen(options.problems)
+    some = chosen_problems(options.problems)
     submissions = [read_submission(folder, read_problems()) for folder in options.folders]
     names = badge_names(submissions)
     with results_folder(options, "benchmark", "benchmark", None) as (folder, passed):

@@ -72,9 +72,9 @@ def _cost(options: argparse.Namespace) -> int:
         print_elsewhere(place, messages())
         print_outdated(ledger, messages())
         with working(name) as tell:
-            found = ladder.measure(scene, ledger, options.repeats, lambda *state: tell(_progress(*state)))
+            found = ladder.measure_costs(scene, ledger, options.repeats, lambda *state: tell(_progress(*state)))
         texts = {
-            "cost.csv": csv_text(*ladder.table([*found, *peers])),
+            "cost.csv": csv_text(*ladder.cost_table([*found, *peers])),
             "cost.svg": errors_svg(found, peers, f"{scene.name}: error against cost"),
             "phases.svg": phases_svg(found, f"{scene.name}: where the time goes"),
         }

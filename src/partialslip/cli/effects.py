@@ -58,13 +58,15 @@ def _effects(options: argparse.Namespace) -> int:
         }
         files = [
             *write_texts(folder, texts),
-            *write_study(options, folder, f"{scene.name}: effects", scene, worth.sections(study, texts["effects.svg"])),
+            *write_study(
+                options, folder, f"{scene.name}: effects", scene, worth.effects_sections(study, texts["effects.svg"])
+            ),
         ]
     console = output()
-    console.print(worth.heading(study), style="bold", markup=False)
+    console.print(worth.effects_heading(study), style="bold", markup=False)
     print_table(console, *worth.changes_table(study), words=(0, 1))
     print_table(console, *worth.costs_table(study))
-    for line in worth.notes(study):
+    for line in worth.refusals(study):
         console.print(line, soft_wrap=True, markup=False)
     print_written(files, console, passed)
     return 0

@@ -104,7 +104,7 @@ def _print(found: "Assessment", console: "Console") -> None:
     from partialslip.fatigue import tables
     from partialslip.output.tables import print_table
 
-    console.print(tables.heading(found), style="bold", soft_wrap=True, markup=False)
+    console.print(tables.assessment_heading(found), style="bold", soft_wrap=True, markup=False)
     if found.ratings:
         print_table(console, tables.RATINGS, tables.rating_rows(found), words=(0, 1))
     if rows := tables.average_rows(found):
@@ -114,5 +114,5 @@ def _print(found: "Assessment", console: "Console") -> None:
     if found.edges:
         console.print("Ends of the contact, K_N and K_S in Pa/m^0.5, K_T in Pa m^0.5:", markup=False)
         print_table(console, tables.EDGES, tables.edge_rows(found))
-    for line in tables.notes(found):
+    for line in tables.assessment_notes(found):
         console.print(line, soft_wrap=True, markup=False)

@@ -93,12 +93,12 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", plac
     with counting(name) as progress, workers(options.cluster, options.processes) as executor:
         entries = sizes.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
     console = output()
-    texts = {"cases.csv": csv_text(*sizes.table(axes, entries))}
+    texts = {"cases.csv": csv_text(*sizes.case_table(axes, entries))}
     sections = list[Section]()
     if len(axes) == 1:
         study = tables.size_study(scene, axes[0], entries)
         texts |= {"points.csv": tables.points_csv(study), "laws.csv": tables.laws_csv(study)}
-        console.print(tables.heading(study), style="bold", markup=False)
+        console.print(tables.size_heading(study), style="bold", markup=False)
         if study.trends:
             texts["size.svg"] = size_svg(study)
         found = [(each.title, tables.differences_table(study, each)) for each in study.models]
@@ -109,13 +109,13 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", plac
                 console.print(f"\n{title}", style="bold", markup=False)
                 print_table(console, headings, rows, (0, *words))
                 sections.append(Section(title, (), "", "", headings, rows, words))
-        lines = tables.notes(study)
+        lines = tables.size_notes(study)
     else:
-        for quantity in sizes.QUANTITIES:
+        for quantity in sizes.DIFFERENCES:
             grid = sizes.grid(axes, entries, quantity)
             names = tuple(f"{each.name}{', in a' if each.in_a else ''}" for each in axes)
             texts[f"map-{quantity}.svg"] = grid_svg(*grid, (names[0], names[1]), f"{scene.name}: change of {quantity}")
-        lines = tables.remarks(axes, entries)
+        lines = tables.case_remarks(axes, entries)
     for line in lines:
         console.print(line, soft_wrap=True, markup=False)
     figures = [Section(name.removesuffix(".svg"), (), text) for name, text in texts.items() if name.endswith(".svg")]

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from partialslip.export.deck import FRAME, bodies, frame_of, heading, load_step
+from partialslip.export.deck import FRAME, bodies, deck_heading, frame_of, load_step
 from partialslip.export.model import Model
 from partialslip.scene import Scene
 from partialslip.units import SYSTEMS, Units
@@ -45,7 +45,7 @@ def calculix_deck(scene: Scene, model: Model, contact: Contact = "mortar") -> li
     both contact lines to the .dat file.
     """
     units = deck_units(scene, model)
-    lines = heading(scene, model, "CalculiX deck")
+    lines = deck_heading(scene, model, "CalculiX deck")
     model = model.in_units(units)
     thickness = model.size
     small = "" if units == scene.units else ", as CalculiX's mortar contact needs a of 100 units or more"

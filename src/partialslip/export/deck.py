@@ -10,7 +10,7 @@ from partialslip.export.path import Step
 from partialslip.scene import Scene
 
 
-def heading(scene: Scene, model: Model, what: str) -> list[str]:
+def deck_heading(scene: Scene, model: Model, what: str) -> list[str]:
     """Comment lines of the deck: scene, mesh, sign of q, load steps, in the scene's units.
 
     ``scene`` and ``model``, in SI units, are exported; ``what`` names the format.

@@ -33,7 +33,7 @@ def write_assessment(found: Assessment, figures: Mapping[str, str], folder: Path
         If the folder cannot be written.
     """
     curves = {name: tables.curve_csv(found, along) for along, name in _CURVES.items() if found.ratings}
-    return write_texts(folder, {"fatigue.json": json_text(tables.record(found)), **curves, **figures})
+    return write_texts(folder, {"fatigue.json": json_text(tables.assessment_record(found)), **curves, **figures})
 
 
 def sections(found: Assessment, figures: Mapping[str, str]) -> list[Section]:
@@ -42,7 +42,7 @@ def sections(found: Assessment, figures: Mapping[str, str]) -> list[Section]:
     parts = [
         Section(
             "Criteria",
-            [tables.heading(found) + ".", *(f"{line}." for line in tables.notes(found))],
+            [tables.assessment_heading(found) + ".", *(f"{line}." for line in tables.assessment_notes(found))],
             figures.get("criteria.svg", ""),
             "Criteria along the surface and over the depth. In a slip zone the curves have teeth: the stress peaks "
             "where the stick zone ends at one of the load points. With more load points the tips become the curve.",

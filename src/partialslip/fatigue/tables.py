@@ -23,7 +23,7 @@ _DIGITS = 6
 _CURVE = 48  # intervals of curves between points where stresses may have cusps, and of depth
 
 
-def heading(found: Assessment) -> str:
+def assessment_heading(found: Assessment) -> str:
     """Return scene, method, body and the number of load points in one line."""
     scene, changes = found.scene, [rating.change for rating in found.ratings.values()]
     settled = not any(math.isnan(change) for change in changes) and bool(changes)
@@ -89,7 +89,7 @@ def edge_rows(found: Assessment) -> list[tuple[str, ...]]:
     ]
 
 
-def notes(found: Assessment) -> list[str]:
+def assessment_notes(found: Assessment) -> list[str]:
     """Return Ruiz's parameters and remarks as lines."""
     lines = []
     if found.ruiz:
@@ -101,7 +101,7 @@ def notes(found: Assessment) -> list[str]:
     return [*lines, *found.notes]
 
 
-def record(found: Assessment) -> dict[str, Any]:
+def assessment_record(found: Assessment) -> dict[str, Any]:
     """Return the assessment as plain data, in SI units; angles in rad."""
     ruiz = found.ruiz and {key: getattr(found.ruiz, key) for key in ("F1", "F2", "x1", "x2")}
     return {

@@ -74,7 +74,7 @@ class _Known(NamedTuple):
     method: str
 
 
-def heading(run: Run) -> str:
+def answer_heading(run: Run) -> str:
     """Return the method that answers, the regime, and why the answer is not known to hold, in one line."""
     name, unknown = run.answering, reference(run.scene).unknown
     return f"{name}: {run.results[name].regime}" + (f"; {unknown['m']}" if unknown else "")

@@ -43,7 +43,7 @@ _EVEN = 1e-4  # of a: a contact whose middle is nearer to x = 0 is even, to the 
 _DIGITS, _MOST = 7, 10  # decimals of values: the usual number, and the largest if the error is smaller
 
 
-def headings(run: Run, name: str) -> list[str]:
+def error_headings(run: Run, name: str) -> list[str]:
     """Return the headings of the table of :func:`error_rows` for method ``name`` of ``run``."""
     return [{"reference": run.reference or "", "value": name}.get(heading, heading) for heading in HEADINGS]
 
@@ -56,7 +56,7 @@ def error_rows(comparison: Comparison, *, every: bool = False) -> list[tuple[str
     """
     shown = [each for each in comparison.verdicts if each.quantity != "regime" and each.known]
     shown = shown if every else _telling(shown)
-    return [(_MEANING.get(each.quantity, each.quantity), *numbers(each), word(each)) for each in shown]
+    return [(_MEANING.get(each.quantity, each.quantity), *verdict_numbers(each), word(each)) for each in shown]
 
 
 def _telling(verdicts: list[Verdict]) -> list[Verdict]:
@@ -69,13 +69,15 @@ def _telling(verdicts: list[Verdict]) -> list[Verdict]:
     if isinstance(left, float) and isinstance(right, float) and abs(left + right) <= _EVEN:
         told |= {"left", "right"}
     if "q" in known:
-        told |= {key for key in ("q1", "q2") if key in known and numbers(known[key]) == numbers(known["q"])}
+        told |= {
+            key for key in ("q1", "q2") if key in known and verdict_numbers(known[key]) == verdict_numbers(known["q"])
+        }
     if any(verdict.bar is not None for verdict in verdicts):
         told |= {verdict.quantity for verdict in verdicts if verdict.reason == NO_BAR or verdict.quantity not in BARS}
     return [each for each in verdicts if each.quantity not in told or each.outcome is Outcome.MISSED]
 
 
-def numbers(verdict: Verdict) -> tuple[str, ...]:
+def verdict_numbers(verdict: Verdict) -> tuple[str, ...]:
     """Return unit, reference's value, method's value, error, estimate and bar of ``verdict`` as texts."""
     error = verdict.error or 0.0
     digits = max(_DIGITS, math.ceil(-math.log10(error)) + 1) if 10.0**-_MOST < error < math.inf else _DIGITS
@@ -215,7 +217,7 @@ def _spent(result: Result) -> list[str]:
     return [f"{seconds:.3f} CPU s" if seconds < 0.1 else f"{seconds:.1f} CPU s", *counts]
 
 
-def notes(run: Run) -> list[str]:
+def run_notes(run: Run) -> list[str]:
     """Return why effects were forced off, and the notes of all methods; a note that several methods share once."""
     by_note: dict[str, list[str]] = {run.plan.left_out[effect]: [effect] for effect in run.plan.missing}
     for name, result in run.results.items():
@@ -257,7 +259,7 @@ def limits(result: Result, units: Units = SI) -> str:
     return ", ".join(texts)
 
 
-def end_slips(result: Result) -> str:
+def end_slips_text(result: Result) -> str:
     """Return how the ends of the contact slip from load point 1 to 2, as text; empty under constant pressure."""
     if result.end_slips is None:
         return ""
@@ -266,7 +268,7 @@ def end_slips(result: Result) -> str:
     return ", ".join(f"the {side} end {words.get(how, f'slips {how}')}" for side, how in slips)
 
 
-def slip(result: Result, units: Units = SI) -> str:
+def slip_text(result: Result, units: Units = SI) -> str:
     """Return the largest slip over half a cycle and the energy dissipated in a cycle, in ``units``, as text."""
     if result.slip is None:
         return ""
@@ -292,10 +294,10 @@ def facts(result: Result, compared: bool = False, units: Units = SI) -> dict[str
         "regime": result.regime,
         "found": "" if compared else found(result, units),
         "built": work(result),
-        "certificate": certificate(result),
-        "ends": end_slips(result),
+        "certificate": certificate_text(result),
+        "ends": end_slips_text(result),
         "limits": limits(result, units),
-        "slip": slip(result, units),
+        "slip": slip_text(result, units),
         "cost": cost(result),
         "note": "; ".join(result.notes),
     }
@@ -319,7 +321,7 @@ def _counted(count: int, things: str) -> str:
     return f"{count:,} {things}"
 
 
-def certificate(result: Result) -> str:
+def certificate_text(result: Result) -> str:
     """Return residuals, change of q in the last cycle and error estimates of ``result`` as text."""
     residuals = ", ".join(
         f"{name.replace('_', ' ')} {_power(residual)}" for name, residual in result.certificate.items()

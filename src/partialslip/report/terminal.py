@@ -7,7 +7,7 @@ from rich.text import Text
 
 from partialslip.output.tables import print_lines, print_table
 from partialslip.report import rows
-from partialslip.report.answer import answers, heading
+from partialslip.report.answer import answer_heading, answers
 from partialslip.run import Run
 
 
@@ -28,12 +28,12 @@ def print_run(run: Run, console: Console, *, verbose: bool = False, lines: Seque
     """
     title = f"{run.scene.name}: {run.scene.title}" if run.scene.title else run.scene.name
     console.print(title, style="bold", markup=False)
-    console.print(heading(run), markup=False)
+    console.print(answer_heading(run), markup=False)
     print_lines(console, [("", *line) for line in answers(run)])
     compared = bool(run.comparisons)
     for name, comparison in run.comparisons.items():
         errors = [(*row, f"{bar} {word}".strip()) for *row, bar, word in rows.error_rows(comparison, every=verbose)]
-        print_table(console, rows.headings(run, name)[:-1], errors, words=(0, 1, 6))
+        print_table(console, rows.error_headings(run, name)[:-1], errors, words=(0, 1, 6))
     if compared:
         console.print(f"units of {rows.units(run)}", markup=False)
     if verbose:
@@ -41,7 +41,7 @@ def print_run(run: Run, console: Console, *, verbose: bool = False, lines: Seque
         print_lines(console, [*methods, *rows.effects(run.plan)])
     else:
         print_lines(console, rows.methods_in_short(run.results))
-    notes = [] if verbose else rows.notes(run)
+    notes = [] if verbose else rows.run_notes(run)
     unjudged = [line for comparison in run.comparisons.values() for line in rows.unjudged(comparison)]
     for line in (*unjudged, *notes):
         console.print(line, markup=False)

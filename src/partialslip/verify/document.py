@@ -19,9 +19,9 @@ from partialslip.output.svg import svg
 from partialslip.report import rows
 from partialslip.verify.case import REQUIREMENTS, CaseVerdict, number_of, requirement_of
 from partialslip.verify.entry import Entry, Settings
-from partialslip.verify.formulas import REFERENCES
+from partialslip.verify.formulas import PUBLICATIONS
 from partialslip.verify.ladder import SIZES, Convergence
-from partialslip.verify.verdicts import Verdicts, every_one, missed, nearest, room
+from partialslip.verify.verdicts import Verdicts, bar_left, every_one, missed, nearest
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -98,7 +98,7 @@ def document(account: Account) -> str:
         verdict=_headline(listed),
         origin=[*settings.block.given.items(), ("command", command(settings, settings.only)), *origin_lines(made)],
         scope=SCOPE[settings.suite],
-        references=REFERENCES,
+        references=PUBLICATIONS,
         sizes=SIZES,
         account=account,
         verdicts=verdicts,
@@ -109,7 +109,7 @@ def document(account: Account) -> str:
         summary=_summary(verdicts),
         requirements=_requirements(listed),
         usual={"certificate": CERTIFICATE_BAR, "p": P_BAR, "q": Q_BAR},
-        closest=[_close(verdict) for verdict in sorted(nearest(verdicts), key=room)],
+        closest=[_close(verdict) for verdict in sorted(nearest(verdicts), key=bar_left)],
         found={case: list(map(_found, some)) for case, some in verdicts.items()},
         reasons={case: _reasons(some) for case, some in verdicts.items()},
         estimates=_estimates(listed),
@@ -162,7 +162,7 @@ def _requirements(verdicts: Sequence[CaseVerdict]) -> list[tuple[str, ...]]:
         some = [
             each for each in verdicts if requirement_of(each.quantity) == key and each.outcome is not Outcome.NOT_JUDGED
         ]
-        worst = min(some, key=room, default=None)
+        worst = min(some, key=bar_left, default=None)
         told = worst is not None and (worst.share is not None or missed(worst))
         where = f"{worst.case}, {worst.method}" if worst and told else ""
         share = _share(worst) if worst else ""
@@ -224,7 +224,7 @@ def _close(verdict: CaseVerdict) -> tuple[str, ...]:
 
 def _found(verdict: CaseVerdict) -> tuple[str, ...]:
     """Return a row of requirement, check, unit, exact value, value, error or residual, bar, share and verdict."""
-    unit, *pair = rows.numbers(verdict)[:3]
+    unit, *pair = rows.verdict_numbers(verdict)[:3]
     numbers = _number(verdict.error), _number(verdict.bar), _share(verdict)
     check = f"{verdict.method}.{verdict.quantity}"
     return number_of(verdict.quantity), check, unit, *pair, *numbers, rows.word(verdict)

@@ -4,7 +4,7 @@ from partialslip.result import Result
 from partialslip.scene import Scene
 from partialslip.scene.profiles import FlatRounded, Hertz
 
-REFERENCES = {
+PUBLICATIONS = {
     "1": "H. Andresen, D. A. Hills and M. R. Moore, The steady state partial slip problem for half plane contacts "
     "subject to a constant normal load using glide dislocations",
     "2": "K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985",

@@ -21,7 +21,7 @@ KINDS = (
 SHORT = 1 - 1e-12  # largest |Q| in f P without sliding, with room for rounding
 
 
-class Drawn(NamedTuple):
+class RandomScene(NamedTuple):
     """A random ``scene``, and the ``kind`` of the loads, one of ``KINDS``."""
 
     kind: str
@@ -33,11 +33,11 @@ def kind_of(number: int) -> str:
     return KINDS[number % len(KINDS)]
 
 
-def draw(seed: int, number: int) -> Drawn:
+def draw(seed: int, number: int) -> RandomScene:
     """Return the random scene of ``seed`` and ``number``."""
     random = np.random.default_rng([seed, number])
     kind, profile = kind_of(number), PROFILES[number // len(KINDS) % len(PROFILES)]
-    data = without_shear(random, profile)
+    data = pressed_only(random, profile)
     scene = parse_scene(data)
     pressed = contact(scene)
     Q, sigma = cycle(random, kind, pressed.shape)
@@ -50,10 +50,10 @@ def draw(seed: int, number: int) -> Drawn:
         "far_field": "box" if random.random() < 0.25 else "half-plane",
         "accuracy": 10 ** random.uniform(-3, -2),
     }
-    return Drawn(kind, parse_scene(data))
+    return RandomScene(kind, parse_scene(data))
 
 
-def without_shear(random: np.random.Generator, profile: str) -> dict[str, Any]:
+def pressed_only(random: np.random.Generator, profile: str) -> dict[str, Any]:
     """Return the tables of a scene with ``profile``, one of ``PROFILES``, and without tangential loads; SI units."""
     length, stress = 10 ** random.uniform(-9, 6), 10 ** random.uniform(-3, 15)
     material: dict[str, Any] = {
@@ -72,7 +72,7 @@ def without_shear(random: np.random.Generator, profile: str) -> dict[str, Any]:
         psi = math.acos(flat)
         P = length**2 / (A * R) * (psi - math.sin(psi) * flat)
         return data | {"profile": {"kind": "flat-rounded", "R": R, "b": flat * length}, "load": {"P": P}}
-    data |= {"profile": table(random, length), "load": {"P": 1.0}}
+    data |= {"profile": random_table(random, length), "load": {"P": 1.0}}
     tabulated = parse_scene(data).profile
     assert isinstance(tabulated, Tabulated)
     at, steps = tabulated.curvature_steps()
@@ -81,7 +81,7 @@ def without_shear(random: np.random.Generator, profile: str) -> dict[str, Any]:
     return data | {"load": {"P": float(a**2 / (2 * A) * (steps @ (2 * psi - np.sin(2 * psi))))}}
 
 
-def table(random: np.random.Generator, length: float) -> dict[str, Any]:
+def random_table(random: np.random.Generator, length: float) -> dict[str, Any]:
     """Return a tabulated profile: a convex gap at 6 to 12 points, of ``length`` in m, straight in some intervals."""
     count = int(random.integers(6, 13))
     x = np.concatenate([[0.0], np.cumsum(random.uniform(0.2, 1.0, count - 1))])
@@ -97,7 +97,7 @@ def cycle(random: np.random.Generator, kind: str, shape: Shape) -> tuple[Array, 
     There are two load points; three to eight for ``out of phase``.
     """
     Qf, sf = changes(random, kind, shape)
-    Q, sigma = means(random, kind, Qf, sf, shape)
+    Q, sigma = random_means(random, kind, Qf, sf, shape)
     turned = random.choice([-1.0, 1.0], 4)
     ways = np.array([-1.0, 1.0]), np.array([-1.0, 1.0])
     if kind == "out of phase":
@@ -147,7 +147,7 @@ def changes(random: np.random.Generator, kind: str, shape: Shape) -> tuple[float
     return Qf, at * times.get(kind, 10 ** random.uniform(-2, 1))
 
 
-def means(random: np.random.Generator, kind: str, Qf: float, sf: float, shape: Shape) -> tuple[float, float]:
+def random_means(random: np.random.Generator, kind: str, Qf: float, sf: float, shape: Shape) -> tuple[float, float]:
     """Return the means of Q in f P and of sigma in f p0, for changes ``Qf`` in 2 f P and ``sf`` in f p0."""
     room = 1 - Qf
     if kind == "sliding":

@@ -10,7 +10,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import contact
 from partialslip.scene import Scene
-from partialslip.verify.random_scenes import Drawn, draw
+from partialslip.verify.random_scenes import RandomScene, draw
 
 WAYS = ("P", "M", "e", "P and M", "P and e")
 SHARE = 1 / 3  # of the scenes, in which the pressure varies
@@ -25,7 +25,7 @@ def varies(seed: int, number: int) -> bool:
     return bool(_random(seed, number).random() < SHARE)
 
 
-def draw_varying(seed: int, number: int) -> Drawn:
+def draw_varying(seed: int, number: int) -> RandomScene:
     """Return the random scene of ``seed`` and ``number`` with varying pressure; the kind tells what varies."""
     random = _random(seed, number)
     random.random()  # that of varies()
@@ -40,7 +40,7 @@ def draw_varying(seed: int, number: int) -> Drawn:
     if count == 2 and random.random() < 0.25:  # more load points on the way
         shares = np.concatenate([[0.0], np.sort(random.random(random.integers(1, 4))), [1.0]])
         loads = loads[:, :1] + (loads[:, 1:] - loads[:, :1]) * shares
-    return Drawn(f"{kind}, {way} varies", _within_profile(scene, way, loads))
+    return RandomScene(f"{kind}, {way} varies", _within_profile(scene, way, loads))
 
 
 def _random(seed: int, number: int) -> np.random.Generator:

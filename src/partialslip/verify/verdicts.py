@@ -161,10 +161,10 @@ def nearest(verdicts: Verdicts) -> list[CaseVerdict]:
     for verdict in every_one(verdicts):
         if missed(verdict) or requirement_of(verdict.quantity) != "estimate":
             groups.setdefault((verdict.case, verdict.method), []).append(verdict)
-    return [min(some, key=room) for some in groups.values()]
+    return [min(some, key=bar_left) for some in groups.values()]
 
 
-def room(verdict: CaseVerdict) -> tuple[bool, float]:
+def bar_left(verdict: CaseVerdict) -> tuple[bool, float]:
     """Return the sort key of ``verdict``: missed verdicts first, then by the remaining fraction of the bar."""
     share = verdict.share if verdict.outcome is not Outcome.NOT_JUDGED else None
     return not missed(verdict), math.inf if share is None else 1 - share

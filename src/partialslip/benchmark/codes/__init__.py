@@ -10,7 +10,7 @@ from partialslip.benchmark.codes.calculix import Calculix
 from partialslip.benchmark.codes.getfem import GetFEM
 from partialslip.benchmark.codes.kratos import Kratos
 from partialslip.benchmark.codes.own import Own
-from partialslip.benchmark.codes.solved import Solved
+from partialslip.benchmark.codes.solved import CodeOutcome
 from partialslip.benchmark.measured import answer_of
 from partialslip.benchmark.problem import Problem, read_problems
 from partialslip.benchmark.submission import META, Answer, Meta, Rung, Submission, read_submission, write_submission
@@ -30,7 +30,7 @@ class Code(Protocol):
     def settings(self) -> str:
         """Settings in words."""
 
-    def solve(self, scene: Scene) -> Solved | None:
+    def solve(self, scene: Scene) -> CodeOutcome | None:
         """Solve ``scene``; None if the code does not offer it. A code that fails says why."""
 
 
@@ -61,7 +61,7 @@ def installed(name: str) -> str:
     return version
 
 
-def answers(
+def code_answers(
     name: str,
     problems: Mapping[str, Problem],
     progress: Callable[[int, int, float], None] = lambda *_: None,
@@ -112,16 +112,16 @@ def _answered(code: Code, problem: Problem) -> Answer | None:
     return replace(found[-1], ladder=tuple(ladder))
 
 
-def _solved(code: Code, scene: Scene) -> Solved | None:
+def _solved(code: Code, scene: Scene) -> CodeOutcome | None:
     try:
         return code.solve(scene)
     except MissingLibraryError:
         raise
     except PartialslipError as error:  # such as a mesh that cannot be made
-        return Solved(None, str(error))
+        return CodeOutcome(None, str(error))
 
 
-def _answer(problem: Problem, solved: Solved) -> Answer:
+def _answer(problem: Problem, solved: CodeOutcome) -> Answer:
     values = answer_of(problem, solved.result).values if solved.result else {}
     return Answer(values, solved.cpu_s, solved.unknowns, solved.memory_mb, one_line(solved.why))
 

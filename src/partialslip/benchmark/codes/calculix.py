@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 
 from partialslip.benchmark.codes.process import LONGEST, ran
-from partialslip.benchmark.codes.solved import Solved
+from partialslip.benchmark.codes.solved import CodeOutcome
 from partialslip.benchmark.increments import gradual, told
 from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError
@@ -42,7 +42,7 @@ class Calculix:
         elements = f"elements of {self.size:g} a along the contact, growing by {GROWTH:g}"
         return f"{kind} contact, {elements}, bodies {STIFFER:g} times stiffer{told(self.increments)}"
 
-    def solve(self, scene: Scene) -> Solved | None:
+    def solve(self, scene: Scene) -> CodeOutcome | None:
         """Solve ``scene``; None if there is no deck for it."""
         scene = gradual(scene, self.increments)
         try:
@@ -56,12 +56,12 @@ class Calculix:
             counted = _DOFS.search(done.text)
             cost = int(counted[1]) if counted else None, done.cpu_s, done.memory_mb
             if why := _unfinished(done.code, done.text, deck.with_suffix(".sta")):
-                return Solved(None, why, *cost)
+                return CodeOutcome(None, why, *cost)
             try:
                 result = scored(scene, read(deck.with_suffix(".frd"), scene), "calculix", "job.frd")
             except InputError as error:
-                return Solved(None, f"no results: {error}", *cost)
-        return Solved(result, "", *cost)
+                return CodeOutcome(None, f"no results: {error}", *cost)
+        return CodeOutcome(result, "", *cost)
 
 
 @cache

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from partialslip.benchmark.codes.scripted import Host, of_scene, solved
-from partialslip.benchmark.codes.solved import Solved
+from partialslip.benchmark.codes.solved import CodeOutcome
 from partialslip.benchmark.increments import gradual, told
 from partialslip.benchmark.neutral import GROWTH
 from partialslip.errors import InputError
@@ -46,7 +46,7 @@ class GetFEM:
         kind = f"Q{self.order} elements of {self.size:g} a along the contact{where}"
         return f"{kind}; linear multipliers, augmented conditions (Alart and Curnier){told(self.increments)}"
 
-    def solve(self, scene: Scene) -> Solved | None:
+    def solve(self, scene: Scene) -> CodeOutcome | None:
         """Solve ``scene``; None if its meshes cannot be made."""
         scene = gradual(scene, self.increments)
         ends: tuple[float, ...] = ()

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from partialslip.benchmark.codes.scripted import Host, of_scene, solved
-from partialslip.benchmark.codes.solved import Solved
+from partialslip.benchmark.codes.solved import CodeOutcome
 from partialslip.benchmark.increments import gradual
 from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError
@@ -42,7 +42,7 @@ class Kratos:
         increments = f"{self.just or self.increments} increments a step"
         return f"{kind}, tangent_factor 1, {increments}, bodies {STIFFER:g} times stiffer"
 
-    def solve(self, scene: Scene) -> Solved | None:
+    def solve(self, scene: Scene) -> CodeOutcome | None:
         """Solve ``scene``; None if there is no model, or the upper body would have to turn."""
         scene = gradual(scene, self.just)
         if any(M for _, M in scene.pressing):

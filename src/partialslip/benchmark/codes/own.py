@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import partialslip
-from partialslip.benchmark.codes.solved import Solved
+from partialslip.benchmark.codes.solved import CodeOutcome
 from partialslip.errors import PartialslipError
 from partialslip.run import run
 from partialslip.scene import Scene
@@ -36,7 +36,7 @@ class Own:
         told += ["sizes " + ", ".join(f"{size:g} a" for size in self.sizes)] if self.sizes else []
         return ", ".join(told)
 
-    def solve(self, scene: Scene) -> Solved | None:
+    def solve(self, scene: Scene) -> CodeOutcome | None:
         """Solve ``scene``; None if the method does not offer it."""
         if self.sizes:
             return self.rungs[-1].solve(scene)
@@ -47,4 +47,4 @@ class Own:
         except PartialslipError:
             return None
         unknowns = result.counts.get("dofs") or result.counts.get("cells")
-        return Solved(result, "", unknowns, result.cost.cpu_s, result.cost.peak_rss_mb)
+        return CodeOutcome(result, "", unknowns, result.cost.cpu_s, result.cost.peak_rss_mb)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import msgspec
 
 from partialslip.benchmark.codes.process import LONGEST, python_with, ran
-from partialslip.benchmark.codes.solved import Solved
+from partialslip.benchmark.codes.solved import CodeOutcome
 from partialslip.errors import InputError
 from partialslip.export.path import Step
 from partialslip.scene import Scene
@@ -54,15 +54,15 @@ def of_scene(scene: Scene, steps: Sequence[Step]) -> dict[str, Any]:
     }
 
 
-def solved(host: Host, scene: Scene, parameters: Mapping[str, Any], folder: Path) -> Solved:
+def solved(host: Host, scene: Scene, parameters: Mapping[str, Any], folder: Path) -> CodeOutcome:
     """Run the script of ``host`` with ``parameters`` in ``folder``, and read the tractions of ``scene``."""
     (folder / "parameters.json").write_text(json.dumps(parameters), "utf-8")
     python, _ = python_with(host.variable, host.version) or (sys.executable, "")
     with as_file(files("partialslip.benchmark.codes") / "scripts" / host.script) as script:
         done = ran([python, str(script), "parameters.json"], folder)
 
-    def failed(why: str, unknowns: int | None = None) -> Solved:
-        return Solved(None, why, unknowns, done.cpu_s, done.memory_mb)
+    def failed(why: str, unknowns: int | None = None) -> CodeOutcome:
+        return CodeOutcome(None, why, unknowns, done.cpu_s, done.memory_mb)
 
     if done.code is None:
         return failed(f"not finished within {LONGEST:g} s")
@@ -78,4 +78,4 @@ def solved(host: Host, scene: Scene, parameters: Mapping[str, Any], folder: Path
         result = scored(scene, read(folder / TABLE, scene), "", TABLE)
     except InputError as error:
         return failed(f"no results: {error}", unknowns)
-    return Solved(result, "", unknowns, done.cpu_s, done.memory_mb)
+    return CodeOutcome(result, "", unknowns, done.cpu_s, done.memory_mb)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from partialslip.result import Result
 
 
-class Solved(NamedTuple):
+class CodeOutcome(NamedTuple):
     """Outcome of a code.
 
     Parameters

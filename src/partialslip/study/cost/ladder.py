@@ -28,7 +28,7 @@ SETTING = (
     "setting: accuracy asked of a, m and n, as a fraction of a (adapted meshes, march), or element size h (uniform "
     "meshes, other codes)"
 )
-KEYS = ("a", "m", "n", "p", "q")
+ERRORS = ("a", "m", "n", "p", "q")
 _ADAPTED: dict[str, tuple[dict[str, Any], tuple[float, ...]]] = {
     "P6": ({"order": 6}, (1e-6, 1e-7, 1e-8, 1e-9)),
     "P4": ({"order": 4}, (1e-2, 1e-3, 1e-4, 2e-5, 1e-6, 1e-7)),
@@ -126,7 +126,7 @@ def _case(scene: Scene, methods: tuple[str, ...], series: str, setting: str, fem
     return Job(parse_scene(data), methods, {"series": series, "setting": setting})
 
 
-def measure(
+def measure_costs(
     scene: Scene, ledger: Ledger, repeats: int, progress: Callable[[int, int, str, float], None] = lambda *_: None
 ) -> list[CostPoint]:
     """Solve the ladder of ``scene``, one new process per job. Jobs in ``ledger`` are not solved again.
@@ -177,7 +177,7 @@ def _point(series: str, setting: str, entries: Sequence[Solved]) -> CostPoint:
     return CostPoint(
         series=series,
         setting=setting,
-        errors={key: error for key in KEYS if (error := comparison.errors[key]) is not None} if comparison else {},
+        errors={key: error for key in ERRORS if (error := comparison.errors[key]) is not None} if comparison else {},
         cpu_s=median(cost.cpu_s for cost in costs),
         process_s=median(process.cpu_s for process in processes),
         report_s=median(process.report_cpu_s for process in processes),
@@ -235,7 +235,7 @@ def read_peers(path: Path, scene: str) -> list[CostPoint]:
                 CostPoint(
                     series=f"{peer.method}, {_short(peer.setting)}",
                     setting=f"h = {peer.element_size:g} a",
-                    errors={key: off for key in KEYS if (off := peer.errors.get(key)) is not None},
+                    errors={key: off for key in ERRORS if (off := peer.errors.get(key)) is not None},
                     cpu_s=peer.cpu_s,
                     process_s=peer.process_cpu_s,
                     report_s=0.0,
@@ -306,17 +306,17 @@ def against(ours: Sequence[CostPoint], peer: Sequence[CostPoint], key: str) -> d
     }
 
 
-def table(points: Sequence[CostPoint]) -> tuple[list[str], list[list[float | str]]]:
+def cost_table(points: Sequence[CostPoint]) -> tuple[list[str], list[list[float | str]]]:
     """Return headings and rows for a CSV file with all values of ``points``."""
     phases = list(dict.fromkeys(phase for point in points for phase in point.phases))
     counts = list(dict.fromkeys(count for point in points for count in point.counts))
     costs = ["cpu_s", "process_s", "report_s", "wall_s", "peak_rss_mb"]
-    head = ["series", "setting", *KEYS, *costs, *(f"{phase}_cpu_s" for phase in phases), *counts]
+    head = ["series", "setting", *ERRORS, *costs, *(f"{phase}_cpu_s" for phase in phases), *counts]
     rows: list[list[float | str]] = [
         [
             point.series,
             point.setting,
-            *(point.errors.get(key, "") for key in KEYS),
+            *(point.errors.get(key, "") for key in ERRORS),
             *(getattr(point, cost) for cost in costs),
             *(point.phases.get(phase, "") for phase in phases),
             *(point.counts.get(count, "") for count in counts),

@@ -35,7 +35,7 @@ _REPEATS = 2  # runs per setting; the one with the least CPU time counts
 
 
 @dataclass(frozen=True)
-class Entry:
+class SwitchedEffect:
     """One effect, on and off.
 
     Parameters
@@ -85,7 +85,7 @@ class EffectStudy:
     scene: Scene
     plan: Plan
     result: Result
-    entries: tuple[Entry, ...]
+    entries: tuple[SwitchedEffect, ...]
 
 
 class ResultSummary(msgspec.Struct, frozen=True):
@@ -106,7 +106,7 @@ class EffectsRecord(msgspec.Struct, frozen=True):
     schema: str
     scene: Scene
     result: ResultSummary
-    effects: tuple[Entry, ...]
+    effects: tuple[SwitchedEffect, ...]
 
 
 def study_effects(scene: Scene, progress: Callable[[str], None] = lambda _: None) -> EffectStudy:
@@ -134,7 +134,7 @@ def study_effects(scene: Scene, progress: Callable[[str], None] = lambda _: None
     return EffectStudy(scene, own, result, tuple(entries))
 
 
-def _entry(scene: Scene, own: Plan, result: Result, effect: Effect) -> Entry:
+def _entry(scene: Scene, own: Plan, result: Result, effect: Effect) -> SwitchedEffect:
     on = own.needs(effect)
     choices = msgspec.to_builtins(scene.effects) | {effect: not on}
     turned = replace(scene, effects=msgspec.convert(choices, type(scene.effects)))
@@ -145,10 +145,10 @@ def _entry(scene: Scene, own: Plan, result: Result, effect: Effect) -> Entry:
         alone: dict[str, tuple[float | None, float | None]] = {
             key: (cost, None) if on else (None, cost) for key, cost in _costs(result).items()
         }
-        return Entry(effect, on, why, str(refusal), {}, alone)
+        return SwitchedEffect(effect, on, why, str(refusal), {}, alone)
     with_it, without = (result, other) if on else (other, result)
     costs = {key: (cost, _costs(without)[key]) for key, cost in _costs(with_it).items()}
-    return Entry(effect, on, why, "", _changes(with_it, without), costs)
+    return SwitchedEffect(effect, on, why, "", _changes(with_it, without), costs)
 
 
 def _measured(scene: Scene) -> Result:
@@ -214,12 +214,12 @@ def costs_table(study: EffectStudy) -> tuple[tuple[str, ...], list[tuple[str, ..
     return ("", *COSTS.values()), rows
 
 
-def turned_over(entry: Entry) -> str:
+def turned_over(entry: SwitchedEffect) -> str:
     """Return "without EFFECT" or "with EFFECT", for the run in which the effect of ``entry`` is switched."""
     return f"{'without' if entry.called_for else 'with'} {entry.effect}"
 
 
-def change(entry: Entry, key: str) -> str:
+def change(entry: SwitchedEffect, key: str) -> str:
     """Return the change of ``key`` by the effect of ``entry`` as text; "-" without values to compare."""
     value = entry.changes.get(key)
     return "-" if value is None else "0" if value == 0 else f"{value:.1e}"
@@ -229,12 +229,12 @@ def _digits(cost: float | None) -> str:
     return "-" if cost is None else f"{cost:,}" if isinstance(cost, int) else f"{cost:.2f}"
 
 
-def notes(study: EffectStudy) -> list[str]:
+def refusals(study: EffectStudy) -> list[str]:
     """Return why effects of ``study`` cannot be switched, as lines of text."""
     return [entry.refused for entry in study.entries if entry.refused]
 
 
-def heading(study: EffectStudy) -> str:
+def effects_heading(study: EffectStudy) -> str:
     """Return name, regime, a, m and n of the scene of ``study`` as one line."""
     result = study.result
     ends = ", ".join(
@@ -244,20 +244,20 @@ def heading(study: EffectStudy) -> str:
     return f"{study.scene.name}: {result.regime}, a = {study.scene.units.text(result.a, 'm', 6)}, {ends}"
 
 
-def sections(study: EffectStudy, figure: str) -> list[Section]:
+def effects_sections(study: EffectStudy, figure: str) -> list[Section]:
     """Return the sections of the report on ``study``, with the ``figure`` (SVG)."""
     changes, costs = changes_table(study), costs_table(study)
     why = [(entry.effect, entry.why) for entry in study.entries]
     return [
         Section(
             "Changes by each effect",
-            [heading(study), "Changes of a, m and n are fractions of a; changes of q and q2 are relative L2."],
+            [effects_heading(study), "Changes of a, m and n are fractions of a; changes of q and q2 are relative L2."],
             figure,
             "Left: change between on and off. Right: CPU seconds with and without each effect.",
             *changes,
             words=(1,),
         ),
-        Section("Costs", notes(study), "", "", *costs),
+        Section("Costs", refusals(study), "", "", *costs),
         Section("Why an effect is called for or left out", (), "", "", ("effect", "reason"), why, (1,)),
     ]
 

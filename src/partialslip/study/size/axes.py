@@ -17,7 +17,7 @@ from partialslip.run import run
 from partialslip.scene import Scene
 from partialslip.scene.reading import parse_scene
 from partialslip.scene.writing import scene_tables
-from partialslip.study.size.case import METHODS
+from partialslip.study.size.case import COMPARED_METHODS
 
 ACCURACY = "accuracy"  # label of a case besides the axes
 _COUNT = 9
@@ -116,7 +116,7 @@ def cases(scene: Scene, axes: Sequence[Axis], accuracies: Sequence[float] = (1.0
         for accuracy in accuracies:
             own = deepcopy(data)
             own["fem"]["accuracy"] = scene.fem.accuracy * accuracy
-            found.append(Job(parse_scene(own), METHODS, {**labels, ACCURACY: accuracy}))
+            found.append(Job(parse_scene(own), COMPARED_METHODS, {**labels, ACCURACY: accuracy}))
     return found
 
 

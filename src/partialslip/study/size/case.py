@@ -10,7 +10,7 @@ from partialslip.run import compared, run
 if TYPE_CHECKING:
     from partialslip_fem import Kept
 
-METHODS = ("exact", "equivalent", "fem")
+COMPARED_METHODS = ("exact", "equivalent", "fem")
 
 
 class Sized(Solved, frozen=True, kw_only=True):
@@ -28,7 +28,7 @@ class Sized(Solved, frozen=True, kw_only=True):
     refused: str = ""
 
 
-def solve_case(job: Job, keep: "Kept | None" = None) -> Sized:
+def solve_sized(job: Job, keep: "Kept | None" = None) -> Sized:
     """Solve ``job`` by the exact method and finite elements, and by equivalent half-planes where these exist; ``keep``
     as in :func:`partialslip.run`."""
     try:

@@ -10,8 +10,8 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.output.svg import svg
 from partialslip.study.size.law import LEVELS, Kind, Needed, PointStatus, Trend
-from partialslip.study.size.sizes import EQUIVALENT, HALF_PLANE, QUANTITIES
-from partialslip.study.size.tables import SizeModel, SizeStudy, heading
+from partialslip.study.size.sizes import DIFFERENCES, EQUIVALENT, HALF_PLANE
+from partialslip.study.size.tables import SizeModel, SizeStudy, size_heading
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,9 +36,9 @@ def size_svg(study: SizeStudy) -> str:
     Circles are the half-plane's, squares those of equivalent half-planes. Fitted points are filled, others open. Lines
     show the laws, errors of the mesh are grey, and marks on the levels the sizes from which on the difference is below.
     """
-    found = [quantity for quantity in QUANTITIES if any(trend.quantity == quantity for trend in study.trends)]
+    found = [quantity for quantity in DIFFERENCES if any(trend.quantity == quantity for trend in study.trends)]
     count = -(-len(found) // _COLUMNS)
-    title = textwrap.fill(heading(study), _LINE)
+    title = textwrap.fill(size_heading(study), _LINE)
 
     def draw(figure: "Figure") -> None:
         panels = figure.subplots(count, _COLUMNS, sharex=True, sharey=True, squeeze=False)

@@ -14,9 +14,9 @@ from partialslip.batch.ledger import Ledger
 from partialslip.batch.sweep import Progress, sweep
 from partialslip.scene import Scene
 from partialslip.study.size.axes import ACCURACY, Axis, cases
-from partialslip.study.size.case import Sized, solve_case
+from partialslip.study.size.case import Sized, solve_sized
 
-QUANTITIES = ("a", "p0", "p", "m", "n", "q")
+DIFFERENCES = ("a", "p0", "p", "m", "n", "q")
 HALF_PLANE, EQUIVALENT = "half-plane", "equivalent"
 CLEAR = 10.0  # a difference counts if it exceeds the mesh's error by this factor
 _COARSER = 8.0  # ratio of the accuracies of two successive meshes
@@ -59,7 +59,7 @@ def measure(
     PartialslipError
         If a worker process dies; finished cases are in the ledger.
     """
-    solve, asked = Sharing(solve_case), cases(scene, axes, (_COARSER, 1.0) if control else (1.0,))
+    solve, asked = Sharing(solve_sized), cases(scene, axes, (_COARSER, 1.0) if control else (1.0,))
     sweep([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
     finer = [_COARSER**-k for k in range(1, _FINER + 1)] if control else []
     for accuracy in (each for each in finer if each * scene.fem.accuracy >= _FINEST):
@@ -111,8 +111,8 @@ def along(axis: Axis, entries: Iterable[Sized], name: str = HALF_PLANE) -> Sizes
     return Sizes(
         name,
         np.array(list(points)),
-        {key: np.array([off[key] for off, _ in points.values()]) for key in QUANTITIES},
-        {key: np.array([mesh[key] for _, mesh in points.values()]) for key in QUANTITIES},
+        {key: np.array([off[key] for off, _ in points.values()]) for key in DIFFERENCES},
+        {key: np.array([mesh[key] for _, mesh in points.values()]) for key in DIFFERENCES},
         {size: error for size, error in sorted(errors.items()) if size not in points},
     )
 
@@ -142,19 +142,19 @@ def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], d
     estimate["p0"] = estimate.get("p", math.nan)
     coarser = [each for each in meshes[:-1] if _dofs(each) != _dofs(meshes[-1])]
     rough = _off(coarser[-1]) if coarser else {}
-    changed = {key: abs(rough.get(key, math.nan) - found.get(key, math.nan)) / _COARSER for key in QUANTITIES}
-    mesh = {key: float(np.fmax(estimate.get(key, math.nan), changed[key])) for key in QUANTITIES}
-    differences = {HALF_PLANE: ({key: abs(found.get(key, math.nan)) for key in QUANTITIES}, mesh)}
+    changed = {key: abs(rough.get(key, math.nan) - found.get(key, math.nan)) / _COARSER for key in DIFFERENCES}
+    mesh = {key: float(np.fmax(estimate.get(key, math.nan), changed[key])) for key in DIFFERENCES}
+    differences = {HALF_PLANE: ({key: abs(found.get(key, math.nan)) for key in DIFFERENCES}, mesh)}
     if meshes[-1].equivalent:
         left, rig = _left(meshes[-1])
-        both = {key: mesh[key] + rig.get(key, 0.0) for key in QUANTITIES}
-        differences[EQUIVALENT] = ({key: left.get(key, math.nan) for key in QUANTITIES}, both)
+        both = {key: mesh[key] + rig.get(key, 0.0) for key in DIFFERENCES}
+        differences[EQUIVALENT] = ({key: left.get(key, math.nan) for key in DIFFERENCES}, both)
     return differences
 
 
 def _clear(meshes: Sequence[Sized]) -> bool:
     off, mesh = _differences(meshes)[HALF_PLANE]
-    return all(not off[key] < CLEAR * mesh[key] for key in QUANTITIES)
+    return all(not off[key] < CLEAR * mesh[key] for key in DIFFERENCES)
 
 
 def _dofs(entry: Sized) -> int | None:
@@ -187,8 +187,8 @@ def _left(entry: Sized) -> tuple[dict[str, float], dict[str, float]]:
         return {}, {}
     errors = entry.equivalent.comparison["equivalent"].errors
     shares = entry.equivalent.methods["equivalent"].shares.get("rig", {})
-    left = {key: errors.get("p_max" if key == "p0" else key) for key in QUANTITIES}
-    rig = {key: shares.get("p" if key == "p0" else key) for key in QUANTITIES}
+    left = {key: errors.get("p_max" if key == "p0" else key) for key in DIFFERENCES}
+    rig = {key: shares.get("p" if key == "p0" else key) for key in DIFFERENCES}
     return _known(left), _known(rig)
 
 
@@ -208,11 +208,11 @@ def grid(axes: Sequence[Axis], entries: Iterable[Sized], quantity: str) -> tuple
     return x, y, np.array([[points.get((first, second), math.nan) for first in x.tolist()] for second in y.tolist()])
 
 
-def table(axes: Sequence[Axis], entries: Iterable[Sized]) -> tuple[list[str], list[list[Any]]]:
+def case_table(axes: Sequence[Axis], entries: Iterable[Sized]) -> tuple[list[str], list[list[Any]]]:
     """Return headings and rows for a CSV file, one row per case, from ``axes`` and ``entries``."""
     figures = ("a", "p_max", "m", "n", "regime")
     head = [*(each.name for each in axes), ACCURACY, *figures]
-    head += [f"{name}: {key}" for name in (HALF_PLANE, EQUIVALENT) for key in QUANTITIES]
+    head += [f"{name}: {key}" for name in (HALF_PLANE, EQUIVALENT) for key in DIFFERENCES]
     head += ["dofs", "cpu_s", "error", "no equivalent"]
     rows: list[list[Any]] = []
     for entry in entries:
@@ -222,6 +222,6 @@ def table(axes: Sequence[Axis], entries: Iterable[Sized]) -> tuple[list[str], li
         else:
             fem, differences = entry.run.methods["fem"], (_off(entry), _left(entry)[0])
             row += [getattr(fem, key) for key in figures]
-            row += [each.get(key, "") for each in differences for key in QUANTITIES]
+            row += [each.get(key, "") for each in differences for key in DIFFERENCES]
             rows.append([*row, fem.counts["dofs"], fem.cost.cpu_s, "", entry.refused])
     return head, rows

@@ -9,7 +9,7 @@ from partialslip.scene import Scene
 from partialslip.study.size.axes import Axis
 from partialslip.study.size.case import Sized
 from partialslip.study.size.law import LEVELS, Kind, PointStatus, Trend, trends
-from partialslip.study.size.sizes import EQUIVALENT, HALF_PLANE, QUANTITIES, Sizes, along, refused
+from partialslip.study.size.sizes import DIFFERENCES, EQUIVALENT, HALF_PLANE, Sizes, along, refused
 
 Rows = list[tuple[str, ...]]
 _MARKS = {
@@ -88,10 +88,10 @@ def size_study(scene: Scene, axis: Axis, entries: Sequence[Sized]) -> SizeStudy:
     """Evaluate the ``entries`` of a ledger for a sweep of ``scene`` along ``axis``."""
     sweeps = [along(axis, entries, name) for name in (HALF_PLANE, EQUIVALENT)]
     models = tuple(SizeModel(each, trends(each)) for each in sweeps if each.name == HALF_PLANE or each.size.size)
-    return SizeStudy(scene, axis, models, tuple(remarks([axis], entries)))
+    return SizeStudy(scene, axis, models, tuple(case_remarks([axis], entries)))
 
 
-def remarks(axes: Sequence[Axis], entries: Sequence[Sized]) -> list[str]:
+def case_remarks(axes: Sequence[Axis], entries: Sequence[Sized]) -> list[str]:
     """Return which of ``entries`` failed, and which have no equivalent half-planes, and why, as lines of text."""
     lines = [
         f"not solved: {', '.join(f'{key} {value}' for key, value in entry.labels.items())}: {entry.error}"
@@ -111,7 +111,7 @@ def _listed_points(points: Sequence[str]) -> str:
     return f"{points[0]} and {len(points) - 1} more"
 
 
-def heading(study: SizeStudy) -> str:
+def size_heading(study: SizeStudy) -> str:
     """Return what was measured over which axis, as one line."""
     return f"{study.scene.name}: half-planes against finite elements, over {study.label}"
 
@@ -151,14 +151,14 @@ def _by_quantity(study: SizeStudy) -> list[tuple[str, str, Trend]]:
     """Quantity, model and trend: the models of a quantity one after the other."""
     return [
         (trend.quantity, model.name, trend)
-        for quantity in QUANTITIES
+        for quantity in DIFFERENCES
         for model in study.models
         for trend in model.trends
         if trend.quantity == quantity
     ]
 
 
-def notes(study: SizeStudy) -> list[str]:
+def size_notes(study: SizeStudy) -> list[str]:
     """Return what the letters and words of the tables mean, what is not extrapolated, and which cases failed."""
     points = {point for trend in study.trends for point in trend.points}
     kinds = {needed.kind for trend in study.trends for needed in trend.needed}
@@ -223,7 +223,7 @@ def _marked(difference: float, point: PointStatus) -> str:
 
 def _share(sizes: Sizes, k: int) -> str:
     """Return the largest share of a difference that may be an error of the mesh, as text."""
-    shares = [sizes.mesh[key][k] / sizes.off[key][k] for key in QUANTITIES if sizes.off[key][k] > 0]
+    shares = [sizes.mesh[key][k] / sizes.off[key][k] for key in DIFFERENCES if sizes.off[key][k] > 0]
     known = [share for share in shares if not math.isnan(share)]
     return "" if not known else f"{max(known):.1%}" if max(known) < 1 else "> 100%"
 

@@ -57,7 +57,7 @@ def hard_cases() -> list[Case]:
     return [case for family in FAMILIES for case in family.cases]
 
 
-def document() -> str:
+def catalogue_page() -> str:
     """Return the catalogue as Markdown, the text of docs/hard-cases.md."""
     lines = [_HEAD]
     for family in FAMILIES:
