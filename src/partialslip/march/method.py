@@ -50,8 +50,8 @@ _WORK = 5e11  # limit of cells^3 times load steps of a mesh
 # Errors of m and n, as parts of the change from mesh to mesh and of growth^3; the same part of ends that are soft, over
 # their stiffness, 1 in Hertz contacts: an error of the loads moves an end the more the less stiff the end is
 _MOVED, _CUBIC, _CUBIC_OF_SOFT = 0.1, 0.15, 0.05
-# The same part in a narrow stick zone, which its surroundings move as a whole. Cells nearby are reduced with the zone:
-# only growth is halved from mesh to mesh, and errors are of second order in it
+# The same part in a narrow stick zone, which its surroundings move as a whole, and where slip turns round, and q that
+# is locked in far from the ends moves them: only growth is halved from mesh to mesh, and errors are of second order
 _CARRIED = 1 / 3
 # Where slip turns round, besides: at an end that moves over cells that slipped, the distance of its two readings, at
 # least and at most these parts of the cell's size; at least a part of the error of q, which is locked in where the zone
@@ -299,7 +299,7 @@ def _mesh_errors(normal: NormalLoads, level: _Level, before: _Level, growth: flo
     unseen = _SOMEWHERE * size * (gap < _CELLS * size)
     moved = max(abs(level.stick.left - before.stick.left), abs(level.stick.right - before.stick.right))
     between = np.maximum(_CUBIC, _CUBIC_OF_SOFT / _stiffness(level)) * growth**3 * np.minimum(_NEAR * gap, 1.0)
-    part = _CARRIED if _NEAR * gaps[1] < 1 else _MOVED
+    part = _CARRIED if _NEAR * gaps[1] < 1 or level.history.turns else _MOVED
     known = np.maximum(unseen, np.maximum(part * moved, between))
     changes = {
         key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices, 2 if key == "q" else 1)
