@@ -119,7 +119,7 @@ def test_the_good_scene_is_good(tmp_path, capsys):
         ("[fem]", "[FEM]", "FEM: unknown key; did you mean 'fem'?"),
         ("[fem]", "[mesh]", "mesh: unknown key; known are name, material, "),
         ("[load]", "[[load]]", "load = [{'p0': 400000000.0, "),
-        ("[friction]", "[friction.f]", "friction.f = {'f': 0.5}: must be a number, not a table"),
+        ("[friction]", "[friction.f]", "friction.f = {'f': 0.5}: must be a number or an array, not a table"),
         ("E =", r'"E\nE" = 1', r"material.E\nE: unknown key; known are E, nu, plane"),
         # TOML
         ("E =", "E =", "not valid TOML: Invalid value (at line 4"),
