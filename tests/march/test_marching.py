@@ -187,27 +187,6 @@ def test_legs_are_followed_where_slip_turns_round(Qf, sf):
     assert marched("hertz-large-tension", "fem.accuracy=1e-3").counts["events"] == 0
 
 
-def of_the_moved_end(Qf, sf):
-    """Error of m over its estimate, where this end moves over cells that slipped."""
-    fP, half = 314159.26535897935, sf * 1e8
-    loads = ["fem.accuracy=1e-3", f"load.Q=[{-Qf * fP}, {Qf * fP}]", f"load.sigma=[{-half}, {half}]"]
-    outcome = partialslip.run(partialslip.load_scene("hertz-large-tension", loads), ["exact", "march"])
-    return outcome.comparisons["march"].m / outcome.results["march"].estimate["m"]
-
-
-def test_an_end_that_moves_is_not_known_better_than_its_readings_agree():
-    """The room that q leaves and the loads at which cells stuck again: beside the end of the contact the former is two
-    cells off."""
-    assert of_the_moved_end(0.4981009, 3.0189625) <= 1.0
-
-
-@pytest.mark.fault
-def test_an_end_that_moves_is_read_once(monkeypatch):
-    """Deliberate fault: the end is taken to be known to a quarter of a cell, however far its readings are apart."""
-    monkeypatch.setattr(marching, "_CAUGHT_UP", (0.25, 0.25))
-    assert of_the_moved_end(0.4981009, 3.0189625) > 1.0
-
-
 def ellipse(name, points, *overrides):
     """Shear and tension a quarter of a cycle apart, at this number of load points."""
     scene, t = partialslip.load_scene(name), 2 * np.pi * np.arange(points) / points

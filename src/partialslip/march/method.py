@@ -50,13 +50,12 @@ _WORK = 5e11  # limit of cells^3 times load steps of a mesh
 # Errors of m and n, as parts of the change from mesh to mesh and of growth^3; the same part of ends that are soft, over
 # their stiffness, 1 in Hertz contacts: an error of the loads moves an end the more the less stiff the end is
 _MOVED, _CUBIC, _CUBIC_OF_SOFT = 0.1, 0.15, 0.05
-# The same part in a narrow stick zone, which its surroundings move as a whole, and where slip turns round, and q that
-# is locked in far from the ends moves them: only growth is halved from mesh to mesh, and errors are of second order
+# The same part in a narrow stick zone, which its surroundings move as a whole. Cells nearby are reduced with the zone:
+# only growth is halved from mesh to mesh, and errors are of second order in it
 _CARRIED = 1 / 3
-# Where slip turns round, besides: at an end that moves over cells that slipped, the distance of its two readings, at
-# least and at most these parts of the cell's size; at least a part of the error of q, which is locked in where the zone
-# has moved, by the share of such points; errors of q, q1 and q2 over those of other scenes (measured)
-_CAUGHT_UP, _LOCKED, _TURNED = (0.25, 2.0), 0.13, 1.5
+# The same where slip turns round; also, at an end that moves over cells that slipped, parts of the cell's size; and
+# parts of the change of q, which is locked in where the zone has moved, by the share of such points (measured)
+_TURNED, _CAUGHT_UP, _LOCKED = 2.0, 0.5, 0.2
 _FITTED, _SOFTEST = 4, 1e-3  # cells inside an end of the stick zone from which its stiffness is found; least stiffness
 _CHANGED = (0.4, 0.35)  # errors of q, q1 and q2 as parts of the change to the second mesh and to later meshes
 _JUDGED = ("m", "n", "q", "q1", "q2")
@@ -135,9 +134,7 @@ def solve(
     meshes, iterations, spent = 0, 0, 0.0
     # a path out of phase takes more than one coarse mesh to find its stick zone
     coarse = 2 if path and not path.in_phase and len(_MESHES) > 1 else 1
-    planned, turned = [*_MESHES[:1] * coarse, *_MESHES[1:]], False
-    while planned:
-        size, growth = planned.pop(0)
+    for size, growth in (*_MESHES[:1] * coarse, *_MESHES[1:]):
         cells = _cells(ends, inner, passing, level, size, growth)
         if level and level.history:
             work, likely = level.history.load_steps * len(cells) ** 3, spent * (len(cells) / len(level.vertices)) ** 3
@@ -152,10 +149,6 @@ def solve(
         meshes, iterations = meshes + 1, iterations + (level.history.iterations if level.history else 0)
         if level.stick is None:
             break
-        if level.history and level.history.turns and not turned and planned:
-            # cells are fine where the zone was thought to end without it: begin anew, at these ends
-            turned, coarse, planned, path = True, meshes + 1, [*_MESHES], level.history.path
-            continue
         if before and meshes > coarse:
             first = meshes == coarse + 1
             if first:
@@ -299,18 +292,14 @@ def _mesh_errors(normal: NormalLoads, level: _Level, before: _Level, growth: flo
     unseen = _SOMEWHERE * size * (gap < _CELLS * size)
     moved = max(abs(level.stick.left - before.stick.left), abs(level.stick.right - before.stick.right))
     between = np.maximum(_CUBIC, _CUBIC_OF_SOFT / _stiffness(level)) * growth**3 * np.minimum(_NEAR * gap, 1.0)
-    part = _CARRIED if _NEAR * gaps[1] < 1 or level.history.turns else _MOVED
+    part = _CARRIED if _NEAR * gaps[1] < 1 else _MOVED
     known = np.maximum(unseen, np.maximum(part * moved, between))
     changes = {
         key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices, 2 if key == "q" else 1)
         for key, of in SHEARS.items()
     }
     if level.history.turns:
-        changes = {key: _TURNED * change for key, change in changes.items()}
-        least, most = np.multiply.outer(_CAUGHT_UP, size)
-        readings = np.abs(np.subtract(level.stick.caught, level.zone))
-        caught = np.where(np.isnan(readings), least, np.clip(readings, least, most))
-        known = known + np.where(level.stick.moved, caught, 0.0)
+        known = _TURNED * known + _CAUGHT_UP * size * np.array(level.stick.moved)
         known = np.maximum(known, _LOCKED * _passed(level) * changes["q"]) + level.stick.strips
     known *= normal.frame.a / normal.largest.a
     return dict(zip("mn", known.tolist(), strict=True)) | changes
