@@ -28,7 +28,7 @@ if __name__ == "__main__":  # worker processes import this file
     ledger = Ledger(folder / "ledger.jsonl")
     known = len(ledger)
     with workers(processes=1) as executor:
-        found = sizes.measure_sizes(scene, [over], ledger, executor, control=False)
+        found = sizes.measure(scene, [over], ledger, executor, control=False)
     print(f"{len(ledger)} cases in {ledger.path}, {len(ledger) - known} of them solved now")
     for size, change in zip(sizes.along(over, found).size, sizes.along(over, found).off["a"], strict=True):
         print(f"blocks of {size:g} a: the contact half-width differs from the half-plane's by {change:.2%}")

@@ -18,7 +18,7 @@ from partialslip.halfplane.method import solve
 from partialslip.march.cells import compliance, forces, graded
 from partialslip.plan import plan
 from partialslip.result import Result
-from partialslip.scene import Scene
+from partialslip.scene import Friction, Scene
 from partialslip.score import _read_as
 from partialslip.score.method import scored
 from partialslip.score.samples import samples
@@ -73,7 +73,7 @@ def changed(scene: Scene, *, P: float = 1.0, Q: float = 1.0, sigma: float = 1.0,
     load = scene.load
     given = {"P": scene.P * P, "a": None, "p0": None}
     given |= {"Q": tuple(Q * value for value in load.Q), "sigma": tuple(sigma * value for value in load.sigma)}
-    friction = msgspec.structs.replace(scene.friction, f=scene.friction.f * f)
+    friction = Friction(f=scene.friction.f * f)
     return msgspec.structs.replace(scene, load=msgspec.structs.replace(load, **given), friction=friction)
 
 

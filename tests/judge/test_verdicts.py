@@ -15,6 +15,7 @@ from partialslip.judge import NO_BAR, Bar, Outcome, Verdict, conditions, judged
 from partialslip.plan import plan
 from partialslip.result import SurfaceStress
 from partialslip.run import compared
+from partialslip.scene import Friction
 
 NAN = float("nan")
 PASSED, MISSED, NOT_JUDGED = Outcome.PASSED, Outcome.MISSED, Outcome.NOT_JUDGED
@@ -243,7 +244,7 @@ def test_both_pressures_and_all_ends_where_they_differ():
     [
         (replace(EXACT, regime="sliding", stick_centre=None, stick_half_width=None), SCENE, "m n dQ", "slides"),
         (replace(EXACT, regime="ratchets"), SCENE, "m n dQ q q_max q1 q2", "ratchets"),
-        (EXACT, changed(SCENE, friction=changed(SCENE.friction, f=0.0)), "m n dQ q_max", "no friction"),
+        (EXACT, changed(SCENE, friction=Friction(f=0.0)), "m n dQ q_max", "no friction"),
         (EXACT, changed(SCENE, load=changed(SCENE.load, Q=(-1e4, 1e4, 0.0), sigma=(0.0, 1e6, 1e6))), "dQ",
          "out of phase"),
         (replace(EXACT, undetermined={"m": "m: because", "q": "q: because"}), SCENE, "m q q_max", "exact: "),

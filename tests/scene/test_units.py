@@ -106,9 +106,11 @@ TWINS = {
         profile.kind = "hertz"
         profile.R = 0.017                              | 17
         load.P = 135750.0                              | 135.75
-        load.e = 3e-6                                  | 3e-3""",
+        load.e = 3e-6                                  | 3e-3
+        friction.f = [0.3, 0.2]
+        friction.x = [-1e-4, 2e-4]                     | [-0.1, 0.2]""",
 }
-ALWAYS = 'units = "{}"\nname = "twin"\nfriction.f = 0.3\nfem.size = 0.05\nfem.width = 16\n'
+ALWAYS = 'units = "{}"\nname = "twin"\nfem.size = 0.05\nfem.width = 16\n'
 WITH_DIMENSION = sorted(key for key, of in DIMENSIONS.items() if N_MM.size(of) != 1)
 
 
@@ -117,7 +119,8 @@ def twins(kind):
     lines = [line.partition("|") for line in TWINS[kind].splitlines() if line.strip()]
     second = "\n".join(f"{first.partition('=')[0]} = {other}" if other else first for first, _, other in lines)
     texts = "\n".join(first for first, _, _ in lines), second
-    return [tomllib.loads(ALWAYS.format(name) + text) for name, text in zip(("SI", "N-mm"), texts, strict=True)]
+    always = ALWAYS if "friction.f" in TWINS[kind] else ALWAYS + "friction.f = 0.3\n"
+    return [tomllib.loads(always.format(name) + text) for name, text in zip(("SI", "N-mm"), texts, strict=True)]
 
 
 def in_si(scene):

@@ -161,7 +161,8 @@ def test_half_a_cycle_tells_the_whole_of_any_body():
         C, bound = root @ root.T + 0.1 * np.eye(n), rng.uniform(0.01, 1, n)
         Q, strain = rng.uniform(-1, 1) * bound.sum(), 10.0 ** rng.uniform(-2, 2) * rng.normal()
         whole = Path(((-Q, -strain, 0.0), (Q, strain, 0.0)), (0, 1), True, 1, 1)
-        one, other = (follow_path(C, stretched(x, 0.0), bound, path) for path in (replace(whole, half=True), whole))
+        paths = replace(whole, half=True), whole
+        one, other = (follow_path(C, stretched(x, 0.0), bound, 1.0, path) for path in paths)
         if other.turns:
             continue
         compared += 1

@@ -218,9 +218,10 @@ def test_two_processes_find_what_one_finds(tmp_path):
     )
     assert list(one.verdicts) == list(two.verdicts)
     for case_name, some in one.verdicts.items():
-        assert [(v.quantity, v.error, v.reason) for v in some] == [
-            (v.quantity, v.error, v.reason) for v in two.verdicts[case_name]
-        ]
+        others = two.verdicts[case_name]
+        assert [(v.quantity, v.reason) for v in some] == [(v.quantity, v.reason) for v in others]
+        # sums over an array depend, by rounding, on where it lies in memory
+        assert [v.error for v in some] == pytest.approx([v.error for v in others], rel=1e-9, abs=1e-11, nan_ok=True)
     assert {entry["case"] for entry in Ledger(tmp_path / "1" / "ledger.jsonl")} == set(two.verdicts)
 
 
