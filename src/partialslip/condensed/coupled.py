@@ -76,9 +76,9 @@ class Relative:
 
 @dataclass(frozen=True)
 class _Step:
-    """Problem of one load step with friction ``f`` (n,): p sums to ``P`` over the ``gap`` (n,) before loading, q sums to
-    ``Q``, and nodes that stick have the relative displacement ``kept`` (n,) along x, up to a rigid shift. ``factors``
-    are those of the compliances, which many steps share."""
+    """Problem of one load step with friction ``f`` (n,): p sums to ``P`` over the ``gap`` (n,) before loading, q sums
+    to ``Q``, and nodes that stick have the relative displacement ``kept`` (n,) along x, up to a rigid shift.
+    ``factors`` are those of the compliances, which many steps share."""
 
     xx: Array
     yy: Array
