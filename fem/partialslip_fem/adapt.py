@@ -211,7 +211,7 @@ class _Refinement:
         )
         if self.eased:  # beside the point that it is graded to, a mesh that grows fast is a poor one
             beside = np.abs(solution.zone_ends[:, None] - np.array([*grading.sizes])).min(axis=1)
-            at_ends = at_ends + beside / a
+            at_ends = at_ends * (1 + beside / (self.size * a))
         self.largest_end_element = grading.at(solution.zone_ends).max() * coarsest / a
         self.errors = self.end_errors = self._errors_of_ends(at_ends, at_kinks)
         self.error_at_ends = worst(self._errors_of_ends(at_ends, 0 * at_kinks))

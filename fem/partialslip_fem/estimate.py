@@ -51,7 +51,7 @@ _LEAST_OF_A = 1 / 3  # of the error of a: least error of any end
 # Least errors of m and n where slip turns round, measured: in their own change; in what they answer to the change of q;
 # in the change of q, where the zone drifts, and at most.
 _OF_TURNED, _ANSWERED = 0.5, 2.0
-_DRIFTS, _MOST = 0.06, 0.5
+_DRIFTS, _MOST = 0.03, 0.5
 _NARROW = 0.1  # of the norm of f p: shear with a smaller norm is confined to narrow strips
 
 # Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.

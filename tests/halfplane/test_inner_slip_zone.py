@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from partialslip.halfplane.gradual_path import certificate as certificates
-from partialslip.halfplane.gradual_path import half_cycle
 from partialslip.halfplane.gradual_path.certificate import certificate, certify
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady, stuck
 from partialslip.halfplane.gradual_path.inner_rates import other_root
@@ -99,17 +98,6 @@ def test_the_inner_zone_closes_when_event_driven_cells_say_so():
     x, q, closes = event_cells.follow(200, 0.85, 9.0)
     assert closes == pytest.approx(half.phases[0].last.progress, abs=2e-2)
     assert np.abs(q - half.last.q(x)).mean() < 5e-3
-
-
-@pytest.mark.slow
-@pytest.mark.fault
-def test_a_mean_of_Q_that_stays_is_seen(monkeypatch):
-    """Deliberate fault: where each point slips in a half cycle, a mean of Q that a state has is left. It comes back
-    with the other sign in each half cycle: nothing else takes it away."""
-    monkeypatch.setattr(half_cycle, "_centred", lambda loads, *_: loads)
-    monkeypatch.setattr(half_cycle, "_CYCLES", 12)  # nine suffice
-    with pytest.raises(LostError):
-        steady(Loads(16.617226290315028, np.pi * 0.3827638404516185), Hertz())
 
 
 @pytest.mark.slow
