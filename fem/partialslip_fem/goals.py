@@ -53,7 +53,6 @@ PASSING = 20.0
 
 _KNOWN = 0.3  # error away from the ends on the way to smaller elements there, in the next mesh's element size
 _NO_GAP = 1e-100  # distance of zone ends that coincide: element sizes are divided by it
-_SHARP = 1e-2  # jump of the slope of f, in f/a, of a kink that the fit of an end must not reach across
 _REACHED = 1.01  # element sizes within this factor of the goal count as having reached it
 
 
@@ -191,8 +190,7 @@ def gaps(solution: MeshSolution, problem: Problem) -> Array:
     Row 0: from each end of the stick zone to the other end of the stick zone; infinite for other ends. Row 1: to the
     nearest of all other ends and kinks.
     """
-    places, jumps = problem.friction_kinks
-    kinks = [*problem.kinks, *places[jumps * solution.half_width > _SHARP], *solution.turning]
+    kinks = [*problem.kinks, *problem.sharp_kinks(solution.half_width), *solution.turning]
     apart = np.abs(solution.zone_ends[:, None] - np.array([*solution.zone_ends, *kinks]))
     np.fill_diagonal(apart, np.inf)
     across = np.full(len(solution.zone_ends), np.inf)

@@ -221,8 +221,12 @@ class Problem:
         value, (k,) each."""
         return np.array(self.friction.kinks) / self.length - self.origin, self.friction.jumps * self.length
 
-    def f_at(self, x: Array) -> Array | float:
-        """Coefficient of friction at ``x`` (k,); one number where it does not vary."""
+    def sharp_kinks(self, length: float) -> tuple[float, ...]:
+        """The sharp ones of these points, for functions that are smooth over the ``length``."""
+        return tuple(kink / self.length - self.origin for kink in self.friction.sharp_kinks(length * self.length))
+
+    def f_at(self, x: Array) -> Array:
+        """Coefficient of friction at ``x`` (k,)."""
         return self.friction.at((x + self.origin) * self.length)
 
     @property

@@ -132,8 +132,8 @@ def _state(scene: Scene, problem: Problem, solution: MeshSolution, errors: dict[
     """Loads and tractions at the end of the load path, None without friction; ``errors`` are the estimated ones."""
     if not solution.history:
         return None
-    shear, bound = solution.history.end
-    p, q = (solution.shear(forces) for forces in (bound / solution.history.f, shear))
+    history = solution.history
+    p, q = (solution.shear(forces) for forces in (history.last_pressure, history.end[0]))
     L, origin = scene.length, problem.origin * scene.length
     p, q = (rescaled(each, scene.P / L, L, origin) for each in (p, q))
     Q, sigma, slope = scene.load.along[-1]

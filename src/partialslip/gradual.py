@@ -6,18 +6,15 @@ only small steps do. Formulas are for similar half-planes and loads in phase; sc
 """
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
 from partialslip.arrays import Array, Mask
-from partialslip.errors import InputError
 from partialslip.scene import Hertz, Scene
 
 # Hertz, large tension: slip does not reverse for Qf <= _QF and _SLOPE Qf <= sf <= _SF, a box inside the exact domain of
 # `turns_round` (checked in tests/halfplane/test_gradual.py).
 _QF, _SLOPE, _SF = 0.44, 6.0, 10.0
-_ROUNDING = 1e-9  # of the force that friction carries
 _Numbers = Array | float
 
 
@@ -64,16 +61,6 @@ def may_turn_round(scene: Scene) -> bool:
     p0 = math.sqrt(2 / math.pi) * scene.P / scene.length  # 2 P/(pi a), a^2 = 2 A R P/pi
     Qf, sf = abs(load.dQ) / (2 * f * scene.P), abs(load.dsigma) / (f * p0)
     return not (small_tension(scene) or (Qf <= _QF and _SLOPE * Qf <= sf <= _SF))
-
-
-def require_carried(Q: Sequence[float], most: float) -> None:
-    """Raise InputError if friction, which carries at ``most`` int f p dx, does not carry all of ``Q`` (any unit). Where
-    f does not vary along x this is known from the scene (:attr:`partialslip.scene.Scene.slides`).
-    """
-    largest = max(map(abs, Q), default=0.0)
-    if largest > most * (1 + _ROUNDING):
-        carried = f"{most / largest:.4g} of its largest value"
-        raise InputError(f"friction.f: must carry load.Q: it carries {carried}, and the contact slides")
 
 
 def small_tension(scene: Scene) -> bool:

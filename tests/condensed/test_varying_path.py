@@ -27,7 +27,7 @@ def cycle(*loads):
     C, x, press = pressed()
     points = tuple((Q, strain, 0.0, P, M) for Q, strain, P, M in loads)
     path = Path(points, (0, 1), True, 10, 1, begin=(0.0, 0.0, 0.0, *points[-1][3:]), followed=True)
-    return varying_path.march(C, np.array([x, x**2 / 2]), F, press, path), x
+    return varying_path.march(C, np.array([x, x**2 / 2]), np.full(len(x), F), press, path), x
 
 
 def test_pressing_event_by_event():

@@ -108,7 +108,7 @@ def test_contacts_that_a_moment_moves_by_many_half_widths(M):
 def test_a_stick_zone_of_one_point_has_gaps_to_divide_by():
     """A contact that moves by more than its width may stick at one node only."""
     ends = SimpleNamespace(zone_ends=np.array([-1.0, 1.0, 0.5, 0.5]), stick=True, half_width=1.0, turning=())
-    found = goals.gaps(ends, SimpleNamespace(kinks=(), friction_kinks=(np.empty(0), np.empty(0))))
+    found = goals.gaps(ends, SimpleNamespace(kinks=(), sharp_kinks=lambda _: ()))
     with np.errstate(over="raise", divide="raise"):
         assert (1e5 / found[0, 2:] > 1).all()
     assert found[:, :2] == pytest.approx(np.array([[np.inf, np.inf], [1.5, 0.5]]))

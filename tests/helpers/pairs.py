@@ -393,9 +393,9 @@ def reordered(seed: int, method: str, kind: str, *settings: str) -> Apart:
     """Nodes, elements and cells in any order."""
     true_march = constant.march
 
-    def march(C: Array, x: Array, normal: Array, f: float, path: Any) -> History:
+    def march(C: Array, x: Array, normal: Array, f: Array, path: Any) -> History:
         order = np.random.default_rng(seed).permutation(len(normal))
-        return true_march(C[np.ix_(order, order)], x[:, order], normal[order], f, path).of(np.argsort(order))
+        return true_march(C[np.ix_(order, order)], x[:, order], normal[order], f[order], path).of(np.argsort(order))
 
     scene = scene_of(kind, *settings)
     nodes, cells = instead(bodies, "block", partial(shuffled, seed)), instead(constant, "march", march)

@@ -19,7 +19,7 @@ from partialslip.condensed.bounded import Factored, Sides, Solution, solve_bound
 from partialslip.condensed.history import History, Steps, follow, resting, still
 from partialslip.condensed.path import Path
 from partialslip.condensed.path_following import Bounds, Follower, Leg, SlidesError, noise
-from partialslip.gradual import require_carried
+from partialslip.scene.model import require_carried
 
 _AT = 1e-12  # distance from the bound, relative, at which a node is on it
 _LEFT = 0.9, 0.5  # of a leg: where slip on the way is looked at
@@ -33,7 +33,7 @@ def march(
     tangential: Array,
     stretch: Array,
     normal: Array,
-    f: Array | float,
+    f: Array,
     path: Path,
     factored: Factored | None = None,
     near: Sides | None = None,
@@ -50,7 +50,7 @@ def march(
         strains it by x (:func:`partialslip.condensed.path.stretched`).
     normal : (n,) array
         Normal forces.
-    f : float or (n,) array
+    f : (n,) array
         Coefficient of friction.
     path : Path
         ``substeps`` are the stages of each leg that :attr:`History.around` has at least.
@@ -119,15 +119,14 @@ class _Done:
 
 
 class _Contact:
-    """Legs of a path in turn; arguments as for :func:`march`, and ``bound``, f times the normal
-    forces."""
+    """Legs of a path in turn; arguments as for :func:`march`, and ``bound``, f times the normal forces."""
 
     def __init__(
         self,
         factored: Factored,
         stretch: Array,
         bound: Array,
-        f: Array | float,
+        f: Array,
         path: Path,
         near: Sides | None,
         few: int,

@@ -398,7 +398,7 @@ def march(
     gap: Array,
     stretch: Array,
     bent: Array,
-    f: Array | float,
+    f: Array,
     path: Path,
     pressed: Array | None = None,
     line: Line | None = None,
@@ -418,7 +418,7 @@ def march(
         Displacements of the lower surface, along x and y, under the tension that strains a long body by 1.
     bent : (n,) array
         Displacements along x under the tension that strains the surface by x; there are none along y.
-    f : float or (n,) array
+    f : (n,) array
         Coefficient of friction.
     path : Path
     pressed : (n,) array, optional
@@ -430,7 +430,7 @@ def march(
     """
     assert C.xx is not None
     xx, xy = C.xx, C.xy if C.xy is not None else 0 * C.xx
-    full, f = replace(C, xy=xy), 0 * gap + f
+    full = replace(C, xy=xy)
     gap = gap - path.begin[1] * stretch[1]
     first: Pressed | None = None
     if pressed is None:

@@ -53,7 +53,7 @@ class History:
         Work against friction over the last cycle.
     end : two (n,) arrays
         Tangential forces, and f times the normal forces, at the end of the path.
-    f : float or (n,) array
+    f : (n,) array
         Coefficient of friction.
     load_steps : int
         Number of load steps solved; at constant pressure, of legs.
@@ -84,7 +84,7 @@ class History:
     end: tuple[Array, Array]
     load_steps: int
     around: "Steps"
-    f: Array | float = 1.0
+    f: Array
     room: Array | None = None
     slipped: Array | None = None
     held: Mask | None = None
@@ -97,10 +97,10 @@ class History:
         points = [
             replace(step, x=step.x[nodes], rest=step.rest[nodes], residual=step.residual[nodes]) for step in self.points
         ]
-        fields: dict[str, Any] = {key: getattr(self, key)[nodes] for key in ("q1", "q2", "slip", "net_slip")} | {
+        fields: dict[str, Any] = {key: getattr(self, key)[nodes] for key in ("q1", "q2", "slip", "net_slip", "f")} | {
             key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "bounds", "end")
         }
-        fields["around"], fields["f"] = self.around.of(nodes), at_nodes(self.f, nodes)
+        fields["around"] = self.around.of(nodes)
         some = {key: getattr(self, key) for key in ("room", "slipped", "held", "changed")}
         fields |= {key: each[..., nodes] for key, each in some.items() if each is not None}
         return replace(self, points=points, **fields)
@@ -126,6 +126,12 @@ class History:
     def pressures(self) -> tuple[Array, Array]:
         """Normal forces at load points 1 and 2."""
         return self.bounds[0] / self.f, self.bounds[1] / self.f
+
+    @property
+    def last_pressure(self) -> Array:
+        """Normal forces at the end of the path."""
+        result: Array = self.end[1] / self.f
+        return result
 
     @property
     def change(self) -> Array:
@@ -253,11 +259,6 @@ class History:
         return sum(step.changes for step in self.points)
 
 
-def at_nodes(f: Array | float, nodes: npt.NDArray[np.int64]) -> Array | float:
-    """Coefficients of friction ``f`` at some ``nodes`` (indices); one number stays."""
-    return f[nodes] if isinstance(f, np.ndarray) else f
-
-
 SHEARS: dict[str, Callable[[History], Array]] = {
     "q": lambda history: history.change,
     "q1": lambda history: history.q1,
@@ -301,13 +302,13 @@ def still(before: Solution) -> Solution:
     return replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0)
 
 
-def follow(path: Path, advance: Advance, before: Solution, f: Array | float, hastens: bool = False) -> History:
+def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bool = False) -> History:
     """Follow the path: to the last load point, then cycle after cycle, until a cycle repeats or all cycles are done. If
     the first loading determines the cycle (``path.half``), only the first loading is solved.
 
     ``advance(before, load, change) -> (solution, bound)`` solves one step: from the solution before the step, the loads
     after the step and their change, to the solution after the step, whose ``rest`` is minus the slip, and f times the
-    normal forces, with the coefficient of friction ``f``, (n,) or one number. ``hastens``: whether cycles that lead to
+    normal forces, with the coefficient of friction ``f`` (n,). ``hastens``: whether cycles that lead to
     the steady state may skip those of which the limit is known (:func:`partialslip.condensed.limit.limit`).
     """
     first, *ways = path.fractions
@@ -315,7 +316,7 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array | float, has
     went = [_go(advance, before, load, np.array(path.cycle[-1]), first)]
     points, taken = [certified([step for step, _ in went[0]])], len(first)
     if path.half:
-        return replace(_reversed(path, points[0], went[0]), f=f)
+        return _reversed(path, points[0], went[0], f)
     ended = [points[0].x]  # cycles, since some were skipped
     for _ in range(path.cycles):
         went = []
@@ -368,7 +369,7 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array | float, has
     )
 
 
-def _reversed(path: Path, first: Solution, went: "_Way") -> History:
+def _reversed(path: Path, first: Solution, went: "_Way", f: Array) -> History:
     """Cycle from the first loading to load point 2: the change from load point 1 to 2 is twice that (Masing's rule)."""
     forces, slip, bound = first.x, -2 * np.sum([step.rest for step, _ in went], axis=0), went[-1][1]
     way = replace(first, rest=-slip, iterations=0, changes=0)
@@ -385,6 +386,7 @@ def _reversed(path: Path, first: Solution, went: "_Way") -> History:
         end=(forces, bound),
         load_steps=len(went),
         around=Steps(((1.0,), (1.0,)), np.array([-forces, forces]), bound[None]),
+        f=f,
     )
 
 

@@ -57,8 +57,8 @@ class Bounds(NamedTuple):
         """Bounds of some ``nodes`` only (indices)."""
         return self._replace(values=self.values[:, nodes])
 
-    def times(self, factor: Array | float) -> "Bounds":
-        """Bounds times a ``factor``, one number or (n,)."""
+    def times(self, factor: Array) -> "Bounds":
+        """Bounds times a ``factor`` (n,)."""
         return self._replace(values=factor * self.values)
 
     def stages(self, shares: Sequence[float]) -> Array:

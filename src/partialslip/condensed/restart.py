@@ -46,7 +46,7 @@ def begun(
     """
     if not (start and history):
         return {}, ()
-    here, pressed = history.end[1] / history.f, _norm(history.bound / history.f, weights)
+    here, pressed = history.last_pressure, _norm(history.bound / history.f, weights)
     notes: tuple[str, ...] = ()
     if (other := _norm(forces(start) - here, weights) / _norm(here, weights)) > _ANOTHER:
         notes = (f"p of the state at the beginning is off by {other:.0%}: it seems to be the state of another contact",)

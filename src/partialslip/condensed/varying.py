@@ -24,7 +24,7 @@ from partialslip.condensed.history import History, follow, resting
 from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path
 from partialslip.condensed.path_following import SlidesError
-from partialslip.gradual import require_carried
+from partialslip.scene.model import require_carried
 
 _INSIDE = 0.4  # of the distance from the end at the beginning of a step: where the ratio L is taken
 _FEW = 3  # nodes that touch on one side from which on L is linear, and not constant
@@ -35,7 +35,7 @@ def march(
     x: Array,
     tangential: Array,
     stretch: Array,
-    f: Array | float,
+    f: Array,
     press: Presses,
     path: Path,
     few: int = 0,
@@ -49,7 +49,7 @@ def march(
         Nodes of the contact line.
     tangential, stretch
         As for :func:`partialslip.condensed.history.march`, at all nodes.
-    f : float or (n,) array
+    f : (n,) array
         Coefficient of friction.
     press : Presses
         Normal forces (n,) under any P and M. Where surfaces stick while the contact grows, they must come from the

@@ -14,11 +14,11 @@ import numpy as np
 
 from partialslip.arrays import Array, Mask, submatrix
 from partialslip.condensed.bounded import Solution, spread
-from partialslip.condensed.history import History, Steps, at_nodes, follow, resting
+from partialslip.condensed.history import History, Steps, follow, resting
 from partialslip.condensed.normal import Presses
 from partialslip.condensed.path import Path
 from partialslip.condensed.path_following import Bounds, Follower, Leg
-from partialslip.gradual import require_carried
+from partialslip.scene.model import require_carried
 
 _STAGES = 32  # fewest stages between load points at which forces are kept
 _REPEATS = 1e-12  # change of q over a cycle, in f p, that is rounding of the events
@@ -26,7 +26,7 @@ _SLIGHT = 1e-6  # of the longest path of slip: none
 _NOTHING = 1e-11  # slip, relative to the largest possible: rounding
 
 
-def march(tangential: Array, stretch: Array, f: Array | float, press: Presses, path: Path, few: int = 0) -> History:
+def march(tangential: Array, stretch: Array, f: Array, press: Presses, path: Path, few: int = 0) -> History:
     """Follow the path leg by leg; every leg has a certificate.
 
     Parameters
@@ -78,9 +78,7 @@ class _Done:
 class _Contact:
     """Legs of a path in turn; arguments as for :func:`march`."""
 
-    def __init__(
-        self, tangential: Array, stretch: Array, f: Array | float, press: Presses, path: Path, few: int
-    ) -> None:
+    def __init__(self, tangential: Array, stretch: Array, f: Array, press: Presses, path: Path, few: int) -> None:
         self._f = f
         self._asked, self._stretch, self._few = path, stretch, few
         self._path = replace(path, ways=((1.0,),) * (1 + len(path.cycle)), settled=max(path.settled, _REPEATS))
@@ -88,7 +86,7 @@ class _Contact:
         ways = [press.way((P, M), (P2, M2)) for (P, M), (P2, M2) in itertools.pairwise(loads)]
         most = np.maximum.reduce([each.values.max(axis=0) for each in ways])
         self._on, self._count = np.flatnonzero(most > 0), len(most)
-        self._ways = [each.of(self._on).times(at_nodes(f, self._on)) for each in ways]
+        self._ways = [each.of(self._on).times(f[self._on]) for each in ways]
         for load, each in zip((path.cycle[-1], *path.cycle), self._ways, strict=True):
             require_carried([load[0]], float(each.values[-1].sum()))
         self._follower = Follower(submatrix(tangential, self._on, self._on))

@@ -114,7 +114,7 @@ def _of_adhered(adhered: Result, side: int, inwards: float, marks: Array) -> Coe
     return _fitted(lambda x: adhered.traction.at(x)[1], end + inwards * slip / 2, inwards, marks, -0.5)
 
 
-def _reserve(result: Result, f: Array | float, x: Array) -> Array:
+def _reserve(result: Result, f: Array, x: Array) -> Array:
     p, dq = result.traction.at(x)
     return f * p - np.abs(dq) / 2
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.gradual import may_turn_round, require_carried
+from partialslip.gradual import may_turn_round
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.levels import Levels, levels
 from partialslip.halfplane.loading import Loading, loading
@@ -27,6 +27,7 @@ from partialslip.plan import Plan, plan
 from partialslip.result import Clock, Regime, Result, Slip, StressAt, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene, Tabulated
+from partialslip.scene.model import require_carried
 
 _SLIDES = "the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip"
 _RATCHETS = "the mean of Q is above the bound for a steady state: the contact ratchets, m and n are not reached"

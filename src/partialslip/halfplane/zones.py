@@ -60,13 +60,8 @@ def stick_zone(
     loads = np.broadcast_arrays(*(np.asarray(load, float) for load in (f, dQ, dsigma, dslope)))
     f_, dQ_, dsigma_, dslope_ = loads
     Qf, sf = np.abs(dQ_) / (2 * f_ * contact.P), np.abs(dsigma_) / (f_ * contact.p0)
-    turned = (
-        turns_round(Qf, sf, zone.s, -np.abs(zone.centre - contact.centre) / contact.a, zone.half_width / contact.a)
-        & (dslope_ == 0)
-        & ~zone.slides
-    )
-    if not contact.friction_bound.convex:
-        turned = ~zone.slides & (dslope_ == 0)
+    turned = turns_round(Qf, sf, zone.s, -np.abs(zone.centre - contact.centre) / contact.a, zone.half_width / contact.a)
+    turned = (turned | (not contact.friction_bound.convex)) & (dslope_ == 0) & ~zone.slides
     if not turned.any():
         return zone
     centre, half_width, s = (np.array(values) for values in zone)

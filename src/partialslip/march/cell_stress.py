@@ -26,8 +26,8 @@ class CellStresses:
 
     Parameters
     ----------
-    f : float or (c + 1,) array
-        Coefficient of friction, at the vertices where it varies along x.
+    f : (c + 1,) array
+        Coefficient of friction at the vertices.
     frame : Contact
         Scales the ``vertices``.
     vertices : (c + 1,) array
@@ -39,7 +39,7 @@ class CellStresses:
         Shear forces and friction bounds of cells, in P of the ``frame``.
     """
 
-    f: Array | float
+    f: Array
     frame: Contact
     vertices: Array
     phases: Phases

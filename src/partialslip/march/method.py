@@ -44,7 +44,6 @@ _NEAR = 10.0  # cells at ends closer to each other than a/10 are reduced in prop
 _SMALLEST = 1e-9  # in a: closer ends are merged, and smaller cells are not requested
 _INNER = 8.0  # size of cells at kinks of q over the size at the ends: kinks hardly affect m and n
 _PASSING = 32.0  # the same at kinks that neither q1 nor q2 has, and at kinks of the coefficient of friction
-_SHARP = 1e-2  # jumps of its slope, in f/a, from which on it has a kink
 _SHARE = 1 / 3  # largest part of the remaining CPU seconds for one mesh
 _WORK = 5e11  # limit of cells^3 times load steps of a mesh
 # Errors of m and n, as parts of the change from mesh to mesh and of growth^3; the same part of ends that are soft, over
@@ -125,8 +124,7 @@ def solve(
     path = load_path(scene, plan, start)
     ends = [*normal.ends, *normal.within(scene.profile.kinks)]
     inner = normal.within(finest(start.q.x)) if start else []
-    sharp = scene.friction.jumps * normal.frame.a > _SHARP
-    passing = normal.within(np.array(scene.friction.kinks)[sharp].tolist())
+    passing = normal.within(scene.friction.sharp_kinks(normal.frame.a))
     level: _Level | None = None
     errors: dict[str, float] = {}
     shares: dict[str, dict[str, float]] = {}
@@ -208,10 +206,10 @@ def _cells(
     fine: Array = np.sort(apart([*ends, *(level.zone if level else ())], _SMALLEST))
     gaps = np.diff(fine)
     gap = np.minimum(np.append(gaps, np.inf), np.append(np.inf, gaps))
-    lasting = [kink for kink in (level.kinks if level else ()) if not level or kink not in level.passing]
-    passing = [*passing, *(level.passing if level else ())]
+    moving = level.passing if level else []
+    lasting = [kink for kink in (level.kinks if level else ()) if kink not in moving]
     known = apart([*inner, *lasting], _INNER * size, fine.tolist())
-    points = np.array(apart(passing, _PASSING * size, known))
+    points = np.array(apart([*passing, *moving], _PASSING * size, known))
     sizes = np.full(len(points), _PASSING * size)
     sizes[: len(known)] = _INNER * size
     sizes[: len(fine)] = np.maximum(size * np.minimum(_NEAR * gap, 1.0), _SMALLEST)
@@ -429,8 +427,8 @@ def _state(normal: NormalLoads, level: _Level, places: Array, errors: dict[str, 
     ones."""
     assert level.history
     scene = normal.scene
-    shear, bound = level.history.end
-    pressed = normal.forces(normal.last, level.vertices) if scene.presses_anew else bound / level.history.f
-    p, q = (off_cells(scene.P * forces, places) for forces in (pressed, shear))
+    history = level.history
+    pressed = normal.forces(normal.last, level.vertices) if scene.presses_anew else history.last_pressure
+    p, q = (off_cells(scene.P * forces, places) for forces in (pressed, history.end[0]))
     error = known_to(errors, level.history, np.diff(level.vertices))
     return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q, scene.load.along[-1][2], error)

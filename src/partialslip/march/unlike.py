@@ -417,7 +417,7 @@ def _state(scene: Scene, level: _Level, errors: dict[str, float]) -> State:
     """State at the end of the path of the loads; ``errors`` are the estimated ones."""
     assert level.history
     places = level.vertices * scene.length + scene.origin
-    shear, bound = level.history.end
-    p, q = (off_cells(scene.P * each, places) for each in (bound / level.history.f, shear))
+    history = level.history
+    p, q = (off_cells(scene.P * each, places) for each in (history.last_pressure, history.end[0]))
     error = known_to(errors, level.history, np.diff(level.vertices))
     return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q, scene.load.along[-1][2], error)

@@ -87,7 +87,7 @@ class Sliding:
     """
 
     traction: Traction
-    f: Callable[[Array], Array | float]
+    f: Callable[[Array], Array]
     signs: tuple[int, int]
 
     def levels_at(self, x: Array) -> tuple[Array, Array]:
@@ -103,7 +103,7 @@ class Sliding:
         return self.traction.at(x)[0], q2 - q1
 
 
-def sliding(traction: Traction, f: Callable[[Array], Array | float], signs: tuple[int, int]) -> Traction:
+def sliding(traction: Traction, f: Callable[[Array], Array], signs: tuple[int, int]) -> Traction:
     """Return ``traction`` with the shear of a contact that slides at both load points, in the directions ``signs``."""
     slides = Sliding(traction, f, signs)
     q1, q2 = slides.levels_at(traction.x)

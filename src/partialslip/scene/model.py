@@ -17,12 +17,13 @@ from partialslip.scene.loads import Load
 from partialslip.scene.materials import Material
 from partialslip.scene.profiles import FlatRounded, Hertz, Profile
 from partialslip.scene.settings import Effects, Fatigue, Fem
-from partialslip.scene.table import LARGEST, NO_TEXT, SMALLEST, STEEPEST, Table
+from partialslip.scene.table import LARGEST, NO_TEXT, ROUGH, SMALLEST, STEEPEST, Table
 from partialslip.shown import Notebook, short
 from partialslip.units import UNITS, System, Units
 
 # Largest distance of P's line of action from x = 0, in sqrt(A R P): the rounding of x^2 is below 1e-9.
 _FARTHEST = 1e3
+_SHARP = 1e-2  # jump of the slope of f, in f over a length, from which on its kink counts
 
 
 Coefficients = Annotated[
@@ -95,14 +96,31 @@ class Friction(Table, frozen=True, kw_only=True):
         slopes = np.diff(np.asarray(self.at(x)) / self.f) / np.diff(x) if len(x) else x
         return np.abs(np.diff(slopes, prepend=0.0, append=0.0))[: len(x)]
 
+    def sharp_kinks(self, length: float) -> tuple[float, ...]:
+        """Kinks, m, at which the slope jumps by more than a hundredth of f over the ``length`` (m): a fit of the shear
+        traction over such a length must not reach across them."""
+        return tuple(np.array(self.kinks)[self.jumps * length > _SHARP].tolist())
+
     @property
     def shown(self) -> str:
         """The coefficient as text."""
         return f"{min(self.given):.10g} to {self.f:.10g}" if self.varies else f"{self.f:.10g}"  # type: ignore[arg-type]
 
-    def at(self, x: npt.ArrayLike) -> Array | float:
-        """Coefficient at ``x`` (m, of any shape); one number where it does not vary."""
-        return np.interp(x, self.x, self.given) if self.varies and self.x else self.f  # type: ignore[arg-type]
+    def at(self, x: npt.ArrayLike) -> Array:
+        """Coefficient at ``x`` (m, of any shape)."""
+        x = np.asarray(x, float)
+        return np.interp(x, self.kinks, self.given) if self.varies else np.full(x.shape, self.f)
+
+
+def require_carried(Q: Sequence[float], most: float) -> None:
+    """Raise InputError if friction, which carries at ``most`` int f p dx, does not carry all of ``Q`` (any unit).
+
+    Where f is one number the scene knows this: :attr:`Scene.slides`. Where f varies along x, the pressure tells.
+    """
+    largest = max(map(abs, Q), default=0.0)
+    if largest > most * (1 + ROUGH):
+        carried = f"{most / largest:.4g} of its largest value"
+        raise InputError(f"friction.f: must carry load.Q: it carries {carried}, and the contact slides")
 
 
 class Scene(Notebook, Table, frozen=True, kw_only=True):
