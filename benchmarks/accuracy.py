@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import partialslip
-from partialslip.condensed.threads import one_thread
+from partialslip.friction.threads import one_thread
 from partialslip.judge import Comparison
 from partialslip.result import Clock, Result
 from partialslip_fem.bodies import Grading

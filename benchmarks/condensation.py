@@ -6,7 +6,7 @@ import time
 import numpy as np
 
 from partialslip import load_scene, plan
-from partialslip.condensed.threads import one_thread
+from partialslip.friction.threads import one_thread
 from partialslip.result import Clock
 from partialslip_fem.condensation import Condensation
 from partialslip_fem.contact import CondensedBody

@@ -29,8 +29,8 @@ from msgspec.structs import replace
 import partialslip
 from partialslip import Result, Scene
 from partialslip.arrays import Array
-from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
+from partialslip.friction.threads import one_thread
 from partialslip.gradual import turns_round
 from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_path.half_cycle import steady

@@ -9,11 +9,11 @@ import time
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.condensed.constant import march
-from partialslip.condensed.ends import stick_zone as read_zone
-from partialslip.condensed.history import History
-from partialslip.condensed.path import Path
-from partialslip.condensed.threads import one_thread
+from partialslip.friction.constant import march
+from partialslip.friction.history import History
+from partialslip.friction.path import Path
+from partialslip.friction.threads import one_thread
+from partialslip.friction.zone_ends import stick_zone as read_zone
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.loading import half_cycle
 from partialslip.halfplane.punch import Punch

@@ -22,8 +22,8 @@ from cvxopt import cholmod
 from scipy import sparse
 
 from partialslip import load_scene, plan
-from partialslip.condensed.threads import one_thread
 from partialslip.convergence import power
+from partialslip.friction.threads import one_thread
 from partialslip.output.svg import svg
 from partialslip.result import Clock
 from partialslip_fem import factor

@@ -12,7 +12,7 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import partialslip
-from partialslip.condensed.threads import one_thread
+from partialslip.friction.threads import one_thread
 from partialslip_fem import Kept
 from partialslip_meshes.files import quiet
 

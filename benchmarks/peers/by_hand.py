@@ -12,7 +12,7 @@ from itertools import product
 from statistics import median
 
 from partialslip import load_scene, plan, run
-from partialslip.condensed.threads import one_thread
+from partialslip.friction.threads import one_thread
 from partialslip.judge import compare
 from partialslip_fem.model import solve_meshed
 from partialslip_meshes import block

@@ -8,9 +8,9 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.bars import BARS
-from partialslip.condensed.ends import apart
-from partialslip.condensed.step_errors import steps_matter
 from partialslip.errors import InputError
+from partialslip.friction.step_errors import steps_matter
+from partialslip.friction.zone_ends import apart
 from partialslip.result import Clock
 from partialslip_fem import estimate, goals, solving
 from partialslip_fem.bodies import Grading, Kept

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.arrays import Array, Indices, submatrix
-from partialslip.condensed.bounded import Factored, Sides, Solution
-from partialslip.condensed.coupled import Relative
-from partialslip.condensed.normal import press
 from partialslip.errors import InputError
+from partialslip.friction.active_set import Factored, Sides, Solution
+from partialslip.friction.coupled import Relative
+from partialslip.friction.normal import press
 from partialslip.result import Clock
 from partialslip_fem.condensation import Condensation
 from partialslip_fem.contact import CondensedBody
@@ -35,7 +35,7 @@ class Shared:
         self._sheared: tuple[Indices, Factored] | None = None
 
     def press(self, normal: Array, gap: Array, arms: Array | None, near: Sides | None) -> Solution:
-        """Normal forces (n,), as from :func:`partialslip.condensed.normal.press` under a force of 1; ``near`` are sides
+        """Normal forces (n,), as from :func:`partialslip.friction.normal.press` under a force of 1; ``near`` are sides
         (n,) to begin with."""
         key = gap if arms is None else np.concatenate([gap, arms])
         if self._pressed and np.array_equal(self._pressed[0], key):

@@ -13,7 +13,7 @@ ends may agree by chance. These errors differ from element to element: an end an
 its distance, and to all like the root of the sum of squares. While the zone drifts, its width follows from the loads,
 and its place from sums of q in which these errors cancel. An end that drifts is read twice, from the room that q has
 left and from the loads at which the nodes beside it stuck again
-(:attr:`partialslip.condensed.ends.StickInterval.caught`): it is not known better than both readings agree.
+(:attr:`partialslip.friction.zone_ends.StickInterval.caught`): it is not known better than both readings agree.
 
 Where the gap's curvature jumps within elements, p has a kink of the kind x log|x| there. Errors then fall slowly with
 the order: like those of q at kinks, they are a part of the change.

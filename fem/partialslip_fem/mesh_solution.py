@@ -8,11 +8,11 @@ import numpy.typing as npt
 from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array, Indices
-from partialslip.condensed.bounded import Solution
-from partialslip.condensed.ends import StickInterval, turning_points
-from partialslip.condensed.history import History
-from partialslip.condensed.pressing import Pressed
-from partialslip.condensed.trail import Trail
+from partialslip.friction.active_set import Solution
+from partialslip.friction.history import History
+from partialslip.friction.pressing import Pressed
+from partialslip.friction.trail import Trail
+from partialslip.friction.zone_ends import StickInterval, turning_points
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import Body
 from partialslip_fem.recovery import traction
@@ -49,7 +49,7 @@ class MeshSolution:
     pressed : Pressed or None
         How coupled bodies were pressed together before the load path.
     step_errors : mapping of str to float
-        Errors of the load steps (:mod:`partialslip.condensed.step_errors`), where they were asked for.
+        Errors of the load steps (:mod:`partialslip.friction.step_errors`), where they were asked for.
     path_errors : mapping of str to float
         The same of the load path of coupled bodies, besides the steps in which they were pressed together.
     dissimilar : bool

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from partialslip.allowance import Allowance
-from partialslip.condensed.threads import one_thread
 from partialslip.errors import InputError
+from partialslip.friction.threads import one_thread
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result
 from partialslip.result.state import State

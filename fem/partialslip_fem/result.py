@@ -4,11 +4,11 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
-from partialslip.condensed.history import certificate, last_cycle_change
-from partialslip.condensed.pressing import Pressed
-from partialslip.condensed.regime import doubts, steady_state, steps_of_coupled
-from partialslip.condensed.restart import begun, known_to
-from partialslip.condensed.step_errors import summed
+from partialslip.friction.history import certificate, last_cycle_change
+from partialslip.friction.pressing import Pressed
+from partialslip.friction.regime import doubts, steady_state, steps_of_coupled
+from partialslip.friction.restart import begun, known_to
+from partialslip.friction.step_errors import summed
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, StressAt, Traction
 from partialslip.result.state import State

@@ -8,15 +8,15 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices
 from partialslip.bars import BARS
-from partialslip.condensed import constant, coupled, step_errors, varying
-from partialslip.condensed.bounded import Solution
-from partialslip.condensed.ends import within
-from partialslip.condensed.history import History, certified
-from partialslip.condensed.normal import Presses
-from partialslip.condensed.path import Path, stretched
-from partialslip.condensed.pressing import Pressed
-from partialslip.condensed.steps import follow_or_step
-from partialslip.condensed.trail import Trail
+from partialslip.friction import constant, coupled, step_errors, varying
+from partialslip.friction.active_set import Solution
+from partialslip.friction.history import History, certified
+from partialslip.friction.normal import Presses
+from partialslip.friction.path import Path, stretched
+from partialslip.friction.pressing import Pressed
+from partialslip.friction.steps import follow_or_step
+from partialslip.friction.trail import Trail
+from partialslip.friction.zone_ends import within
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, condense, key_of, mesh_bodies
 from partialslip_fem.contact import CondensedBody, relative_compliances
@@ -52,7 +52,7 @@ def mesh_and_solve(
     keep : Kept, optional
         Condensed bodies to reuse, and to add the new ones to.
     check : bool
-        Whether to check if the load steps suffice (:func:`partialslip.condensed.steps.follow_or_step`), and to estimate
+        Whether to check if the load steps suffice (:func:`partialslip.friction.steps.follow_or_step`), and to estimate
         their errors (:attr:`MeshSolution.step_errors`).
     before : MeshSolution, optional
         Solution on other meshes: the search for the zones begins at its zones.
@@ -254,7 +254,7 @@ def _under_varying_pressure(
             path = replace(path, before=nodal_forces(line, problem.start[1]))
         at_largest = (first if problem.largest == 1 else second).x
         half_width = float(np.subtract(*contact_ends(line, at_largest)[::-1])) / 2
-        if not any(part.finite for part in problem.parts):  # see partialslip.condensed.varying.march
+        if not any(part.finite for part in problem.parts):  # see partialslip.friction.varying.march
             gap = projected(line, problem.gap, problem.breaks)
             holding = Presses(C.xx, gap, line.x if problem.turns else None)
 

@@ -7,10 +7,10 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
-from partialslip.condensed.below import under_pressure, under_shear, under_tension
-from partialslip.condensed.path import lower_strain
-from partialslip.condensed.phases import Phases
-from partialslip.condensed.piecewise import PiecewiseCauchy
+from partialslip.friction.below import under_pressure, under_shear, under_tension
+from partialslip.friction.path import lower_strain
+from partialslip.friction.phases import Phases
+from partialslip.friction.piecewise import PiecewiseCauchy
 from partialslip.scene import Scene
 from partialslip_fem.factor import default_backend
 from partialslip_fem.mesh_solution import MeshSolution
@@ -58,7 +58,7 @@ class Line:
 
 @dataclass(frozen=True)
 class BodyStresses:
-    """Stresses at load steps and between them (:class:`partialslip.condensed.phases.Phases`).
+    """Stresses at load steps and between them (:class:`partialslip.friction.phases.Phases`).
 
     Parameters
     ----------

@@ -5,10 +5,10 @@ from functools import partial
 import numpy as np
 
 from partialslip.arrays import Array, Indices
-from partialslip.condensed import ends
-from partialslip.condensed.ends import StickInterval, apart, finest, kinks, stick_zone, turning_points
-from partialslip.condensed.history import History
-from partialslip.condensed.pressing import Pressed
+from partialslip.friction import zone_ends
+from partialslip.friction.history import History
+from partialslip.friction.pressing import Pressed
+from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, stick_zone, turning_points
 from partialslip_fem.elasticity import Body
 from partialslip_fem.problem import Problem
 from partialslip_fem.recovery import traction
@@ -19,13 +19,13 @@ _SAME_KINK = 1e-3  # of the contact half-width: kinks nearer to each other count
 
 
 def contact_ends(
-    line: Body, normal: Array, shear: Array | None = None, beta: float = 0.0, rise: float = ends.ROUNDED
+    line: Body, normal: Array, shear: Array | None = None, beta: float = 0.0, rise: float = zone_ends.ROUNDED
 ) -> tuple[float, float]:
     """Ends of the contact under ``normal`` forces and ``shear`` forces (n,) on the nodes of the contact line; ``beta``
-    and ``rise`` as for :func:`partialslip.condensed.ends.contact_ends`."""
+    and ``rise`` as for :func:`partialslip.friction.zone_ends.contact_ends`."""
     tangential = _cell_forces(line, shear) if shear is not None and beta else None
     vertices = line.x[:: line.order]
-    return ends.contact_ends(vertices, _cell_forces(line, normal), line.x[normal > 0], tangential, beta, rise)
+    return zone_ends.contact_ends(vertices, _cell_forces(line, normal), line.x[normal > 0], tangential, beta, rise)
 
 
 def resultants(line: Body, normal: Array, shear: Array) -> tuple[Array, Array, Array]:

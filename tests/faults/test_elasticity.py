@@ -7,7 +7,7 @@ import pytest
 from pairs import SIZE, units
 
 import partialslip
-from partialslip.condensed import coupled
+from partialslip.friction import coupled
 from partialslip_fem import bodies, contact, elasticity, goals, model, solving
 from partialslip_fem.farfield import FarField
 

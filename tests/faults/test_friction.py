@@ -10,10 +10,10 @@ from scipy.interpolate import PPoly
 
 import partialslip
 from partialslip.bars import CERTIFICATE_BAR
-from partialslip.condensed import constant, coupled, ends
-from partialslip.condensed.bounded import _BlockPivoting, solve_bounded
-from partialslip.condensed.constant import march as true_march
-from partialslip.condensed.ends import StickInterval
+from partialslip.friction import constant, coupled, zone_ends
+from partialslip.friction.active_set import _BlockPivoting, solve_bounded
+from partialslip.friction.constant import march as true_march
+from partialslip.friction.zone_ends import StickInterval
 from partialslip.march import method as marching
 from partialslip.result.state import State
 from partialslip_fem import problem, solving
@@ -170,7 +170,7 @@ def test_stick_zone_from_flags_of_one_instant(monkeypatch, sound, red):
 def test_stick_zone_up_to_the_last_node_that_sticks(monkeypatch, sound, red):
     """It is the end of the contact, read in the same way, that shows it first."""
     scene = sound(LARGE, "fem.accuracy=1e-4")
-    monkeypatch.setattr(ends, "right_end", lambda *args: float(args[2][-1]))
+    monkeypatch.setattr(zone_ends, "right_end", lambda *args: float(args[2][-1]))
     red.comparison("left", scene)
 
 

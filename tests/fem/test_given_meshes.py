@@ -9,7 +9,7 @@ import pytest
 import partialslip
 from partialslip import load_scene, plan
 from partialslip.cli import main
-from partialslip.condensed.threads import one_thread
+from partialslip.friction.threads import one_thread
 from partialslip.result import Clock
 from partialslip_fem import solve
 from partialslip_fem.problem import Part, scaled

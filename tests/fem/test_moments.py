@@ -9,7 +9,7 @@ from msgspec import to_builtins
 
 import partialslip
 from partialslip import parse_scene, run
-from partialslip.condensed import normal
+from partialslip.friction import normal
 from partialslip_fem import goals, model
 
 TABLE = np.linspace(-2e-3, 2.5e-3, 91)

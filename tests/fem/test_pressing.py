@@ -14,8 +14,8 @@ from scipy.special import ellipk, ellipkm1
 
 import partialslip
 from partialslip import plan
-from partialslip.condensed import coupled
-from partialslip.condensed.pressing import Punch, Punches
+from partialslip.friction import coupled
+from partialslip.friction.pressing import Punch, Punches
 from partialslip_fem import solve, solving
 
 BETA = 1 / 7

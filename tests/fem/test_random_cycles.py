@@ -11,7 +11,7 @@ from coulomb import recorded
 from random_marches import complaints, trials
 
 import partialslip
-from partialslip.condensed import constant
+from partialslip.friction import constant
 from partialslip.verify.random_scenes import KINDS, PROFILES, draw
 
 EVERY = [kind + len(KINDS) * (kind % len(PROFILES)) for kind in range(len(KINDS))]  # kinds of loads, profiles in turn

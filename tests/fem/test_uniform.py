@@ -5,7 +5,7 @@ import pytest
 
 import partialslip
 from partialslip import InputError, load_scene
-from partialslip.condensed import bounded, constant
+from partialslip.friction import active_set, constant
 from partialslip_fem import Kept, condensation
 
 
@@ -49,8 +49,8 @@ def test_factored_once_for_all_loads(monkeypatch):
 
 def test_inverted_once_for_all_loads(monkeypatch):
     """The dense inverse of what is in contact serves all loads, and friction is solved on the uniform mesh only."""
-    inverted, marched, true = [], [], bounded.inverse
-    monkeypatch.setattr(bounded, "inverse", lambda C: inverted.append(len(C)) or true(C))
+    inverted, marched, true = [], [], active_set.inverse
+    monkeypatch.setattr(active_set, "inverse", lambda C: inverted.append(len(C)) or true(C))
     march = constant.march
     monkeypatch.setattr(constant, "march", lambda C, *rest: marched.append(len(C)) or march(C, *rest))
     keep, settings = Kept(), ("fem.size=0.04", "load.sigma=[-2e8, 2e8]")

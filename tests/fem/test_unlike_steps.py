@@ -3,7 +3,7 @@
 import pytest
 
 import partialslip
-from partialslip.condensed import step_errors
+from partialslip.friction import step_errors
 
 
 def solved(steps, **more):

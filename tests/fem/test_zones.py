@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from partialslip.condensed.ends import left_end, right_end
+from partialslip.friction.zone_ends import left_end, right_end
 from partialslip_fem.elasticity import body
 from partialslip_fem.recovery import traction
 from partialslip_meshes import block

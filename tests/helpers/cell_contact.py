@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from partialslip.condensed.path import Path
+from partialslip.friction.path import Path
 from partialslip.halfplane.hertz import Hertz
 from partialslip.march.cells import compliance, forces, graded
 

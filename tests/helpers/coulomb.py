@@ -16,7 +16,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from partialslip.condensed import constant, coupled, history, path_following, varying
+from partialslip.friction import constant, coupled, history, path_following, varying
 
 ROUNDING = 1e-13  # in the sizes of the terms that cancel
 SUMMED = 1e-12  # the same, of the sums over nodes or over the steps of a cycle

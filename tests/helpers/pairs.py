@@ -17,9 +17,9 @@ import numpy as np
 
 from partialslip import halfplane, load_scene, load_state, plan
 from partialslip.arrays import Array
-from partialslip.condensed import constant, steps
-from partialslip.condensed.coupled import Relative
-from partialslip.condensed.history import History
+from partialslip.friction import constant, steps
+from partialslip.friction.coupled import Relative
+from partialslip.friction.history import History
 from partialslip.judge import Q_BAR, cell_means
 from partialslip.march import method as marching
 from partialslip.result import Clock, Result

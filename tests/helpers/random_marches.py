@@ -75,7 +75,7 @@ def complaints(scene, result, marches):
     for T, (Q, _) in zip((T1, T2), (scene.load.points[end] for end in scene.load.ends), strict=True):
         if abs(T.sum() - Q) > unit:
             yield f"sum of T {T.sum()} in place of {Q}"
-    # which slips and then sticks, or slips back, is on the bound on the way: see tests/condensed/test_path_following.py
+    # which slips and then sticks, or slips back, is on the bound on the way: see tests/friction/test_path_following.py
     if result.counts["steps"] == 1 and not result.counts["events"] and len(scene.load.points) == 2:
         slip = result.slip.slip
         held = slip != 0

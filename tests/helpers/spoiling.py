@@ -11,8 +11,8 @@ import msgspec
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.condensed.path import load_path
 from partialslip.errors import InputError
+from partialslip.friction.path import load_path
 from partialslip.halfplane.contact import contact
 from partialslip.halfplane.method import solve
 from partialslip.march.cells import compliance, forces, graded

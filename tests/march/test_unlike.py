@@ -7,7 +7,7 @@ import pytest
 
 import partialslip
 from partialslip import load_scene
-from partialslip.condensed import coupled
+from partialslip.friction import coupled
 from partialslip.march import unlike
 from partialslip.march.punch_growth import PunchGrowth, goodman_stick_zone, relative
 from partialslip.march.unlike import dundurs

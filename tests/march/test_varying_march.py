@@ -7,9 +7,9 @@ import pytest
 from varying_scenes import varying
 
 from partialslip import parse_scene, run
-from partialslip.condensed import varying as stepping
-from partialslip.condensed.normal import Presses
-from partialslip.condensed.path import Path, stretched
+from partialslip.friction import varying as stepping
+from partialslip.friction.normal import Presses
+from partialslip.friction.path import Path, stretched
 from partialslip.judge.verdict import Outcome
 from partialslip.march.cells import compliance, graded
 

@@ -13,8 +13,8 @@ import pytest
 import partialslip
 from partialslip import InputError, load_scene, plan
 from partialslip.cli import main
-from partialslip.condensed.constant import march as follow_path
-from partialslip.condensed.path import Path, stretched
+from partialslip.friction.constant import march as follow_path
+from partialslip.friction.path import Path, stretched
 from partialslip.march import method as marching
 from partialslip.plan import reduced
 from partialslip_fem import Kept, bodies, condensation, model, solving

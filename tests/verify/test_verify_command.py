@@ -177,7 +177,7 @@ def test_a_killed_verification_takes_up_nothing_of_other_code(edited, tmp_path):
     code, _, keys = verified("-c", KILLED)
     assert (code, len(keys)) == (-signal.SIGKILL, 1)
     if edited:
-        with (tmp_path / ROOTS[0] / "condensed" / "history.py").open("a", encoding="utf-8") as file:
+        with (tmp_path / ROOTS[0] / "friction" / "history.py").open("a", encoding="utf-8") as file:
             file.write("# edited\n")
     code, said, again = verified("-c", "import sys; from partialslip.cli import main; sys.exit(main(sys.argv[1:]))")
     assert code == 0

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from partialslip.arrays import Array
-from partialslip.condensed.path_following import Bounds, Follower, Leg
+from partialslip.friction.path_following import Bounds, Follower, Leg
 from partialslip.gradual import may_turn_round
 from partialslip.halfplane import contact
 from partialslip.halfplane.shape import Shape

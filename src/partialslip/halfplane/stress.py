@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.arrays import Array, Complex
-from partialslip.condensed.below import under_pressure, under_shear, under_tension
+from partialslip.friction.below import under_pressure, under_shear, under_tension
 from partialslip.halfplane.cauchy import Cauchy
 from partialslip.halfplane.contact import Contact, one_step_zone
 from partialslip.halfplane.loading import Loading

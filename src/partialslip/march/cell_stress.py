@@ -7,10 +7,10 @@ from functools import cached_property, partial
 import numpy as np
 
 from partialslip.arrays import Array, Mask
-from partialslip.condensed.below import under_shear
-from partialslip.condensed.history import Steps
-from partialslip.condensed.phases import Phases
-from partialslip.condensed.piecewise import PiecewiseCauchy
+from partialslip.friction.below import under_shear
+from partialslip.friction.history import Steps
+from partialslip.friction.phases import Phases
+from partialslip.friction.piecewise import PiecewiseCauchy
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.stress import Fields, Points, SlipZones, State
 from partialslip.march.pressing import NormalLoads
@@ -22,7 +22,7 @@ _LOAD_POINTS = np.array([0.0, 0.5])
 
 @dataclass(frozen=True)
 class CellStresses:
-    """Stresses at load steps and between them (:class:`partialslip.condensed.phases.Phases`).
+    """Stresses at load steps and between them (:class:`partialslip.friction.phases.Phases`).
 
     Parameters
     ----------

@@ -15,15 +15,15 @@ import numpy as np
 from partialslip.allowance import Allowance
 from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
-from partialslip.condensed import constant, varying
-from partialslip.condensed.ends import StickInterval, apart, finest, kinks, stick_zone, turning_points, within
-from partialslip.condensed.history import SHEARS, History, certificate, last_cycle_change
-from partialslip.condensed.path import Path, load_path, stretched
-from partialslip.condensed.regime import doubts, permanent_zone, steady_state
-from partialslip.condensed.restart import begun, known_to
-from partialslip.condensed.step_errors import of_steps, steps_matter
-from partialslip.condensed.steps import follow_or_step
-from partialslip.condensed.threads import one_thread
+from partialslip.friction import constant, varying
+from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
+from partialslip.friction.path import Path, load_path, stretched
+from partialslip.friction.regime import doubts, permanent_zone, steady_state
+from partialslip.friction.restart import begun, known_to
+from partialslip.friction.step_errors import of_steps, steps_matter
+from partialslip.friction.steps import follow_or_step
+from partialslip.friction.threads import one_thread
+from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, stick_zone, turning_points, within
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding, without_shear

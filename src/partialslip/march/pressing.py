@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.condensed.normal import Presses
+from partialslip.friction.normal import Presses
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.mean import Mean, common
 from partialslip.march.cells import forces

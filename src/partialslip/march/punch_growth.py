@@ -1,5 +1,5 @@
 """Unlike half-planes that are pressed together under a parabola: the flat punch with friction from which all stages are
-made (:mod:`partialslip.condensed.pressing`), on cells of its own.
+made (:mod:`partialslip.friction.pressing`), on cells of its own.
 
 Scaled: lengths by the punch's half-width, forces by its force, displacements by A times the force.
 """
@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 from scipy.special import ellipk, ellipkm1
 
 from partialslip.arrays import Array
-from partialslip.condensed.coupled import Relative, punched
-from partialslip.condensed.ends import stick_zone
+from partialslip.friction.coupled import Relative, punched
+from partialslip.friction.zone_ends import stick_zone
 from partialslip.march.cells import compliance, graded
 
 _END, _GROWTH = 1e-8, 0.05  # size of cells at the punch's ends; growth

@@ -1,7 +1,7 @@
 """Marching of half-planes of unlike materials: pressure and shear step by step, on one set of cells.
 
 Pressure moves the surfaces along x and shear opens the gap, by Dundurs' beta. Each step of the load path is solved for
-both together (:mod:`partialslip.condensed.coupled`). Scaled: lengths by sqrt(A R P), forces by P, displacements by A P.
+both together (:mod:`partialslip.friction.coupled`). Scaled: lengths by sqrt(A R P), forces by P, displacements by A P.
 """
 
 from collections.abc import Callable
@@ -15,16 +15,16 @@ from msgspec.structs import replace as changed
 from partialslip.allowance import Allowance
 from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
-from partialslip.condensed import coupled
-from partialslip.condensed.bounded import Solution
-from partialslip.condensed.ends import StickInterval, apart, contact_ends, kinks, stick_zone, within
-from partialslip.condensed.history import SHEARS, History, certificate, last_cycle_change
-from partialslip.condensed.normal import press
-from partialslip.condensed.path import Path, load_path, stretched
-from partialslip.condensed.pressing import Pressed
-from partialslip.condensed.regime import doubts, steady_state, steps_of_coupled
-from partialslip.condensed.restart import begun, known_to
-from partialslip.condensed.step_errors import along_path, other_steps, pressed_together, summed
+from partialslip.friction import coupled
+from partialslip.friction.active_set import Solution
+from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
+from partialslip.friction.normal import press
+from partialslip.friction.path import Path, load_path, stretched
+from partialslip.friction.pressing import Pressed
+from partialslip.friction.regime import doubts, steady_state, steps_of_coupled
+from partialslip.friction.restart import begun, known_to
+from partialslip.friction.step_errors import along_path, other_steps, pressed_together, summed
+from partialslip.friction.zone_ends import StickInterval, apart, contact_ends, kinks, stick_zone, within
 from partialslip.halfplane.tractions import CoupledTractions
 from partialslip.march.cells import graded, norm_parts, off_cells, on_cells, relative_change
 from partialslip.march.pressing import NormalLoads

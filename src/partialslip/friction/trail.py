@@ -5,7 +5,7 @@ from collections.abc import Hashable
 import numpy as np
 
 from partialslip.arrays import Array, Mask
-from partialslip.condensed.bounded import Sides, Solution
+from partialslip.friction.active_set import Sides, Solution
 
 Pair = tuple[Solution, Solution]
 

@@ -15,8 +15,8 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
-from partialslip.condensed.history import History, last_cycle_change
-from partialslip.condensed.step_errors import Errors
+from partialslip.friction.history import History, last_cycle_change
+from partialslip.friction.step_errors import Errors
 from partialslip.result.state import State
 
 _ANOTHER = 0.25  # relative L2 difference of pressures of two contacts; shear of unlike bodies changes p by a tenth

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from partialslip.condensed import ends
-from partialslip.condensed.ends import right_end, stick_zone
+from partialslip.friction import zone_ends
+from partialslip.friction.zone_ends import right_end, stick_zone
 from partialslip.march.cells import graded
 
 VERTICES = np.linspace(-1, 1, 81)
@@ -40,7 +40,7 @@ def test_a_node_short_of_its_bound_elsewhere_is_no_stick_zone(stray, monkeypatch
     some[np.abs(X - stray).argmin()] += 1e-8 * BOUND[0]
     zone = read(some)
     assert (zone.left, zone.right) == pytest.approx((-0.31, 0.52), abs=0.025 / 25)
-    monkeypatch.setattr(ends, "_around", lambda *args: np.flatnonzero(args[2]))
+    monkeypatch.setattr(zone_ends, "_around", lambda *args: np.flatnonzero(args[2]))
     wrong = read(some)
     assert max(abs(wrong.left + 0.31), abs(wrong.right - 0.52)) > 0.1
 
@@ -72,7 +72,7 @@ def test_kinks_are_where_q_leaves_its_bound():
     """A first loading and a reversal lock in two zones, one within the other: both ends of each, far below a cell."""
     inner, outer = room(-0.31, 0.52), room(-0.6, 0.8)
     for q, expected in ((BOUND - inner, (-0.31, 0.52)), (outer - BOUND, (-0.6, 0.8))):
-        found = ends.kinks(X, BOUND, q, VERTICES, lambda forces: forces)
+        found = zone_ends.kinks(X, BOUND, q, VERTICES, lambda forces: forces)
         assert found == pytest.approx(expected, abs=0.025 / 25)
 
 
@@ -80,15 +80,15 @@ def test_kinks_between_slip_of_either_way():
     """Large tension: the bound is met with one sign on the left and with the other on the right."""
     zone = room(-0.31, 0.52)
     turn = np.where(X < 0, -1, 1)
-    assert ends.kinks(X, BOUND, turn * (BOUND - zone), VERTICES, lambda forces: forces) == pytest.approx(
+    assert zone_ends.kinks(X, BOUND, turn * (BOUND - zone), VERTICES, lambda forces: forces) == pytest.approx(
         [-0.31, 0.52], abs=0.025 / 25
     )
 
 
 def test_the_finest_places_of_a_mesh():
     points = np.array([-1.0, -0.3, 0.41, 1.0])
-    assert ends.finest(graded(points, 1e-4, 0.1)) == [-0.3, 0.41]
-    assert ends.finest(np.linspace(-1, 1, 50)) == []
+    assert zone_ends.finest(graded(points, 1e-4, 0.1)) == [-0.3, 0.41]
+    assert zone_ends.finest(np.linspace(-1, 1, 50)) == []
 
 
 @pytest.mark.parametrize("count", [0, 1, 3])

@@ -2,7 +2,7 @@
 
 The rates of all nodes are constant between two events. At an event a node reaches its bound and begins to slip; held
 nodes whose slip would turn round stick again; where the pressure varies, nodes touch and open. Each change of a node is
-a principal pivot (:class:`partialslip.condensed.tableau.Tableau`). There are no load steps, and no errors of load
+a principal pivot (:class:`partialslip.friction.tableau.Tableau`). There are no load steps, and no errors of load
 steps. This is parametric quadratic programming; the rates after an event are found by principal pivoting (Keller,
 1973).
 
@@ -19,9 +19,9 @@ import numpy as np
 import scipy.linalg as la
 
 from partialslip.arrays import Array, Indices, Mask
-from partialslip.condensed.bounded import inverse
-from partialslip.condensed.tableau import Tableau
 from partialslip.errors import PartialslipError
+from partialslip.friction.active_set import inverse
+from partialslip.friction.tableau import Tableau
 
 _EPS = float(np.finfo(float).eps)
 _AT = 1e-12  # distance from the bound, relative: a thousand roundings of the forces that many events add up

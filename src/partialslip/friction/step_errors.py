@@ -8,10 +8,10 @@ import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
-from partialslip.condensed.ends import StickInterval
-from partialslip.condensed.history import History
-from partialslip.condensed.path import Path
-from partialslip.condensed.pressing import Pressed
+from partialslip.friction.history import History
+from partialslip.friction.path import Path
+from partialslip.friction.pressing import Pressed
+from partialslip.friction.zone_ends import StickInterval
 
 Errors = dict[str, float]
 Indices = npt.NDArray[np.int64]

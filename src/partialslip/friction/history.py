@@ -12,9 +12,9 @@ import numpy.typing as npt
 from scipy.ndimage import maximum_filter1d
 
 from partialslip.arrays import Array, Mask
-from partialslip.condensed.bounded import Solution
-from partialslip.condensed.limit import limit
-from partialslip.condensed.path import Path
+from partialslip.friction.active_set import Solution
+from partialslip.friction.limit import limit
+from partialslip.friction.path import Path
 
 STEADY = 1e-6  # change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
 _REPEATS = 3e-14  # change of a node's q over a cycle, relative to the largest sum of |q|: rounding (seen: 2.7e-14)
@@ -108,7 +108,7 @@ class History:
     @property
     def visited(self) -> list[tuple[Array, Array]]:
         """q and the bound f p at the load points of the first two cycles and of the last cycle, for
-        :func:`partialslip.condensed.ends.kinks`."""
+        :func:`partialslip.friction.zone_ends.kinks`."""
         cycle = len(self.path.cycle)
         bounds = dict(zip(self.path.ends, self.bounds, strict=True))
         numbers = sorted({*range(2 * cycle + 1), *range(len(self.points) - cycle, len(self.points))})
@@ -309,7 +309,7 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
     ``advance(before, load, change) -> (solution, bound)`` solves one step: from the solution before the step, the loads
     after the step and their change, to the solution after the step, whose ``rest`` is minus the slip, and f times the
     normal forces, with the coefficient of friction ``f`` (n,). ``hastens``: whether cycles that lead to
-    the steady state may skip those of which the limit is known (:func:`partialslip.condensed.limit.limit`).
+    the steady state may skip those of which the limit is known (:func:`partialslip.friction.limit.limit`).
     """
     first, *ways = path.fractions
     load = np.array(path.begin)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from cell_contact import cells, loads
 
-from partialslip.condensed import history
-from partialslip.condensed.constant import march
-from partialslip.condensed.limit import limit
+from partialslip.friction import history
+from partialslip.friction.constant import march
+from partialslip.friction.limit import limit
 
 BOUND = np.array([1.0, 2.0, 0.5, 0.0])
 END, MODE = np.array([0.3, -1.2, 0.1, 0.0]), np.array([0.2, 0.1, -0.05, 0.0])

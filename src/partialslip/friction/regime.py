@@ -8,9 +8,9 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.bars import Asked
-from partialslip.condensed.end_slips import end_slips
-from partialslip.condensed.ends import StickInterval
-from partialslip.condensed.history import STEADY, History
+from partialslip.friction.end_slips import end_slips
+from partialslip.friction.history import STEADY, History
+from partialslip.friction.zone_ends import StickInterval
 from partialslip.result import FRICTIONLESS, PATH_DEPENDENT, EndSlip, Regime
 from partialslip.scene import Scene
 

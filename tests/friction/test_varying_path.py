@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from partialslip import parse_scene, run
-from partialslip.condensed import path_following, varying_path
-from partialslip.condensed.normal import Presses
-from partialslip.condensed.path import Path
-from partialslip.condensed.path_following import Bounds, Follower
+from partialslip.friction import path_following, varying_path
+from partialslip.friction.normal import Presses
+from partialslip.friction.path import Path
+from partialslip.friction.path_following import Bounds, Follower
 from partialslip.march import method as marching
 from partialslip.march.cells import compliance
 

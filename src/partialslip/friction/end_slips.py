@@ -3,8 +3,8 @@
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.condensed.ends import StickInterval
-from partialslip.condensed.history import History
+from partialslip.friction.history import History
+from partialslip.friction.zone_ends import StickInterval
 from partialslip.result import EndSlip
 
 _MANY = 2  # nodes of both contacts beside the stick zone from which on the end slips throughout

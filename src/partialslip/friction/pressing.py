@@ -26,8 +26,8 @@ from typing import Protocol
 import numpy as np
 
 from partialslip.arrays import Array, Mask
-from partialslip.condensed.bounded import Solution
-from partialslip.condensed.ends import StickInterval
+from partialslip.friction.active_set import Solution
+from partialslip.friction.zone_ends import StickInterval
 
 _STICKS = 1e-9  # relative tolerance of the friction bound
 _TELLING = 1e-9  # tolerance of lengths, relative to the half-width

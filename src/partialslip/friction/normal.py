@@ -7,10 +7,10 @@ import numpy as np
 import scipy.linalg as la
 
 from partialslip.arrays import Array, Mask, submatrix
-from partialslip.condensed.bounded import Sides, Solution, inverse, solve_bounded
-from partialslip.condensed.path_following import Bounds
-from partialslip.condensed.tableau import Tableau
 from partialslip.errors import PartialslipError
+from partialslip.friction.active_set import Sides, Solution, inverse, solve_bounded
+from partialslip.friction.path_following import Bounds
+from partialslip.friction.tableau import Tableau
 
 _TURNS = 100  # largest number of angles tried
 _LEVEL = 1e-14  # moment, relative to that of the forces without sign, that is rounding

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from partialslip.condensed.bounded import Factored, solve_bounded
+from partialslip.friction.active_set import Factored, solve_bounded
 
 
 def compliance(n: int, random: np.random.Generator) -> np.ndarray:

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from partialslip.condensed.coupled import Relative, _solve, _Step
-from partialslip.condensed.history import resting
-from partialslip.condensed.trail import Trail
+from partialslip.friction.coupled import Relative, _solve, _Step
+from partialslip.friction.history import resting
+from partialslip.friction.trail import Trail
 
 N = 60
 

@@ -1,6 +1,6 @@
 """Coulomb friction along a path on which the pressure varies: nodes come into contact and leave it.
 
-Scaled as in :mod:`partialslip.condensed.history`. Nodes that leave the contact lose their traction. Nodes that come
+Scaled as in :mod:`partialslip.friction.history`. Nodes that leave the contact lose their traction. Nodes that come
 back start with none, and stick with the relative displacement that they have when they touch, at some moment of a step.
 
 Where the surfaces stick beside a growing contact, the increments of q and of p are in a ratio L at the contact's end,
@@ -18,12 +18,12 @@ import numpy as np
 import scipy.linalg as la
 
 from partialslip.arrays import Array, Mask, submatrix
-from partialslip.condensed import varying_path
-from partialslip.condensed.bounded import Sides, Solution, solve_bounded, spread
-from partialslip.condensed.history import History, follow, resting
-from partialslip.condensed.normal import Presses
-from partialslip.condensed.path import Path
-from partialslip.condensed.path_following import SlidesError
+from partialslip.friction import varying_path
+from partialslip.friction.active_set import Sides, Solution, solve_bounded, spread
+from partialslip.friction.history import History, follow, resting
+from partialslip.friction.normal import Presses
+from partialslip.friction.path import Path
+from partialslip.friction.path_following import SlidesError
 from partialslip.scene.model import require_carried
 
 _INSIDE = 0.4  # of the distance from the end at the beginning of a step: where the ratio L is taken
@@ -48,7 +48,7 @@ def march(
     x : (n,) array
         Nodes of the contact line.
     tangential, stretch
-        As for :func:`partialslip.condensed.history.march`, at all nodes.
+        As for :func:`partialslip.friction.history.march`, at all nodes.
     f : (n,) array
         Coefficient of friction.
     press : Presses
@@ -57,7 +57,7 @@ def march(
         discretisations of both would be locked in.
     path : Path
     few : int
-        As for :func:`partialslip.condensed.varying_path.march`.
+        As for :func:`partialslip.friction.varying_path.march`.
     """
     if path.followed:
         with suppress(SlidesError):  # so near to sliding that rounding lets no node stick: steps still have an answer

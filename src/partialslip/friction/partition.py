@@ -12,7 +12,7 @@ import numpy as np
 import scipy.linalg as la
 
 from partialslip.arrays import Array, Indices, Mask, submatrix
-from partialslip.condensed.bounded import Sides
+from partialslip.friction.active_set import Sides
 
 _KEPT = 2  # factors
 _PAYS = 0.7  # of the unknowns without a factor: a system with more is better solved directly
@@ -23,7 +23,7 @@ _SLACK = 0.3  # of the nodes that are not eliminated: so many that stick may be 
 
 
 class Compliances(Protocol):
-    """Relative compliances (n, n), symmetric together (:class:`partialslip.condensed.coupled.Relative`)."""
+    """Relative compliances (n, n), symmetric together (:class:`partialslip.friction.coupled.Relative`)."""
 
     @property
     def xx(self) -> Array | None:

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from partialslip.bars import BARS
-from partialslip.condensed.history import History
-from partialslip.condensed.path import Path
-from partialslip.condensed.step_errors import Errors
+from partialslip.friction.history import History
+from partialslip.friction.path import Path
+from partialslip.friction.step_errors import Errors
 
 _CLOSES = 3  # most cycles on which this is decided
 

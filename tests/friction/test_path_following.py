@@ -5,11 +5,11 @@ import itertools
 import numpy as np
 import pytest
 
-from partialslip.condensed import path_following
-from partialslip.condensed.bounded import solve_bounded
-from partialslip.condensed.path_following import Bounds, Follower
-from partialslip.condensed.tableau import Tableau
 from partialslip.errors import PartialslipError
+from partialslip.friction import path_following
+from partialslip.friction.active_set import solve_bounded
+from partialslip.friction.path_following import Bounds, Follower
+from partialslip.friction.tableau import Tableau
 from partialslip.halfplane.hertz import Hertz
 from partialslip.march.cells import compliance, forces
 

@@ -1,6 +1,6 @@
 """Contact of two bodies that are not mirror images: pressure moves the surfaces along x, and shear opens the gap.
 
-Scaled as in :mod:`partialslip.condensed.history`. The surfaces' relative displacements u (upper body less lower body,
+Scaled as in :mod:`partialslip.friction.history`. The surfaces' relative displacements u (upper body less lower body,
 along x) and v (opening, along y) under normal forces p and tangential forces q (of the lower body on the upper one):
 
     u = C_xx q + C_xy p,    v = C_xy^T q + C_yy p.
@@ -15,13 +15,13 @@ import numpy as np
 import scipy.linalg as la
 
 from partialslip.arrays import Array, Mask, submatrix
-from partialslip.condensed.bounded import Sides, Solution, solve_bounded
-from partialslip.condensed.ends import CORNER
-from partialslip.condensed.history import History, certified, follow, resting, still
-from partialslip.condensed.partition import Factors, Forces, longest
-from partialslip.condensed.path import Path
-from partialslip.condensed.pressing import Pressed, Punch, Punches, Stages
-from partialslip.condensed.trail import Trail
+from partialslip.friction.active_set import Sides, Solution, solve_bounded
+from partialslip.friction.history import History, certified, follow, resting, still
+from partialslip.friction.partition import Factors, Forces, longest
+from partialslip.friction.path import Path
+from partialslip.friction.pressing import Pressed, Punch, Punches, Stages
+from partialslip.friction.trail import Trail
+from partialslip.friction.zone_ends import CORNER
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
 _STICKS = 1e-9  # relative tolerance of the friction bound and of lengths
@@ -240,7 +240,7 @@ def press(C: Relative, gap: Array, f: Array, line: Line | None, least: int, accu
     """Press the bodies together under a force from 0 to ``P``, with friction and without Q.
 
     Nodes that stick keep their displacement. Under a parabolic gap bodies are pressed in one small step from an
-    earlier stage, known from flat punches about its vertex (:mod:`partialslip.condensed.pressing`). Others are pressed
+    earlier stage, known from flat punches about its vertex (:mod:`partialslip.friction.pressing`). Others are pressed
     in at least ``least`` steps, doubled until q changes by less than ``accuracy`` (relative L2), or up to the limit.
 
     ``C`` are the compliances, ``gap`` (n,) the gap before loading, ``f`` (n,) the coefficients of friction, ``line``

@@ -1,9 +1,9 @@
 """Coulomb friction along a path on which the pressure varies, event by event.
 
 Between two instants at which nodes touch or open, normal forces are linear in time on a straight leg of the path, and
-tangential ones between two events of friction (:mod:`partialslip.condensed.path_following`). There are no load steps.
+tangential ones between two events of friction (:mod:`partialslip.friction.path_following`). There are no load steps.
 
-Scaled as in :mod:`partialslip.condensed.history`.
+Scaled as in :mod:`partialslip.friction.history`.
 """
 
 import itertools
@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from partialslip.arrays import Array, Mask, submatrix
-from partialslip.condensed.bounded import Solution, spread
-from partialslip.condensed.history import History, Steps, follow, resting
-from partialslip.condensed.normal import Presses
-from partialslip.condensed.path import Path
-from partialslip.condensed.path_following import Bounds, Follower, Leg
+from partialslip.friction.active_set import Solution, spread
+from partialslip.friction.history import History, Steps, follow, resting
+from partialslip.friction.normal import Presses
+from partialslip.friction.path import Path
+from partialslip.friction.path_following import Bounds, Follower, Leg
 from partialslip.scene.model import require_carried
 
 _STAGES = 32  # fewest stages between load points at which forces are kept
@@ -32,10 +32,10 @@ def march(tangential: Array, stretch: Array, f: Array, press: Presses, path: Pat
     Parameters
     ----------
     tangential, stretch, f, press, path
-        As for :func:`partialslip.condensed.varying.march`.
+        As for :func:`partialslip.friction.varying.march`.
     few : int
         Nodes that may slip both ways where slip does not turn round, as for
-        :func:`partialslip.condensed.constant.march`.
+        :func:`partialslip.friction.constant.march`.
 
     Raises SlidesError if no node sticks.
     """
@@ -101,7 +101,7 @@ class _Contact:
         return self._completed(follow(self._path, self._advance, begin, self._f))
 
     def _advance(self, before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
-        """Go along one leg, as :func:`partialslip.condensed.history.follow` asks for it."""
+        """Go along one leg, as :func:`partialslip.friction.history.follow` asks for it."""
         on, number = self._on, len(self._legs)
         bounds = self._ways[number if not number else 1 + (number - 1) % len(self._path.cycle)]
         # a state of another mesh has the load, and keeps the bounds, to an error of that mesh only

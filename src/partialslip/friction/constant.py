@@ -1,12 +1,12 @@
 """Coulomb friction at constant pressure: a path of straight legs, each exact in time.
 
 Where slip turns round on a leg, it is followed event by event
-(:class:`partialslip.condensed.path_following.Follower`). Where every node that slips at the end of the leg is pushed
+(:class:`partialslip.friction.path_following.Follower`). Where every node that slips at the end of the leg is pushed
 that way from the beginning and still slips that way at the end, and no other node slips on the way, one step leads to
 what gradual loading leads to: the conditions of the step are then those of gradual loading. This is decided by the
 rates at both ends of the leg, and by the sides of the nodes on the way.
 
-Scaled as in :mod:`partialslip.condensed.history`.
+Scaled as in :mod:`partialslip.friction.history`.
 """
 
 import math
@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from partialslip.arrays import Array, Mask
-from partialslip.condensed.bounded import Factored, Sides, Solution, solve_bounded
-from partialslip.condensed.history import History, Steps, follow, resting, still
-from partialslip.condensed.path import Path
-from partialslip.condensed.path_following import Bounds, Follower, Leg, SlidesError, noise
+from partialslip.friction.active_set import Factored, Sides, Solution, solve_bounded
+from partialslip.friction.history import History, Steps, follow, resting, still
+from partialslip.friction.path import Path
+from partialslip.friction.path_following import Bounds, Follower, Leg, SlidesError, noise
 from partialslip.scene.model import require_carried
 
 _AT = 1e-12  # distance from the bound, relative, at which a node is on it
@@ -47,7 +47,7 @@ def march(
         Relative compliance C of the nodes in contact.
     stretch : (2, n) array
         Displacements of the lower surface along x under the tension that strains it by 1, and under the tension that
-        strains it by x (:func:`partialslip.condensed.path.stretched`).
+        strains it by x (:func:`partialslip.friction.path.stretched`).
     normal : (n,) array
         Normal forces.
     f : (n,) array
@@ -151,7 +151,7 @@ class _Contact:
         return self._completed(history)
 
     def _advance(self, before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
-        """Go along one leg, as :func:`partialslip.condensed.history.follow` asks for it."""
+        """Go along one leg, as :func:`partialslip.friction.history.follow` asks for it."""
         done = _Done(before.x, load, change, still(before)) if not change.any() else self._leg(before.x, load, change)
         self.legs.append(done)
         return done.found, self._bound

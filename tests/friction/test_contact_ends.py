@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from partialslip.condensed.ends import CORNER, ROUNDED, contact_ends
-from partialslip.condensed.path import Path
-from partialslip.condensed.step_errors import other_steps, summed
+from partialslip.friction.path import Path
+from partialslip.friction.step_errors import other_steps, summed
+from partialslip.friction.zone_ends import CORNER, ROUNDED, contact_ends
 
 BETA, F, END = 0.27, 0.7, 1.0
 MORE = np.arctan(BETA * F) / np.pi

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from partialslip.condensed import piecewise
-from partialslip.condensed.piecewise import PiecewiseCauchy
+from partialslip.friction import piecewise
+from partialslip.friction.piecewise import PiecewiseCauchy
 
 DEPTHS = 10.0 ** np.arange(-12, 1)
 

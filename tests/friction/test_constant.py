@@ -7,12 +7,12 @@ import pytest
 from cell_contact import cells, loads
 
 from partialslip.arrays import runs, submatrix
-from partialslip.condensed import bounded, constant
-from partialslip.condensed.bounded import Factored
-from partialslip.condensed.constant import march
-from partialslip.condensed.ends import stick_zone
-from partialslip.condensed.path import Path
-from partialslip.condensed.path_following import Bounds, Follower
+from partialslip.friction import active_set, constant
+from partialslip.friction.active_set import Factored
+from partialslip.friction.constant import march
+from partialslip.friction.path import Path
+from partialslip.friction.path_following import Bounds, Follower
+from partialslip.friction.zone_ends import stick_zone
 from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.hertz import Hertz
@@ -214,7 +214,7 @@ def test_steps_on_an_inverse_multiply_by_the_compliance_once_or_twice(monkeypatc
     factored = Factored(C)
     factored.expect(100)
     factored.C = C.view(Counted)
-    monkeypatch.setattr(constant, "solve_bounded", lambda _, *rest: bounded.solve_bounded(factored.C, *rest))
+    monkeypatch.setattr(constant, "solve_bounded", lambda _, *rest: active_set.solve_bounded(factored.C, *rest))
     found = solved(replace(along(0.7, 0.0, 1), cycles=8), factored)
     assert found.iterations > found.load_steps
     assert found.load_steps < Counted.products <= 2 * found.load_steps + 1

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from partialslip.condensed.ends import stick_zone
+from partialslip.friction.zone_ends import stick_zone
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
