@@ -109,10 +109,10 @@ class MeshSolution:
     def wanders(self) -> bool:
         """Whether ends of the stick zone move over parts of the contact where no zone ends at a load point: slip
         reverses on the way, or the loads are out of phase. Kinks of q are locked in there, far from the points that
-        meshes are graded to. Known for constant pressure and bodies that are not coupled."""
-        if not self.history or self.coupled or self.most is not None:
+        meshes are graded to. Not known for coupled bodies, nor out of phase where the pressure varies."""
+        if not self.history or self.coupled:
             return False
-        return self.history.turns or not self.history.path.in_phase
+        return self.history.turns or (self.most is None and not self.history.path.in_phase)
 
     @property
     def turning(self) -> list[float]:

@@ -10,6 +10,7 @@ from partialslip.friction.path import Path
 from partialslip.friction.path_following import Bounds, Follower
 from partialslip.march import method as marching
 from partialslip.march.cells import compliance
+from partialslip_fem.mesh_solution import MeshSolution
 
 F = 0.5
 
@@ -120,7 +121,7 @@ def test_one_step_where_slip_turns_round(monkeypatch):
     assert abs(found.m / found.a - 0.7245161751) > 5 * found.estimate["m"]
 
 
-def narrow():
+def narrow(accuracy=1e-4):
     """The fem result of a contact near sliding that grows by 1.6e-4 a, so that small elements touch and open."""
     scene = parse_scene({
         "name": "narrow", "material": {"E": 1347203060.0447671, "nu": 0.49999},
@@ -129,7 +130,7 @@ def narrow():
             "P": [15275.572883779996, 15280.4682811554], "Q": [-875.3235582895744, 875.3235582895744],
             "sigma": [307842.9919628372, -307842.9919628372], "cycles": 3,
         },
-        "fem": {"accuracy": 1e-4},
+        "fem": {"accuracy": accuracy},
     })  # fmt: skip
     return run(scene, ["fem"])["fem"]
 
@@ -139,6 +140,31 @@ def test_rounding_of_small_elements_is_corrected_on_the_way():
     found = narrow()
     assert found.certificate["kkt"] < 1e-10
     assert (found.m / found.a, found.n / found.a) == pytest.approx((-0.706828, 0.920919), abs=5e-4)
+
+
+def off_and_known():
+    """Errors of m and n of :func:`narrow` at the default accuracy over their estimates, and the larger estimate. The
+    ends are those by march at an accuracy of 1e-4, to 3e-5 a."""
+    found = narrow(2e-5)
+    known = [found.estimate["m"], found.estimate["n"]]
+    off = np.abs([found.m / found.a - -0.706542, found.n / found.a - 0.921075])
+    return float(np.max(off / known)), max(known)
+
+
+@pytest.mark.slow
+def test_ends_that_wander_at_varying_pressure():
+    """The ends move by 1e-3 a from mesh to mesh. They are known to about that, and not to 85 a."""
+    times, known = off_and_known()
+    assert times < 1
+    assert known < 2e-3
+
+
+@pytest.mark.slow
+@pytest.mark.fault
+def test_ends_at_varying_pressure_that_do_not_wander(monkeypatch):
+    """Deliberate fault: where the pressure varies, meshes may grow faster beside the ends although slip turns round."""
+    monkeypatch.setattr(MeshSolution, "wanders", False)
+    assert off_and_known()[1] > 1
 
 
 @pytest.mark.fault
