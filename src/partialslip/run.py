@@ -173,11 +173,6 @@ class Run(Drawn):
     def to_dataframe(self) -> "DataFrame":
         """Return the table of ``tractions.csv`` in SI units: :meth:`Result.to_dataframe` of all methods, and a column
         ``method``.
-
-        Raises
-        ------
-        MissingLibraryError
-            If pandas is not installed.
         """
         return frame(self.columns)
 

@@ -13,7 +13,6 @@ from partialslip.batch import grid, job
 from partialslip.batch.ledger import Ledger
 from partialslip_fem import characterise
 
-pytest.importorskip("pandas")
 SCENE = partialslip.load_scene("fretting-aluminium")
 F = np.linspace(0.3, 0.6, 4)
 
@@ -172,13 +171,6 @@ def test_what_is_refused_before_anything_is_solved(solved, over, more, line):
     with pytest.raises(partialslip.InputError) as raised:
         partialslip.sweep(SCENE, over, **{"methods": "exact", **more})
     assert str(raised.value).startswith(line)
-    assert solved == []
-
-
-def test_without_pandas_nothing_is_solved(solved, monkeypatch):
-    monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(partialslip.PartialslipError, match="pandas is not installed"):
-        partialslip.sweep(SCENE, {"friction.f": F}, "exact")
     assert solved == []
 
 

@@ -114,7 +114,6 @@ def test_plot_of_a_result_on_axes_of_ones_own(run):
 
 
 def test_data_frames(run):
-    pytest.importorskip("pandas")
     exact = run.results["exact"].to_dataframe()
     assert list(exact) == ["x", "x_over_a", "p", "q1", "q2", "dq"]
     np.testing.assert_array_equal(exact["q2"] - exact["q1"], exact["dq"])
@@ -127,7 +126,6 @@ def test_data_frames(run):
 
 
 def test_what_is_not_determined_is_not_a_number():
-    pytest.importorskip("pandas")
     scene = partialslip.load_scene(
         "hertz-large-tension", ["load.sigma=[1e8, 9e8]", "load.Q=[3e4, 2.2e5]", "fem.accuracy=1e-3"]
     )
@@ -135,13 +133,6 @@ def test_what_is_not_determined_is_not_a_number():
     frame = mean.to_dataframe()
     assert frame["q1"].isna().tolist() == (frame["method"] == "exact").tolist()
     assert frame["dq"].notna().all()
-
-
-def test_without_pandas(run, monkeypatch):
-    monkeypatch.setitem(sys.modules, "pandas", None)
-    for what in (run, run.results["exact"]):
-        with pytest.raises(partialslip.PartialslipError, match="pandas is not installed: pip install"):
-            what.to_dataframe()
 
 
 def test_nothing_is_imported_before_it_is_asked_for():

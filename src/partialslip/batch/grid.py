@@ -86,11 +86,8 @@ def sweep(
         If a key or a value is not allowed in the scene, before any point is solved.
     PartialslipError
         If a worker process dies or the cluster is lost; solved points are kept.
-    MissingLibraryError
-        If pandas is not installed.
     """
     scene = as_scene(scene)
-    frame({})  # pandas is missing before the first point is solved, not after the last one
     if cores is not None and not (isinstance(cores, (int, np.integer)) and cores >= 1):
         raise InputError(f"cores = {cores}: must be a whole number >= 1")
     if not 0 <= check <= 1:

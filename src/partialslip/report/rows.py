@@ -12,6 +12,7 @@ from partialslip.result import Cost, Result
 from partialslip.run import Run
 from partialslip.scene import Scene
 from partialslip.scene.dimensions import DIMENSIONS
+from partialslip.scene.plausible import implausible as implausible
 from partialslip.scene.writing import scene_tables
 from partialslip.units import SI, Dimension, Units
 

@@ -43,7 +43,7 @@ def print_run(run: Run, console: Console, *, verbose: bool = False, lines: Seque
         print_lines(console, rows.methods_in_short(run.results))
     notes = [] if verbose else rows.run_notes(run)
     unjudged = [line for comparison in run.comparisons.values() for line in rows.unjudged(comparison)]
-    for line in (*unjudged, *notes):
+    for line in (*rows.implausible(run.scene), *unjudged, *notes):
         console.print(line, markup=False)
     *asked, verdict = rows.verdict_lines(run)
     for line in (*lines, *asked):

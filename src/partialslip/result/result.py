@@ -170,10 +170,5 @@ class Result(Drawn):
         """Return the tractions as a table, one row per point: x (m), x_over_a, p, q1, q2 and dq (Pa).
 
         Values that the method does not determine are NaN.
-
-        Raises
-        ------
-        MissingLibraryError
-            If pandas is not installed.
         """
         return frame(self.columns)
