@@ -21,8 +21,8 @@ from partialslip_fem.farfield import half_plane
 from partialslip_fem.problem import Part, Problem
 from partialslip_meshes import Eased, Mesh, block, size_at
 
-_OVERHANG = 1e-9  # of the opposite contact line: overhang that counts as rounding of coordinates
-_KEPT = 2  # sets of bodies in Kept: those of the first mesh, and of the uniform mesh that follows
+_OVERHANG = 1e-9  # limit: of the opposite contact line: overhang that counts as rounding of coordinates
+_KEPT = 2  # cost: sets of bodies in Kept: those of the first mesh, and of the uniform mesh that follows
 
 
 class Shared:

@@ -14,10 +14,10 @@ from partialslip_fem.factor import Backend, default_backend
 from partialslip_fem.problem import Part, parts_of
 from partialslip_fem.surroundings import height, surroundings
 
-_REACH = 0.5  # range of the polynomials, in the smallest half-width or height of the bodies
-_FLAT = 1e-6  # of the height: distance from the face that counts as rounding
-_TERMS = 11  # of each polynomial
-_ORDER = 4  # of the elements
+_REACH = 0.5  # accuracy: range of the polynomials, in the smallest half-width or height of the bodies
+_FLAT = 1e-6  # accuracy: of the height: distance from the face that counts as rounding
+_TERMS = 11  # accuracy: of each polynomial
+_ORDER = 4  # accuracy: of the elements
 # element size in the middle, tolerance of singular corners, distance of round faces from the sides of elements; and
 # order of the elements on a given mesh
 _FINE, _ROUGH = ((0.1, 1e-7, 1e-5), _ORDER), ((0.2, 1e-6, 1e-4), _ORDER - 1)

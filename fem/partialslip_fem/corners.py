@@ -11,7 +11,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 
-_LEAST, _COUNT = 0.2, 4001  # smallest exponent tried, and number of exponents tried up to 1
+_LEAST, _COUNT = 0.2, 4001  # accuracy: smallest exponent tried, and number of exponents tried up to 1
 
 
 def free_exponent(angle: float) -> float:

@@ -10,7 +10,7 @@ from skfem.refdom import RefTri
 
 from partialslip.arrays import Array
 
-_EVEN = 4  # highest order with evenly spaced nodes on the edges
+_EVEN = 4  # fixed: highest order with evenly spaced nodes on the edges
 
 
 class _Lobatto(skfem.ElementH1):  # type: ignore[misc]

@@ -37,46 +37,48 @@ from partialslip_fem.mortar import within_cells
 from partialslip_fem.problem import Problem
 from partialslip_fem.solving import solve_on_meshes
 
-# The order below costs least, but P2 and P1 lock towards nu = 0.5, so that their differences are no errors.
+# accuracy: The order below costs least, but P2 and P1 lock towards nu = 0.5, so that their differences are no errors.
 NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3, 6: 5}
 
 END_KEYS = ("a", "left", "right", "m", "n")
 _SHEARS = ("q", "q1", "q2")
 KEYS = (*END_KEYS, "p", *_SHEARS)
 
-# Safety factors on errors away from the ends (measured: benchmarks/estimates.py).
+# accuracy: Safety factors on errors away from the ends (measured: benchmarks/estimates.py).
 _SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.9, "n": 1.9, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
-_EASED_SAFE = {6: 2.0}  # the same for meshes that grow faster near the ends, by order
-_LEAST_OF_A = 1 / 3  # of the error of a: least error of any end
-# Least errors of m and n where slip turns round, measured: in their own change; in what they answer to the change of q;
-# in the change of q, where the zone drifts, and at most.
+_EASED_SAFE = {6: 2.0}  # accuracy: the same for meshes that grow faster near the ends, by order
+_LEAST_OF_A = 1 / 3  # accuracy: of the error of a: least error of any end
+# accuracy: Least errors of m and n where slip turns round, measured: in their own change; in what they answer to the
+# change of q; in the change of q, where the zone drifts, and at most.
 _OF_TURNED, _ANSWERED = 0.5, 2.0
 _DRIFTS, _MOST = 0.03, 0.5
-_NARROW = 0.1  # of the norm of f p: shear with a smaller norm is confined to narrow strips
+_NARROW = 0.1  # accuracy: of the norm of f p: shear with a smaller norm is confined to narrow strips
 
-# Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.
+# accuracy: Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.
 # Error of an end of the contact, in the mean size of the element that the end lies in and its neighbours, by order.
 AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002, 6: 0.001}
 # Factors of (element size / gap)^2 in the error of an end of the stick zone: gap to the other end of the stick zone,
 # and to the nearest other end or kink.
 _FIT = np.array([8.0, 2.0])
-_STICK = 1.5  # error of an end of the stick zone, in the error of an end of the contact
-# The same of bodies of unlike materials, where p and q vary with each other, in the element size (measured): after a
-# cycle, and under a flat punch, whose corner is to be found, too. Ends of their contact: where the slip zone is wider
-# than an element, whose p is a power of the distance, and where it is not.
+_STICK = 1.5  # accuracy: error of an end of the stick zone, in the error of an end of the contact
+# accuracy: The same of bodies of unlike materials, where p and q vary with each other, in the element size
+# (measured): after a cycle, and under a flat punch, whose corner is to be found, too. Ends of their contact: where
+# the slip zone is wider than an element, whose p is a power of the distance, and where it is not.
 _COUPLED, _PUNCHED = 0.1, 0.3
 _SLIPPING, _STUCK = 0.02, 0.3
-_OF_LOCKED, _P_OF_LOCKED = 0.004, 0.02  # error of an end and of p, in that of q1 and q2, as q opens the gap (measured)
-_SIDE = 0.5  # largest error of an end due to the fit, in the element size
-# Where slip turns round, ends of the stick zone are known less; at one that moves over nodes that slipped, q is off
-# its bound by little: parts of the element size.
+# accuracy: error of an end and of p, in that of q1 and q2, as q opens the gap (measured)
+_OF_LOCKED, _P_OF_LOCKED = 0.004, 0.02
+_SIDE = 0.5  # accuracy: largest error of an end due to the fit, in the element size
+# accuracy: Where slip turns round, ends of the stick zone are known less; at one that moves over nodes that slipped,
+# q is off its bound by little: parts of the element size.
 _TURNED, _CAUGHT_UP = 5.0, 0.05
-_KINK = 0.03  # L2 error of q at a kink, in its strength times the element size
-_STEEP = 0.3  # the same at ends of a narrow slip zone, also times element size / gap
-_SHIFT = 1.5  # L2 error of q due to a shifted kink, in its strength times the shift
-_OF_BROKEN = 0.4  # of the change: least error where the gap's curvature jumps within elements (measured on tables)
-_ACROSS = 3.0  # elements on either side of a kink from which its strength is found
-# Errors of p and q, in the error of an end, for Hertz contacts; in other contacts also times the steepness.
+_KINK = 0.03  # accuracy: L2 error of q at a kink, in its strength times the element size
+_STEEP = 0.3  # accuracy: the same at ends of a narrow slip zone, also times element size / gap
+_SHIFT = 1.5  # accuracy: L2 error of q due to a shifted kink, in its strength times the shift
+# accuracy: of the change: least error where the gap's curvature jumps within elements (measured on tables)
+_OF_BROKEN = 0.4
+_ACROSS = 3.0  # accuracy: elements on either side of a kink from which its strength is found
+# accuracy: Errors of p and q, in the error of an end, for Hertz contacts; in other contacts also times the steepness.
 _TRACTIONS = {"p": 12.0, "q": 40.0}
 
 

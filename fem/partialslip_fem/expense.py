@@ -13,12 +13,12 @@ from partialslip.result import Clock
 from partialslip_fem.bodies import Grading
 
 _PER_LENGTH = 2 * np.pi / np.sqrt(3)
-# Work in unknowns of a small mesh.
-_FILL = 1e4, 0.4  # unknowns above which fill of the factor adds work, and the power of the growth
-_FIXED = 1e3  # work of any mesh
-_START = 6e3  # work of starting the gmsh process, with the first mesh
-_UNMESHED = 0.8  # of the work of a mesh: solving on the same mesh once more
-_POINTS = 200  # quadrature points on each side of each graded point
+# cost: Work in unknowns of a small mesh.
+_FILL = 1e4, 0.4  # cost: unknowns above which fill of the factor adds work, and the power of the growth
+_FIXED = 1e3  # cost: work of any mesh
+_START = 6e3  # cost: work of starting the gmsh process, with the first mesh
+_UNMESHED = 0.8  # cost: of the work of a mesh: solving on the same mesh once more
+_POINTS = 200  # cost: quadrature points on each side of each graded point
 
 
 class Expense:

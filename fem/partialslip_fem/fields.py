@@ -13,8 +13,8 @@ from partialslip_fem.elasticity import gradients
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.recovery import inside, polynomials
 
-_CELLS, _TERMS = 6, 4  # cells and terms of the fit at the ends of the contact
-_REACH, _SHORTEST = 1.5, 0.01  # of the edges drawn near the contact, in contact half-widths
+_CELLS, _TERMS = 6, 4  # accuracy: cells and terms of the fit at the ends of the contact
+_REACH, _SHORTEST = 1.5, 0.01  # display: of the edges drawn near the contact, in contact half-widths
 
 
 @dataclass(frozen=True)

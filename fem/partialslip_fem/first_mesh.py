@@ -9,12 +9,13 @@ from partialslip_fem.bodies import Grading, Kept
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.problem import Part, Problem
 
-FIRST_SIZE = 0.1  # element size, in half-widths of the contact line
-_GROWTH = 1.0  # of the first mesh
-_POINTS = 16  # points of that element size, evenly spaced along the contact line
-_WIDER = 8.0  # largest first contact line over the usual one: elements of more than it are wider than the contact
-_BEYOND = 3.9  # smallest half-width of a block, in the largest |x| in contact: less than the smallest `fem.width`
-_FILLS = 0.95  # largest contact line, in the width of a finite block: it keeps off the block's corners
+FIRST_SIZE = 0.1  # cost: element size, in half-widths of the contact line
+_GROWTH = 1.0  # cost: of the first mesh
+_POINTS = 16  # cost: points of that element size, evenly spaced along the contact line
+_WIDER = 8.0  # cost: largest first contact line over the usual one: elements of more than it are wider than the contact
+# limit: smallest half-width of a block, in the largest |x| in contact: less than the smallest `fem.width`
+_BEYOND = 3.9
+_FILLS = 0.95  # limit: largest contact line, in the width of a finite block: it keeps off the block's corners
 
 
 def solve_on_first_mesh(

@@ -19,41 +19,43 @@ from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.problem import Problem
 from partialslip_meshes import Eased
 
-# Bounds on element sizes at the ends of zones, in contact half-widths.
-FINEST = 1e-7  # smallest: with smaller elements rounding errors dominate (benchmarks/accuracy.py floor)
-COARSEST = 0.005  # largest on a mesh whose errors are estimated; coarser meshes only locate the ends
-FINER = 16.0  # largest ratio of these sizes from mesh to mesh
+# limit: Bounds on element sizes at the ends of zones, in contact half-widths.
+FINEST = 1e-7  # limit: smallest: with smaller elements rounding errors dominate (benchmarks/accuracy.py floor)
+COARSEST = 0.005  # cost: largest on a mesh whose errors are estimated; coarser meshes only locate the ends
+FINER = 16.0  # cost: largest ratio of these sizes from mesh to mesh
 
-# Growth of the elements away from the ends: errors there are about (growth/2.8)^(2 order)
+# cost: Growth of the elements away from the ends: errors there are about (growth/2.8)^(2 order)
 # (compare benchmarks/accuracy.py orders).
 _SMOOTH = 2.8
 _LARGEST_GROWTH = 0.7
-ON_THE_WAY = 4  # largest order on meshes before that with the element size of the goal
-_EASED_BELOW = 3e-6  # error away from the ends from which on growth is the same everywhere
-_STEEPEST = 1.0  # largest growth near the ends of zones, where it may be larger than elsewhere
+ON_THE_WAY = 4  # cost: largest order on meshes before that with the element size of the goal
+_EASED_BELOW = 3e-6  # cost: error away from the ends from which on growth is the same everywhere
+_STEEPEST = 1.0  # cost: largest growth near the ends of zones, where it may be larger than elsewhere
 
-# Shares of the accuracy asked for.
-AIM = 0.5  # error that meshes are designed for: estimates are right within a factor of two (benchmarks/estimates.py)
-BAR = 0.9  # largest estimate that is accepted
-_AWAY_SHARE = 0.5  # of AIM: error away from the ends ...
-# ... and the same, by order, if elements grow faster near the ends of zones than elsewhere, which adds to it.
+# cost: Shares of the accuracy asked for.
+# cost: error that meshes are designed for: estimates are right within a factor of two (benchmarks/estimates.py)
+AIM = 0.5
+BAR = 0.9  # limit: largest estimate that is accepted
+_AWAY_SHARE = 0.5  # cost: of AIM: error away from the ends ...
+# cost: ... and the same, by order, if elements grow faster near the ends of zones than elsewhere, which adds to it.
 _EASED_SHARE = {4: 0.2, 6: 0.1}
-_END_SHARE = 0.33  # of AIM: largest error due to the elements at the ends
-_FACET_SHARE = 0.25  # largest distance of a round face from the elements, and error of the ends due to it
-_CORNER_ERROR = 10.0  # largest change of the contact due to elements at corners, as a multiple of the accuracy ...
-LOOSEST = 1e-2  # ... and absolute; also the loosest accuracy that an allowance of CPU seconds may lead to
-# Errors at the contact per change due to the corners of blocks.
+_END_SHARE = 0.33  # cost: of AIM: largest error due to the elements at the ends
+_FACET_SHARE = 0.25  # accuracy: largest distance of a round face from the elements, and error of the ends due to it
+# accuracy: largest change of the contact due to elements at corners, as a multiple of the accuracy ...
+_CORNER_ERROR = 10.0
+LOOSEST = 1e-2  # limit: ... and absolute; also the loosest accuracy that an allowance of CPU seconds may lead to
+# accuracy: Errors at the contact per change due to the corners of blocks.
 _TILTS = {"left": 1e-3, "right": 1e-3, "p": 5e-3, "q": 5e-3, "q1": 5e-3, "q2": 5e-3}
 
-_SWEPT = (0.2, 8e-3, 0.1)  # element size, and bar of q, for which it suffices; largest element size
+_SWEPT = (0.2, 8e-3, 0.1)  # cost: element size, and bar of q, for which it suffices; largest element size
 
-# Element size at kinks that q has at single load points only, over the root of the accuracy: they move the ends of the
-# stick zone by the square of that size.
+# cost: Element size at kinks that q has at single load points only, over the root of the accuracy: they move the ends
+# of the stick zone by the square of that size.
 PASSING = 20.0
 
-_KNOWN = 0.3  # error away from the ends on the way to smaller elements there, in the next mesh's element size
-_NO_GAP = 1e-100  # distance of zone ends that coincide: element sizes are divided by it
-_REACHED = 1.01  # element sizes within this factor of the goal count as having reached it
+_KNOWN = 0.3  # cost: error away from the ends on the way to smaller elements there, in the next mesh's element size
+_NO_GAP = 1e-100  # accuracy: distance of zone ends that coincide: element sizes are divided by it
+_REACHED = 1.01  # cost: element sizes within this factor of the goal count as having reached it
 
 
 @dataclass(frozen=True)

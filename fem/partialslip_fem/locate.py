@@ -5,9 +5,9 @@ from scipy.spatial import cKDTree
 
 from partialslip.arrays import Array, Indices
 
-_STARTS = 6  # nearest triangles from which the way to a point is tried
-_STEPS = 1000  # triangles on a way
-_EDGE = 1e-9  # barycentric coordinate above which a point is not outside
+_STARTS = 6  # cost: nearest triangles from which the way to a point is tried
+_STEPS = 1000  # limit: triangles on a way
+_EDGE = 1e-9  # accuracy: barycentric coordinate above which a point is not outside
 
 
 class Locator:

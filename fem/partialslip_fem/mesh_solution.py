@@ -17,7 +17,8 @@ from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import Body
 from partialslip_fem.recovery import traction
 
-_TOUCHES = 1e-9  # mean traction of an open node, relative to the largest: rounding of the mass matrix's inverse
+# accuracy: mean traction of an open node, relative to the largest: rounding of the mass matrix's inverse
+_TOUCHES = 1e-9
 
 
 @dataclass(frozen=True)

@@ -21,11 +21,11 @@ from partialslip_fem.solving import solve_on_meshes
 from partialslip_fem.uniform import uniform
 from partialslip_meshes import Mesh
 
-# Beyond these limits rounding errors of coordinates or of the stiffness are too large.
-_SIZES = 1e-3, 1e5  # smallest and largest width or height of a body, in sqrt(A R P)
-_FLATTEST = 1e9  # largest kink of the profile, in sqrt(A R P)
-_SLENDER = 1e3  # largest height of a body, in the body's width
-_LARGEST_NU = 0.4999999  # in plane strain
+# limit: Beyond these limits rounding errors of coordinates or of the stiffness are too large.
+_SIZES = 1e-3, 1e5  # limit: smallest and largest width or height of a body, in sqrt(A R P)
+_FLATTEST = 1e9  # limit: largest kink of the profile, in sqrt(A R P)
+_SLENDER = 1e3  # limit: largest height of a body, in the body's width
+_LARGEST_NU = 0.4999999  # limit: in plane strain
 
 
 @one_thread

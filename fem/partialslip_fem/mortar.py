@@ -13,7 +13,7 @@ from partialslip_fem.elasticity import Body
 from partialslip_fem.elements import shapes
 from partialslip_fem.recovery import inside
 
-_ON_VERTEX = 1e-6  # distance of a jump of the gap's curvature from a vertex, in the cell, that counts as none
+_ON_VERTEX = 1e-6  # accuracy: distance of a jump of the gap's curvature from a vertex, in the cell, that counts as none
 
 
 def transfer(onto: Body, other: Body) -> Array:

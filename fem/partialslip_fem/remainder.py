@@ -23,8 +23,8 @@ from partialslip_fem.problem import Part
 from partialslip_fem.surroundings import left_over
 from partialslip_meshes import Mesh
 
-_PLACES = 24  # forces that stand for the tractions far from the contact
-_SIZE, _GROWTH, _CORNERS, _FACETS = 0.1, 0.25, 1e-7, 1e-5  # of the mesh, in the smallest half-width or height
+_PLACES = 24  # accuracy: forces that stand for the tractions far from the contact
+_SIZE, _GROWTH, _CORNERS, _FACETS = 0.1, 0.25, 1e-7, 1e-5  # accuracy: of the mesh, in the smallest half-width or height
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(_PLACES // 2 + 4)
 
 

@@ -19,9 +19,9 @@ from partialslip_fem.recovery import traction
 from partialslip_fem.remainder import Remainder
 from partialslip_fem.surroundings import height
 
-_SURFACE = 1e-30  # depth of points on a flat surface, scaled
-_BELOW = 1e-13  # depth of points on a round face below the polygon of its cells, scaled
-_ROUNDING = 1e-9  # part of the depth of a face
+_SURFACE = 1e-30  # accuracy: depth of points on a flat surface, scaled
+_BELOW = 1e-13  # accuracy: depth of points on a round face below the polygon of its cells, scaled
+_ROUNDING = 1e-9  # accuracy: part of the depth of a face
 
 
 class Line:

@@ -21,8 +21,8 @@ from partialslip_fem.mortar import shape_functions
 from partialslip_fem.problem import Part
 from partialslip_meshes import Mesh
 
-_GROWTH = 0.4  # element size gained per unit of distance from the contact line
-_STEP = 1e-5  # of x, for the slope of a round face
+_GROWTH = 0.4  # accuracy: element size gained per unit of distance from the contact line
+_STEP = 1e-5  # accuracy: of x, for the slope of a round face
 
 
 @dataclass(frozen=True)

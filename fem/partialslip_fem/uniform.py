@@ -13,7 +13,7 @@ from partialslip_fem.goals import growth_for
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
 from partialslip_fem.problem import Problem
 
-_FEWEST = 4  # elements in the contact on a mesh from a file
+_FEWEST = 4  # limit: elements in the contact on a mesh from a file
 
 
 def uniform(problem: Problem, size: float | None, width: float, clock: Clock, keep: Kept | None = None) -> Adapted:

@@ -13,9 +13,9 @@ from partialslip_fem.elasticity import Body
 from partialslip_fem.problem import Problem
 from partialslip_fem.recovery import traction
 
-_ROUGH = 3  # cells at each end of the contact in which tractions are not smooth
-_SAMPLES = 32  # points in each other cell, between which the force is nearly linear
-_SAME_KINK = 1e-3  # of the contact half-width: kinks nearer to each other count as one
+_ROUGH = 3  # accuracy: cells at each end of the contact in which tractions are not smooth
+_SAMPLES = 32  # accuracy: points in each other cell, between which the force is nearly linear
+_SAME_KINK = 1e-3  # accuracy: of the contact half-width: kinks nearer to each other count as one
 
 
 def contact_ends(

@@ -10,9 +10,9 @@ from partialslip_meshes.gmsh import ask
 from partialslip_meshes.mesh import Mesh, QuadMesh
 from partialslip_meshes.sizes import Eased, formula, in_effect
 
-# Squares of the largest ratio of neighbours on a line: gmsh's own, and one above all that the sizes ask for
+# fixed: Squares of the largest ratio of neighbours on a line: gmsh's own, and one above all that the sizes ask for
 _SMOOTH, _UNSMOOTHED = 1.8, 4.0
-_NOTCH_SIZE = 0.02  # element size in the notch between block and holder, in the block's half-width
+_NOTCH_SIZE = 0.02  # accuracy: element size in the notch between block and holder, in the block's half-width
 
 Corner = Literal["foot", "shoulder", "notch"]
 Face = Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]]

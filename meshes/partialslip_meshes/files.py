@@ -18,7 +18,7 @@ _one = threading.Lock()  # sys.stdout, sys.stderr and the warning filters are sh
 _INCLUDES = re.compile(rb"^\*\s*INCLUDE\b[^\n]*=([^\n]*)", re.IGNORECASE | re.MULTILINE)  # Abaqus
 _ELSEWHERE = re.compile(rb"<DataItem\b[^>]*Format\s*=\s*[\"'](?:Binary|HDF)[\"'][^>]*>([^<]*)<", re.IGNORECASE)  # XDMF
 _REFERS = {".inp": _INCLUDES, ".xdmf": _ELSEWHERE, ".xmf": _ELSEWHERE}
-_MOST = 64  # files
+_MOST = 64  # limit: files
 
 
 class _Caught:

@@ -14,10 +14,10 @@ from collections.abc import Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
-# right-angled triangles, paired; a final refinement removes the triangles without a partner
+# fixed: right-angled triangles, paired; a final refinement removes the triangles without a partner
 _ALL_QUADS = {"Algorithm": 8, "RecombineAll": 1, "RecombinationAlgorithm": 3}
 
-_PIECE = 1 << 20  # bytes of one read from a pipe
+_PIECE = 1 << 20  # cost: bytes of one read from a pipe
 
 
 def send(pipe: int, head: Mapping[str, Any], arrays: Sequence[bytes] = ()) -> None:

@@ -21,13 +21,13 @@ Indices = npt.NDArray[np.int64]
 
 FORMATS = (".msh", ".inp", ".med", ".vtu")
 NAMES = ("contact", "face", "back", "left", "right")
-_IGNORED = {"vertex": 1, "line": 2, "line3": 3}  # nodes of cells that are allowed besides elements
+_IGNORED = {"vertex": 1, "line": 2, "line3": 3}  # fixed: nodes of cells that are allowed besides elements
 _NODES = {"triangle": 3, "triangle6": 6, "triangle7": 7, "quad": 4, "quad8": 8, "quad9": 9} | _IGNORED
-_LARGEST = 1e30  # coordinate
-_FLAT = 1e-12  # of the square of the longest side: an element with less area counts as empty
-_OFF = 1e-4  # of the length: largest deviation of the contact line from its shape, and of points from a plane
-_MIDDLE = 0.25  # of a side: largest deviation of its middle node from the middle
-_FEWEST = 4  # edges of a contact line
+_LARGEST = 1e30  # limit: coordinate
+_FLAT = 1e-12  # limit: of the square of the longest side: an element with less area counts as empty
+_OFF = 1e-4  # limit: of the length: largest deviation of the contact line from its shape, and of points from a plane
+_MIDDLE = 0.25  # limit: of a side: largest deviation of its middle node from the middle
+_FEWEST = 4  # limit: edges of a contact line
 
 
 def read(

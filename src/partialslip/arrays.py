@@ -8,7 +8,7 @@ Complex = npt.NDArray[np.complex128]
 Indices = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 
-_BLOCKS = 16  # of consecutive rows and columns: up to so many are faster copied one by one
+_BLOCKS = 16  # cost: of consecutive rows and columns: up to so many are faster copied one by one
 
 
 def runs(members: Indices) -> list[slice]:

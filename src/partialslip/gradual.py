@@ -12,8 +12,8 @@ import numpy as np
 from partialslip.arrays import Array, Mask
 from partialslip.scene import Hertz, Scene
 
-# Hertz, large tension: slip does not reverse for Qf <= _QF and _SLOPE Qf <= sf <= _SF, a box inside the exact domain of
-# `turns_round` (checked in tests/halfplane/test_gradual.py).
+# cost: Hertz, large tension: slip does not reverse for Qf <= _QF and _SLOPE Qf <= sf <= _SF, a box inside the exact
+# domain of `turns_round` (checked in tests/halfplane/test_gradual.py).
 _QF, _SLOPE, _SF = 0.44, 6.0, 10.0
 _Numbers = Array | float
 

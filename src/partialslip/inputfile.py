@@ -13,7 +13,7 @@ from io import BufferedReader
 
 from partialslip.errors import InputError
 
-LARGEST_MESH = 2**31  # bytes of a mesh file
+LARGEST_MESH = 2**31  # limit: bytes of a mesh file
 # An opened pipe does not wait for a writer. Windows reads text unless told otherwise.
 _READ = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
 _NOT_REGULAR = "must be a regular file, not a pipe or a device"

@@ -25,7 +25,7 @@ from partialslip.seal import KEY, edited, sealed_text
 from partialslip.strictjson import converted, parsed
 
 SCHEMA = "partialslip/result/3"
-_LARGEST = 500_000_000  # bytes of a results.json to read
+_LARGEST = 500_000_000  # limit: bytes of a results.json to read
 
 
 class PlanRecord(msgspec.Struct, frozen=True):

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 Progress = Callable[[str], None]
 _ONE = "the contact slides at one of the load points: q at the other is not solved for"
-_KEPT = 8  # rigs kept in a process
+_KEPT = 8  # cost: rigs kept in a process
 _rigs: dict[str, Rig] = {}
 
 

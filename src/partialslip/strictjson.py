@@ -15,7 +15,7 @@ import msgspec
 from partialslip.errors import InputError
 
 _Kind = TypeVar("_Kind")
-_DIGITS = 19  # of the largest whole numbers of 64 bits
+_DIGITS = 19  # fixed: of the largest whole numbers of 64 bits
 _SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 
 

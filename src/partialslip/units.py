@@ -16,7 +16,7 @@ per unit depth, and pure numbers."""
 _DIMENSIONS: tuple[Dimension, ...] = get_args(Dimension)
 _T = TypeVar("_T", float, Array)
 _LABELLED = re.compile(r"(?<=\d) (N/m|m|Pa)(?![\w/])")
-# Lengths by the names, in lower case, that tables give in brackets, m.
+# fixed: Lengths by the names, in lower case, that tables give in brackets, m.
 LENGTHS = {
     "m": 1.0, "mm": 1e-3, "um": 1e-6, "\N{MICRO SIGN}m": 1e-6, "\N{GREEK SMALL LETTER MU}m": 1e-6, "nm": 1e-9,
     "cm": 1e-2, "in": 0.0254,

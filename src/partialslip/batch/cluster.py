@@ -13,8 +13,8 @@ from typing import Any
 from partialslip.errors import InputError, MissingLibraryError, PartialslipError
 
 _ADDRESS = re.compile(r"(?:(?P<protocol>tcp|tls)://)?(?P<host>[^/:\[\]\s]+|\[[0-9a-fA-F:.%]+\]):(?P<port>[0-9]{1,5})")
-_ANSWERS = 10  # s: timeout of the scheduler
-_PATIENCE = 30  # s: longest time without a worker
+_ANSWERS = 10  # limit: s: timeout of the scheduler
+_PATIENCE = 30  # limit: s: longest time without a worker
 _GO_ON = "run it again to go on"
 _LOGGERS = ("distributed", "tornado", "asyncio")
 _BELOW = tuple(f"{name}." for name in _LOGGERS)

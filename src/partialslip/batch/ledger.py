@@ -23,7 +23,7 @@ from partialslip.strictjson import decoded
 
 _Kind = TypeVar("_Kind")
 
-_LARGEST = 2**32  # bytes of a file
+_LARGEST = 2**32  # limit: bytes of a file
 
 
 class Ledger:

@@ -20,8 +20,8 @@ from partialslip.batch.ledger import Ledger
 from partialslip.errors import PartialslipError
 
 Progress = Callable[[int, int, float], None]
-_PULSE = 2.0  # s between checks of a cluster
-_AHEAD = 256  # largest number of submitted tasks: more than a cluster has workers, few enough for the memory
+_PULSE = 2.0  # cost: s between checks of a cluster
+_AHEAD = 256  # cost: largest number of submitted tasks: more than a cluster has workers, few enough for the memory
 
 
 class Task(NamedTuple):

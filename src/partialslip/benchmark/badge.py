@@ -13,7 +13,7 @@ from partialslip.benchmark.scoreboard import standing
 from partialslip.benchmark.submission import Submission, check_apart
 from partialslip.output.page import template
 
-_LETTER, _MARGIN = 6.6, 12.0  # width of a letter and of both margins of a cell; the text is fitted to its cell
+_LETTER, _MARGIN = 6.6, 12.0  # display: width of a letter and of both margins of a cell; the text is fitted to its cell
 _INK, _PAPER, _NONE = "#ffffff", "#333333", "#6b6b6b"
 _FILLS = {"A": "#1a7f37", "B": "#4c7a1a", "C": "#8a6d00", "D": "#a34a00", "E": "#b3261e"}  # 4.5 : 1 to white, or more
 _HASHED = re.compile(r"-[0-9a-f]{8}$")

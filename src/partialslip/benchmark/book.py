@@ -20,8 +20,8 @@ from partialslip.report import rows
 from partialslip.report.sketch import sketch_svg
 from partialslip.scene.writing import scene_tables, scene_toml
 
-_EARLY = (1980, 1, 1, 0, 0, 0)  # date of all files in the zip: the same content gives the same zip
-_COLUMNS = 8  # codes side by side in a scoreboard
+_EARLY = (1980, 1, 1, 0, 0, 0)  # fixed: date of all files in the zip: the same content gives the same zip
+_COLUMNS = 8  # display: codes side by side in a scoreboard
 
 
 def book_page(problems: Mapping[str, Problem], submissions: Sequence[Submission], made: Made) -> str:

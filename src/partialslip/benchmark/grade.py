@@ -9,10 +9,11 @@ from partialslip.benchmark.measured import GROUPS
 from partialslip.benchmark.problem import Problem, Target
 from partialslip.benchmark.submission import Answer
 
+# fixed: largest error of each grade, over the bar of the quantity
 LIMITS = {"A": 1e-4, "B": 1e-3, "C": 1e-2, "D": 5e-2}
 BEYOND = "E"
 NOT_OFFERED, NOT_GRADED = "not offered", "not graded"
-_SURE = 0.2  # largest uncertainty of a target, in the limit of a grade
+_SURE = 0.2  # limit: largest uncertainty of a target, in the limit of a grade
 HEADLINE = (
     "contact",
     "stick",

@@ -3,8 +3,8 @@
 from partialslip.benchmark.turning import slip_reverses
 from partialslip.scene import Scene
 
-_INCREMENTS = 16
-_TURNING = 64  # where slip turns round: with fewer, most codes find the zone of one step (docs/scoreboard.md)
+_INCREMENTS = 16  # accuracy: of the decks, from load point to load point
+_TURNING = 64  # accuracy: where slip turns round: with fewer, most codes find the zone of one step (docs/scoreboard.md)
 
 
 def gradual(scene: Scene, increments: int | None = None) -> Scene:

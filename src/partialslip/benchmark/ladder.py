@@ -11,8 +11,8 @@ from partialslip.benchmark.problem import Problem
 from partialslip.benchmark.submission import Answer
 from partialslip.convergence import extrapolated, fitted_order, grid_convergence_index
 
-_CONSTANT = 0.01  # largest deviation of the ratios of sizes, relative
-_HIGHEST = 8.0  # order beyond which two values agree by chance
+_CONSTANT = 0.01  # accuracy: largest deviation of the ratios of sizes, relative
+_HIGHEST = 8.0  # accuracy: order beyond which two values agree by chance
 NOT_MONOTONE, NO_RATIO, MISSING = "not monotone", "no constant ratio", "not given"
 
 

@@ -15,8 +15,8 @@ from partialslip.output.files import json_text
 
 _FORMATS = (".msh", ".inp", ".vtu")
 _WITH_H5PY = (".med",)
-_SIZE, GROWTH = 0.05, 0.2  # elements of the meshes, in a
-STIFFER = 100.0  # decks: half-planes neglect the slopes of the surfaces; those of such bodies are a hundredth
+_SIZE, GROWTH = 0.05, 0.2  # accuracy: elements of the meshes, in a
+STIFFER = 100.0  # accuracy: decks: half-planes neglect the slopes of the surfaces; those of such bodies are a hundredth
 
 
 def files(problem: Problem) -> dict[str, bytes]:

@@ -21,8 +21,8 @@ from partialslip.scene.reading import parse_toml
 from partialslip.scene.table import NO_TEXT
 from partialslip.strictjson import converted, decoded
 
-_LARGEST = 2**20  # bytes of a file
-_FEWEST = 3  # meshes of a ladder
+_LARGEST = 2**20  # limit: bytes of a file
+_FEWEST = 3  # limit: meshes of a ladder
 META = "meta.toml"
 # Cyrillic and Greek letters that look like Latin ones.
 _LIKE_LATIN = str.maketrans(

@@ -15,9 +15,9 @@ from partialslip.halfplane.turning import Turning, half_cycle
 from partialslip.march.cells import compliance, forces
 from partialslip.scene import Scene
 
-_CELLS = (128, 256)  # across the zone that drifts
-_HALF_CYCLES = 8  # after the first loading; an even number
-_LAST = 8  # events from which an end is extrapolated to the load point
+_CELLS = (128, 256)  # accuracy: across the zone that drifts
+_HALF_CYCLES = 8  # accuracy: after the first loading; an even number
+_LAST = 8  # accuracy: events from which an end is extrapolated to the load point
 
 
 class _Half(NamedTuple):

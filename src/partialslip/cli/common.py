@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     Commands = argparse._SubParsersAction[Any]
 
-_MANY_STEPS = 500  # load steps of a path that take longer than all else
+_MANY_STEPS = 500  # cost: load steps of a path that take longer than all else
 
 
 def add_scene(parser: "argparse.ArgumentParser") -> None:

@@ -14,8 +14,8 @@ from typing import NoReturn
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-EVERY = 5.0  # s between lines of progress in a log
-_WIDEST = 1000  # columns
+EVERY = 5.0  # display: s between lines of progress in a log
+_WIDEST = 1000  # display: columns
 
 
 class _Console(Console):

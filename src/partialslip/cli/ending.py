@@ -22,7 +22,7 @@ from typing import Any, NamedTuple, NoReturn, TextIO
 
 from partialslip.errors import PartialslipError, one_line
 
-REFUSED, FAULT, INTERRUPTED, NO_READER = 2, 3, 130, 141
+REFUSED, FAULT, INTERRUPTED, NO_READER = 2, 3, 130, 141  # fixed: exit codes
 TRACEBACK = "PARTIALSLIP_TRACEBACK"  # environment variable: if set, faults are raised
 
 _FALLBACK = "partialslip"

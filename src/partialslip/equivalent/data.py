@@ -16,10 +16,10 @@ from partialslip.result import Result
 from partialslip.rig import Rig
 from partialslip.scene import Scene
 
-_POINTS = 32  # of quadrature
+_POINTS = 32  # accuracy: of quadrature
 _NODES = np.cos(np.pi * (np.arange(_POINTS) + 0.5) / _POINTS)  # Gauss-Chebyshev's rule
-_ROUNDING = 1e-13  # of the slope of the gap at the ends of the contact
-_STEP = 1e-4  # of the contact, for the slope of a face
+_ROUNDING = 1e-13  # accuracy: of the slope of the gap at the ends of the contact
+_STEP = 1e-4  # accuracy: of the contact, for the slope of a face
 
 
 class Moments(NamedTuple):

@@ -18,9 +18,9 @@ from partialslip.halfplane.loading import Loading, loading
 from partialslip.rig import Rig
 from partialslip.scene import Scene
 
-_MESH = 0.25  # error of the rig, in its difference from the rig of the coarser mesh
-_WAY = 2.0  # factor of what is left out where the pressure moves
-_MORE = 1e-4  # of P
+_MESH = 0.25  # accuracy: error of the rig, in its difference from the rig of the coarser mesh
+_WAY = 2.0  # accuracy: factor of what is left out where the pressure moves
+_MORE = 1e-4  # accuracy: of P
 _ANGLES = np.pi * (np.arange(200) + 0.5) / 200
 _PLACES = np.cos(_ANGLES)  # in half-widths of the contact
 

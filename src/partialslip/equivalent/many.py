@@ -12,12 +12,12 @@ from partialslip.result import StickZone
 from partialslip.rig import Rig, Terms
 from partialslip.scene import Pressing, Scene
 
-_SETTLED, _MOST = 1e-8, 20  # change of the tension in an iteration, in f p0; iterations
-_LEAST = 1e-10  # power that counts, in the largest
-_POINTS = 16  # of quadrature in a slip zone
+_SETTLED, _MOST = 1e-8, 20  # accuracy: change of the tension in an iteration, in f p0; iterations
+_LEAST = 1e-10  # accuracy: power that counts, in the largest
+_POINTS = 16  # accuracy: of quadrature in a slip zone
 # the slope of the strain is of degree 9: the rule is exact
 _PLACES = np.cos(np.pi * (np.arange(8) + 0.5) / 8)
-_CHUNK = 2**13  # loads at a time: their arrays fit the processor's cache
+_CHUNK = 2**13  # cost: loads at a time: their arrays fit the processor's cache
 
 
 def stick_zone(scene: Scene, rig: Rig, dQ: npt.ArrayLike, dsigma: npt.ArrayLike) -> StickZone[Array]:

@@ -25,9 +25,9 @@ from partialslip.scene import Bodies, FlatRounded, Hertz, Profile, Scene
 
 _KEYS = ("a", "left", "right", "m", "n", "p", "q")
 _PRESSED = "bodies that are not mirror images lock shear in when they are pressed, which is not followed; use fem"
-_SETTLED, _MOST = 1e-12, 40  # relative change of the data in an iteration; iterations
-_MIXED = 6  # latest iterations that the next one is made of
-_SETTLED_MARCH = 1e-3  # of the accuracy asked for, where each iteration is a march
+_SETTLED, _MOST = 1e-12, 40  # accuracy: relative change of the data in an iteration; iterations
+_MIXED = 6  # cost: latest iterations that the next one is made of
+_SETTLED_MARCH = 1e-3  # accuracy: of the accuracy asked for, where each iteration is a march
 
 
 class StandIns(NamedTuple):

@@ -9,7 +9,7 @@ from partialslip.halfplane.contact import contact
 from partialslip.rig import Rig
 from partialslip.scene import Hertz, Scene
 
-_ROUNDING = 1e-10  # of terms
+_ROUNDING = 1e-10  # display: of terms
 
 
 class Share(NamedTuple):

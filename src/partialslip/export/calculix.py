@@ -9,14 +9,15 @@ from partialslip.units import SYSTEMS, Units
 
 Contact = Literal["mortar", "penalty"]
 
-# Penalties, in E/a: pressure over overlap, and shear over slip in stick. With much stiffer penalties version 2.20 does
-# not converge, or converges to q that is off by 16 %. Mortar elements take any; 1e3 would move ends by 1e-4 a.
+# accuracy: Penalties, in E/a: pressure over overlap, and shear over slip in stick. With much stiffer penalties
+# version 2.20 does not converge, or converges to q that is off by 16 %. Mortar elements take any; 1e3 would move ends
+# by 1e-4 a.
 _NORMAL = 1e3
 _STICK = {"mortar": 1e5, "penalty": 1e2}
 
-# Mortar contact of version 2.20 is wrong, without a message, if elements are smaller than about one unit of length: a
-# is off by 30 % at a = 1e-3 units, by 0.2 % at 1.
-_LEAST = 100.0  # least a in the unit of length of a deck
+# limit: Mortar contact of version 2.20 is wrong, without a message, if elements are smaller than about one unit of
+# length: a is off by 30 % at a = 1e-3 units, by 0.2 % at 1.
+_LEAST = 100.0  # limit: least a in the unit of length of a deck
 
 _RESULTS = """\
 *NODE FILE, FREQUENCY=1000

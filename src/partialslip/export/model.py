@@ -22,12 +22,12 @@ from partialslip.units import Units
 if TYPE_CHECKING:
     from partialslip_meshes import QuadMesh
 
-SIZE, GROWTH = 0.05, 0.1
+SIZE, GROWTH = 0.05, 0.1  # accuracy: element size at the ends of the contact, in a, and growth
 
-_REACH = 1.2  # half-width of the contact line, in the half-width of the largest contact
-_FILLS = 0.95  # largest contact line, in the width of a finite body
-_OVERLAP = 0.25  # initial overlap of the bodies, in the gap at the end of the smallest contact
-_WIDE = 50.0  # half-width of the blocks in a, times the square root of the smallest element in a
+_REACH = 1.2  # accuracy: half-width of the contact line, in the half-width of the largest contact
+_FILLS = 0.95  # accuracy: largest contact line, in the width of a finite body
+_OVERLAP = 0.25  # accuracy: initial overlap of the bodies, in the gap at the end of the smallest contact
+_WIDE = 50.0  # accuracy: half-width of the blocks in a, times the square root of the smallest element in a
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 Indices = npt.NDArray[np.int64]
 
-_CORNERS = 1e-3  # largest change of the contact by the elements at corners of finite bodies, relative
+_CORNERS = 1e-3  # accuracy: largest change of the contact by the elements at corners of finite bodies, relative
 
 
 @dataclass(frozen=True)

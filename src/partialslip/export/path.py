@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 from partialslip.scene import Scene
 
-TOUCH = 1 / 64  # of P, under which the upper body is guided, where pressing makes the surfaces slip
-_CYCLES = 5  # towards the steady state, where the loads are not fully reversed and load.cycles does not tell
-_PRESSING = 16  # increments of pressing, where it makes the surfaces slip
+TOUCH = 1 / 64  # accuracy: of P, under which the upper body is guided, where pressing makes the surfaces slip
+_CYCLES = 5  # accuracy: towards the steady state, where the loads are not fully reversed and load.cycles does not tell
+_PRESSING = 16  # accuracy: increments of pressing, where it makes the surfaces slip
 
 
 class Step(NamedTuple):

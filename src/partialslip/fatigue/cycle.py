@@ -12,9 +12,9 @@ from partialslip.result import Result
 from partialslip.scene import Load, Scene
 
 ENDS = np.array([0.0, 0.5])  # phases of load points 1 and 2
-_FIRST, _MOST = 8, 64  # load points around the cycle: least number, and largest unless the scene has more
-_SETTLED = 1e-6  # relative change of the largest value at the surface when the load points are doubled
-_ABOVE = 1e-30  # half-widths: points of the upper body's surface, which is not the lower body's
+_FIRST, _MOST = 8, 64  # accuracy: load points around the cycle: least number, and largest unless the scene has more
+_SETTLED = 1e-6  # accuracy: relative change of the largest value at the surface when the load points are doubled
+_ABOVE = 1e-30  # accuracy: half-widths: points of the upper body's surface, which is not the lower body's
 
 
 def stress_path(scene: Scene, result: Result, body: str, phases: Array, x: Array, depth: Array) -> Array:

@@ -19,9 +19,9 @@ from partialslip.arrays import Array
 from partialslip.result import Result
 from partialslip.scene import Scene
 
-_REACH = 0.2  # of the distance to the next point where tractions are not smooth: points of the fit
-_POINTS, _DEGREE = 64, 8
-_AWAY = 0.1  # of the reach: the nearest points of a fit of adhered shear, beyond the slip zone of the method
+_REACH = 0.2  # accuracy: of the distance to the next point where tractions are not smooth: points of the fit
+_POINTS, _DEGREE = 64, 8  # accuracy: points and degree of a fit
+_AWAY = 0.1  # accuracy: of the reach: the nearest points of a fit of adhered shear, beyond the slip zone of the method
 SIDES: tuple[Literal["left"], Literal["right"]] = ("left", "right")
 
 

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_WIDE, _DEEP = 2.0, 1.2  # half-width and depth of the stress fields, in a
-_COLUMNS, _ROWS = 97, 28  # points of a field in each body
-_LEVELS = 10  # of contours
+_WIDE, _DEEP = 2.0, 1.2  # display: half-width and depth of the stress fields, in a
+_COLUMNS, _ROWS = 97, 28  # display: points of a field in each body
+_LEVELS = 10  # display: of contours
 _LINES = (("-", "black"), ("--", "black"), (":", "black"), ("-", "0.55"), ("--", "0.55"), ("-.", "black"))
 _COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_xy")
 

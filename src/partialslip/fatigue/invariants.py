@@ -9,8 +9,8 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices
 
-_SLACK = 1e-12  # of the radius: a point this far outside lies on the sphere
-_MOST = 100  # steps; each makes the sphere larger, a few are enough
+_SLACK = 1e-12  # accuracy: of the radius: a point this far outside lies on the sphere
+_MOST = 100  # limit: steps; each makes the sphere larger, a few are enough
 
 
 def dang_van(stress: Array, alpha: float) -> Array:

@@ -6,10 +6,10 @@ import numpy as np
 
 from partialslip.arrays import Array
 
-_BEYOND, _DEEP = 2.0, 2.0  # half-widths beyond the contact, and of depth, that are searched
-_BETWEEN, _LEVELS = 12, 16  # intervals between places where tractions are not smooth, and of depth
-_WINDOW, _SHRINK, _ROUNDS = 5, 0.5, 16  # points along a side of a window, its shrinkage and how often
-_NODES = 24  # of Gauss
+_BEYOND, _DEEP = 2.0, 2.0  # accuracy: half-widths beyond the contact, and of depth, that are searched
+_BETWEEN, _LEVELS = 12, 16  # accuracy: intervals between places where tractions are not smooth, and of depth
+_WINDOW, _SHRINK, _ROUNDS = 5, 0.5, 16  # accuracy: points along a side of a window, its shrinkage and how often
+_NODES = 24  # accuracy: of Gauss
 
 Values = Callable[[Array, Array], Array]
 

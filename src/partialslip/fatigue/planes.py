@@ -18,13 +18,14 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices, Mask
 
-ANGLES, TILTS = 36, 5  # sampled planes: 5 degrees apart in the xy plane, 22.5 degrees across
-_STARTS = 3  # sampled planes from which the maximum is sought
-_EARLY = 1  # steps from all starts; then only those go on that may still win
-_CLOSE = 0.01  # relative distance from the best within which a start may still win
-_SAME = 0.2  # distance, in spacings of the samples, of starts that climb the same peak
-_MOST, _FINEST = 20, 1e-4  # steps, and size of the last stencil over that of the first
-_BLOCK = 4_000_000  # numbers in an array, about: points are taken in blocks that fit into the memory of the processor
+ANGLES, TILTS = 36, 5  # accuracy: sampled planes: 5 degrees apart in the xy plane, 22.5 degrees across
+_STARTS = 3  # accuracy: sampled planes from which the maximum is sought
+_EARLY = 1  # cost: steps from all starts; then only those go on that may still win
+_CLOSE = 0.01  # accuracy: relative distance from the best within which a start may still win
+_SAME = 0.2  # accuracy: distance, in spacings of the samples, of starts that climb the same peak
+_MOST, _FINEST = 20, 1e-4  # accuracy: steps, and size of the last stencil over that of the first
+# cost: numbers in an array, about: points are taken in blocks that fit into the memory of the processor
+_BLOCK = 4_000_000
 
 
 class Critical(NamedTuple):

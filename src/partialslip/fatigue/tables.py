@@ -19,8 +19,8 @@ from partialslip.units import Dimension
 RATINGS = ("criterion", "unit", "surface", "x/a", "angle", "tilt", "largest", "x/a", "depth/a")
 AVERAGES = ("criterion", "unit", *OVER)
 EDGES = ("end", "K_N", "error", "K_T", "predicted slip/a", "slip/a", "K_S", "error")
-_DIGITS = 6
-_CURVE = 48  # intervals of curves between points where stresses may have cusps, and of depth
+_DIGITS = 6  # display: significant
+_CURVE = 48  # display: intervals of curves between points where stresses may have cusps, and of depth
 
 
 def assessment_heading(found: Assessment) -> str:

@@ -13,10 +13,10 @@ from partialslip.arrays import Array, Indices, Mask, runs, submatrix
 Sides = npt.NDArray[np.int8]
 
 _EPS = float(np.finfo(float).eps)
-_HALVINGS = 60  # of a step: the last one is below rounding
-_MANY = 12  # programmes with one C for which inverting it pays
-_REFINEMENTS = 8  # most steps of iterative refinement, in which members may still come to a bound
-_CHANCES = 3  # iterations in which the number of members on a wrong side need not decrease
+_HALVINGS = 60  # limit: of a step: the last one is below rounding
+_MANY = 12  # cost: programmes with one C for which inverting it pays
+_REFINEMENTS = 8  # accuracy: most steps of iterative refinement, in which members may still come to a bound
+_CHANCES = 3  # cost: iterations in which the number of members on a wrong side need not decrease
 
 
 @dataclass(frozen=True)

@@ -21,12 +21,13 @@ from partialslip.friction.path import Path
 from partialslip.friction.path_following import Bounds, Follower, Leg, SlidesError, noise
 from partialslip.scene.model import require_carried
 
-_AT = 1e-12  # distance from the bound, relative, at which a node is on it
-_LEFT = 0.9, 0.5  # of a leg: where slip on the way is looked at
-_STAGES = 32  # fewest stages between load points at which forces are kept where slip turns round
-_SLIGHT = 1e-6  # of the longest path of slip: what mean loads let slip less in each cycle
-_MIRRORED = 1e-10  # of the bound: what forces may be off where a leg is taken for the mirror image of the one before
-_EXPECTED = 8  # cycles for which factors are prepared
+_AT = 1e-12  # accuracy: distance from the bound, relative, at which a node is on it
+_LEFT = 0.9, 0.5  # accuracy: of a leg: where slip on the way is looked at
+_STAGES = 32  # accuracy: fewest stages between load points at which forces are kept where slip turns round
+_SLIGHT = 1e-6  # accuracy: of the longest path of slip: what mean loads let slip less in each cycle
+# accuracy: of the bound: what forces may be off where a leg is taken for the mirror image of the one before
+_MIRRORED = 1e-10
+_EXPECTED = 8  # cost: cycles for which factors are prepared
 
 
 def march(

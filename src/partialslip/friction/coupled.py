@@ -24,17 +24,17 @@ from partialslip.friction.trail import Trail
 from partialslip.friction.zone_ends import CORNER
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
-_STICKS = 1e-9  # relative tolerance of the friction bound and of lengths
-_TIMES = 2  # iterations of the half-width in self-similar pressing
+_STICKS = 1e-9  # accuracy: relative tolerance of the friction bound and of lengths
+_TIMES = 2  # accuracy: iterations of the half-width in self-similar pressing
 _PUNCHES = np.array([1.0, 0.5, 0.25])  # half-widths of flat punches on bodies of a size, in that of the contact
-_ROUGH = 0.1  # largest error of q for which these are used
-_SETTLED = 1e-3  # error of the half-width of the largest punch that is left
-_FAR = 10.0  # gap, in half-widths, that stays open
-_ENDS = 15.0  # tolerance of q over tolerance of the ends
-_MOST, _WORK = 64, 16_000  # limits of the steps of pressing, and of steps times nodes
+_ROUGH = 0.1  # accuracy: largest error of q for which these are used
+_SETTLED = 1e-3  # accuracy: error of the half-width of the largest punch that is left
+_FAR = 10.0  # accuracy: gap, in half-widths, that stays open
+_ENDS = 15.0  # accuracy: tolerance of q over tolerance of the ends
+_MOST, _WORK = 64, 16_000  # limit: limits of the steps of pressing, and of steps times nodes
 _ANEW = "anew"  # key of steps that do not begin where others did
-_PATIENCE = 4  # iterations without progress before the method changes
-_CLOSE = 32  # changes of sides in an iteration without progress below which rounding errors may matter
+_PATIENCE = 4  # cost: iterations without progress before the method changes
+_CLOSE = 32  # cost: changes of sides in an iteration without progress below which rounding errors may matter
 
 
 Pair = tuple[Solution, Solution]

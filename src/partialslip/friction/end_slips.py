@@ -7,8 +7,8 @@ from partialslip.friction.history import History
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.result import EndSlip
 
-_MANY = 2  # nodes of both contacts beside the stick zone from which on the end slips throughout
-_SLIPS = 1e-6  # slip in a cycle, in the largest possible slip, above rounding
+_MANY = 2  # accuracy: nodes of both contacts beside the stick zone from which on the end slips throughout
+_SLIPS = 1e-6  # accuracy: slip in a cycle, in the largest possible slip, above rounding
 
 
 def end_slips(x: Array, history: History, stick: StickInterval) -> tuple[EndSlip, EndSlip]:

@@ -16,13 +16,16 @@ from partialslip.friction.active_set import Solution
 from partialslip.friction.limit import limit
 from partialslip.friction.path import Path
 
-STEADY = 1e-6  # change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
-_REPEATS = 3e-14  # change of a node's q over a cycle, relative to the largest sum of |q|: rounding (seen: 2.7e-14)
-_LIMIT = 10.0  # changes of the last cycle that may lie between it and the limit, however few cycles went before
-_NEAR = 1e-6  # change over a cycle, in f p, that ends cycles near enough to the limit for ratios of changes to tell it
-_BESIDE = 5  # neighbouring nodes of which the one that moves most tells how far the steady state is
-_CREEPS = 0.5  # of the path of slip in a cycle: net slip from which on a node creeps
-_SLIPS = 1e-9  # distance of |dq| from the bound, relative, at which a node slips
+STEADY = 1e-6  # accuracy: change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
+# accuracy: change of a node's q over a cycle, relative to the largest sum of |q|: rounding (seen: 2.7e-14)
+_REPEATS = 3e-14
+# accuracy: changes of the last cycle that may lie between it and the limit, however few cycles went before
+_LIMIT = 10.0
+# accuracy: change over a cycle, in f p, that ends cycles near enough to the limit for ratios of changes to tell it
+_NEAR = 1e-6
+_BESIDE = 5  # accuracy: neighbouring nodes of which the one that moves most tells how far the steady state is
+_CREEPS = 0.5  # accuracy: of the path of slip in a cycle: net slip from which on a node creeps
+_SLIPS = 1e-9  # accuracy: distance of |dq| from the bound, relative, at which a node slips
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ import numpy as np
 
 from partialslip.arrays import Array
 
-STATES = 4  # ends of cycles that are looked at
-_CLEAN = 0.1  # of the last change: what the progression may leave unexplained
-_STEADY = 0.3  # of 1 - ratio: by how much the ratio may change from cycle to cycle
+STATES = 4  # accuracy: ends of cycles that are looked at
+_CLEAN = 0.1  # accuracy: of the last change: what the progression may leave unexplained
+_STEADY = 0.3  # accuracy: of 1 - ratio: by how much the ratio may change from cycle to cycle
 
 
 def limit(states: Sequence[Array], bound: Array) -> Array | None:

@@ -12,12 +12,12 @@ from partialslip.friction.active_set import Sides, Solution, inverse, solve_boun
 from partialslip.friction.path_following import Bounds
 from partialslip.friction.tableau import Tableau
 
-_TURNS = 100  # largest number of angles tried
-_LEVEL = 1e-14  # moment, relative to that of the forces without sign, that is rounding
-_START, _WIDER = 1e-3, 2.0  # angle, and factor of an angle, where the moment does not depend on it
-_CHECKED = 64  # changes after which rates are found anew, free of the rounding errors of earlier ones
-_APART = 1e-12  # share of a way between two instants at which nodes touch, below which they are one
-_MOST = 8  # changes per node on a way: under a moment the contact may move over a node and back
+_TURNS = 100  # limit: largest number of angles tried
+_LEVEL = 1e-14  # accuracy: moment, relative to that of the forces without sign, that is rounding
+_START, _WIDER = 1e-3, 2.0  # accuracy: angle, and factor of an angle, where the moment does not depend on it
+_CHECKED = 64  # cost: changes after which rates are found anew, free of the rounding errors of earlier ones
+_APART = 1e-12  # accuracy: share of a way between two instants at which nodes touch, below which they are one
+_MOST = 8  # limit: changes per node on a way: under a moment the contact may move over a node and back
 
 
 def press(

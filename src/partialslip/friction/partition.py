@@ -14,12 +14,12 @@ import scipy.linalg as la
 from partialslip.arrays import Array, Indices, Mask, submatrix
 from partialslip.friction.active_set import Sides
 
-_KEPT = 2  # factors
-_PAYS = 0.7  # of the unknowns without a factor: a system with more is better solved directly
-_COST = 6.0  # of a factor of n nodes, as a multiple of the cost of a system of n unknowns
-_EVEN = 0.45  # of the nodes that stick: so many on the shorter side of the middle are about half of them
-_ROOM = 1.05  # nodes in a factor, relative to those that it is made for
-_SLACK = 0.3  # of the nodes that are not eliminated: so many that stick may be among them
+_KEPT = 2  # cost: factors
+_PAYS = 0.7  # cost: of the unknowns without a factor: a system with more is better solved directly
+_COST = 6.0  # cost: of a factor of n nodes, as a multiple of the cost of a system of n unknowns
+_EVEN = 0.45  # cost: of the nodes that stick: so many on the shorter side of the middle are about half of them
+_ROOM = 1.05  # cost: nodes in a factor, relative to those that it is made for
+_SLACK = 0.3  # cost: of the nodes that are not eliminated: so many that stick may be among them
 
 
 class Compliances(Protocol):

@@ -10,10 +10,13 @@ from partialslip.plan import Plan
 from partialslip.result.state import State
 from partialslip.scene import Scene
 
-MOST_CYCLES = 200  # towards a steady state; 0.995 of the largest mean load takes 35, a large load before the cycles 300
-# Change of q over a cycle, in f p, that ends cycles under fully reversed loads: a share of the accuracy, within limits
+# limit: towards a steady state; 0.995 of the largest mean load takes 35, a large load before the cycles 300
+MOST_CYCLES = 200
+# accuracy: Change of q over a cycle, in f p, that ends cycles under fully reversed loads: a share of the accuracy,
+# within limits
 _SETTLED, _STILL = 5e-3, (1e-7, 1e-6)
-_SHARE = 0.5  # of the accuracy of a, m and n: the same under other loads; q may be off by 15 times that accuracy
+# accuracy: of the accuracy of a, m and n: the same under other loads; q may be off by 15 times that accuracy
+_SHARE = 0.5
 
 
 @dataclass(frozen=True)

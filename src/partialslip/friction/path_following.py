@@ -24,12 +24,12 @@ from partialslip.friction.active_set import inverse
 from partialslip.friction.tableau import Tableau
 
 _EPS = float(np.finfo(float).eps)
-_AT = 1e-12  # distance from the bound, relative: a thousand roundings of the forces that many events add up
-_CHECKED = 64  # pivots after which the rates are checked by a product with C, at the cost of one more pivot
-_DRIFT = 1e-11  # error of the rates, relative to their sum, from which on the tableau is set up anew
-_ADDED, _SEEN = 1e-13, 1e-9  # errors that events add up, in the bounds: corrected on the way; left to be seen
-_GIVE = 8  # rounds in which nodes that corrections push beyond their bounds are let slip
-_MOST = 50  # pivots per node in a leg: a stick zone that crosses the contact moves each node in and out once
+_AT = 1e-12  # accuracy: distance from the bound, relative: a thousand roundings of the forces that many events add up
+_CHECKED = 64  # cost: pivots after which the rates are checked by a product with C, at the cost of one more pivot
+_DRIFT = 1e-11  # cost: error of the rates, relative to their sum, from which on the tableau is set up anew
+_ADDED, _SEEN = 1e-13, 1e-9  # accuracy: errors that events add up, in the bounds: corrected on the way; left to be seen
+_GIVE = 8  # limit: rounds in which nodes that corrections push beyond their bounds are let slip
+_MOST = 50  # limit: pivots per node in a leg: a stick zone that crosses the contact moves each node in and out once
 
 
 class SlidesError(PartialslipError):

@@ -11,11 +11,11 @@ import numpy as np
 
 from partialslip.arrays import Array, Complex, Indices
 
-_TOGETHER = 32  # cells of a group, divided by the degree: closed forms lose digits at some cells' distance
-_COUNT = 16  # nodes of a group
+_TOGETHER = 32  # accuracy: cells of a group, divided by the degree: closed forms lose digits at some cells' distance
+_COUNT = 16  # cost: nodes of a group
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(_COUNT)
-_NEAR = 6.0  # |zeta - 1| + |zeta + 1| up to which moments of degree 15 do not suffice
-_AT_ONCE = 2**20  # pairs of points in memory
+_NEAR = 6.0  # accuracy: |zeta - 1| + |zeta + 1| up to which moments of degree 15 do not suffice
+_AT_ONCE = 2**20  # cost: pairs of points in memory
 
 
 class PiecewiseCauchy:

@@ -29,13 +29,13 @@ from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
 from partialslip.friction.zone_ends import StickInterval
 
-_STICKS = 1e-9  # relative tolerance of the friction bound
-_TELLING = 1e-9  # tolerance of lengths, relative to the half-width
+_STICKS = 1e-9  # accuracy: relative tolerance of the friction bound
+_TELLING = 1e-9  # accuracy: tolerance of lengths, relative to the half-width
 _POINTS, _WEIGHTS = (np.polynomial.legendre.leggauss(16) + np.array([[1.0], [0.0]])) / 2
-_NEAR, _SOME = 1.05, 64  # nodes that matter, in half-widths of the contact; how many are enough for the gap
+_NEAR, _SOME = 1.05, 64  # accuracy: nodes that matter, in half-widths of the contact; how many are enough for the gap
 _FAR = np.geomspace(1.01, 1e3, 40)  # beyond the last node, in its distance
-_CLOSED = 0.98  # nodes that are certainly closed, in half-widths of the contact
-_INNER = 0.8  # the same, where the slope at the last node begins
+_CLOSED = 0.98  # accuracy: nodes that are certainly closed, in half-widths of the contact
+_INNER = 0.8  # accuracy: the same, where the slope at the last node begins
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,10 @@ from partialslip.friction.zone_ends import StickInterval
 from partialslip.result import FRICTIONLESS, PATH_DEPENDENT, EndSlip, Regime
 from partialslip.scene import Scene
 
-_FEW_STEPS = 8  # from load point to load point: with fewer, p while a node slips is known roughly where it varies
-_WORK = 1e-9  # dissipated energy, in f P times a displacement of A P, above rounding
-_RATCHETS = 1e-3  # net slip of a cycle, relative to the slip of half a cycle, above which a steady q ratchets
+# accuracy: from load point to load point: with fewer, p while a node slips is known roughly where it varies
+_FEW_STEPS = 8
+_WORK = 1e-9  # accuracy: dissipated energy, in f P times a displacement of A P, above rounding
+_RATCHETS = 1e-3  # limit: net slip of a cycle, relative to the slip of half a cycle, above which a steady q ratchets
 
 
 class SteadyState(NamedTuple):

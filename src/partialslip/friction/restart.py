@@ -19,7 +19,8 @@ from partialslip.friction.history import History, last_cycle_change
 from partialslip.friction.step_errors import Errors
 from partialslip.result.state import State
 
-_ANOTHER = 0.25  # relative L2 difference of pressures of two contacts; shear of unlike bodies changes p by a tenth
+# limit: relative L2 difference of pressures of two contacts; shear of unlike bodies changes p by a tenth
+_ANOTHER = 0.25
 _UNKNOWN = "the error of the state at the beginning is not known: the estimates leave it out"
 
 

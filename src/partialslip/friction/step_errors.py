@@ -16,8 +16,8 @@ from partialslip.friction.zone_ends import StickInterval
 Errors = dict[str, float]
 Indices = npt.NDArray[np.int64]
 
-_NOTHING = 0.01
-_PROBED = 7  # fewest steps from load point to load point with which those of coupled bodies are compared
+_NOTHING = 0.01  # accuracy: of what the accuracy allows: errors of steps that matter to nobody
+_PROBED = 7  # accuracy: fewest steps from load point to load point with which those of coupled bodies are compared
 _SHEARS = ("change", "q1", "q2")
 
 

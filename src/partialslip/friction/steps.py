@@ -8,7 +8,7 @@ from partialslip.friction.history import History
 from partialslip.friction.path import Path
 from partialslip.friction.step_errors import Errors
 
-_CLOSES = 3  # most cycles on which this is decided
+_CLOSES = 3  # cost: most cycles on which this is decided
 
 
 def follow_or_step(

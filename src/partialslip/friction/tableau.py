@@ -5,7 +5,7 @@ import scipy.linalg as la
 
 from partialslip.arrays import Array, Indices, Mask
 
-_TOGETHER = 48  # pivots whose updates of V are added at once: as many as columns cost what an update costs
+_TOGETHER = 48  # cost: pivots whose updates of V are added at once: as many as columns cost what an update costs
 
 
 class Tableau:

@@ -26,9 +26,9 @@ from partialslip.friction.path import Path
 from partialslip.friction.path_following import SlidesError
 from partialslip.scene.model import require_carried
 
-_INSIDE = 0.4  # of the distance from the end at the beginning of a step: where the ratio L is taken
-_FEW = 3  # nodes that touch on one side from which on L is linear, and not constant
-_TIMES = 6  # most solutions of one step with new ratios
+_INSIDE = 0.4  # accuracy: of the distance from the end at the beginning of a step: where the ratio L is taken
+_FEW = 3  # accuracy: nodes that touch on one side from which on L is linear, and not constant
+_TIMES = 6  # limit: most solutions of one step with new ratios
 
 
 def march(

@@ -20,10 +20,10 @@ from partialslip.friction.path import Path
 from partialslip.friction.path_following import Bounds, Follower, Leg
 from partialslip.scene.model import require_carried
 
-_STAGES = 32  # fewest stages between load points at which forces are kept
-_REPEATS = 1e-12  # change of q over a cycle, in f p, that is rounding of the events
-_SLIGHT = 1e-6  # of the longest path of slip: none
-_NOTHING = 1e-11  # slip, relative to the largest possible: rounding
+_STAGES = 32  # accuracy: fewest stages between load points at which forces are kept
+_REPEATS = 1e-12  # accuracy: change of q over a cycle, in f p, that is rounding of the events
+_SLIGHT = 1e-6  # accuracy: of the longest path of slip: none
+_NOTHING = 1e-11  # accuracy: slip, relative to the largest possible: rounding
 
 
 def march(tangential: Array, stretch: Array, f: Array, press: Presses, path: Path, few: int = 0) -> History:

@@ -18,14 +18,15 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices, Mask
 
-_VERTICES = 5  # of the fit
-_BESIDE, _FINER = 3, 0.95  # cells compared on each side of a refined point; relative size of refined cells
-_STICKS = 1e-9  # room, relative to the bound, up to which a node slips
-_LEAVES = 1e-6  # distance of q from the bound, relative, that counts as none: such weak kinks do not matter
-_CAUGHT = 20  # nodes that tell where an end that moves outwards is
-_RUN = 4  # fewest neighbouring nodes that make a zone; fewer are noise
-_ROOT, _CAUGHT_UP = 2 / 3, 2 / 5  # powers of the force that vanish linearly at an end
-ROUNDED, CORNER = 3 / 2, 1 / 2  # powers of the distance with which the normal force grows from an end of the contact
+_VERTICES = 5  # accuracy: of the fit
+_BESIDE, _FINER = 3, 0.95  # accuracy: cells compared on each side of a refined point; relative size of refined cells
+_STICKS = 1e-9  # accuracy: room, relative to the bound, up to which a node slips
+_LEAVES = 1e-6  # accuracy: distance of q from the bound, relative, that counts as none: such weak kinks do not matter
+_CAUGHT = 20  # accuracy: nodes that tell where an end that moves outwards is
+_RUN = 4  # accuracy: fewest neighbouring nodes that make a zone; fewer are noise
+_ROOT, _CAUGHT_UP = 2 / 3, 2 / 5  # fixed: powers of the force that vanish linearly at an end
+# fixed: powers of the distance with which the normal force grows from an end of the contact
+ROUNDED, CORNER = 3 / 2, 1 / 2
 
 
 @dataclass(frozen=True)

@@ -11,18 +11,18 @@ import numpy.typing as npt
 
 from partialslip.arrays import Array, Complex
 
-_COUNT = 16  # nodes on a panel
+_COUNT = 16  # accuracy: nodes on a panel
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(_COUNT)
 _BARYCENTRIC = (-1.0) ** np.arange(_COUNT) * np.sqrt((1 - _NODES**2) * _WEIGHTS)
 _VALUES = np.polynomial.legendre.legvander(_NODES, _COUNT - 1)  # Legendre polynomials, (nodes, degrees)
 _COEFFICIENTS = (np.arange(_COUNT) + 0.5)[:, None] * (_VALUES * _WEIGHTS[:, None]).T
 _ENDS = np.polynomial.legendre.legvander(np.array([-1.0, 1.0]), _COUNT - 1) @ _COEFFICIENTS
 _SLOPES = _VALUES[:, :-1] @ np.polynomial.legendre.legder(_COEFFICIENTS)
-_RESOLVED = 1e-13  # last coefficients of a panel, relative to the largest value
-_SMALL = 1e-9  # coefficients, relative to the largest value, that may be rounding of the functions
-_LEVELS = 40  # halvings of a panel
-_NEAR = 3 + 1 / 3  # |zeta - 1| + |zeta + 1| up to which Gauss's rule has an error above rounding
-_AT_ONCE = 2**20  # pairs of points in memory
+_RESOLVED = 1e-13  # accuracy: last coefficients of a panel, relative to the largest value
+_SMALL = 1e-9  # accuracy: coefficients, relative to the largest value, that may be rounding of the functions
+_LEVELS = 40  # limit: halvings of a panel
+_NEAR = 3 + 1 / 3  # accuracy: |zeta - 1| + |zeta + 1| up to which Gauss's rule has an error above rounding
+_AT_ONCE = 2**20  # cost: pairs of points in memory
 
 
 class Cauchy:

@@ -21,10 +21,10 @@ from partialslip.scene import Hertz as HertzProfile
 from partialslip.scene.profiles import Curvature
 
 _INSIDE = np.cos(np.arange(1, 200) / 200 * np.pi)  # places, in a, at which a hollow flat must be in contact
-# Of the flat's half-width: narrower corners, which carry the load, are not told from the ends of the flat. With
+# limit: Of the flat's half-width: narrower corners, which carry the load, are not told from the ends of the flat. With
 # d = a/b - 1 rounding leaves p an error of 1e-16/(2 d)^(3/2), and no method makes cells much smaller than this.
 _HARDLY = 1e-7
-_SAME = 1e-9  # relative difference of two coefficients of friction that is rounding
+_SAME = 1e-9  # limit: relative difference of two coefficients of friction that is rounding
 
 
 @dataclass(frozen=True, repr=False)

@@ -20,7 +20,7 @@ from partialslip.halfplane.steady import stick_zones
 from partialslip.result import StickZone
 
 PLACE = Path(__file__).with_name("gradual_table.json")
-_BESIDE = 1e-6  # of a patch: a place as near to it is inside, as rounding may put it on the wrong side
+_BESIDE = 1e-6  # accuracy: of a patch: a place as near to it is inside, as rounding may put it on the wrong side
 
 
 def tabled(Qf: Array, sf: Array) -> StickZone[Array]:

@@ -16,7 +16,7 @@ from partialslip.halfplane.turning import Followed, Reached, Turning
 from partialslip.result import PATH_DEPENDENT
 from partialslip.scene import Load
 
-_ROUNDING = 1e-9  # tolerance: lengths in a, tractions in f p0, slip in A f p0 a
+_ROUNDING = 1e-9  # accuracy: tolerance: lengths in a, tractions in f p0, slip in A f p0 a
 _PLACES = np.cos(np.linspace(np.pi, 0, 81))[1:-1]
 _SHARES = np.linspace(0, 1, 9)[1:-1]
 _Point = tuple[float, float, float]

@@ -20,9 +20,9 @@ from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
 
 _NOTHING = StickZone(0.0, 1.0, 1)
-_STAGES = 16  # of the way from load point to load point
+_STAGES = 16  # accuracy: of the way from load point to load point
 _SHARES = np.arange(9) / 8  # of slip zones
-_ROUNDING = 1e-9
+_ROUNDING = 1e-9  # accuracy: lengths in a, tractions in f p0
 
 
 class Worn(NamedTuple):

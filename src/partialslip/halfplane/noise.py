@@ -14,8 +14,8 @@ from partialslip.halfplane import contact, stick_zone
 from partialslip.scene import Scene
 from partialslip.scene.measured import refitted, smoothest
 
-COPIES = 20
-_WORTH = 2.0  # smallest factor between smoothing lengths, and between scatters, for which another one is advised
+COPIES = 20  # limit: of the profile with other noise
+_WORTH = 2.0  # cost: smallest factor between smoothing lengths, and between scatters, for which another one is advised
 
 
 class Noise(msgspec.Struct, frozen=True):

@@ -6,9 +6,9 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices
 
-_NEAR = 6  # kinks near a panel, summed directly
-_NARROWEST = 1e-13  # width below which panels are not halved
-_DEGREES = 22  # coefficients, and nodes, of a panel's polynomial
+_NEAR = 6  # cost: kinks near a panel, summed directly
+_NARROWEST = 1e-13  # accuracy: width below which panels are not halved
+_DEGREES = 22  # accuracy: coefficients, and nodes, of a panel's polynomial
 _NODES = np.cos(np.pi * (np.arange(_DEGREES) + 0.5) / _DEGREES)
 _TO_COEFFICIENTS = np.polynomial.chebyshev.chebvander(_NODES, _DEGREES - 1).T * 2 / _DEGREES
 _TO_COEFFICIENTS[0] /= 2

@@ -10,7 +10,7 @@ from partialslip.arrays import Array
 from partialslip.halfplane.panels import Panels
 from partialslip.halfplane.shape import Shape
 
-FEW = 24  # flats up to which pressures are summed directly
+FEW = 24  # cost: flats up to which pressures are summed directly
 
 
 class Punch(Shape):

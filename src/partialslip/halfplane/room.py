@@ -11,10 +11,10 @@ from partialslip.halfplane.steady import stick_zones
 from partialslip.halfplane.traction import half_range, inside
 from partialslip.result import StickZone
 
-_STAGES = 48  # of the way from load point to load point, between which dq is looked at for extremes
-_ANGLES = 65  # at which changes of the sign of dq are looked for
-_PARTS = 2  # of the stick zone between two places at which the room bends
-_INSIDE = 1 - 1e-15  # of a stick zone
+_STAGES = 48  # accuracy: of the way from load point to load point, between which dq is looked at for extremes
+_ANGLES = 65  # accuracy: at which changes of the sign of dq are looked for
+_PARTS = 2  # accuracy: of the stick zone between two places at which the room bends
+_INSIDE = 1 - 1e-15  # accuracy: of a stick zone
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 
 

@@ -16,10 +16,10 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 
-_THIN = 1e-12  # width of a slip zone below which the stiffness of the stick zone's end is that at this width
-_CHECKED = 1000  # points at which a given pressure is checked
-_EVEN = 1e-9  # tolerance of p(x) - p(-x), relative to the largest p, of an even pressure
-NARROW = 1e-5  # half-width of a stick zone below which right - left cancels
+_THIN = 1e-12  # accuracy: width of a slip zone below which the stiffness of the stick zone's end is that at this width
+_CHECKED = 1000  # limit: points at which a given pressure is checked
+_EVEN = 1e-9  # limit: tolerance of p(x) - p(-x), relative to the largest p, of an even pressure
+NARROW = 1e-5  # accuracy: half-width of a stick zone below which right - left cancels
 
 
 class Rule(NamedTuple):

@@ -13,8 +13,8 @@ from partialslip.arrays import Array
 from partialslip.halfplane.shape import Rule, Shape, rule_between
 from partialslip.result import StickZone
 
-_NODES, _FEWEST = 32, 6  # Gauss points in a slip zone, and in each of its pieces
-_TINY = 1e-300
+_NODES, _FEWEST = 32, 6  # accuracy: Gauss points in a slip zone, and in each of its pieces
+_TINY = 1e-300  # accuracy: length that is not zero
 
 
 def density(x: Array, zone: StickZone[float], shape: Shape, gf: float = 0.0) -> Array:

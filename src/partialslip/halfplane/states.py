@@ -16,7 +16,7 @@ from partialslip.halfplane.turning import Turning
 from partialslip.result import StickZone
 from partialslip.scene import Load, Scene
 
-_SLIDING = 1e-9  # |Q|, relative to f P, that is closer to f P slides with q = f p
+_SLIDING = 1e-9  # limit: |Q|, relative to f P, that is closer to f P slides with q = f p
 _Sum = tuple[tuple[float, Acting], ...]
 
 

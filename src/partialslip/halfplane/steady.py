@@ -12,7 +12,7 @@ from partialslip.halfplane.shape import NARROW, Conditions, Shape
 from partialslip.halfplane.traction import within_bound
 from partialslip.result import StickZone
 
-NARROWEST = 1e-100  # half-width: smaller stick zones are reported with this one
+NARROWEST = 1e-100  # limit: half-width: smaller stick zones are reported with this one
 TOO_STEEP = (
     "exact does not hold: the tension varies so much along x that points inside slip before the ends do; use march"
 )
@@ -20,13 +20,13 @@ UNEVEN_FRICTION = (
     "friction.f: must vary less along x for exact: points inside slip before the ends do, and more than one zone "
     "sticks; use march"
 )
-_CHUNK = 2**14  # stick zones at a time: their arrays fit the processor's cache
-_CLOSE = 1e-9  # Newton step after which only rounding errors remain
-_SETTLED = 1e-13  # residual of Qf
+_CHUNK = 2**14  # cost: stick zones at a time: their arrays fit the processor's cache
+_CLOSE = 1e-9  # accuracy: Newton step after which only rounding errors remain
+_SETTLED = 1e-13  # accuracy: residual of Qf
 _ROUNDING = 4 * np.finfo(float).eps
-_STEPS = 40  # Newton steps before bracketing
-_HELD = 1e-9  # residual of loads above which no stick zone is found
-_FEWER = 2**10  # stick zones at a time whose tractions are compared with the bound
+_STEPS = 40  # cost: Newton steps before bracketing
+_HELD = 1e-9  # limit: residual of loads above which no stick zone is found
+_FEWER = 2**10  # cost: stick zones at a time whose tractions are compared with the bound
 
 
 def stick_zone(Qf: float, sf: float, shape: Shape, gf: float = 0.0) -> StickZone[float]:

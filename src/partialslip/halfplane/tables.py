@@ -10,9 +10,9 @@ from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.turning import Turning, half_cycle
 from partialslip.scene import Scene, Tabulated
 
-_LESS = 3.0  # second order: the error at full spacing is a third of the change from twice the spacing
-_FEWEST = 5  # points of a table
-_NODES = 200  # quadrature points of norms
+_LESS = 3.0  # accuracy: second order: the error at full spacing is a third of the change from twice the spacing
+_FEWEST = 5  # limit: points of a table
+_NODES = 200  # accuracy: quadrature points of norms
 
 
 def table_error(scene: Scene, pressed: Contact, cycle: Loading | Turning | None) -> dict[str, float]:

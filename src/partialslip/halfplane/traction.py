@@ -18,10 +18,10 @@ def adhered(x: npt.ArrayLike, a: float, dQ: float, dsigma: float) -> Array:
     return result
 
 
-_AT_ONCE = 2**22  # pairs of points in memory
+_AT_ONCE = 2**22  # cost: pairs of points in memory
 # Places in a stick zone at which tractions are compared with the bound: few, and many where few leave little room
 _FEW, _MANY, _CLOSE = np.cos(np.arange(1, 8) / 8 * np.pi), np.cos(np.arange(1, 64) / 64 * np.pi), 0.3
-_ROUNDING = 1e-9
+_ROUNDING = 1e-9  # accuracy: distance, in a, at which a point is at an end
 
 
 def half_range(x: Array, zone: StickZone[float], shape: Shape, gf: float = 0.0) -> Array:

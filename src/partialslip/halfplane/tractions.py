@@ -10,7 +10,7 @@ from partialslip.halfplane.levels import Levels
 from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.turning import Turning
 
-_POINTS = 101  # between neighbouring breaks
+_POINTS = 101  # display: between neighbouring breaks
 
 
 def sample(breaks: Array) -> Array:

@@ -18,7 +18,7 @@ from partialslip.halfplane.loading import Loading, Worn, loading
 from partialslip.halfplane.shape import Shape
 from partialslip.result import StickZone
 
-_HELD = 1e-6  # f p0: violation of a condition above which a way with a slip zone inside is not taken
+_HELD = 1e-6  # limit: f p0: violation of a condition above which a way with a slip zone inside is not taken
 
 
 @dataclass(frozen=True)

@@ -25,13 +25,14 @@ from partialslip.halfplane.punch import FEW, punch_force
 from partialslip.halfplane.shape import Shape
 from partialslip.scene.profiles import Curvature
 
-_TINY = 1e-14  # length, in the size of the contact, below which ends of the contact are found linearly, above by logs
-_STEPS = 60  # Newton steps before bracketing
-_LONGEST = 2.0  # largest Newton step, in the logarithm of an end
-_SETTLED = 1e-14  # Newton step after which only rounding errors remain
+# accuracy: length, in the size of the contact, below which ends of the contact are found linearly, above by logs
+_TINY = 1e-14
+_STEPS = 60  # cost: Newton steps before bracketing
+_LONGEST = 2.0  # cost: largest Newton step, in the logarithm of an end
+_SETTLED = 1e-14  # accuracy: Newton step after which only rounding errors remain
 _ROUNDING = 64 * float(np.finfo(float).eps)
-_SMALL = 0.3  # argument below which differences of functions are summed as series
-_SERIES = 14  # terms
+_SMALL = 0.3  # accuracy: argument below which differences of functions are summed as series
+_SERIES = 14  # accuracy: terms
 
 
 class _Steps(NamedTuple):

@@ -16,16 +16,16 @@ from partialslip.halfplane.slip import dissipation
 from partialslip.result import EndSlip
 from partialslip.scene import Hertz, Scene
 
-_STAGES = 16  # of the way from load point to load point
+_STAGES = 16  # accuracy: of the way from load point to load point
 _NEAR = 0.5 ** np.arange(5, 15)  # from either end of a way: an end of the stick zone may turn round shortly before
 _STOPS = np.unique([*np.arange(1, _STAGES) / _STAGES, *_NEAR, *(1 - _NEAR), 1.0])
-_ROUNDING = 1e-9  # lengths in a, tractions in f p0
-_EQUAL = 1e-12  # relative difference of rates that is rounding
+_ROUNDING = 1e-9  # accuracy: lengths in a, tractions in f p0
+_EQUAL = 1e-12  # accuracy: relative difference of rates that is rounding
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
 _FEWER_NODES, _FEWER_WEIGHTS = np.polynomial.legendre.leggauss(20)
 _SHARES = (1 - np.cos(np.linspace(0, np.pi, 14)))[1:-1] / 2  # of the way, at which points touch or open
-_ALONG = 32  # stages of a way at which q is within its bounds
-_PANELS = 16  # of the stick zone, on which bounds along the way are integrated
+_ALONG = 32  # accuracy: stages of a way at which q is within its bounds
+_PANELS = 16  # accuracy: of the stick zone, on which bounds along the way are integrated
 _PLACES = np.cos(np.linspace(np.pi, 0, 401))[1:-1]
 
 

@@ -18,10 +18,10 @@ from partialslip.plan import Plan
 from partialslip.result import PATH_DEPENDENT, Clock, Regime, Result, Slip, StressAt, Traction
 from partialslip.scene import Scene
 
-_ROUNDING = 1e-9  # lengths in a, tractions in f p0
+_ROUNDING = 1e-9  # accuracy: lengths in a, tractions in f p0
 _STAGES = np.linspace(0, 1, 9)
 _PLACES = np.cos(np.linspace(np.pi, 0, 81))[1:-1]
-_ROOM = 1e-12  # of Q, in f P, beyond the bounds that is rounding
+_ROOM = 1e-12  # accuracy: of Q, in f P, beyond the bounds that is rounding
 _SLIDES = "the contact slides: |Q| >= f P at a load point; there is no steady partial slip"
 _RATCHETS = "the mean of Q is outside the bounds for a steady state: the contact ratchets"
 

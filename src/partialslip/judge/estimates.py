@@ -7,14 +7,14 @@ from partialslip.judge.comparison import beside
 from partialslip.judge.verdict import NO_BAR, Bar, Outcome, Verdict, judged
 from partialslip.result import Result
 
-#: Largest ratio of a true error to the method's own estimate of it.
+# limit: Largest ratio of a true error to the method's own estimate of it.
 MOST = 2.0
 #: Prefix of the quantity of a verdict on an estimate.
 ESTIMATE = "estimate of "
 # Estimates do not include rounding: 1e-9 a, or 1e-9 of f p, as in the residuals of converged solvers. Errors of the
 # shear are relative to its norm, or to a part of the norm of f p where the shear is smaller.
 _ROUNDING = {"q": 1e-9 / LEAST_SHEAR, "q1": 1e-9 / LEAST_SHEAR, "q2": 1e-9 / LEAST_SHEAR}
-_NOTHING = 0.01  # of the bar: errors that matter to nobody need no estimate
+_NOTHING = 0.01  # accuracy: of the bar: errors that matter to nobody need no estimate
 
 
 def estimate_verdicts(verdicts: Iterable[Verdict], reference: Result) -> Iterator[Verdict]:

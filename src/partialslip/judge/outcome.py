@@ -21,7 +21,7 @@ _OTHERS: Mapping[str, tuple[str, ...]] = {
 #: the contact is not even, the pressure varies, or the shear at the load points is known.
 _WHERE_KNOWN = ("left", "right", "left_1", "right_1", "left_2", "right_2", "p_1", "q1", "q2")
 
-PASSED, MISSED, UNJUDGED = 0, 1, 4  # exit codes
+PASSED, MISSED, UNJUDGED = 0, 1, 4  # fixed: exit codes
 
 
 @dataclass(frozen=True)

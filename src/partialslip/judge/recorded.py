@@ -7,8 +7,8 @@ from partialslip.bars import CERTIFICATE_BAR
 from partialslip.judge.verdict import NAN, Outcome, Verdict, judged
 from partialslip.result.record import ResultRecord
 
-# Difference, in a, of an error from that of the lengths of the file. Below it the error of the file counts: errors of
-# tiny stick zones are computed without cancellation.
+# accuracy: Difference, in a, of an error from that of the lengths of the file. Below it the error of the file counts:
+# errors of tiny stick zones are computed without cancellation.
 _ROUNDING = 1e-9
 
 

@@ -19,7 +19,7 @@ from partialslip.output.page import template
 from partialslip.scene import Hertz, Scene
 from partialslip.units import SI
 
-_SHAPE = 1.5  # width over height of the map on the page
+_SHAPE = 1.5  # display: width over height of the map on the page
 _NAMES = np.array([(0.05, 0.94), (0.12, 0.94), (0.19, 0.94), (0.8, 0.03), (0.88, 0.03), (0.96, 0.03)])  # regime names
 _SOLVED = {  # fields that the page takes into account; any other that is given is refused
     "profile": ("R",),
@@ -27,9 +27,10 @@ _SOLVED = {  # fields that the page takes into account; any other that is given 
     "bodies": (),
     "effects": (),
 }
-_ROUNDED = 5  # decimals of the map's lines
-_DECIMALS = 7  # of the table of gradual zones: its patches stay within 1e-4 a
-_TOP, _HIGHEST = 10.0, 40.0  # dsigma/(f p0) at the map's top, more for scenes with more, up to the second number
+_ROUNDED = 5  # accuracy: decimals of the map's lines
+_DECIMALS = 7  # accuracy: of the table of gradual zones: its patches stay within 1e-4 a
+# display: dsigma/(f p0) at the map's top, more for scenes with more, up to the second number
+_TOP, _HIGHEST = 10.0, 40.0
 
 
 def live_page(scene: Scene) -> str:

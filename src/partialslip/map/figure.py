@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_SIZE = (5.2, 5.0)  # inches; narrow, with the legend below, to be read on a phone
+_SIZE = (5.2, 5.0)  # display: inches; narrow, with the legend below, to be read on a phone
 _HATCH, _ONE_STEP = "....", "m, n of one step"
-_STRIP = 0.025  # width of the strip of sliding beyond dQ = 2 f P
+_STRIP = 0.025  # display: width of the strip of sliding beyond dQ = 2 f P
 
 
 def map_svg(data: StickMap) -> str:

@@ -24,10 +24,10 @@ from partialslip.result import Result
 from partialslip.run import run
 from partialslip.scene import Pressing, Scene
 
-_COUNT = 50  # steps along either axis
-_COUNT_KINKED = 15  # the same for a pressure with corners, which is slower
+_COUNT = 50  # accuracy: steps along either axis
+_COUNT_KINKED = 15  # accuracy: the same for a pressure with corners, which is slower
 _PURPOSE = "for a map over dP and dQ"
-_ROUNDING = 1e-9  # lengths in a
+_ROUNDING = 1e-9  # accuracy: lengths in a
 
 
 @dataclass(frozen=True)

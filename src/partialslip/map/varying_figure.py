@@ -15,10 +15,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_SIZE = (5.2, 5.3)  # inches; narrow, with the legend below, to be read on a phone
-_STRIP = 0.03  # of the height, for sliding under constant P
-_CROSSING = 2.5  # labels may be closer to other lines than on the map over dQ and dsigma: lines cross at small angles
-_FINER = 20  # points of a line between two crossings of the grid
+_SIZE = (5.2, 5.3)  # display: inches; narrow, with the legend below, to be read on a phone
+_STRIP = 0.03  # display: of the height, for sliding under constant P
+# display: labels may be closer to other lines than on the map over dQ and dsigma: lines cross at small angles
+_CROSSING = 2.5
+_FINER = 20  # display: points of a line between two crossings of the grid
 _FEWEST = 3 * _FINER  # points of a line that is drawn
 
 

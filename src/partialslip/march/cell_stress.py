@@ -15,8 +15,8 @@ from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.stress import Fields, Points, SlipZones, State
 from partialslip.march.pressing import NormalLoads
 
-_SLIPS = 1e-9  # distance of |q| from f p, relative, at which a cell slips
-_WINDOW = 5  # vertices of the polynomial through the resultants around a vertex
+_SLIPS = 1e-9  # accuracy: distance of |q| from f p, relative, at which a cell slips
+_WINDOW = 5  # accuracy: vertices of the polynomial through the resultants around a vertex
 _LOAD_POINTS = np.array([0.0, 0.5])
 
 

@@ -9,7 +9,8 @@ from partialslip.arrays import Array
 from partialslip.halfplane.shape import Shape
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
-_NEAR = 4.0  # distance, in widths of the wider cell, within which pairs of cells are integrated in closed form
+# accuracy: distance, in widths of the wider cell, within which pairs of cells are integrated in closed form
+_NEAR = 4.0
 
 
 def graded(points: Array, size: float | Array, growth: float) -> Array:

@@ -38,25 +38,28 @@ from partialslip.result import Clock, Result, Slip, StressAt, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene
 
-_MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # (cell size at the ends, in a; growth)
-_CELLS, _SOMEWHERE = 4.0, 0.5  # a zone of fewer cells is unresolved: the error of an end in cells
-_NEAR = 10.0  # cells at ends closer to each other than a/10 are reduced in proportion
-_SMALLEST = 1e-9  # in a: closer ends are merged, and smaller cells are not requested
-_INNER = 8.0  # size of cells at kinks of q over the size at the ends: kinks hardly affect m and n
-_PASSING = 32.0  # the same at kinks that neither q1 nor q2 has, and at kinks of the coefficient of friction
-_SHARE = 1 / 3  # largest part of the remaining CPU seconds for one mesh
-_WORK = 5e11  # limit of cells^3 times load steps of a mesh
-# Errors of m and n, as parts of the change from mesh to mesh and of growth^3; the same part of ends that are soft, over
-# their stiffness, 1 in Hertz contacts: an error of the loads moves an end the more the less stiff the end is
+_MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # accuracy: (cell size at the ends, in a; growth)
+_CELLS, _SOMEWHERE = 4.0, 0.5  # accuracy: a zone of fewer cells is unresolved: the error of an end in cells
+_NEAR = 10.0  # accuracy: cells at ends closer to each other than a/10 are reduced in proportion
+_SMALLEST = 1e-9  # accuracy: in a: closer ends are merged, and smaller cells are not requested
+_INNER = 8.0  # cost: size of cells at kinks of q over the size at the ends: kinks hardly affect m and n
+_PASSING = 32.0  # cost: the same at kinks that neither q1 nor q2 has, and at kinks of the coefficient of friction
+_SHARE = 1 / 3  # cost: largest part of the remaining CPU seconds for one mesh
+_WORK = 5e11  # limit: limit of cells^3 times load steps of a mesh
+# accuracy: Errors of m and n, as parts of the change from mesh to mesh and of growth^3; the same part of ends that
+# are soft, over their stiffness, 1 in Hertz contacts: an error of the loads moves an end the more the less stiff the
+# end is
 _MOVED, _CUBIC, _CUBIC_OF_SOFT = 0.1, 0.15, 0.05
-# The same part in a narrow stick zone, which its surroundings move as a whole. Cells nearby are reduced with the zone:
-# only growth is halved from mesh to mesh, and errors are of second order in it
+# accuracy: The same part in a narrow stick zone, which its surroundings move as a whole. Cells nearby are reduced
+# with the zone: only growth is halved from mesh to mesh, and errors are of second order in it
 _CARRIED = 1 / 3
-# The same where slip turns round; also, at an end that moves over cells that slipped, parts of the cell's size; and
-# parts of the change of q, which is locked in where the zone has moved, by the share of such points (measured)
+# accuracy: The same where slip turns round; also, at an end that moves over cells that slipped, parts of the cell's
+# size; and parts of the change of q, which is locked in where the zone has moved, by the share of such points
+# (measured)
 _TURNED, _CAUGHT_UP, _LOCKED = 2.0, 0.5, 0.2
-_FITTED, _SOFTEST = 4, 1e-3  # cells inside an end of the stick zone from which its stiffness is found; least stiffness
-_CHANGED = (0.4, 0.35)  # errors of q, q1 and q2 as parts of the change to the second mesh and to later meshes
+# accuracy: cells inside an end of the stick zone from which its stiffness is found; least stiffness
+_FITTED, _SOFTEST = 4, 1e-3
+_CHANGED = (0.4, 0.35)  # accuracy: errors of q, q1 and q2 as parts of the change to the second mesh and to later meshes
 _JUDGED = ("m", "n", "q", "q1", "q2")
 Added = Callable[[Array], Array]
 

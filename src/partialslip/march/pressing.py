@@ -13,7 +13,7 @@ from partialslip.halfplane.mean import Mean, common
 from partialslip.march.cells import forces
 from partialslip.scene import Scene
 
-_STAGES = (0.25, 0.5, 0.75)  # of the way between load points, at which the contact is looked up
+_STAGES = (0.25, 0.5, 0.75)  # accuracy: of the way between load points, at which the contact is looked up
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 

@@ -15,8 +15,9 @@ from partialslip.friction.coupled import Relative, punched
 from partialslip.friction.zone_ends import stick_zone
 from partialslip.march.cells import compliance, graded
 
-_END, _GROWTH = 1e-8, 0.05  # size of cells at the punch's ends; growth
-_AT_STICK = (0.02, 0.002, 5e-4)  # sizes of cells at the stick zone's ends, in their distance from the punch's ends: the
+_END, _GROWTH = 1e-8, 0.05  # accuracy: size of cells at the punch's ends; growth
+# accuracy: sizes of cells at the stick zone's ends, in their distance from the punch's ends: the
+_AT_STICK = (0.02, 0.002, 5e-4)
 # first mesh is refined at Goodman's stick zone, each other at that of the mesh before
 
 

@@ -35,16 +35,16 @@ from partialslip.result.state import State
 from partialslip.scene import Hertz, Scene
 from partialslip.scene.materials import Material
 
-_MESHES = ((1e-2, 0.2), (1e-3, 0.1), (3e-4, 0.05), (1e-4, 0.025))  # (cell size at the ends, in a; growth)
-_INNER = 8.0  # size of cells at kinks over the size at the ends
-_NEAR = 10.0  # cells at ends closer to each other than a/10 are reduced in proportion
-_SMALLEST = 1e-9  # in a: closer ends are merged, and smaller cells are not requested
-_BEYOND = 1.2  # extent of the cells, in that of the contact without coupling ...
-_WIDER = 1.5  # ... and how many times wider they are made where they do not enclose the contact
-_SHARE = 1 / 3  # largest part of the remaining CPU seconds for one mesh
-_ROUNDING = 1e-12
-# Errors of q1 and q2 as parts of their change from mesh to mesh: the growth halves, and what pressing locks in has
-# errors of about the order 1.5 in the growth, 0.46 to 0.56 of the change (measured); half for all others.
+_MESHES = ((1e-2, 0.2), (1e-3, 0.1), (3e-4, 0.05), (1e-4, 0.025))  # accuracy: (cell size at the ends, in a; growth)
+_INNER = 8.0  # cost: size of cells at kinks over the size at the ends
+_NEAR = 10.0  # accuracy: cells at ends closer to each other than a/10 are reduced in proportion
+_SMALLEST = 1e-9  # accuracy: in a: closer ends are merged, and smaller cells are not requested
+_BEYOND = 1.2  # accuracy: extent of the cells, in that of the contact without coupling ...
+_WIDER = 1.5  # cost: ... and how many times wider they are made where they do not enclose the contact
+_SHARE = 1 / 3  # cost: largest part of the remaining CPU seconds for one mesh
+_ROUNDING = 1e-12  # accuracy: relative difference of two compliances that is rounding
+# accuracy: Errors of q1 and q2 as parts of their change from mesh to mesh: the growth halves, and what pressing locks
+# in has errors of about the order 1.5 in the growth, 0.46 to 0.56 of the change (measured); half for all others.
 _OF_CHANGE = {"q1": 0.8, "q2": 0.8}
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 

@@ -10,11 +10,11 @@ from partialslip.arrays import Array
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# distances in heights of the axes
-_MARGIN = 0.055  # to the border
-_PACE = 0.01  # between candidate places
-_ROOM = 0.05  # to other lines and labels
-_CLEAR = 0.07  # to avoided points
+# display: distances in heights of the axes
+_MARGIN = 0.055  # display: to the border
+_PACE = 0.01  # display: between candidate places
+_ROOM = 0.05  # display: to other lines and labels
+_CLEAR = 0.07  # display: to avoided points
 CROSSING = 2.0
 
 

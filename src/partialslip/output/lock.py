@@ -17,8 +17,8 @@ except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
 NAME = ".partialslip.lock"
-_TRIES = 20
-_BEYOND = 1 << 30  # byte locked on Windows: beyond the text, because locked bytes cannot be read
+_TRIES = 20  # cost: to open and lock a file
+_BEYOND = 1 << 30  # limit: byte locked on Windows: beyond the text, because locked bytes cannot be read
 
 
 class FolderInUseError(InputError):

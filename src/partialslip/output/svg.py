@@ -17,7 +17,7 @@ _STYLE: dict[Any, Any] = {
     "axes.spines.right": False,
 }
 _DARK = "@media screen and (prefers-color-scheme: dark)"
-_INK, _PAPER = (0xE6, 0xE6, 0xE6), (0x13, 0x14, 0x16)  # black and white on a dark screen, as in style.css
+_INK, _PAPER = (0xE6, 0xE6, 0xE6), (0x13, 0x14, 0x16)  # display: black and white on a dark screen, as in style.css
 _SHADE = re.compile(r"#([0-9a-f]{2})\1\1\b")
 
 

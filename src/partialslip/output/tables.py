@@ -7,8 +7,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-_WIDEST = 1000
-_NARROW = 60
+_WIDEST = 1000  # limit: columns of a table
+_NARROW = 60  # display: columns of a narrow table
 
 
 def print_table(

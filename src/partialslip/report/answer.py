@@ -11,7 +11,7 @@ from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.units import PREFIXES, SI, Dimension, Units
 
-_DIGITS = 7  # significant
+_DIGITS = 7  # display: significant
 
 _Value = Callable[[Result], float | None]
 _LENGTHS: Mapping[str, _Value] = {
@@ -62,8 +62,8 @@ def _digits(value: float | None, exponent: int) -> str:
     return "none" if value is None else f"{value / 10.0**exponent:.{_DIGITS}g}"
 
 
-_ROUNDING = 1e-9  # of a
-_ROUGH = 4  # significant, of values whose error is not estimated
+_ROUNDING = 1e-9  # display: of a
+_ROUGH = 4  # display: significant, of values whose error is not estimated
 _EXACT = ("exact", "march")  # what these do not estimate (march: the pressure) they know to rounding
 
 

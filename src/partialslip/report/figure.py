@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-_SIZE = 5.2, 4.2  # width and height, inches
-_LEAST = 1e-17  # smallest error in the figure
+_SIZE = 5.2, 4.2  # display: width and height, inches
+_LEAST = 1e-17  # display: smallest error in the figure
 _ERROR_LINES = ("-", "--", ":", "-.")
-_MESH = 1.5, 1.0  # largest distance from the middle of the contact, and |y|, of the mesh, in a
-_MARKERS = 41
-_MARGIN = 0.04  # beyond the contact, in a
+_MESH = 1.5, 1.0  # display: largest distance from the middle of the contact, and |y|, of the mesh, in a
+_MARKERS = 41  # display: on a curve
+_MARGIN = 0.04  # display: beyond the contact, in a
 _P_MARKS = {"march": "x", "fem": "+", ALL_EFFECTS: "1"}
 _Q_MARKS = {"march": "s", "fem": "o", ALL_EFFECTS: "D"}
 
@@ -182,7 +182,7 @@ def _spread(result: Result) -> Array:
     return spread
 
 
-_POINTS = 401  # of the fitted gap
+_POINTS = 401  # display: of the fitted gap
 
 
 def profile_svg(scene: Scene) -> str:

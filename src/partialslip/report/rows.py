@@ -40,8 +40,8 @@ _MEANING = {
 }  # fmt: skip
 _IN_A = ("fem.accuracy", "fem.size", "fem.width")  # settings in contact half-widths
 _WORDS = {Outcome.PASSED: "ok", Outcome.MISSED: "MISSED", Outcome.NOT_JUDGED: "not judged"}
-_EVEN = 1e-4  # of a: a contact whose middle is nearer to x = 0 is even, to the error of elements
-_DIGITS, _MOST = 7, 10  # decimals of values: the usual number, and the largest if the error is smaller
+_EVEN = 1e-4  # display: of a: a contact whose middle is nearer to x = 0 is even, to the error of elements
+_DIGITS, _MOST = 7, 10  # display: decimals of values: the usual number, and the largest if the error is smaller
 
 
 def error_headings(run: Run, name: str) -> list[str]:

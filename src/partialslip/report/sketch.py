@@ -13,16 +13,16 @@ from partialslip.scene.bodies import Body
 from partialslip.scene.profiles import FlatRounded
 from partialslip.units import Dimension, Units
 
-_WIDTH, _HEIGHT = 470, 405  # of the drawing, in its units
-_MIDDLE, _LINE = 235.0, 205.0  # x of the contact's middle, y of the contact line
-_HALF_PLANE = 185.0, 105.0  # half-width and height of a half-plane as drawn
-_LARGEST = 150.0, 105.0  # half-width and height of the largest finite body, holder included
-_GIVEN = 150.0, 74.0  # half-width and height of a body with a given mesh
-_SMALLEST = 24.0, 16.0  # half-width and height of the smallest part, however small it is
-_ROUND = 34.0  # height of the curved face of a body that stands for a half-plane
-_HATCH = 9.0  # distance and length of the strokes of a clamp
-_ROLLER = 4.5  # radius
-_ARROW = 34.0
+_WIDTH, _HEIGHT = 470, 405  # display: of the drawing, in its units
+_MIDDLE, _LINE = 235.0, 205.0  # display: x of the contact's middle, y of the contact line
+_HALF_PLANE = 185.0, 105.0  # display: half-width and height of a half-plane as drawn
+_LARGEST = 150.0, 105.0  # display: half-width and height of the largest finite body, holder included
+_GIVEN = 150.0, 74.0  # display: half-width and height of a body with a given mesh
+_SMALLEST = 24.0, 16.0  # display: half-width and height of the smallest part, however small it is
+_ROUND = 34.0  # display: height of the curved face of a body that stands for a half-plane
+_HATCH = 9.0  # display: distance and length of the strokes of a clamp
+_ROLLER = 4.5  # display: radius
+_ARROW = 34.0  # display: length
 
 Point = tuple[float, float]
 

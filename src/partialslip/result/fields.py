@@ -11,7 +11,7 @@ from partialslip.arrays import Array, Indices
 from partialslip.errors import InputError
 from partialslip.shown import Short
 
-_LOAD_POINTS = (0.0, 0.5)  # phases of load points 1 and 2
+_LOAD_POINTS = (0.0, 0.5)  # fixed: phases of load points 1 and 2
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,8 @@ except ImportError:  # Windows
     resource = None  # type: ignore[assignment]
 
 _STATUS, _CLEAR = Path("/proc/self/status"), Path("/proc/self/clear_refs")
-_SLACK = 1.0  # MB by which the mark may exceed the present memory without a reset: the kernel counts in batches
+# accuracy: MB by which the mark may exceed the present memory without a reset: the kernel counts in batches
+_SLACK = 1.0
 _before_resets = 0.0  # MB, highest mark that a reset has removed
 
 

@@ -25,10 +25,11 @@ _ERROR = "q_error"  # files of earlier versions do not have it
 # an encrypted or unknown kind of compression is a RuntimeError
 _SPOILED = (OSError, KeyError, ValueError, EOFError, AttributeError, TypeError, MemoryError, RuntimeError,
             SyntaxError, tokenize.TokenError, zipfile.BadZipFile, zlib.error)  # fmt: skip
-_LARGEST = 100_000_000  # bytes of a file, and of the arrays in it
-_HELD = 1e-6  # tolerance of equilibrium, relative to P
-_TURNED = 1e-3  # tolerance of the moment, relative to P sqrt(A R P): cells of constant pressure have no better one
-_SAME = 1e-9  # relative difference of P and A allowed as rounding
+_LARGEST = 100_000_000  # limit: bytes of a file, and of the arrays in it
+_HELD = 1e-6  # limit: tolerance of equilibrium, relative to P
+# limit: tolerance of the moment, relative to P sqrt(A R P): cells of constant pressure have no better one
+_TURNED = 1e-3
+_SAME = 1e-9  # limit: relative difference of P and A allowed as rounding
 
 
 @dataclass(frozen=True, repr=False)

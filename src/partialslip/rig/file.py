@@ -16,8 +16,8 @@ from partialslip.seal import edited, sealed_text
 from partialslip.strictjson import converted, parsed
 
 SCHEMA = "partialslip/rig/1"
-_LARGEST = 2**20  # bytes
-_MOST = 64  # terms
+_LARGEST = 2**20  # limit: bytes
+_MOST = 64  # limit: terms
 _Row = Annotated[list[float], msgspec.Meta(min_length=2, max_length=_MOST)]
 _Rows = Annotated[list[_Row], msgspec.Meta(min_length=2, max_length=_MOST)]
 

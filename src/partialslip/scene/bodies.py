@@ -8,7 +8,7 @@ import msgspec
 from partialslip.errors import InputError
 from partialslip.scene.table import Positive, Table
 
-_SLENDEREST = 1e-4  # smallest ratio of height to width, or of width to height
+_SLENDEREST = 1e-4  # limit: smallest ratio of height to width, or of width to height
 
 
 class Holder(Table, frozen=True, kw_only=True):

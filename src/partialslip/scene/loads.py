@@ -10,7 +10,7 @@ from partialslip.arrays import Array, Indices
 from partialslip.errors import InputError
 from partialslip.scene.table import ROUGH, Positive, Table
 
-_FEW, _MOST = 2, 1000
+_FEW, _MOST = 2, 1000  # limit: least and largest number of load points
 _LISTS = ("Q", "sigma", "sigma_slope", "P", "M", "e")
 Turns = Annotated[tuple[float, ...], msgspec.Meta(min_length=_FEW, max_length=_MOST)]
 Forces = Annotated[tuple[Positive, ...], msgspec.Meta(min_length=_FEW, max_length=_MOST)]

@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from partialslip.scene import Scene
     from partialslip.scene.reading import AnyScene
 
-_LARGEST = 20_000_000  # bytes of a file of points
-_FEWEST = 10  # points
-_COARSEST, _MOST = 3, 1000  # intervals and points of a table
+_LARGEST = 20_000_000  # limit: bytes of a file of points
+_FEWEST = 10  # limit: points
+_COARSEST, _MOST = 3, 1000  # accuracy: intervals and points of a table
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
 _BRACKETS = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)")
-_COLUMNS = 2
-_SURE = 5.0  # standard deviations of a mean over a smoothing length that are not taken for noise
-_ROUNDING = 1e-12  # misfit, relative to the largest gap, that is not taken for noise
+_COLUMNS = 2  # fixed: x and gap
+_SURE = 5.0  # accuracy: standard deviations of a mean over a smoothing length that are not taken for noise
+_ROUNDING = 1e-12  # accuracy: misfit, relative to the largest gap, that is not taken for noise
 # msgspec 0.20 fails on a union of a number and a tuple of fixed length
 Unit = Positive | Annotated[tuple[Positive, ...], msgspec.Meta(min_length=2, max_length=2)]
 

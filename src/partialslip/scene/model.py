@@ -21,9 +21,9 @@ from partialslip.scene.table import LARGEST, NO_TEXT, ROUGH, SMALLEST, STEEPEST,
 from partialslip.shown import Notebook, short
 from partialslip.units import UNITS, System, Units
 
-# Largest distance of P's line of action from x = 0, in sqrt(A R P): the rounding of x^2 is below 1e-9.
+# limit: Largest distance of P's line of action from x = 0, in sqrt(A R P): the rounding of x^2 is below 1e-9.
 _FARTHEST = 1e3
-_SHARP = 1e-2  # jump of the slope of f, in f over a length, from which on its kink counts
+_SHARP = 1e-2  # accuracy: jump of the slope of f, in f over a length, from which on its kink counts
 
 
 Coefficients = Annotated[

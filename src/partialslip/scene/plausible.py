@@ -11,9 +11,9 @@ if TYPE_CHECKING:
 
 # limit: what engineering contacts have, with a margin: from gels to above diamond
 _E = 1e7, 1e13  # Pa
-_SLOPE = 1e-7, 0.3  # a/R: beyond these the surfaces are rough beside it, or not nearly flat
-_WIDEST = 0.5  # m, half-width of a contact
-_TABLE = 1e-2, 1e2  # reach of the places of friction.x, in a
+_SLOPE = 1e-7, 0.3  # limit: a/R: beyond these the surfaces are rough beside it, or not nearly flat
+_WIDEST = 0.5  # limit: m, half-width of a contact
+_TABLE = 1e-2, 1e2  # limit: reach of the places of friction.x, in a
 _HALF_WIDTH = math.sqrt(2 / math.pi)  # of Hertz contact, in the scene's characteristic length
 
 

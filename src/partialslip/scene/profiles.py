@@ -13,7 +13,7 @@ from partialslip.scene.measured import Measured
 from partialslip.scene.table import ROUGH, Positive, Table
 from partialslip.scene.table import STEEPEST as STEEPEST
 
-_SHARP = 0.05  # step of curvature, relative to the largest curvature, above which a point is a kink
+_SHARP = 0.05  # accuracy: step of curvature, relative to the largest curvature, above which a point is a kink
 
 
 class Curvature(NamedTuple):

@@ -19,10 +19,10 @@ from partialslip.scene.dimensions import converted
 from partialslip.scene.measured import ProfileFile, tabulated
 from partialslip.units import SI, UNITS, Units
 
-_LARGEST_FILE = 500_000  # bytes; a profile and a cycle of 1,000 numbers each take 120,000
-_LONGEST = 1000  # numbers in an array
-_BITS = 8192  # largest whole numbers shown in digits
-_DEEPEST = 10  # nested tables and arrays; a scene has three levels
+_LARGEST_FILE = 500_000  # limit: bytes; a profile and a cycle of 1,000 numbers each take 120,000
+_LONGEST = 1000  # limit: numbers in an array
+_BITS = 8192  # limit: largest whole numbers shown in digits
+_DEEPEST = 10  # limit: nested tables and arrays; a scene has three levels
 # A dotted key of more than 20 parts: the time of tomllib grows at least like the square of their number.
 _DEEP_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){20}""", re.ASCII)
 _Made = TypeVar("_Made", bound=Table)

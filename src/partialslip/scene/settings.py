@@ -6,8 +6,9 @@ import msgspec
 
 from partialslip.scene.table import Positive, Table
 
-_FINE = 6e-8  # accuracy below which elements of order 6 cost less than those of order 4 (benchmarks/accuracy.py cost)
-WIDTHS = {"half-plane": 16.0, "box": 4096.0}  # default half-width of a block, in contact half-widths
+# cost: accuracy below which elements of order 6 cost less than those of order 4 (benchmarks/accuracy.py cost)
+_FINE = 6e-8
+WIDTHS = {"half-plane": 16.0, "box": 4096.0}  # accuracy: default half-width of a block, in contact half-widths
 
 
 class Fem(Table, frozen=True, kw_only=True):

@@ -6,11 +6,11 @@ import msgspec
 
 from partialslip.shown import Short
 
-# Numbers are zero or within these magnitudes, so that products and squares of a few numbers stay finite.
+# limit: Numbers are zero or within these magnitudes, so that products and squares of a few numbers stay finite.
 SMALLEST, LARGEST = 1e-100, 1e100
 
-ROUGH = 1e-9  # difference of numbers, relative to the largest, that is taken for rounding
-STEEPEST = 0.9  # largest sine of the slope angle of a pad's round face
+ROUGH = 1e-9  # limit: difference of numbers, relative to the largest, that is taken for rounding
+STEEPEST = 0.9  # limit: largest sine of the slope angle of a pad's round face
 
 # Characters forbidden in text shown in terminals, pages and figures: control characters, line and paragraph separators,
 # bidirectional marks, unpaired surrogates, and characters that XML does not allow.

@@ -20,7 +20,7 @@ from partialslip.score.method import centred, scored
 from partialslip.score.mistakes import in_another_unit, mistakes
 from partialslip.score.read import read
 
-_STRIPS = 2.0  # widths of a strip that is not resolved: largest error that it may cause
+_STRIPS = 2.0  # accuracy: widths of a strip that is not resolved: largest error that it may cause
 
 
 def score(

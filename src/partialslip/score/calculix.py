@@ -12,9 +12,10 @@ from partialslip.units import SYSTEMS, Units
 
 Corners = tuple[tuple[int, ...], ...]
 
+# fixed: nodes of the faces in the order of Abaqus and CalculiX
 _HEXAHEDRON: Corners = ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0))
-_WEDGE: Corners = ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5))
-_TETRAHEDRON: Corners = ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0))
+_WEDGE: Corners = ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5))  # fixed:
+_TETRAHEDRON: Corners = ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0))  # fixed:
 # Plane elements are expanded to solids, whose first two faces are the plane ones.
 _TRIANGLE: Corners = ((), (), (0, 1), (1, 2), (2, 0))
 _QUADRILATERAL: Corners = ((), (), (0, 1), (1, 2), (2, 3), (3, 0))
@@ -31,7 +32,7 @@ FACE_CORNERS: dict[int, Corners] = {
 
 _CONTACT = ("CPRESS", "CSHEAR1")
 _STRESS = " contact stress (slave "
-_WIDTH = 12  # characters of a number
+_WIDTH = 12  # fixed: characters of a number
 
 Indices = npt.NDArray[np.int64]
 

@@ -12,9 +12,9 @@ from partialslip.score.headers import DIMENSIONS, headings, known, selected
 from partialslip.units import SI, Units
 
 _NO_VALUE = ("", "-", "--", "novalue", "no value", "n/a", "na")
-_MOST_ROWS = 1_000_000
-_TEMPLATE_ROWS = 81
-_TEMPLATE_REACH = 1.1  # largest |x| of the template, in contact half-widths
+_MOST_ROWS = 1_000_000  # limit: rows of a table
+_TEMPLATE_ROWS = 81  # display: rows of the template
+_TEMPLATE_REACH = 1.1  # display: largest |x| of the template, in contact half-widths
 
 
 class Columns(NamedTuple):

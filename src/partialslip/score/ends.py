@@ -15,30 +15,31 @@ import numpy as np
 
 from partialslip.arrays import Array
 
-_POINTS = (4, 5, 6, 8, 11, 16, 24, 36, 54, 80, 120, 180, 270, 400, 600, 900)
-_MANY = 60  # most points of a fit; longer windows are thinned out
-_FEW = 8  # most points of a window whose scatter about the polynomial is noise alone
-_SKIPPED = (0, 1, 2, 4, 7, 12, 20, 34, 56, 90, 150, 240, 400)  # points between the window and the end
-_PART = 0.6  # of the zone: largest distance of a window, beyond which the other end matters
-_NEAREST = 2.0  # of a window's points: most points skipped
-_NEAR = 3  # number of distances that count as near the end
-_AGREE = 3.0  # largest difference of estimates from near and far, in their uncertainties
-_FADES = 0.35  # of the value three points further in: if the last values are less, the traction fades out
-_RISEN = 0.1  # of the mean: a square root rises to this within a fortieth of the zone
-_RISE = 0.1  # of the zone: a traction that takes longer to rise to _RISEN fades out
-_STEEP = 3.0  # times the median slope: steeper polynomials are due to noise
-_ABOVE = 2.0  # times the noise: least value of a window that gives a slope
-_FALL = 0.05  # least ratio of the neglected terms from one degree to the next
-_SAFE = 2.6  # factor on the least uncertainty, as selecting the least one is biased
-_COMPARABLE = 5.0  # times the least uncertainty: largest uncertainty of an estimate that counts for the drift
-_SPREAD = 0.5  # of the length over which an end is spread: error of the end
-_CELL = 0.06  # of a cell: shift of the end of a square root by taking means over cells
-_DRIFTS = 1e-6  # of the largest value: least one of a zone that has drifted
-_CLEAR = 10.0  # times the noise: least value beyond the end of a square root that a few points tell
-_BLURS = 5.0  # times the length over which the contact's ends are spread: shortest drift that smoothing does not mimic
-FEWEST = 3  # points beyond the end of a square root that show a drift
-NOISE_FACTOR = 4.0  # standard deviations of the noise: smaller values count as noise
-ZERO_LEVEL = 1e-9  # of the largest value: smaller values count as zero
+_POINTS = (4, 5, 6, 8, 11, 16, 24, 36, 54, 80, 120, 180, 270, 400, 600, 900)  # accuracy: of the windows that are tried
+_MANY = 60  # accuracy: most points of a fit; longer windows are thinned out
+_FEW = 8  # accuracy: most points of a window whose scatter about the polynomial is noise alone
+_SKIPPED = (0, 1, 2, 4, 7, 12, 20, 34, 56, 90, 150, 240, 400)  # accuracy: points between the window and the end
+_PART = 0.6  # accuracy: of the zone: largest distance of a window, beyond which the other end matters
+_NEAREST = 2.0  # accuracy: of a window's points: most points skipped
+_NEAR = 3  # accuracy: number of distances that count as near the end
+_AGREE = 3.0  # accuracy: largest difference of estimates from near and far, in their uncertainties
+_FADES = 0.35  # accuracy: of the value three points further in: if the last values are less, the traction fades out
+_RISEN = 0.1  # accuracy: of the mean: a square root rises to this within a fortieth of the zone
+_RISE = 0.1  # accuracy: of the zone: a traction that takes longer to rise to _RISEN fades out
+_STEEP = 3.0  # accuracy: times the median slope: steeper polynomials are due to noise
+_ABOVE = 2.0  # accuracy: times the noise: least value of a window that gives a slope
+_FALL = 0.05  # accuracy: least ratio of the neglected terms from one degree to the next
+_SAFE = 2.6  # accuracy: factor on the least uncertainty, as selecting the least one is biased
+_COMPARABLE = 5.0  # accuracy: times the least uncertainty: largest uncertainty of an estimate that counts for the drift
+_SPREAD = 0.5  # accuracy: of the length over which an end is spread: error of the end
+_CELL = 0.06  # accuracy: of a cell: shift of the end of a square root by taking means over cells
+_DRIFTS = 1e-6  # accuracy: of the largest value: least one of a zone that has drifted
+_CLEAR = 10.0  # accuracy: times the noise: least value beyond the end of a square root that a few points tell
+# accuracy: times the length over which the contact's ends are spread: shortest drift that smoothing does not mimic
+_BLURS = 5.0
+FEWEST = 3  # accuracy: points beyond the end of a square root that show a drift
+NOISE_FACTOR = 4.0  # accuracy: standard deviations of the noise: smaller values count as noise
+ZERO_LEVEL = 1e-9  # accuracy: of the largest value: smaller values count as zero
 
 
 class ZoneEnd(NamedTuple):

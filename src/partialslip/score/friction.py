@@ -10,13 +10,14 @@ import numpy as np
 
 from partialslip.arrays import Array
 
+# accuracy: points of the windows that are tried
 _COUNTS = (3, 4, 5, 6, 8, 11, 16, 24, 36, 54, 80, 120, 180, 270, 400, 600, 900)
-_FLAT = 0.02  # relative uncertainty of f above which |dq|/(2 p) does not count as constant
-_OWN = 2e-3  # relative uncertainty of f up to which a side keeps a value different from the other side's
-_APART = 3.0  # difference of two values of f, in their uncertainty, above which they differ
-_F_ROUNDING = 1e-12  # least relative uncertainty of f
-_PRESSED = 0.2  # of the largest p: where p is less, |dq|/(2 p) is too noisy to bound f
-_TOP = 3  # number of points with the largest |dq|/(2 p) that bound f
+_FLAT = 0.02  # accuracy: relative uncertainty of f above which |dq|/(2 p) does not count as constant
+_OWN = 2e-3  # accuracy: relative uncertainty of f up to which a side keeps a value different from the other side's
+_APART = 3.0  # accuracy: difference of two values of f, in their uncertainty, above which they differ
+_F_ROUNDING = 1e-12  # accuracy: least relative uncertainty of f
+_PRESSED = 0.2  # accuracy: of the largest p: where p is less, |dq|/(2 p) is too noisy to bound f
+_TOP = 3  # accuracy: number of points with the largest |dq|/(2 p) that bound f
 
 
 class Friction(NamedTuple):

@@ -25,11 +25,11 @@ from partialslip.score.friction import Friction, frictions
 from partialslip.score.samples import FEWEST, Samples
 from partialslip.units import Units
 
-_SLIDES = 0.02  # of 2 f p0: where 2 f p - |dq| is less everywhere, the contact slides
-_F_SIGMAS = 3.0  # uncertainties of f: largest error of 2 f p
-_X_SIGMAS = 2.0  # standard deviations of x: largest error of an end due to rounded x
-_CERTAIN = 0.05  # of a: largest uncertainty of ends of the stick zone that are given ...
-_SPACINGS = 2.0  # ... or this many spacings of the points
+_SLIDES = 0.02  # limit: of 2 f p0: where 2 f p - |dq| is less everywhere, the contact slides
+_F_SIGMAS = 3.0  # accuracy: uncertainties of f: largest error of 2 f p
+_X_SIGMAS = 2.0  # accuracy: standard deviations of x: largest error of an end due to rounded x
+_CERTAIN = 0.05  # accuracy: of a: largest uncertainty of ends of the stick zone that are given ...
+_SPACINGS = 2.0  # accuracy: ... or this many spacings of the points
 
 
 class SeenContact(NamedTuple):

@@ -9,16 +9,19 @@ from partialslip.result import Result
 from partialslip.scene import Scene
 from partialslip.units import UNITS, Dimension
 
+# fixed: units of length that may have been meant
 _LENGTHS = {"in m": 1.0, "in mm": 1e-3, "in um": 1e-6, "in cm": 1e-2, "in inches": 0.0254}
+# fixed: units of stress that may have been meant
 _STRESSES = {"in Pa": 1.0, "in MPa": 1e6, "in GPa": 1e9, "in kPa": 1e3, "in N/um^2": 1e12, "in psi": 6894.757}
 _COLUMNS: tuple[Dimension, ...] = ("m", "Pa")
+# fixed: signs that may have been meant
 _TURNS = {"": 1.0, "of the opposite sign": -1.0, "of half a cycle": 2.0,
           "of half a cycle and of the opposite sign": -2.0, "twice too large": 0.5}  # fmt: skip
-_LIKE = 0.15  # relative difference up to which another unit explains a sum
-_OFF = 0.01  # least relative difference of a resultant from the load that is reported
-_FRICTION = 3e-3  # least relative difference of the coefficient of friction that is reported
-_LITTLE = 1e-3  # of a: least offset of the stick zone that counts
-_SIGMAS = 3.0  # uncertainties: smaller differences are not reported
+_LIKE = 0.15  # limit: relative difference up to which another unit explains a sum
+_OFF = 0.01  # limit: least relative difference of a resultant from the load that is reported
+_FRICTION = 3e-3  # limit: least relative difference of the coefficient of friction that is reported
+_LITTLE = 1e-3  # limit: of a: least offset of the stick zone that counts
+_SIGMAS = 3.0  # limit: uncertainties: smaller differences are not reported
 
 
 class _Guess(NamedTuple):

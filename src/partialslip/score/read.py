@@ -18,8 +18,8 @@ from partialslip.score.samples import Samples, samples
 from partialslip.units import Units
 
 TABLES = (".csv", ".txt", ".tsv", ".rpt")
-LARGEST = 1_000_000_000  # bytes of a file
-_FLAT = 0.05  # of the points' extent along x: largest extent across
+LARGEST = 1_000_000_000  # limit: bytes of a file
+_FLAT = 0.05  # limit: of the points' extent along x: largest extent across
 
 
 def check(file: Path) -> None:

@@ -9,9 +9,9 @@ from partialslip.errors import InputError
 from partialslip.scene import LARGEST, SMALLEST
 from partialslip.score.headers import FIRST
 
-_DIGITS = 8  # digits of x: numbers with fewer count as rounded
-_WHOLE = 1e-5  # of a unit in the last place: deviation from a whole number of units
-FEWEST = 6  # points in contact that locate its ends
+_DIGITS = 8  # accuracy: digits of x: numbers with fewer count as rounded
+_WHOLE = 1e-5  # accuracy: of a unit in the last place: deviation from a whole number of units
+FEWEST = 6  # limit: points in contact that locate its ends
 
 
 @dataclass(frozen=True)

@@ -34,8 +34,8 @@ SCOPE = {
     "book": "The numbered problems of the benchmark. Each is solved by the methods that its targets come from.",
     "stress": "Random scenes of one method. Each can be made again from its number.",
 }
-_LARGEST = 10**8  # bytes of a figure
-_LEAST = 1e-18  # smallest certificate in the figure, drawn for a residual of 0
+_LARGEST = 10**8  # limit: bytes of a figure
+_LEAST = 1e-18  # display: smallest certificate in the figure, drawn for a residual of 0
 
 
 class Study(NamedTuple):

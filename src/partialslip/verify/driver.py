@@ -36,8 +36,8 @@ from partialslip.verify.suites import SUITES, Maker, Makers, Suite, stress_suite
 from partialslip.verify.verdicts import was_finished, write_verdicts
 
 _SCENES, _FIGURE, _SKETCH = "scenes", "tractions.svg", "sketch.svg"
-_MOST = 999_999_999
-_LARGEST = 10**8  # bytes of a figure
+_MOST = 999_999_999  # limit: largest seed
+_LARGEST = 10**8  # limit: bytes of a figure
 
 
 @dataclass(frozen=True)

@@ -25,9 +25,9 @@ from partialslip.scene import Scene
 from partialslip.scene.reading import parse_scene
 from partialslip.verify.case import Case
 
-SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)  # in contact half-widths
+SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)  # accuracy: in contact half-widths
 QUANTITIES = ("a", "m", "n", "p", "q")
-_FORMAL = 1.0  # order
+_FORMAL = 1.0  # fixed: order
 
 
 class Convergence(msgspec.Struct, frozen=True):

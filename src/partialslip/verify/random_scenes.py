@@ -18,7 +18,7 @@ KINDS = (
     "any", "small", "large", "stuck", "near-stuck", "near-sliding", "lost digits", "sliding", "ratchets", "narrow",
     "late", "transition", "no dQ", "no dsigma", "mean loads", "out of phase",
 )  # fmt: skip
-SHORT = 1 - 1e-12  # largest |Q| in f P without sliding, with room for rounding
+SHORT = 1 - 1e-12  # limit: largest |Q| in f P without sliding, with room for rounding
 
 
 class RandomScene(NamedTuple):

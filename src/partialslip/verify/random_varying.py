@@ -13,11 +13,11 @@ from partialslip.scene import Scene
 from partialslip.verify.random_scenes import RandomScene, draw
 
 WAYS = ("P", "M", "e", "P and M", "P and e")
-SHARE = 1 / 3  # of the scenes, in which the pressure varies
-_STREAM = 1  # beside that of the other random numbers of a scene
-_LEAST = 0.4  # of the larger P, above which dQ = f dP is possible without sliding
-_HALVINGS = 50
-_CYCLES = 100  # most: the steady state is compared, and methods end with the first cycle that repeats
+SHARE = 1 / 3  # limit: of the scenes, in which the pressure varies
+_STREAM = 1  # fixed: beside that of the other random numbers of a scene
+_LEAST = 0.4  # limit: of the larger P, above which dQ = f dP is possible without sliding
+_HALVINGS = 50  # limit: of the loads, until a scene has a stick zone
+_CYCLES = 100  # limit: most: the steady state is compared, and methods end with the first cycle that repeats
 
 
 def varies(seed: int, number: int) -> bool:

@@ -21,8 +21,8 @@ from partialslip.verify.entry import Settings
 
 SCHEMA = "partialslip/verify/2"
 _FILE = "results.json"
-_SCREEN = 24  # rows
-_LARGEST = 2**30  # bytes
+_SCREEN = 24  # display: rows
+_LARGEST = 2**30  # limit: bytes
 
 Verdicts = Mapping[str, Sequence[CaseVerdict]]
 

@@ -20,7 +20,7 @@ from partialslip.result import Result
 from partialslip.scene import Scene
 
 HOST = Host("PARTIALSLIP_GETFEM_PYTHON", "import getfem; print(getfem.getfem_env('version'))", "run_getfem.py")
-_POINTS = 4001  # of the table of the gap
+_POINTS = 4001  # accuracy: of the table of the gap
 
 
 @dataclass(frozen=True)

@@ -18,12 +18,12 @@ from partialslip.halfplane.gradual_path.retreat import Zone
 from partialslip.halfplane.gradual_path.stage import Loads, Stage, lasting
 from partialslip.halfplane.gradual_path.tractions import Tractions
 
-_STEP, _REACH = 0.4, 39.0  # of the trapezoidal rule, in the logarithm
-_NEAR = 1e-5  # distance from a panel's end from which on points are judged: nearer, x has too few digits
-_EMPTY = 1e-13  # width below which a panel is left out
-_SHARES = (1e-3, 0.05, 0.25, 0.5, 0.75, 1.0)  # stages in a phase
-_ROWS = 64  # of the matrix of a quadrature, at once
-_OVERLAP = 0.7  # of a stick zone that sticks up to the next stage, too
+_STEP, _REACH = 0.4, 39.0  # accuracy: of the trapezoidal rule, in the logarithm
+_NEAR = 1e-5  # accuracy: distance from a panel's end from which on points are judged: nearer, x has too few digits
+_EMPTY = 1e-13  # accuracy: width below which a panel is left out
+_SHARES = (1e-3, 0.05, 0.25, 0.5, 0.75, 1.0)  # accuracy: stages in a phase
+_ROWS = 64  # cost: of the matrix of a quadrature, at once
+_OVERLAP = 0.7  # accuracy: of a stick zone that sticks up to the next stage, too
 
 
 class Certificate(NamedTuple):

@@ -18,8 +18,9 @@ import numpy.typing as npt
 from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.graded import DEGREES, RESTS, SHARES, integrals, place, powers, spans
 
-_WIDTHS = 4  # of the zone, after which a break of its beginning is seen no more
-_TAIL, _SHORTEST = 5e-10, 0.02  # last coefficients of h above which a panel is halved, and panels that are not
+_WIDTHS = 4  # accuracy: of the zone, after which a break of its beginning is seen no more
+# accuracy: last coefficients of h above which a panel is halved, and panels that are not
+_TAIL, _SHORTEST = 5e-10, 0.02
 
 _Solver = Callable[[Array], Array]
 

@@ -13,11 +13,11 @@ from partialslip.halfplane.gradual_path.half_cycle import HalfCycle
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.gradual_path.tractions import Part, Tractions
 
-MOST_CYCLES = 30  # loads that tend to the steady state more slowly are not followed
-_REPEATS = 1e-10  # change of q over a cycle, in f p0, that is none: states are interpolated to this tolerance
-_NEARLY = 1e-6  # the same that is none where no more cycles follow
-_HELD = 1e-6  # violation of a condition, in f p0, above which a way does not hold
-_SHARES = (0.05, 0.5, 1.0)  # stages in a phase at which the conditions are checked
+MOST_CYCLES = 30  # limit: loads that tend to the steady state more slowly are not followed
+_REPEATS = 1e-10  # accuracy: change of q over a cycle, in f p0, that is none: states are interpolated to this tolerance
+_NEARLY = 1e-6  # accuracy: the same that is none where no more cycles follow
+_HELD = 1e-6  # limit: violation of a condition, in f p0, above which a way does not hold
+_SHARES = (0.05, 0.5, 1.0)  # accuracy: stages in a phase at which the conditions are checked
 _PLACES = np.cos(np.linspace(np.pi, 0, 257))[1:-1]
 
 

@@ -8,11 +8,11 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.halfplane.shape import double_exponential
 
-_FEW, _LEAST = 200, 1e-300  # points up to which the barycentric formula is faster; a distance that is not zero
-DEGREES = 40  # coefficients, and nodes, of an interpolant
-_TAIL = 1e-10  # size of the last coefficients above which an interval is halved
-_HALVINGS = 20
-_NARROW = 1e-7  # length of intervals that are not halved: rounding of coordinates shows in their interpolants
+_FEW, _LEAST = 200, 1e-300  # cost: points up to which the barycentric formula is faster; a distance that is not zero
+DEGREES = 40  # accuracy: coefficients, and nodes, of an interpolant
+_TAIL = 1e-10  # accuracy: size of the last coefficients above which an interval is halved
+_HALVINGS = 20  # limit: of an interval
+_NARROW = 1e-7  # accuracy: length of intervals that are not halved: rounding of coordinates shows in their interpolants
 _HALF_PI = math.pi / 2
 _INNER, _TO_END, _WEIGHTS = double_exponential(97, 3.85)
 _FROM_LOW = np.where(_INNER < 0, _TO_END[::-1], 1 + _INNER)

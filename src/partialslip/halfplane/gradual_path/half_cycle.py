@@ -18,20 +18,23 @@ from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 
-_CYCLES, _STALLED = 60, 8  # most half cycles, and those in which the change does not become less: they do not settle
-_SETTLED, _NEAR = 1e-13, 1e-8
-_NO_LESS = 2  # half cycles without a smaller change, after which a change that is no longer near is rounding, too
-_CLOSE = 1e-12  # change of the middle where a zone inside is followed
+# limit: most half cycles, and those in which the change does not become less: they do not settle
+_CYCLES, _STALLED = 60, 8
+_SETTLED, _NEAR = 1e-13, 1e-8  # accuracy: change of the middle of the stick zone that is none
+# accuracy: half cycles without a smaller change, after which a change that is no longer near is rounding, too
+_NO_LESS = 2
+_CLOSE = 1e-12  # accuracy: change of the middle where a zone inside is followed
 _PROBES = (1 - np.cos(np.pi * (np.arange(200) + 0.5) / 200)) / 2  # places between the outer ends
-_OF_Q = 2e-3  # change of the outer ends that counts as much as one of q by 1: q rises there like a square root
-_NEARLY = 1e-8  # change of the zone's middle from which on a zone inside is followed
-_SAME = 1e-9  # by how much a zone is wider than the one that drifts where it drifts at once
-_CENTRED = 1e-11  # mean of Q that is rounding
-_LEAST, _MOST = 0.05, 0.8  # shares of the half cycle before in a mixture
-_FINE = 1e-11  # change of the middle below which the interpolation of a mixture shows
-_HALVINGS = 12  # of the way between two stages
+# accuracy: change of the outer ends that counts as much as one of q by 1: q rises there like a square root
+_OF_Q = 2e-3
+_NEARLY = 1e-8  # accuracy: change of the zone's middle from which on a zone inside is followed
+_SAME = 1e-9  # accuracy: by how much a zone is wider than the one that drifts where it drifts at once
+_CENTRED = 1e-11  # accuracy: mean of Q that is rounding
+_LEAST, _MOST = 0.05, 0.8  # cost: shares of the half cycle before in a mixture
+_FINE = 1e-11  # accuracy: change of the middle below which the interpolation of a mixture shows
+_HALVINGS = 12  # limit: of the way between two stages
 _NONE = Zone(1.0, -1.0)  # of no points
-_NARROWEST = 0.02  # half-width of a stick zone that drifts: slip along its way costs stages as 1 over it
+_NARROWEST = 0.02  # limit: half-width of a stick zone that drifts: slip along its way costs stages as 1 over it
 
 
 class HalfCycle:

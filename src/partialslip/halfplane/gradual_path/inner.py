@@ -11,7 +11,7 @@ from partialslip.halfplane.gradual_path.retreat import Zone
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Part, Tractions
 
-_PATIENT = 24  # steps without progress, for ways that are lost with fewer
+_PATIENT = 24  # cost: steps without progress, for ways that are lost with fewer
 
 
 def _followed(loads: Loads, first: Stage, low: float, near: Way | None) -> Way:

@@ -9,12 +9,12 @@ import numpy as np
 from partialslip.arrays import Array
 
 L, A, B, R, Z = range(5)  # the four ends, and z0
-DEGREES = 20  # nodes of a panel
-PAST = 28  # nodes of integrals over part of a panel, or over panels that are past
-_LEAST = 1e-300  # a distance that is not zero
-_STILL = 1e-3  # way below which an end hardly moves
-_FALLS = 0.1  # a Newton step over the one before
-RATE = 1.6  # logarithm by which the width of a vanishing interval falls in a panel
+DEGREES = 20  # accuracy: nodes of a panel
+PAST = 28  # accuracy: nodes of integrals over part of a panel, or over panels that are past
+_LEAST = 1e-300  # accuracy: a distance that is not zero
+_STILL = 1e-3  # accuracy: way below which an end hardly moves
+_FALLS = 0.1  # cost: a Newton step over the one before
+RATE = 1.6  # accuracy: logarithm by which the width of a vanishing interval falls in a panel
 
 
 _ANGLES = np.pi * (np.arange(DEGREES) + 0.5) / DEGREES
@@ -33,7 +33,7 @@ def cardinal(s: Array) -> Array:
 
 
 LAST = cardinal(np.array(1.0))
-_CELLS = 1024  # of a panel, in which b is sought by halving
+_CELLS = 1024  # accuracy: of a panel, in which b is sought by halving
 _AT_CELLS = cardinal(np.arange(1, _CELLS) / _CELLS)
 
 

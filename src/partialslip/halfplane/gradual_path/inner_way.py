@@ -36,34 +36,36 @@ from partialslip.halfplane.gradual_path.stage import LostError
 from partialslip.halfplane.gradual_path.tractions import Tractions
 
 ENDS = (L, A, B, R)
-_STEPS = 24
-PATIENCE = 3  # steps without one that is half as large as those before, after which a panel is too long
-_CLOSE = 1e-12
-_SLOW = 3e-11  # where rounding stops Newton's method: ends that hardly move
-_RELATIVE = 1e-7  # of the way of an end in the panel: an inner zone that closes slows a down by orders of magnitude
-_TAIL = 1e-9  # of the ways, relative to their lengths
-_AT = 1e-11  # distance from a break within which an end is at it
-_GONE = 1e-6  # width of an interval that has vanished
-_FASTEST = 0.05  # of the contact, that an end may pass in the first panel
-_GROWTH = 1.7
-_PANELS = 200
-_SLOWS = 2.5  # power of what is left, with which a comes to rest while an inner zone closes
-_PART = 0.1  # of an inner zone, to which it closes in a panel
-SHUT = 1e-5  # width of an inner zone that has closed: points are pushed beyond the bound by its square
-_WEAK = 1e-3  # width of an inner zone below which a hardly moves: a break that it passes leaves no kink at b
-_NARROW = 1e-4  # width of an inner zone that may be closed where its ends are lost
-_HALVINGS = 12
-_SHORTEST = 1e-15
-_REFUSED = 24  # halvings of a panel after the first, after which the way is lost
-_FARTHER = 1.05  # by which a panel is longer than the one that it is like, for b to turn round in it
-_TURNED, _NEAR_TURN = 1e-9, 1e-7  # z0 - b where b turns round; ways from there that rounding hides in the changes of q
+_STEPS = 24  # limit: of Newton's method on a panel
+PATIENCE = 3  # cost: steps without one that is half as large as those before, after which a panel is too long
+_CLOSE = 1e-12  # accuracy: Newton step that is rounding
+_SLOW = 3e-11  # accuracy: where rounding stops Newton's method: ends that hardly move
+# accuracy: of the way of an end in the panel: an inner zone that closes slows a down by orders of magnitude
+_RELATIVE = 1e-7
+_TAIL = 1e-9  # accuracy: of the ways, relative to their lengths
+_AT = 1e-11  # accuracy: distance from a break within which an end is at it
+_GONE = 1e-6  # accuracy: width of an interval that has vanished
+_FASTEST = 0.05  # cost: of the contact, that an end may pass in the first panel
+_GROWTH = 1.7  # cost: of a panel over the one before
+_PANELS = 200  # limit: of a way
+_SLOWS = 2.5  # fixed: power of what is left, with which a comes to rest while an inner zone closes
+_PART = 0.1  # accuracy: of an inner zone, to which it closes in a panel
+SHUT = 1e-5  # accuracy: width of an inner zone that has closed: points are pushed beyond the bound by its square
+_WEAK = 1e-3  # accuracy: width of an inner zone below which a hardly moves: a break that it passes leaves no kink at b
+_NARROW = 1e-4  # accuracy: width of an inner zone that may be closed where its ends are lost
+_HALVINGS = 12  # limit: of a panel where an event is sought
+_SHORTEST = 1e-15  # limit: panel
+_REFUSED = 24  # limit: halvings of a panel after the first, after which the way is lost
+_FARTHER = 1.05  # cost: by which a panel is longer than the one that it is like, for b to turn round in it
+# accuracy: z0 - b where b turns round; ways from there that rounding hides in the changes of q
+_TURNED, _NEAR_TURN = 1e-9, 1e-7
 
 
-_EVENTS = {"width": {A: 1.0, L: -1.0}, "gap": {L: 0.5, R: 0.5, A: -1.0}}  # of what their size is the sum
+_EVENTS = {"width": {A: 1.0, L: -1.0}, "gap": {L: 0.5, R: 0.5, A: -1.0}}  # fixed: of what their size is the sum
 RETREATING, _AHEAD = [L, A, R], np.array([[1.0], [-1.0], [-1.0]])  # ends that only retreat, and where to
-_KEPT = 0.2  # least share of its way that a Newton step leaves an end
-_REST, _MISSES = 0.5, 3  # of a panel, that is left of it; panels unlike those from a similar state
-_SMOOTH = 1e-12  # last coefficients of ways, of which two panels may be one
+_KEPT = 0.2  # cost: least share of its way that a Newton step leaves an end
+_REST, _MISSES = 0.5, 3  # cost: of a panel, that is left of it; panels unlike those from a similar state
+_SMOOTH = 1e-12  # accuracy: last coefficients of ways, of which two panels may be one
 _AT_END = np.array([0.97, 1.0])
 
 

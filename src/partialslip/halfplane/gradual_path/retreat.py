@@ -16,18 +16,18 @@ from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.tractions import Tractions
 from partialslip.halfplane.shape import Rule, rule_between
 
-_STEPS = 60
-_CLOSE = 1e-14
-_BESIDE = 1e-6  # Newton step below which an end is beside a break, or as near as rounding lets it come
-_MOST = 4.0
-_FIRST, _SMALLEST = 0.02, 1e-6  # steps of the loads
-_USUAL = 8  # steps after which an end without stiffness lies beside a break
-_ROUNDING = 1e-12  # error of the loads that is rounding there
-_SOFT = 1e-3  # stiffness of an end, over that of the other end, below which it has none
-_PASSED = 1e-12  # distance beyond a break
-_APART = 1e-13  # distance from the stick zone below which differences of changes are rounding
-_WIDE = 3.0  # in theta: the length of a piece at the end of the contact
-_FARTHEST = 0.7  # of a slip zone or a stick zone, by which one step may narrow it
+_STEPS = 60  # limit: of Newton's method
+_CLOSE = 1e-14  # accuracy: Newton step that is rounding
+_BESIDE = 1e-6  # accuracy: Newton step below which an end is beside a break, or as near as rounding lets it come
+_MOST = 4.0  # cost: largest growth of a step over the one before
+_FIRST, _SMALLEST = 0.02, 1e-6  # cost: steps of the loads
+_USUAL = 8  # limit: steps after which an end without stiffness lies beside a break
+_ROUNDING = 1e-12  # accuracy: error of the loads that is rounding there
+_SOFT = 1e-3  # accuracy: stiffness of an end, over that of the other end, below which it has none
+_PASSED = 1e-12  # accuracy: distance beyond a break
+_APART = 1e-13  # accuracy: distance from the stick zone below which differences of changes are rounding
+_WIDE = 3.0  # accuracy: in theta: the length of a piece at the end of the contact
+_FARTHEST = 0.7  # cost: of a slip zone or a stick zone, by which one step may narrow it
 
 
 class Zone(NamedTuple):

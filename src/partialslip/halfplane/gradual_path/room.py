@@ -9,8 +9,9 @@ from partialslip.halfplane.gradual_path.half_cycle import HalfCycle
 from partialslip.halfplane.gradual_path.phases import Retreating
 from partialslip.halfplane.gradual_path.retreat import Zone
 
-_STAGES, _PLACES = 24, 16  # stages between which extremes are looked for, and places at which extremes are found
-_PANELS = 64  # of the zone that never slips; the integrand bends where another extreme is the largest
+# accuracy: stages between which extremes are looked for, and places at which extremes are found
+_STAGES, _PLACES = 24, 16
+_PANELS = 64  # accuracy: of the zone that never slips; the integrand bends where another extreme is the largest
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 

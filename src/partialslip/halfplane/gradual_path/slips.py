@@ -20,7 +20,7 @@ from partialslip.halfplane.gradual_path.graded import spans
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, between
 from partialslip.halfplane.gradual_path.stage import Stage, lasting
 
-_COMMON = 0.25  # least share of a stick zone that sticks from stage to stage
+_COMMON = 0.25  # accuracy: least share of a stick zone that sticks from stage to stage
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 

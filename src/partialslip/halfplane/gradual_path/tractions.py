@@ -12,11 +12,11 @@ from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.graded import Smooth, spans
 from partialslip.halfplane.shape import Shape
 
-_LAST, _DECAYED = 4, 1e-10  # coefficients in a window that have decayed where q is smooth
+_LAST, _DECAYED = 4, 1e-10  # accuracy: coefficients in a window that have decayed where q is smooth
 _ANGLES = np.pi * (np.arange(24) + 0.5) / 24
 _WINDOW = -np.cos(_ANGLES)  # Chebyshev nodes
 _COEFFICIENTS = np.linalg.inv(np.polynomial.chebyshev.chebvander(_WINDOW, 23))
-_ALIKE = 1e-2  # of a run of parts, within which cuts of two states correspond
+_ALIKE = 1e-2  # accuracy: of a run of parts, within which cuts of two states correspond
 
 
 class Part(NamedTuple):

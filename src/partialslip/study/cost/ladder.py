@@ -38,9 +38,9 @@ _ADAPTED: dict[str, tuple[dict[str, Any], tuple[float, ...]]] = {
     "P4, box": ({"order": 4, "far_field": "box"}, (1e-3, 1e-4, 1e-5, 1e-6)),
     "P4, SuperLU": ({"order": 4, "factor": "superlu"}, (1e-2, 1e-3, 1e-4, 2e-5, 1e-6, 1e-7)),
 }
-_LARGEST_FILE = 100_000_000  # bytes
-_UNIFORM = {"P1": 1, "P2": 2, "P4": 4}
-_SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)
+_LARGEST_FILE = 100_000_000  # limit: bytes
+_UNIFORM = {"P1": 1, "P2": 2, "P4": 4}  # fixed: orders of the elements of uniform meshes
+_SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)  # display: of their elements, in a
 
 
 @dataclass(frozen=True)

@@ -26,9 +26,9 @@ from partialslip.scene import Scene
 if TYPE_CHECKING:
     from partialslip.batch.job import Solved
 
-_FINEST, _COARSEST = 1e-9, 1e-2
-_CHOICES = 141  # number of accuracies from _COARSEST to _FINEST
-_SPEEDS = 0.2, 5.0  # limits of the scale factor: a slower start has other reasons than the machine
+_FINEST, _COARSEST = 1e-9, 1e-2  # limit: accuracies that a price is known for
+_CHOICES = 141  # cost: number of accuracies from _COARSEST to _FINEST
+_SPEEDS = 0.2, 5.0  # limit: limits of the scale factor: a slower start has other reasons than the machine
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_LEAST = 1e-14  # smaller changes are drawn here
+_LEAST = 1e-14  # display: smaller changes are drawn here
 _MARKS = {"a": ("o", "white"), "m": ("<", "white"), "n": (">", "white"), "q": ("s", "black"), "q2": ("D", "0.7")}
 
 

@@ -20,7 +20,7 @@ from partialslip.result.record import Number, ResultRecord
 from partialslip.scene import Scene
 
 SCHEMA = "partialslip/effects/1"
-SIZE = 0.02  # default element size, in contact half-widths
+SIZE = 0.02  # accuracy: default element size, in contact half-widths
 CHANGES = ("a", "m", "n", "q", "q2")
 COSTS = {
     "cpu_s": "CPU s",
@@ -31,7 +31,7 @@ COSTS = {
     "load_steps": "steps",
     "back_solves": "back-solves",
 }
-_REPEATS = 2  # runs per setting; the one with the least CPU time counts
+_REPEATS = 2  # accuracy: runs per setting; the one with the least CPU time counts
 
 
 @dataclass(frozen=True)

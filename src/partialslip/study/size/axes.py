@@ -20,7 +20,7 @@ from partialslip.scene.writing import scene_tables
 from partialslip.study.size.case import COMPARED_METHODS
 
 ACCURACY = "accuracy"  # label of a case besides the axes
-_COUNT = 9
+_COUNT = 9  # display: values of a range without a number of them
 _KEY = re.compile(r"(?:([0-9.]+(?:[eE][-+]?[0-9]+)?)\*)?([^*0-9].*|\*\..*)")
 _NUMBER = re.compile(r"([0-9.]+(?:[eE][-+]?[0-9]+)?)(a?)")
 

@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-_LEVELS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3)  # contours of the change
+_LEVELS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3)  # display: contours of the change
 _NAMES = {
     "a": "a", "p0": "p0, largest p", "p": "p, relative L2", "m": "m, in a", "n": "n, in a", "q": "q, relative L2",
 }  # fmt: skip
-_COLUMNS = 2  # panels side by side: few, to be read on a phone
-_FARTHEST = 10.0  # times the largest size: what is shown of extrapolated sizes
-_LETTER = 0.036  # width of a letter of a label, as a fraction of the axis
-_LETTER_WIDE, _LINE_HIGH = 0.018, 0.05  # the same on a map, and the height of a label
-_LINE = 66  # characters of the heading
+_COLUMNS = 2  # display: panels side by side: few, to be read on a phone
+_FARTHEST = 10.0  # display: times the largest size: what is shown of extrapolated sizes
+_LETTER = 0.036  # display: width of a letter of a label, as a fraction of the axis
+_LETTER_WIDE, _LINE_HIGH = 0.018, 0.05  # display: the same on a map, and the height of a label
+_LINE = 66  # display: characters of the heading
 
 
 def size_svg(study: SizeStudy) -> str:

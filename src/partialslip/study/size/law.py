@@ -11,9 +11,9 @@ from scipy.stats import t as student
 from partialslip.arrays import Array
 from partialslip.study.size.sizes import CLEAR, DIFFERENCES, Sizes
 
-LEVELS = (1e-2, 1e-3, 1e-4)
-_FEWEST = 3  # points of a law
-_SHARE = 0.95  # of confidence
+LEVELS = (1e-2, 1e-3, 1e-4)  # display: differences for which the sizes needed are told
+_FEWEST = 3  # accuracy: points of a law
+_SHARE = 0.95  # accuracy: of confidence
 
 
 class PointStatus(StrEnum):

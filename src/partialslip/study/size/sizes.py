@@ -18,10 +18,10 @@ from partialslip.study.size.case import Sized, solve_sized
 
 DIFFERENCES = ("a", "p0", "p", "m", "n", "q")
 HALF_PLANE, EQUIVALENT = "half-plane", "equivalent"
-CLEAR = 10.0  # a difference counts if it exceeds the mesh's error by this factor
-_COARSER = 8.0  # ratio of the accuracies of two successive meshes
-_FINER = 3  # largest number of additional meshes where the half-plane's difference is not clear
-_FINEST = 1e-8  # finest accuracy that rounding allows
+CLEAR = 10.0  # accuracy: a difference counts if it exceeds the mesh's error by this factor
+_COARSER = 8.0  # accuracy: ratio of the accuracies of two successive meshes
+_FINER = 3  # limit: largest number of additional meshes where the half-plane's difference is not clear
+_FINEST = 1e-8  # limit: finest accuracy that rounding allows
 
 
 def measure(

@@ -20,7 +20,7 @@ _MARKS = {
     PointStatus.FEW: "x",
 }
 HALF_PLANES = "half-planes"  # heading of the names of models
-_LISTED = 3  # largest number of sizes that are listed
+_LISTED = 3  # display: largest number of sizes that are listed
 _MEANINGS = {
     Kind.MEASURED: "measured: a solved size, where the difference is the level within the mesh's error",
     Kind.INTERPOLATED: "interpolated: between two solved sizes",

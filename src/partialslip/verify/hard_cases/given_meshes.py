@@ -8,8 +8,8 @@ from partialslip.scene import Scene
 from partialslip_meshes.blocks import block
 from partialslip_meshes.mesh import Mesh
 
-_WIDTH = 16.0  # width of the blocks, in contact half-widths
-_ALONG = 0.05  # element size along the contact, in contact half-widths
+_WIDTH = 16.0  # accuracy: width of the blocks, in contact half-widths
+_ALONG = 0.05  # accuracy: element size along the contact, in contact half-widths
 
 
 def one_node(scene: Scene) -> list[Mesh]:

@@ -8,8 +8,9 @@ from partialslip.halfplane.loading import half_cycle
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.scenes import MANY_CYCLES, family, hard_scene
 
-_SHARE = 0.64  # smaller over larger P
-_INSIDE = 0.999  # of the eccentricity at which the end stops slipping
+_SHARE = 0.64  # limit: smaller over larger P
+_INSIDE = 0.999  # limit: of the eccentricity at which the end stops slipping
+# limit:
 _LOADS = {  # Q_f, s_f
     "begins": (0.55, 2.3),
     "ends": (0.55, 4.4),
@@ -17,7 +18,7 @@ _LOADS = {  # Q_f, s_f
     "opens": (0.55, 9.5),
     "parts": (0.75, 6.0),
 }
-_ACCURACY: Mapping[str, Any] = {"accuracy": 1e-4}  # ends that have drifted are flat
+_ACCURACY: Mapping[str, Any] = {"accuracy": 1e-4}  # limit: ends that have drifted are flat
 
 
 @family(

@@ -42,7 +42,8 @@ def family(title: str, hard: str) -> Callable[[Callable[[], Iterator[Case]]], Fa
     return lambda make: Family(title, " ".join(hard.split()), make)
 
 
-# Accuracies of load histories in many steps: errors of steps decrease with their number only, and each step costs.
+# limit: Accuracies of load histories in many steps: errors of steps decrease with their number only, and each step
+# costs.
 MANY_STEPS: Mapping[str, Any] = {"accuracy": 1e-2}
 MANY_CYCLES: Mapping[str, Any] = {"accuracy": 1e-3}
 

@@ -19,7 +19,7 @@ import time
 import getfem as gf
 import numpy as np
 
-_BISECTIONS = 6  # of an increment for which Newton's method does not converge
+_BISECTIONS = 6  # accuracy: of an increment for which Newton's method does not converge
 _LOADS = ("P", "Q", "sigma", "M")
 
 
