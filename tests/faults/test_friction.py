@@ -14,7 +14,7 @@ from partialslip.friction import constant, coupled, zone_ends
 from partialslip.friction.active_set import _BlockPivoting, solve_bounded
 from partialslip.friction.constant import march as true_march
 from partialslip.friction.zone_ends import StickInterval
-from partialslip.march import method as marching
+from partialslip.march import similar as marching
 from partialslip.result.state import State
 from partialslip_fem import problem, solving
 

@@ -9,7 +9,7 @@ import pytest
 
 from partialslip import load_scene, parse_scene, run
 from partialslip.errors import InputError
-from partialslip.march import method as marching
+from partialslip.march import similar as marching
 
 sys.path.append(str(Path(__file__).parent.parent / "halfplane"))
 from varying_scenes import varying

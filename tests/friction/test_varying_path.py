@@ -8,7 +8,7 @@ from partialslip.friction import path_following, varying_path
 from partialslip.friction.normal import Presses
 from partialslip.friction.path import Path
 from partialslip.friction.path_following import Bounds, Follower
-from partialslip.march import method as marching
+from partialslip.march import similar as marching
 from partialslip.march.cells import compliance
 from partialslip_fem.mesh_solution import MeshSolution
 

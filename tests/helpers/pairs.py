@@ -22,6 +22,7 @@ from partialslip.friction.coupled import Relative
 from partialslip.friction.history import History
 from partialslip.judge import Q_BAR, cell_means
 from partialslip.march import method as marching
+from partialslip.march import similar
 from partialslip.result import Clock, Result
 from partialslip.scene import Scene
 from partialslip_fem import bodies, model, solving
@@ -139,7 +140,7 @@ def guise(*patches: Any, own: bool = False) -> Iterator[None]:
     meshes do."""
     with ExitStack() as stack:
         if not own:
-            stack.enter_context(patch.object(marching, "_MESHES", ((1e-3, 0.1),)))
+            stack.enter_context(patch.object(similar, "_MESHES", ((1e-3, 0.1),)))
             stack.enter_context(patch.object(steps, "one_step_suffices", lambda _: True))
         called = [stack.enter_context(each) for each in patches]
         yield

@@ -8,7 +8,7 @@ from flats import beside_the_flat
 
 import partialslip
 from partialslip.halfplane import contact, one_step_zone
-from partialslip.march import method as marching
+from partialslip.march import similar as marching
 from partialslip.verify.hard_cases.scenes import hard_scene
 
 MEAN = ["load.Q=[31415.926535897932, 219911.48575128554]", "load.sigma=[2e8, 1e9]"]  # 0.1 .. 0.7 fP, 1 .. 5 f p0

@@ -157,3 +157,14 @@ def test_ends_of_a_pressed_stick_zone_are_known_no_better_than_those_of_the_cont
     assert found.m == found.n == pytest.approx(found.a)
     assert found.estimate["a"] > 0
     assert min(found.estimate["m"], found.estimate["n"]) > 0.99 * found.estimate["a"]
+
+
+def test_a_path_may_be_continued(sheared):
+    """Under Q the pressure of unlike bodies is not even, though neither P nor M moves it: the state was refused as that
+    of another moment."""
+    scene = load_scene("hertz-shear", [*SHEARED])
+    again = partialslip.run(scene, "march", start=sheared.state)["march"]
+    assert (again.m, again.n) == pytest.approx((sheared.m, sheared.n), abs=2e-3 * sheared.a)
+    other = scene.replace(load={"P": scene.P * 1.1, "p0": None})
+    with pytest.raises(partialslip.InputError, match="state: is of P"):
+        partialslip.run(other, "march", start=sheared.state)

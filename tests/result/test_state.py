@@ -11,7 +11,7 @@ import partialslip
 from partialslip import InputError, load_scene, load_state, run
 from partialslip.cli import main
 from partialslip.judge.measures import measures
-from partialslip.march import method as marching
+from partialslip.march import driver as marching
 
 MEAN = ("load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]", "fem.accuracy=1e-3")
 

@@ -20,7 +20,7 @@ from partialslip.batch.ledger import Ledger
 from partialslip.cli import main
 from partialslip.cli import verify as command
 from partialslip.judge import Bar, Outcome, verdict
-from partialslip.march import method as marching
+from partialslip.march import similar as marching
 from partialslip.run import run
 from partialslip.scene.reading import load_scene
 from partialslip.verify import Case, driver, run_case, stress_suite, suite

@@ -4,15 +4,12 @@ Pressure moves the surfaces along x and shear opens the gap, by Dundurs' beta. E
 both together (:mod:`partialslip.friction.coupled`). Scaled: lengths by sqrt(A R P), forces by P, displacements by A P.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 from msgspec.structs import replace as changed
 
-from partialslip.allowance import Allowance
 from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.friction import coupled
@@ -21,16 +18,17 @@ from partialslip.friction.history import SHEARS, History, certificate, last_cycl
 from partialslip.friction.normal import press
 from partialslip.friction.path import Path, load_path, stretched
 from partialslip.friction.pressing import Pressed
-from partialslip.friction.regime import doubts, steady_state, steps_of_coupled
-from partialslip.friction.restart import begun, known_to
+from partialslip.friction.regime import steady_state, steps_of_coupled
 from partialslip.friction.step_errors import along_path, other_steps, pressed_together, summed
 from partialslip.friction.zone_ends import StickInterval, apart, contact_ends, kinks, stick_zone, within
 from partialslip.halfplane.tractions import CoupledTractions
-from partialslip.march.cells import graded, norm_parts, off_cells, on_cells, relative_change
+from partialslip.march import driver
+from partialslip.march.cells import graded, norm_parts, on_cells, relative_change
+from partialslip.march.driver import Answer, Errors
 from partialslip.march.pressing import NormalLoads
 from partialslip.march.punch_growth import OnCells, PunchGrowth, relative
 from partialslip.plan import Plan
-from partialslip.result import Clock, Result, Slip, Traction
+from partialslip.result import Clock, Traction
 from partialslip.result.state import State
 from partialslip.scene import Hertz, Scene
 from partialslip.scene.materials import Material
@@ -41,7 +39,6 @@ _NEAR = 10.0  # accuracy: cells at ends closer to each other than a/10 are reduc
 _SMALLEST = 1e-9  # accuracy: in a: closer ends are merged, and smaller cells are not requested
 _BEYOND = 1.2  # accuracy: extent of the cells, in that of the contact without coupling ...
 _WIDER = 1.5  # cost: ... and how many times wider they are made where they do not enclose the contact
-_SHARE = 1 / 3  # cost: largest part of the remaining CPU seconds for one mesh
 _ROUNDING = 1e-12  # accuracy: relative difference of two compliances that is rounding
 # accuracy: Errors of q1 and q2 as parts of their change from mesh to mesh: the growth halves, and what pressing locks
 # in has errors of about the order 1.5 in the growth, 0.46 to 0.56 of the change (measured); half for all others.
@@ -58,21 +55,14 @@ def dundurs(scene: Scene) -> float:
 
 
 @dataclass(frozen=True)
-class _Level:
-    """Solution on one mesh of cells."""
+class Level(driver.Level):
+    """Solution on one mesh of cells: normal forces, how the bodies were ``pressed`` together, the ``ends`` of the
+    contact at load points 1 and 2, and ``kinks`` of q."""
 
-    vertices: Array
     pressing: Solution
-    history: History | None
     pressed: Pressed | None
     ends: tuple[tuple[float, float], tuple[float, float]]
-    stick: StickInterval | None
-    kinks: tuple[float, ...]
-
-    @property
-    def x(self) -> Array:
-        """Middles of the cells (c,)."""
-        return (self.vertices[1:] + self.vertices[:-1]) / 2
+    kinks: tuple[float, ...] = ()
 
     @property
     def a(self) -> tuple[float, float]:
@@ -92,76 +82,94 @@ class _Level:
         return [*self.ends[1], *self.ends[0], *((self.stick.left, self.stick.right) if self.stick else ())]
 
 
-def solve(
-    scene: Scene,
-    plan: Plan,
-    progress: Callable[[str], None] = lambda _: None,
-    start: State | None = None,
-    allowance: Allowance | None = None,
-) -> Result:
-    """Solve ``scene``, two half-planes of unlike materials, by marching through the load history; SI units.
+class Problem(driver.Problem[Level]):
+    """Half-planes of unlike materials, for :func:`partialslip.march.driver.march`: ``beta``, zero without coupling, and
+    the ``punch`` of self-similar pressing. ``followed`` are the errors of the load steps, on the first cells that are
+    not coarse."""
 
-    Parameters as for :func:`partialslip.march.method.solve`.
-    """
-    clock = Clock(allowance)
-    path = load_path(scene, plan, start)
-    problem = _Problem.of(scene, plan, start)
-    level: _Level | None = None
-    errors: dict[str, float] = {}
-    followed: dict[str, float] = {}
-    shares: dict[str, dict[str, float]] = {}
-    meshes, spent = 0, 0.0
-    for size, growth in _MESHES:
-        if meshes > 1 and spent * 8 > _SHARE * clock.remaining():
-            break
-        began = clock.cost().cpu_s
-        before, level = level, _solve_level(problem, path, level, size, growth, clock)
-        spent, meshes = clock.cost().cpu_s - began, meshes + 1
-        if before:
-            meshed = _mesh_errors(level, before, problem)
-            if not followed and path and path.moves and problem.beta:
-                followed = _path_errors(problem, path, level, clock)
-            stepped = summed(_step_errors(level), followed)
-            shares = {"discretisation": meshed} | ({"steps": stepped} if stepped else {})
-            errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
-            progress(f"mesh {meshes}: {len(level.x):,} cells, a known to {errors['a']:.1e}")
-            if all(error <= BARS[key] * scene.fem.accuracy for key, error in meshed.items()):
-                break
-    assert level is not None
-    widths, places = np.diff(level.vertices), level.vertices * scene.length + scene.origin
+    telling = ("a",)
+    steps_count = False  # they are as asked for
 
-    def forces(state: State) -> Array:
-        return on_cells(state.p, places) / scene.P
-
-    known, notes = begun(errors, level.history, widths, start, forces)
-    if known:
-        shares["start"] = known
-        errors = {key: error + known.get(key, 0.0) for key, error in errors.items()}
-    notes += steps_of_coupled(level.history, followed, scene.fem.accuracy) if problem.beta else ()
-    return _result(problem, level, errors, shares, meshes, clock, notes)
-
-
-@dataclass(frozen=True)
-class _Problem:
-    """What does not depend on the cells: ``beta``, zero without coupling, and the ``punch`` of self-similar
-    pressing."""
-
-    scene: Scene
-    beta: float
-    width: float
-    start: State | None
-    punch: PunchGrowth | None
-
-    @classmethod
-    def of(cls, scene: Scene, plan: Plan, start: State | None) -> "_Problem":
-        coupled_at_all = plan.needs("coupling") and plan.needs("friction")
-        beta = dundurs(scene) if coupled_at_all else 0.0
+    def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock) -> None:
+        super().__init__(scene, start, clock, load_path(scene, plan, start), (scene.origin, scene.length), _MESHES)
+        self.beta = dundurs(scene) if plan.needs("coupling") and plan.needs("friction") else 0.0
         similar = isinstance(scene.profile, Hertz) and not (scene.presses_anew or start or scene.friction.varies)
-        punch = PunchGrowth.of(beta, scene.friction.f) if beta and similar else None
-        return cls(scene, beta, _extent(scene), start, punch)
+        self.punch = PunchGrowth.of(self.beta, scene.friction.f) if self.beta and similar else None
+        self.width = _extent(scene)
+        self.followed: Errors = {}
 
-    def cells(self, level: _Level | None, size: float, growth: float, wider: float) -> Array:
-        """Ends of cells of ``size`` at the ends of the contact and of the stick zone on the previous ``level``."""
+    def solve(self, level: Level | None, mesh: tuple[float, float]) -> Level:
+        wider = 1.0
+        while True:
+            found = _solve_on(self, self.path, self.cells(level, mesh, wider), self.clock)
+            touching = [found.pressing.x] + ([found.history.bound] if found.history else [])
+            if not any(forces[0] or forces[-1] for forces in touching):
+                return found
+            wider *= _WIDER
+
+    def mesh_errors(self, level: Level, before: Level) -> Errors:
+        if not self.followed and self.path and self.path.moves and self.beta:
+            self.followed = _path_errors(self, self.path, level, self.clock)
+        return _mesh_errors(level, before, self)
+
+    def step_errors(self, level: Level) -> Errors:
+        return summed(_step_errors(level), self.followed)
+
+    def answer(self, level: Level) -> Answer:
+        scene, history, L, P = self.scene, level.history, self.length, self.scene.P
+        widths, stress, pressing = np.diff(level.vertices), P / L, level.pressing
+        a = level.a[scene.largest - 1]
+        p0 = 2 / np.pi / a
+        certified = {"kkt": float((pressing.residual / widths).max() / p0), "equilibrium": pressing.imbalance}
+        change = None
+        if history:
+            own = certificate(history, widths, scene.friction.f, p0)
+            certified = {key: max(own[key], certified[key]) for key in own}
+            change = last_cycle_change(history, widths, scene.friction.f, p0)
+        pushed = bool(history and not history.path.moves and level.pressed and level.pressed.slipped())
+        anew = level.common if scene.presses_anew else None
+        found = steady_state(scene, history, level.stick, a, pushed, level.x, anew)
+        known = history is not None and found.centre is not None
+        forces = history.pressures if history else (pressing.x, pressing.x)
+        shear = (history.q1, history.q2) if history else (0 * level.x, 0 * level.x)
+        tractions = CoupledTractions.of(level.vertices, level.ends, forces, shear, L, stress, scene.origin)
+        on = np.flatnonzero((forces[0] > 0) | (forces[1] > 0))
+        (p1, p2), (q1, q2) = ([stress * each[on] / widths[on] for each in pair] for pair in (forces, shear))
+        traction = Traction(
+            x=level.x[on] * L + scene.origin,
+            p=p2,
+            dq=q2 - q1,
+            q1=q1 if known else None,
+            q2=q2 if known else None,
+            at=tractions.change,
+            breaks=np.unique([*level.fine, *level.kinks]) * L + scene.origin,
+            cells=level.vertices[on[0] : on[-1] + 2] * L + scene.origin,
+            levels_at=tractions.at_load_points if known else None,
+            p1=p1 if history else None,
+            pressures_at=tractions.pressures if history else None,
+        )
+        (left1, right1), (left2, right2) = (np.array(level.ends) * L + scene.origin).tolist()
+        return Answer(
+            a=a * L,
+            p0=p0 * stress,
+            found=found,
+            traction=traction,
+            cells=on,
+            pressed=history.last_pressure if history else pressing.x,
+            certificate=certified,
+            change=change,
+            model="two half-planes, cells of constant pressure and shear",
+            counts={
+                "friction_iterations": pressing.changes if history else 0,
+                "iterations": pressing.iterations + (history.iterations if history else 0),
+            },
+            contact_ends=((left1, right1), (left2, right2)),
+            notes=steps_of_coupled(history, self.followed, scene.fem.accuracy) if self.beta else (),
+        )
+
+    def cells(self, level: Level | None, mesh: tuple[float, float], wider: float = 1.0) -> Array:
+        """Cells that reach ``wider`` than usual beyond the contact."""
+        size, growth = mesh
         far = _BEYOND * wider * self.width
         if level is None:
             fine, inner, a = [-self.width, self.width], list[float](), self.width
@@ -189,20 +197,7 @@ def _extent(scene: Scene) -> float:
     return max(abs(end) for end in found) / scene.length
 
 
-def _solve_level(
-    problem: _Problem, path: Path | None, before: _Level | None, size: float, growth: float, clock: Clock
-) -> _Level:
-    wider = 1.0
-    while True:
-        vertices = problem.cells(before, size, growth, wider)
-        found = _solve_on(problem, path, vertices, clock)
-        touching = [found.pressing.x] + ([found.history.bound] if found.history else [])
-        if not any(forces[0] or forces[-1] for forces in touching):
-            return found
-        wider *= _WIDER
-
-
-def _solve_on(problem: _Problem, path: Path | None, vertices: Array, clock: Clock) -> _Level:
+def _solve_on(problem: Problem, path: Path | None, vertices: Array, clock: Clock) -> Level:
     scene = problem.scene
     x, widths, L = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices), scene.length
     with clock.phase("compliance"):
@@ -216,7 +211,7 @@ def _solve_on(problem: _Problem, path: Path | None, vertices: Array, clock: Cloc
 
         if not path:
             pressing, _ = press(C.yy, gap, 1.0)
-            return _Level(vertices, pressing, None, None, (ends(pressing.x),) * 2, None, ())
+            return Level(vertices, None, None, pressing, None, (ends(pressing.x),) * 2)
         begins = None
         if problem.start:
             places = vertices * L + scene.origin
@@ -229,11 +224,11 @@ def _solve_on(problem: _Problem, path: Path | None, vertices: Array, clock: Cloc
         f = scene.friction.at(x * L + scene.origin)
         history, pressing, first = coupled.march(C, gap, stretch, moved[1], f, path, begins, line, near)
         at_points = tuple(ends(p, q) for p, q in zip(history.pressures, (history.q1, history.q2), strict=True))
-        level = _Level(vertices, pressing, history, first, at_points, None, ())  # type: ignore[arg-type]
+        level = Level(vertices, history, None, pressing, first, at_points)  # type: ignore[arg-type]
         return replace(level, stick=_stick_zone(level, problem.punch), kinks=_kinks(level))
 
 
-def _stick_zone(level: _Level, punch: PunchGrowth | None) -> StickInterval:
+def _stick_zone(level: Level, punch: PunchGrowth | None) -> StickInterval:
     history, still = level.history, level.pressed is not None
     assert history
     on = np.flatnonzero(history.bound > 0)
@@ -242,13 +237,7 @@ def _stick_zone(level: _Level, punch: PunchGrowth | None) -> StickInterval:
         assert level.pressed
         p, q = level.pressed.growth
         bound, change = level.pressed.f[on] * np.maximum(p[on], 0.0), 2 * q[on]
-
-    def forces(values: Array) -> Array:
-        every = np.zeros(len(level.x))
-        every[on] = values
-        return every
-
-    stick = stick_zone(level.x[on], bound, change, level.vertices, forces)
+    stick = stick_zone(level.x[on], bound, change, level.vertices, partial(level.spread, on=on))
     if history.path.presses_anew:
         return within(stick, level.common, level.vertices)
     left, right = level.common
@@ -258,23 +247,17 @@ def _stick_zone(level: _Level, punch: PunchGrowth | None) -> StickInterval:
     return replace(stick, left=max(stick.left, left), right=min(stick.right, right))
 
 
-def _kinks(level: _Level) -> tuple[float, ...]:
+def _kinks(level: Level) -> tuple[float, ...]:
     assert level.history
     found: list[float] = []
     for q, bound in level.history.visited:
         on = np.flatnonzero(bound > 0)
-
-        def forces(values: Array, on: Any = on) -> Array:
-            every = np.zeros(len(level.x))
-            every[on] = values
-            return every
-
-        found += kinks(level.x[on], bound[on], q[on], level.vertices, forces)
+        found += kinks(level.x[on], bound[on], q[on], level.vertices, partial(level.spread, on=on))
     left, right = level.common
     return tuple(kink for kink in found if left < kink < right)
 
 
-def _mesh_errors(level: _Level, before: _Level, problem: _Problem) -> dict[str, float]:
+def _mesh_errors(level: Level, before: Level, problem: Problem) -> Errors:
     """Errors of the ends (in a), and of p, q, q1 and q2 (relative L2 of cell means), from the change since the mesh
     ``before``."""
     largest = problem.scene.largest - 1
@@ -298,7 +281,7 @@ def _mesh_errors(level: _Level, before: _Level, problem: _Problem) -> dict[str, 
     return {key: _OF_CHANGE.get(key, 0.5) * error for key, error in errors.items()}
 
 
-def _apart(level: _Level, forces: Array, before: _Level, others: Array, bound: Array) -> float:
+def _apart(level: Level, forces: Array, before: Level, others: Array, bound: Array) -> float:
     """Relative L2 difference of the means over the cells of the level ``before`` of ``forces`` and ``others``; shear is
     not less than a part of ``bound``."""
     cells = before.vertices
@@ -309,14 +292,14 @@ def _apart(level: _Level, forces: Array, before: _Level, others: Array, bound: A
     return relative_change(found, other, LEAST_SHEAR * float(np.linalg.norm(held)))
 
 
-def _step_errors(level: _Level) -> dict[str, float]:
+def _step_errors(level: Level) -> Errors:
     """Errors of the steps of pressing."""
     if not level.history or not level.pressed:
         return {}
     return pressed_together(level.history, level.pressed, np.diff(level.vertices), np.arange(len(level.x)))
 
 
-def _path_errors(problem: _Problem, path: Path, level: _Level, clock: Clock) -> dict[str, float]:
+def _path_errors(problem: Problem, path: Path, level: Level, clock: Clock) -> Errors:
     """Errors of the load steps, on the cells of the ``level``."""
     if not level.history or not level.stick:
         return {}
@@ -330,94 +313,3 @@ def _path_errors(problem: _Problem, path: Path, level: _Level, clock: Clock) -> 
 
     zones, widths = (level.stick, finer.stick), np.diff(level.vertices)
     return along_path(level.history, finer.history, zones, ends, widths, level.a[problem.scene.largest - 1])
-
-
-def _result(
-    problem: _Problem,
-    level: _Level,
-    errors: dict[str, float],
-    shares: dict[str, dict[str, float]],
-    meshes: int,
-    clock: Clock,
-    notes: tuple[str, ...],
-) -> Result:
-    scene, history = problem.scene, level.history
-    P, L, f = scene.P, scene.length, scene.friction.f
-    widths, stress, unit = np.diff(level.vertices), scene.P / scene.length, scene.material.A * scene.P
-    a = level.a[scene.largest - 1]
-    p0 = 2 / np.pi / a
-    pressing = level.pressing
-    certified = {"kkt": float((pressing.residual / widths).max() / p0), "equilibrium": pressing.imbalance}
-    change = None
-    if history:
-        own = certificate(history, widths, f, p0)
-        certified = {key: max(own[key], certified[key]) for key in own}
-        change = last_cycle_change(history, widths, f, p0)
-    pushed = bool(history and not history.path.moves and level.pressed and level.pressed.slipped())
-    anew = level.common if scene.presses_anew else None
-    found = steady_state(scene, history, level.stick, a, pushed, level.x, anew)
-    known = history is not None and found.centre is not None
-    forces = history.pressures if history else (pressing.x, pressing.x)
-    shear = (history.q1, history.q2) if history else (0 * level.x, 0 * level.x)
-    tractions = CoupledTractions.of(level.vertices, level.ends, forces, shear, L, stress, scene.origin)
-    on = np.flatnonzero((forces[0] > 0) | (forces[1] > 0))
-    x = level.x[on] * L + scene.origin
-    cells = level.vertices[on[0] : on[-1] + 2] * L + scene.origin
-    (p1, p2), (q1, q2) = ([stress * each[on] / widths[on] for each in pair] for pair in (forces, shear))
-    steps = history.path.most_steps if history else 0
-    return Result(
-        method="march",
-        a=a * L,
-        p0=p0 * stress,
-        regime=found.regime,
-        stick_centre=None if found.centre is None else found.centre * L + scene.origin,
-        stick_half_width=None if found.half_width is None else found.half_width * L,
-        traction=Traction(
-            x=x,
-            p=p2,
-            dq=q2 - q1,
-            q1=q1 if known else None,
-            q2=q2 if known else None,
-            at=tractions.change,
-            breaks=np.unique([*level.fine, *level.kinks]) * L + scene.origin,
-            cells=cells,
-            levels_at=tractions.at_load_points if known else None,
-            p1=p1 if history else None,
-            pressures_at=tractions.pressures if history else None,
-        ),
-        cost=clock.cost(),
-        state=_state(scene, level, errors) if history else None,
-        slip=Slip(x, history.slip[on] * unit, history.dissipated * unit * P) if history else None,
-        settings={
-            "model": "two half-planes, cells of constant pressure and shear",
-            "accuracy": scene.fem.accuracy,
-        },
-        counts={
-            "cells": len(level.x),
-            "tangential_unknowns": len(level.x) if history else 0,
-            "cycles": history.cycles if history else 0,
-            "load_steps": history.load_steps if history else 0,
-            "steps": steps,
-            "friction_iterations": pressing.changes if history else 0,
-            "opposing_nodes": history.opposing if history else 0,
-            "meshes": meshes,
-            "iterations": pressing.iterations + (history.iterations if history else 0),
-        },
-        certificate=certified,
-        last_cycle_change=change,
-        estimate=errors,
-        shares=shares,
-        notes=found.notes + notes + doubts(change, errors, scene.fem.accuracy),
-        contact_ends=tuple((left * L + scene.origin, right * L + scene.origin) for left, right in level.ends),  # type: ignore[arg-type]
-        end_slips=found.slips,
-    )
-
-
-def _state(scene: Scene, level: _Level, errors: dict[str, float]) -> State:
-    """State at the end of the path of the loads; ``errors`` are the estimated ones."""
-    assert level.history
-    places = level.vertices * scene.length + scene.origin
-    history = level.history
-    p, q = (off_cells(scene.P * each, places) for each in (history.last_pressure, history.end[0]))
-    error = known_to(errors, level.history, np.diff(level.vertices))
-    return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q, scene.load.along[-1][2], error)

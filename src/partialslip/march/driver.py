@@ -1,0 +1,249 @@
+"""Marching on finer and finer cells: one driver for bodies of like and of unlike materials.
+
+Each of these problems solves p and q on given cells, tells the errors of these cells, and what the result is made of.
+Scaled: lengths by the unit of the problem, forces by P, displacements by A P.
+"""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from partialslip.arrays import Array, Indices
+from partialslip.bars import BARS
+from partialslip.friction.history import History
+from partialslip.friction.path import Path
+from partialslip.friction.regime import SteadyState, doubts
+from partialslip.friction.restart import begun, known_to
+from partialslip.friction.zone_ends import StickInterval
+from partialslip.march.cells import off_cells, on_cells
+from partialslip.result import Clock, Result, Slip, Traction
+from partialslip.result.state import State
+from partialslip.scene import Scene
+
+_SHARE = 1 / 3  # cost: largest part of the remaining CPU seconds for one mesh
+
+Errors = dict[str, float]
+
+
+@dataclass(frozen=True)
+class Level:
+    """Solution on one mesh of cells with the ends ``vertices`` (c + 1,): the ``history`` of their shear and the zone
+    ``stick``, scaled; None without friction."""
+
+    vertices: Array
+    history: History | None
+    stick: StickInterval | None
+
+    @property
+    def x(self) -> Array:
+        """Middles of the cells (c,)."""
+        return (self.vertices[1:] + self.vertices[:-1]) / 2
+
+    def spread(self, values: Array, on: Indices) -> Array:
+        """``values`` (k,) of the cells ``on``, with zeros on all others, (c,)."""
+        every = np.zeros(len(self.vertices) - 1)
+        every[on] = values
+        return every
+
+
+L = TypeVar("L", bound=Level)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a problem tells of its last level, in SI units.
+
+    Parameters
+    ----------
+    a, p0 : float
+    found : SteadyState
+        Scaled.
+    traction : Traction
+    cells : slice or indices
+        Cells of the history that are in contact.
+    pressed : (c,) array
+        Normal forces on the cells at the end of the path, scaled.
+    certificate : dict of float
+    change : float or None
+        Change of q in the last cycle, in f p0.
+    model : str
+        What is solved, in words.
+    counts : dict of int
+    contact_ends : two of (float, float) or None
+    notes : tuple of str
+        On the load steps.
+    """
+
+    a: float
+    p0: float
+    found: SteadyState
+    traction: Traction
+    cells: slice | Indices
+    pressed: Array
+    certificate: Mapping[str, float]
+    change: float | None
+    model: str
+    counts: Mapping[str, int]
+    contact_ends: tuple[tuple[float, float], tuple[float, float]] | None
+    notes: tuple[str, ...] = ()
+
+
+class Problem(ABC, Generic[L]):
+    """Bodies that are pressed together and sheared, on cells.
+
+    ``origin`` and ``length`` (m) are those of scaled coordinates, ``path`` is that of the loads. ``meshes`` are the
+    sizes of the cells at the ends of zones, in a, and their growth; on the first ``coarse`` ones ends are only found.
+    ``telling`` are the keys of the errors that the line on a mesh tells. ``steps_count``: whether the errors of load
+    steps leave less to those of the cells.
+    """
+
+    coarse = 1
+    steps_count = True
+    telling: tuple[str, ...]
+
+    def __init__(
+        self,
+        scene: Scene,
+        start: State | None,
+        clock: Clock,
+        path: Path | None,
+        frame: tuple[float, float],
+        meshes: Sequence[tuple[float, float]],
+    ) -> None:
+        self.scene, self.start, self.clock, self.path = scene, start, clock, path
+        self.origin, self.length = frame
+        self.meshes = meshes
+
+    def places(self, level: L) -> Array:
+        """Ends of the cells, m."""
+        return self.origin + self.length * level.vertices
+
+    @abstractmethod
+    def cells(self, level: L | None, mesh: tuple[float, float]) -> Array:
+        """Ends of the cells (c + 1,) of the ``mesh``, graded to the ends on the ``level`` before."""
+
+    @abstractmethod
+    def solve(self, level: L | None, mesh: tuple[float, float]) -> L:
+        """Solve on the ``mesh`` after that of the ``level``."""
+
+    @abstractmethod
+    def mesh_errors(self, level: L, before: L) -> Errors:
+        """Errors due to the cells of the ``level``, of ends in a and of tractions relative L2."""
+
+    @abstractmethod
+    def step_errors(self, level: L) -> Errors:
+        """Errors due to the load steps."""
+
+    def likely(self, level: L, mesh: tuple[float, float], spent: float) -> float:
+        """CPU seconds that the next ``mesh`` is likely to take after ``spent`` ones; infinite: there is to be none."""
+        return float(spent * (len(self.cells(level, mesh)) / len(level.vertices)) ** 3)
+
+    def enough(self, meshed: Errors, stepped: Errors) -> bool:
+        """Whether finer cells are not needed, or of no use: they do not reduce the error of load steps."""
+        allowed = {key: BARS[key] * self.scene.fem.accuracy for key in meshed}
+        lost = stepped if self.steps_count else {}
+        return all(meshed[key] <= max(most - lost.get(key, 0.0), most / 2) for key, most in allowed.items())
+
+    @abstractmethod
+    def answer(self, level: L) -> Answer:
+        """What the result is made of."""
+
+
+def march(problem: Problem[L], progress: Callable[[str], None], start: State | None, clock: Clock) -> tuple[Result, L]:
+    """Solve ``problem`` on finer and finer cells, until the errors are as small as the scene asks for, or the rest of
+    the allowance of the ``clock`` does not suffice. Returns the result, and the last level."""
+    level: L | None = None
+    errors: Errors = {}
+    shares: dict[str, Errors] = {}
+    meshes, iterations, spent = 0, 0, 0.0
+    for mesh in problem.meshes:
+        if level:
+            likely = problem.likely(level, mesh, spent)
+            if likely == math.inf or (meshes > 1 and likely > _SHARE * clock.remaining()):
+                break
+        began = clock.cost().cpu_s
+        before, level = level, problem.solve(level, mesh)
+        spent, meshes = clock.cost().cpu_s - began, meshes + 1
+        iterations += level.history.iterations if level.history else 0
+        if before and meshes > problem.coarse:
+            meshed, stepped = problem.mesh_errors(level, before), problem.step_errors(level)
+            shares = {"discretisation": meshed} | ({"steps": stepped} if stepped else {})
+            errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
+            known = max(errors[key] for key in problem.telling)
+            cells = f"{len(level.vertices) - 1:,} cells"
+            progress(f"mesh {meshes}: {cells}, {', '.join(problem.telling)} known to {known:.1e} a")
+            if problem.enough(meshed, stepped):
+                break
+    assert level is not None
+    widths, places, scene = np.diff(level.vertices), problem.places(level), problem.scene
+    lost, notes = begun(errors, level.history, widths, start, lambda state: on_cells(state.p, places) / scene.P)
+    if lost:
+        shares["start"] = lost
+        errors = {key: error + lost.get(key, 0.0) for key, error in errors.items()}
+    counts = {"meshes": meshes, "iterations": iterations}
+    return _result(problem, level, errors, shares, counts, clock, notes), level
+
+
+def _result(
+    problem: Problem[L],
+    level: L,
+    errors: Errors,
+    shares: Mapping[str, Errors],
+    counts: Mapping[str, int],
+    clock: Clock,
+    notes: tuple[str, ...],
+) -> Result:
+    scene, history, answer = problem.scene, level.history, problem.answer(level)
+    found, accuracy = answer.found, scene.fem.accuracy
+    if found.centre is None:
+        errors = {key: error for key, error in errors.items() if key not in ("m", "n")}
+    origin, length, unit = problem.origin, problem.length, scene.material.A * scene.P  # of displacement
+    x = answer.traction.x
+    return Result(
+        method="march",
+        a=answer.a,
+        p0=answer.p0,
+        regime=found.regime,
+        stick_centre=None if found.centre is None else origin + found.centre * length,
+        stick_half_width=None if found.half_width is None else found.half_width * length,
+        traction=answer.traction,
+        cost=clock.cost(),
+        state=_state(problem, level, history, answer.pressed, errors) if history else None,
+        slip=Slip(x, history.slip[answer.cells] * unit, history.dissipated * unit * scene.P) if history else None,
+        settings={"model": answer.model, "accuracy": accuracy},
+        counts={
+            "cells": len(level.vertices) - 1,
+            "tangential_unknowns": len(level.vertices) - 1 if history else 0,
+            "cycles": history.cycles if history else 0,
+            "load_steps": history.load_steps if history else 0,
+            "steps": history.path.most_steps if history else 0,
+            "opposing_nodes": history.opposing if history else 0,
+            **counts,
+            **answer.counts,
+        },
+        certificate=answer.certificate,
+        last_cycle_change=answer.change,
+        estimate=errors,
+        shares=shares,
+        notes=found.notes + notes + answer.notes + doubts(answer.change, errors, accuracy),
+        contact_ends=answer.contact_ends,
+        end_slips=found.slips,
+        permanent=_placed(problem, *found.permanent) if found.permanent else None,
+    )
+
+
+def _placed(problem: Problem[L], left: float, right: float) -> tuple[float, float]:
+    """Two places, m."""
+    return problem.origin + problem.length * left, problem.origin + problem.length * right
+
+
+def _state(problem: Problem[L], level: L, history: History, pressed: Array, errors: Errors) -> State:
+    """State at the end of the path of the loads, with the normal forces ``pressed`` (c,) on the cells."""
+    scene, places = problem.scene, problem.places(level)
+    p, q = (off_cells(scene.P * forces, places) for forces in (pressed, history.end[0]))
+    error = known_to(errors, history, np.diff(level.vertices))
+    return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q, scene.load.along[-1][2], error)

@@ -1,0 +1,338 @@
+"""Marching of half-planes of like materials: the exact pressure, and shear step by step through any load history.
+
+Shear is constant on cells, refined towards the ends of the contact and of the computed stick zone.
+"""
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.bars import LEAST_SHEAR
+from partialslip.friction import constant, varying
+from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
+from partialslip.friction.path import Path, load_path, stretched
+from partialslip.friction.regime import permanent_zone, steady_state
+from partialslip.friction.step_errors import of_steps, steps_matter
+from partialslip.friction.steps import follow_or_step
+from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, stick_zone, turning_points, within
+from partialslip.halfplane.remarks import no_stresses
+from partialslip.halfplane.states import Around, sliding, without_shear
+from partialslip.halfplane.stress import BEYOND, along_surface
+from partialslip.halfplane.tractions import CellTractions
+from partialslip.march import driver
+from partialslip.march.cell_stress import CellStresses
+from partialslip.march.cells import compliance, graded, norm_parts, on_cells, relative_change
+from partialslip.march.driver import Answer, Errors
+from partialslip.march.pressing import NormalLoads
+from partialslip.plan import Plan
+from partialslip.result import Clock, Result, StressAt, Traction
+from partialslip.result.state import State
+from partialslip.scene import Scene
+
+_MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # accuracy: (cell size at the ends, in a; growth)
+_CELLS, _SOMEWHERE = 4.0, 0.5  # accuracy: a zone of fewer cells is unresolved: the error of an end in cells
+_NEAR = 10.0  # accuracy: cells at ends closer to each other than a/10 are reduced in proportion
+_SMALLEST = 1e-9  # accuracy: in a: closer ends are merged, and smaller cells are not requested
+_INNER = 8.0  # cost: size of cells at kinks of q over the size at the ends: kinks hardly affect m and n
+_PASSING = 32.0  # cost: the same at kinks that neither q1 nor q2 has, and at kinks of the coefficient of friction
+_WORK = 5e11  # limit: limit of cells^3 times load steps of a mesh
+# accuracy: Errors of m and n, as parts of the change from mesh to mesh and of growth^3; the same part of ends that
+# are soft, over their stiffness, 1 in Hertz contacts: an error of the loads moves an end the more the less stiff the
+# end is
+_MOVED, _CUBIC, _CUBIC_OF_SOFT = 0.1, 0.15, 0.05
+# accuracy: The same part in a narrow stick zone, which its surroundings move as a whole. Cells nearby are reduced
+# with the zone: only growth is halved from mesh to mesh, and errors are of second order in it
+_CARRIED = 1 / 3
+# accuracy: The same where slip turns round; also, at an end that moves over cells that slipped, parts of the cell's
+# size; and parts of the change of q, which is locked in where the zone has moved, by the share of such points
+# (measured)
+_TURNED, _CAUGHT_UP, _LOCKED = 2.0, 0.5, 0.2
+# accuracy: cells inside an end of the stick zone from which its stiffness is found; least stiffness
+_FITTED, _SOFTEST = 4, 1e-3
+_CHANGED = (0.4, 0.35)  # accuracy: errors of q, q1 and q2 as parts of the change to the second mesh and to later meshes
+Added = Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class Level(driver.Level):
+    """Solution on one mesh of cells; lengths in half-widths of the frame (:class:`NormalLoads`) from its middle, forces
+    in P.
+    ``pressed`` are the normal forces, ``kinks`` are those of q at the load points; ``stepped`` are errors due to the
+    load steps, if the steps were chosen on this mesh.
+    """
+
+    pressed: Array
+    kinks: tuple[float, ...] = ()
+    stepped: Errors = field(default_factory=dict)
+
+    @property
+    def zone(self) -> tuple[float, ...]:
+        """Ends of the stick zone; empty without friction."""
+        return (self.stick.left, self.stick.right) if self.stick else ()
+
+    @property
+    def passing(self) -> list[float]:
+        """Kinks that neither q1 nor q2 has: out of phase these are -f p and f p beside the stick zone, where the kinks
+        of single load points pass by, if the pressure is constant. Kinks in the stick zone last."""
+        if not self.stick or not self.history or self.history.path.in_phase or self.history.path.presses_anew:
+            return []
+        return [kink for kink in self.kinks if not self.stick.left <= kink <= self.stick.right]
+
+
+class Problem(driver.Problem[Level]):
+    """Half-planes of like materials, for :func:`partialslip.march.driver.march`; ``added`` as for
+    :func:`partialslip.march.method.solve`."""
+
+    telling = ("m", "n")
+
+    def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock, added: Added | None) -> None:
+        self.added, self.normal, path = added, NormalLoads.of(scene), load_path(scene, plan, start)
+        # a path out of phase takes more than one coarse mesh to find its stick zone
+        self.coarse = 2 if path and not path.in_phase and len(_MESHES) > 1 else 1
+        frame, meshes = self.normal.frame, (*_MESHES[:1] * self.coarse, *_MESHES[1:])
+        super().__init__(scene, start, clock, path, (frame.centre, frame.a), meshes)
+        self._ends = [*self.normal.ends, *self.normal.within(scene.profile.kinks)]
+        self._inner = self.normal.within(finest(start.q.x)) if start else []
+        self._passing = self.normal.within(scene.friction.sharp_kinks(self.length))
+        self._stepped: Errors = {}
+        self._solved, self._growth = 0, 0.0  # meshes, and the growth of the last one
+
+    def cells(self, level: Level | None, mesh: tuple[float, float]) -> Array:
+        return _cells(self._ends, self._inner, self._passing, level, *mesh)
+
+    def likely(self, level: Level, mesh: tuple[float, float], spent: float) -> float:
+        if not level.history or level.history.load_steps * len(self.cells(level, mesh)) ** 3 > _WORK:
+            return math.inf
+        return super().likely(level, mesh, spent)
+
+    def solve(self, level: Level | None, mesh: tuple[float, float]) -> Level:
+        # steps are chosen on the first mesh that is not coarse and used on all later meshes. Finer cells see more of a
+        # moving stick zone: where steps matter, each later mesh halves them once and estimates their errors anew
+        first = self._solved == self.coarse
+        choose = first or (steps_matter(self._stepped, self.scene.fem.accuracy) and not self.clock.limited)
+        cells = self.cells(level, mesh)
+        found = _solve_level(self.normal, self.path, self.start, cells, self.clock, choose, self.added)
+        if first and found.history:
+            self.path = found.history.path
+        self._stepped = found.stepped or self._stepped
+        self._solved += 1
+        self._growth = mesh[1]
+        return found
+
+    def mesh_errors(self, level: Level, before: Level) -> Errors:
+        return _mesh_errors(self.normal, level, before, self._growth, self._solved == self.coarse + 1)
+
+    def step_errors(self, level: Level) -> Errors:
+        return self._stepped if level.history else {}
+
+    def answer(self, level: Level) -> Answer:
+        normal, scene, history = self.normal, self.scene, level.history
+        frame, largest, anew, f = normal.frame, normal.largest, scene.presses_anew, scene.friction.f
+        widths, p0 = np.diff(level.vertices), 2 / np.pi * (frame.a / largest.a)
+        places = self.places(level)
+        x = (places[1:] + places[:-1]) / 2
+        found = steady_state(scene, history, level.stick, 1.0, x=level.x, common=normal.common if anew else None)
+        q1, q2 = (scene.P / frame.a * q / widths for q in (history.q1, history.q2)) if history else (0 * x, 0 * x)
+        known = found.centre is not None
+        tractions = CellTractions(frame, normal.second, normal.first, level.vertices, q1, q2)
+        traction = Traction(
+            x=x,
+            p=normal.second.pressure(x),
+            dq=q2 - q1,
+            q1=q1 if known else None,
+            q2=q2 if known else None,
+            at=tractions.change,
+            breaks=places,
+            cells=places,
+            levels_at=tractions.at_load_points if known else None,
+            p1=normal.first.pressure(x) if anew else None,
+            pressures_at=tractions.pressures if anew else None,
+        )
+        counts = {
+            "events": history.events if history else 0,
+            "friction_iterations": history.changes if history else 0,
+        }
+        pressed = level.pressed
+        if history:
+            pressed = normal.forces(normal.last, level.vertices) if anew else history.last_pressure
+        return Answer(
+            a=largest.a,
+            p0=largest.p0,
+            found=found,
+            traction=traction,
+            cells=slice(None),
+            pressed=pressed,
+            certificate=certificate(history, widths, f, p0) if history else {},
+            change=last_cycle_change(history, widths, f, p0) if history else None,
+            model="two half-planes, exact pressure, cells of constant shear",
+            counts=counts,
+            contact_ends=(normal.first.ends, normal.second.ends) if anew or frame.centre else None,
+        )
+
+
+def with_stresses(found: Result, normal: NormalLoads, level: Level, clock: Clock) -> Result:
+    """Result with stresses, where q1 and q2 are known."""
+    scene = normal.scene
+    if level.history:
+        stresses: CellStresses | Around | None = CellStresses.of(normal, level.vertices, level.history.around)
+    else:
+        stresses = sliding(scene) if scene.slides else without_shear(scene)
+    if not stresses:
+        return replace(found, undetermined=no_stresses("the contact slides"))
+    far = normal.frame.places([-BEYOND, BEYOND])
+    breaks = np.unique([*far, *normal.frame.places([*normal.ends, *level.zone])])
+    surface = along_surface(stresses.surface, breaks)
+    return replace(found, surface=surface, stress_at=StressAt(stresses.inside), cost=clock.cost())
+
+
+def _cells(
+    ends: list[float], inner: list[float], passing: list[float], level: Level | None, size: float, growth: float
+) -> Array:
+    """Ends of cells (c + 1,) of ``size`` at the ``ends`` and at the stick zone's ends on the previous ``level``, and of
+    a larger size at ``inner`` kinks of q and at the kinks on that level, the largest at those that are ``passing``.
+
+    Cells are small compared with the distance of neighbouring ends: q is steep in narrow slip zones and stick zones.
+    """
+    fine: Array = np.sort(apart([*ends, *(level.zone if level else ())], _SMALLEST))
+    gaps = np.diff(fine)
+    gap = np.minimum(np.append(gaps, np.inf), np.append(np.inf, gaps))
+    moving = level.passing if level else []
+    lasting = [kink for kink in (level.kinks if level else ()) if kink not in moving]
+    known = apart([*inner, *lasting], _INNER * size, fine.tolist())
+    points = np.array(apart([*passing, *moving], _PASSING * size, known))
+    sizes = np.full(len(points), _PASSING * size)
+    sizes[: len(known)] = _INNER * size
+    sizes[: len(fine)] = np.maximum(size * np.minimum(_NEAR * gap, 1.0), _SMALLEST)
+    order = np.argsort(points)
+    return graded(points[order], sizes[order], growth)
+
+
+def _solve_level(
+    normal: NormalLoads,
+    path: Path | None,
+    start: State | None,
+    vertices: Array,
+    clock: Clock,
+    choose: bool,
+    added: Added | None,
+) -> Level:
+    scene, frame = normal.scene, normal.frame
+    if not path:
+        return Level(vertices, None, None, normal.forces(normal.second, vertices))
+    x = (vertices[1:] + vertices[:-1]) / 2
+    if start:
+        path = replace(path, before=on_cells(start.q, frame.places(vertices)) / scene.P)
+    with clock.phase("compliance"):
+        normally = compliance(vertices / 2)  # scaling lengths adds a rigid shift only
+        tangential = normally + added(frame.places(vertices)) if added else normally
+    with clock.phase("contact"):
+        f = scene.friction.at(frame.places(x))
+        moved = stretched(x * frame.a / scene.length, frame.centre / scene.length)
+
+        def zone(of: History) -> StickInterval:
+            if not of.path.presses_anew:
+                return stick_zone(x, of.bound, of.change, vertices, lambda values: values, of.lasting, of.unsteady)
+            on = np.flatnonzero(of.bound > 0)
+
+            def spread(values: Array) -> Array:
+                every = np.zeros(len(x))
+                every[on] = values
+                return every
+
+            here = of.of(on)
+            found = stick_zone(x[on], here.bound, here.change, vertices, spread, here.lasting, here.unsteady)
+            return within(found, normal.common, vertices)
+
+        def errors(of: History, gradual: History) -> dict[str, float]:
+            return of_steps(of, gradual, (zone(of), zone(gradual)), np.diff(vertices), normal.largest.a / frame.a)
+
+        if path.presses_anew:
+            presses = normal.presses(vertices, normally)
+            along = partial(varying.march, x, tangential, moved, f, presses)
+            history, stepped = follow_or_step(along, path, scene.fem.accuracy, errors if choose else None)
+        else:
+            history, stepped = constant.march(tangential, moved, normal.forces(frame, vertices), f, path), {}
+        inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in reversed(history.visited)]
+        if history.turns and history.never_slips is not None:
+            inner.append(turning_points(x, history.never_slips, history.slips))
+        forces = normal.forces(normal.second, vertices)
+        return Level(vertices, history, zone(history), forces, tuple(itertools.chain.from_iterable(inner)), stepped)
+
+
+def _mesh_errors(normal: NormalLoads, level: Level, before: Level, growth: float, first: bool) -> dict[str, float]:
+    """Discretisation errors of m and n (in half-widths of the contact at the largest P) and of q, q1 and q2 (relative
+    L2 of cell averages).
+
+    Errors of m and n are a part of the change from the mesh ``before``, or a multiple of ``growth``^3, the larger the
+    less stiff the end is. Errors of q are a part of the change, for which ``first`` tells whether the mesh before is
+    the first one. The factors are calibrated on random scenes with known solutions.
+    """
+    assert level.stick
+    assert before.stick
+    assert level.history
+    assert before.history
+    left, right = normal.common
+    gaps = np.diff([left, *level.zone, right])
+    # an end of the stick zone at the end of the contacts is known
+    gap = np.minimum(np.where(gaps[:-1] > 0, gaps[:-1], np.inf), np.where(gaps[1:] > 0, gaps[1:], np.inf))
+    cells = np.clip(np.searchsorted(level.vertices, level.zone) - 1, 0, len(level.pressed) - 1)
+    size = np.diff(level.vertices)[cells]
+    unseen = _SOMEWHERE * size * (gap < _CELLS * size)
+    moved = max(abs(level.stick.left - before.stick.left), abs(level.stick.right - before.stick.right))
+    between = np.maximum(_CUBIC, _CUBIC_OF_SOFT / _stiffness(level)) * growth**3 * np.minimum(_NEAR * gap, 1.0)
+    part = _CARRIED if _NEAR * gaps[1] < 1 else _MOVED
+    known = np.maximum(unseen, np.maximum(part * moved, between))
+    changes = {
+        key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices, 2 if key == "q" else 1)
+        for key, of in SHEARS.items()
+    }
+    if level.history.turns:
+        known = _TURNED * known + _CAUGHT_UP * size * np.array(level.stick.moved)
+        known = np.maximum(known, _LOCKED * _passed(level) * changes["q"]) + level.stick.strips
+    known *= normal.frame.a / normal.largest.a
+    return dict(zip("mn", known.tolist(), strict=True)) | changes
+
+
+def _passed(level: Level) -> float:
+    """Share of the stick zone whose points slip on the way."""
+    assert level.stick
+    assert level.history
+    still = permanent_zone(level.x, level.history, level.stick)
+    if still is None or level.stick.left == level.stick.right:
+        return 0.0
+    width = 0.0 if np.isnan(still[0]) else still[1] - still[0]
+    return 1.0 - width / (level.stick.right - level.stick.left)
+
+
+def _stiffness(level: Level) -> Array:
+    """Stiffness K of the ends of the stick zone, (2,), at most 1: f p - |dq|/2 is K f p0 sqrt(2 c r)/a at a small
+    distance r inside an end, with p0 of a Hertz contact and the half-width c of the zone. Beside the flat part of a
+    punch K is small. 1 at ends that moved over cells that slipped, where the room begins with another power."""
+    history, stick, vertices = level.history, level.stick, level.vertices
+    assert history
+    assert stick
+    after, c = np.searchsorted(vertices, level.zone), (stick.right - stick.left) / 2
+    ranges = (after[0] - 1, after[0] + _FITTED), (after[1] - 1 - _FITTED, after[1])
+    found = np.ones(2)
+    for side, (first, last) in enumerate(np.clip(ranges, 0, len(vertices) - 1).tolist()):
+        if stick.moved[side] or c == 0:
+            continue
+        room = float((history.bound - stick.signs[side] * history.change / 2)[first:last].sum())
+        r = abs(float(vertices[first if side else last]) - level.zone[side])
+        hertz = float(history.bound.sum()) * (2 / np.pi) * np.sqrt(2 * c) * (2 / 3) * r**1.5
+        found[side] = np.clip(room / hertz, _SOFTEST, 1.0)
+    return found
+
+
+def _apart(level: Level, of: Callable[[History], Array], other: History, cells: Array, shears: int) -> float:
+    """Relative L2 difference of the means over ``cells`` (c + 1,), the cells of the ``other`` history, of the forces
+    ``of`` the level and of the other history, which are sums of 1 or 2 ``shears``."""
+    assert level.history
+    known, bound = (norm_parts(level.vertices, each, cells) for each in (of(level.history), level.history.bound))
+    others = norm_parts(cells, of(other), cells)
+    return relative_change(known, others, shears * LEAST_SHEAR * float(np.linalg.norm(bound)))
