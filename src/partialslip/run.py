@@ -3,7 +3,7 @@
 import dataclasses
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +17,8 @@ from partialslip.frame import frame
 from partialslip.halfplane.method import spacing_error
 from partialslip.halfplane.noise import Noise, noise_of
 from partialslip.judge import Comparison, Conclusion, Outcome, Verdict, compare, conditions, of_run
-from partialslip.judge.reference import ALL_EFFECTS, METHODS, reference, reference_among
+from partialslip.judge.reference import ALL_EFFECTS, reference, reference_among
+from partialslip.methods import METHODS
 from partialslip.plan import Plan, plan, reduced
 from partialslip.result import Result
 from partialslip.result.state import State
@@ -265,7 +266,8 @@ def run(
     for name, (method, what, its) in tasks.items():
         if stresses and _finds_stresses(what, method, results):
             its = plan(what, subsurface=True, start=start is not None)
-        results[name] = _slid(what, _method(method, keep, allowance)(what, its, _told_by(name, progress), start))
+        solve = METHODS[method].solver(keep=keep, allowance=allowance, rig_of=rig_of)
+        results[name] = _slid(what, solve(what, its, _told_by(name, progress), start))
     for result in results.values():
         effects.accept(result.regime)
     # no bars for finite and unlike bodies or for a fixed element size: there is no reference; none for effects forced
@@ -376,26 +378,3 @@ def rig_of(scene: Scene) -> Rig:
 
 def _told_by(name: str, progress: Progress) -> Progress:
     return lambda line: progress(f"{name}: {line}")
-
-
-def _method(
-    name: str, keep: "Kept | None", allowance: Allowance | None
-) -> Callable[[Scene, Plan, Progress, State | None], Result]:
-    """Return the ``solve`` function of a method. Imported here because finite elements import slowly."""
-    if name == "exact":
-        from partialslip.halfplane.method import solve as solve_exactly
-
-        return solve_exactly
-    if name == "march":
-        from partialslip.march.method import solve as solve_by_marching
-
-        return partial(solve_by_marching, allowance=allowance)
-    if name == "fem":
-        from partialslip_fem.model import solve as solve_by_elements
-
-        return partial(solve_by_elements, keep=keep, allowance=allowance)
-    if name == "equivalent":
-        from partialslip.equivalent import solve as solve_as_half_planes
-
-        return partial(solve_as_half_planes, rig_of=rig_of)
-    raise AssertionError(name)

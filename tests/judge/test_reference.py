@@ -11,7 +11,8 @@ from partialslip import compare, load_scene
 from partialslip.halfplane import method
 from partialslip.halfplane.loading import loading
 from partialslip.judge import Outcome
-from partialslip.judge.reference import ALL_EFFECTS, METHODS, REFERENCES, reference, reference_among
+from partialslip.judge.reference import ALL_EFFECTS, reference, reference_among
+from partialslip.methods import METHODS, REFERENCES
 from partialslip.plan import plan
 from partialslip.run import compared, default_methods
 

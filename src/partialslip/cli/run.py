@@ -71,7 +71,7 @@ def add(commands: "Commands") -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from partialslip.judge.reference import METHODS
+    from partialslip.methods import METHODS
 
     methods = None if options.methods is None else [method.strip() for method in options.methods.split(",")]
     for method in methods or []:

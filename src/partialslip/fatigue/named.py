@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,17 +21,38 @@ from partialslip.fatigue.planes import Critical, Measure, critical_plane
 from partialslip.scene import Body, Elastic, Scene
 from partialslip.units import Dimension
 
-#: Keys of the table fatigue that each criterion needs, by name.
-NEEDS: dict[str, tuple[str, ...]] = {
-    "principal": (),
-    "swt": (),
-    "fatemi-socie": ("k_fatemi_socie", "sigma_y"),
-    "findley": ("k_findley",),
-    "dang-van": ("alpha_dang_van",),
-    "crossland": ("alpha_crossland",),
-    "ruiz": (),
-}
+
+class Known(NamedTuple):
+    """What is known of a criterion: the keys of the table fatigue that it ``needs``, the dimension ``of`` its values,
+    and from the elastic constants of the body and the scene's table either its ``measure`` on a plane, or its
+    ``invariant`` of stress paths; neither for :data:`RUIZ`. ``at``: the critical plane, where it has a closed form."""
+
+    needs: tuple[str, ...] = ()
+    of: Dimension = "Pa"
+    measure: Callable[[Elastic, Any], Measure] | None = None
+    invariant: Callable[[Array, Any], Array] | None = None
+    at: Callable[[Array], Critical] | None = None
+
+
 RUIZ = "ruiz"  # of the surface, with slip: not a function of the stress path
+#: The criteria by name. A new one is entered here.
+CRITERIA = {
+    "principal": Known(measure=lambda *_: range_measure, at=principal_range),
+    "swt": Known(measure=lambda own, _: swt_measure(own.E, own.nu)),
+    "fatemi-socie": Known(
+        ("k_fatemi_socie", "sigma_y"),
+        "1",
+        lambda own, known: fatemi_socie_measure(own.E, own.nu, known.k_fatemi_socie, known.sigma_y),
+    ),
+    "findley": Known(("k_findley",), measure=lambda _, known: findley_measure(known.k_findley)),
+    "dang-van": Known(
+        ("alpha_dang_van",), invariant=lambda stress, known: dang_van(stress, alpha=known.alpha_dang_van)
+    ),
+    "crossland": Known(
+        ("alpha_crossland",), invariant=lambda stress, known: crossland(stress, alpha=known.alpha_crossland)
+    ),
+    RUIZ: Known(),
+}
 
 
 @dataclass(frozen=True)
@@ -63,11 +85,11 @@ def chosen(scene: Scene, names: Iterable[str] | None) -> list[str]:
         If a criterion is unknown, or a constant of a named criterion is missing.
     """
     if names is None:
-        return [name for name in NEEDS if not _missing(scene, name)]
+        return [name for name in CRITERIA if not _missing(scene, name)]
     found = list(dict.fromkeys(names))
     for name in found:
-        if name not in NEEDS:
-            raise InputError(f"criterion {name!r}: must be of {', '.join(NEEDS)}")
+        if name not in CRITERIA:
+            raise InputError(f"criterion {name!r}: must be of {', '.join(CRITERIA)}")
         if missing := _missing(scene, name):
             raise InputError(f"fatigue.{missing[0]}: missing; the criterion {name} needs it")
     return found
@@ -90,26 +112,17 @@ def beyond(scene: Scene, body: str, why: str = "") -> InputError:
 
 
 def _missing(scene: Scene, name: str) -> list[str]:
-    return [key for key in NEEDS[name] if getattr(scene.fatigue, key) is None]
+    return [key for key in CRITERIA[name].needs if getattr(scene.fatigue, key) is None]
 
 
 def criterion(scene: Scene, name: str, body: str) -> Criterion:
     """Return the criterion ``name``, except ruiz, with the constants of ``scene``, for the ``body`` lower or upper."""
-    constants = {key: getattr(scene.fatigue, key) for key in NEEDS[name]}
-    own = elastic(scene, body)
-    if name == "principal":
-        return Criterion(name, "Pa", principal_range, range_measure)
-    if name == "dang-van":
-        return Criterion(name, "Pa", _without_plane(partial(dang_van, alpha=constants["alpha_dang_van"])))
-    if name == "crossland":
-        return Criterion(name, "Pa", _without_plane(partial(crossland, alpha=constants["alpha_crossland"])))
-    if name == "swt":
-        measure = swt_measure(own.E, own.nu)
-    elif name == "fatemi-socie":
-        measure = fatemi_socie_measure(own.E, own.nu, constants["k_fatemi_socie"], constants["sigma_y"])
-    else:
-        measure = findley_measure(constants["k_findley"])
-    return Criterion(name, "1" if name == "fatemi-socie" else "Pa", partial(critical_plane, measure=measure), measure)
+    known = CRITERIA[name]
+    if (invariant := known.invariant) is not None:
+        return Criterion(name, known.of, _without_plane(lambda stress: invariant(stress, scene.fatigue)))
+    assert known.measure
+    measure = known.measure(elastic(scene, body), scene.fatigue)
+    return Criterion(name, known.of, known.at or partial(critical_plane, measure=measure), measure)
 
 
 def elastic(scene: Scene, body: str) -> Elastic:

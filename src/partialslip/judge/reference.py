@@ -4,11 +4,10 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from partialslip.gradual import may_turn_round
+from partialslip.methods import METHODS
 from partialslip.plan import reduced
 from partialslip.scene import Scene
 
-REFERENCES = ("exact", "march", "fem")  # by preference
-METHODS = (*REFERENCES, "equivalent")
 ALL_EFFECTS = "all effects"  # name of the result in which no effect is forced off
 
 _REVERSES = "path-dependent: slip reverses between the load points; no solution is known to hold"

@@ -8,7 +8,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.judge.reference import ALL_EFFECTS
+from partialslip.methods import METHODS
 from partialslip.output.svg import svg
 from partialslip.result import Result
 from partialslip.run import Run
@@ -26,8 +26,7 @@ _ERROR_LINES = ("-", "--", ":", "-.")
 _MESH = 1.5, 1.0  # display: largest distance from the middle of the contact, and |y|, of the mesh, in a
 _MARKERS = 41  # display: on a curve
 _MARGIN = 0.04  # display: beyond the contact, in a
-_P_MARKS = {"march": "x", "fem": "+", ALL_EFFECTS: "1"}
-_Q_MARKS = {"march": "s", "fem": "o", ALL_EFFECTS: "D"}
+_ALL = "1", "D"  # display: marks of p and q with all effects
 
 
 def traction_svg(run: Run) -> str:
@@ -115,12 +114,13 @@ def draw_tractions(axes: "Axes", results: Mapping[str, Result], friction: Fricti
         else:
             x = _spread(result)
             p, dq = traction.at(x)
-            axes.plot(x / a, p / p0, _P_MARKS.get(name, "x"), ms=6, color="black", ls="", label=f"p/p0, {name}")
+            marks = METHODS[name].marks if name in METHODS else _ALL
+            axes.plot(x / a, p / p0, marks[0], ms=6, color="black", ls="", label=f"p/p0, {name}")
             if shears:
                 axes.plot(
                     x / a,
                     dq / 2 / unit,
-                    _Q_MARKS.get(name, "s"),
+                    marks[1],
                     mfc="white",
                     mec="black",
                     ms=4.5,

@@ -11,6 +11,7 @@ import numpy as np
 from partialslip.bars import Accuracy, asked
 from partialslip.errors import InputError
 from partialslip.judge import reference as references
+from partialslip.methods import REFERENCES
 from partialslip.result import Result
 from partialslip.run import Run, compared, run
 from partialslip.scene import Scene
@@ -83,8 +84,8 @@ def score(
     file, wanted = Path(file), asked(bar)
     name = "".join(c if c.isprintable() else "?" for c in file.name)
     reference = references.reference(scene).method if reference is None else reference
-    if reference not in references.REFERENCES:
-        raise InputError(f"reference {reference!r}: must be one of {', '.join(references.REFERENCES)}")
+    if reference not in REFERENCES:
+        raise InputError(f"reference {reference!r}: must be one of {', '.join(REFERENCES)}")
     if centre not in ("given", "auto"):
         raise InputError(f"centre {centre!r}: must be 'given' or 'auto'")
     if centre == "auto" and not scene.even:

@@ -15,7 +15,7 @@ from partialslip.batch.sweep import Progress, Task, sweep, workers
 from partialslip.errors import InputError, MissingLibraryError
 from partialslip.inputfile import read_text
 from partialslip.judge import Conclusion, Outcome
-from partialslip.judge.reference import REFERENCES
+from partialslip.methods import REFERENCES
 from partialslip.output.files import write_texts
 from partialslip.output.page import write_pdf
 from partialslip.output.place import placed

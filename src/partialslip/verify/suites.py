@@ -9,7 +9,8 @@ from typing import Literal, get_args
 
 from partialslip.errors import InputError
 from partialslip.judge import Bar
-from partialslip.judge.reference import REFERENCES, reference
+from partialslip.judge.reference import reference
+from partialslip.methods import REFERENCES
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.catalogue import hard_cases, shipped
 from partialslip.verify.random_scenes import draw, kind_of
