@@ -188,7 +188,7 @@ def _contact_forces(
         trail = Trail(line.x, before.trail if before else None)
         ends = partial(contact_ends, line, beta=problem.beta)
         reach = before.half_width if before else None
-        along = coupled.Line(
+        along = coupled.ContactLine(
             line.x, line.weights, ends, partial(resultants, line), problem.similar, problem.nearly_similar, reach, trail
         )
         near = BARS["q"] * problem.accuracy

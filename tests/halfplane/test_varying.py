@@ -12,7 +12,7 @@ from partialslip import load_scene, parse_scene, plan, run
 from partialslip.errors import InputError
 from partialslip.halfplane import contact
 from partialslip.halfplane import varying as halfplane_varying
-from partialslip.halfplane.mean import Mean, Path
+from partialslip.halfplane.mean import Mean, PressurePath
 from partialslip.halfplane.method import solve
 from partialslip.halfplane.varying import closed_form, steady_cycle
 
@@ -71,7 +71,7 @@ def test_the_bound_on_the_mean_holds_all_along_the_way():
     at_ends = states.copy()
     for back, before in ((False, 0 * x), (True, dq)):
         for share in (np.arange(1, 160) / 160).tolist():
-            now, mean, change = Path(scene, back).stage(share)
+            now, mean, change = PressurePath(scene, back).stage(share)
             states.append((now.pressure(x), before + f * mean.p0 * change.traction(mean.scaled(x))))
     found, half = cycle.bounds_of_Q1, scene.load.dQ / 2
 
@@ -186,7 +186,7 @@ def test_the_levels_are_those_of_the_first_loading():
 
 def test_rates_at_the_ends_are_those_of_the_growing_contact():
     """For Hertz dp at an end is a/(A R) times the way of the end over the square root of twice the distance times a."""
-    path = Path(TURNED)
+    path = PressurePath(TURNED)
     now, step = path.at(0.5), 1e-5
     before, after = path.at(0.5 - step), path.at(0.5 + step)
     for way, rate in zip((-1, 1), path.rates(now).pressure, strict=True):

@@ -55,7 +55,7 @@ def spread(values: Array, where: Indices, count: int) -> Array:
     return result
 
 
-class Line(NamedTuple):
+class AffineFamily(NamedTuple):
     """Solutions of one active set, by the rigid shift: ``at(shift)`` is x (n,) and r = C x - g - shift (n,); x has the
     sum ``total`` + ``slope`` shift."""
 
@@ -122,7 +122,7 @@ class Factored:
         result: Array = x + inverse @ (g - self.C @ x)
         return result
 
-    def line(self, free: Mask, g: Array, held: Array, all_free: Array | None) -> Line:
+    def line(self, free: Mask, g: Array, held: Array, all_free: Array | None) -> AffineFamily:
         """Solutions with C x - ``g`` - shift = 0 at the ``free`` members (n,), the others at ``held`` (n,)."""
         others = np.flatnonzero(~free)
         if self._inverse is None or all_free is None or 2 * len(others) > len(free):
@@ -141,9 +141,9 @@ class Factored:
             x[others] = held[others]
             return x, r
 
-        return Line(float(all_free.sum() + uniform @ first), float(self._uniform.sum() + uniform @ by), at)
+        return AffineFamily(float(all_free.sum() + uniform @ first), float(self._uniform.sum() + uniform @ by), at)
 
-    def _line_of_free(self, members: Indices, g: Array, held: Array) -> Line:
+    def _line_of_free(self, members: Indices, g: Array, held: Array) -> AffineFamily:
         first, by = self._back(self.C, members, (g - self.C @ held)[members], np.ones(len(members)))
 
         def at(shift: float) -> tuple[Array, Array]:
@@ -151,7 +151,7 @@ class Factored:
             x[members] = first + shift * by
             return x, self.C @ x - g - shift
 
-        return Line(float(held.sum() + first.sum()), float(by.sum()), at)
+        return AffineFamily(float(held.sum() + first.sum()), float(by.sum()), at)
 
     def newton(self, free: Mask, gradient: Array) -> Array:
         """Changes of the ``free`` members (n,), k of them, that make their ``gradient`` (k,) vanish."""
@@ -277,7 +277,7 @@ class _BlockPivoting:
         self._side = np.zeros(len(g), dtype=np.int8)  # -1 at the lower bound, 0 free, +1 at the upper
         if start is not None and (start == 0).any():
             self._side[:] = start
-        self._line: Line | None = None  # of the present sides
+        self._line: AffineFamily | None = None  # of the present sides
         self._tried: tuple[float, Array, Array, Sides] | None = None  # a shift, with what it gives on these sides
         self.iterations = self.changes = 0
 
@@ -414,7 +414,7 @@ class _BlockPivoting:
             self._tried = shift, x, r, self._wanted(x, r, shift)
         return self._tried[1:]
 
-    def _solutions(self) -> Line:
+    def _solutions(self) -> AffineFamily:
         """Solutions with members at bounds held there, by the shift."""
         if self._line is None:
             self.iterations += 1
@@ -423,6 +423,6 @@ class _BlockPivoting:
             self._line = (
                 self._factored.line(free, self._g, held, self._all_free)
                 if free.any()
-                else Line(float(held.sum()), 0.0, lambda shift: (held, self._C @ held - self._g - shift))
+                else AffineFamily(float(held.sum()), 0.0, lambda shift: (held, self._C @ held - self._g - shift))
             )
         return self._line

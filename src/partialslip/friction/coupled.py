@@ -216,7 +216,7 @@ class _Step:
 
 
 @dataclass(frozen=True)
-class Line:
+class ContactLine:
     """Nodes of the contact line: ``x`` (n,), ``weights`` (n,) that turn tractions into forces, and ``ends(p, q,
     rise=...) -> (left, right)``, the ends of the contact under nodal forces along y and x, (n,) each. ``resultants(p,
     q) -> (points, normal, tangential)``: points (k,) within the contact, and the forces on their left, (k,) each;
@@ -236,7 +236,9 @@ class Line:
     stages: Callable[[float], Stages] | None = None
 
 
-def press(C: Relative, gap: Array, f: Array, line: Line | None, least: int, accuracy: float, P: float = 1.0) -> Pressed:
+def press(
+    C: Relative, gap: Array, f: Array, line: ContactLine | None, least: int, accuracy: float, P: float = 1.0
+) -> Pressed:
     """Press the bodies together under a force from 0 to ``P``, with friction and without Q.
 
     Nodes that stick keep their displacement. Under a parabolic gap bodies are pressed in one small step from an
@@ -299,7 +301,7 @@ def _vertex(x: Array, gap: Array) -> float:
     return float(np.polynomial.Polynomial.fit(x, gap, 2).deriv().roots()[0].real)
 
 
-def _moved(line: Line, forces: Pair, others: Pair) -> float:
+def _moved(line: ContactLine, forces: Pair, others: Pair) -> float:
     """Largest distance between the ends of two contacts, in half-widths."""
     (left, right), (l_other, r_other) = (line.ends(p.x, q.x) for p, q in (forces, others))
     return max(abs(left - l_other), abs(right - r_other)) * 2 / (right - left)
@@ -309,7 +311,7 @@ def _similar(
     C: Relative,
     gap: Array,
     f: Array,
-    line: Line,
+    line: ContactLine,
     vertex: float,
     last: Pair,
     step: _Press,
@@ -342,7 +344,13 @@ def _similar(
 
 
 def _nearly_similar(
-    C: Relative, gap: Array, f: Array, line: Line, reach: float, step: _Press, off: Callable[[Array, Array], float]
+    C: Relative,
+    gap: Array,
+    f: Array,
+    line: ContactLine,
+    reach: float,
+    step: _Press,
+    off: Callable[[Array, Array], float],
 ) -> Pressed | None:
     """Press bodies of a size, whose contact has about the half-width ``reach``, with all punches and half of the last
     step after all but one and the whole last step. The difference is the error estimate; None if it is large."""
@@ -401,7 +409,7 @@ def march(
     f: Array,
     path: Path,
     pressed: Array | None = None,
-    line: Line | None = None,
+    line: ContactLine | None = None,
     accuracy: float = 1e-3,
 ) -> tuple[History, Solution, Pressed | None]:
     """Press the bodies together with friction and follow the path of the loads.
@@ -423,7 +431,7 @@ def march(
     path : Path
     pressed : (n,) array, optional
         Normal forces at the beginning of the path; default: the bodies are apart.
-    line : Line, optional
+    line : ContactLine, optional
         Nodes of the contact line.
     accuracy : float
         Tolerance of q for the steps of pressing, relative L2.

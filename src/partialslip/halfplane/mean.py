@@ -88,7 +88,7 @@ class Rates(NamedTuple):
     shear: Array
 
 
-class Stage(NamedTuple):
+class PressureStage(NamedTuple):
     """A stage of the way from load point to load point: the contact ``now``, the union ``mean`` of this and of the
     contact at the beginning under their mean pressure, and the ``change`` of shear so far if slip does not reverse."""
 
@@ -103,7 +103,7 @@ class Stage(NamedTuple):
         return left, right
 
 
-class Path:
+class PressurePath:
     """The contacts of ``scene`` on the straight way between load points 1 and 2 (``back``: from 2 to 1)."""
 
     def __init__(self, scene: Scene, back: bool = False) -> None:
@@ -122,13 +122,13 @@ class Path:
         """Contact at the beginning of the way."""
         return self.at(0.0)
 
-    def stage(self, share: float) -> Stage:
+    def stage(self, share: float) -> PressureStage:
         """Stage at the ``share`` of the way, from 0 to 1."""
         now = self.at(share)
         mean = Mean(self.begin, now).contact
         loads = (share * load for load in (self.dQ, self.dsigma, self.dslope))
         change = loading(mean, self._scene.friction.f, *loads, bound=2)
-        return Stage(now, mean, change)
+        return PressureStage(now, mean, change)
 
     def pressed(self, now: Contact) -> tuple[float, float]:
         """Rates of the increment of p over the way in the contact ``now``, dp = (first + second y/a)/sqrt(a^2 - y^2),

@@ -10,8 +10,8 @@ from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.levels import Levels
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.halfplane.mean import Path
-from partialslip.halfplane.stress import Acting, Fields, Points, Shear, State, half_of, reached
+from partialslip.halfplane.mean import PressurePath
+from partialslip.halfplane.stress import Acting, Fields, Points, Shear, StressState, half_of, reached
 from partialslip.halfplane.turning import Turning
 from partialslip.result import StickZone
 from partialslip.scene import Load, Scene
@@ -61,7 +61,7 @@ class Around:
         """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body (lower, upper) and load point."""
         return self.fields.surface(x)
 
-    def _state(self, phase: float) -> State:
+    def _state(self, phase: float) -> StressState:
         first, second = self.fields.ends
         if phase in (0.0, 0.5, 1.0):
             return second if phase == 0.5 else first
@@ -73,7 +73,7 @@ class Around:
         sigma, slope = (
             one + share * (other - one) for one, other in ((begin.sigma, end.sigma), (begin.slope, end.slope))
         )
-        return State(pressed, _merged((*begin.shears, *change)), sigma, slope)
+        return StressState(pressed, _merged((*begin.shears, *change)), sigma, slope)
 
     def _share(self, phase: float) -> tuple[bool, float]:
         """Whether the loads go back from load point 2 to 1 at ``phase``, and the share of this way."""
@@ -96,7 +96,7 @@ def constant(scene: Scene, pressed: Contact, found: Levels) -> Around:
     other = _merged((known, (-2.0 if found.known else 2.0, change)))
     first, second = (other, (known,)) if found.known else ((known,), other)
     unknown = "" if found.cycle.holds else "slip reverses"
-    fields = Fields(pressed.f, (State(pressed, first), State(pressed, second)))
+    fields = Fields(pressed.f, (StressState(pressed, first), StressState(pressed, second)))
     return Around(load, fields, _Constant(scene, pressed, found.cycle), unknown)
 
 
@@ -107,7 +107,7 @@ def varying(scene: Scene, end: Contact, loaded: Loading, unknown: str) -> Around
     second: _Sum = ((1.0, Shear.of(end, loaded, sigma, slope)),)
     _, change = way(back=False, share=1.0)
     first = (*second, *((-factor, shear) for factor, shear in change))
-    fields = Fields(scene.friction.f, (State(Path(scene).begin, first), State(end, second)))
+    fields = Fields(scene.friction.f, (StressState(PressurePath(scene).begin, first), StressState(end, second)))
     return Around(load, fields, way, unknown)
 
 
@@ -131,11 +131,13 @@ def sliding(scene: Scene) -> Around | None:
     return Around(scene.load, Fields(f, tuple(found)), _Pressed(scene), "the contact slides")
 
 
-def _ends(scene: Scene) -> tuple[State, State]:
+def _ends(scene: Scene) -> tuple[StressState, StressState]:
     """States at load points 1 and 2 without shear traction."""
-    path, load = Path(scene), scene.load
+    path, load = PressurePath(scene), scene.load
     contacts = (path.begin, path.at(1.0)) if scene.presses_anew else (path.begin,) * 2
-    first, second = (State(each, (), *load.along[point][1:]) for each, point in zip(contacts, load.ends, strict=True))
+    first, second = (
+        StressState(each, (), *load.along[point][1:]) for each, point in zip(contacts, load.ends, strict=True)
+    )
     return first, second
 
 
@@ -162,7 +164,7 @@ class _Varying:
     scene: Scene
 
     def __call__(self, *, back: bool, share: float) -> tuple[Contact, _Sum]:
-        path = Path(self.scene, back)
+        path = PressurePath(self.scene, back)
         now, mean, change = path.stage(share)
         return now, ((2.0, Shear.of(mean, change, share * path.dsigma, share * path.dslope)),)
 
@@ -174,7 +176,7 @@ class _Pressed:
     scene: Scene
 
     def __call__(self, *, back: bool, share: float) -> tuple[Contact, _Sum]:
-        return Path(self.scene, back).at(share), ()
+        return PressurePath(self.scene, back).at(share), ()
 
 
 def _merged(shears: _Sum) -> _Sum:

@@ -15,7 +15,7 @@ from partialslip.halfplane.contact import Contact, one_step_zone
 from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.traction import half_range
 from partialslip.halfplane.tractions import sample
-from partialslip.halfplane.turning import Followed, Part, Reached, Turning, half_cycle
+from partialslip.halfplane.turning import Followed, PartOfWay, Reached, Turning, half_cycle
 from partialslip.result import StickZone, SurfaceStress
 from partialslip.result.fields import AtPoints
 
@@ -91,7 +91,7 @@ class Turned:
     tension ``sigma`` (Pa)."""
 
     contact: Contact
-    change: Part | Reached | Followed
+    change: PartOfWay | Reached | Followed
     share: float
     sigma: float
 
@@ -116,7 +116,7 @@ class Turned:
         return result
 
 
-def half_of(contact: Contact, change: Loading | Turning | Part, sigma: float, slope: float) -> Shear | Turned:
+def half_of(contact: Contact, change: Loading | Turning | PartOfWay, sigma: float, slope: float) -> Shear | Turned:
     """Half of the shear of a ``change`` of a steady cycle, by the tension ``sigma`` and its ``slope``."""
     if isinstance(change, Loading):
         return Shear.of(contact, change, sigma, slope)
@@ -177,7 +177,7 @@ class Points(NamedTuple):
         return z
 
 
-class State(NamedTuple):
+class StressState(NamedTuple):
     """Tractions at a moment: the contact that is ``pressed``, and the sum of ``shears``, each with its factor, in slip
     under f p, and of the bulk tension ``sigma`` (Pa) and its ``slope`` (Pa/m) that act without friction."""
 
@@ -197,12 +197,12 @@ class Fields:
     ----------
     f : float
         Coefficient of friction.
-    ends : tuple of State
+    ends : tuple of StressState
         States at the load points, whose Cauchy integrals share panels.
     """
 
     f: float
-    ends: tuple[State, ...]
+    ends: tuple[StressState, ...]
     _known: dict[_Acting, tuple[Cauchy, int]] = field(default_factory=dict, repr=False, compare=False)
 
     def surface(self, x: Array) -> Array:
@@ -210,7 +210,7 @@ class Fields:
         sides = np.ones_like(x), -np.ones_like(x)
         return np.stack([self.at(Points(x, 0 * x, side), self.ends)[:, 0] for side in sides])
 
-    def at(self, at: "Points", states: Sequence[State]) -> Array:
+    def at(self, at: "Points", states: Sequence[StressState]) -> Array:
         """sigma_xx, sigma_yy and sigma_xy (Pa) at k points: (s, 3, k), by state."""
         made: dict[_Acting, Array] = {}
         integrals: dict[Cauchy, Complex] = {}
@@ -262,7 +262,7 @@ class Fields:
             self._known.update((each, (cauchy, row)) for row, each in enumerate(group))
 
 
-def _summands(state: State) -> list[_Acting]:
+def _summands(state: StressState) -> list[_Acting]:
     return [state.pressed, *(shear for _, shear in state.shears)]
 
 
@@ -297,7 +297,7 @@ class Stress:
         self.contact, self.f, self.dQ, self.dsigma, self.dslope = contact, f, dQ, dsigma, dslope
         self._zone = one_step_zone(contact, f, dQ, dsigma, dslope)
         half = half_of(contact, half_cycle(contact, f, dQ, dsigma, dslope), dsigma, dslope)
-        self._fields = Fields(f, tuple(State(contact, ((sign, half),)) for sign in (-1.0, 1.0)))
+        self._fields = Fields(f, tuple(StressState(contact, ((sign, half),)) for sign in (-1.0, 1.0)))
 
     def surface(self, x: npt.ArrayLike) -> Array:
         """sigma_xx (Pa) along the surfaces at ``x``, m: (2, 2, ...), by body (lower, upper), load point and the shape

@@ -94,13 +94,13 @@ class Turning:
         return self.whole.breaks
 
     @cached_property
-    def whole(self) -> "Part":
+    def whole(self) -> "PartOfWay":
         """The change from load point to load point."""
         return self.part(1.0)
 
-    def part(self, share: float) -> "Part":
+    def part(self, share: float) -> "PartOfWay":
         """The change up to a ``share`` of the loads."""
-        return Part(self, self.way.at(share))
+        return PartOfWay(self, self.way.at(share))
 
     def traction(self, x: Array) -> Array:
         """Change of shear traction at ``x``, in f p0."""
@@ -133,7 +133,7 @@ class Turning:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class PartOfWay:
     """Change of shear traction in a ``cycle`` from load point 1 up to the stage ``at`` a share of the loads."""
 
     cycle: Turning

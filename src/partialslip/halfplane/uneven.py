@@ -109,7 +109,7 @@ class _Ends:
         return _Steps(self.centre, a, base, at_middle, np.concatenate(weights), np.concatenate(psi), side)
 
 
-class Pressed(NamedTuple):
+class PressedBodies(NamedTuple):
     """A contact that is not even: middle ``centre`` and half-width ``a``, m, scaled pressure ``shape``, and the angle
     ``tilt`` (rad) by which the bodies have turned."""
 
@@ -119,7 +119,7 @@ class Pressed(NamedTuple):
     tilt: float
 
 
-def press(of: Curvature, force: float, moment: float | None, scale: float) -> Pressed | None:
+def press(of: Curvature, force: float, moment: float | None, scale: float) -> PressedBodies | None:
     """Press two half-planes together; None if the contact extends beyond the range in which the gap is known.
 
     Parameters
@@ -142,7 +142,7 @@ def press(of: Curvature, force: float, moment: float | None, scale: float) -> Pr
     if not ends:
         return None
     steps = ends.steps(of)
-    return Pressed(steps.centre, steps.a, Uneven(steps), steps.tilt)
+    return PressedBodies(steps.centre, steps.a, Uneven(steps), steps.tilt)
 
 
 @dataclass(frozen=True)

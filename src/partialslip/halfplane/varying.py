@@ -11,7 +11,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.halfplane.mean import Mean, Path, Stage, common
+from partialslip.halfplane.mean import Mean, PressurePath, PressureStage, common
 from partialslip.halfplane.slip import dissipation
 from partialslip.result import EndSlip
 from partialslip.scene import Hertz, Scene
@@ -61,7 +61,7 @@ class Cycle:
     def stick(self) -> tuple[float, float]:
         """Ends of the stick zone, m; those of the part that both contacts have in common where no end slips."""
         if self.change:
-            return Stage(self.second, self.mean, self.change).stick
+            return PressureStage(self.second, self.mean, self.change).stick
         return common(self.first, self.second)
 
     def dq(self, x: Array) -> Array:
@@ -100,7 +100,7 @@ class Cycle:
         f, dq = self.scene.friction.f, self.dq(x)
         first, second = (f * self.first.pressure(x), 0 * x), (f * self.second.pressure(x), dq)
 
-        def between(stages: list[Stage], before: Array) -> list[tuple[Array, Array]]:
+        def between(stages: list[PressureStage], before: Array) -> list[tuple[Array, Array]]:
             return [
                 (f * now.pressure(x), before + f * mean.p0 * change.traction(mean.scaled(x)))
                 for now, mean, change in stages
@@ -113,12 +113,12 @@ class Cycle:
         return tightest
 
     @functools.cached_property
-    def _stages(self) -> tuple[list[Stage], list[Stage]]:
+    def _stages(self) -> tuple[list[PressureStage], list[PressureStage]]:
         """Stages between the load points, from 1 to 2 and back; none where there is no slip or slip reverses."""
         if not self.change or self.turns_round:
             return [], []
         forth, back = (
-            [Path(self.scene, way).stage(share) for share in (np.arange(1, _ALONG) / _ALONG).tolist()]
+            [PressurePath(self.scene, way).stage(share) for share in (np.arange(1, _ALONG) / _ALONG).tolist()]
             for way in (False, True)
         )
         return forth, back
@@ -144,7 +144,7 @@ class Cycle:
         inside = (x > low) & (x < high)
         ends = np.array([low, high])
         x, slips = np.append(x[inside], ends), np.append(slips[inside], unit * self.change.slip(self.mean.scaled(ends)))
-        path = Path(self.scene)
+        path = PressurePath(self.scene)
         for share in _SHARES.tolist():  # points that touch or open on the way
             now, mean, part = path.stage(share)
             places = np.array(now.ends)
@@ -163,9 +163,9 @@ class Cycle:
         return self.scene.material.A * self.scene.friction.f * mean.p0 * mean.a
 
     def _dissipated(self, back: bool) -> float:
-        path, f = Path(self.scene, back), self.scene.friction.f
+        path, f = PressurePath(self.scene, back), self.scene.friction.f
 
-        def slipped(stage: Stage, weight: Callable[[Array, Array], Array]) -> float:
+        def slipped(stage: PressureStage, weight: Callable[[Array, Array], Array]) -> float:
             """Integral over the contact of |slip| since the beginning of the way, times the ``weight``."""
             now, mean, change = stage
             unit, total = self._unit(mean), 0.0
@@ -193,7 +193,7 @@ class Cycle:
 @functools.lru_cache(maxsize=1)
 def steady_cycle(scene: Scene) -> Cycle:
     """The steady cycle of ``scene``, whose pressure varies, with friction and without sliding, under loads in phase."""
-    path, f = Path(scene), scene.friction.f
+    path, f = PressurePath(scene), scene.friction.f
     first, second = path.begin, path.at(1.0)
     mean = Mean(first, second).contact
     left, right = common(first, second)
@@ -203,13 +203,13 @@ def steady_cycle(scene: Scene) -> Cycle:
     if not change:
         slips: tuple[EndSlip, EndSlip] = ("never", "never") if left < right else ("part of the cycle",) * 2
         return Cycle(scene, first, second, mean, None, slips, False)
-    ends, room = Stage(second, mean, change).stick, _ROUNDING * mean.a
+    ends, room = PressureStage(second, mean, change).stick, _ROUNDING * mean.a
     ways: list[EndSlip] = ["forwards" if sign > 0 else "backwards" for sign in change.signs]
     inside = left - room <= ends[0], ends[1] <= right + room
     slips = (ways[0] if inside[0] else "part of the cycle", ways[1] if inside[1] else "part of the cycle")
     if not all(inside):
         return Cycle(scene, first, second, mean, None, slips, False)
-    turns = any(_turns(Path(scene, back), f, change) for back in (False, True))
+    turns = any(_turns(PressurePath(scene, back), f, change) for back in (False, True))
     return Cycle(scene, first, second, mean, change, slips, turns)
 
 
@@ -239,7 +239,7 @@ def require_closed_form(scene: Scene) -> None:
         raise InputError(f"load.P, load.M: {why}; must be solved by march")
 
 
-def _exceeds(path: Path, f: float) -> Array:
+def _exceeds(path: PressurePath, f: float) -> Array:
     """Whether the increments of q at the ends of the adhered contact are larger than f times those of p: at stages of
     the way and the left and right end, (stages, 2). If they never are, no end slips."""
     found = []
@@ -249,7 +249,7 @@ def _exceeds(path: Path, f: float) -> Array:
     return np.array(found)
 
 
-def _turns(path: Path, f: float, change: Loading) -> bool:
+def _turns(path: PressurePath, f: float, change: Loading) -> bool:
     """Whether slip turns round on the way: the stick zones of the stages do not shrink, or not always with the slip of
     the whole ``change``, or slip begins in the wrong direction."""
     if _goes_back(path, f, path.stage(1.0)):
@@ -267,7 +267,7 @@ def _turns(path: Path, f: float, change: Loading) -> bool:
     return False
 
 
-def _goes_back(path: Path, f: float, last: Stage) -> bool:
+def _goes_back(path: PressurePath, f: float, last: PressureStage) -> bool:
     """Whether points that slip on the way to the ``last`` stage slip on at its beginning in the direction of the way
     before: the increments of q in the contact, which sticks as a whole, then lead beyond the bound, whose increments
     are those of f p."""

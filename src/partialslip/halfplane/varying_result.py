@@ -8,7 +8,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.halfplane.mean import Path, common
+from partialslip.halfplane.mean import PressurePath, common
 from partialslip.halfplane.remarks import no_stresses, remarks, undetermined
 from partialslip.halfplane.states import Around, sliding, varying, without_shear
 from partialslip.halfplane.stress import BEYOND, along_surface
@@ -69,7 +69,7 @@ def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Resu
     f = scene.friction.f
     slipping = plan.needs("friction")
     cycle = steady_cycle(scene) if slipping else None
-    way = Path(scene)
+    way = PressurePath(scene)
     first, second = (cycle.first, cycle.second) if cycle else (way.begin, way.at(1.0))
     largest = (first, second)[scene.largest - 1]
     regime = _regime(scene, cycle)
@@ -171,7 +171,7 @@ def _first_loading(scene: Scene, cycle: Cycle, started: bool) -> Loading | str:
     if not (cycle.stick[0] - room <= left and right <= cycle.stick[1] + room) or first.signs != cycle.change.signs:
         return "mean loads act, and the cycle slips where the first loading sticks; use march"
     for back in (True, False):
-        way = Path(scene, back)
+        way = PressurePath(scene, back)
         for share in _STAGES[1:].tolist():
             now, mean, part = way.stage(share)
             x = mean.places(_PLACES)

@@ -12,7 +12,7 @@ from partialslip.friction.history import Steps
 from partialslip.friction.phases import Phases
 from partialslip.friction.piecewise import PiecewiseCauchy
 from partialslip.halfplane.contact import Contact, contact
-from partialslip.halfplane.stress import Fields, Points, SlipZones, State
+from partialslip.halfplane.stress import Fields, Points, SlipZones, StressState
 from partialslip.march.pressing import NormalLoads
 
 _SLIPS = 1e-9  # accuracy: distance of |q| from f p, relative, at which a cell slips
@@ -33,7 +33,7 @@ class CellStresses:
     vertices : (c + 1,) array
         Ends of the cells.
     phases : Phases
-    states : tuple of State
+    states : tuple of StressState
         Contact, shear of the cells that slip beside its ends, and bulk tension at each step.
     steps : Steps
         Shear forces and friction bounds of cells, in P of the ``frame``.
@@ -43,7 +43,7 @@ class CellStresses:
     frame: Contact
     vertices: Array
     phases: Phases
-    states: tuple[State, ...]
+    states: tuple[StressState, ...]
     steps: Steps
 
     @classmethod
@@ -66,7 +66,7 @@ class CellStresses:
             inner = pressed.scaled(normal.frame.places(vertices[[first, last]])).tolist()
             signs = int(np.sign(force[first - 1])), int(np.sign(force[last % len(force)]))
             zones = SlipZones(pressed, inner[0], inner[1], signs)
-            states.append(State(pressed, ((1.0, zones),), sigma, slope))
+            states.append(StressState(pressed, ((1.0, zones),), sigma, slope))
         f = scene.friction.at(normal.frame.places(vertices))
         return cls(f, normal.frame, vertices, phases, tuple(states), steps)
 

@@ -59,7 +59,7 @@ Added = Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
-class Level(driver.Level):
+class SimilarLevel(driver.Level):
     """Solution on one mesh of cells; lengths in half-widths of the frame (:class:`NormalLoads`) from its middle, forces
     in P.
     ``pressed`` are the normal forces, ``kinks`` are those of q at the load points; ``stepped`` are errors due to the
@@ -84,7 +84,7 @@ class Level(driver.Level):
         return [kink for kink in self.kinks if not self.stick.left <= kink <= self.stick.right]
 
 
-class Problem(driver.Problem[Level]):
+class SimilarBodies(driver.Problem[SimilarLevel]):
     """Half-planes of like materials, for :func:`partialslip.march.driver.march`; ``added`` as for
     :func:`partialslip.march.method.solve`."""
 
@@ -102,15 +102,15 @@ class Problem(driver.Problem[Level]):
         self._stepped: Errors = {}
         self._solved, self._growth = 0, 0.0  # meshes, and the growth of the last one
 
-    def cells(self, level: Level | None, mesh: tuple[float, float]) -> Array:
+    def cells(self, level: SimilarLevel | None, mesh: tuple[float, float]) -> Array:
         return _cells(self._ends, self._inner, self._passing, level, *mesh)
 
-    def likely(self, level: Level, mesh: tuple[float, float], spent: float) -> float:
+    def likely(self, level: SimilarLevel, mesh: tuple[float, float], spent: float) -> float:
         if not level.history or level.history.load_steps * len(self.cells(level, mesh)) ** 3 > _WORK:
             return math.inf
         return super().likely(level, mesh, spent)
 
-    def solve(self, level: Level | None, mesh: tuple[float, float]) -> Level:
+    def solve(self, level: SimilarLevel | None, mesh: tuple[float, float]) -> SimilarLevel:
         # steps are chosen on the first mesh that is not coarse and used on all later meshes. Finer cells see more of a
         # moving stick zone: where steps matter, each later mesh halves them once and estimates their errors anew
         first = self._solved == self.coarse
@@ -124,13 +124,13 @@ class Problem(driver.Problem[Level]):
         self._growth = mesh[1]
         return found
 
-    def mesh_errors(self, level: Level, before: Level) -> Errors:
+    def mesh_errors(self, level: SimilarLevel, before: SimilarLevel) -> Errors:
         return _mesh_errors(self.normal, level, before, self._growth, self._solved == self.coarse + 1)
 
-    def step_errors(self, level: Level) -> Errors:
+    def step_errors(self, level: SimilarLevel) -> Errors:
         return self._stepped if level.history else {}
 
-    def answer(self, level: Level) -> Answer:
+    def answer(self, level: SimilarLevel) -> Answer:
         normal, scene, history = self.normal, self.scene, level.history
         frame, largest, anew, f = normal.frame, normal.largest, scene.presses_anew, scene.friction.f
         widths, p0 = np.diff(level.vertices), 2 / np.pi * (frame.a / largest.a)
@@ -175,7 +175,7 @@ class Problem(driver.Problem[Level]):
         )
 
 
-def with_stresses(found: Result, normal: NormalLoads, level: Level, clock: Clock) -> Result:
+def with_stresses(found: Result, normal: NormalLoads, level: SimilarLevel, clock: Clock) -> Result:
     """Result with stresses, where q1 and q2 are known."""
     scene = normal.scene
     if level.history:
@@ -191,7 +191,7 @@ def with_stresses(found: Result, normal: NormalLoads, level: Level, clock: Clock
 
 
 def _cells(
-    ends: list[float], inner: list[float], passing: list[float], level: Level | None, size: float, growth: float
+    ends: list[float], inner: list[float], passing: list[float], level: SimilarLevel | None, size: float, growth: float
 ) -> Array:
     """Ends of cells (c + 1,) of ``size`` at the ``ends`` and at the stick zone's ends on the previous ``level``, and of
     a larger size at ``inner`` kinks of q and at the kinks on that level, the largest at those that are ``passing``.
@@ -220,10 +220,10 @@ def _solve_level(
     clock: Clock,
     choose: bool,
     added: Added | None,
-) -> Level:
+) -> SimilarLevel:
     scene, frame = normal.scene, normal.frame
     if not path:
-        return Level(vertices, None, None, normal.forces(normal.second, vertices))
+        return SimilarLevel(vertices, None, None, normal.forces(normal.second, vertices))
     x = (vertices[1:] + vertices[:-1]) / 2
     if start:
         path = replace(path, before=on_cells(start.q, frame.places(vertices)) / scene.P)
@@ -261,10 +261,14 @@ def _solve_level(
         if history.turns and history.never_slips is not None:
             inner.append(turning_points(x, history.never_slips, history.slips))
         forces = normal.forces(normal.second, vertices)
-        return Level(vertices, history, zone(history), forces, tuple(itertools.chain.from_iterable(inner)), stepped)
+        return SimilarLevel(
+            vertices, history, zone(history), forces, tuple(itertools.chain.from_iterable(inner)), stepped
+        )
 
 
-def _mesh_errors(normal: NormalLoads, level: Level, before: Level, growth: float, first: bool) -> dict[str, float]:
+def _mesh_errors(
+    normal: NormalLoads, level: SimilarLevel, before: SimilarLevel, growth: float, first: bool
+) -> dict[str, float]:
     """Discretisation errors of m and n (in half-widths of the contact at the largest P) and of q, q1 and q2 (relative
     L2 of cell averages).
 
@@ -298,7 +302,7 @@ def _mesh_errors(normal: NormalLoads, level: Level, before: Level, growth: float
     return dict(zip("mn", known.tolist(), strict=True)) | changes
 
 
-def _passed(level: Level) -> float:
+def _passed(level: SimilarLevel) -> float:
     """Share of the stick zone whose points slip on the way."""
     assert level.stick
     assert level.history
@@ -309,7 +313,7 @@ def _passed(level: Level) -> float:
     return 1.0 - width / (level.stick.right - level.stick.left)
 
 
-def _stiffness(level: Level) -> Array:
+def _stiffness(level: SimilarLevel) -> Array:
     """Stiffness K of the ends of the stick zone, (2,), at most 1: f p - |dq|/2 is K f p0 sqrt(2 c r)/a at a small
     distance r inside an end, with p0 of a Hertz contact and the half-width c of the zone. Beside the flat part of a
     punch K is small. 1 at ends that moved over cells that slipped, where the room begins with another power."""
@@ -329,7 +333,7 @@ def _stiffness(level: Level) -> Array:
     return found
 
 
-def _apart(level: Level, of: Callable[[History], Array], other: History, cells: Array, shears: int) -> float:
+def _apart(level: SimilarLevel, of: Callable[[History], Array], other: History, cells: Array, shears: int) -> float:
     """Relative L2 difference of the means over ``cells`` (c + 1,), the cells of the ``other`` history, of the forces
     ``of`` the level and of the other history, which are sums of 1 or 2 ``shears``."""
     assert level.history

@@ -55,7 +55,7 @@ def dundurs(scene: Scene) -> float:
 
 
 @dataclass(frozen=True)
-class Level(driver.Level):
+class UnlikeLevel(driver.Level):
     """Solution on one mesh of cells: normal forces, how the bodies were ``pressed`` together, the ``ends`` of the
     contact at load points 1 and 2, and ``kinks`` of q."""
 
@@ -82,7 +82,7 @@ class Level(driver.Level):
         return [*self.ends[1], *self.ends[0], *((self.stick.left, self.stick.right) if self.stick else ())]
 
 
-class Problem(driver.Problem[Level]):
+class UnlikeBodies(driver.Problem[UnlikeLevel]):
     """Half-planes of unlike materials, for :func:`partialslip.march.driver.march`: ``beta``, zero without coupling, and
     the ``punch`` of self-similar pressing. ``followed`` are the errors of the load steps, on the first cells that are
     not coarse."""
@@ -98,7 +98,7 @@ class Problem(driver.Problem[Level]):
         self.width = _extent(scene)
         self.followed: Errors = {}
 
-    def solve(self, level: Level | None, mesh: tuple[float, float]) -> Level:
+    def solve(self, level: UnlikeLevel | None, mesh: tuple[float, float]) -> UnlikeLevel:
         wider = 1.0
         while True:
             found = _solve_on(self, self.path, self.cells(level, mesh, wider), self.clock)
@@ -107,15 +107,15 @@ class Problem(driver.Problem[Level]):
                 return found
             wider *= _WIDER
 
-    def mesh_errors(self, level: Level, before: Level) -> Errors:
+    def mesh_errors(self, level: UnlikeLevel, before: UnlikeLevel) -> Errors:
         if not self.followed and self.path and self.path.moves and self.beta:
             self.followed = _path_errors(self, self.path, level, self.clock)
         return _mesh_errors(level, before, self)
 
-    def step_errors(self, level: Level) -> Errors:
+    def step_errors(self, level: UnlikeLevel) -> Errors:
         return summed(_step_errors(level), self.followed)
 
-    def answer(self, level: Level) -> Answer:
+    def answer(self, level: UnlikeLevel) -> Answer:
         scene, history, L, P = self.scene, level.history, self.length, self.scene.P
         widths, stress, pressing = np.diff(level.vertices), P / L, level.pressing
         a = level.a[scene.largest - 1]
@@ -167,7 +167,7 @@ class Problem(driver.Problem[Level]):
             notes=steps_of_coupled(history, self.followed, scene.fem.accuracy) if self.beta else (),
         )
 
-    def cells(self, level: Level | None, mesh: tuple[float, float], wider: float = 1.0) -> Array:
+    def cells(self, level: UnlikeLevel | None, mesh: tuple[float, float], wider: float = 1.0) -> Array:
         """Cells that reach ``wider`` than usual beyond the contact."""
         size, growth = mesh
         far = _BEYOND * wider * self.width
@@ -197,7 +197,7 @@ def _extent(scene: Scene) -> float:
     return max(abs(end) for end in found) / scene.length
 
 
-def _solve_on(problem: Problem, path: Path | None, vertices: Array, clock: Clock) -> Level:
+def _solve_on(problem: UnlikeBodies, path: Path | None, vertices: Array, clock: Clock) -> UnlikeLevel:
     scene = problem.scene
     x, widths, L = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices), scene.length
     with clock.phase("compliance"):
@@ -211,24 +211,24 @@ def _solve_on(problem: Problem, path: Path | None, vertices: Array, clock: Clock
 
         if not path:
             pressing, _ = press(C.yy, gap, 1.0)
-            return Level(vertices, None, None, pressing, None, (ends(pressing.x),) * 2)
+            return UnlikeLevel(vertices, None, None, pressing, None, (ends(pressing.x),) * 2)
         begins = None
         if problem.start:
             places = vertices * L + scene.origin
             begins, shear = (on_cells(each, places) / scene.P for each in (problem.start.p, problem.start.q))
             path = replace(path, before=shear)
         stages = partial(OnCells, problem.punch, vertices) if problem.punch else None
-        line = coupled.Line(x, widths, ends, None, problem.punch is not None, stages=stages)
+        line = coupled.ContactLine(x, widths, ends, None, problem.punch is not None, stages=stages)
         moved = stretched(x, scene.origin / L)
         stretch, near = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
         f = scene.friction.at(x * L + scene.origin)
         history, pressing, first = coupled.march(C, gap, stretch, moved[1], f, path, begins, line, near)
         at_points = tuple(ends(p, q) for p, q in zip(history.pressures, (history.q1, history.q2), strict=True))
-        level = Level(vertices, history, None, pressing, first, at_points)  # type: ignore[arg-type]
+        level = UnlikeLevel(vertices, history, None, pressing, first, at_points)  # type: ignore[arg-type]
         return replace(level, stick=_stick_zone(level, problem.punch), kinks=_kinks(level))
 
 
-def _stick_zone(level: Level, punch: PunchGrowth | None) -> StickInterval:
+def _stick_zone(level: UnlikeLevel, punch: PunchGrowth | None) -> StickInterval:
     history, still = level.history, level.pressed is not None
     assert history
     on = np.flatnonzero(history.bound > 0)
@@ -247,7 +247,7 @@ def _stick_zone(level: Level, punch: PunchGrowth | None) -> StickInterval:
     return replace(stick, left=max(stick.left, left), right=min(stick.right, right))
 
 
-def _kinks(level: Level) -> tuple[float, ...]:
+def _kinks(level: UnlikeLevel) -> tuple[float, ...]:
     assert level.history
     found: list[float] = []
     for q, bound in level.history.visited:
@@ -257,7 +257,7 @@ def _kinks(level: Level) -> tuple[float, ...]:
     return tuple(kink for kink in found if left < kink < right)
 
 
-def _mesh_errors(level: Level, before: Level, problem: Problem) -> Errors:
+def _mesh_errors(level: UnlikeLevel, before: UnlikeLevel, problem: UnlikeBodies) -> Errors:
     """Errors of the ends (in a), and of p, q, q1 and q2 (relative L2 of cell means), from the change since the mesh
     ``before``."""
     largest = problem.scene.largest - 1
@@ -281,7 +281,7 @@ def _mesh_errors(level: Level, before: Level, problem: Problem) -> Errors:
     return {key: _OF_CHANGE.get(key, 0.5) * error for key, error in errors.items()}
 
 
-def _apart(level: Level, forces: Array, before: Level, others: Array, bound: Array) -> float:
+def _apart(level: UnlikeLevel, forces: Array, before: UnlikeLevel, others: Array, bound: Array) -> float:
     """Relative L2 difference of the means over the cells of the level ``before`` of ``forces`` and ``others``; shear is
     not less than a part of ``bound``."""
     cells = before.vertices
@@ -292,14 +292,14 @@ def _apart(level: Level, forces: Array, before: Level, others: Array, bound: Arr
     return relative_change(found, other, LEAST_SHEAR * float(np.linalg.norm(held)))
 
 
-def _step_errors(level: Level) -> Errors:
+def _step_errors(level: UnlikeLevel) -> Errors:
     """Errors of the steps of pressing."""
     if not level.history or not level.pressed:
         return {}
     return pressed_together(level.history, level.pressed, np.diff(level.vertices), np.arange(len(level.x)))
 
 
-def _path_errors(problem: Problem, path: Path, level: Level, clock: Clock) -> Errors:
+def _path_errors(problem: UnlikeBodies, path: Path, level: UnlikeLevel, clock: Clock) -> Errors:
     """Errors of the load steps, on the cells of the ``level``."""
     if not level.history or not level.stick:
         return {}

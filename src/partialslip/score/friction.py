@@ -20,8 +20,8 @@ _PRESSED = 0.2  # accuracy: of the largest p: where p is less, |dq|/(2 p) is too
 _TOP = 3  # accuracy: number of points with the largest |dq|/(2 p) that bound f
 
 
-class Friction(NamedTuple):
-    """Friction in a slip zone: coefficient ``f`` and its ``uncertainty``, ``sign`` of dq, and the ``scatter``
+class FrictionRead(NamedTuple):
+    """FrictionRead in a slip zone: coefficient ``f`` and its ``uncertainty``, ``sign`` of dq, and the ``scatter``
     (standard deviation) of 2 f p - |dq|, Pa. ``seen`` tells whether |dq|/(2 p) is constant in the zone."""
 
     f: float
@@ -31,8 +31,8 @@ class Friction(NamedTuple):
     seen: bool
 
 
-def frictions(p: Array, dq: Array, asked: float) -> tuple[Friction, Friction]:
-    """Friction next to the left and to the right end of the contact.
+def frictions(p: Array, dq: Array, asked: float) -> tuple[FrictionRead, FrictionRead]:
+    """FrictionRead next to the left and to the right end of the contact.
 
     A side without a slip zone gets the coefficient of the other side. If neither side has one, both get the
     coefficient ``asked`` for; its uncertainty is the difference from the largest |dq|/(2 p).
@@ -57,16 +57,16 @@ def frictions(p: Array, dq: Array, asked: float) -> tuple[Friction, Friction]:
     return left, right
 
 
-def _shared(side: Friction, known: Friction) -> Friction:
-    """Friction of one ``side``: its own coefficient if certain and different, otherwise the best ``known`` one."""
+def _shared(side: FrictionRead, known: FrictionRead) -> FrictionRead:
+    """FrictionRead of one ``side``: its own coefficient if certain and different, otherwise the best ``known`` one."""
     apart = abs(side.f - known.f)
     if side.seen and side.uncertainty <= _OWN * side.f and apart > _APART * side.uncertainty:
         return side._replace(uncertainty=float(np.hypot(side.uncertainty, apart / _APART)))
     return known._replace(sign=side.sign, scatter=side.scatter if side.seen else known.scatter, seen=side.seen)
 
 
-def _outer(p: Array, dq: Array) -> Friction:
-    """Friction from the first points; their number minimises the uncertainty.
+def _outer(p: Array, dq: Array) -> FrictionRead:
+    """FrictionRead from the first points; their number minimises the uncertainty.
 
     With fewer points noise matters more; with more some of them may stick.
     """
@@ -81,6 +81,6 @@ def _outer(p: Array, dq: Array) -> Friction:
         uncertainty = float(np.hypot(error, drift)) + _F_ROUNDING * abs(f)
         if best is None or uncertainty < best.uncertainty:
             seen = uncertainty <= _FLAT * abs(f)
-            best = Friction(abs(f), uncertainty, 1 if f >= 0 else -1, scatter, seen)
+            best = FrictionRead(abs(f), uncertainty, 1 if f >= 0 else -1, scatter, seen)
     assert best is not None
     return best

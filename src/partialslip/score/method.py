@@ -21,7 +21,7 @@ from partialslip.score.ends import (
     right_end,
     zone_around_peak,
 )
-from partialslip.score.friction import Friction, frictions
+from partialslip.score.friction import FrictionRead, frictions
 from partialslip.score.samples import FEWEST, Samples
 from partialslip.units import Units
 
@@ -56,7 +56,7 @@ class SeenStickZone(NamedTuple):
 
     left: ZoneEnd
     right: ZoneEnd
-    sides: tuple[Friction, Friction]
+    sides: tuple[FrictionRead, FrictionRead]
 
 
 def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
@@ -187,7 +187,7 @@ def _why(stick: SeenStickZone | None, uncertainty: dict[str, float]) -> str:
     return f"|dq|/(2 p) is constant nowhere, so that no slip zone is found; {known}" if unseen else known
 
 
-def _friction(sides: tuple[Friction, Friction], asked: float) -> dict[str, str | float]:
+def _friction(sides: tuple[FrictionRead, FrictionRead], asked: float) -> dict[str, str | float]:
     """Settings: coefficient of friction in the slip zones, its uncertainty, and the scene's."""
     seen = [side for side in sides if side.seen]
     if not seen:
