@@ -13,14 +13,14 @@ from partialslip.friction.constant import march
 from partialslip.friction.history import History
 from partialslip.friction.path import Path
 from partialslip.friction.threads import one_thread
-from partialslip.friction.zone_ends import stick_zone as read_zone
+from partialslip.friction.zone_ends import read_stick_zone as read_zone
 from partialslip.halfplane.hertz import Hertz
-from partialslip.halfplane.loading import half_cycle
+from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range
-from partialslip.march.cells import compliance, forces, graded
+from partialslip.march.cells import compliance, forces, graded_cells
 from partialslip.result import StickZone
 
 P0 = 2 / np.pi  # a = P = 1
@@ -63,7 +63,7 @@ def orders() -> None:
         for level in range(6):
             size, growth = 1e-2 / 4**level, 0.2 / 1.5**level
             ends = sorted([-1.0, 1.0, *shape.kinks, *([found.left, found.right] if found else [])])
-            vertices = graded(np.array(ends), size, growth)
+            vertices = graded_cells(np.array(ends), size, growth)
             history = marched(shape, vertices, 0.5, path(0.5, (-Qf, Qf), (-sf / 2, sf / 2)))
             x = (vertices[1:] + vertices[:-1]) / 2
             found = read_zone(x, 0.5 * forces(shape, vertices), history.change, vertices, lambda values: values)
@@ -87,7 +87,7 @@ def example(cycles: int = 200) -> None:
     f, shape = 0.5, Hertz()
     zone = stick_zone(0.3, 4.0, shape)
     m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
-    vertices = graded(np.array([-1.0, -m, n, 1.0]), 2e-3, 0.1)
+    vertices = graded_cells(np.array([-1.0, -m, n, 1.0]), 2e-3, 0.1)
     start = time.perf_counter()
     history = marched(shape, vertices, f, path(f, (0.1, 0.7), (1.0, 5.0), cycles))
     widths = np.diff(vertices)
@@ -101,7 +101,7 @@ def example(cycles: int = 200) -> None:
     print("change of q at the loaded end, cycles 1-13:", " ".join(f"{c:.1e}" for c in changes[:13]))
     print(
         "mean Q 0.4 f P, bound",
-        f"{half_cycle(0.3, 4.0, shape).mean_load_bound:.4f} f P; q error of the last cycle",
+        f"{one_step(0.3, 4.0, shape).mean_load_bound:.4f} f P; q error of the last cycle",
         f"{error_of_q(history, vertices, zone, shape, f):.1e}",
     )
 
@@ -110,9 +110,9 @@ def settling() -> None:
     """f = 0.5, dQ/(2fP) = 0.2546, dsigma/(f p0) = 1.6: cycles until the range of q changes by less than 1e-6 f p0."""
     f, shape, Qf, sf = 0.5, Hertz(), 0.2546, 1.6
     zone = stick_zone(Qf, sf, shape)
-    bound = half_cycle(Qf, sf, shape).mean_load_bound
+    bound = one_step(Qf, sf, shape).mean_load_bound
     m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
-    vertices = graded(np.array([-1.0, -m, n, 1.0]), 2e-3, 0.1)
+    vertices = graded_cells(np.array([-1.0, -m, n, 1.0]), 2e-3, 0.1)
     widths = np.diff(vertices)
     print(f"bound {bound:.5f} f P; sliding would begin at {1 - Qf:.5f} f P")
     for share in (0.5, 0.9, 0.98, 0.995, 1.005, 1.02):

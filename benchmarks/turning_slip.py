@@ -26,7 +26,7 @@ from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, once, stead
 from partialslip.halfplane.gradual_path.phases import Drifting
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.hertz import Hertz
-from partialslip.halfplane.loading import half_cycle as single
+from partialslip.halfplane.loading import one_step as single
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.turning import half_cycle
 

@@ -14,9 +14,9 @@ from partialslip.friction.zone_ends import apart
 from partialslip.result import Clock
 from partialslip_fem import estimate, goals, solving
 from partialslip_fem.bodies import Grading, Kept
-from partialslip_fem.expense import Expense, again
+from partialslip_fem.expense import Expense, work_again
 from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_first_mesh, too_narrow, widened
-from partialslip_fem.goals import Goal, course, gaps, reached, worst
+from partialslip_fem.goals import Goal, course, gaps, size_reached, worst
 from partialslip_fem.mesh_solution import Adapted
 from partialslip_fem.problem import Problem
 
@@ -168,7 +168,7 @@ class _Refinement:
         if affordable and affordable is not self.goal:
             self.least = self.least * affordable.growth / self.goal.growth
             self.goal = affordable
-            if reached(self.size, self.goal.element_size(self.solution, self.problem)):
+            if size_reached(self.size, self.goal.element_size(self.solution, self.problem)):
                 self.finer = 1.0
         return None
 
@@ -250,7 +250,7 @@ class _Refinement:
                 f"fem.accuracy = {self.problem.accuracy:g}: must be replaced by fem.size, or use march: the contact "
                 f"reaches the ends of {self.cuts} contact lines"
             )
-        if reached(self.size, self.size_goal):
+        if size_reached(self.size, self.size_goal):
             self.finer = min(max(3 * self.error_at_ends / self.bar, 1.0), goals.FINER)
         if self.error < np.inf:
             self.error_before, self.least = self.error, self.least * self.calmer
@@ -276,7 +276,7 @@ class _Refinement:
                 sizes[kink] = size
         for low, high in solution.swept:
             # where surfaces that stick come into contact, what is locked in depends on the distance of the nodes
-            size = (high - low) * goals.sweep(goal.accuracy) / coarsest
+            size = (high - low) * goals.swept_size(goal.accuracy) / coarsest
             count = int(np.ceil((high - low) / (2 * size * coarsest)))
             sizes |= {
                 point: size for point in np.linspace(low, high, count + 2)[1:-1].tolist() if size > sizes[points[0]]
@@ -327,7 +327,7 @@ class _Refinement:
         other = estimate.neighbour(self.solution, self.problem, self.block_width, self.clock)
         self.factored, self.iterations = self.factored + other.factored, self.iterations + other.iterations
         smooth = estimate.smooth_errors(self.solution, other, self.eased, self.problem.breaks)
-        self.errors = estimate.together(self.solution, smooth, self.end_errors)
+        self.errors = estimate.combined(self.solution, smooth, self.end_errors)
         return smooth
 
     def _affordable_goal(self) -> Goal | None:
@@ -338,14 +338,14 @@ class _Refinement:
         solution, problem = self.solution, self.problem
         order, a = problem.order, solution.half_width
         done = bool(self.end_errors) and solution.enclosed
-        once_more = again(order, estimate.NEIGHBOUR[order]) + problem.inside
+        once_more = work_again(order, estimate.NEIGHBOUR[order]) + problem.inside
         best: Goal = self.goal
         asked = self.goal.accuracy
         ends = solution.zone_ends.tolist()
         for accuracy in np.geomspace(asked, max(goals.LOOSEST, asked), _CHOICES).tolist():
             best = self.goal if accuracy == asked else Goal.at(accuracy, problem)
             size_goal = best.element_size(solution, problem)
-            finer = self.finer if best is self.goal or not reached(self.size, size_goal) else 1.0
+            finer = self.finer if best is self.goal or not size_reached(self.size, size_goal) else 1.0
             meshes = course(self.size, finer, size_goal, self.least * best.growth / self.goal.growth, order)
             unknowns = [
                 self.expense.unknowns(

@@ -101,7 +101,7 @@ class Kept(threading.local):
             del self._bodies[oldest]
 
 
-def key_of(problem: Problem, width: float, grading: Grading) -> tuple[object, ...]:
+def bodies_key(problem: Problem, width: float, grading: Grading) -> tuple[object, ...]:
     """Key in :class:`Kept` of the bodies of ``problem`` on a mesh: everything that their compliances depend on."""
     kind = (problem.parts, problem.order, problem.far_field, problem.backend, problem.path is None, problem.inside)
     return (*kind, width, *grading._replace(sizes=tuple(grading.sizes.items())))  # type: ignore[arg-type]

@@ -23,7 +23,7 @@ _ORDER = 4  # accuracy: of the elements
 _FINE, _ROUGH = ((0.1, 1e-7, 1e-5), _ORDER), ((0.2, 1e-6, 1e-4), _ORDER - 1)
 
 
-def characterise(scene: Scene) -> Rig:
+def characterise_bodies(scene: Scene) -> Rig:
     """Characterise the bodies of ``scene``.
 
     Loads, friction and, without a pad, the profile do not matter. Both solutions take well under a second.

@@ -30,7 +30,7 @@ class Body:
     stiffness : (2 N, 2 N) sparse matrix
         Degrees of freedom are the displacements of all nodes along x, then those along y.
     x : (n,) array
-        Nodes on the contact line, ascending; those of each cell lie as :func:`partialslip_fem.elements.nodes`.
+        Nodes on the contact line, ascending; those of each cell lie as :func:`partialslip_fem.elements.nodes_of`.
     mass : (n, n) sparse matrix
         Integrals over x of products of the contact line's shape functions. The row sums are the weights of
         Newton and Cotes, positive up to order 4, or of Lobatto, so that nodal forces have the signs of tractions.

@@ -32,7 +32,7 @@ class _Lobatto(skfem.ElementH1):  # type: ignore[misc]
         inside = [(i, j) for j in along for i in range(1, k - j)]
         places = np.array([(0, 0), (k, 0), (0, k), *edges, *inside])
         self._degrees = np.column_stack([places, k - places.sum(axis=1)])
-        spaced = nodes(k)[self._degrees]
+        spaced = nodes_of(k)[self._degrees]
         self.doflocs = ((1 + 3 * spaced - spaced.sum(axis=1, keepdims=True)) / 3)[:, :2]
         # On evenly spaced nodes, that at the barycentric coordinates (i, j, l)/k has the shape function P_i P_j P_l,
         # where P_i is of degree i in its coordinate, zero at 0, 1/k ... (i - 1)/k and one at i/k (Silvester 1969).
@@ -67,7 +67,7 @@ ELEMENTS: dict[int, Callable[[], skfem.Element]] = {
 
 
 @lru_cache
-def nodes(order: int) -> Array:
+def nodes_of(order: int) -> Array:
     """Nodes of an edge of elements of ``order``, from 0 to 1, (order + 1,)."""
     if order <= _EVEN:
         return np.linspace(0, 1, order + 1)
@@ -77,4 +77,4 @@ def nodes(order: int) -> Array:
 
 def shapes(order: int, x: Array) -> Array:
     """Shape functions of the nodes of an edge at ``x`` (n,) in [0, 1], (n, order + 1)."""
-    return np.vander(x, order + 1) @ np.linalg.inv(np.vander(nodes(order)))
+    return np.vander(x, order + 1) @ np.linalg.inv(np.vander(nodes_of(order)))

@@ -218,7 +218,7 @@ def rounding_error(solution: MeshSolution) -> float:
     return float(np.finfo(float).eps) * loses * solution.dofs * max(solution.lower.order / 4, 1.0) ** 3
 
 
-def together(solution: MeshSolution, smooth: Mapping[str, float], at_ends: Mapping[str, float]) -> dict[str, float]:
+def combined(solution: MeshSolution, smooth: Mapping[str, float], at_ends: Mapping[str, float]) -> dict[str, float]:
     """Combine errors away from the ends (``smooth``) and ``at_ends`` of ``solution``.
 
     Errors of ends are added. L2 errors of tractions lie in different elements and are combined as root of the sum of

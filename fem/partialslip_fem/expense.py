@@ -71,13 +71,13 @@ class Expense:
     def affords(self, meshes: Iterable[float], again: float) -> bool:
         """Whether the seconds left suffice for ``meshes`` of so many unknowns and for solving on the last one again.
 
-        ``again`` is the work of solving again, relative to the work of the last mesh.
+        ``work_again`` is the work of solving again, relative to the work of the last mesh.
         """
         works = [_work(unknowns) for unknowns in meshes]
         return self._rate * (sum(works) + again * works[-1]) <= self._clock.remaining()
 
 
-def again(order: int, other: int) -> float:
+def work_again(order: int, other: int) -> float:
     """Work of solving again on the same mesh with elements of order ``other``, relative to meshing and solving with
     ``order``."""
     return _UNMESHED * (other / order) ** 2

@@ -11,7 +11,7 @@ from partialslip.result import DeformedBody, SurfaceStress
 from partialslip_fem.displacements import DisplacedBody
 from partialslip_fem.elasticity import gradients
 from partialslip_fem.mesh_solution import MeshSolution
-from partialslip_fem.recovery import inside, polynomials
+from partialslip_fem.recovery import inside_elements, polynomials
 
 _CELLS, _TERMS = 6, 4  # accuracy: cells and terms of the fit at the ends of the contact
 _REACH, _SHORTEST = 1.5, 0.01  # display: of the edges drawn near the contact, in contact half-widths
@@ -29,7 +29,8 @@ class _Surface:
     def at(self, x: Array) -> list[Array]:
         """sigma_xx at ``x`` (k,), by load point, scaled."""
         return [
-            4 / self.compliance * inside(u.derivative(), x) - (3 - self.kappa) / (self.kappa + 1) * inside(p, x)
+            4 / self.compliance * inside_elements(u.derivative(), x)
+            - (3 - self.kappa) / (self.kappa + 1) * inside_elements(p, x)
             for u, p in zip(self.displacements, self.pressures, strict=True)
         ]
 

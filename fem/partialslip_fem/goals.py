@@ -116,13 +116,13 @@ class NextMesh(NamedTuple):
     finer: float
 
 
-def sweep(accuracy: float) -> float:
+def swept_size(accuracy: float) -> float:
     """Element size for an ``accuracy``, as a part of the width over which sticking surfaces come into contact; the
     error of q falls like size^1.5."""
     return float(min(_SWEPT[0] * (BARS["q"] * accuracy / _SWEPT[1]) ** (2 / 3), _SWEPT[2]))
 
 
-def reached(size: float, goal: float) -> bool:
+def size_reached(size: float, goal: float) -> bool:
     """Whether the element ``size`` is as small as the ``goal``."""
     return size <= _REACHED * goal
 
@@ -141,12 +141,12 @@ def course(size: float, finer: float, goal: float, least: float, order: int) -> 
     order : int
         Polynomial order of the elements.
     """
-    if not reached(size, goal):
+    if not size_reached(size, goal):
         finer = (size / goal) ** (1 / math.ceil(math.log(size / goal, FINER)))
     meshes = []
     while True:
         size = max(size / finer, FINEST)
-        growth = least if reached(size, goal) else max(least, growth_for(_KNOWN * size / finer, order))
+        growth = least if size_reached(size, goal) else max(least, growth_for(_KNOWN * size / finer, order))
         meshes.append(NextMesh(size, growth, finer))
         if size <= max(_REACHED * goal, FINEST):
             return meshes

@@ -11,7 +11,7 @@ from scipy.interpolate import PPoly
 from partialslip.arrays import Array, Indices
 from partialslip_fem.elasticity import Body
 from partialslip_fem.elements import shapes
-from partialslip_fem.recovery import inside
+from partialslip_fem.recovery import inside_elements
 
 _ON_VERTEX = 1e-6  # accuracy: distance of a jump of the gap's curvature from a vertex, in the cell, that counts as none
 
@@ -32,7 +32,7 @@ def nodal_forces(body: Body, traction: PPoly) -> Array:
     order = (body.order + len(traction.c)) // 2 + 1
     rule = _rule(np.clip(np.union1d(body.x[:: body.order], traction.x), body.x[0], body.x[-1]), order)
     nodes, values = shape_functions(body, rule.starts, rule.offsets)
-    products = (rule.weights * inside(traction, rule.starts + rule.offsets))[:, None] * values
+    products = (rule.weights * inside_elements(traction, rule.starts + rule.offsets))[:, None] * values
     return np.bincount(nodes.ravel(), products.ravel(), len(body.x)).astype(float)
 
 

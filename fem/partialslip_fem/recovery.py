@@ -7,7 +7,7 @@ from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
 from partialslip_fem.elasticity import Body
-from partialslip_fem.elements import nodes
+from partialslip_fem.elements import nodes_of
 
 
 def traction(body: Body, forces: Array) -> PPoly:
@@ -23,11 +23,11 @@ def polynomials(x: Array, values: Array, order: int) -> PPoly:
     """Piecewise polynomials of ``order`` through ``values`` at ``x``, (n,) each; every ``order``-th x is a vertex."""
     k, vertices = order, x[::order]
     cells = np.lib.stride_tricks.sliding_window_view(values, k + 1)[::k]
-    coefficients = np.linalg.solve(np.vander(nodes(k)), cells.T)
+    coefficients = np.linalg.solve(np.vander(nodes_of(k)), cells.T)
     return PPoly(coefficients / np.diff(vertices) ** np.arange(k, -1, -1)[:, None], vertices)
 
 
-def inside(polynomial: PPoly | None, points: Array) -> Array:
+def inside_elements(polynomial: PPoly | None, points: Array) -> Array:
     """Values of ``polynomial`` at ``points`` (k,); zero off its cells, and everywhere if it is None."""
     if polynomial is None:
         return np.zeros_like(points)
@@ -51,4 +51,4 @@ class Pair:
     def at(self, x: Array) -> tuple[Array, Array]:
         """Both tractions at ``x`` (k,), m, in Pa; zero off their cells."""
         points = (x - self.origin) / self.length
-        return self.stress * inside(self.first, points), self.stress * inside(self.second, points)
+        return self.stress * inside_elements(self.first, points), self.stress * inside_elements(self.second, points)

@@ -18,13 +18,13 @@ from partialslip.friction.steps import follow_or_step
 from partialslip.friction.trail import Trail
 from partialslip.friction.zone_ends import within
 from partialslip.result import Clock
-from partialslip_fem.bodies import Grading, Kept, Shared, condense, key_of, mesh_bodies
+from partialslip_fem.bodies import Grading, Kept, Shared, bodies_key, condense, mesh_bodies
 from partialslip_fem.contact import CondensedBody, relative_compliances
 from partialslip_fem.elasticity import Body
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import nodal_forces, projected
 from partialslip_fem.problem import Problem
-from partialslip_fem.zones import contact_ends, growth_when_pressed, resultants, shear_kinks, stick_zone_of
+from partialslip_fem.zones import contact_ends_of, growth_when_pressed, resultants_of, shear_kinks, stick_zone_of
 from partialslip_meshes import Mesh
 
 
@@ -60,7 +60,7 @@ def mesh_and_solve(
         Whether the solution shares nothing but kept bodies with earlier ones, so that it is the same to the last digit:
         meshes refined by it are then the same, too.
     """
-    key = key_of(problem, width, grading)
+    key = bodies_key(problem, width, grading)
     if keep and (known := keep.find(key)):
         bodies, shared = known
         return solve_contact(problem, bodies, 0, clock, check, None if alone else shared, before)
@@ -109,7 +109,7 @@ def solve_contact(
         line, both = bodies[0].body, relative.xy is not None
         forces = _contact_forces(problem, relative, bodies[0], check, shared, before)
         history, nodes, errors = forces.history, forces.nodes, forces.step_errors
-        ends_under = partial(contact_ends, line, beta=problem.beta if both else 0.0)
+        ends_under = partial(contact_ends_of, line, beta=problem.beta if both else 0.0)
         on_line = partial(_on_line, line, nodes)
         left, right = ends_under(forces.pressing.x, on_line(history.q2) if history else None)
         ends_at_1: tuple[float, float] | tuple[()] = ()
@@ -186,10 +186,17 @@ def _contact_forces(
         path = replace(path, before=locked)
     if path and C.xy is not None:
         trail = Trail(line.x, before.trail if before else None)
-        ends = partial(contact_ends, line, beta=problem.beta)
+        ends = partial(contact_ends_of, line, beta=problem.beta)
         reach = before.half_width if before else None
         along = coupled.ContactLine(
-            line.x, line.weights, ends, partial(resultants, line), problem.similar, problem.nearly_similar, reach, trail
+            line.x,
+            line.weights,
+            ends,
+            partial(resultants_of, line),
+            problem.similar,
+            problem.nearly_similar,
+            reach,
+            trail,
         )
         near = BARS["q"] * problem.accuracy
         loaded = C, gap, stretch, moved[1], problem.f_at(line.x)
@@ -226,7 +233,7 @@ def _path_errors(problem: Problem, line: Body, history: History, finer: History)
 
     def ends(each: History) -> tuple[float, ...]:
         forces = zip(each.pressures, (each.q1, each.q2), strict=True)
-        return tuple(end for p, q in forces for end in contact_ends(line, p, q, problem.beta))
+        return tuple(end for p, q in forces for end in contact_ends_of(line, p, q, problem.beta))
 
     on = [np.flatnonzero(each.bound > 0) for each in (history, finer)]
     zones = stick_zone_of(line, on[0], history.of(on[0])), stick_zone_of(line, on[1], finer.of(on[1]))
@@ -253,7 +260,7 @@ def _under_varying_pressure(
         if problem.start:
             path = replace(path, before=nodal_forces(line, problem.start[1]))
         at_largest = (first if problem.largest == 1 else second).x
-        half_width = float(np.subtract(*contact_ends(line, at_largest)[::-1])) / 2
+        half_width = float(np.subtract(*contact_ends_of(line, at_largest)[::-1])) / 2
         if not any(part.finite for part in problem.parts):  # see partialslip.friction.varying.march
             gap = projected(line, problem.gap, problem.breaks)
             holding = Presses(C.xx, gap, line.x if problem.turns else None)

@@ -8,7 +8,7 @@ from partialslip.arrays import Array, Indices
 from partialslip.friction import zone_ends
 from partialslip.friction.history import History
 from partialslip.friction.pressing import Pressed
-from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, stick_zone, turning_points
+from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone, turning_points
 from partialslip_fem.elasticity import Body
 from partialslip_fem.problem import Problem
 from partialslip_fem.recovery import traction
@@ -18,7 +18,7 @@ _SAMPLES = 32  # accuracy: points in each other cell, between which the force is
 _SAME_KINK = 1e-3  # accuracy: of the contact half-width: kinks nearer to each other count as one
 
 
-def contact_ends(
+def contact_ends_of(
     line: Body, normal: Array, shear: Array | None = None, beta: float = 0.0, rise: float = zone_ends.ROUNDED
 ) -> tuple[float, float]:
     """Ends of the contact under ``normal`` forces and ``shear`` forces (n,) on the nodes of the contact line; ``beta``
@@ -28,7 +28,7 @@ def contact_ends(
     return zone_ends.contact_ends(vertices, _cell_forces(line, normal), line.x[normal > 0], tangential, beta, rise)
 
 
-def resultants(line: Body, normal: Array, shear: Array) -> tuple[Array, Array, Array]:
+def resultants_of(line: Body, normal: Array, shear: Array) -> tuple[Array, Array, Array]:
     """Points (k,) well inside the contact under ``normal`` and ``shear`` forces (n,), and the forces along y and x on
     their left, (k,) each. Near the ends, where tractions are not smooth, there are none."""
     first, last = np.flatnonzero(normal > 0)[[0, -1]] // line.order
@@ -47,7 +47,9 @@ def stick_zone_of(
     """
     bound, change = growth or (history.bound, history.change)
     forces_of = partial(_forces_of, line, nodes)
-    return stick_zone(line.x[nodes], bound, change, line.x[:: line.order], forces_of, history.lasting, history.unsteady)
+    return read_stick_zone(
+        line.x[nodes], bound, change, line.x[:: line.order], forces_of, history.lasting, history.unsteady
+    )
 
 
 def growth_when_pressed(first: Pressed | None, nodes: Indices, problem: Problem) -> tuple[Array, Array] | None:

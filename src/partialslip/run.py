@@ -356,7 +356,7 @@ def characterise(scene: AnyScene) -> Rig:
     scene = as_scene(scene)
     key = key_of(scene)
     if key not in _rigs:
-        from partialslip_fem.characterise import characterise as characterised
+        from partialslip_fem.characterise import characterise_bodies as characterised
 
         while len(_rigs) >= _KEPT:
             _rigs.pop(next(iter(_rigs)))

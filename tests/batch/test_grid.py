@@ -120,10 +120,10 @@ def blocks(width):
 
 def test_a_geometry_is_characterised_once(solved, monkeypatch):
     """In whatever order its points are asked for, and however many geometries there are."""
-    found, rig = [], characterise.characterise(blocks(20e-3))  # instead of that of either geometry
+    found, rig = [], characterise.characterise_bodies(blocks(20e-3))  # instead of that of either geometry
     monkeypatch.setattr(sys.modules["partialslip.run"], "_rigs", {})
     monkeypatch.setattr(sys.modules["partialslip.run"], "_KEPT", 1)
-    monkeypatch.setattr(characterise, "characterise", lambda scene: found.append(scene) or rig)
+    monkeypatch.setattr(characterise, "characterise_bodies", lambda scene: found.append(scene) or rig)
     over = {"friction.f": F[:2], "bodies.lower.width": [16e-3, 20e-3]}
     table = partialslip.sweep(blocks(20e-3), over, "equivalent", cores=1)
     assert table["friction.f"].tolist() == [F[0], F[0], F[1], F[1]]

@@ -10,7 +10,7 @@ from skfem.models.poisson import laplace
 from partialslip_fem import factor
 from partialslip_fem.condensation import Condensation
 from partialslip_fem.elasticity import body
-from partialslip_fem.elements import ELEMENTS, nodes
+from partialslip_fem.elements import ELEMENTS, nodes_of
 from partialslip_fem.farfield import FarField
 from partialslip_meshes import block
 
@@ -39,7 +39,7 @@ def test_weights_are_those_of_newton_and_cotes_or_of_lobatto(half):
     assert (weights > 0).all()
     inner = {1: [], 2: [4 / 6], 3: [3 / 8, 3 / 8], 4: [32 / 90, 12 / 90, 32 / 90]}
     k = half.order
-    lobatto = [1 / (k * (k + 1) * legval(2 * x - 1, [0] * k + [1]) ** 2) for x in nodes(k)[1:-1]]
+    lobatto = [1 / (k * (k + 1) * legval(2 * x - 1, [0] * k + [1]) ** 2) for x in nodes_of(k)[1:-1]]
     lengths = np.diff(half.x[::k])
     for offset, weight in enumerate(inner.get(k, lobatto), start=1):
         assert weights[offset::k] == pytest.approx(weight * lengths, rel=1e-12)
@@ -51,8 +51,8 @@ def test_nodes_of_the_contact_line_lie_alike_in_all_cells(half):
     vertices = half.x[::k]
     assert set(SIZES) <= {round(x, 12) for x in vertices}
     if k <= 4:
-        assert nodes(k) == pytest.approx(np.arange(k + 1) / k)
-    for offset, share in enumerate(nodes(k)[:-1]):
+        assert nodes_of(k) == pytest.approx(np.arange(k + 1) / k)
+    for offset, share in enumerate(nodes_of(k)[:-1]):
         assert half.x[offset::k][: len(vertices) - 1] == pytest.approx(vertices[:-1] + np.diff(vertices) * share)
 
 

@@ -10,7 +10,7 @@ import pytest
 from partialslip import load_scene
 from partialslip_fem import characterise as characterising
 from partialslip_fem.bodies import Grading, block_of
-from partialslip_fem.characterise import characterise
+from partialslip_fem.characterise import characterise_bodies
 from partialslip_fem.condensation import Condensation
 from partialslip_fem.elasticity import ALL_AROUND, body
 from partialslip_fem.factor import default_backend
@@ -127,7 +127,7 @@ def test_surroundings_are_what_the_far_field_changes(held, monkeypatch):
 
 
 def rig_of(*overrides):
-    return characterise(load_scene(SCENE, list(overrides)))
+    return characterise_bodies(load_scene(SCENE, list(overrides)))
 
 
 def test_rigs_of_larger_bodies_are_larger():
@@ -192,7 +192,7 @@ def test_terms_depend_on_poissons_ratio_alone(E):
 def test_the_difference_of_the_meshes_is_the_error():
     """What the coarser mesh differs by is more than the error of the finer one, seen on a mesh that is finer still."""
     scene = load_scene(SCENE, ["bodies.lower={width=40e-3, height=5e-3, support='roller', pulled=true}"])
-    found = characterise(scene)
+    found = characterise_bodies(scene)
     length = characterising._smallest(parts_of(scene, 1.0))
     parts = [part for part in parts_of(scene, length) if part.finite]
     finest = characterising._terms(parts, (0.05, 1e-8, 1e-6), 4, default_backend())
@@ -208,7 +208,7 @@ def test_given_meshes_reach_as_far_as_their_contact_line():
     """Which is a part of the flat face, not the size of the body; and they are the specimen that they are."""
     settings = "support='roller', pulled=true"
     of_mesh, of_sizes = (
-        characterise(load_scene("fretting-aluminium", [f"bodies.lower={{{body}, {settings}}}"]))
+        characterise_bodies(load_scene("fretting-aluminium", [f"bodies.lower={{{body}, {settings}}}"]))
         for body in (f"mesh='{SPECIMEN}', unit=1e-3", "width=40e-3, height=5e-3")
     )
     assert of_mesh.reach == pytest.approx(4e-4, rel=1e-6)
@@ -223,6 +223,6 @@ def test_given_meshes_reach_as_far_as_their_contact_line():
 def test_given_meshes_know_their_error():
     """There is no coarser mesh, but elements of lower order."""
     scene = load_scene("fretting-aluminium", [f"bodies.lower={{mesh='{SPECIMEN}', unit=1e-3, support='roller'}}"])
-    found = characterise(scene)
+    found = characterise_bodies(scene)
     apart = np.abs(found.terms.yy - found.rough.yy)[:3, :3].max()
     assert 1e-9 < apart < 1e-3

@@ -12,7 +12,7 @@ from partialslip.friction.active_set import Factored
 from partialslip.friction.constant import march
 from partialslip.friction.path import Path
 from partialslip.friction.path_following import Bounds, Follower
-from partialslip.friction.zone_ends import stick_zone
+from partialslip.friction.zone_ends import read_stick_zone
 from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.hertz import Hertz
@@ -75,7 +75,7 @@ def test_drifting_zone(Qf, sf):
     history = march(*problem, 1.0, loads(Qf, sf))
     assert history.turns
     assert history.cycles > 1
-    zone = stick_zone(x, history.bound, history.change, vertices, lambda each: each, history.changed)
+    zone = read_stick_zone(x, history.bound, history.change, vertices, lambda each: each, history.changed)
     assert zone.left == pytest.approx(exact.zone.left, abs=1e-4)
     assert zone.right == pytest.approx(exact.zone.right, abs=1e-4)
     q = history.change / 2 / np.diff(vertices) * np.pi / 2
@@ -90,7 +90,7 @@ def drifted(unsteady=None, Qf=0.55, sf=7.0):
     vertices, *problem = cells(points=(-1, *exact.zone, 1), size=1e-3, growth=0.07)
     history = march(*problem, 1.0, loads(Qf, sf))
     bound, change = history.bound, history.change
-    return exact.zone.left, stick_zone(
+    return exact.zone.left, read_stick_zone(
         problem[1][0], bound, change, vertices, lambda each: each, history.changed, unsteady and unsteady * bound
     )
 
@@ -249,7 +249,7 @@ def test_one_step_taken_for_enough(monkeypatch):
 
     def off():
         found = march(*problem, 1.0, loads(0.55, 7.0))
-        zone = stick_zone(problem[1][0], found.bound, found.change, vertices, lambda each: each, found.changed)
+        zone = read_stick_zone(problem[1][0], found.bound, found.change, vertices, lambda each: each, found.changed)
         return abs(zone.left - exact.left), max(step.residual.max() for step in found.points)
 
     assert off()[0] < 1e-4

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from partialslip.friction import zone_ends
-from partialslip.friction.zone_ends import right_end, stick_zone
-from partialslip.march.cells import graded
+from partialslip.friction.zone_ends import read_stick_zone, right_end
+from partialslip.march.cells import graded_cells
 
 VERTICES = np.linspace(-1, 1, 81)
 X = (VERTICES[1:] + VERTICES[:-1]) / 2
@@ -21,7 +21,7 @@ def room(left, right, depth=1.0):
 
 def read(room, signs=(1, 1)):
     turn = np.where(X < 0, *signs)
-    return stick_zone(X, BOUND, turn * (2 * BOUND - room), VERTICES, lambda forces: forces)
+    return read_stick_zone(X, BOUND, turn * (2 * BOUND - room), VERTICES, lambda forces: forces)
 
 
 @pytest.mark.parametrize("depth", [1.0, 1e-3, 1e-7])
@@ -87,7 +87,7 @@ def test_kinks_between_slip_of_either_way():
 
 def test_the_finest_places_of_a_mesh():
     points = np.array([-1.0, -0.3, 0.41, 1.0])
-    assert zone_ends.finest(graded(points, 1e-4, 0.1)) == [-0.3, 0.41]
+    assert zone_ends.finest(graded_cells(points, 1e-4, 0.1)) == [-0.3, 0.41]
     assert zone_ends.finest(np.linspace(-1, 1, 50)) == []
 
 
@@ -98,6 +98,6 @@ def test_an_end_that_passed_few_nodes_is_unsure_by_what_it_passed(count):
     inside = np.flatnonzero(some > 0)
     changed = np.full(len(X), np.nan)
     changed[inside[:count]] = 0.5
-    zone = stick_zone(X, BOUND, 2 * BOUND - some, VERTICES, lambda forces: forces, changed)
+    zone = read_stick_zone(X, BOUND, 2 * BOUND - some, VERTICES, lambda forces: forces, changed)
     assert zone.moved == (False, False)
     assert zone.strips == pytest.approx((count * 0.025, 0.0), abs=1e-12)

@@ -11,7 +11,7 @@ from partialslip.halfplane.gradual_path.certificate import certificate, certify
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady, stuck
 from partialslip.halfplane.gradual_path.inner_rates import other_root
 from partialslip.halfplane.gradual_path.retreat import Zone
-from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage, common
+from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage, common_zones
 from partialslip.halfplane.hertz import Hertz
 
 LOADS = Loads(7.2, np.pi * 0.9975)
@@ -80,7 +80,7 @@ def test_points_of_a_vanished_interval_that_count_as_stuck_are_seen(monkeypatch)
     """Deliberate fault: what the left interval and the zone after it have in common sticks throughout."""
 
     def overlap(before, after):
-        return common((one, other) for one in before.sticks for other in after.sticks)
+        return common_zones((one, other) for one in before.sticks for other in after.sticks)
 
     loads = Loads(15.993849408989083, np.pi * 0.40770240756657306)
     before = steady(loads, Hertz(), parts=False)

@@ -13,7 +13,7 @@ from partialslip.errors import InputError
 from partialslip.halfplane import steady
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.hertz import Hertz
-from partialslip.halfplane.loading import half_cycle, loading
+from partialslip.halfplane.loading import loading, one_step
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Conditions
 from partialslip.halfplane.slip import density, slip
@@ -189,7 +189,7 @@ def test_slip_is_the_integral_of_its_density(Qf, sf, gf):
 @pytest.mark.parametrize(("Qf", "sf", "gf"), [*LOADS, (-0.5, 0.3, 6.0)])
 def test_the_bound_of_mean_loads_is_the_room_of_the_stick_zone(Qf, sf, gf):
     """All along the way, or at the load points where slip reverses."""
-    cycle, shape = half_cycle(Qf, sf, Hertz(), gf), Hertz()
+    cycle, shape = one_step(Qf, sf, Hertz(), gf), Hertz()
     angle = (np.arange(4000) + 0.5) / 4000 * np.pi
     x = cycle.zone.centre + cycle.zone.half_width * np.cos(angle)
     q = half_range(x, cycle.zone, shape, gf)

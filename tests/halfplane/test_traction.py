@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from partialslip.halfplane.hertz import Hertz
-from partialslip.halfplane.loading import half_cycle
+from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone
@@ -94,7 +94,7 @@ BOUNDS = [(0.3, 4.0), (0.4, 4.03), (0.3, 8.0), (0.471569, 8.888889)]
 def test_mean_load_bound_of_large_tension_holds_all_along_the_way(Qf, sf, shape):
     """Some mean traction q must satisfy |q + dq_t - dq/2| <= f p at all stages t of the way, not only at its ends,
     unless slip reverses: the stages are then others."""
-    cycle = half_cycle(Qf, sf, shape)
+    cycle = one_step(Qf, sf, shape)
     angle = (np.arange(500) + 0.5) / 500 * np.pi
     x, weights = cycle.zone.centre + cycle.zone.half_width * np.cos(angle), np.sin(angle) * np.pi / 500
     dq = half_range(x, cycle.zone, shape)
@@ -113,13 +113,13 @@ def test_mean_load_bound_of_large_tension_holds_all_along_the_way(Qf, sf, shape)
 def test_the_mean_load_bound_of_an_example():
     """With half-width 0.9, dQ = 1.2 and dsigma = 8: both load points alone have room for 0.2087."""
     P = np.pi * 0.9**2 / 2
-    assert half_cycle(0.6 / P, 8 / 0.9, HERTZ).mean_load_bound * P == pytest.approx(0.184963, abs=1e-6)
+    assert one_step(0.6 / P, 8 / 0.9, HERTZ).mean_load_bound * P == pytest.approx(0.184963, abs=1e-6)
 
 
 @every_shape
 def test_mean_load_bound_of_small_tension_is_gross_sliding(shape):
-    assert half_cycle(0.19, 0.4, shape).mean_load_bound == pytest.approx(0.81, abs=1e-11)
-    assert half_cycle(0.19, 0.4, HERTZ).mean_load_bound == pytest.approx(0.81, abs=1e-14)
+    assert one_step(0.19, 0.4, shape).mean_load_bound == pytest.approx(0.81, abs=1e-11)
+    assert one_step(0.19, 0.4, HERTZ).mean_load_bound == pytest.approx(0.81, abs=1e-14)
 
 
 @every_shape

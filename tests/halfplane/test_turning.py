@@ -100,7 +100,7 @@ def test_energy_of_the_net_slip_alone_is_seen(monkeypatch):
     """Deliberate fault: friction dissipates on the net slip of half a cycle, as if no point slipped back and forth."""
     found = cycle(*TO_THE_END)
     true = found.worn.dissipated
-    monkeypatch.setattr(slips, "stages", lambda way: [way.phases[0].first, way.last])
+    monkeypatch.setattr(slips, "slip_stages", lambda way: [way.phases[0].first, way.last])
     assert slips.slips(found.way).dissipated < (1 - 1e-3) * true
 
 

@@ -15,7 +15,7 @@ from partialslip.errors import InputError
 from partialslip.friction.path import load_path
 from partialslip.halfplane.contact import contact
 from partialslip.halfplane.method import solve
-from partialslip.march.cells import compliance, forces, graded
+from partialslip.march.cells import compliance, forces, graded_cells
 from partialslip.plan import plan
 from partialslip.result import Result
 from partialslip.scene import Friction, Scene
@@ -65,7 +65,7 @@ def points(state: Result, sampling: str) -> Array:
     assert state.n is not None
     ends = np.unique([-REACH, -1.0, -state.m / state.a, state.n / state.a, 1.0, REACH])
     ends = np.concatenate([ends[:1], ends[1:][np.diff(ends) > 0.02]])
-    return graded(ends + 0.0013, 0.004, 0.15) * state.a
+    return graded_cells(ends + 0.0013, 0.004, 0.15) * state.a
 
 
 def changed(scene: Scene, *, P: float = 1.0, Q: float = 1.0, sigma: float = 1.0, f: float = 1.0) -> Scene:
@@ -92,7 +92,7 @@ def penalty(scene: Scene, softest: float = DELTAS[-1], stiffest: float = DELTAS[
     assert path is not None
     (Q1, strain1, _), (Q2, strain2, _) = (path.cycle[end] for end in path.ends)
     ends = np.unique([-1.0, *np.clip([-state.m / state.a, state.n / state.a], -0.999, 0.999), 1.0])
-    vertices = graded(ends, 2e-4, 0.06)
+    vertices = graded_cells(ends, 2e-4, 0.06)
     x = (vertices[1:] + vertices[:-1]) / 2
     bound = 2 * scene.friction.f * forces(pressed.shape, vertices)
     K = compliance(vertices / 2)

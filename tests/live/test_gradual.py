@@ -14,7 +14,7 @@ from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.gradual_table import parted, tabled
 from partialslip.halfplane.hertz import Hertz
-from partialslip.halfplane.loading import half_cycle
+from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.steady import stick_zones
 from partialslip.live import page
 
@@ -105,7 +105,7 @@ def test_tension_alone_leaves_room_for_a_mean_of_Q():
     """Without shear the zone stays in the middle: the points at which dq has an extreme on the way are one point."""
     tensions = np.linspace(0.5, 12, 47)
     bounds = answered(BOUND, tensions.tolist())
-    assert bounds == pytest.approx([half_cycle(0.0, sf, Hertz()).mean_load_bound for sf in tensions], abs=1e-9)
+    assert bounds == pytest.approx([one_step(0.0, sf, Hertz()).mean_load_bound for sf in tensions], abs=1e-9)
 
 
 @pytest.mark.fault

@@ -10,7 +10,7 @@ from opening import LARGE, answer, opened
 import partialslip
 from partialslip import halfplane
 from partialslip.halfplane.hertz import Hertz
-from partialslip.halfplane.loading import half_cycle
+from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.steady import stick_zone, stick_zones, transition
 from partialslip.halfplane.traction import half_range
 from partialslip.scene.reading import load_scene
@@ -109,7 +109,7 @@ def test_tractions(page, loads):
     ends = zone.centre + zone.half_width * np.array([-1, 1])
     inside = np.abs(x[:, None] - ends).min(axis=1) > 1e-9  # q has its steepest slope at the ends
     np.testing.assert_allclose(q[inside], half_range(x[inside], zone, Hertz()), rtol=0, atol=1e-9)
-    assert bound == pytest.approx(half_cycle(*loads, Hertz()).mean_load_bound, abs=1e-9)
+    assert bound == pytest.approx(one_step(*loads, Hertz()).mean_load_bound, abs=1e-9)
     peak = np.abs(half_range(np.union1d(x[inside], [0.0, *np.clip(ends, -1, 1)]), zone, Hertz())).max()
     assert page.run("hertz.largest(hertz.stickZone({}, {}))".format(*loads)) == pytest.approx(peak, abs=1e-9)
     assert page.run(f"hertz.transition({loads[0]})") == pytest.approx(float(transition(loads[0], Hertz())), abs=1e-12)

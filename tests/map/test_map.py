@@ -15,7 +15,7 @@ from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.hertz import Hertz
-from partialslip.halfplane.loading import half_cycle
+from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.steady import stick_zone, stick_zones, transition
 from partialslip.map import files as map_files
@@ -89,7 +89,7 @@ def test_table_against_one_zone_at_a_time(hertz):
     assert list(table[0]) == ["Qf", "sf", "m_over_a", "n_over_a", "half_width_over_a", "regime", "loads"]
     for row in table[::37]:
         Qf, sf = float(row["Qf"]), float(row["sf"])
-        zone, turns = stick_zone(Qf, sf, Hertz()), half_cycle(Qf, sf, Hertz()).turns_round
+        zone, turns = stick_zone(Qf, sf, Hertz()), one_step(Qf, sf, Hertz()).turns_round
         if turns and row["loads"] == "gradual":
             left, right = steady(Loads(sf, np.pi * Qf), Hertz()).last.zone
             zone = StickZone((left + right) / 2, (right - left) / 2, 0)
@@ -192,7 +192,7 @@ def test_a_scene_on_the_map(tmp_path, monkeypatch, capsys):
     assert main(["map", "hertz-large-tension"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "hertz-large-tension: large tension, m = 0.8038533 a, n = 0.2949287 a"
-    transition, bound = 8 * (1 - 0.6**0.5) * 200, half_cycle(0.4, 4.03, Hertz()).mean_load_bound
+    transition, bound = 8 * (1 - 0.6**0.5) * 200, one_step(0.4, 4.03, Hertz()).mean_load_bound
     assert f"{transition:.4g} MPa" in lines[1]
     assert f"{bound * np.pi * 100:.4g} kN/m" in lines[1]
     assert len(lines) == 3

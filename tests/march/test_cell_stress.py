@@ -8,7 +8,7 @@ from varying_scenes import varying
 import partialslip
 from partialslip import InputError, load_scene
 from partialslip.march import cell_stress
-from partialslip.march.cells import graded
+from partialslip.march.cells import graded_cells
 
 OUT_OF_PHASE = {
     "load.Q": "[-1e5, 0, 1e5, 0]",
@@ -122,7 +122,7 @@ def test_bad_points_and_none():
 
 def sample():
     """Cattaneo and Mindlin's shear on cells: q = w(1) - w(0.6) with w(c) = sqrt(c^2 - x^2), f p0 = 1."""
-    vertices = graded(np.array([-1.0, -0.6, 0.6, 1.0]), 1e-4, 0.05)
+    vertices = graded_cells(np.array([-1.0, -0.6, 0.6, 1.0]), 1e-4, 0.05)
 
     def on_cells(c):
         x = np.clip(vertices, -c, c)

@@ -5,14 +5,14 @@ import pytest
 
 from partialslip.halfplane.hertz import Hertz
 from partialslip.halfplane.punch import Punch
-from partialslip.march.cells import compliance, forces, graded
+from partialslip.march.cells import compliance, forces, graded_cells
 
 POINTS = np.array([-1.0, -0.8, 0.2, 1.0])
 
 
 @pytest.mark.parametrize(("size", "growth"), [(1e-2, 0.2), (1e-5, 0.05)])
 def test_cells_grow_from_the_points(size, growth):
-    vertices = graded(POINTS, size, growth)
+    vertices = graded_cells(POINTS, size, growth)
     widths = np.diff(vertices)
     assert (widths > 0).all()
     assert np.isin(POINTS, vertices).all()
@@ -24,7 +24,7 @@ def test_cells_grow_from_the_points(size, growth):
 
 @pytest.mark.parametrize("shape", [Hertz(), Punch(0.5)])
 def test_forces_are_the_integrals_of_the_pressure(shape):
-    vertices = graded(np.array([-1.0, -0.5, 0.5, 1.0]), 1e-3, 0.1)
+    vertices = graded_cells(np.array([-1.0, -0.5, 0.5, 1.0]), 1e-3, 0.1)
     pressed = forces(shape, vertices)
     assert pressed.sum() == pytest.approx(1, abs=1e-11)
     inner = np.abs(vertices[1:] + vertices[:-1]) < 1.6
@@ -66,14 +66,14 @@ def test_compliance_is_the_mean_of_the_logarithm():
 
 
 def test_compliance_is_positive_definite_on_strongly_graded_cells():
-    C = compliance(graded(POINTS / 2, 1e-6, 0.1))
+    C = compliance(graded_cells(POINTS / 2, 1e-6, 0.1))
     assert np.abs(C - C.T).max() == 0
     assert np.linalg.eigvalsh(C)[0] > 0.01
 
 
 def test_adhered_traction():
     """A contact that sticks everywhere under tension carries q = x sigma/(4 sqrt(a^2 - x^2)) (paper, eq. (1))."""
-    vertices = graded(np.array([-0.5, 0.5]), 1e-4, 0.05)
+    vertices = graded_cells(np.array([-0.5, 0.5]), 1e-4, 0.05)
     x, widths = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices)
     q = np.linalg.solve(compliance(vertices), x / 4) / widths
     inner = np.abs(x) < 0.49

@@ -11,13 +11,13 @@ from partialslip.friction import varying as stepping
 from partialslip.friction.normal import Presses
 from partialslip.friction.path import Path, stretched
 from partialslip.judge.verdict import Outcome
-from partialslip.march.cells import compliance, graded
+from partialslip.march.cells import compliance, graded_cells
 
 A1, A2 = 0.8, 1.0
 P1, P2 = (math.pi * a**2 / 2 for a in (A1, A2))
 VERTICES = np.unique(
     np.concatenate(
-        [graded(np.array([-A2, -A1, A1, A2]), 4e-3, 0.1), *(way * np.linspace(A1, A2, 41) for way in (1, -1))]
+        [graded_cells(np.array([-A2, -A1, A1, A2]), 4e-3, 0.1), *(way * np.linspace(A1, A2, 41) for way in (1, -1))]
     )
 )
 X, WIDTHS = (VERTICES[1:] + VERTICES[:-1]) / 2, np.diff(VERTICES)

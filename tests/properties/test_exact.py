@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from partialslip import InputError, halfplane, load_scene
 from partialslip.halfplane.hertz import Hertz
-from partialslip.halfplane.loading import half_cycle
+from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range
@@ -84,7 +84,7 @@ def test_shear_stays_within_friction_and_leaves_room_for_a_mean(Qf, sf, shape):
     x = np.concatenate([np.sin(np.linspace(-1.57, 1.57, 201)), zone.centre + zone.half_width * np.linspace(-1, 1, 41)])
     q = half_range(np.clip(x, -1, 1), zone, shape)
     assert (np.abs(q) <= shape.pressure(np.clip(x, -1, 1)) + 1e-11).all()
-    bound = half_cycle(Qf, sf, shape).mean_load_bound
+    bound = one_step(Qf, sf, shape).mean_load_bound
     assert -1e-10 <= bound <= 1 - Qf + 1e-10  # rounding of moments times sf
     if zone.s > 0:
         assert bound == pytest.approx(1 - Qf, abs=1e-10)

@@ -54,6 +54,6 @@ def test_meshes_finer_than_need_be_are_seen(monkeypatch):
 @pytest.mark.fault
 def test_estimates_of_half_the_size_are_seen(monkeypatch):
     """Errors are below them all the same, and no mesh changes: nothing else can tell."""
-    true = estimate.together
-    monkeypatch.setattr(estimate, "together", lambda *args: {key: each / 2 for key, each in true(*args).items()})
+    true = estimate.combined
+    monkeypatch.setattr(estimate, "combined", lambda *args: {key: each / 2 for key, each in true(*args).items()})
     assert all(f"hertz-shear fem: {key}: " in changed("hertz-shear") for key in ("ends", "q"))

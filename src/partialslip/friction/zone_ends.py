@@ -44,7 +44,7 @@ class StickInterval:
     strips: tuple[float, float] = (0.0, 0.0)
 
 
-def stick_zone(
+def read_stick_zone(
     x: Array,
     bound: Array,
     change: Array,

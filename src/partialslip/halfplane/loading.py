@@ -213,7 +213,7 @@ def loading(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float 
     return found if found.nothing else _solved(found)
 
 
-def half_cycle(Qf: float, sf: float, shape: Shape, gf: float = 0.0) -> Loading:
+def one_step(Qf: float, sf: float, shape: Shape, gf: float = 0.0) -> Loading:
     """Half a steady cycle by changes ``Qf`` (of 2 f P), ``sf`` and ``gf`` (of f p0, f p0/a) of positive sign; see
     :class:`partialslip.halfplane.shape.Shape`.
 

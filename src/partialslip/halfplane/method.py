@@ -15,7 +15,7 @@ from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.levels import Levels, levels
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.remarks import no_stresses, remarks, undetermined
-from partialslip.halfplane.states import Around, constant, sliding, without_shear
+from partialslip.halfplane.states import Around, constant, sliding_state, without_shear
 from partialslip.halfplane.steady import transition
 from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tables import table_error
@@ -233,4 +233,4 @@ def _stresses(scene: Scene, pressed: Contact, found: Levels | str) -> Around | N
     """Stresses of the steady state; None where q1 and q2 are not known."""
     if isinstance(found, Levels):
         return constant(scene, pressed, found)
-    return without_shear(scene) if scene.free else sliding(scene) if scene.slides else None
+    return without_shear(scene) if scene.free else sliding_state(scene) if scene.slides else None

@@ -116,7 +116,7 @@ def without_shear(scene: Scene) -> Around:
     return Around(scene.load, Fields(scene.friction.f, _ends(scene)), _Pressed(scene))
 
 
-def sliding(scene: Scene) -> Around | None:
+def sliding_state(scene: Scene) -> Around | None:
     """Stresses at the load points of a contact that slides at both, with q = f p; None where Q is larger, or smaller at
     a load point: q is then not known."""
     found = []

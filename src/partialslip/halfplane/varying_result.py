@@ -10,7 +10,7 @@ from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.mean import PressurePath, common
 from partialslip.halfplane.remarks import no_stresses, remarks, undetermined
-from partialslip.halfplane.states import Around, sliding, varying, without_shear
+from partialslip.halfplane.states import Around, sliding_state, varying, without_shear
 from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tractions import sample
 from partialslip.halfplane.varying import Cycle, steady_cycle
@@ -138,7 +138,7 @@ def _stresses(scene: Scene, cycle: Cycle | None, loaded: Loading | str) -> Aroun
     if isinstance(loaded, Loading) and cycle:
         return varying(scene, cycle.second, loaded, "slip reverses" if cycle.turns_round else "")
     if scene.slides:
-        return sliding(scene)
+        return sliding_state(scene)
     return None if cycle else without_shear(scene)
 
 

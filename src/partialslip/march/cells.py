@@ -13,7 +13,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 _NEAR = 4.0
 
 
-def graded(points: Array, size: float | Array, growth: float) -> Array:
+def graded_cells(points: Array, size: float | Array, growth: float) -> Array:
     """Ends of cells from the first to the last of ``points`` (k,), ascending; every point is an end.
 
     Cells are about ``size`` wide at the points (one size, or (k,)) and wider by ``growth`` times the distance from the

@@ -12,8 +12,8 @@ from scipy.special import ellipk, ellipkm1
 
 from partialslip.arrays import Array
 from partialslip.friction.coupled import Relative, punched
-from partialslip.friction.zone_ends import stick_zone
-from partialslip.march.cells import compliance, graded
+from partialslip.friction.zone_ends import read_stick_zone
+from partialslip.march.cells import compliance, graded_cells
 
 _END, _GROWTH = 1e-8, 0.05  # accuracy: size of cells at the punch's ends; growth
 # accuracy: sizes of cells at the stick zone's ends, in their distance from the punch's ends: the
@@ -68,11 +68,11 @@ class PunchGrowth:
             points = np.array([-1.0, -c, c, 1.0]) if beside > _END and c > _END else np.array([-1.0, 1.0])
             sizes = np.full(len(points), _END)
             sizes[1:-1] = size * min(beside, c)
-            vertices = graded(points, sizes, _GROWTH)
+            vertices = graded_cells(points, sizes, _GROWTH)
             middles = (vertices[1:] + vertices[:-1]) / 2
             sides = np.sign(beta * middles) * (np.abs(middles) > c)
             p, q = punched(relative(vertices, beta, opening), f, sides.astype(np.int8))
-            before, c = c, stick_zone(middles, f * p, 2 * q, vertices, lambda forces: forces).right
+            before, c = c, read_stick_zone(middles, f * p, 2 * q, vertices, lambda forces: forces).right
         right = vertices[1:] > 0
         clipped = np.concatenate([[0.0], vertices[1:][right]])
         widths = np.diff(vertices)[right]

@@ -19,14 +19,14 @@ from partialslip.friction.path import Path, load_path, stretched
 from partialslip.friction.regime import permanent_zone, steady_state
 from partialslip.friction.step_errors import of_steps, steps_matter
 from partialslip.friction.steps import follow_or_step
-from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, stick_zone, turning_points, within
+from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone, turning_points, within
 from partialslip.halfplane.remarks import no_stresses
-from partialslip.halfplane.states import Around, sliding, without_shear
+from partialslip.halfplane.states import Around, sliding_state, without_shear
 from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tractions import CellTractions
 from partialslip.march import driver
 from partialslip.march.cell_stress import CellStresses
-from partialslip.march.cells import compliance, graded, norm_parts, on_cells, relative_change
+from partialslip.march.cells import compliance, graded_cells, norm_parts, on_cells, relative_change
 from partialslip.march.driver import Answer, Errors
 from partialslip.march.pressing import NormalLoads
 from partialslip.plan import Plan
@@ -181,7 +181,7 @@ def with_stresses(found: Result, normal: NormalLoads, level: SimilarLevel, clock
     if level.history:
         stresses: CellStresses | Around | None = CellStresses.of(normal, level.vertices, level.history.around)
     else:
-        stresses = sliding(scene) if scene.slides else without_shear(scene)
+        stresses = sliding_state(scene) if scene.slides else without_shear(scene)
     if not stresses:
         return replace(found, undetermined=no_stresses("the contact slides"))
     far = normal.frame.places([-BEYOND, BEYOND])
@@ -209,7 +209,7 @@ def _cells(
     sizes[: len(known)] = _INNER * size
     sizes[: len(fine)] = np.maximum(size * np.minimum(_NEAR * gap, 1.0), _SMALLEST)
     order = np.argsort(points)
-    return graded(points[order], sizes[order], growth)
+    return graded_cells(points[order], sizes[order], growth)
 
 
 def _solve_level(
@@ -236,7 +236,7 @@ def _solve_level(
 
         def zone(of: History) -> StickInterval:
             if not of.path.presses_anew:
-                return stick_zone(x, of.bound, of.change, vertices, lambda values: values, of.lasting, of.unsteady)
+                return read_stick_zone(x, of.bound, of.change, vertices, lambda values: values, of.lasting, of.unsteady)
             on = np.flatnonzero(of.bound > 0)
 
             def spread(values: Array) -> Array:
@@ -245,7 +245,7 @@ def _solve_level(
                 return every
 
             here = of.of(on)
-            found = stick_zone(x[on], here.bound, here.change, vertices, spread, here.lasting, here.unsteady)
+            found = read_stick_zone(x[on], here.bound, here.change, vertices, spread, here.lasting, here.unsteady)
             return within(found, normal.common, vertices)
 
         def errors(of: History, gradual: History) -> dict[str, float]:

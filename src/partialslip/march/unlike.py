@@ -20,10 +20,10 @@ from partialslip.friction.path import Path, load_path, stretched
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.regime import steady_state, steps_of_coupled
 from partialslip.friction.step_errors import along_path, other_steps, pressed_together, summed
-from partialslip.friction.zone_ends import StickInterval, apart, contact_ends, kinks, stick_zone, within
+from partialslip.friction.zone_ends import StickInterval, apart, contact_ends, kinks, read_stick_zone, within
 from partialslip.halfplane.tractions import CoupledTractions
 from partialslip.march import driver
-from partialslip.march.cells import graded, norm_parts, on_cells, relative_change
+from partialslip.march.cells import graded_cells, norm_parts, on_cells, relative_change
 from partialslip.march.driver import Answer, Errors
 from partialslip.march.pressing import NormalLoads
 from partialslip.march.punch_growth import OnCells, PunchGrowth, relative
@@ -187,7 +187,7 @@ class UnlikeBodies(driver.Problem[UnlikeLevel]):
         wide = growth * (far - self.width)
         every = np.concatenate([sizes, np.full(len(others), _INNER * size * a), [wide, wide]])
         order = np.argsort(points)
-        return graded(points[order], every[order], growth)
+        return graded_cells(points[order], every[order], growth)
 
 
 def _extent(scene: Scene) -> float:
@@ -237,7 +237,7 @@ def _stick_zone(level: UnlikeLevel, punch: PunchGrowth | None) -> StickInterval:
         assert level.pressed
         p, q = level.pressed.growth
         bound, change = level.pressed.f[on] * np.maximum(p[on], 0.0), 2 * q[on]
-    stick = stick_zone(level.x[on], bound, change, level.vertices, partial(level.spread, on=on))
+    stick = read_stick_zone(level.x[on], bound, change, level.vertices, partial(level.spread, on=on))
     if history.path.presses_anew:
         return within(stick, level.common, level.vertices)
     left, right = level.common

@@ -114,7 +114,7 @@ def zone_around_peak(values: Array, least: Array | float) -> tuple[int, int] | N
     return int(first), int(last)
 
 
-def right_end(
+def read_right_end(
     x: Array, values: Array, last: int, first: int, *, cells: bool = False, slack: Array | None = None, least: float = 0
 ) -> ZoneEnd:
     """Right end of a zone, where ``values`` vanish like a square root.
@@ -187,7 +187,7 @@ def _end(x: Array, values: Array, last: int, first: int, cells: bool, slack: Arr
     return ZoneEnd(best.x, float(np.linalg.norm((own, spread, _CELL * cells * spacing))), spread)
 
 
-def left_end(
+def read_left_end(
     x: Array, values: Array, first: int, last: int, *, cells: bool = False, slack: Array | None = None, least: float = 0
 ) -> ZoneEnd:
     """Left end of a zone: :func:`right_end` of the mirror image.
@@ -195,7 +195,7 @@ def left_end(
     ``x``, ``values``, ``first``, ``last``, ``cells``, ``slack`` and ``least`` as there.
     """
     count, slack = len(x) - 1, None if slack is None else slack[::-1]
-    end = right_end(-x[::-1], values[::-1], count - first, count - last, cells=cells, slack=slack, least=least)
+    end = read_right_end(-x[::-1], values[::-1], count - first, count - last, cells=cells, slack=slack, least=least)
     return end._replace(x=-end.x)
 
 

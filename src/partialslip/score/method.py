@@ -16,9 +16,9 @@ from partialslip.score.ends import (
     blur,
     drifted_left_end,
     drifted_right_end,
-    left_end,
     noise,
-    right_end,
+    read_left_end,
+    read_right_end,
     zone_around_peak,
 )
 from partialslip.score.friction import FrictionRead, frictions
@@ -172,8 +172,8 @@ def _contact(x: Array, p: Array, cells: bool, name: str, origin: str) -> SeenCon
         hint = "; or are the elements of another order (--order)?" if cells else ""
         raise InputError(f"{origin}: {name}: must exceed its noise at {FEWEST} or more neighbouring points{hint}")
     first, last = touching
-    left = left_end(x, p, first, last, cells=cells, least=least)
-    right = right_end(x, p, last, first, cells=cells, least=least)
+    left = read_left_end(x, p, first, last, cells=cells, least=least)
+    right = read_right_end(x, p, last, first, cells=cells, least=least)
     if not right.x > left.x:
         wrong = "must have a contact of positive width; the ends found are in the wrong order"
         raise InputError(f"{origin}: {name}: {wrong}")
@@ -236,8 +236,8 @@ def _stick_zone(
         rooms = [scale * np.cbrt(room / scale) for room in rooms]
         told = [scale * float(np.cbrt(least / scale)) for least in told]
         slacks = [np.zeros_like(slack) for slack in slacks]  # f is the scene's
-    left = left_end(x, rooms[0], first, last, cells=cells, slack=slacks[0], least=told[0])
-    right = right_end(x, rooms[1], last, first, cells=cells, slack=slacks[1], least=told[1])
+    left = read_left_end(x, rooms[0], first, last, cells=cells, slack=slacks[0], least=told[0])
+    right = read_right_end(x, rooms[1], last, first, cells=cells, slack=slacks[1], least=told[1])
     if spread is not None:
         left = drifted_left_end(x, rooms[0], left, first, hidden[0], spread)
         right = drifted_right_end(x, rooms[1], right, last, hidden[1], spread)

@@ -7,7 +7,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.halfplane.contact import contact
-from partialslip.halfplane.loading import half_cycle
+from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import transition
 from partialslip.scene import Material, Scene, Tabulated
@@ -154,7 +154,7 @@ def random_means(random: np.random.Generator, kind: str, Qf: float, sf: float, s
         over = 10 ** random.uniform(-6, 2)
         return (room + over if room > 0 else 0.0), float(random.choice([0.0, random.normal()]))
     if kind == "ratchets":
-        bound = half_cycle(Qf, sf, shape).mean_load_bound
+        bound = one_step(Qf, sf, shape).mean_load_bound
         return bound + random.uniform(0.2, 0.8) * (room - bound), random.uniform(-1, 1)
     if kind == "mean loads":
         return random.random() * room, float(random.choice([10 ** random.uniform(-3, 1), random.uniform(0, 10)]))

@@ -12,7 +12,7 @@ from partialslip.halfplane.gradual_path.inner import Parted
 from partialslip.halfplane.gradual_path.inner_way import SHUT
 from partialslip.halfplane.gradual_path.phases import Drifting, Leading, Phase, Resting, Retreating
 from partialslip.halfplane.gradual_path.retreat import Retreat, Zone
-from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage, common, lasting
+from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage, common_zones, lasting
 from partialslip.halfplane.gradual_path.tractions import Part, Tractions
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone, stick_zones
@@ -188,7 +188,7 @@ def stuck(stages: Sequence[Stage]) -> tuple[float, float]:
     two, where a zone inside slips, the left one."""
     zones: Sequence[Zone] = stages[0].sticks
     for before, after in itertools.pairwise(stages):
-        zones = common(itertools.product(zones, lasting(before, after)))
+        zones = common_zones(itertools.product(zones, lasting(before, after)))
     return zones[0] if zones else _NONE
 
 

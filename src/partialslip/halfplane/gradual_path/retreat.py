@@ -50,7 +50,7 @@ class Zone(NamedTuple):
 _Step = Callable[[float, float, float, float], float]
 
 
-class Conditions(NamedTuple):
+class LoadConditions(NamedTuple):
     """Changes of the ``tension`` and of the ``shear`` force that belong to a stick zone, and the stiffness of its ends:
     q is short of its value at the ``right`` end by right sqrt(2 c r) at a small distance r inside, likewise ``left``.
     """
@@ -96,7 +96,7 @@ class Retreat:
         """Change at ``x`` in the slip zone on one ``side``, 1 or -1."""
         return self.start.less(1.0 if side > 0 else float(self.sign), x)
 
-    def conditions(self, zone: Zone) -> Conditions:
+    def conditions(self, zone: Zone) -> LoadConditions:
         """Loads of a stick ``zone``."""
         c = zone.half_width
         sides = {side: self._side(zone, side) for side in (1, -1)}
@@ -113,7 +113,7 @@ class Retreat:
         near = {side: of.end / _tangent(of.gap, c) if of.gap else 0.0 for side, of in sides.items()}
         far = {side: of.end * _tangent(of.gap, c) if of.gap else 0.0 for side, of in sides.items()}
         stiffness = {side: ((near[side] - far[-side]) / c - smooth[side]) / math.pi for side in sides}
-        return Conditions(4 / math.pi * tension, shear, stiffness[-1], stiffness[1])
+        return LoadConditions(4 / math.pi * tension, shear, stiffness[-1], stiffness[1])
 
     def zone(self, tension: float, shear: float, guess: Zone) -> Zone | None:
         """Stick zone under changes of the loads, by Newton's method from a ``guess``; None if there is none near.

@@ -40,7 +40,7 @@ class Resultants(NamedTuple):
     moment: float
 
 
-def stages(way: HalfCycle) -> list[Stage]:
+def slip_stages(way: HalfCycle) -> list[Stage]:
     """Stages of the ``way``, between which phases do not change and some points stick."""
     found = [way.phases[0].first]
     for phase in way.phases:
@@ -50,7 +50,7 @@ def stages(way: HalfCycle) -> list[Stage]:
 
 def slips(way: HalfCycle) -> Slips:
     """Slip over half a cycle and the dissipated energy."""
-    along = stages(way)
+    along = slip_stages(way)
     ends = [*itertools.chain(*(_breaks(stage) for stage in along))]
     breaks = np.unique(np.round(ends, 14))
     breaks = breaks[np.append(True, np.diff(breaks) > 1e-13)]
@@ -71,7 +71,7 @@ def slips(way: HalfCycle) -> Slips:
 def loop(way: HalfCycle, shares: Array) -> tuple[Array, Array]:
     """Displacement and moment since the beginning of half a cycle at ``shares`` (k,) of the loads, ascending from 0, in
     A f p0 a and f p0 a^2; see :func:`displacement`."""
-    known = stages(way)
+    known = slip_stages(way)
     inner = [way.at(share) for share in shares.tolist() if 0 < share < 1]
     along = sorted([*known, *inner], key=lambda stage: stage.progress)
     pairs = list(itertools.pairwise(along))

@@ -52,10 +52,10 @@ def lasting(before: Stage, after: Stage) -> list[Zone]:
         pairs = list(zip(early, late, strict=True))
     else:
         pairs = [(one, other) for one in early for other in late]
-    return common(pairs)
+    return common_zones(pairs)
 
 
-def common(pairs: Iterable[tuple[Zone, Zone]]) -> list[Zone]:
+def common_zones(pairs: Iterable[tuple[Zone, Zone]]) -> list[Zone]:
     """Intervals that both zones of a pair have in common."""
     found = (Zone(max(one.left, other.left), min(one.right, other.right)) for one, other in pairs)
     return [zone for zone in found if zone.right > zone.left]
