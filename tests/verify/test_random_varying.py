@@ -8,8 +8,7 @@ import pytest
 from partialslip.halfplane.contact import contact
 from partialslip.judge import Outcome
 from partialslip.verify.case import run_case
-from partialslip.verify.random_scenes import draw
-from partialslip.verify.random_varying import SHARE, WAYS, draw_varying, varies
+from partialslip.verify.random_scenes import SHARE, WAYS, draw, draw_varying, varies
 from partialslip.verify.suites import stress_case
 
 SEED = 4

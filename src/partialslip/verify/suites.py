@@ -13,8 +13,7 @@ from partialslip.judge.reference import reference
 from partialslip.methods import REFERENCES
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.catalogue import hard_cases, shipped
-from partialslip.verify.random_scenes import draw, kind_of
-from partialslip.verify.random_varying import draw_varying, varies
+from partialslip.verify.random_scenes import draw, draw_varying, kind_of, varies
 
 Suite = Literal["quick", "full", "book", "stress"]
 SUITES: tuple[Suite, ...] = get_args(Suite)
