@@ -19,7 +19,7 @@ from partialslip.benchmark import (
 from partialslip.benchmark.book import book_page
 from partialslip.benchmark.codes import CODES, code_answers
 from partialslip.benchmark.codes.own import Own
-from partialslip.benchmark.table import answer_from
+from partialslip.benchmark.measured import answer_from
 from partialslip.cli import main
 from partialslip.errors import InputError
 from partialslip.origin import made_now

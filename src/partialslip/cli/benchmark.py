@@ -128,9 +128,9 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _read(options: argparse.Namespace) -> int:
+    from partialslip.benchmark.measured import answer_from
     from partialslip.benchmark.problem import numbered
     from partialslip.benchmark.submission import add_answer
-    from partialslip.benchmark.table import answer_from
     from partialslip.cli.consoles import output
 
     problem, named = numbered(options.problem), options.code is not None
