@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from partialslip.cli.common import (
     add_columns,
-    add_force,
+    add_out,
     add_pdf,
     check_folder,
     check_report,
@@ -53,7 +53,7 @@ def add(commands: "Commands") -> None:
                       "fem-P1, fem-P2, equivalent, calculix-mortar, calculix-penalty, getfem, getfem-graded or "
                       "kratos")  # fmt: skip
     runs.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
-    _add_out(runs, "results/benchmark-CODE")
+    add_out(runs, "results/benchmark-CODE")
     runs.set_defaults(command=_run, overrides=[])
 
     reads = parts.add_parser("read", help="turn a table of tractions into an answer",
@@ -88,13 +88,8 @@ def add(commands: "Commands") -> None:
     builds.add_argument("folders", nargs="*", metavar="FOLDER", help="folders with answers")
     builds.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
     add_pdf(builds)
-    _add_out(builds, "results/benchmark")
+    add_out(builds, "results/benchmark")
     builds.set_defaults(command=_build, overrides=[])
-
-
-def _add_out(parser: argparse.ArgumentParser, usual: str) -> None:
-    parser.add_argument("--out", metavar="DIR", help=f"folder for the files (default: {usual})")
-    add_force(parser)
 
 
 def _list(_: argparse.Namespace) -> int:

@@ -32,8 +32,15 @@ def add_scene(parser: "argparse.ArgumentParser") -> None:
                         "repeated")  # fmt: skip
 
 
-def add_force(parser: "argparse.ArgumentParser") -> None:
-    """Add ``--force`` to ``parser``."""
+def add_out(
+    parser: "argparse.ArgumentParser",
+    usual: str,
+    *short: str,
+    what: str = "folder for the files",
+    metavar: str = "DIR",
+) -> None:
+    """Add ``--out``, with the default ``usual`` and ``short`` forms, and ``--force`` to ``parser``."""
+    parser.add_argument(*short, "--out", metavar=metavar, help=f"{what} (default: {usual})")
     parser.add_argument("--force", action="store_true",
                         help="overwrite the files of another scene or other settings")  # fmt: skip
 

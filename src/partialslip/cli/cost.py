@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import partialslip
 from partialslip.cli.common import (
-    add_force,
+    add_out,
     add_pdf,
     add_scene,
     add_verbose,
@@ -41,8 +41,7 @@ def add(topics: "Commands") -> None:
     add_scene(cost)
     cost.add_argument("--repeats", type=int, default=3, metavar="N", help="repeats of each setting (default: 3)")
     cost.add_argument("--peers", metavar="FILE", help="results of other codes, JSON lines, to add to the diagram")
-    cost.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-cost)")
-    add_force(cost)
+    add_out(cost, "results/NAME-cost")
     add_verbose(cost, "the settings that another one beats in cost and error, and how errors fall with unknowns")
     add_pdf(cost)
     cost.set_defaults(command=_cost)

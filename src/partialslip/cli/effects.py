@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import partialslip
 from partialslip.cli.common import (
-    add_force,
+    add_out,
     add_pdf,
     add_scene,
     check_folder,
@@ -31,8 +31,7 @@ def add(topics: "Commands") -> None:
         ],
     )
     add_scene(effects)
-    effects.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-effects)")
-    add_force(effects)
+    add_out(effects, "results/NAME-effects")
     add_pdf(effects)
     effects.set_defaults(command=_effects)
 

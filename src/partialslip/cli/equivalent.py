@@ -4,7 +4,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_force, add_scene, check_folder, print_written, results_folder
+from partialslip.cli.common import add_out, add_scene, check_folder, print_written, results_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,8 +31,7 @@ def add(commands: "Commands") -> None:
         ],
     )
     add_scene(equivalents)
-    equivalents.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-equivalent)")
-    add_force(equivalents)
+    add_out(equivalents, "results/NAME-equivalent")
     equivalents.set_defaults(command=_equivalent)
 
 

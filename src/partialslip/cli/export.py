@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_force, add_scene, print_written
+from partialslip.cli.common import add_out, add_scene, print_written
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
@@ -51,8 +51,7 @@ def add(commands: "Commands") -> None:
                          "--size)")  # fmt: skip
     exports.add_argument("--penalty", action="store_true",
                          help="calculix: penalty contact instead of mortar contact")  # fmt: skip
-    exports.add_argument("-o", "--out", metavar="FILE", help="file to write (default: results/NAME-TO.inp or .msh)")
-    add_force(exports)
+    add_out(exports, "results/NAME-TO.inp or .msh", "-o", what="file to write", metavar="FILE")
     exports.set_defaults(command=_export)
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import partialslip
 from partialslip.cli.common import (
-    add_force,
+    add_out,
     add_pdf,
     add_scene,
     check_folder,
@@ -51,8 +51,7 @@ def add(commands: "Commands") -> None:
                          "not know q1 and q2)")  # fmt: skip
     fatigue.add_argument("--body", choices=("lower", "upper"), default="lower", metavar="BODY",
                          help="lower or upper (default: lower)")  # fmt: skip
-    fatigue.add_argument("-o", "--out", metavar="DIR", help="folder for the files (default: results/NAME-fatigue)")
-    add_force(fatigue)
+    add_out(fatigue, "results/NAME-fatigue", "-o")
     add_pdf(fatigue)
     fatigue.set_defaults(command=_fatigue)
 

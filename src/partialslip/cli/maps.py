@@ -4,7 +4,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_force, check_folder, print_written, results_folder
+from partialslip.cli.common import add_out, check_folder, print_written, results_folder
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -22,8 +22,7 @@ def add(commands: "Commands") -> None:
     maps.add_argument("scene", nargs="?", metavar="SCENE",
                       help="a shipped scene or a TOML file, with the profile to map and the loads to mark "
                       "(default: Hertz)")  # fmt: skip
-    maps.add_argument("--out", metavar="DIR", help="folder for the files (default: results/map, results/NAME-map)")
-    add_force(maps)
+    add_out(maps, "results/map, results/NAME-map")
     maps.set_defaults(command=_map)
 
 

@@ -4,7 +4,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_force, check_folder, print_written, results_folder
+from partialslip.cli.common import add_out, check_folder, print_written, results_folder
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -25,8 +25,7 @@ def add(commands: "Commands") -> None:
     page.add_argument("scene", nargs="?", default=_SCENE, metavar="SCENE",
                       help="a shipped scene or a TOML file, with a Hertz profile; the sliders start at the scene's "
                       f"loads (default: {_SCENE})")  # fmt: skip
-    page.add_argument("--out", metavar="DIR", help="folder for page.html (default: results/NAME-page)")
-    add_force(page)
+    add_out(page, "results/NAME-page", what="folder for page.html")
     page.set_defaults(command=_page)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import partialslip
 from partialslip.allowance import Allowance
 from partialslip.cli.common import (
-    add_force,
+    add_out,
     add_pdf,
     add_scene,
     add_verbose,
@@ -62,8 +62,7 @@ def add(commands: "Commands") -> None:
     runs.add_argument("--save", metavar="FILE",
                       help="write the state at the end of the load path to FILE, .npz (of fem, else of "
                       "march)")  # fmt: skip
-    runs.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME)")
-    add_force(runs)
+    add_out(runs, "results/NAME")
     add_pdf(runs)
     add_verbose(runs, "limits, slip, certificates, costs by phase, and the effects with reasons")
     runs.add_argument("--json", action="store_true", help="print results.json and nothing else; files only with --out")

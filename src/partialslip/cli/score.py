@@ -10,7 +10,7 @@ import partialslip
 from partialslip.bars import LARGEST, Asked, asked
 from partialslip.cli.common import (
     add_columns,
-    add_force,
+    add_out,
     add_pdf,
     add_scene,
     add_verbose,
@@ -65,8 +65,7 @@ def add(commands: "Commands") -> None:
                         help="largest allowed error of a, m and n, as a fraction of a (p: 10 times, q: 15 times, at "
                         "most 0.1); or three numbers for contact, stick zone and tractions: 1e-3,1e-2,5e-2; none above "
                         "0.1")  # fmt: skip
-    scores.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-FILE)")
-    add_force(scores)
+    add_out(scores, "results/NAME-FILE")
     add_pdf(scores)
     add_verbose(scores, "what was read from the file, and costs and effects of the reference")
     scores.add_argument("--json", action="store_true", help="print results.json, nothing else; files only with --out")

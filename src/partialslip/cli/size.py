@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import partialslip
 from partialslip.cli.common import (
-    add_force,
+    add_out,
     add_pdf,
     add_scene,
     check_folder,
@@ -51,8 +51,7 @@ def add(topics: "Commands") -> None:
                       help="address of a Dask scheduler; the cluster's workers solve the cases")  # fmt: skip
     size.add_argument("--one-mesh", action="store_true",
                       help="one mesh per size, without further meshes to check the error of the mesh")  # fmt: skip
-    size.add_argument("--out", metavar="DIR", help="folder for the files (default: results/NAME-size)")
-    add_force(size)
+    add_out(size, "results/NAME-size")
     add_pdf(size)
     size.set_defaults(command=_size)
 

@@ -3,7 +3,7 @@
 import argparse
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_force, add_verbose, check_folder, print_written
+from partialslip.cli.common import add_out, add_verbose, check_folder, print_written
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -46,8 +46,7 @@ def add(commands: "Commands") -> None:
     for field, what in (("project", "project"), ("author", "author"), ("reviewer", "reviewer"),
                         ("document", "document number")):  # fmt: skip
         verify.add_argument(f"--{field}", default="", metavar="TEXT", help=f"{what}, for the title block of the report")
-    verify.add_argument("--out", metavar="DIR", help="folder for the files (default: results/verify-SUITE)")
-    add_force(verify)
+    add_out(verify, "results/verify-SUITE")
     add_verbose(verify, "one row for each case and method, also if there are many and nothing is missed")
     verify.set_defaults(command=_verify)
 
