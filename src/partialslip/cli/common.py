@@ -198,17 +198,23 @@ def _instead(passed: str) -> str:
     return f" ({passed})" if passed else ""
 
 
-def print_elsewhere(place: "Place", console: "Console") -> None:
-    """Print on ``console`` that a study starts in another folder than usual, and how to extend the usual one."""
+def study_ledger(place: "Place") -> "Ledger":
+    """Open the ledger of a study in the folder ``place``, from which a stopped study continues.
+
+    Tell that the study starts in another folder than usual, and how to extend the usual one; and how many entries of
+    the ledger were made by other source files.
+    """
+    from partialslip.batch.ledger import Ledger
+    from partialslip.cli.consoles import messages
+
+    ledger = Ledger(place.path / "ledger.jsonl")
+    console = messages()
     if place.passed:
         text = f"{place.passed}; starting in {place.path}; --out and --force with the former folder reuse its cases"
         console.print(text, soft_wrap=True, markup=False)
-
-
-def print_outdated(ledger: "Ledger", console: "Console") -> None:
-    """Print on ``console`` how many entries of ``ledger`` were made by other source files."""
     if count := ledger.outdated:
         console.print(f"{ledger.path}: {count:,} entries ignored: made by other source files", markup=False)
+    return ledger
 
 
 def print_outcome(

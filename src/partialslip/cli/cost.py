@@ -13,10 +13,9 @@ from partialslip.cli.common import (
     add_verbose,
     check_folder,
     check_report,
-    print_elsewhere,
-    print_outdated,
     print_written,
     results_folder,
+    study_ledger,
     write_study,
 )
 from partialslip.errors import InputError
@@ -54,8 +53,7 @@ def _cost(options: argparse.Namespace) -> int:
         raise InputError(f"--repeats {options.repeats}: must be >= 1")
     scene = partialslip.load_scene(options.scene, options.overrides)
 
-    from partialslip.batch.ledger import Ledger
-    from partialslip.cli.consoles import messages, output, working
+    from partialslip.cli.consoles import output, working
     from partialslip.output.files import csv_text, write_texts
     from partialslip.output.tables import print_table
     from partialslip.report.page import Section
@@ -67,9 +65,7 @@ def _cost(options: argparse.Namespace) -> int:
     known = {"peers": options.peers and Path(options.peers)}
     with results_folder(options, "study cost", name, scene, **known) as place:
         folder = place.path
-        ledger = Ledger(folder / "ledger.jsonl")
-        print_elsewhere(place, messages())
-        print_outdated(ledger, messages())
+        ledger = study_ledger(place)
         with working(name) as tell:
             found = ladder.measure_costs(scene, ledger, options.repeats, lambda *state: tell(_progress(*state)))
         texts = {

@@ -10,10 +10,9 @@ from partialslip.cli.common import (
     add_scene,
     check_folder,
     check_report,
-    print_elsewhere,
-    print_outdated,
     print_written,
     results_folder,
+    study_ledger,
     write_study,
 )
 from partialslip.errors import InputError
@@ -75,9 +74,8 @@ def _size(options: argparse.Namespace) -> int:
 
 
 def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", place: "Place") -> int:
-    from partialslip.batch.ledger import Ledger
     from partialslip.batch.sweep import workers
-    from partialslip.cli.consoles import counting, messages, output
+    from partialslip.cli.consoles import counting, output
     from partialslip.output.files import csv_text, write_texts
     from partialslip.output.tables import print_table
     from partialslip.report.page import Section
@@ -85,9 +83,7 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", plac
     from partialslip.study.size.figure import grid_svg, size_svg
 
     folder = place.path
-    ledger = Ledger(folder / "ledger.jsonl")
-    print_elsewhere(place, messages())
-    print_outdated(ledger, messages())
+    ledger = study_ledger(place)
     name = f"{scene.name}-size"
     with counting(name) as progress, workers(options.cluster, options.processes) as executor:
         entries = sizes.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
