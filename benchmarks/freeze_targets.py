@@ -30,4 +30,5 @@ def main(numbers: list[str]) -> None:
         PATH.write_text(frozen_text(kept, {number: regimes[number] for number in kept}), "utf-8")
 
 
-main(sys.argv[1:])
+if __name__ == "__main__":
+    main(sys.argv[1:])

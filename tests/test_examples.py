@@ -64,3 +64,10 @@ def test_a_second_run_of_the_sweep_solves_nothing(run):
     assert [text for text in SHOWN["size_of_a_body"] if text not in first] == []
     assert "0 of them solved now" in second
     assert first.splitlines()[1:] == second.splitlines()[1:]
+
+
+@pytest.mark.parametrize("script", sorted(EXAMPLES.parent.glob("benchmarks/*.py")), ids=lambda script: script.stem)
+def test_what_benchmarks_import_is_there(script, monkeypatch):
+    """They run for minutes, and no test runs them."""
+    monkeypatch.setattr(sys, "path", [str(script.parent), *sys.path])
+    runpy.run_path(str(script), run_name="imported")

@@ -188,7 +188,7 @@ def _contact_forces(
         trail = Trail(line.x, before.trail if before else None)
         ends = partial(contact_ends_of, line, beta=problem.beta)
         reach = before.half_width if before else None
-        along = coupled.ContactLine(
+        along = coupled.Nodes(
             line.x,
             line.weights,
             ends,

@@ -36,7 +36,6 @@ _ANEW = "anew"  # key of steps that do not begin where others did
 _PATIENCE = 4  # cost: iterations without progress before the method changes
 _CLOSE = 32  # cost: changes of sides in an iteration without progress below which rounding errors may matter
 
-
 Pair = tuple[Solution, Solution]
 _Press = Callable[..., Pair]  # one step: force, gap, kept, where to begin, and its key
 _Solver = Callable[[Array, Array], Forces]  # forces for the displacements (2, n) that sum to the totals (2,)
@@ -216,7 +215,7 @@ class _Step:
 
 
 @dataclass(frozen=True)
-class ContactLine:
+class Nodes:
     """Nodes of the contact line: ``x`` (n,), ``weights`` (n,) that turn tractions into forces, and ``ends(p, q,
     rise=...) -> (left, right)``, the ends of the contact under nodal forces along y and x, (n,) each. ``resultants(p,
     q) -> (points, normal, tangential)``: points (k,) within the contact, and the forces on their left, (k,) each;
@@ -237,7 +236,7 @@ class ContactLine:
 
 
 def press(
-    C: Relative, gap: Array, f: Array, line: ContactLine | None, least: int, accuracy: float, P: float = 1.0
+    C: Relative, gap: Array, f: Array, line: Nodes | None, least: int, accuracy: float, P: float = 1.0
 ) -> Pressed:
     """Press the bodies together under a force from 0 to ``P``, with friction and without Q.
 
@@ -301,7 +300,7 @@ def _vertex(x: Array, gap: Array) -> float:
     return float(np.polynomial.Polynomial.fit(x, gap, 2).deriv().roots()[0].real)
 
 
-def _moved(line: ContactLine, forces: Pair, others: Pair) -> float:
+def _moved(line: Nodes, forces: Pair, others: Pair) -> float:
     """Largest distance between the ends of two contacts, in half-widths."""
     (left, right), (l_other, r_other) = (line.ends(p.x, q.x) for p, q in (forces, others))
     return max(abs(left - l_other), abs(right - r_other)) * 2 / (right - left)
@@ -311,7 +310,7 @@ def _similar(
     C: Relative,
     gap: Array,
     f: Array,
-    line: ContactLine,
+    line: Nodes,
     vertex: float,
     last: Pair,
     step: _Press,
@@ -344,13 +343,7 @@ def _similar(
 
 
 def _nearly_similar(
-    C: Relative,
-    gap: Array,
-    f: Array,
-    line: ContactLine,
-    reach: float,
-    step: _Press,
-    off: Callable[[Array, Array], float],
+    C: Relative, gap: Array, f: Array, line: Nodes, reach: float, step: _Press, off: Callable[[Array, Array], float]
 ) -> Pressed | None:
     """Press bodies of a size, whose contact has about the half-width ``reach``, with all punches and half of the last
     step after all but one and the whole last step. The difference is the error estimate; None if it is large."""
@@ -409,7 +402,7 @@ def march(
     f: Array,
     path: Path,
     pressed: Array | None = None,
-    line: ContactLine | None = None,
+    line: Nodes | None = None,
     accuracy: float = 1e-3,
 ) -> tuple[History, Solution, Pressed | None]:
     """Press the bodies together with friction and follow the path of the loads.
@@ -431,7 +424,7 @@ def march(
     path : Path
     pressed : (n,) array, optional
         Normal forces at the beginning of the path; default: the bodies are apart.
-    line : ContactLine, optional
+    line : Nodes, optional
         Nodes of the contact line.
     accuracy : float
         Tolerance of q for the steps of pressing, relative L2.

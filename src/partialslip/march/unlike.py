@@ -218,7 +218,7 @@ def _solve_on(problem: UnlikeBodies, path: Path | None, vertices: Array, clock: 
             begins, shear = (on_cells(each, places) / scene.P for each in (problem.start.p, problem.start.q))
             path = replace(path, before=shear)
         stages = partial(OnCells, problem.punch, vertices) if problem.punch else None
-        line = coupled.ContactLine(x, widths, ends, None, problem.punch is not None, stages=stages)
+        line = coupled.Nodes(x, widths, ends, None, problem.punch is not None, stages=stages)
         moved = stretched(x, scene.origin / L)
         stretch, near = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
         f = scene.friction.at(x * L + scene.origin)
