@@ -220,9 +220,8 @@ class Nodes:
     rise=...) -> (left, right)``, the ends of the contact under nodal forces along y and x, (n,) each. ``resultants(p,
     q) -> (points, normal, tangential)``: points (k,) within the contact, and the forces on their left, (k,) each;
     needed without ``stages``. ``similar``: whether half-planes are pressed together under a parabolic gap, so that all
-    stages of pressing are similar; ``stages`` gives them for a half-width of the contact, if they are known: by default
-    a flat punch on the nodes tells them. ``nearly_similar``: the same of bodies of a size; ``near`` is about the half-
-    width of the contact, if it is known. ``trail``: where the steps begin, and are to be remembered."""
+    stages of pressing are similar; ``stages`` gives them for a half-width, by default from a flat punch on the nodes.
+    ``nearly_similar``: the same of bodies of a size; ``near``: about its size. ``trail``: where steps begin."""
 
     x: Array
     weights: Array
