@@ -94,7 +94,8 @@ def constants() -> list[Constant]:
         for path in sorted((ROOT / folder).rglob("*.py")):
             text, inside = path.read_text("utf-8"), path.relative_to(ROOT / folder)
             lines, last, shared = text.splitlines(), 0, ("", "")
-            package = inside.parts[0] if len(inside.parts) > 1 else "partialslip"
+            package = folder.split("/")[1] if len(inside.parts) == 1 or folder != FOLDERS[0] else inside.parts[0]
+            module = ".".join(inside.with_suffix("").parts)
             for node in ast.parse(text).body:
                 names = _names(node)
                 if not names:
@@ -109,11 +110,7 @@ def constants() -> list[Constant]:
                 kind, what = _split(own)
                 values = [" ".join((ast.get_source_segment(text, value) or "").split()) for _, value in names]
                 for (name, _), value in zip(names, values, strict=True):
-                    home = package if folder.startswith("src") else folder.split("/")[1]
-                    said = what or shared[1]
-                    found.append(
-                        Constant(home, ".".join(inside.with_suffix("").parts), name, value, kind or shared[0], said)
-                    )
+                    found.append(Constant(package, module, name, value, kind or shared[0], what or shared[1]))
     return found
 
 

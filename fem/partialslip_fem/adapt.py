@@ -20,12 +20,11 @@ from partialslip_fem.goals import Goal, course, gaps, size_reached, worst
 from partialslip_fem.mesh_solution import Adapted
 from partialslip_fem.problem import Problem
 
-# cost: These constants change the cost of a run, not its error estimates.
 _CALMER = (0.4, 0.85)  # cost: smallest and largest factor of the growth after a mesh whose error is too large
 # cost: error aimed below, and inverse power of the growth that errors fall with where zone ends wander
 _WANDERING = 1.5, 0.5
 _WAITS = 2  # cost: meshes in a row without an estimate of the error away from the ends, after a first one
-_MERGED = 0.1  # accuracy: of the smallest element: points nearer to each other are one
+_MERGED = 0.1  # cost: of the smallest element: points nearer to each other are one
 # cost: of the element size that a kink needs: the mesh is refined at kinks where it is coarser than this
 _KINK_SLACK = 1.5
 _MOST_UNKNOWNS = 200_000  # limit: on a mesh from which no finer one is made

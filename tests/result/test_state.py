@@ -2,6 +2,7 @@
 
 import functools
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from partialslip.cli import main
 from partialslip.judge.measures import measures
 from partialslip.march import driver as marching
 
+PAD = Path(__file__).parents[2] / "docs" / "scenes" / "finite-pad.toml"
 MEAN = ("load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]", "fem.accuracy=1e-3")
 
 
@@ -161,3 +163,18 @@ def test_broken_files(tmp_path, capsys, content):
 def test_missing_file(tmp_path):
     with pytest.raises(InputError, match="cannot be read"):
         partialslip.load_state(tmp_path / "none.npz")
+
+
+@pytest.mark.slow
+def test_a_pad_on_a_pulled_specimen_goes_on():
+    """Tension bends the specimen, so that p has a moment though the bodies do not turn: the state was refused."""
+    scene = load_scene(str(PAD), ["fem.accuracy=1e-2"])
+    found = run(scene, ["fem"])["fem"]
+    again = run(scene, ["fem"], start=found.state)["fem"]
+    assert (again.m, again.n) == pytest.approx((found.m, found.n), abs=1e-5 * found.a)
+
+
+def test_a_state_without_a_number_is_refused():
+    state = solved("march", 1).state
+    with pytest.raises(InputError, match=r"^state: is of P = nan N/m; the scene has"):
+        solved("march", 1, replace(state, P=float("nan")))

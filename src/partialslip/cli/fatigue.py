@@ -15,14 +15,13 @@ from partialslip.cli.common import (
     write_study,
 )
 from partialslip.errors import InputError
+from partialslip.methods import REFERENCES
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from partialslip.cli.common import Commands
     from partialslip.fatigue import Assessment
-
-_METHODS = ("exact", "march", "fem")
 
 
 def add(commands: "Commands") -> None:
@@ -46,7 +45,7 @@ def add(commands: "Commands") -> None:
     fatigue.add_argument("--distance", metavar="LENGTH",
                          help="depth over which stresses are averaged, in the scene's unit of length, as "
                          "fatigue.distance")  # fmt: skip
-    fatigue.add_argument("--method", choices=_METHODS, metavar="METHOD",
+    fatigue.add_argument("--method", choices=REFERENCES, metavar="METHOD",
                          help="exact, march or fem (default: the reference of the scene, and march where exact does "
                          "not know q1 and q2)")  # fmt: skip
     fatigue.add_argument("--body", choices=("lower", "upper"), default="lower", metavar="BODY",

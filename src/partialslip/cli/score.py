@@ -22,6 +22,7 @@ from partialslip.cli.common import (
     print_outcome,
 )
 from partialslip.errors import InputError
+from partialslip.methods import REFERENCES
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -59,7 +60,7 @@ def add(commands: "Commands") -> None:
     scores.add_argument("--at", metavar="I,J",
                         help="CalculiX: numbers, from 1, of the contact results at load points 1 and 2 (default: ends "
                         "of the last steps)")  # fmt: skip
-    scores.add_argument("--with", dest="reference", metavar="METHOD", choices=["exact", "march", "fem"],
+    scores.add_argument("--with", dest="reference", metavar="METHOD", choices=REFERENCES,
                         help="compare with exact, march or fem (default: the first that solves the scene)")  # fmt: skip
     scores.add_argument("--bar", metavar="FRACTION",
                         help="largest allowed error of a, m and n, as a fraction of a (p: 10 times, q: 15 times, at "

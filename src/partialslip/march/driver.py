@@ -43,12 +43,6 @@ class Level:
         """Middles of the cells (c,)."""
         return (self.vertices[1:] + self.vertices[:-1]) / 2
 
-    def spread(self, values: Array, on: Indices) -> Array:
-        """``values`` (k,) of the cells ``on``, with zeros on all others, (c,)."""
-        every = np.zeros(len(self.vertices) - 1)
-        every[on] = values
-        return every
-
 
 L = TypeVar("L", bound=Level)
 
@@ -138,9 +132,10 @@ class Problem(ABC, Generic[L]):
     def step_errors(self, level: L) -> Errors:
         """Errors due to the load steps."""
 
-    def likely(self, level: L, mesh: tuple[float, float], spent: float) -> float:
-        """CPU seconds that the next ``mesh`` is likely to take after ``spent`` ones; infinite: there is to be none."""
-        return float(spent * (len(self.cells(level, mesh)) / len(level.vertices)) ** 3)
+    def likely(self, level: L, count: int, spent: float) -> float:
+        """CPU seconds that a mesh with ``count`` ends of cells is likely to take, as the mesh of the ``level`` took
+        ``spent`` ones; infinite: there is to be none."""
+        return float(spent * (count / len(level.vertices)) ** 3)
 
     def enough(self, meshed: Errors, stepped: Errors) -> bool:
         """Whether finer cells are not needed, or of no use: they do not reduce the error of load steps."""
@@ -153,16 +148,16 @@ class Problem(ABC, Generic[L]):
         """What the result is made of."""
 
 
-def march(problem: Problem[L], progress: Callable[[str], None], start: State | None, clock: Clock) -> tuple[Result, L]:
+def march(problem: Problem[L], progress: Callable[[str], None]) -> tuple[Result, L]:
     """Solve ``problem`` on finer and finer cells, until the errors are as small as the scene asks for, or the rest of
-    the allowance of the ``clock`` does not suffice. Returns the result, and the last level."""
+    the allowance of its clock does not suffice. Returns the result, and the last level."""
     level: L | None = None
-    errors: Errors = {}
+    clock, errors = problem.clock, Errors()
     shares: dict[str, Errors] = {}
     meshes, iterations, spent = 0, 0, 0.0
     for mesh in problem.meshes:
         if level:
-            likely = problem.likely(level, mesh, spent)
+            likely = problem.likely(level, len(problem.cells(level, mesh)), spent)
             if likely == math.inf or (meshes > 1 and likely > _SHARE * clock.remaining()):
                 break
         began = clock.cost().cpu_s
@@ -180,12 +175,12 @@ def march(problem: Problem[L], progress: Callable[[str], None], start: State | N
                 break
     assert level is not None
     widths, places, scene = np.diff(level.vertices), problem.places(level), problem.scene
-    lost, notes = begun(errors, level.history, widths, start, lambda state: on_cells(state.p, places) / scene.P)
+    lost, notes = begun(errors, level.history, widths, problem.start, lambda state: on_cells(state.p, places) / scene.P)
     if lost:
         shares["start"] = lost
         errors = {key: error + lost.get(key, 0.0) for key, error in errors.items()}
     counts = {"meshes": meshes, "iterations": iterations}
-    return _result(problem, level, errors, shares, counts, clock, notes), level
+    return _result(problem, level, errors, shares, counts, notes), level
 
 
 def _result(
@@ -194,7 +189,6 @@ def _result(
     errors: Errors,
     shares: Mapping[str, Errors],
     counts: Mapping[str, int],
-    clock: Clock,
     notes: tuple[str, ...],
 ) -> Result:
     scene, history, answer = problem.scene, level.history, problem.answer(level)
@@ -211,7 +205,7 @@ def _result(
         stick_centre=None if found.centre is None else origin + found.centre * length,
         stick_half_width=None if found.half_width is None else found.half_width * length,
         traction=answer.traction,
-        cost=clock.cost(),
+        cost=problem.clock.cost(),
         state=_state(problem, level, history, answer.pressed, errors) if history else None,
         slip=Slip(x, history.slip[answer.cells] * unit, history.dissipated * unit * scene.P) if history else None,
         settings={"model": answer.model, "accuracy": accuracy},

@@ -45,7 +45,7 @@ def solve(
     """
     clock = Clock(allowance)
     if not scene.material.alike:
-        return march(unlike.UnlikeBodies(scene, plan, start, clock), progress, start, clock)[0]
+        return march(unlike.UnlikeBodies(scene, plan, start, clock), progress)[0]
     problem = similar.SimilarBodies(scene, plan, start, clock, added)
-    found, level = march(problem, progress, start, clock)
+    found, level = march(problem, progress)
     return similar.with_stresses(found, problem.normal, level, clock) if plan.needs("subsurface") else found

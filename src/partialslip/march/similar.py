@@ -14,6 +14,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.bars import LEAST_SHEAR
 from partialslip.friction import constant, varying
+from partialslip.friction.active_set import spread
 from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
 from partialslip.friction.path import Path, load_path, stretched
 from partialslip.friction.regime import permanent_zone, steady_state
@@ -40,7 +41,7 @@ _NEAR = 10.0  # accuracy: cells at ends closer to each other than a/10 are reduc
 _SMALLEST = 1e-9  # accuracy: in a: closer ends are merged, and smaller cells are not requested
 _INNER = 8.0  # cost: size of cells at kinks of q over the size at the ends: kinks hardly affect m and n
 _PASSING = 32.0  # cost: the same at kinks that neither q1 nor q2 has, and at kinks of the coefficient of friction
-_WORK = 5e11  # limit: limit of cells^3 times load steps of a mesh
+_WORK = 5e11  # limit: cells^3 times load steps of a mesh
 # accuracy: Errors of m and n, as parts of the change from mesh to mesh and of growth^3; the same part of ends that
 # are soft, over their stiffness, 1 in Hertz contacts: an error of the loads moves an end the more the less stiff the
 # end is
@@ -63,12 +64,14 @@ class SimilarLevel(driver.Level):
     """Solution on one mesh of cells; lengths in half-widths of the frame (:class:`NormalLoads`) from its middle, forces
     in P.
     ``pressed`` are the normal forces, ``kinks`` are those of q at the load points; ``stepped`` are errors due to the
-    load steps, if the steps were chosen on this mesh.
+    load steps, from the mesh on which these were chosen last. ``number``: of the mesh, from 0; ``growth``: its growth.
     """
 
     pressed: Array
     kinks: tuple[float, ...] = ()
     stepped: Errors = field(default_factory=dict)
+    number: int = 0
+    growth: float = 0.0
 
     @property
     def zone(self) -> tuple[float, ...]:
@@ -99,36 +102,32 @@ class SimilarBodies(driver.Problem[SimilarLevel]):
         self._ends = [*self.normal.ends, *self.normal.within(scene.profile.kinks)]
         self._inner = self.normal.within(finest(start.q.x)) if start else []
         self._passing = self.normal.within(scene.friction.sharp_kinks(self.length))
-        self._stepped: Errors = {}
-        self._solved, self._growth = 0, 0.0  # meshes, and the growth of the last one
 
     def cells(self, level: SimilarLevel | None, mesh: tuple[float, float]) -> Array:
         return _cells(self._ends, self._inner, self._passing, level, *mesh)
 
-    def likely(self, level: SimilarLevel, mesh: tuple[float, float], spent: float) -> float:
-        if not level.history or level.history.load_steps * len(self.cells(level, mesh)) ** 3 > _WORK:
+    def likely(self, level: SimilarLevel, count: int, spent: float) -> float:
+        if not level.history or level.history.load_steps * count**3 > _WORK:
             return math.inf
-        return super().likely(level, mesh, spent)
+        return super().likely(level, count, spent)
 
     def solve(self, level: SimilarLevel | None, mesh: tuple[float, float]) -> SimilarLevel:
         # steps are chosen on the first mesh that is not coarse and used on all later meshes. Finer cells see more of a
         # moving stick zone: where steps matter, each later mesh halves them once and estimates their errors anew
-        first = self._solved == self.coarse
-        choose = first or (steps_matter(self._stepped, self.scene.fem.accuracy) and not self.clock.limited)
+        number, stepped = (level.number + 1, level.stepped) if level else (0, Errors())
+        first = number == self.coarse
+        choose = first or (steps_matter(stepped, self.scene.fem.accuracy) and not self.clock.limited)
         cells = self.cells(level, mesh)
         found = _solve_level(self.normal, self.path, self.start, cells, self.clock, choose, self.added)
         if first and found.history:
             self.path = found.history.path
-        self._stepped = found.stepped or self._stepped
-        self._solved += 1
-        self._growth = mesh[1]
-        return found
+        return replace(found, stepped=found.stepped or stepped, number=number, growth=mesh[1])
 
     def mesh_errors(self, level: SimilarLevel, before: SimilarLevel) -> Errors:
-        return _mesh_errors(self.normal, level, before, self._growth, self._solved == self.coarse + 1)
+        return _mesh_errors(self.normal, level, before, level.number == self.coarse)
 
     def step_errors(self, level: SimilarLevel) -> Errors:
-        return self._stepped if level.history else {}
+        return level.stepped
 
     def answer(self, level: SimilarLevel) -> Answer:
         normal, scene, history = self.normal, self.scene, level.history
@@ -238,14 +237,8 @@ def _solve_level(
             if not of.path.presses_anew:
                 return read_stick_zone(x, of.bound, of.change, vertices, lambda values: values, of.lasting, of.unsteady)
             on = np.flatnonzero(of.bound > 0)
-
-            def spread(values: Array) -> Array:
-                every = np.zeros(len(x))
-                every[on] = values
-                return every
-
-            here = of.of(on)
-            found = read_stick_zone(x[on], here.bound, here.change, vertices, spread, here.lasting, here.unsteady)
+            here, forces = of.of(on), partial(spread, where=on, count=len(x))
+            found = read_stick_zone(x[on], here.bound, here.change, vertices, forces, here.lasting, here.unsteady)
             return within(found, normal.common, vertices)
 
         def errors(of: History, gradual: History) -> dict[str, float]:
@@ -266,13 +259,11 @@ def _solve_level(
         )
 
 
-def _mesh_errors(
-    normal: NormalLoads, level: SimilarLevel, before: SimilarLevel, growth: float, first: bool
-) -> dict[str, float]:
+def _mesh_errors(normal: NormalLoads, level: SimilarLevel, before: SimilarLevel, first: bool) -> dict[str, float]:
     """Discretisation errors of m and n (in half-widths of the contact at the largest P) and of q, q1 and q2 (relative
     L2 of cell averages).
 
-    Errors of m and n are a part of the change from the mesh ``before``, or a multiple of ``growth``^3, the larger the
+    Errors of m and n are a part of the change from the mesh ``before``, or a multiple of growth^3, the larger the
     less stiff the end is. Errors of q are a part of the change, for which ``first`` tells whether the mesh before is
     the first one. The factors are calibrated on random scenes with known solutions.
     """
@@ -288,7 +279,7 @@ def _mesh_errors(
     size = np.diff(level.vertices)[cells]
     unseen = _SOMEWHERE * size * (gap < _CELLS * size)
     moved = max(abs(level.stick.left - before.stick.left), abs(level.stick.right - before.stick.right))
-    between = np.maximum(_CUBIC, _CUBIC_OF_SOFT / _stiffness(level)) * growth**3 * np.minimum(_NEAR * gap, 1.0)
+    between = np.maximum(_CUBIC, _CUBIC_OF_SOFT / _stiffness(level)) * level.growth**3 * np.minimum(_NEAR * gap, 1.0)
     part = _CARRIED if _NEAR * gaps[1] < 1 else _MOVED
     known = np.maximum(unseen, np.maximum(part * moved, between))
     changes = {

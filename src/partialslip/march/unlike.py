@@ -13,7 +13,7 @@ from msgspec.structs import replace as changed
 from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.friction import coupled
-from partialslip.friction.active_set import Solution
+from partialslip.friction.active_set import Solution, spread
 from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
 from partialslip.friction.normal import press
 from partialslip.friction.path import Path, load_path, stretched
@@ -237,7 +237,7 @@ def _stick_zone(level: UnlikeLevel, punch: PunchGrowth | None) -> StickInterval:
         assert level.pressed
         p, q = level.pressed.growth
         bound, change = level.pressed.f[on] * np.maximum(p[on], 0.0), 2 * q[on]
-    stick = read_stick_zone(level.x[on], bound, change, level.vertices, partial(level.spread, on=on))
+    stick = read_stick_zone(level.x[on], bound, change, level.vertices, partial(spread, where=on, count=len(level.x)))
     if history.path.presses_anew:
         return within(stick, level.common, level.vertices)
     left, right = level.common
@@ -252,7 +252,7 @@ def _kinks(level: UnlikeLevel) -> tuple[float, ...]:
     found: list[float] = []
     for q, bound in level.history.visited:
         on = np.flatnonzero(bound > 0)
-        found += kinks(level.x[on], bound[on], q[on], level.vertices, partial(level.spread, on=on))
+        found += kinks(level.x[on], bound[on], q[on], level.vertices, partial(spread, where=on, count=len(level.x)))
     left, right = level.common
     return tuple(kink for kink in found if left < kink < right)
 

@@ -66,7 +66,7 @@ class State(Short):
         path begins, or the materials differ."""
 
         def check(name: str, mine: float, its: float, shown: Callable[[float], str], off: float = 0.0) -> None:
-            if abs(mine - its) > max(_SAME * abs(its), off):
+            if not abs(mine - its) <= max(_SAME * abs(its), off):
                 raise InputError(
                     f"state: is of {name} = {shown(mine)}; the scene has {shown(its)}; the two must be equal"
                 )

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _FINEST, _COARSEST = 1e-9, 1e-2  # limit: accuracies that a price is known for
 _CHOICES = 141  # cost: number of accuracies from _COARSEST to _FINEST
-_SPEEDS = 0.2, 5.0  # limit: limits of the scale factor: a slower start has other reasons than the machine
+_SPEEDS = 0.2, 5.0  # limit: the scale factor: a slower start has other reasons than the machine
 
 
 @dataclass(frozen=True)
