@@ -258,7 +258,7 @@ def true_errors(scene: Scene, kind: str, group: str, found: Result) -> dict[str,
     truth = exact if not {"q1", "q2"} & {*exact.undetermined} else None
     if kind == "marched" and found.method != "march":
         truth = finest(scene, group)
-    if truth and truth.traction.levels_at and found.traction.levels_at:
+    if truth and truth.traction.values.levels and found.traction.values.levels:
         levels = norm_errors(found.traction, truth.traction, scene.friction.f, ("q1", "q2"))
         errors |= {
             key: off for key, off in levels.items() if truth.estimate.get(key, 0.0) <= KNOWN * found.estimate[key]
@@ -282,7 +282,7 @@ def against(scene: Scene, found: Result, truth: Result) -> dict[str, float]:
     """Errors by key where ``truth`` is known well enough."""
     compared = compare(found, truth, scene, None)
     errors = {key: getattr(compared, key) for key in ("a", "m", "n", "p", "q")} | off_ends(found, truth)
-    if found.traction.levels_at and truth.traction.levels_at:
+    if found.traction.values.levels and truth.traction.values.levels:
         errors |= norm_errors(found.traction, truth.traction, scene.friction.f, ("q1", "q2"))
     return {
         key: error for key, error in errors.items()

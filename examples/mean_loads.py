@@ -26,6 +26,6 @@ print(f"stick zone [{-march.m / march.a:.4f}, {march.n / march.a:.4f}] a, {march
 print(f"q changed by {march.last_cycle_change:.1e} f p0 in the last cycle")
 limit = scene.friction.f * march.p0
 for x in (-0.9, -0.5, 0.0, 0.5, 0.9):
-    q1, q2 = march.traction.levels_at(march.a * x)
+    q1, q2 = march.traction.at(march.a * x).levels
     print(f"x = {x:+.1f} a: q1 = {q1 / limit:+.4f} f p0, q2 = {q2 / limit:+.4f} f p0")
 print(f"against the exact solution: {outcome.outcome}, m off by {outcome.comparisons['march'].m:.1e} a")

@@ -14,15 +14,15 @@ import partialslip
 scene = partialslip.load_scene("hertz-large-tension")
 exact = partialslip.run(scene, "exact")["exact"]
 x = np.linspace(-1.1, 1.1, 201) * exact.a
-p, dq = exact.traction.at(x)
-dq = dq * (1 - 1e-3)  # slip never quite reaches 2 f p
+at = exact.traction.at(x)
+dq = at.dq * (1 - 1e-3)  # slip never quite reaches 2 f p
 
 with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "tractions.csv"
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["x", "p", "dq"])
-        writer.writerows(np.column_stack([x, p, dq]).tolist())
+        writer.writerows(np.column_stack([x, at.p, dq]).tolist())
     scored = partialslip.score(scene, path, bar=1e-2)
 
 found, errors = scored["tractions.csv"], scored.comparisons["tractions.csv"]

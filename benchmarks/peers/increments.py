@@ -70,7 +70,7 @@ def measured(problem: Problem, code: Code) -> dict[str, object]:
     result, a, f = found.result, problem.targets["a"].value, problem.scene.friction.f
     values = answer_of(problem, result).values
     ends = {key: values[key] / a for key in ("m", "n") if key in values}
-    p, dq = result.traction.at(np.array([PLACE * a]))
+    p, dq, *_ = result.traction.at(np.array([PLACE * a]))
     room = 1 - float(dq[0]) * np.sign(problem.targets[f"dq@{PLACE:g}"].value) / (2 * f * float(p[0]))
     return told | ends | {"m_drift": drifted(result, a, f), "room": room, "cpu_s": found.cpu_s}
 

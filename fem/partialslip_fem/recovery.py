@@ -6,6 +6,7 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
+from partialslip.result import TractionAt
 from partialslip_fem.elasticity import Body
 from partialslip_fem.elements import nodes_of
 
@@ -27,28 +28,37 @@ def polynomials(x: Array, values: Array, order: int) -> PPoly:
     return PPoly(coefficients / np.diff(vertices) ** np.arange(k, -1, -1)[:, None], vertices)
 
 
-def inside_elements(polynomial: PPoly | None, points: Array) -> Array:
-    """Values of ``polynomial`` at ``points`` (k,); zero off its cells, and everywhere if it is None."""
-    if polynomial is None:
-        return np.zeros_like(points)
-    values: Array = np.nan_to_num(polynomial(points, extrapolate=False), nan=0.0)
-    return values
-
-
 @dataclass(frozen=True)
-class Pair:
-    """Two scaled tractions along the contact line, ``first`` and ``second``; None is zero.
+class Polynomials:
+    """Tractions as scaled piecewise polynomials: ``p`` and ``p1`` at load points 2 and 1 (None if the same), and the
+    ``shear`` at load points 1 and 2, None for zero; ``known`` says whether it is that, or only its change counts.
 
     Lengths are scaled by ``length`` (m) from the ``origin`` (m), stresses by ``stress`` (Pa).
     """
 
-    first: PPoly | None
-    second: PPoly | None
+    p: PPoly
+    shear: tuple[PPoly, PPoly] | None
+    p1: PPoly | None
+    known: bool
     length: float
     stress: float
-    origin: float = 0.0
+    origin: float
 
-    def at(self, x: Array) -> tuple[Array, Array]:
-        """Both tractions at ``x`` (k,), m, in Pa; zero off their cells."""
-        points = (x - self.origin) / self.length
-        return self.stress * inside_elements(self.first, points), self.stress * inside_elements(self.second, points)
+    def at(self, x: Array) -> TractionAt:
+        """Tractions at ``x`` (k,), m, in Pa; zero off their cells."""
+        return self.scaled((x - self.origin) / self.length)
+
+    def scaled(self, x: Array) -> TractionAt:
+        """Tractions at ``x`` (k,), scaled, in Pa; zero off their cells."""
+        q1, q2 = (self._inside(each, x) for each in self.shear) if self.shear else (np.zeros_like(x), np.zeros_like(x))
+        p1 = None if self.p1 is None else self._inside(self.p1, x)
+        return TractionAt.between(self._inside(self.p, x), q1, q2, self.known, p1)
+
+    def _inside(self, polynomial: PPoly, x: Array) -> Array:
+        return self.stress * inside_elements(polynomial, x)
+
+
+def inside_elements(polynomial: PPoly, points: Array) -> Array:
+    """Values of ``polynomial`` at ``points`` (k,); zero off its cells."""
+    values: Array = np.nan_to_num(polynomial(points, extrapolate=False), nan=0.0)
+    return values

@@ -1,7 +1,6 @@
 """The result of the last mesh, in SI units: tractions, zones, certificate, estimates, counts, notes."""
 
 import numpy as np
-from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
 from partialslip.friction.history import certificate, last_cycle_change
@@ -19,7 +18,7 @@ from partialslip_fem.fields import along_surfaces, deformed, edges_near_contact
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
 from partialslip_fem.mortar import nodal_forces
 from partialslip_fem.problem import Problem, rescaled
-from partialslip_fem.recovery import Pair
+from partialslip_fem.recovery import Polynomials
 from partialslip_fem.stresses import BodyStresses
 
 _SLIDES = "q1 and q2 are not known: the contact slides"
@@ -46,11 +45,6 @@ def to_result(
     pushed = solution.slips_when_pressed
     found = steady_state(scene, history, solution.stick, solution.half_width, pushed, x, solution.common)
 
-    q1, q2, at1, at2, dq = np.zeros_like(x), np.zeros_like(x), None, None, None
-    if history:
-        at1, at2 = solution.shear(history.q1), solution.shear(history.q2)
-        q1, q2, dq = stress * at1(x), stress * at2(x), PPoly(at2.c - at1.c, at2.x)
-
     made = _factorizations(solution)
     inside = plan.needs("subsurface")
     known_inside = inside and not scene.slides
@@ -72,6 +66,8 @@ def to_result(
     if begins:
         shares["start"] = begins
     known = found.centre is not None
+    shear = (solution.shear(history.q1), solution.shear(history.q2)) if history else None
+    tractions = Polynomials(pressure, shear, pressures[0] if pressures else None, known, L, stress, origin)
     keys = [key for key in {**adapted.errors, **step_errors} if known or key not in ("m", "n")]
     estimate = {key: float(sum(share.get(key, 0.0) for share in shares.values())) for key in keys}
     (left1, right1), (left2, right2) = solution.contact_ends
@@ -84,16 +80,10 @@ def to_result(
         stick_half_width=None if found.half_width is None else found.half_width * L,
         traction=Traction(
             x=x * L + origin,
-            p=stress * pressure(x),
-            dq=q2 - q1,
-            q1=q1 if known else None,
-            q2=q2 if known else None,
-            at=Pair(pressure, dq, L, stress, origin).at,
+            values=tractions.scaled(x),
+            at=tractions.at,
             breaks=np.unique([*solution.zone_ends, *solution.kinks, *problem.kinks]) * L + origin,
             cells=solution.lower.x[:: solution.lower.order] * L + origin,
-            levels_at=Pair(at1, at2, L, stress, origin).at if known else None,
-            p1=stress * pressures[0](x) if pressures else None,
-            pressures_at=Pair(*pressures, L, stress, origin).at if pressures else None,
         ),
         cost=clock.cost(),
         slip=Slip(x * L + origin, history.slip * unit, history.dissipated * unit * scene.P) if history else None,

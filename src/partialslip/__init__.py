@@ -17,7 +17,7 @@ Solving
 
 Results
     result.a, .m, .n, .p0, .regime      half-width, stick zone [-m, n], 2 P/(pi a), regime
-    result.traction.at(x)               p and dq at any points; .levels_at(x): q1 and q2
+    result.traction.at(x)               p, dq, q1 and q2 at any points
     run.plot(), run.to_dataframe()      figure and table of the tractions
 
 Other codes and files

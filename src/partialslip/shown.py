@@ -88,6 +88,9 @@ class _Short(reprlib.Repr):
         super().__init__()
         self.maxstring = self.maxother = 1000
 
+    def repr1(self, x: Any, level: int) -> str:
+        return short(x) if isinstance(x, tuple) and hasattr(x, "_fields") else super().repr1(x, level)
+
     def repr_float(self, number: float, _: int) -> str:
         return f"{number:g}" if float(f"{number:g}") == number else repr(number)
 

@@ -23,7 +23,7 @@ def good(tmp_path_factory):
     results = run(scene, ["exact", "march"]).results
     results["march"].state.save(folder / "t.npz")
     x = np.linspace(-1.1, 1.1, 41) * results["exact"].a
-    p, dq = results["exact"].traction.at(x)
+    p, dq, *_ = results["exact"].traction.at(x)
     table = np.column_stack([x, p, dq])
     np.savetxt(folder / "t.csv", table, delimiter=",", header="x,p,dq", comments="", fmt="%.6g")
     points, lines = np.column_stack([x, 0 * x, 0 * x]), np.column_stack([np.arange(40), np.arange(1, 41)])

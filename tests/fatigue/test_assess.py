@@ -128,7 +128,7 @@ def test_ruiz(assessed):
     x = np.array([found.x2])
     tension = RESULT.stress_at(x, 0 * x)[:, 0, 0].max()
     slip = np.interp(found.x2, RESULT.slip.x, RESULT.slip.slip)
-    work = SCENE.friction.f * RESULT.traction.at(found.x2)[0] * abs(slip) / 2  # q = f p where it slips
+    work = SCENE.friction.f * RESULT.traction.at(found.x2).p * abs(slip) / 2  # q = f p where it slips
     assert tension * work == pytest.approx(found.F2, rel=1e-9)
 
 

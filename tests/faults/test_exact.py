@@ -90,8 +90,8 @@ def test_traction_perturbed_with_its_resultant_kept(sound, red):
     true = fem.traction.at
 
     def moved(x):
-        p, dq = true(x)
-        return p, dq + 0.2 * scene.friction.f * fem.p0 * np.sin(np.pi * x / fem.a) * (np.abs(x) < fem.a)
+        off = 0.2 * scene.friction.f * fem.p0 * np.sin(np.pi * x / fem.a) * (np.abs(x) < fem.a)
+        return true(x)._replace(dq=true(x).dq + off)
 
     found = compare(replace(fem, traction=replace(fem.traction, at=moved)), exact, scene, 1e-3)
     assert "q" in {what.split(":")[0] for what in found.missed}

@@ -8,7 +8,7 @@ import pytest
 
 import partialslip
 from partialslip.judge import cell_errors
-from partialslip.result import Clock, Traction
+from partialslip.result import Clock, Traction, TractionAt
 from partialslip_fem.bodies import Grading
 from partialslip_fem.problem import scaled
 from partialslip_fem.solving import mesh_and_solve
@@ -36,9 +36,9 @@ def errors(name, order, nu, growth):
     q1, q2 = solution.shear(solution.history.q1), solution.shear(solution.history.q2)
 
     def at(points):
-        return stress * p(points / L), stress * (q2(points / L) - q1(points / L))
+        return TractionAt(stress * p(points / L), stress * (q2(points / L) - q1(points / L)))
 
-    found = Traction(x * L, *at(x * L), q1=None, q2=None, at=at, breaks=solution.zone_ends * L, cells=x[::order] * L)
+    found = Traction(x * L, at(x * L), at, solution.zone_ends * L, x[::order] * L)
     return np.array([np.abs(solution.zone_ends - ends[[0, 3, 1, 2]]).max() / a, cell_errors(found, exact.traction)[1]])
 
 

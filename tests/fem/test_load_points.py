@@ -6,7 +6,7 @@ import pytest
 import partialslip
 from partialslip import parse_scene, plan
 from partialslip.judge import cell_means
-from partialslip.result import Traction
+from partialslip.result import Traction, TractionAt
 from partialslip_fem import solve, solving
 
 ACCURACY = 1e-3
@@ -41,8 +41,8 @@ def off(found, known=truth):
     """Relative L2 errors of q1 and q2 as averages over the cells."""
     a, unit, tr = found.a, 0.4 * found.p0, found.traction
     breaks = 1e-3 * np.array([-1, -HIGH, -LOW, LOW, HIGH, 1])
-    exact = Traction(tr.x, tr.p, tr.dq, None, None, lambda x: tuple(np.array(known(x / 1e-3)) * unit), breaks)
-    levels = Traction(tr.x, tr.p, tr.dq, None, None, tr.levels_at, tr.breaks)
+    exact = Traction(tr.x, tr.values, lambda x: TractionAt(*np.array(known(x / 1e-3)) * unit), breaks)
+    levels = Traction(tr.x, tr.values, lambda x: TractionAt(*tr.at(x).levels), tr.breaks)
     cells = tr.cells[np.abs(tr.cells) < 1.2 * a]
     means, true = np.array(cell_means(levels, cells)), np.array(cell_means(exact, cells))
     widths = np.diff(cells)
@@ -110,8 +110,8 @@ def test_pressure_of_coupled_bodies_is_kept_at_both_load_points():
     tr = result.traction
     assert tr.p1 is not None
     assert np.abs(tr.p1 - tr.p).max() > 1e-3 * result.p0
-    p1, p2 = tr.pressures_at(tr.x)
-    q1, q2 = tr.levels_at(tr.x)
+    p1, p2 = tr.at(tr.x).pressures
+    q1, q2 = tr.at(tr.x).levels
     assert p2 == pytest.approx(tr.p, abs=1e-9 * result.p0)
     assert p1 == pytest.approx(tr.p1, abs=1e-9 * result.p0)
     inner = np.abs(tr.x) < 0.95 * result.a

@@ -13,7 +13,7 @@ import pytest
 
 import partialslip
 from partialslip.judge import cell_errors
-from partialslip.result import Clock, Traction
+from partialslip.result import Clock, Traction, TractionAt
 from partialslip_fem import mesh_solution
 from partialslip_fem.bodies import Grading
 from partialslip_fem.problem import scaled
@@ -38,11 +38,9 @@ def errors(solution):
     p, q1, q2 = solution.pressure(), solution.shear(solution.history.q1), solution.shear(solution.history.q2)
 
     def at(points):
-        return stress * p(points / L), stress * (q2(points / L) - q1(points / L))
+        return TractionAt(stress * p(points / L), stress * (q2(points / L) - q1(points / L)))
 
-    found = Traction(
-        x * L, *at(x * L), q1=None, q2=None, at=at, breaks=solution.zone_ends * L, cells=x[:: solution.lower.order] * L
-    )
+    found = Traction(x * L, at(x * L), at, solution.zone_ends * L, x[:: solution.lower.order] * L)
     ends = np.array([solution.half_width, -solution.stick.left, solution.stick.right]) * L
     return np.array([*np.abs(ends - [EXACT.a, EXACT.m, EXACT.n]) / EXACT.a, *cell_errors(found, EXACT.traction)])
 

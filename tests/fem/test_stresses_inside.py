@@ -109,9 +109,9 @@ def test_tractions_of_unlike_bodies_on_their_surfaces(unlike):
     _, results = unlike
     fem = results["fem"]
     x = np.linspace(-1.3, 1.3, 101) * fem.a
-    pressures = fem.traction.pressures_at(x) if fem.traction.pressures_at else (fem.traction.at(x)[0],) * 2
+    at = fem.traction.at(x)
     for y in (0.0, 1e-15 * fem.a):
-        for found, p, q in zip(fem.stress_at(x, y), pressures, fem.traction.levels_at(x), strict=True):
+        for found, p, q in zip(fem.stress_at(x, y), at.pressures, at.levels, strict=True):
             assert found[1] == pytest.approx(-p, abs=1e-9 * fem.p0)
             assert found[2] == pytest.approx(-q, abs=1e-9 * fem.p0)
 
@@ -216,7 +216,7 @@ def test_a_pad_ends_at_its_face(rig):
     pulls = np.stack([xx * normal[0] + xy * normal[1], xy * normal[0] + yy * normal[1]])
     assert np.abs(pulls).max() < 1e-3 * fem.p0
     inner = np.linspace(-0.9, 0.9, 7) * fem.a
-    p, _ = fem.traction.at(inner)
+    p, *_ = fem.traction.at(inner)
     assert fem.stress_at(inner, 1e-12)[1, 1] == pytest.approx(-p, abs=0.02 * fem.p0)  # slopes of the face
     assert fem.stress_at(inner, 1e-12)[1, 1] == pytest.approx(fem.stress_at(inner, 1e-9)[1, 1], abs=1e-3 * fem.p0)
 

@@ -29,7 +29,7 @@ def exact(*given, **named):
 
 def levels(result):
     """q1 and q2 at ``X``, in f p0."""
-    return np.array(result.traction.levels_at(X * result.a)) / (0.5 * result.p0)
+    return np.array(result.traction.at(X * result.a).levels) / (0.5 * result.p0)
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_march_agrees(Qf, sf, mean):
     marched = partialslip.run(scene(Qf, sf, mean, "fem.accuracy=1e-3"), "march")["march"]
     x = marched.traction.x
     for key, mine, its in zip(
-        ("q1", "q2"), found.traction.levels_at(x), (marched.traction.q1, marched.traction.q2), strict=True
+        ("q1", "q2"), found.traction.at(x).levels, (marched.traction.q1, marched.traction.q2), strict=True
     ):
         off = np.sqrt(np.trapezoid((mine - its) ** 2, x) / np.trapezoid(mine**2, x))
         assert off < 2 * marched.estimate[key]
@@ -75,7 +75,7 @@ def test_loads_are_held_within_the_bound():
     found = exact(0.55, 7.0, MEAN)
     angle = (np.arange(20000) + 0.5) / 20000 * np.pi
     x, weights = np.cos(angle), np.sin(angle) * np.pi / 20000
-    for q, force in zip(found.traction.levels_at(x * found.a), (0.05 - 0.55, 0.05 + 0.55), strict=True):
+    for q, force in zip(found.traction.at(x * found.a).levels, (0.05 - 0.55, 0.05 + 0.55), strict=True):
         scaled = q / (0.5 * found.p0)
         assert (np.abs(scaled) <= np.sqrt(1 - x**2) + 1e-9).all()
         assert scaled @ weights == pytest.approx(force * np.pi / 2, abs=1e-5)

@@ -46,7 +46,7 @@ def test_mindlin_deresiewicz():
     """The reference case: q2 is the traction of the first loading, q1 the traction after the reversal."""
     result = exact(scene())
     x = np.linspace(-1.2, 1.2, 501)
-    q1, q2 = (q / (0.4 * result.p0) for q in result.traction.levels_at(x * result.a))
+    q1, q2 = (q / (0.4 * result.p0) for q in result.traction.at(x * result.a).levels)
     p = ellipse(x, 0, 1)
     assert q2 == pytest.approx(p - ellipse(x, 0, np.sqrt(0.2)), abs=1e-8)
     assert q1 == pytest.approx(-p + 2 * ellipse(x, 0, np.sqrt(0.75)) - ellipse(x, 0, np.sqrt(0.2)), abs=1e-8)
@@ -59,7 +59,7 @@ def test_kinks_of_the_first_loading_are_breaks_and_points():
     kinks = np.sqrt(0.2) * np.array([-1, 1])
     for places in (result.traction.breaks, result.traction.x):
         assert np.abs(places[:, None] / result.a - kinks).min(axis=0) == pytest.approx(0, abs=1e-8)
-    at = result.traction.levels_at(result.traction.x)
+    at = result.traction.at(result.traction.x).levels
     np.testing.assert_array_equal(at, [result.traction.q1, result.traction.q2])
 
 
@@ -145,7 +145,7 @@ def test_results_say_why_there_are_no_levels():
     base = scene()
     unit, stress = 0.4 * base.P, 0.4 * exact(base).p0
     result = exact(scene(Q=[0.1 * unit, -0.4 * unit], sigma=[-0.95 * stress, -1.2 * stress]))
-    assert result.traction.q1 is result.traction.q2 is result.traction.levels_at is None
+    assert result.traction.q1 is result.traction.q2 is result.traction.at(0.0).levels is None
     assert set(result.undetermined) == {"q1", "q2"}
     assert result.undetermined["q1"] in result.notes[0]
 

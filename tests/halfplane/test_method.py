@@ -26,7 +26,7 @@ def test_fretting_aluminium():
 def test_yang_laursen():
     result = exact("yang-laursen")
     assert (result.m / result.a, result.n / result.a) == pytest.approx((0.729308, 0.729308), abs=5e-7)
-    assert result.traction.at(np.array([result.n]))[1][0] / 2e6 == pytest.approx(1.279612, abs=5e-7)
+    assert result.traction.at(np.array([result.n])).dq[0] / 2e6 == pytest.approx(1.279612, abs=5e-7)
 
 
 @pytest.mark.parametrize(

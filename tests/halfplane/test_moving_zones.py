@@ -33,7 +33,7 @@ def error_of_q(found, q):
     places = np.concatenate([[-1], places[np.abs(places) < 1], [1]])
     widths = np.diff(places)
     x = (places[1:] + places[:-1])[:, None] / 2 + widths[:, None] / 2 * nodes
-    dq = found.traction.at(x.ravel() * found.a)[1] / (2 * SHEAR.friction.f * found.p0)
+    dq = found.traction.at(x.ravel() * found.a).dq / (2 * SHEAR.friction.f * found.p0)
     own, true = (values.reshape(x.shape) @ weights / 2 for values in (dq, q(x.ravel())))
     return np.sqrt((own - true) ** 2 @ widths / (true**2 @ widths))
 

@@ -117,7 +117,7 @@ def of_scene(pressed, scene):
     load, traction, slip = scene.load, found.traction, found.slip
     return Answer(
         pressed, scene.friction.f, load.dQ, load.dsigma, load.Q_mean, found.regime, found.m, found.n,
-        found.stick_half_width, traction.x, traction.p, traction.dq, traction.at, found.limits,
+        found.stick_half_width, traction.x, traction.p, traction.dq, lambda x: traction.at(x)[:2], found.limits,
         () if traction.q1 is None else (traction.q1, traction.q2),
         (slip.x, slip.slip) if slip else None, slip.dissipated if slip else 0.0, scene,
     )  # fmt: skip

@@ -51,8 +51,8 @@ def sums_of_forces(result, x, y):
     half = np.diff(ends)[:, None] / 2
     t, weights = (ends[:-1, None] + half * (1 + nodes)).ravel(), (half * weights).ravel()
     of = result.traction
-    pressures = of.pressures_at(t) if of.pressures_at else (of.at(t)[0],) * 2
-    shears = of.levels_at(t) if of.levels_at else (0 * t, 0 * t)
+    at = of.at(t)
+    pressures, shears = at.pressures, at.levels or (0 * t, 0 * t)
     side, r, depth = np.where(y < 0, 1, -1)[:, None], x[:, None] - t, np.abs(y)[:, None]
     found = []
     for p, q in zip(pressures, shears, strict=True):
@@ -142,7 +142,7 @@ def test_sliding_with_all_friction():
     one, two = result.stress_at(x * result.a, y * result.a)
     assert (two - one) / 2 == pytest.approx(expected, rel=0, abs=1e-12 * result.p0)
     assert ((two + one) / 2)[0, y == 0] - 1e7 == pytest.approx(
-        -result.traction.at(x * result.a)[0][y == 0], rel=0, abs=1e-12 * result.p0
+        -result.traction.at(x * result.a).p[y == 0], rel=0, abs=1e-12 * result.p0
     )
     with pytest.raises(InputError, match=r"^phases: 0.3 is between load points 1 and 2, where the contact slides"):
         result.stress_at(0, 0, [0, 0.3])

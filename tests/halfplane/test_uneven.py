@@ -91,7 +91,7 @@ def test_far_from_the_middle():
     near, far = (run(made("hertz", e=each), ["exact"]).results["exact"] for each in (0.0, e))
     assert far.a == pytest.approx(near.a, rel=1e-12)
     assert far.n - e == pytest.approx(near.n, abs=1e-9 * near.a)
-    assert far.traction.at(e)[0] == pytest.approx(near.traction.at(0.0)[0], rel=1e-9)
+    assert far.traction.at(e).p == pytest.approx(near.traction.at(0.0).p, rel=1e-9)
 
 
 def test_moment_moves_a_parabola():
@@ -136,7 +136,7 @@ def test_mirrored_scenes_have_mirrored_results(profile, load):
     assert a.regime == b.regime
     assert (a.m, a.n) == pytest.approx((b.n, b.m), abs=1e-12 * a.a)
     at = np.linspace(*a.ends[1], 41)[1:-1]
-    np.testing.assert_allclose(a.traction.at(at), [[1], [-1]] * np.array(b.traction.at(-at)), atol=1e-9 * a.p0)
+    np.testing.assert_allclose(a.traction.at(at)[:2], [[1], [-1]] * np.array(b.traction.at(-at)[:2]), atol=1e-9 * a.p0)
 
 
 @pytest.mark.parametrize("sigma", [2e7, 1.2e8])

@@ -125,7 +125,7 @@ def test_equal_pressures_give_the_result_of_constant_pressure():
     assert (other.m / one.m, other.n / one.n) == (pytest.approx(1, abs=1e-9), pytest.approx(1, abs=1e-9))
     assert other.slip.dissipated == pytest.approx(one.slip.dissipated, rel=1e-6)
     x = np.linspace(-0.99, 0.99, 50) * one.a
-    assert other.traction.at(x)[1] == pytest.approx(one.traction.at(x)[1], abs=1e-8 * one.p0)
+    assert other.traction.at(x).dq == pytest.approx(one.traction.at(x).dq, abs=1e-8 * one.p0)
 
 
 def test_a_list_of_one_value_is_constant_pressure():
@@ -145,7 +145,7 @@ def test_where_no_end_slips_q_follows_the_pressure():
     expected = (scene.load.dQ / dP + math.pi / 4 * x * scene.load.dsigma / dP) * (
         second.pressure(x) - first.pressure(x)
     )
-    assert result.traction.at(x)[1] == pytest.approx(expected, abs=1e-14)
+    assert result.traction.at(x).dq == pytest.approx(expected, abs=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -179,7 +179,7 @@ def test_the_levels_are_those_of_the_first_loading():
     """Without mean loads at load point 1, q2 is that of the first loading, and q1 is within its bound."""
     scene = varying((0.8, 1), 0.32 * math.pi, 0.0, mean=0.5)
     result = run(scene.replace(load={"cycles": 3}), ["exact", "march"])
-    assert result["exact"].traction.levels_at is not None
+    assert result["exact"].traction.values.levels is not None
     errors = result.comparisons["march"].errors
     assert max(errors["q1"], errors["q2"]) < 1e-2
 

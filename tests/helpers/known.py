@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from partialslip import load_scene
-from partialslip.result import Cost, Result, Traction
+from partialslip.result import Cost, Result, Traction, TractionAt
 
 F, P, SHARE = 0.5, 1e5, 0.36  # Q = +-0.36 f P
 SCENE = load_scene(
@@ -30,23 +30,11 @@ def traction(p=1.0, q=1.0, levels=True, cells=41, add=lambda x: 0 * x, p1=None):
 
     def at(x):
         pressure, dq = tractions(x)
-        return p * pressure, q * dq + F * P0 * add(x / A)
+        change, before = q * dq + F * P0 * add(x / A), None if p1 is None else p1 * pressure
+        return TractionAt.between(p * pressure, -q * dq / 2, change - q * dq / 2, levels, before)._replace(dq=change)
 
     x, breaks = np.linspace(-A, A, 201), A * np.array([-1, -C, C, 1])
-    return Traction(
-        x,
-        *at(x),
-        -at(x)[1] / 2 if levels else None,
-        at(x)[1] / 2 if levels else None,
-        at,
-        breaks,
-        None if cells is None else np.linspace(-1.1, 1.1, cells) * A,
-        levels_at=(lambda x: (-q * tractions(x)[1] / 2, q * tractions(x)[1] / 2 + F * P0 * add(x / A)))
-        if levels
-        else None,
-        p1=None if p1 is None else p1 * tractions(x)[0],
-        pressures_at=None if p1 is None else (lambda x: (p1 * tractions(x)[0], at(x)[0])),
-    )
+    return Traction(x, at(x), at, breaks, None if cells is None else np.linspace(-1.1, 1.1, cells) * A)
 
 
 def result(method="fem", centre=0.0, half_width=C, a=1.0, regime="small tension", of=None, **more):

@@ -98,7 +98,7 @@ def answer(result: Result, scene: Scene, means: bool = False) -> Answer:
         p, dq = cell_means(traction, CELLS * result.a)
         return Answer(ends, (CELLS[1:] + CELLS[:-1]) / 2 * result.a, p, dq[None] / 2)
     if result.method == "exact":
-        p, dq = traction.at(POINTS * result.a)
+        p, dq, *_ = traction.at(POINTS * result.a)
         return Answer(ends, POINTS * result.a, p, dq[None] / 2)
     q = [traction.q1, traction.q2] if traction.q1 is not None else [traction.dq / 2]
     return Answer(ends, traction.x, traction.p, np.array(q), not scene.load.in_phase)

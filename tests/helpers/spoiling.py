@@ -52,7 +52,7 @@ def exact(scene: Scene) -> Result:
 def sampled(scene: Scene, x: Array) -> Table:
     """The exact tractions at ``x``."""
     state = exact(scene)
-    p, dq = state.traction.at(x)
+    p, dq, *_ = state.traction.at(x)
     return Table({"x": x, "p": p, "dq": dq}, state)
 
 
@@ -142,7 +142,7 @@ def nodal(scene: Scene, x: Array, order: int) -> Table:
     s = (t - x[::order][cell]) / np.diff(x[::order])[cell]
     shapes = [1 - s, s] if order == 1 else [(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)]
     columns = {"x": x}
-    for name, traction in zip(("Fn", "dFt"), state.traction.at(t), strict=True):
+    for name, traction in zip(("Fn", "dFt"), state.traction.at(t)[:2], strict=True):
         columns[name] = sum(
             np.bincount(order * cell + local, shape * traction * weights, len(x)) for local, shape in enumerate(shapes)
         )

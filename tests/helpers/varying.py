@@ -7,7 +7,7 @@ zone, times 2 f.
 import numpy as np
 
 from partialslip import load_scene
-from partialslip.result import Cost, Result, Traction
+from partialslip.result import Cost, Result, Traction, TractionAt
 
 # a of 0.8 and 1 mm at load points 1 and 2, stick zone (m, n) = (0.757106781187, 0.657106781187) mm
 SCENE = load_scene("hertz-small-tension").replace(
@@ -38,11 +38,11 @@ def solved(scene):
 
     def at(x):
         p1, p2 = pressures_at(x)
-        return p2, 2 * f * turn * ((p1 + p2) / 2 - hertz(x, half_width, centre))
+        return TractionAt(p2, 2 * f * turn * ((p1 + p2) / 2 - hertz(x, half_width, centre)), p1=p1)
 
     breaks = np.unique([-a, -least, centre - half_width, centre + half_width, least, a])
     x = np.linspace(-a, a, 401)
-    traction = Traction(x, *at(x), None, None, at, breaks, p1=pressures_at(x)[0], pressures_at=pressures_at)
+    traction = Traction(x, at(x), at, breaks)
     ends = ((-first, first), (-second, second))
     return Result(
         "exact", a, a / AR, "small tension", centre, half_width, traction, Cost(0, 0, None), contact_ends=ends

@@ -13,7 +13,7 @@ from partialslip import compare
 from partialslip.bars import BARS
 from partialslip.judge import NO_BAR, Bar, Outcome, Verdict, conditions, judged
 from partialslip.plan import plan
-from partialslip.result import SurfaceStress
+from partialslip.result import SurfaceStress, TractionAt
 from partialslip.run import compared
 from partialslip.scene import Friction
 
@@ -185,14 +185,17 @@ def test_cells_that_leave_out_what_is_wrong_hide_nothing():
     sound = traction()
 
     def at(x):
-        return tuple(np.where(np.abs(x) < 0.5 * A, each, 0.0) for each in sound.at(x))
+        return TractionAt(*(np.where(np.abs(x) < 0.5 * A, each, 0.0) for each in sound.at(x)[:4]))
 
     found = result(of=replace(sound, at=at, cells=np.linspace(-0.5, 0.5, 21) * A, breaks=A * np.array([-0.5, 0.5])))
     assert {"p", "q", "P", "dQ"} <= those(found, MISSED)
     for side in (-1, 1):
         cells = np.sort(side * np.linspace(-1, 0, 11)) * A
-        half = result(of=replace(sound, at=lambda x, side=side: tuple(each * (side * x < 0) for each in sound.at(x)),
-                                 cells=cells, breaks=np.sort(side * np.array([-1.0, 0.0])) * A))  # fmt: skip
+
+        def at_one_side(x, side=side):
+            return TractionAt(*(each * (side * x < 0) for each in sound.at(x)[:4]))
+
+        half = result(of=replace(sound, at=at_one_side, cells=cells, breaks=np.sort(side * np.array([-1.0, 0.0])) * A))
         assert verdicts(half)["p"].error == pytest.approx(np.sqrt(0.5), rel=0.2)
 
 
@@ -201,10 +204,11 @@ def test_shear_at_both_load_points_alike_is_seen():
     """Deliberate fault: equal additional shear at load points 1 and 2, so that dq is right."""
     sound = traction()
 
-    def levels_at(x):
-        return tuple(each + 0.1 * F * P0 * root(x / A) for each in sound.levels_at(x))
+    def at(x):
+        q1, q2 = (each + 0.1 * F * P0 * root(x / A) for each in sound.at(x).levels)
+        return sound.at(x)._replace(q1=q1, q2=q2)
 
-    found = result(of=replace(sound, levels_at=levels_at))
+    found = result(of=replace(sound, at=at))
     assert those(found, MISSED) == {"q1", "q2"}
 
 
@@ -213,7 +217,7 @@ def test_q_is_judged_by_f_p_where_there_is_hardly_any():
     none = traction(q=0.0)
     still = changed(SCENE, load=changed(SCENE.load, Q=(0.0, 0.0)))
     exact = replace(EXACT, regime="stuck", stick_half_width=A, traction=none)
-    ripple = replace(none, at=lambda x: (none.at(x)[0], 2 * 1e-5 * F * none.at(x)[0]))
+    ripple = replace(none, at=lambda x: none.at(x)._replace(dq=2 * 1e-5 * F * none.at(x).p))
     found = replace(exact, method="fem", traction=ripple)
     assert verdicts(found, exact, scene=still)["q"].error == pytest.approx(1e-2, rel=1e-9)
     assert verdicts(found, exact, scene=still)["dQ"].error == pytest.approx(1e-5 * 1, rel=1e-6)
@@ -359,6 +363,11 @@ def test_the_width_that_the_regime_is_told_by_is_the_larger_bar_of_m_and_n():
 # conditions
 
 
+def spoiled_traction(key):
+    sound = traction(p1=1.0)
+    return replace(sound, values=sound.values._replace(**{key: np.array([0.0, NAN])}))
+
+
 @pytest.mark.fault
 @pytest.mark.parametrize(
     "spoil",
@@ -371,10 +380,8 @@ def test_the_width_that_the_regime_is_told_by_is_the_larger_bar_of_m_and_n():
         {"estimate": {"m": math.inf}},
         {"limits": {"Q_mean": NAN}},
         {"contact_ends": ((-A, NAN), (-A, A))},
-        *(
-            {"traction": replace(traction(p1=1.0), **{key: np.array([0.0, NAN])})}
-            for key in ("x", "p", "dq", "q1", "q2", "p1")
-        ),
+        {"traction": replace(traction(p1=1.0), x=np.array([0.0, NAN]))},
+        *({"traction": spoiled_traction(key)} for key in ("p", "dq", "q1", "q2", "p1")),
     ],
     ids=lambda spoil: next(iter(spoil)),
 )  # fmt: skip

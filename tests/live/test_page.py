@@ -135,7 +135,7 @@ def test_it_starts_with_the_loads_of_the_scene(browser, folder, overrides, regim
     assert found.q * limit == pytest.approx(np.abs(exact.traction.dq).max() / 2, abs=1e-9 * limit)
     if regime != "stuck":
         assert found.means[1] * scene.friction.f * scene.P == pytest.approx(exact.limits["Q_mean"], rel=1e-9)
-        near_ends = exact.traction.at(np.array([-1, 1]) * exact.a * (1 - 1e-3))[1]
+        near_ends = exact.traction.at(np.array([-1, 1]) * exact.a * (1 - 1e-3)).dq
         assert [np.sign(height) for height in drawn_ends(page)] == np.sign(near_ends).tolist()
 
 

@@ -136,7 +136,7 @@ def test_stages_of_pressing_agree_with_pressing_step_by_step(monkeypatch):
     for most in (8, 32):
         monkeypatch.setattr(coupled, "_MOST", most)
         stepped = partialslip.run(scene, "march")["march"]
-        off.append(np.abs(stepped.traction.levels_at(x)[1] - at_once.traction.levels_at(x)[1]).max())
+        off.append(np.abs(stepped.traction.at(x).levels[1] - at_once.traction.at(x).levels[1]).max())
     assert off[1] < 0.02 * np.abs(at_once.traction.q2).max()
     assert off[1] < off[0] / 2
 

@@ -27,7 +27,7 @@ def exact():
 def sampled(result, count, reach=1.1, shift=0.0):
     """Points, off the middle by an odd amount, and the exact tractions there."""
     x = reach * result.a * np.linspace(-1, 1.003, count) + shift
-    return np.column_stack([x, *result.traction.at(x)])
+    return np.column_stack([x, *result.traction.at(x)[:2]])
 
 
 def written(path, table, names="x,p,dq"):
@@ -123,7 +123,7 @@ def test_nodal_forces(exact, tmp_path, order):
     shapes = [1 - s, s] if order == 1 else [(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)]
     forces = np.zeros((2, 81))
     for local, shape in enumerate(shapes):
-        for row, traction in zip(forces, result.traction.at(t), strict=True):
+        for row, traction in zip(forces, result.traction.at(t)[:2], strict=True):
             np.add.at(row, order * cell + local, shape * traction * weights)
     path = written(tmp_path / "t.csv", np.column_stack([x, *forces]), "x,Fn,dFt")
     found, comparison = errors(scene, path, order=order)
@@ -294,7 +294,7 @@ def test_template_is_filled_in_and_scored(exact, tmp_path, capsys):
     with pytest.raises(partialslip.InputError, match=r"p > 0 at 0 points"):
         score(scene, tmp_path / "empty.csv")
     head = table[: table.index("x,p,dq")]
-    rows = "".join(f"{a!r},{b!r},{c!r}\n" for a, b, c in np.column_stack([x, *result.traction.at(x)]).tolist())
+    rows = "".join(f"{a!r},{b!r},{c!r}\n" for a, b, c in np.column_stack([x, *result.traction.at(x)[:2]]).tolist())
     (tmp_path / "full.csv").write_text(f"{head}x,p,dq\n{rows}", "utf-8")
     assert errors(scene, tmp_path / "full.csv")[1].n < 1e-3
 

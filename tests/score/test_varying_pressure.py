@@ -25,7 +25,7 @@ def table(scene=SCENE, count=101):
     """Points, off the middle by an odd amount, and p, p1 and dq there."""
     true = varying.solved(scene)
     x = 1.1 * true.a * np.linspace(-1, 1.003, count)
-    (p1, p), dq = true.traction.pressures_at(x), true.traction.at(x)[1]
+    p, dq, *_, p1 = true.traction.at(x)
     return np.column_stack([x, p, p1, dq])
 
 

@@ -25,9 +25,8 @@ def wavy(number):
     """Return tractions whose pressure (0) or shear (1) oscillates by a tenth; the resultant is right."""
 
     def at(x):
-        values = [np.array(each) for each in traction().at(x)]
-        values[number] *= 1 + 0.1 * np.cos(9 * np.pi * x / A)
-        return tuple(values)
+        found, key = traction().at(x), ("p", "dq")[number]
+        return found._replace(**{key: getattr(found, key) * (1 + 0.1 * np.cos(9 * np.pi * x / A))})
 
     return replace(traction(), at=at)
 

@@ -206,9 +206,7 @@ def _mean(key: str, result: Result, other: Result) -> float | None:
     first = int(np.clip(np.searchsorted(cells, float(place) * result.a) - 1, 0, len(cells) - 2))
 
     def values(x: Array) -> Array:
-        if name == "dq":
-            return of.at(x)[1]
-        assert of.levels_at
-        return of.levels_at(x)[("q1", "q2").index(name)]
+        found: Array = getattr(of.at(x), name)
+        return found
 
     return float(means(values, cells[first : first + 2], of.breaks)[0])

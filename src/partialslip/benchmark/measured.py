@@ -91,17 +91,17 @@ def _quantities(scene: Scene, result: Result, places: tuple[float, ...], a: floa
         if end is not None and key not in result.undetermined and result.regime != "ratchets":
             yield key, Quantity(end, "m", a, "stick", key)
     x = a * np.array(places)
-    p, dq = of.at(x)
+    at = of.at(x)
     yield "p_max", Quantity(of.p_max, "Pa", p0, "tractions", "p")
-    for place, value in zip(places, p.tolist(), strict=True):
+    for place, value in zip(places, at.p.tolist(), strict=True):
         yield f"p@{place:g}", Quantity(value, "Pa", p0, "tractions", "p")
-    if not f or not np.any(dq) or result.regime == "ratchets":
+    if not f or not np.any(at.dq) or result.regime == "ratchets":
         return
     if "q" not in result.undetermined:
-        for place, value in zip(places, dq.tolist(), strict=True):
+        for place, value in zip(places, at.dq.tolist(), strict=True):
             yield f"dq@{place:g}", Quantity(value, "Pa", 2 * f * p0, "tractions", "q")
-    if of.levels_at and "q1" not in result.undetermined:
-        for key, values in zip(("q1", "q2"), of.levels_at(x), strict=True):
+    if at.levels and "q1" not in result.undetermined:
+        for key, values in zip(("q1", "q2"), at.levels, strict=True):
             for place, value in zip(places, values.tolist(), strict=True):
                 yield f"{key}@{place:g}", Quantity(value, "Pa", f * p0, "levels", key)
     if result.slip and not {"q", "m"} & set(result.undetermined):

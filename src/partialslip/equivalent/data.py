@@ -77,10 +77,9 @@ def moments_of(rig: Rig, scene: Scene, result: Result) -> Moments:
     and the method does not determine does not count.
     """
     of, x, weights = result.traction, *_rule(result.traction.breaks)
-    p2, dq = of.at(x)
-    p1 = of.pressures_at(x)[0] if of.pressures_at else p2
-    q1, q2 = of.levels_at(x) if of.levels_at else (-dq / 2, dq / 2)
-    (p1, q1), (p2, q2) = ((rig.moments(x, weights * p), rig.moments(x, weights * q)) for p, q in ((p1, q1), (p2, q2)))
+    at = of.at(x)
+    levels = at.levels or (-at.dq / 2, at.dq / 2)
+    p1, p2, q1, q2 = (rig.moments(x, weights * each) for each in (*at.pressures, *levels))
     shares = _shares(scene)[:, None]
     q = q1 + shares * (q2 - q1)
     q[:, 0] = [Q for Q, *_ in scene.load.points]

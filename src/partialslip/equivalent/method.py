@@ -83,7 +83,7 @@ def solve(
     if rig.terms.xy.any() and found.stick_centre is not None:  # not mirror images
         undetermined |= dict.fromkeys(("q1", "q2"), _PRESSED)
         notes = (*(note for note in notes if not note.startswith("q1 and q2")), f"q1 and q2: {_PRESSED}")
-    levels = {key: errors["q"] for key in ("q1", "q2") if found.traction.levels_at and key not in undetermined}
+    levels = {key: errors["q"] for key in ("q1", "q2") if found.traction.values.levels and key not in undetermined}
     return replace(
         found,
         method="equivalent",

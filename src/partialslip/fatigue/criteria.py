@@ -207,7 +207,7 @@ def ruiz(result: Result, sigma: Array) -> Ruiz:
     assert result.slip
     x = result.slip.x
     tension = np.maximum(sigma.max(axis=0), 0.0)
-    work = np.abs(result.traction.at(x)[1]) / 2 * np.abs(result.slip.slip) / 2
+    work = np.abs(result.traction.at(x).dq) / 2 * np.abs(result.slip.slip) / 2
     product = tension * work
     most, both = int(work.argmax()), int(product.argmax())
     return Ruiz(float(tension.max() * work[most]), float(product[both]), float(x[most]), float(x[both]), x, product)

@@ -87,7 +87,7 @@ def edges(scene: Scene, result: Result, adhered: Result | None = None) -> tuple[
     stick = (-result.m, result.n) if result.m is not None and result.n is not None else None
     found = []
     for side, end, inwards in ((0, left, 1.0), (1, right, -1.0)):
-        K_N = _fitted(lambda x: result.traction.at(x)[0], end, inwards, marks, 0.5)
+        K_N = _fitted(lambda x: result.traction.at(x).p, end, inwards, marks, 0.5)
         if adhered is not None:
             K_T: Coefficient | None = _of_adhered(adhered, side, inwards, marks)
         else:
@@ -111,12 +111,12 @@ def _of_adhered(adhered: Result, side: int, inwards: float, marks: Array) -> Coe
     """
     end, corner = adhered.ends[1][side], (adhered.m, adhered.n)[side]
     slip = 0.0 if corner is None else abs((-corner, corner)[side] - end)
-    return _fitted(lambda x: adhered.traction.at(x)[1], end + inwards * slip / 2, inwards, marks, -0.5)
+    return _fitted(lambda x: adhered.traction.at(x).dq, end + inwards * slip / 2, inwards, marks, -0.5)
 
 
 def _reserve(result: Result, f: Array, x: Array) -> Array:
-    p, dq = result.traction.at(x)
-    return f * p - np.abs(dq) / 2
+    found = result.traction.at(x)
+    return f * found.p - np.abs(found.dq) / 2
 
 
 def _of_half_planes(scene: Scene, left: float, right: float, side: float) -> Coefficient:

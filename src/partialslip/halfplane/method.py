@@ -69,9 +69,6 @@ def solve(
     tractions = ExactTractions(pressed, f, cycle, found if isinstance(found, Levels) else None)
     breaks = _breaks(scene, pressed, cycle, found)
     x = sample(np.union1d(breaks, [pressed.centre]))
-    p, dq = tractions.change(x)
-    levels_at = tractions.at_load_points if tractions.levels else None
-    q1, q2 = levels_at(x) if levels_at else (None, None)
     far = abs(pressed.centre) + BEYOND * a
     inside = plan.needs("subsurface")
     stress = _stresses(scene, pressed, found) if inside else None
@@ -86,7 +83,7 @@ def solve(
         regime=regime,
         stick_centre=pressed.centre + cycle.mirror * cycle.zone.centre * a if cycle else None,
         stick_half_width=cycle.zone.half_width * a if cycle else None,
-        traction=Traction(x, p, dq, q1, q2, tractions.change, breaks, levels_at=levels_at),
+        traction=Traction(x, tractions.at(x), tractions.at, breaks),
         cost=clock.cost(),
         slip=slip,
         settings={"model": "two half-planes, steady state"},

@@ -9,6 +9,7 @@ from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.levels import Levels
 from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.turning import Turning
+from partialslip.result import TractionAt
 
 _POINTS = 101  # display: between neighbouring breaks
 
@@ -32,50 +33,39 @@ class ExactTractions:
     cycle: Loading | Turning | None
     levels: Levels | None
 
-    def change(self, x: Array) -> tuple[Array, Array]:
-        """p and dq at ``x`` (m), Pa; zero outside the contact."""
-        p = self.pressed.pressure(x)
-        return p, self._unit * self.cycle.traction(self.pressed.scaled(x)) if self.cycle else np.zeros_like(p)
-
-    def at_load_points(self, x: Array) -> tuple[Array, Array]:
-        """q1 and q2 at ``x`` (m), Pa; zero outside the contact."""
-        assert self.levels
-        q1, q2 = self.levels.at(self.pressed.scaled(x))
-        return self._unit * q1, self._unit * q2
-
-    @property
-    def _unit(self) -> float:
-        return self.f * self.pressed.p0
+    def at(self, x: Array) -> TractionAt:
+        """Tractions at ``x`` (m), Pa; zero outside the contact."""
+        p, scaled, unit = self.pressed.pressure(x), self.pressed.scaled(x), self.f * self.pressed.p0
+        dq = unit * self.cycle.traction(scaled) if self.cycle else np.zeros_like(p)
+        if not self.levels:
+            return TractionAt(p, dq)
+        q1, q2 = self.levels.at(scaled)
+        return TractionAt(p, dq, unit * q1, unit * q2)
 
 
 @dataclass(frozen=True)
 class CellTractions:
-    """Tractions of marching: the exact pressures of the contacts ``second`` and ``first`` at load points 2 and 1, and
-    shear tractions ``q1`` and ``q2`` (c,), Pa, constant on the cells between ``vertices`` (c + 1,), which are scaled by
-    the ``frame``."""
+    """Tractions of marching: the exact pressures of the contacts ``second`` and ``first`` at load points 2 and 1
+    (``first`` is None if they are the same), and shear tractions ``q1`` and ``q2`` (c,), Pa, constant on the cells
+    between ``vertices`` (c + 1,), which are scaled by the ``frame``; ``known`` says whether they are the tractions at
+    the load points, or only their difference counts."""
 
     frame: Contact
     second: Contact
-    first: Contact
+    first: Contact | None
     vertices: Array
     q1: Array
     q2: Array
+    known: bool
 
-    def change(self, x: Array) -> tuple[Array, Array]:
-        """p at load point 2 and dq at ``x`` (m), Pa; zero outside the contact."""
-        before, after = self.at_load_points(x)
-        return self.second.pressure(x), after - before
-
-    def pressures(self, x: Array) -> tuple[Array, Array]:
-        """p at load points 1 and 2 at ``x`` (m), Pa."""
-        return self.first.pressure(x), self.second.pressure(x)
-
-    def at_load_points(self, x: Array) -> tuple[Array, Array]:
-        """q1 and q2 at ``x`` (m), Pa; zero outside the contact."""
+    def at(self, x: Array) -> TractionAt:
+        """Tractions at ``x`` (m), Pa; zero outside the contact."""
         scaled = self.frame.scaled(x)
         cell = np.clip(np.searchsorted(self.vertices, scaled) - 1, 0, len(self.q1) - 1)
         inside = np.abs(scaled) <= 1
-        return np.where(inside, self.q1[cell], 0.0), np.where(inside, self.q2[cell], 0.0)
+        q1, q2 = (np.where(inside, each[cell], 0.0) for each in (self.q1, self.q2))
+        p, p1 = self.second.pressure(x), self.first.pressure(x) if self.first else None
+        return TractionAt.between(p, q1, q2, self.known, p1)
 
 
 @dataclass(frozen=True)
@@ -84,13 +74,16 @@ class CoupledTractions:
     between the middles of cells.
 
     Each load point has points, p^2 and q/p at them, (k,); scaled by the ``length``, the ``stress`` and f as given, from
-    ``origin``.
+    ``origin``. ``known`` says whether q1 and q2 are the tractions at the load points, or only their difference counts,
+    ``same`` whether only the pressure at load point 2 does.
     """
 
     points: tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]
     length: float
     stress: float
     origin: float
+    known: bool
+    same: bool
 
     @classmethod
     def of(
@@ -99,12 +92,12 @@ class CoupledTractions:
         ends: tuple[tuple[float, float], tuple[float, float]],
         normal: tuple[Array, Array],
         tangential: tuple[Array, Array],
-        length: float,
-        stress: float,
-        origin: float,
+        units: tuple[float, float, float],
+        known: bool,
+        same: bool,
     ) -> "CoupledTractions":
         """From forces on the cells (c,) between ``vertices`` (c + 1,) and the ``ends`` of the contact, for load points
-        1 and 2."""
+        1 and 2; ``units`` are length, stress and origin."""
         middles, widths = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices)
         found = []
         for (left, right), p, q in zip(ends, normal, tangential, strict=True):
@@ -113,28 +106,13 @@ class CoupledTractions:
             ratio = q[on] / p[on]
             squares = np.concatenate([[0.0], (p[on] / widths[on]) ** 2, [0.0]])
             found.append((x, squares, np.concatenate([ratio[:1], ratio, ratio[-1:]])))
-        return cls((found[0], found[1]), length, stress, origin)
+        return cls((found[0], found[1]), *units, known, same)
 
-    def change(self, x: Array) -> tuple[Array, Array]:
-        """p at load point 2 and dq at ``x`` (m), Pa; zero outside the contact."""
-        before, after = self.at_load_points(x)
-        return self.pressures(x)[1], after - before
-
-    def pressures(self, x: Array) -> tuple[Array, Array]:
-        """p at load points 1 and 2 at ``x`` (m), Pa."""
-        first, second = (self._pressure(x, at, squares) for at, squares, _ in self.points)
-        return first, second
-
-    def at_load_points(self, x: Array) -> tuple[Array, Array]:
-        """q1 and q2 at ``x`` (m), Pa; zero outside the contact."""
-        first, second = (
-            self._pressure(x, at, squares) * np.interp(self._scaled(x), at, ratio) for at, squares, ratio in self.points
+    def at(self, x: Array) -> TractionAt:
+        """Tractions at ``x`` (m), Pa; zero outside the contact."""
+        scaled = (x - self.origin) / self.length
+        p1, p2 = (
+            self.stress * np.sqrt(np.interp(scaled, at, squares, left=0.0, right=0.0)) for at, squares, _ in self.points
         )
-        return first, second
-
-    def _scaled(self, x: Array) -> Array:
-        return (x - self.origin) / self.length
-
-    def _pressure(self, x: Array, at: Array, squares: Array) -> Array:
-        result: Array = self.stress * np.sqrt(np.interp(self._scaled(x), at, squares, left=0.0, right=0.0))
-        return result
+        q1, q2 = (p * np.interp(scaled, at, ratio) for p, (at, _, ratio) in zip((p1, p2), self.points, strict=True))
+        return TractionAt.between(p2, q1, q2, self.known, None if self.same else p1)

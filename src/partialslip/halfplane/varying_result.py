@@ -15,7 +15,7 @@ from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tractions import sample
 from partialslip.halfplane.varying import Cycle, steady_cycle
 from partialslip.plan import Plan
-from partialslip.result import PATH_DEPENDENT, Clock, Regime, Result, Slip, StressAt, Traction
+from partialslip.result import PATH_DEPENDENT, Clock, Regime, Result, Slip, StressAt, Traction, TractionAt
 from partialslip.scene import Scene
 
 _ROUNDING = 1e-9  # accuracy: lengths in a, tractions in f p0
@@ -30,28 +30,25 @@ _RATCHETS = "the mean of Q is outside the bounds for a steady state: the contact
 class VaryingTractions:
     """Tractions at any points: the contacts ``first`` and ``second`` at load points 1 and 2, the steady ``cycle`` (None
     without friction and in sliding), and the ``loaded`` contact and the first loading to load point 2, where they give
-    q2 (None elsewhere)."""
+    q2 (None elsewhere); ``still``: there is no shear."""
 
     first: Contact
     second: Contact
     cycle: Cycle | None
     f: float
     loaded: Loading | None
+    still: bool
 
-    def change(self, x: Array) -> tuple[Array, Array]:
-        """p at load point 2 and dq at ``x`` (m), Pa; zero outside the contact."""
-        p = self.second.pressure(x)
-        return p, self.cycle.dq(x) if self.cycle else np.zeros_like(p)
-
-    def pressures(self, x: Array) -> tuple[Array, Array]:
-        """p at load points 1 and 2 at ``x`` (m), Pa."""
-        return self.first.pressure(x), self.second.pressure(x)
-
-    def at_load_points(self, x: Array) -> tuple[Array, Array]:
-        """q1 and q2 at ``x`` (m), Pa; zero outside the contact."""
-        assert self.loaded
-        q2 = self.f * self.second.p0 * self.loaded.traction(self.second.scaled(x))
-        return q2 - self.change(x)[1], q2
+    def at(self, x: Array) -> TractionAt:
+        """Tractions at ``x`` (m), Pa; zero outside the contact."""
+        p1, p, q1, q2 = self.first.pressure(x), self.second.pressure(x), None, None
+        dq = self.cycle.dq(x) if self.cycle else np.zeros_like(p)
+        if self.loaded:
+            q2 = self.f * self.second.p0 * self.loaded.traction(self.second.scaled(x))
+            q1 = q2 - dq
+        elif self.still:
+            q1, q2 = np.zeros_like(p), np.zeros_like(p)
+        return TractionAt(p, dq, q1, q2, p1)
 
 
 def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Result:
@@ -74,17 +71,14 @@ def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Resu
     largest = (first, second)[scene.largest - 1]
     regime = _regime(scene, cycle)
     loaded = _first_loading(scene, cycle, started) if cycle and regime != "ratchets" else _no_levels(regime)
-    tractions = VaryingTractions(first, second, cycle, f, None if isinstance(loaded, str) else loaded)
     still = not slipping and regime == "stuck"
+    tractions = VaryingTractions(first, second, cycle, f, None if isinstance(loaded, str) else loaded, still)
     inside = plan.needs("subsurface")
     stress = _stresses(scene, cycle, loaded) if inside else None
     left, right = cycle.stick if cycle else common(first, second) if still else (math.nan, math.nan)
     known = math.isfinite(left)
     breaks = _breaks(scene, first, second, (left, right) if known else (), tractions)
     x = sample(breaks)
-    p, dq = tractions.change(x)
-    levels_at = tractions.at_load_points if tractions.loaded else None
-    q1, q2 = levels_at(x) if levels_at else (np.zeros_like(x), np.zeros_like(x)) if still else (None, None)
     turns = cycle is not None and cycle.turns_round
     why = {} if still else undetermined(regime, turns, loaded)
     if inside and not stress:
@@ -97,10 +91,7 @@ def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Resu
         regime=regime,
         stick_centre=(left + right) / 2 if known else None,
         stick_half_width=(right - left) / 2 if known else None,
-        traction=Traction(
-            x, p, dq, q1, q2, tractions.change, breaks, levels_at=levels_at,
-            p1=first.pressure(x), pressures_at=tractions.pressures,
-        ),
+        traction=Traction(x, tractions.at(x), tractions.at, breaks),
         cost=clock.cost(),
         slip=Slip(*cycle.slip()) if cycle and cycle.change and regime != "ratchets" else None,
         settings={"model": "two half-planes, steady state under varying pressure"},
@@ -113,7 +104,7 @@ def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Resu
         path_dependent=turns,
         end_slips=cycle.slips if cycle else None,
         contact_ends=(first.ends, second.ends),
-    )  # fmt: skip
+    )
 
 
 def _regime(scene: Scene, cycle: Cycle | None) -> Regime:

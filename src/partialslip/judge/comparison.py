@@ -287,7 +287,8 @@ def _nodal_errors(
 ) -> tuple[float | None, float | None, float, float | None]:
     """Return relative L2 errors of nodal p and q, and the largest nodal errors, in p0 and f p0."""
     x = result.traction.x
-    p, dq = reference.traction.at(x)
+    true = reference.traction.at(x)
+    p, dq = true.p, true.dq
     p_off, q_off = result.traction.p - p, (result.traction.dq - dq) / 2
     largest = float(np.abs(p_off).max() / reference.p0)
     if not dq.any() or f == 0 or reference.regime == "ratchets":

@@ -70,18 +70,14 @@ def fields(traction: Traction, x: Array, keys: tuple[str, ...]) -> Array:
 
     ``keys`` are p and p_1 (pressure at load points 2 and 1), q = dq/2, and q1 and q2, if the ``traction`` has them.
     """
-    p, dq = traction.at(x)
-    known = {"p": p, "p_1": p, "q": dq / 2}
-    if traction.pressures_at:
-        known["p_1"], known["p"] = traction.pressures_at(x)
-    if traction.levels_at:
-        known["q1"], known["q2"] = traction.levels_at(x)
-    return np.stack([known[key] for key in keys])
+    found = traction.at(x)
+    known = {"p_1": found.pressures[0], "p": found.p, "q": found.dq / 2, "q1": found.q1, "q2": found.q2}
+    return np.array([known[key] for key in keys])
 
 
 def cell_means(traction: Traction, cells: Array) -> tuple[Array, Array]:
     """Return means (c,) of p and dq of a ``traction``, Pa, over the cells with ascending ends ``cells`` (c + 1,), m."""
-    p, dq = means(lambda x: np.stack(traction.at(x)), cells, traction.breaks)
+    p, dq = means(lambda x: np.stack(traction.at(x)[:2]), cells, traction.breaks)
     return p, dq
 
 

@@ -94,8 +94,8 @@ def _measured(result: Result, reference: Result, scene: Scene) -> Iterator[_Valu
     yield from _contact_ends(result, reference)
     yield from _stick_ends(result, reference)
     of, to = result.traction, reference.traction
-    pressures = ("p_1", "p") if of.pressures_at or to.pressures_at else ("p",)
-    levels = ("q1", "q2") if of.levels_at and to.levels_at else ()
+    pressures = ("p",) if of.p1 is None and to.p1 is None else ("p_1", "p")
+    levels = ("q1", "q2") if of.values.levels and to.values.levels else ()
     errors = norm_errors(of, to, f, (*pressures, "q", *levels))
     sums = resultants(of, (*pressures, "q"))
     applied = dict(zip(("p_1", "p"), scene.end_pressing, strict=True))
@@ -149,8 +149,8 @@ def _stick_ends(result: Result, reference: Result) -> Iterator[_Values]:
 
 def _q_max(traction: Traction) -> float:
     """Return the largest |q| = |dq|/2, Pa, at the points and breaks of the traction."""
-    _, dq = traction.at(np.union1d(traction.x, traction.breaks))
-    return float(np.abs(dq).max()) / 2
+    found = traction.at(np.union1d(traction.x, traction.breaks))
+    return float(np.abs(found.dq).max()) / 2
 
 
 def surface_error(result: Result, reference: Result) -> float | None:

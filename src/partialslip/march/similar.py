@@ -138,20 +138,8 @@ class SimilarBodies(driver.Problem[SimilarLevel]):
         found = steady_state(scene, history, level.stick, 1.0, x=level.x, common=normal.common if anew else None)
         q1, q2 = (scene.P / frame.a * q / widths for q in (history.q1, history.q2)) if history else (0 * x, 0 * x)
         known = found.centre is not None
-        tractions = CellTractions(frame, normal.second, normal.first, level.vertices, q1, q2)
-        traction = Traction(
-            x=x,
-            p=normal.second.pressure(x),
-            dq=q2 - q1,
-            q1=q1 if known else None,
-            q2=q2 if known else None,
-            at=tractions.change,
-            breaks=places,
-            cells=places,
-            levels_at=tractions.at_load_points if known else None,
-            p1=normal.first.pressure(x) if anew else None,
-            pressures_at=tractions.pressures if anew else None,
-        )
+        before = normal.first if anew else None
+        tractions = CellTractions(frame, normal.second, before, level.vertices, q1, q2, known)
         counts = {
             "events": history.events if history else 0,
             "friction_iterations": history.changes if history else 0,
@@ -163,7 +151,7 @@ class SimilarBodies(driver.Problem[SimilarLevel]):
             a=largest.a,
             p0=largest.p0,
             found=found,
-            traction=traction,
+            traction=Traction(x, tractions.at(x), tractions.at, places, places),
             cells=slice(None),
             pressed=pressed,
             certificate=certificate(history, widths, f, p0) if history else {},

@@ -28,7 +28,7 @@ from partialslip.march.driver import Answer, Errors
 from partialslip.march.pressing import NormalLoads
 from partialslip.march.punch_growth import OnCells, PunchGrowth, relative
 from partialslip.plan import Plan
-from partialslip.result import Clock, Traction
+from partialslip.result import Clock, Traction, TractionAt
 from partialslip.result.state import State
 from partialslip.scene import Hertz, Scene
 from partialslip.scene.materials import Material
@@ -132,21 +132,16 @@ class UnlikeBodies(driver.Problem[UnlikeLevel]):
         known = history is not None and found.centre is not None
         forces = history.pressures if history else (pressing.x, pressing.x)
         shear = (history.q1, history.q2) if history else (0 * level.x, 0 * level.x)
-        tractions = CoupledTractions.of(level.vertices, level.ends, forces, shear, L, stress, scene.origin)
+        units = L, stress, scene.origin
+        tractions = CoupledTractions.of(level.vertices, level.ends, forces, shear, units, known, not history)
         on = np.flatnonzero((forces[0] > 0) | (forces[1] > 0))
         (p1, p2), (q1, q2) = ([stress * each[on] / widths[on] for each in pair] for pair in (forces, shear))
         traction = Traction(
             x=level.x[on] * L + scene.origin,
-            p=p2,
-            dq=q2 - q1,
-            q1=q1 if known else None,
-            q2=q2 if known else None,
-            at=tractions.change,
+            values=TractionAt.between(p2, q1, q2, known, p1 if history else None),
+            at=tractions.at,
             breaks=np.unique([*level.fine, *level.kinks]) * L + scene.origin,
             cells=level.vertices[on[0] : on[-1] + 2] * L + scene.origin,
-            levels_at=tractions.at_load_points if known else None,
-            p1=p1 if history else None,
-            pressures_at=tractions.pressures if history else None,
         )
         (left1, right1), (left2, right2) = (np.array(level.ends) * L + scene.origin).tolist()
         return Answer(

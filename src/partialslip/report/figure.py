@@ -97,9 +97,9 @@ def draw_tractions(axes: "Axes", results: Mapping[str, Result], friction: Fricti
             x, p, q = traction.x, traction.p, traction.dq / 2
             axes.plot(x / a, p / p0, color="0.45", lw=1, ls="--", label=f"p/p0, {name}")
             bound, line = p, "--"
-            if traction.pressures_at:
-                first, second = traction.pressures_at(x)
-                bound, line = (first + second) / 2, "-."
+            if traction.p1 is not None:
+                first = traction.p1
+                bound, line = (first + p) / 2, "-."
                 axes.plot(x / a, first / p0, color="0.45", lw=1, ls=":", label=f"p/p0 at load point 1, {name}")
                 axes.plot(x / a, bound / p0, color="0.45", lw=0.8, ls=line, label="mean of both, bounds q/f")
             if shears:
@@ -113,13 +113,13 @@ def draw_tractions(axes: "Axes", results: Mapping[str, Result], friction: Fricti
                 axes.plot(x / a, q / unit, color="black", lw=1.4, label=f"{shear}, {name}")
         else:
             x = _spread(result)
-            p, dq = traction.at(x)
+            found = traction.at(x)
             marks = METHODS[name].marks if name in METHODS else _ALL
-            axes.plot(x / a, p / p0, marks[0], ms=6, color="black", ls="", label=f"p/p0, {name}")
+            axes.plot(x / a, found.p / p0, marks[0], ms=6, color="black", ls="", label=f"p/p0, {name}")
             if shears:
                 axes.plot(
                     x / a,
-                    dq / 2 / unit,
+                    found.dq / 2 / unit,
                     marks[1],
                     mfc="white",
                     mec="black",
@@ -148,10 +148,10 @@ def draw_errors(axes: "Axes", run: Run) -> None:
     for name, line in zip(run.comparisons, cycle(_ERROR_LINES)):
         traction, shown = run.results[name].traction, name.replace("$", r"\$")
         x = traction.x[(traction.x >= left * a) & (traction.x <= right * a)]
-        (p, dq), (true_p, true_dq) = traction.at(x), reference.traction.at(x)
-        _draw_error(axes, x / a, (p - true_p) / p0, "0.55", line, f"p, {shown}")
-        if f and (dq.any() or true_dq.any()):
-            _draw_error(axes, x / a, (dq - true_dq) / 2 / (f * p0), "black", line, f"q, {shown}")
+        found, true = traction.at(x), reference.traction.at(x)
+        _draw_error(axes, x / a, (found.p - true.p) / p0, "0.55", line, f"p, {shown}")
+        if f and (found.dq.any() or true.dq.any()):
+            _draw_error(axes, x / a, (found.dq - true.dq) / 2 / (f * p0), "black", line, f"q, {shown}")
     from matplotlib.ticker import LogLocator, NullLocator
 
     axes.set(yscale="log", xlabel="x/a", ylabel="error, in p0 and f p0", xlim=(left, right))

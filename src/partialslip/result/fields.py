@@ -21,7 +21,8 @@ class AtPoints:
     Parameters
     ----------
     function : callable
-        Function of coordinates (k,), one array for each axis, that returns an array (..., k) or a tuple of arrays (k,).
+        Function of coordinates (k,), one array for each axis, that returns an array (..., k) or a named
+        tuple of arrays (k,) and of None.
     """
 
     function: Callable[..., Any]
@@ -40,11 +41,13 @@ class AtPoints:
             raise InputError(f"points: must be numbers or arrays of numbers of shapes that fit: {error}") from None
         found = self.function(*(each.ravel() for each in points))
         shape = points[0].shape
-        return tuple(_shaped(each, shape) for each in found) if isinstance(found, tuple) else _shaped(found, shape)
+        if isinstance(found, tuple):
+            return type(found)(*(_shaped(each, shape) for each in found))
+        return _shaped(found, shape)
 
 
-def _shaped(values: Array, shape: tuple[int, ...]) -> Any:
-    return values.reshape((*values.shape[:-1], *shape))[()]
+def _shaped(values: Array | None, shape: tuple[int, ...]) -> Any:
+    return None if values is None else values.reshape((*values.shape[:-1], *shape))[()]
 
 
 def at_points(function: Callable[..., Any] | None) -> AtPoints | None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,51 +11,95 @@ from partialslip.result.fields import at_points
 from partialslip.shown import Short
 
 
+class TractionAt(NamedTuple):
+    """Tractions at points, Pa; arrays of one shape.
+
+    Parameters
+    ----------
+    p, dq : arrays
+        Pressure at load point 2 and change of shear traction, q2 - q1.
+    q1, q2 : arrays or None
+        Shear traction at load points 1 and 2. None where the method determines dq only: with mean loads a closed
+        form does not give the shear locked in by the first cycles. Where Q and sigma are out of phase, the least and
+        the largest shear of the last cycle.
+    p1 : array or None
+        Pressure at load point 1; None where the pressure is the same at both load points.
+    """
+
+    p: Array
+    dq: Array
+    q1: Array | None = None
+    q2: Array | None = None
+    p1: Array | None = None
+
+    @classmethod
+    def between(cls, p: Array, q1: Array, q2: Array, known: bool, p1: Array | None = None) -> "TractionAt":
+        """From shear at the load points of which only the change counts, unless it is ``known`` to be q1 and q2."""
+        return cls(p, q2 - q1, q1 if known else None, q2 if known else None, p1)
+
+    @property
+    def pressures(self) -> tuple[Array, Array]:
+        """Pressure at load points 1 and 2, Pa."""
+        return (self.p if self.p1 is None else self.p1), self.p
+
+    @property
+    def levels(self) -> tuple[Array, Array] | None:
+        """q1 and q2, Pa; None where the method determines dq only."""
+        return None if self.q1 is None or self.q2 is None else (self.q1, self.q2)
+
+
 @dataclass(frozen=True, repr=False)
 class Traction(Short):
     """Tractions over the contact line.
-
-    The functions take a number, a list or an array of any shape, and return values of that shape.
 
     Parameters
     ----------
     x : (n,) array
         Points, ascending, m.
-    p, dq : (n,) arrays
-        Pressure at load point 2 and change of shear traction, q2 - q1, Pa.
-    q1, q2 : (n,) arrays or None
-        Shear traction at load points 1 and 2, Pa. None where the method determines dq only: with mean loads a closed
-        form does not give the shear locked in by the first cycles. Where Q and sigma are out of phase, the least and
-        the largest shear of the last cycle.
+    values : TractionAt
+        Tractions at ``x``, (n,) each.
     at : callable
-        ``at(x) -> (p, dq)``: tractions at any points, Pa, interpolated by the method; zero outside the contact.
+        ``at(x) -> TractionAt``: tractions at any points, a number, a list or an array of any shape (m), interpolated by
+        the method; zero outside the contact. It gives what ``values`` has, and None for the rest.
     breaks : (k,) array
         Points where the tractions are not smooth, m: the ends of the contact and of the stick zone.
     cells : (c + 1,) array or None
         Ends of the cells (contact edges of the mesh) for cell averages, m; None if the method has no cells.
-    levels_at : callable or None
-        ``levels_at(x) -> (q1, q2)`` at any points, Pa, zero outside the contact; None where ``q1`` and ``q2`` are None.
-    p1 : (n,) array or None
-        Pressure at load point 1, Pa; None where the pressure is the same at both load points.
-    pressures_at : callable or None
-        ``pressures_at(x) -> (p1, p2)`` at any points, Pa; None where ``p1`` is None.
     """
 
     x: Array
-    p: Array
-    dq: Array
-    q1: Array | None
-    q2: Array | None
-    at: Callable[[Array], tuple[Array, Array]]
+    values: TractionAt
+    at: Callable[[Array], TractionAt]
     breaks: Array
     cells: Array | None = None
-    levels_at: Callable[[Array], tuple[Array, Array]] | None = None
-    p1: Array | None = None
-    pressures_at: Callable[[Array], tuple[Array, Array]] | None = None
 
     def __post_init__(self) -> None:
-        for name in ("at", "levels_at", "pressures_at"):
-            object.__setattr__(self, name, at_points(getattr(self, name)))
+        object.__setattr__(self, "at", at_points(self.at))
+
+    @property
+    def p(self) -> Array:
+        """Pressure at load point 2 at ``x``, (n,), Pa."""
+        return self.values.p
+
+    @property
+    def dq(self) -> Array:
+        """Change of shear traction, q2 - q1, at ``x``, (n,), Pa."""
+        return self.values.dq
+
+    @property
+    def q1(self) -> Array | None:
+        """Shear traction at load point 1 at ``x``, (n,), Pa; None where the method determines dq only."""
+        return self.values.q1
+
+    @property
+    def q2(self) -> Array | None:
+        """Shear traction at load point 2 at ``x``, (n,), Pa; None where the method determines dq only."""
+        return self.values.q2
+
+    @property
+    def p1(self) -> Array | None:
+        """Pressure at load point 1 at ``x``, (n,), Pa; None where it is that at load point 2."""
+        return self.values.p1
 
     @property
     def p_max(self) -> float:
@@ -74,7 +119,7 @@ class Traction(Short):
 
 @dataclass(frozen=True)
 class Sliding:
-    """Shear of a contact that slides at both load points: q = ``signs`` f p, with the pressure of ``traction``.
+    """Tractions of a contact that slides at both load points: q = ``signs`` f p, with the pressure of ``traction``.
 
     Parameters
     ----------
@@ -90,21 +135,16 @@ class Sliding:
     f: Callable[[Array], Array]
     signs: tuple[int, int]
 
-    def levels_at(self, x: Array) -> tuple[Array, Array]:
-        """q1 and q2 at ``x`` (m), Pa."""
-        of = self.traction
-        p1, p2 = of.pressures_at(x) if of.pressures_at else (of.at(x)[0],) * 2
-        f = self.f(x)
-        return self.signs[0] * f * p1, self.signs[1] * f * p2
-
-    def at(self, x: Array) -> tuple[Array, Array]:
-        """p at load point 2 and dq at ``x`` (m), Pa."""
-        q1, q2 = self.levels_at(x)
-        return self.traction.at(x)[0], q2 - q1
+    def at(self, x: Array) -> TractionAt:
+        """Tractions at ``x`` (m), Pa."""
+        found, f = self.traction.at(x), self.f(x)
+        q1, q2 = (sign * f * p for sign, p in zip(self.signs, found.pressures, strict=True))
+        return found._replace(dq=q2 - q1, q1=q1, q2=q2)
 
 
 def sliding(traction: Traction, f: Callable[[Array], Array], signs: tuple[int, int]) -> Traction:
     """Return ``traction`` with the shear of a contact that slides at both load points, in the directions ``signs``."""
     slides = Sliding(traction, f, signs)
-    q1, q2 = slides.levels_at(traction.x)
-    return replace(traction, dq=q2 - q1, q1=q1, q2=q2, at=slides.at, levels_at=slides.levels_at)
+    shear = slides.at(traction.x)
+    values = traction.values._replace(dq=shear.dq, q1=shear.q1, q2=shear.q2)
+    return replace(traction, values=values, at=slides.at)

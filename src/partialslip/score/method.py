@@ -7,7 +7,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.result import Clock, Regime, Result, Traction
+from partialslip.result import Clock, Regime, Result, Traction, TractionAt
 from partialslip.scene import Scene
 from partialslip.score.ends import (
     NOISE_FACTOR,
@@ -276,47 +276,38 @@ def _limited(end: ZoneEnd, contact: ZoneEnd, way: int) -> ZoneEnd:
 
 
 @dataclass(frozen=True)
-class _PiecewiseLinear:
-    """Two tractions, linear between the points ``x`` (n,), m, and zero outside; ``values`` (2, n), Pa."""
+class Sampled:
+    """Tractions of a table: linear between the points ``x`` (n,), m, or constant on the cells with the ends ``x``
+    (n + 1,), and zero outside; ``values`` are (n,) each."""
 
     x: Array
-    values: Array
+    values: TractionAt
 
-    def at(self, x: Array) -> tuple[Array, Array]:
-        one, other = (np.interp(x, self.x, column, left=0.0, right=0.0) for column in self.values)
-        return one, other
+    def at(self, x: Array) -> TractionAt:
+        """Tractions at ``x`` (m), Pa."""
+        p, dq, *others = self.values
+        return TractionAt(
+            self._at(x, p), self._at(x, dq), *[None if each is None else self._at(x, each) for each in others]
+        )
 
-
-@dataclass(frozen=True)
-class _PiecewiseConstant:
-    """Two tractions, constant on each of the ``cells`` (n + 1,), m, and zero outside; ``values`` (2, n), Pa."""
-
-    cells: Array
-    values: Array
-
-    def at(self, x: Array) -> tuple[Array, Array]:
-        cell = np.clip(np.searchsorted(self.cells, x) - 1, 0, self.values.shape[1] - 1)
-        within = (x >= self.cells[0]) & (x <= self.cells[-1])
-        one, other = np.where(within, self.values[:, cell], 0.0)
-        return one, other
+    def _at(self, x: Array, values: Array) -> Array:
+        if len(values) == len(self.x):
+            found: Array = np.interp(x, self.x, values, left=0.0, right=0.0)
+            return found
+        cell = np.clip(np.searchsorted(self.x, x) - 1, 0, len(values) - 1)
+        return np.where((x >= self.x[0]) & (x <= self.x[-1]), values[cell], 0.0)
 
 
 def _traction(samples: Samples, ends: list[float], in_phase: bool) -> Traction:
     """Tractions as functions of x: constant on cells, or linear between points and zero at the outermost ``ends`` (m)
     of the contacts. Out of phase (not ``in_phase``) the largest shear may be at any load point: not at 1 or 2."""
-    x, p, dq, p1, cells = samples.x, samples.p, samples.dq, samples.p1, samples.cells
-    beyond = [end for end in (min(ends), max(ends)) if not x[0] <= end <= x[-1]]
-    breaks = np.union1d(x, beyond) if cells is None else cells
-
-    def between(*columns: Array) -> _PiecewiseLinear | _PiecewiseConstant:
-        if cells is not None:
-            return _PiecewiseConstant(cells, np.array(columns))
-        return _PiecewiseLinear(breaks, np.array([np.interp(breaks, x, each, left=0.0, right=0.0) for each in columns]))
-
-    at, pressures_at = between(p, dq).at, None if p1 is None else between(p1, p).at
-    q1, q2 = (samples.q1, samples.q2) if in_phase else (None, None)
-    levels_at = None if q1 is None or q2 is None else between(q1, q2).at
-    return Traction(x, p, dq, q1, q2, at, breaks, breaks, levels_at, p1, pressures_at)
+    x, cells = samples.x, samples.cells
+    levels = (samples.q1, samples.q2) if in_phase else (None, None)
+    values = TractionAt(samples.p, samples.dq, *levels, samples.p1)
+    if cells is not None:
+        return Traction(x, values, Sampled(cells, values).at, cells, cells)
+    breaks = np.union1d(x, [end for end in (min(ends), max(ends)) if not x[0] <= end <= x[-1]])
+    return Traction(x, values, Sampled(breaks, Sampled(x, values).at(breaks)).at, breaks, breaks)
 
 
 def _rounded(number: float) -> float:

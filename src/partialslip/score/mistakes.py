@@ -141,8 +141,8 @@ def _sums(result: Result) -> list[tuple[float, float]]:
     traction, breaks = result.traction, result.traction.breaks
 
     def values(x: Array) -> Array:
-        first = traction.pressures_at(x)[:1] if traction.pressures_at else ()
-        return np.stack([*traction.at(x), *first])
+        found = traction.at(x)
+        return np.stack([found.p, found.dq, *(() if found.p1 is None else (found.p1,))])
 
     centres, widths = (breaks[1:] + breaks[:-1]) / 2, np.diff(breaks)
     fine = values(centres) @ widths
