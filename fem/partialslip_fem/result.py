@@ -123,7 +123,7 @@ def _state(scene: Scene, problem: Problem, solution: MeshSolution, errors: dict[
     if not solution.history:
         return None
     history = solution.history
-    p, q = (solution.shear(forces) for forces in (history.last_pressure, history.end[0]))
+    p, q = (solution.shear(forces) for forces in history.end[::-1])
     L, origin = scene.length, problem.origin * scene.length
     p, q = (rescaled(each, scene.P / L, L, origin) for each in (p, q))
     Q, sigma, slope = scene.load.along[-1]

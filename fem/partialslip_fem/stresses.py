@@ -152,8 +152,8 @@ def _steps(scene: Scene, solution: MeshSolution) -> tuple[Phases, list[Array], l
     if history:
         steps = history.around
         shears = [solution.on_line(each) for each in steps.forces]
-        bounds = np.broadcast_to(steps.bounds, steps.forces.shape)
-        return Phases(load, steps.ways), shears, [solution.on_line(each / history.f) for each in bounds]
+        pressures = np.broadcast_to(steps.pressures, steps.forces.shape)
+        return Phases(load, steps.ways), shears, [solution.on_line(each) for each in pressures]
     second = solution.pressing.x
     first = second if solution.first is None else solution.first
     # between the load points the pressure was not solved for

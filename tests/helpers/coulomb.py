@@ -150,12 +150,13 @@ def recorded():
         def stepping(before, load, change):
             nonlocal bound
             before_it = len(legs)
-            found, after = advance(before, load, change)
+            found, pressure = advance(before, load, change)
+            after = f * pressure
             known = bound if bound is not None else 0 * after
             followed = len(legs) > before_it
             done.append(Step(float(load[0]), change, known, after, before.x, found.x, -found.rest, followed))
             bound = after
-            return found, after
+            return found, pressure
 
         found = true(path, stepping, before, f, **how)
         marches.append(March(C, stretch, across, at_first is not None, done, found))

@@ -65,16 +65,16 @@ def march(
         the loads are in phase. At the end of the leg these nodes are beside the ends of the contact; beside the stick
         zone a single one that has slipped shows that its end takes points back.
     """
-    factored, bound = factored or Factored(tangential), f * normal
-    require_carried([load[0] for load in path.cycle], float(bound.sum()))
+    factored = factored or Factored(tangential)
+    require_carried([load[0] for load in path.cycle], float((f * normal).sum()))
     path = replace(path, ways=((1.0,),) * (1 + len(path.cycle)))
     if path.half:
-        contact = _Contact(factored, stretch, bound, f, path, near, few)
+        contact = _Contact(factored, stretch, normal, f, path, near, few)
         history = contact.followed()
         if not contact.legs[0].turns:
             return history
         path = replace(path, half=False)
-    return _Contact(factored, stretch, bound, f, path, near, few).followed()
+    return _Contact(factored, stretch, normal, f, path, near, few).followed()
 
 
 @dataclass(frozen=True)
@@ -120,21 +120,21 @@ class _Done:
 
 
 class _Contact:
-    """Legs of a path in turn; arguments as for :func:`march`, and ``bound``, f times the normal forces."""
+    """Legs of a path in turn; arguments as for :func:`march`."""
 
     def __init__(
         self,
         factored: Factored,
         stretch: Array,
-        bound: Array,
+        normal: Array,
         f: Array,
         path: Path,
         near: Sides | None,
         few: int,
     ) -> None:
-        self._f = f
+        self._f, self._normal, self._bound = f, normal, f * normal
         self._few = few if path.in_phase else 0
-        self.factored, self._stretch, self._bound, self._path, self._near = factored, stretch, bound, path, near
+        self.factored, self._stretch, self._path, self._near = factored, stretch, path, near
         self.legs: list[_Done] = []
         self._cycle = len(path.cycle)
         self._one_way = len({load[1:3] for load in (path.begin, *path.cycle)}) == 1  # Q drives all slip one way
@@ -155,7 +155,7 @@ class _Contact:
         """Go along one leg, as :func:`partialslip.friction.history.follow` asks for it."""
         done = _Done(before.x, load, change, still(before)) if not change.any() else self._leg(before.x, load, change)
         self.legs.append(done)
-        return done.found, self._bound
+        return done.found, self._normal
 
     def _leg(self, start: Array, load: Array, change: Array) -> _Done:
         if self._followed:
@@ -282,7 +282,7 @@ class _Contact:
             history,
             slipped=slipped,
             dissipated=float(self._bound @ slipped.sum(axis=0)),
-            around=Steps(ways, forces, self._bound[None]),
+            around=Steps(ways, forces, self._normal[None], self._f),
             turns=path.in_phase and any(each.turns for each in last),
             changed=last[path.ends[1]].changed if path.in_phase else None,
             events=events,

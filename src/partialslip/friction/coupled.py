@@ -446,7 +446,7 @@ def march(
         if not change.any():
             normal = done[-1][0]
             done.append((replace(still(normal), rest=normal.rest), still(before)))
-            return done[-1][1], f * normal.x
+            return done[-1][1], normal.x
         gap = gap - strain * stretch[1]
         kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0] + change[2] * bent
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the previous step, and this step of the previous cycle
@@ -454,7 +454,7 @@ def march(
         this = _Step(xx, C.yy, xy, full.opening, f, P, gap, Q, kept, full.factors)
         normal, sheared = _solve_near(this, starts, line.trail if line is not None else None, ("path", len(done)))
         done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
-        return sheared, f * normal.x
+        return sheared, normal.x
 
     history = follow(path, advance, done[0][1], f)
     last, _ = done[-cycle:][sum(len(way) for way in path.fractions[1 : path.ends[1] + 2]) - 1]

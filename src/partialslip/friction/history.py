@@ -42,8 +42,8 @@ class History:
     q1, q2 : (n,) arrays
         Equal to ``at_ends``; out of phase the smallest and the largest tangential forces of the last cycle, at
         constant pressure at its load points.
-    bounds : two (n,) arrays
-        f times the normal forces at load points 1 and 2.
+    pressures : two (n,) arrays
+        Normal forces at load points 1 and 2.
     room : (n,) array or None
         Where the pressure varies, out of phase: the least room of q up to f p in the last cycle, plus that down to
         -f p; zero where a node slips both ways, or is open at times. None elsewhere: it is f (p_1 + p_2) less the
@@ -55,7 +55,7 @@ class History:
     dissipated : float
         Work against friction over the last cycle.
     end : two (n,) arrays
-        Tangential forces, and f times the normal forces, at the end of the path.
+        Tangential and normal forces at the end of the path.
     f : (n,) array
         Coefficient of friction.
     load_steps : int
@@ -80,7 +80,7 @@ class History:
     at_ends: tuple[Array, Array]
     q1: Array
     q2: Array
-    bounds: tuple[Array, Array]
+    pressures: tuple[Array, Array]
     slip: Array
     net_slip: Array
     dissipated: float
@@ -101,7 +101,7 @@ class History:
             replace(step, x=step.x[nodes], rest=step.rest[nodes], residual=step.residual[nodes]) for step in self.points
         ]
         fields: dict[str, Any] = {key: getattr(self, key)[nodes] for key in ("q1", "q2", "slip", "net_slip", "f")} | {
-            key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "bounds", "end")
+            key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "pressures", "end")
         }
         fields["around"] = self.around.of(nodes)
         some = {key: getattr(self, key) for key in ("room", "slipped", "held", "changed")}
@@ -126,15 +126,9 @@ class History:
         return result
 
     @property
-    def pressures(self) -> tuple[Array, Array]:
-        """Normal forces at load points 1 and 2."""
-        return self.bounds[0] / self.f, self.bounds[1] / self.f
-
-    @property
-    def last_pressure(self) -> Array:
-        """Normal forces at the end of the path."""
-        result: Array = self.end[1] / self.f
-        return result
+    def bounds(self) -> tuple[Array, Array]:
+        """Friction bounds f p at load points 1 and 2."""
+        return self.f * self.pressures[0], self.f * self.pressures[1]
 
     @property
     def change(self) -> Array:
@@ -198,7 +192,7 @@ class History:
     @property
     def ratchets(self) -> float:
         """Largest net slip of the last cycle, relative to the largest slip of half a cycle."""
-        held = (self.bounds[0] > 0) & (self.bounds[1] > 0)  # nodes that open may close elsewhere
+        held = (self.pressures[0] > 0) & (self.pressures[1] > 0)  # nodes that open may close elsewhere
         if self.held is not None:
             held = self.held
         if not held.any():
@@ -271,16 +265,23 @@ SHEARS: dict[str, Callable[[History], Array]] = {
 
 class Steps(NamedTuple):
     """Load steps of a cycle: the ways to each load point, as ascending fractions up to 1, and the states at the ends of
-    the steps, in turn: tangential ``forces`` (s, n), and ``bounds`` (s, n), f times the normal forces; (1, n) where
-    they are constant."""
+    the steps, in turn: tangential ``forces`` (s, n), and normal forces, ``pressures`` (s, n), or (1, n) where they are
+    constant; with the coefficient of friction ``f`` (n,)."""
 
     ways: tuple[tuple[float, ...], ...]
     forces: Array
-    bounds: Array
+    pressures: Array
+    f: Array
 
     def of(self, nodes: npt.NDArray[np.int64]) -> "Steps":
         """Steps of some ``nodes`` only (indices)."""
-        return self._replace(forces=self.forces[:, nodes], bounds=self.bounds[:, nodes])
+        return self._replace(forces=self.forces[:, nodes], pressures=self.pressures[:, nodes], f=self.f[nodes])
+
+    @property
+    def bounds(self) -> Array:
+        """Friction bounds f p (s, n)."""
+        bounds: Array = np.broadcast_to(self.f * self.pressures, self.forces.shape)
+        return bounds
 
 
 def _settled(path: Path, forces: Array, before: Array, bound: Array, largest: float) -> bool:
@@ -309,9 +310,9 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
     """Follow the path: to the last load point, then cycle after cycle, until a cycle repeats or all cycles are done. If
     the first loading determines the cycle (``path.half``), only the first loading is solved.
 
-    ``advance(before, load, change) -> (solution, bound)`` solves one step: from the solution before the step, the loads
-    after the step and their change, to the solution after the step, whose ``rest`` is minus the slip, and f times the
-    normal forces, with the coefficient of friction ``f`` (n,). ``hastens``: whether cycles that lead to
+    ``advance(before, load, change) -> (solution, pressure)`` solves one step: from the solution before the step, the
+    loads after the step and their change, to the solution after the step, whose ``rest`` is minus the slip, and the
+    normal forces. The coefficient of friction is ``f`` (n,). ``hastens``: whether cycles that lead to
     the steady state may skip those of which the limit is known (:func:`partialslip.friction.limit.limit`).
     """
     first, *ways = path.fractions
@@ -328,23 +329,24 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
             points.append(certified([step for step, _ in went[-1]]))
             taken += len(fractions)
         largest = max(float(np.abs(step.x).sum()) for way in went for step, _ in way)
-        if _settled(path, points[-1].x, points[-1 - len(went)].x, went[-1][-1][1], largest):
+        if _settled(path, points[-1].x, points[-1 - len(went)].x, f * went[-1][-1][1], largest):
             break
         ended.append(points[-1].x)
-        skipped = limit(ended, went[-1][-1][1]) if hastens else None
+        skipped = limit(ended, f * went[-1][-1][1]) if hastens else None
         if skipped is not None:
             points[-1], ended = replace(points[-1], x=skipped), [skipped]
     steps = [step for way in went for step, _ in way]
     ends = [way[-1] for way in went]
     slips = np.cumsum([sum(-step.rest for step, _ in way) for way in went], axis=0)
-    (q1, bound1), (q2, bound2) = ((ends[end][0].x, ends[end][1]) for end in path.ends)
+    (q1, p1), (q2, p2) = ((ends[end][0].x, ends[end][1]) for end in path.ends)
     forces = np.array([step.x for step in steps])
     dissipated = -sum(float(step.x @ step.rest) for step in steps)
     anew: dict[str, Any] = {}
-    all_bounds = [bound for way in went for _, bound in way]
-    constant = all(bound is all_bounds[0] for bound in all_bounds)
-    bounds = np.array(all_bounds[:1] if constant else all_bounds)
+    pressed = [pressure for way in went for _, pressure in way]
+    constant = all(pressure is pressed[0] for pressure in pressed)
+    pressures = np.array(pressed[:1] if constant else pressed)
     if path.presses_anew:
+        bounds = f * pressures
         slip = -np.array([step.rest for step in steps])
         room = (bounds - forces).min(axis=0) + (bounds + forces).min(axis=0)
         anew = {
@@ -360,13 +362,13 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
         at_ends=(q1, q2),
         q1=q1 if path.in_phase else forces.min(axis=0),
         q2=q2 if path.in_phase else forces.max(axis=0),
-        bounds=(bound1, bound2),
+        pressures=(p1, p2),
         slip=slips[path.ends[1]] - slips[path.ends[0]],
         net_slip=slips[-1],
         dissipated=dissipated,
         end=(ends[-1][0].x, ends[-1][1]),
         load_steps=taken,
-        around=Steps(tuple(ways), forces, bounds),
+        around=Steps(tuple(ways), forces, pressures, f),
         f=f,
         **anew,
     )
@@ -374,7 +376,7 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
 
 def _reversed(path: Path, first: Solution, went: "_Way", f: Array) -> History:
     """Cycle from the first loading to load point 2: the change from load point 1 to 2 is twice that (Masing's rule)."""
-    forces, slip, bound = first.x, -2 * np.sum([step.rest for step, _ in went], axis=0), went[-1][1]
+    forces, slip, pressure = first.x, -2 * np.sum([step.rest for step, _ in went], axis=0), went[-1][1]
     way = replace(first, rest=-slip, iterations=0, changes=0)
     return History(
         path=path,
@@ -382,13 +384,13 @@ def _reversed(path: Path, first: Solution, went: "_Way", f: Array) -> History:
         at_ends=(-forces, forces),
         q1=-forces,
         q2=forces,
-        bounds=(bound, bound),
+        pressures=(pressure, pressure),
         slip=slip,
         net_slip=0 * slip,
         dissipated=2 * float(forces @ slip),
-        end=(forces, bound),
+        end=(forces, pressure),
         load_steps=len(went),
-        around=Steps(((1.0,), (1.0,)), np.array([-forces, forces]), bound[None]),
+        around=Steps(((1.0,), (1.0,)), np.array([-forces, forces]), pressure[None], f),
         f=f,
     )
 
@@ -402,8 +404,8 @@ def _go(advance: Advance, before: Solution, start: Array, end: Array, fractions:
     load, way = start, list[tuple[Solution, Array]]()
     for fraction in fractions:
         next_load = start + fraction * (end - start) if fraction < 1 else end
-        before, bound = advance(before, next_load, next_load - load)
-        way.append((before, bound))
+        before, pressure = advance(before, next_load, next_load - load)
+        way.append((before, pressure))
         load = next_load
     return way
 

@@ -37,8 +37,9 @@ class SlidesError(PartialslipError):
 
 
 class Bounds(NamedTuple):
-    """f times the normal forces along a leg: ``values`` (k + 1, n) where lambda is ``at`` (k + 1,), from 0 to 1, linear
-    between. Nodes touch and open at these lambda only: they are open between two zeros."""
+    """Normal forces along a leg, or f times these, which bound tangential ones: ``values`` (k + 1, n) where lambda is
+    ``at`` (k + 1,), from 0 to 1, linear between. Nodes touch and open at these lambda only: they are open between two
+    zeros."""
 
     at: Array
     values: Array

@@ -47,7 +47,7 @@ def begun(
     """
     if not (start and history):
         return {}, ()
-    here, pressed = history.last_pressure, _norm(history.bound / history.f, weights)
+    here, pressed = history.end[1], _norm((history.pressures[0] + history.pressures[1]) / 2, weights)
     notes: tuple[str, ...] = ()
     if (other := _norm(forces(start) - here, weights) / _norm(here, weights)) > _ANOTHER:
         notes = (f"p of the state at the beginning is off by {other:.0%}: it seems to be the state of another contact",)
@@ -67,7 +67,7 @@ def begun(
 def known_to(errors: Mapping[str, float], history: History, weights: Array) -> float | None:
     """Error of q at the end of the path, its L2 norm relative to that of p, from all ``errors`` of q1 and q2; None if
     these are not known. Arguments as for :func:`begun`."""
-    pressed = _norm(history.bound / history.f, weights)
+    pressed = _norm((history.pressures[0] + history.pressures[1]) / 2, weights)
     norms = _norms(history, weights)
     return max((errors[key] * norms[key] / pressed for key in ("q1", "q2") if key in errors), default=None)
 

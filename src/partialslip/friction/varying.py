@@ -85,7 +85,7 @@ def march(
         drift = np.where(attached & (normal.x <= 0), moved - moved[sticks].mean(), 0.0) if sticks.any() else 0 * x
         pressed.append(normal)
         sides.append(found.sides)
-        return found, bound
+        return found, normal.x
 
     return follow(path, advance, resting(0 * x if path.before is None else path.before), f)
 

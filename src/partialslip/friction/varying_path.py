@@ -44,15 +44,16 @@ def march(tangential: Array, stretch: Array, f: Array, press: Presses, path: Pat
 
 @dataclass(frozen=True)
 class _Done:
-    """A ``leg`` under ``bounds``, at the nodes that are ever in contact."""
+    """A ``leg`` under normal forces ``pressed`` and the friction ``bounds``, at the nodes that are ever in contact."""
 
+    pressed: Bounds
     bounds: Bounds
     leg: Leg
 
     @property
     def held(self) -> Mask:
         """Nodes that are in contact throughout."""
-        held: Mask = self.bounds.values.min(axis=0) > 0
+        held: Mask = self.pressed.values.min(axis=0) > 0
         return held
 
     @property
@@ -86,9 +87,9 @@ class _Contact:
         ways = [press.way((P, M), (P2, M2)) for (P, M), (P2, M2) in itertools.pairwise(loads)]
         most = np.maximum.reduce([each.values.max(axis=0) for each in ways])
         self._on, self._count = np.flatnonzero(most > 0), len(most)
-        self._ways = [each.of(self._on).times(f[self._on]) for each in ways]
+        self._ways = [each.of(self._on) for each in ways]
         for load, each in zip((path.cycle[-1], *path.cycle), self._ways, strict=True):
-            require_carried([load[0]], float(each.values[-1].sum()))
+            require_carried([load[0]], float((f[self._on] * each.values[-1]).sum()))
         self._follower = Follower(submatrix(tangential, self._on, self._on))
         self._legs: list[_Done] = []
         stages = path.substeps * math.ceil(_STAGES / path.substeps)
@@ -103,14 +104,15 @@ class _Contact:
     def _advance(self, before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
         """Go along one leg, as :func:`partialslip.friction.history.follow` asks for it."""
         on, number = self._on, len(self._legs)
-        bounds = self._ways[number if not number else 1 + (number - 1) % len(self._path.cycle)]
+        pressed = self._ways[number if not number else 1 + (number - 1) % len(self._path.cycle)]
+        bounds = pressed.times(self._f[on])
         # a state of another mesh has the load, and keeps the bounds, to an error of that mesh only
         start = np.clip(before.x[on], -bounds.values[0], bounds.values[0])
         g, Q = (change[1:3] @ self._stretch)[on], float(load[0]) - float(start.sum())
         leg = self._follower.leg(bounds, start, g, Q, self._stages)
-        self._legs.append(_Done(bounds, leg))
+        self._legs.append(_Done(pressed, bounds, leg))
         found = Solution(leg.forces, leg.rest, leg.residual, leg.imbalance, 1, leg.pivots)
-        return found.spread(on, self._count), self._spread(bounds.values[-1])
+        return found.spread(on, self._count), self._spread(pressed.values[-1])
 
     def _spread(self, values: Array) -> Array:
         return spread(values, self._on, self._count)
@@ -121,9 +123,10 @@ class _Contact:
         stages = np.zeros((2, len(last) * len(self._stages), self._count))
         stages[:, :, self._on] = [
             np.concatenate([each.leg.stages for each in last]),
-            np.concatenate([each.bounds.stages(self._stages) for each in last]),
+            np.concatenate([each.pressed.stages(self._stages) for each in last]),
         ]
-        forces, bounds = stages
+        forces, pressures = stages
+        bounds = self._f * pressures
         room = np.maximum((bounds - forces).min(axis=0) + (bounds + forces).min(axis=0), 0.0)
         changed = np.full(self._count, np.nan)
         changed[self._on] = last[path.ends[1]].changed
@@ -135,7 +138,7 @@ class _Contact:
             held=self._spread(np.logical_and.reduce([each.held for each in last])).astype(bool),
             slipped=np.array([self._spread(each) for each in np.sum([each.leg.slipped for each in last], axis=0)]),
             dissipated=sum(each.leg.dissipated for each in last),
-            around=Steps((self._stages,) * len(last), forces, bounds),
+            around=Steps((self._stages,) * len(last), forces, pressures, self._f),
             turns=turns,
             changed=changed if path.in_phase else None,
             events=sum(each.leg.events for each in self._legs),

@@ -36,7 +36,7 @@ class CellStresses:
     states : tuple of StressState
         Contact, shear of the cells that slip beside its ends, and bulk tension at each step.
     steps : Steps
-        Shear forces and friction bounds of cells, in P of the ``frame``.
+        Shear and normal forces of cells, in P of the ``frame``.
     """
 
     f: Array
@@ -51,9 +51,9 @@ class CellStresses:
         """Stresses of the last cycle in ``steps``."""
         scene, phases = normal.scene, Phases(normal.scene.load, steps.ways)
         known: dict[object, Contact] = {}
-        states, bounds = [], np.broadcast_to(steps.bounds, steps.forces.shape)
+        states = []
         for (_, sigma, slope, share, number), force, bound in zip(
-            phases.loads.tolist(), steps.forces, bounds, strict=True
+            phases.loads.tolist(), steps.forces, steps.bounds, strict=True
         ):
             pressed = normal.frame
             if scene.presses_anew:
@@ -92,7 +92,7 @@ class CellStresses:
     @cached_property
     def _sheared(self) -> PiecewiseCauchy:
         places, forces = self.frame.places(self.vertices), self.frame.P / self.frame.a * self.steps.forces
-        bounds = np.broadcast_to(self.steps.bounds, forces.shape) * (self.frame.P / self.frame.a)
+        bounds = self.steps.bounds * (self.frame.P / self.frame.a)
         limits = {state.pressed: self.f * state.pressed.pressure(places) for state in self.states}
         rows = [
             smoothed(self.vertices, force, bound, limits[state.pressed])

@@ -146,7 +146,7 @@ class SimilarBodies(driver.Problem[SimilarLevel]):
         }
         pressed = level.pressed
         if history:
-            pressed = normal.forces(normal.last, level.vertices) if anew else history.last_pressure
+            pressed = normal.forces(normal.last, level.vertices) if anew else history.end[1]
         return Answer(
             a=largest.a,
             p0=largest.p0,

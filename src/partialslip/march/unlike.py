@@ -150,7 +150,7 @@ class UnlikeBodies(driver.Problem[UnlikeLevel]):
             found=found,
             traction=traction,
             cells=on,
-            pressed=history.last_pressure if history else pressing.x,
+            pressed=history.end[1] if history else pressing.x,
             certificate=certified,
             change=change,
             model="two half-planes, cells of constant pressure and shear",
