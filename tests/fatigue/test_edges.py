@@ -5,6 +5,7 @@ import pytest
 
 import partialslip
 from partialslip.fatigue import edges
+from partialslip.fatigue.tables import edge_rows, edge_units
 
 SHEAR = "hertz-shear"
 
@@ -75,3 +76,12 @@ def test_varying_pressure_has_no_single_end():
         load={"P": [6e5, 7e5], "p0": None}
     )
     assert edges(scene, partialslip.run(scene, "march")["march"]) == ()
+
+
+def test_coefficients_are_told_in_the_units_of_the_scene():
+    """In N, mm and MPa a stress over the root of a length is 10^7.5 times smaller, times the root 10^4.5."""
+    si, mm = (partialslip.assess(partialslip.load_scene(SHEAR, [f"shown_in='{name}'"])) for name in ("SI", "N-mm"))
+    (row, *_), (in_MPa, *_) = map(edge_rows, (si, mm))
+    for place, power in ((1, 7.5), (2, 7.5), (3, 4.5), (6, 7.5)):
+        assert float(row[place]) / float(in_MPa[place]) == pytest.approx(10**power, rel=0.1 if place == 2 else 1e-5)
+    assert edge_units(mm) == "K_N and K_S in MPa/mm^0.5, K_T in MPa mm^0.5"

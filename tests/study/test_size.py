@@ -28,7 +28,7 @@ from partialslip.study.size.axes import axis as read
 from partialslip.study.size.axes import cases as make
 from partialslip.study.size.case import COMPARED_METHODS, Sized, solve_sized
 from partialslip.study.size.figure import grid_svg, size_svg
-from partialslip.study.size.law import PointStatus, trend
+from partialslip.study.size.law import Kind, PointStatus, trend
 
 BLOCKS = {"upper": {"width": 1.0, "height": 1.0}, "lower": {"width": 1.0, "height": 1.0}}
 
@@ -217,7 +217,26 @@ def test_what_the_mesh_is_off_by_is_no_law():
     x = np.geomspace(4, 1024, 9)
     off = 0.3 * x**-2.0 + 1e-4
     assert trend(made_sizes(off, 1e-4, x), "m").law.k == pytest.approx(2, abs=0.1)
-    assert trend(made_sizes(off, 0.0, x), "m").law.k < 1
+    wrong = trend(made_sizes(off, 0.0, x), "m")
+    assert wrong.law is None or wrong.law.k < 1
+
+
+def test_differences_that_scatter_have_no_law_and_no_sizes():
+    """Three points of noise: a line through their logarithms has any slope, and no size follows from it."""
+    x = np.array([2.0, 5.0, 10.0])
+    for off in ([2e-3, 5e-3, 3e-2], [3e-2, 1e-2, 2.9e-2], [3e-2, 2.9e-2, 2e-2]):
+        found = trend(made_sizes(np.array(off), 1e-6, x), "m")
+        assert found.law is None
+        assert set(found.points) == {PointStatus.NO_LAW}
+        assert {each.kind for each in found.needed} <= {Kind.BOUND, Kind.INTERPOLATED}
+
+
+def test_a_law_is_not_trusted_far_beyond_the_sizes():
+    """0.5 size^-0.1 is 1e-4 at a size of 5e36: nobody's specimen."""
+    found = trend(made_sizes(0.5 * X**-0.1), "m")
+    assert found.law.k == pytest.approx(0.1)
+    assert [each.kind for each in found.needed] == [Kind.BOUND] * 3
+    assert str(found.needed[0]) == "> 128"
 
 
 @pytest.mark.parametrize(

@@ -110,7 +110,7 @@ def _print(found: "Assessment", console: "Console") -> None:
         console.print(f"Averaged over {distance} from the surface:", markup=False)
         print_table(console, tables.AVERAGES, rows, words=(0, 1))
     if found.edges:
-        console.print("Ends of the contact, K_N and K_S in Pa/m^0.5, K_T in Pa m^0.5:", markup=False)
+        console.print(f"Ends of the contact, {tables.edge_units(found)}:", markup=False)
         print_table(console, tables.EDGES, tables.edge_rows(found))
     for line in tables.assessment_notes(found):
         console.print(line, soft_wrap=True, markup=False)

@@ -64,7 +64,10 @@ def sections(found: Assessment, figures: Mapping[str, str]) -> list[Section]:
         Section("Stresses", (), figures["stresses.svg"], "Stresses in both bodies; the thick line is the contact.")
     )
     if found.edges:
-        lines = ["p = K_N sqrt(d) and adhered dq = K_T/sqrt(d), d from the end; K_S of f p - |dq|/2 in the stick zone."]
+        lines = [
+            "p = K_N sqrt(d) and adhered dq = K_T/sqrt(d), d from the end; K_S of f p - |dq|/2 in the stick zone:",
+            f"{tables.edge_units(found)}.",
+        ]
         parts.append(Section("Ends of the contact", lines, headings=tables.EDGES, rows=tables.edge_rows(found)))
     return parts
 

@@ -74,19 +74,26 @@ def _each(found: Assessment) -> Iterator[tuple[str, Rating, str, Any]]:
 
 
 def edge_rows(found: Assessment) -> list[tuple[str, ...]]:
-    """Return the rows of the table with headings EDGES: K_N and K_S in Pa/m^0.5, K_T in Pa m^0.5."""
-    a = found.result.a
+    """Return the rows of the table with headings EDGES, in the units that :func:`edge_units` tells."""
+    a, units = found.result.a, found.scene.units
+    stress, root = units.size("Pa"), math.sqrt(units.size("m"))
     return [
         (
             edge.side,
-            *_coefficient(edge.K_N),
-            _coefficient(edge.K_T)[0],
+            *_coefficient(edge.K_N, stress / root),
+            _coefficient(edge.K_T, stress * root)[0],
             "" if edge.predicted is None else f"{edge.predicted / a:.4f}",
             "" if edge.found is None else f"{edge.found / a:.4f}",
-            *_coefficient(edge.K_S),
+            *_coefficient(edge.K_S, stress / root),
         )
         for edge in found.edges
     ]
+
+
+def edge_units(found: Assessment) -> str:
+    """Return the units of the coefficients at the ends of the contact, in words."""
+    stress, length = (found.scene.units.label(of) for of in ("Pa", "m"))
+    return f"K_N and K_S in {stress}/{length}^0.5, K_T in {stress} {length}^0.5"
 
 
 def assessment_notes(found: Assessment) -> list[str]:
@@ -157,5 +164,5 @@ def _degrees(angle: float) -> str:
     return "" if math.isnan(angle) else f"{math.degrees(angle) + 0.0:.1f}"
 
 
-def _coefficient(found: Coefficient | None) -> tuple[str, str]:
-    return ("", "") if found is None else (f"{found.value:.6g}", f"{found.error:.1e}")
+def _coefficient(found: Coefficient | None, unit: float) -> tuple[str, str]:
+    return ("", "") if found is None else (f"{found.value / unit:.6g}", f"{found.error / unit:.1e}")

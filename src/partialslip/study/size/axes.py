@@ -15,9 +15,11 @@ from partialslip.batch.job import Job
 from partialslip.errors import InputError
 from partialslip.run import run
 from partialslip.scene import Scene
+from partialslip.scene.dimensions import DIMENSIONS
 from partialslip.scene.reading import parse_scene
 from partialslip.scene.writing import scene_tables
 from partialslip.study.size.case import COMPARED_METHODS
+from partialslip.units import Dimension, Units
 
 ACCURACY = "accuracy"  # label of a case besides the axes
 _COUNT = 9  # display: values of a range without a number of them
@@ -46,6 +48,13 @@ class Axis:
     def name(self) -> str:
         """Name for headings: the keys with a factor of 1."""
         return " = ".join(key for key, times in self.keys.items() if times == 1) or " = ".join(self.keys)
+
+    def label(self, units: Units) -> str:
+        """Name with the unit of the values."""
+        of: Dimension = "1"
+        of = next((of for known, of in DIMENSIONS.items() if any(fnmatchcase(known, key) for key in self.keys)), of)
+        unit = "contact half-widths" if self.in_a else units.label(of) if of != "1" else ""
+        return f"{self.name} in {unit}" if unit else self.name
 
 
 def axis(text: str) -> Axis:

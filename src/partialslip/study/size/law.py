@@ -14,6 +14,8 @@ from partialslip.study.size.sizes import CLEAR, DIFFERENCES, Sizes
 LEVELS = (1e-2, 1e-3, 1e-4)  # display: differences for which the sizes needed are told
 _FEWEST = 3  # accuracy: points of a law
 _SHARE = 0.95  # accuracy: of confidence
+# accuracy: times the largest solved size: as far as a law is trusted; and the size: the farthest end of its interval
+_BEYOND = 10.0
 
 
 class PointStatus(StrEnum):
@@ -24,6 +26,7 @@ class PointStatus(StrEnum):
     UNCLEAR = f"difference less than {CLEAR:g} times the mesh's error"
     UNKNOWN = "the mesh's error is not known: give fem.accuracy instead of fem.size"
     FEW = f"fewer than {_FEWEST} points are left for a law"
+    NO_LAW = "the points tell no power law: its exponent may be 0 (95 %)"
     NO_VALUE = "no value to compare"
 
 
@@ -38,7 +41,7 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True)
 class Law:
-    """Fitted law difference = C size^-k, by least squares in logarithms.
+    """Fitted law difference = C size^-k, by least squares in logarithms; it falls (:attr:`falls`).
 
     Parameters
     ----------
@@ -74,7 +77,7 @@ class Law:
 
     def size_for(self, level: float) -> tuple[float, float, float]:
         """Return the size at which the law gives ``level``, and the ends of the 95 % confidence interval of that size
-        (Fieller, 1954). The law must fall."""
+        (Fieller, 1954)."""
         middle = float(np.log(self.sizes).mean())
         rise = math.log(level) - math.log(self.C) + self.k * middle
         slope = self.scatter**2 / self._spread
@@ -155,7 +158,7 @@ def trend(sizes: Sizes, quantity: str) -> Trend:
     """Fit the law of ``quantity`` and find the sizes for all levels.
 
     A point is clear if the difference is more than ten times the mesh's error. Of six or more clear points the larger
-    half is fitted, of fewer the last three.
+    half is fitted, of fewer the last three. There is a law where the difference falls with a confidence of 95 %.
     """
     size, off, mesh = sizes.size, sizes.off[quantity], sizes.mesh[quantity]
     known = np.isfinite(off) & (size > 0)
@@ -163,12 +166,12 @@ def trend(sizes: Sizes, quantity: str) -> Trend:
     at = np.flatnonzero(clear)
     used = at[len(at) // 2 :] if len(at) >= 2 * _FEWEST else at[-_FEWEST:]
     fitted = np.isin(np.arange(len(size)), used) & (len(used) >= _FEWEST)
-    clear_but = PointStatus.SMALLER if fitted.any() else PointStatus.FEW
-    which = [fitted, clear, known & np.isnan(mesh), known]
-    points = np.select(
-        which, [PointStatus.FITTED, clear_but, PointStatus.UNKNOWN, PointStatus.UNCLEAR], PointStatus.NO_VALUE
-    )
     law = _fit(size[fitted], off[fitted]) if fitted.any() else None
+    told, clear_but = PointStatus.FITTED, PointStatus.SMALLER if law else PointStatus.FEW
+    if law and not law.falls:
+        law, told, clear_but = None, PointStatus.NO_LAW, PointStatus.NO_LAW
+    which = [fitted, clear, known & np.isnan(mesh), known]
+    points = np.select(which, [told, clear_but, PointStatus.UNKNOWN, PointStatus.UNCLEAR], PointStatus.NO_VALUE)
     order = np.flatnonzero(known)
     needed = tuple(_needed(level, size[order], off[order], mesh[order], clear[order], law) for level in LEVELS)
     return Trend(quantity, tuple(map(PointStatus, points)), law, needed)
@@ -197,7 +200,8 @@ def _needed(
         ends = slice(last, last + 2)
         between = np.interp(-math.log(level), -np.log(off[ends]), np.log(size[ends]))
         return Needed(level, Kind.INTERPOLATED, math.exp(between), low, high)
-    if last >= 0 and law and law.falls:
-        found = (min(max(each, low), high) for each in law.size_for(level))
-        return Needed(level, Kind.EXTRAPOLATED, *found)
+    if last >= 0 and law:
+        at, *interval = (min(max(each, low), high) for each in law.size_for(level))
+        if at <= _BEYOND * size[-1] and interval[1] <= _BEYOND * at:
+            return Needed(level, Kind.EXTRAPOLATED, at, *interval)
     return Needed(level, Kind.BOUND, math.nan, low, high)

@@ -18,6 +18,7 @@ _MARKS = {
     PointStatus.UNCLEAR: "e",
     PointStatus.UNKNOWN: "u",
     PointStatus.FEW: "x",
+    PointStatus.NO_LAW: "n",
 }
 HALF_PLANES = "half-planes"  # heading of the names of models
 _LISTED = 3  # display: largest number of sizes that are listed
@@ -76,7 +77,7 @@ class SizeStudy:
     @property
     def label(self) -> str:
         """Name of the axis with its unit."""
-        return f"{self.axis.name} {'in contact half-widths' if self.axis.in_a else 'as in the scene'}"
+        return self.axis.label(self.scene.units)
 
     @property
     def trends(self) -> list[Trend]:
@@ -159,20 +160,13 @@ def _by_quantity(study: SizeStudy) -> list[tuple[str, str, Trend]]:
 
 
 def size_notes(study: SizeStudy) -> list[str]:
-    """Return what the letters and words of the tables mean, what is not extrapolated, and which cases failed."""
+    """Return what the letters and words of the tables mean, and which cases failed."""
     points = {point for trend in study.trends for point in trend.points}
     kinds = {needed.kind for trend in study.trends for needed in trend.needed}
-    flat = [
-        f"{trend.quantity} of {model.name}"
-        for model in study.models
-        for trend in model.trends
-        if trend.law and not trend.law.falls
-    ]
     lines = [
         *(f"{mark}: {_fitted(point)}" for point, mark in _MARKS.items() if point in points),
         *(["mesh: the largest share of a difference that may be an error of the mesh"] if points else []),
         *(meaning for kind, meaning in _MEANINGS.items() if kind in kinds),
-        *([f"no sizes are extrapolated for {', '.join(flat)}: the law may not fall"] if flat else []),
     ]
     return [*lines, *study.remarks]
 
