@@ -49,9 +49,10 @@ _SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.9, "n": 1.9, "p": 2.6, "q":
 _EASED_SAFE = {6: 2.0}  # accuracy: the same for meshes that grow faster near the ends, by order
 _LEAST_OF_A = 1 / 3  # accuracy: of the error of a: least error of any end
 # accuracy: Least errors of m and n where slip turns round, measured: in their own change; in what they answer to the
-# change of q; in the change of q, where the zone drifts, and at most.
+# change of q; in the change of q, where the zone drifts, and at most (0.03 and 0.5 left 14 of 394 beyond, up to 4.4
+# times; these leave 5 of 286, of the same scenes).
 _OF_TURNED, _ANSWERED = 0.5, 2.0
-_DRIFTS, _MOST = 0.03, 0.5
+_DRIFTS, _MOST = 0.1, 2.0
 _NARROW = 0.1  # accuracy: of the norm of f p: shear with a smaller norm is confined to narrow strips
 
 # accuracy: Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.

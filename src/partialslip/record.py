@@ -18,7 +18,7 @@ from partialslip.judge.recorded import conditions_again, judged_again
 from partialslip.judge.reference import reference_among
 from partialslip.origin import Made, versions
 from partialslip.plan import Effect, Plan
-from partialslip.result.record import Number, ResultRecord, number
+from partialslip.result.record import Number, ResultRecord, plain
 from partialslip.run import Run
 from partialslip.scene import Scene
 from partialslip.seal import KEY, edited, sealed_text
@@ -81,12 +81,12 @@ class ComparisonRecord(msgspec.Struct, frozen=True):
         """Make the record of ``comparison``."""
         return cls(
             outcome=comparison.outcome,
-            errors={key: number(error) for key, error in comparison.errors.items()},
-            p_nodal=number(comparison.p_nodal),
-            q_nodal=number(comparison.q_nodal),
-            p_nodal_max=number(comparison.p_nodal_max),
-            q_nodal_max=number(comparison.q_nodal_max),
-            bars={key: number(bar) for key, bar in comparison.bars.items()},
+            errors=plain(comparison.errors),
+            p_nodal=plain(comparison.p_nodal),
+            q_nodal=plain(comparison.q_nodal),
+            p_nodal_max=plain(comparison.p_nodal_max),
+            q_nodal_max=plain(comparison.q_nodal_max),
+            bars=plain(comparison.bars),
             missed=comparison.missed,
             verdicts=tuple(verdict.finite for verdict in comparison.verdicts),
             conditions=tuple(verdict.finite for verdict in comparison.conditions),

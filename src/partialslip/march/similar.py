@@ -56,6 +56,9 @@ _TURNED, _CAUGHT_UP, _LOCKED = 2.0, 0.5, 0.2
 # accuracy: cells inside an end of the stick zone from which its stiffness is found; least stiffness
 _FITTED, _SOFTEST = 4, 1e-3
 _CHANGED = (0.4, 0.35)  # accuracy: errors of q, q1 and q2 as parts of the change to the second mesh and to later meshes
+# accuracy: the same where slip turns round, in those: what the way locks in does not fall with each mesh (measured: of
+# 196 scenes 13 were beyond, at most 3.9 times)
+_LOCKED_IN = 2.0
 Added = Callable[[Array], Array]
 
 
@@ -277,6 +280,7 @@ def _mesh_errors(normal: NormalLoads, level: SimilarLevel, before: SimilarLevel,
     if level.history.turns:
         known = _TURNED * known + _CAUGHT_UP * size * np.array(level.stick.moved)
         known = np.maximum(known, _LOCKED * _passed(level) * changes["q"]) + level.stick.strips
+        changes = {key: _LOCKED_IN * change for key, change in changes.items()}
     known *= normal.frame.a / normal.largest.a
     return dict(zip("mn", known.tolist(), strict=True)) | changes
 

@@ -1,6 +1,7 @@
 """A result as plain data for JSON: numbers, strings and lists."""
 
 from collections.abc import Mapping
+from typing import Any, TypeVar
 
 import msgspec
 import numpy as np
@@ -12,6 +13,7 @@ from partialslip.shown import Short
 
 Number = float | None  # None: NaN or infinite, which JSON cannot hold
 Numbers = tuple[Number, ...]
+R = TypeVar("R", bound=msgspec.Struct)
 
 
 class SlipRecord(Short, msgspec.Struct, frozen=True):
@@ -85,44 +87,30 @@ class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaul
     @classmethod
     def of(cls, result: Result, curves: bool = True) -> "ResultRecord":
         """Make the record of ``result``, with or without ``curves``."""
-        (left1, right1), (left2, right2) = result.ends
-        slip, surface = result.slip, result.surface
-        return cls(
-            a=number(result.a),
-            p0=number(result.p0),
-            regime=result.regime,
-            m=number(result.m),
-            n=number(result.n),
-            stick_half_width=number(result.stick_half_width),
-            stick_centre=number(result.stick_centre),
-            p_max=number(result.traction.p_max),
-            contact_ends=((number(left1), number(right1)), (number(left2), number(right2))),
-            settings=dict(result.settings),
-            counts=dict(result.counts),
-            limits=_by_key(result.limits),
-            certificate=_by_key(result.certificate),
-            last_cycle_change=number(result.last_cycle_change),
-            estimate=_by_key(result.estimate),
-            shares={source: _by_key(share) for source, share in result.shares.items()},
-            undetermined=dict(result.undetermined),
-            path_dependent=result.path_dependent,
-            notes=result.notes,
-            cost=result.cost,
-            end_slips=result.end_slips,
-            permanent=(number(result.permanent[0]), number(result.permanent[1])) if result.permanent else None,
-            slip=SlipRecord(numbers(slip.x), numbers(slip.slip), number(slip.dissipated)) if curves and slip else None,
-            surface=SurfaceRecord(numbers(surface.x), _by_body(surface.sigma)) if curves and surface else None,
-            traction=TractionRecord(
-                x=numbers(result.traction.x),
-                p=numbers(result.traction.p),
-                dq=numbers(result.traction.dq),
-                q1=_column(result.traction.q1),
-                q2=_column(result.traction.q2),
-                p1=_column(result.traction.p1),
-            )
-            if curves
-            else None,
-        )
+        known: dict[str, Any] = {"p_max": number(result.traction.p_max), "contact_ends": plain(result.ends)}
+        slip, surface = (result.slip, result.surface) if curves else (None, None)
+        known["slip"] = slip and _of(SlipRecord, slip)
+        known["surface"] = surface and SurfaceRecord(plain(surface.x), plain(surface.sigma))
+        known["traction"] = _of(TractionRecord, result.traction) if curves else None
+        return _of(cls, result, **known)
+
+
+def _of(kind: type[R], source: Any, **known: Any) -> R:
+    """Record of the ``kind`` with the fields of the ``source`` that are not ``known``."""
+    others = [name for name in kind.__struct_fields__ if name not in known]
+    return kind(**known, **{name: plain(getattr(source, name)) for name in others})
+
+
+def plain(value: Any) -> Any:
+    """Return ``value`` with None for numbers that are not finite, and tuples for arrays, also within mappings and
+    tuples."""
+    if isinstance(value, np.ndarray):
+        return numbers(value) if value.ndim == 1 else tuple(map(plain, value))
+    if isinstance(value, float):
+        return number(value)
+    if isinstance(value, Mapping):
+        return {key: plain(each) for key, each in value.items()}
+    return tuple(map(plain, value)) if isinstance(value, tuple) else value
 
 
 def number(value: float | None) -> Number:
@@ -133,16 +121,3 @@ def number(value: float | None) -> Number:
 def numbers(values: Array) -> Numbers:
     """Return ``values`` (n,) with None in place of NaN and infinity."""
     return tuple(each if known else None for each, known in zip(values.tolist(), np.isfinite(values), strict=True))
-
-
-def _column(values: Array | None) -> Numbers | None:
-    return None if values is None else numbers(values)
-
-
-def _by_key(values: Mapping[str, float]) -> dict[str, Number]:
-    return {key: number(value) for key, value in values.items()}
-
-
-def _by_body(sigma: Array) -> tuple[tuple[Numbers, Numbers], tuple[Numbers, Numbers]]:
-    lower, upper = ((numbers(body[0]), numbers(body[1])) for body in sigma)
-    return lower, upper
