@@ -101,3 +101,14 @@ def test_an_end_that_passed_few_nodes_is_unsure_by_what_it_passed(count):
     zone = read_stick_zone(X, BOUND, 2 * BOUND - some, VERTICES, lambda forces: forces, changed)
     assert zone.moved == (False, False)
     assert zone.strips == pytest.approx((count * 0.025, 0.0), abs=1e-12)
+
+
+@pytest.mark.parametrize("power", [0.5, 1.5])
+def test_an_end_beside_which_room_does_not_grow_is_unsure_by_that_strip(power):
+    """Nodes that have all but stopped to slip have the same room, 1e-7 of the bound: whether they stick nothing tells.
+    Room that begins with a power of the distance makes no strip, be it as small."""
+    some = BOUND * 1e-6 * np.clip((0.52 - X) / 0.5, 0, 1) ** power * np.clip((X + 0.31) / 0.5, 0, 1) ** power
+    faint = np.where((X > 0.5) & (X < 0.95), 1e-8 * BOUND, some)
+    for of, strip in ((some, 0.0), (faint, 0.45)):
+        zone = read_stick_zone(X, BOUND, 2 * BOUND - of, VERTICES, lambda forces: forces, np.full(len(X), 0.5))
+        assert zone.strips[1] == pytest.approx(strip, abs=0.05)

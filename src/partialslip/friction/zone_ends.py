@@ -23,6 +23,9 @@ _BESIDE, _FINER = 3, 0.95  # accuracy: cells compared on each side of a refined 
 _STICKS = 1e-9  # accuracy: room, relative to the bound, up to which a node slips
 _LEAVES = 1e-6  # accuracy: distance of q from the bound, relative, that counts as none: such weak kinks do not matter
 _CAUGHT = 20  # accuracy: nodes that tell where an end that moves outwards is
+# accuracy: times the room of a node at an end: that of its neighbours, where it does not grow inwards; and their number
+# (beside a square root up to 14 equal cells have room as even as that)
+_SAME, _MANY = 4.0, 16
 _RUN = 4  # accuracy: fewest neighbouring nodes that make a zone; fewer are noise
 _ROOT, _CAUGHT_UP = 2 / 3, 2 / 5  # fixed: powers of the force that vanish linearly at an end
 # fixed: powers of the distance with which the normal force grows from an end of the contact
@@ -34,7 +37,8 @@ class StickInterval:
     """Interval [``left``, ``right``] in which dq is less than the bounds allow, the ``signs`` of dq on its left and
     right, and which ends have ``moved`` outwards last, over points that slipped before. ``caught`` are ends that moved,
     as the loads tell at which the nodes beside them stuck again; nan where no nodes did. ``strips`` are lengths
-    beside the ends over which so few nodes slipped before that the end is read as if none had."""
+    beside the ends over which so few nodes slipped before that the end is read as if none had, or over which there is
+    hardly any room up to the bound."""
 
     left: float
     right: float
@@ -96,7 +100,7 @@ def read_stick_zone(
         return StickInterval(left, max(right, left), signs, moved)
     caught = _caught_up(x, changed, sticks), _caught_up(x, changed, sticks[::-1])
     strips = tuple(
-        0.0 if outwards else _strip(x, changed, inside)
+        max(0.0 if outwards else _strip(x, changed, inside), _flat(x, room, inside))
         for outwards, inside in zip(moved, (sticks, sticks[::-1]), strict=True)
     )
     return StickInterval(left, max(right, left), signs, moved, caught, (strips[0], strips[1]))
@@ -107,6 +111,16 @@ def _strip(x: Array, changed: Array, inside: Indices) -> float:
     has not slipped; 0 if the first one has not."""
     still = np.flatnonzero(~np.isfinite(changed[inside[: _RUN + 1]]))
     return abs(float(x[inside[still[0]]] - x[inside[0]])) if len(still) else 0.0
+
+
+def _flat(x: Array, room: Array, inside: Indices) -> float:
+    """Length beside an end of the stick zone over which nodes ``inside`` it, from the end on, have hardly any ``room``,
+    in the bound, and all the same: they have all but stopped to slip, and whether they stick nothing tells. 0 where
+    room grows with the distance from the end, as it does beside every other end."""
+    found = room[inside]
+    flat = (found <= _LEAVES) & (found <= _SAME * found[0])
+    count = len(flat) if flat.all() else int(np.argmin(flat))
+    return abs(float(x[inside[count - 1]] - x[inside[0]])) if count >= _MANY else 0.0
 
 
 def _caught_up(x: Array, changed: Array, inside: Indices) -> float:
