@@ -42,6 +42,13 @@ def test_other_units(here, capsys):
     assert head == "x [mm],depth [mm],swt [MPa]"
 
 
+def test_criteria_in_capitals_and_the_former_name_of_an_option(here):
+    """--method is the former name of --with: the same settings, so the same folder."""
+    for how in (["--with", "exact"], ["--method", "exact"]):
+        assert main(["fatigue", "fretting-aluminium", "--criterion", "SWT", *how]) == 0
+    assert [path.name for path in (here / "results").iterdir()] == ["fretting-aluminium-fatigue"]
+
+
 def test_the_same_request_writes_to_the_same_folder(here):
     ruiz = ["fatigue", "fretting-aluminium", "--criterion", "ruiz"]
     for _ in range(2):

@@ -277,6 +277,7 @@ GOOD = (Path(__file__).parents[2] / "src/partialslip/scene/shipped/hertz-large-t
         (GOOD, ["extra"], "extra"),
         (GOOD.replace("f = 0.5", "f = 0"), [], "friction.f = 0: must be > 0"),
         (GOOD.replace("f = 0.5", "f = -1"), [], "friction.f = -1"),
+        (GOOD, ["--set", "load.P=-1"], "load.P = -1: must be > 0"),
         ("name", [], "not valid TOML"),
     ],
 )
@@ -294,6 +295,11 @@ def test_bad_input_is_refused_in_one_line(tmp_path, monkeypatch, capsys, text, a
     assert printed.err.startswith("partialslip: ")
     assert expected in printed.err
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_settings_of_no_scene_are_refused(capsys):
+    assert main(["map", "--set", "friction.f=0.3"]) == 2
+    assert capsys.readouterr().err == "partialslip: --set friction.f=0.3: must have a SCENE, for example hertz-shear\n"
 
 
 def stop(*_, **__):

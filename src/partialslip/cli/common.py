@@ -1,5 +1,6 @@
 """Functions shared by several commands."""
 
+import argparse
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
@@ -8,8 +9,6 @@ from typing import TYPE_CHECKING, Any
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
-    import argparse
-
     from rich.console import Console
 
     from partialslip.batch.ledger import Ledger
@@ -24,16 +23,22 @@ if TYPE_CHECKING:
 _MANY_STEPS = 500  # cost: load steps of a path that take longer than all else
 
 
-def add_scene(parser: "argparse.ArgumentParser") -> None:
-    """Add SCENE and ``--set`` to ``parser``."""
-    parser.add_argument("scene", metavar="SCENE", help="a shipped scene (see: partialslip scenes) or a TOML file")
+_SCENE = "a shipped scene (see: partialslip scenes) or a TOML file"
+
+
+def add_scene(
+    parser: argparse.ArgumentParser, text: str = _SCENE, optional: bool = False, usual: str | None = None
+) -> None:
+    """Add SCENE, which ``text`` explains, and ``--set`` to ``parser``; if it is ``optional``, it is the ``usual`` one
+    where none is given."""
+    parser.add_argument("scene", metavar="SCENE", help=text, nargs="?" if optional else None, default=usual)
     parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
                         help="change a setting of the scene, e.g. load.P=2e5, in the scene's units; may be "
                         "repeated")  # fmt: skip
 
 
 def add_out(
-    parser: "argparse.ArgumentParser",
+    parser: argparse.ArgumentParser,
     usual: str,
     *short: str,
     what: str = "folder for the files",
@@ -45,7 +50,13 @@ def add_out(
                         help="overwrite the files of another scene or other settings")  # fmt: skip
 
 
-def add_columns(parser: "argparse.ArgumentParser") -> None:
+def add_method(parser: argparse.ArgumentParser, text: str, dest: str, **more: Any) -> None:
+    """Add ``--with METHOD``, which ``text`` explains, to ``parser``, and its former name ``--method``."""
+    parser.add_argument("--with", dest=dest, metavar="METHOD", help=text, **more)
+    parser.add_argument("--method", dest=dest, help=argparse.SUPPRESS, default=argparse.SUPPRESS, **more)  # until 2.0
+
+
+def add_columns(parser: argparse.ArgumentParser) -> None:
     """Add ``--columns``, which :func:`columns_of` parses."""
     parser.add_argument("--columns", metavar="NAMES",
                         help="columns of x, p and dq by name or number (from 1): x=X,p=CPRESS,dq=S2-S1")  # fmt: skip
@@ -61,12 +72,12 @@ def columns_of(text: str | None) -> dict[str, str] | None:
     return {name.strip(): made.strip() for name, _, made in pairs}
 
 
-def add_pdf(parser: "argparse.ArgumentParser") -> None:
+def add_pdf(parser: argparse.ArgumentParser) -> None:
     """Add ``--pdf`` to ``parser``."""
     parser.add_argument("--pdf", action="store_true", help="also write the report as report.pdf, A4")
 
 
-def origin(options: "argparse.Namespace") -> "Made":
+def origin(options: argparse.Namespace) -> "Made":
     """Return the origin of results by the command of ``options``: the same for what is printed and what is written."""
     from partialslip.origin import made_now
 
@@ -91,7 +102,7 @@ def print_long_path(scene: "Scene", methods: Sequence[str]) -> None:
         )
 
 
-def check_report(options: "argparse.Namespace") -> None:
+def check_report(options: argparse.Namespace) -> None:
     """Raise MissingLibraryError if ``--pdf`` is given and a library is missing, before anything is solved."""
     if options.pdf:
         from partialslip.output.page import check_pdf
@@ -100,7 +111,7 @@ def check_report(options: "argparse.Namespace") -> None:
 
 
 def write_study(
-    options: "argparse.Namespace",
+    options: argparse.Namespace,
     folder: Path,
     title: str,
     scene: "Scene",
@@ -113,7 +124,7 @@ def write_study(
     return write_page(study_page(title, scene, origin(options), sections), folder, pdf=options.pdf)
 
 
-def add_verbose(parser: "argparse.ArgumentParser", what: str) -> None:
+def add_verbose(parser: argparse.ArgumentParser, what: str) -> None:
     """Add ``--verbose``, which also prints ``what``, to ``parser``."""
     parser.add_argument("-v", "--verbose", action="store_true", help=f"also print {what}")
 
@@ -130,7 +141,7 @@ _NEUTRAL |= {"out", "force", "json", "pdf", "verbose", "save", "processes", "clu
 
 
 def results_folder(
-    options: "argparse.Namespace", command: str, name: str, scene: "Scene | None", **inputs: object
+    options: argparse.Namespace, command: str, name: str, scene: "Scene | None", **inputs: object
 ) -> "AbstractContextManager[Place]":
     """Choose and lock the folder for the files of a command (:func:`partialslip.output.place.placed`).
 
@@ -152,7 +163,7 @@ def results_folder(
 
 
 def folder_if_wanted(
-    options: "argparse.Namespace", command: str, name: str, scene: "Scene", **inputs: object
+    options: argparse.Namespace, command: str, name: str, scene: "Scene", **inputs: object
 ) -> AbstractContextManager[tuple[Path | None, str]]:
     """As :func:`results_folder`; but with ``--json`` and without ``--out`` there is no folder, None."""
     if options.json and options.out is None:
@@ -161,7 +172,7 @@ def folder_if_wanted(
 
 
 def _request(
-    options: "argparse.Namespace", command: str, scene: "Scene | None", inputs: Mapping[str, object]
+    options: argparse.Namespace, command: str, scene: "Scene | None", inputs: Mapping[str, object]
 ) -> dict[str, Any]:
     """Return command, scene and settings as plain data: what must be the same for files to be overwritten."""
     from partialslip.batch.ledger import scene_content
@@ -218,7 +229,7 @@ def study_ledger(place: "Place") -> "Ledger":
 
 
 def print_outcome(
-    outcome: "Run", options: "argparse.Namespace", files: list[Path], lines: Sequence[str] = (), passed: str = ""
+    outcome: "Run", options: argparse.Namespace, files: list[Path], lines: Sequence[str] = (), passed: str = ""
 ) -> int:
     """Print a run and return the exit code.
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import partialslip
 from partialslip.cli.common import (
+    add_method,
     add_out,
     add_pdf,
     add_scene,
@@ -35,7 +36,7 @@ def add(commands: "Commands") -> None:
         examples=[
             "partialslip fatigue fretting-aluminium",
             "partialslip fatigue fretting-aluminium --criterion swt --distance 50e-6",
-            "partialslip fatigue my-scene.toml --criterion findley,ruiz --set fatigue.k_findley=0.3 --method fem",
+            "partialslip fatigue my-scene.toml --criterion findley,ruiz --set fatigue.k_findley=0.3 --with fem",
         ],
     )
     add_scene(fatigue)
@@ -45,9 +46,8 @@ def add(commands: "Commands") -> None:
     fatigue.add_argument("--distance", metavar="LENGTH",
                          help="depth over which stresses are averaged, in the scene's unit of length, as "
                          "fatigue.distance")  # fmt: skip
-    fatigue.add_argument("--method", choices=REFERENCES, metavar="METHOD",
-                         help="exact, march or fem (default: the reference of the scene, and march where exact does "
-                         "not know q1 and q2)")  # fmt: skip
+    told = "exact, march or fem (default: the reference of the scene, and march where exact does not know q1 and q2)"
+    add_method(fatigue, told, "method", choices=REFERENCES)
     fatigue.add_argument("--body", choices=("lower", "upper"), default="lower", metavar="BODY",
                          help="lower or upper (default: lower)")  # fmt: skip
     add_out(fatigue, "results/NAME-fatigue", "-o")
@@ -68,7 +68,7 @@ def _fatigue(options: argparse.Namespace) -> int:
     from partialslip.fatigue.page import drawn, sections, write_assessment
     from partialslip.run import with_stresses
 
-    names = None if options.criterion is None else [name.strip() for name in options.criterion.split(",")]
+    names = None if options.criterion is None else [name.strip().lower() for name in options.criterion.split(",")]
     try:
         names = chosen(scene, names)  # before anything is solved
         check_distance(scene, options.body)

@@ -4,7 +4,8 @@ import argparse
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_out, check_folder, print_written, results_folder
+from partialslip.cli.common import add_out, add_scene, check_folder, print_written, results_folder
+from partialslip.errors import InputError
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -19,16 +20,17 @@ def add(commands: "Commands") -> None:
         "if P varies: map.svg and map.csv. Mark the loads of the scene, and print the scene's regime and stick zone.",
         examples=["partialslip map", "partialslip map flat-rounded", "partialslip map my-scene.toml --out maps"],
     )
-    maps.add_argument("scene", nargs="?", metavar="SCENE",
-                      help="a shipped scene or a TOML file, with the profile to map and the loads to mark "
-                      "(default: Hertz)")  # fmt: skip
+    told = "a shipped scene or a TOML file, with the profile to map and the loads to mark (default: Hertz)"
+    add_scene(maps, told, optional=True)
     add_out(maps, "results/map, results/NAME-map")
     maps.set_defaults(command=_map)
 
 
 def _map(options: argparse.Namespace) -> int:
     check_folder(options.out)
-    scene = None if options.scene is None else partialslip.load_scene(options.scene)
+    if options.scene is None and options.overrides:
+        raise InputError(f"--set {options.overrides[0]}: must have a SCENE, for example hertz-shear")
+    scene = None if options.scene is None else partialslip.load_scene(options.scene, options.overrides)
     name = "map" if scene is None else f"{scene.name}-map"
 
     from partialslip.cli.consoles import output, working

@@ -4,7 +4,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_out, check_folder, print_written, results_folder
+from partialslip.cli.common import add_out, add_scene, check_folder, print_written, results_folder
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -22,16 +22,15 @@ def add(commands: "Commands") -> None:
         "page calculates in the browser, without network.",
         examples=["partialslip page", "partialslip page hertz-large-tension --out live"],
     )
-    page.add_argument("scene", nargs="?", default=_SCENE, metavar="SCENE",
-                      help="a shipped scene or a TOML file, with a Hertz profile; the sliders start at the scene's "
-                      f"loads (default: {_SCENE})")  # fmt: skip
+    told = "a shipped scene or a TOML file, with a Hertz profile; the sliders start at the scene's loads"
+    add_scene(page, f"{told} (default: {_SCENE})", optional=True, usual=_SCENE)
     add_out(page, "results/NAME-page", what="folder for page.html")
     page.set_defaults(command=_page)
 
 
 def _page(options: argparse.Namespace) -> int:
     check_folder(options.out)
-    scene = partialslip.load_scene(options.scene)
+    scene = partialslip.load_scene(options.scene, options.overrides)
 
     from partialslip.cli.consoles import output
     from partialslip.live import live_page

@@ -3,7 +3,7 @@
 import argparse
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_out, add_verbose, check_folder, print_written
+from partialslip.cli.common import add_method, add_out, add_verbose, check_folder, print_written
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -21,7 +21,7 @@ def add(commands: "Commands") -> None:
         examples=[
             "partialslip verify",
             "partialslip verify --suite full --only near-sliding-1e-6",
-            "partialslip verify --suite stress --count 1000 --seed 0 --method march",
+            "partialslip verify --suite stress --count 1000 --seed 0 --with march",
         ],
         failure="a bar missed",
         unjudged="headline quantities not judged",
@@ -34,7 +34,7 @@ def add(commands: "Commands") -> None:
                         "repeated")  # fmt: skip
     verify.add_argument("--count", type=int, metavar="N", help="stress: number of scenes (default: 100)")
     verify.add_argument("--seed", type=int, metavar="S", help="stress: seed of the scenes (default: 0)")
-    verify.add_argument("--method", metavar="METHOD", help="stress: exact, march or fem (default: exact)")
+    add_method(verify, "stress: exact, march or fem (default: exact)", "method")
     verify.add_argument("--processes", type=int, metavar="N",
                         help="parallel processes (default: number of cores)")  # fmt: skip
     verify.add_argument("--include", action="append", default=[], metavar="DIR",
