@@ -91,7 +91,8 @@ def test_traction_perturbed_with_its_resultant_kept(sound, red):
 
     def moved(x):
         off = 0.2 * scene.friction.f * fem.p0 * np.sin(np.pi * x / fem.a) * (np.abs(x) < fem.a)
-        return true(x)._replace(dq=true(x).dq + off)
+        found = true(x)
+        return found._replace(dq=found.dq + off)
 
     found = compare(replace(fem, traction=replace(fem.traction, at=moved)), exact, scene, 1e-3)
     assert "q" in {what.split(":")[0] for what in found.missed}

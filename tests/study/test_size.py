@@ -217,8 +217,7 @@ def test_what_the_mesh_is_off_by_is_no_law():
     x = np.geomspace(4, 1024, 9)
     off = 0.3 * x**-2.0 + 1e-4
     assert trend(made_sizes(off, 1e-4, x), "m").law.k == pytest.approx(2, abs=0.1)
-    wrong = trend(made_sizes(off, 0.0, x), "m")
-    assert wrong.law is None or wrong.law.k < 1
+    assert trend(made_sizes(off, 0.0, x), "m").law is None  # a line through these points has k < 1, and may be level
 
 
 def test_differences_that_scatter_have_no_law_and_no_sizes():

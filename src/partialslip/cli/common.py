@@ -50,10 +50,10 @@ def add_out(
                         help="overwrite the files of another scene or other settings")  # fmt: skip
 
 
-def add_method(parser: argparse.ArgumentParser, text: str, dest: str, **more: Any) -> None:
+def add_method(parser: argparse.ArgumentParser, text: str, **more: Any) -> None:
     """Add ``--with METHOD``, which ``text`` explains, to ``parser``, and its former name ``--method``."""
-    parser.add_argument("--with", dest=dest, metavar="METHOD", help=text, **more)
-    parser.add_argument("--method", dest=dest, help=argparse.SUPPRESS, default=argparse.SUPPRESS, **more)  # until 2.0
+    parser.add_argument("--with", dest="method", metavar="METHOD", help=text, **more)
+    parser.add_argument("--method", help=argparse.SUPPRESS, default=argparse.SUPPRESS, **more)  # until 2.0
 
 
 def add_columns(parser: argparse.ArgumentParser) -> None:

@@ -47,7 +47,7 @@ def add(commands: "Commands") -> None:
                          help="depth over which stresses are averaged, in the scene's unit of length, as "
                          "fatigue.distance")  # fmt: skip
     told = "exact, march or fem (default: the reference of the scene, and march where exact does not know q1 and q2)"
-    add_method(fatigue, told, "method", choices=REFERENCES)
+    add_method(fatigue, told, choices=REFERENCES)
     fatigue.add_argument("--body", choices=("lower", "upper"), default="lower", metavar="BODY",
                          help="lower or upper (default: lower)")  # fmt: skip
     add_out(fatigue, "results/NAME-fatigue", "-o")
@@ -68,7 +68,7 @@ def _fatigue(options: argparse.Namespace) -> int:
     from partialslip.fatigue.page import drawn, sections, write_assessment
     from partialslip.run import with_stresses
 
-    names = None if options.criterion is None else [name.strip().lower() for name in options.criterion.split(",")]
+    names = None if options.criterion is None else [name.strip() for name in options.criterion.split(",")]
     try:
         names = chosen(scene, names)  # before anything is solved
         check_distance(scene, options.body)

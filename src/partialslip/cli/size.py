@@ -108,7 +108,7 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", plac
     else:
         for quantity in sizes.DIFFERENCES:
             grid = sizes.grid(axes, entries, quantity)
-            names = tuple(f"{each.name}{', in a' if each.in_a else ''}" for each in axes)
+            names = tuple(each.label(scene.units) for each in axes)
             texts[f"map-{quantity}.svg"] = grid_svg(*grid, (names[0], names[1]), f"{scene.name}: change of {quantity}")
         lines = tables.case_remarks(axes, entries)
     for line in lines:

@@ -34,7 +34,7 @@ def add(commands: "Commands") -> None:
                         "repeated")  # fmt: skip
     verify.add_argument("--count", type=int, metavar="N", help="stress: number of scenes (default: 100)")
     verify.add_argument("--seed", type=int, metavar="S", help="stress: seed of the scenes (default: 0)")
-    add_method(verify, "stress: exact, march or fem (default: exact)", "method")
+    add_method(verify, "stress: exact, march or fem (default: exact)")
     verify.add_argument("--processes", type=int, metavar="N",
                         help="parallel processes (default: number of cores)")  # fmt: skip
     verify.add_argument("--include", action="append", default=[], metavar="DIR",

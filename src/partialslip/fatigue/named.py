@@ -77,7 +77,7 @@ class Criterion:
 
 
 def chosen(scene: Scene, names: Iterable[str] | None) -> list[str]:
-    """Return the names of the criteria to assess: ``names``, or all whose constants the scene has.
+    """Return the names of the criteria to assess: ``names``, also in capitals, or all whose constants the scene has.
 
     Raises
     ------
@@ -86,13 +86,13 @@ def chosen(scene: Scene, names: Iterable[str] | None) -> list[str]:
     """
     if names is None:
         return [name for name in CRITERIA if not _missing(scene, name)]
-    found = list(dict.fromkeys(names))
-    for name in found:
+    found = {name.lower() if isinstance(name, str) else name: name for name in names}
+    for name, given in found.items():
         if name not in CRITERIA:
-            raise InputError(f"criterion {name!r}: must be of {', '.join(CRITERIA)}")
+            raise InputError(f"criterion {given!r}: must be of {', '.join(CRITERIA)}")
         if missing := _missing(scene, name):
             raise InputError(f"fatigue.{missing[0]}: missing; the criterion {name} needs it")
-    return found
+    return list(found)
 
 
 def check_distance(scene: Scene, body: str) -> None:

@@ -121,7 +121,8 @@ class History:
     @property
     def bound(self) -> Array:
         """Half of the admissible range of q: the mean of the bounds at load points 1 and 2."""
-        known = (self.bounds[0] + self.bounds[1]) / 2
+        first, second = self.bounds
+        known = (first + second) / 2
         result: Array = known if self.room is None else (self.room + np.abs(self.change)) / 2
         return result
 
@@ -312,8 +313,8 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
 
     ``advance(before, load, change) -> (solution, pressure)`` solves one step: from the solution before the step, the
     loads after the step and their change, to the solution after the step, whose ``rest`` is minus the slip, and the
-    normal forces. The coefficient of friction is ``f`` (n,). ``hastens``: whether cycles that lead to
-    the steady state may skip those of which the limit is known (:func:`partialslip.friction.limit.limit`).
+    normal forces. The coefficient of friction is ``f`` (n,). ``hastens``: whether cycles that lead to the steady state
+    may skip those of which the limit is known (:func:`partialslip.friction.limit.limit`).
     """
     first, *ways = path.fractions
     load = np.array(path.begin)
@@ -329,10 +330,11 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
             points.append(certified([step for step, _ in went[-1]]))
             taken += len(fractions)
         largest = max(float(np.abs(step.x).sum()) for way in went for step, _ in way)
-        if _settled(path, points[-1].x, points[-1 - len(went)].x, f * went[-1][-1][1], largest):
+        bound = f * went[-1][-1][1]
+        if _settled(path, points[-1].x, points[-1 - len(went)].x, bound, largest):
             break
         ended.append(points[-1].x)
-        skipped = limit(ended, f * went[-1][-1][1]) if hastens else None
+        skipped = limit(ended, bound) if hastens else None
         if skipped is not None:
             points[-1], ended = replace(points[-1], x=skipped), [skipped]
     steps = [step for way in went for step, _ in way]

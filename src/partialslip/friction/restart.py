@@ -47,7 +47,7 @@ def begun(
     """
     if not (start and history):
         return {}, ()
-    here, pressed = history.end[1], _norm((history.pressures[0] + history.pressures[1]) / 2, weights)
+    here, pressed = history.end[1], _pressed(history, weights)
     notes: tuple[str, ...] = ()
     if (other := _norm(forces(start) - here, weights) / _norm(here, weights)) > _ANOTHER:
         notes = (f"p of the state at the beginning is off by {other:.0%}: it seems to be the state of another contact",)
@@ -67,9 +67,15 @@ def begun(
 def known_to(errors: Mapping[str, float], history: History, weights: Array) -> float | None:
     """Error of q at the end of the path, its L2 norm relative to that of p, from all ``errors`` of q1 and q2; None if
     these are not known. Arguments as for :func:`begun`."""
-    pressed = _norm((history.pressures[0] + history.pressures[1]) / 2, weights)
+    pressed = _pressed(history, weights)
     norms = _norms(history, weights)
     return max((errors[key] * norms[key] / pressed for key in ("q1", "q2") if key in errors), default=None)
+
+
+def _pressed(history: History, weights: Array) -> float:
+    """L2 norm of the mean of p at load points 1 and 2."""
+    first, second = history.pressures
+    return _norm((first + second) / 2, weights)
 
 
 def _norms(history: History, weights: Array) -> Errors:

@@ -87,9 +87,10 @@ class _Contact:
         ways = [press.way((P, M), (P2, M2)) for (P, M), (P2, M2) in itertools.pairwise(loads)]
         most = np.maximum.reduce([each.values.max(axis=0) for each in ways])
         self._on, self._count = np.flatnonzero(most > 0), len(most)
-        self._ways = [each.of(self._on) for each in ways]
-        for load, each in zip((path.cycle[-1], *path.cycle), self._ways, strict=True):
-            require_carried([load[0]], float((f[self._on] * each.values[-1]).sum()))
+        self._pressed = [each.of(self._on) for each in ways]
+        self._bounds = [each.times(f[self._on]) for each in self._pressed]
+        for load, each in zip((path.cycle[-1], *path.cycle), self._bounds, strict=True):
+            require_carried([load[0]], float(each.values[-1].sum()))
         self._follower = Follower(submatrix(tangential, self._on, self._on))
         self._legs: list[_Done] = []
         stages = path.substeps * math.ceil(_STAGES / path.substeps)
@@ -104,8 +105,8 @@ class _Contact:
     def _advance(self, before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
         """Go along one leg, as :func:`partialslip.friction.history.follow` asks for it."""
         on, number = self._on, len(self._legs)
-        pressed = self._ways[number if not number else 1 + (number - 1) % len(self._path.cycle)]
-        bounds = pressed.times(self._f[on])
+        way = number if not number else 1 + (number - 1) % len(self._path.cycle)
+        pressed, bounds = self._pressed[way], self._bounds[way]
         # a state of another mesh has the load, and keeps the bounds, to an error of that mesh only
         start = np.clip(before.x[on], -bounds.values[0], bounds.values[0])
         g, Q = (change[1:3] @ self._stretch)[on], float(load[0]) - float(start.sum())

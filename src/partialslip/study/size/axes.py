@@ -19,7 +19,7 @@ from partialslip.scene.dimensions import DIMENSIONS
 from partialslip.scene.reading import parse_scene
 from partialslip.scene.writing import scene_tables
 from partialslip.study.size.case import COMPARED_METHODS
-from partialslip.units import Dimension, Units
+from partialslip.units import Units
 
 ACCURACY = "accuracy"  # label of a case besides the axes
 _COUNT = 9  # display: values of a range without a number of them
@@ -51,10 +51,10 @@ class Axis:
 
     def label(self, units: Units) -> str:
         """Name with the unit of the values."""
-        of: Dimension = "1"
-        of = next((of for known, of in DIMENSIONS.items() if any(fnmatchcase(known, key) for key in self.keys)), of)
-        unit = "contact half-widths" if self.in_a else units.label(of) if of != "1" else ""
-        return f"{self.name} in {unit}" if unit else self.name
+        if self.in_a:
+            return f"{self.name} in contact half-widths"
+        found = {of for known, of in DIMENSIONS.items() if any(fnmatchcase(known, key) for key in self.keys)} - {"1"}
+        return f"{self.name} in {units.label(*found)}" if len(found) == 1 else self.name
 
 
 def axis(text: str) -> Axis:

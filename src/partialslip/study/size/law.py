@@ -41,7 +41,7 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True)
 class Law:
-    """Fitted law difference = C size^-k, by least squares in logarithms; it falls (:attr:`falls`).
+    """Fitted law difference = C size^-k, by least squares in logarithms.
 
     Parameters
     ----------
@@ -167,23 +167,25 @@ def trend(sizes: Sizes, quantity: str) -> Trend:
     used = at[len(at) // 2 :] if len(at) >= 2 * _FEWEST else at[-_FEWEST:]
     fitted = np.isin(np.arange(len(size)), used) & (len(used) >= _FEWEST)
     law = _fit(size[fitted], off[fitted]) if fitted.any() else None
-    told, clear_but = PointStatus.FITTED, PointStatus.SMALLER if law else PointStatus.FEW
-    if law and not law.falls:
-        law, told, clear_but = None, PointStatus.NO_LAW, PointStatus.NO_LAW
-    which = [fitted, clear, known & np.isnan(mesh), known]
-    points = np.select(which, [told, clear_but, PointStatus.UNKNOWN, PointStatus.UNCLEAR], PointStatus.NO_VALUE)
+    clear_but = PointStatus.SMALLER if law else PointStatus.NO_LAW if fitted.any() else PointStatus.FEW
+    which = [fitted & bool(law), clear, known & np.isnan(mesh), known]
+    points = np.select(
+        which, [PointStatus.FITTED, clear_but, PointStatus.UNKNOWN, PointStatus.UNCLEAR], PointStatus.NO_VALUE
+    )
     order = np.flatnonzero(known)
     needed = tuple(_needed(level, size[order], off[order], mesh[order], clear[order], law) for level in LEVELS)
     return Trend(quantity, tuple(map(PointStatus, points)), law, needed)
 
 
-def _fit(size: Array, off: Array) -> Law:
+def _fit(size: Array, off: Array) -> Law | None:
+    """Law through the points; None if the difference may not fall."""
     x, y = np.log(size), np.log(off)
     slope, start = np.polyfit(x, y, 1)
     free = len(x) - 2
     scatter = math.sqrt(np.sum((y - slope * x - start) ** 2) / free)
     factor = float(student.ppf((1 + _SHARE) / 2, free))
-    return Law(math.exp(start), -float(slope), tuple(size.tolist()), factor * scatter)
+    law = Law(math.exp(start), -float(slope), tuple(size.tolist()), factor * scatter)
+    return law if law.falls else None
 
 
 def _needed(
