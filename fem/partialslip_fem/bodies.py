@@ -11,7 +11,7 @@ import numpy as np
 from partialslip.arrays import Array, Indices, submatrix
 from partialslip.errors import InputError
 from partialslip.friction.active_set import Factored, Sides, Solution
-from partialslip.friction.coupled import Relative
+from partialslip.friction.coupled_step import Relative
 from partialslip.friction.normal import press
 from partialslip.result import Clock
 from partialslip_fem.condensation import Condensation

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.friction.coupled import Relative
+from partialslip.friction.coupled_step import Relative
 from partialslip_fem.condensation import Condensation
 from partialslip_fem.elasticity import Body
 from partialslip_fem.mortar import transfer

@@ -10,6 +10,7 @@ from partialslip.arrays import Array, Indices
 from partialslip.bars import BARS
 from partialslip.friction import constant, coupled, step_errors, varying
 from partialslip.friction.active_set import Solution
+from partialslip.friction.coupled_step import Relative
 from partialslip.friction.history import History, certified
 from partialslip.friction.normal import Presses
 from partialslip.friction.path import Path, stretched
@@ -171,7 +172,7 @@ class _ContactForces:
 
 def _contact_forces(
     problem: Problem,
-    C: coupled.Relative,
+    C: Relative,
     lower: CondensedBody,
     check: bool,
     shared: Shared,
@@ -244,7 +245,7 @@ def _path_errors(problem: Problem, line: Body, history: History, finer: History)
 
 def _under_varying_pressure(
     problem: Problem,
-    C: coupled.Relative,
+    C: Relative,
     lower: CondensedBody,
     presses: Presses,
     pressing: tuple[tuple[float, float], tuple[float, float]],

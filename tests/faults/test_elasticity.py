@@ -7,7 +7,7 @@ import pytest
 from pairs import SIZE, units
 
 import partialslip
-from partialslip.friction import coupled
+from partialslip.friction.coupled_step import Relative
 from partialslip_fem import bodies, contact, elasticity, goals, model, solving
 from partialslip_fem.farfield import FarField
 
@@ -144,7 +144,7 @@ def test_coupling_of_the_wrong_sign(monkeypatch, red):
 
     red.passes(off(), 1e-3)
     true = solving.relative_compliances
-    wrong = lambda *args: coupled.Relative((C := true(*args)).xx, C.yy, -C.xy)  # noqa: E731
+    wrong = lambda *args: Relative((C := true(*args)).xx, C.yy, -C.xy)  # noqa: E731
     monkeypatch.setattr(solving, "relative_compliances", wrong)
     red("a of unlike bodies", off(), 1e-3)
 

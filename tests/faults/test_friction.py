@@ -10,7 +10,7 @@ from scipy.interpolate import PPoly
 
 import partialslip
 from partialslip.bars import CERTIFICATE_BAR
-from partialslip.friction import constant, coupled, zone_ends
+from partialslip.friction import constant, coupled_step, zone_ends
 from partialslip.friction.active_set import _BlockPivoting, solve_bounded
 from partialslip.friction.constant import march as true_march
 from partialslip.friction.zone_ends import StickInterval
@@ -64,7 +64,7 @@ def test_friction_silently_none(monkeypatch, sound, red):
 @pytest.mark.fault
 def test_bound_of_the_pressure_before(monkeypatch, red):
     """Pressure of unlike bodies changes with shear; what bounds friction is the one of the step before."""
-    true = coupled._solve
+    true = coupled_step.solve
 
     def lagging(step, starts):
         p, q = true(step, starts)
@@ -83,7 +83,7 @@ def test_bound_of_the_pressure_before(monkeypatch, red):
         return float((np.abs(T) - scene.friction.f * N).max() / (scene.friction.f * scene.P))
 
     red.passes(beyond(), CERTIFIED)
-    monkeypatch.setattr(coupled, "_solve", lagging)
+    monkeypatch.setattr(coupled_step, "solve", lagging)
     red("friction bound", beyond(), CERTIFIED)
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from partialslip.friction.coupled import Relative, _solve, _Step
+from partialslip.friction.coupled_step import LoadStep, Relative, solve
 from partialslip.friction.history import resting
 from partialslip.friction.trail import Trail
 
@@ -19,7 +19,7 @@ def step():
     alike = 3 - np.log((x[:, None] - x) ** 2 + 1e-3) / 2 + 1e-2 * np.eye(N)
     coupling = 0.05 * np.tanh(20 * (x[:, None] - x))
     C = Relative(alike, alike, coupling)
-    return _Step(alike, alike, coupling, C.opening, np.full(N, 0.3), 1.0, 3 * x**2, 0.1, 0.2 * x, C.factors)
+    return LoadStep(alike, alike, coupling, C.opening, np.full(N, 0.3), 1.0, 3 * x**2, 0.1, 0.2 * x, C.factors)
 
 
 def partition(random, opens, core):
@@ -87,8 +87,8 @@ def test_another_factor_is_made_where_it_pays(step):
 def test_a_step_and_the_same_step_at_other_nodes(step):
     """The answer does not depend on the way to it, and one linear system suffices from the answer at these nodes."""
     zero = resting(np.zeros(N))
-    p, q = _solve(step, [(zero, zero)])
-    for other in _solve(replace(step, factors=None), [(zero, zero)]), _solve(step, [(p, q)]):
+    p, q = solve(step, [(zero, zero)])
+    for other in solve(replace(step, factors=None), [(zero, zero)]), solve(step, [(p, q)]):
         assert other[0].x == pytest.approx(p.x, abs=1e-12)
         assert other[1].x == pytest.approx(q.x, abs=1e-12)
     assert p.residual.max() <= 1e-13
@@ -98,7 +98,7 @@ def test_a_step_and_the_same_step_at_other_nodes(step):
     trail.keep("step", (p, q))
     again = Trail(x, trail)
     assert again.starts("another") == []
-    assert _solve(step, again.starts("step"))[0].iterations == 1
+    assert solve(step, again.starts("step"))[0].iterations == 1
     (touching, slipping), coarse = Trail(x[::4], trail).starts("step")[0], p.x[::4] > 0
     assert np.array_equal(touching.x > 0, coarse)
     assert np.array_equal(slipping.sides, q.sides[::4])

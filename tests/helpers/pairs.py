@@ -18,7 +18,7 @@ import numpy as np
 from partialslip import halfplane, load_scene, load_state, plan
 from partialslip.arrays import Array
 from partialslip.friction import constant, steps
-from partialslip.friction.coupled import Relative
+from partialslip.friction.coupled_step import Relative
 from partialslip.friction.history import History
 from partialslip.judge import Q_BAR, cell_means
 from partialslip.march import method as marching

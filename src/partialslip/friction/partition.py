@@ -23,7 +23,7 @@ _SLACK = 0.3  # cost: of the nodes that are not eliminated: so many that stick m
 
 
 class Compliances(Protocol):
-    """Relative compliances (n, n), symmetric together (:class:`partialslip.friction.coupled.Relative`)."""
+    """Relative compliances (n, n), symmetric together (:class:`partialslip.friction.coupled_step.Relative`)."""
 
     @property
     def xx(self) -> Array | None:

@@ -75,12 +75,13 @@ class Stages(Protocol):
     def last(self) -> float:
         """Last step of pressing, in half-widths."""
 
-    @property
-    def growth(self) -> tuple[Array, Array]:
-        """Nodal forces along y and x (n,) under the flat punch: the increments of pressing."""
+    def growth(self, half_width: float, /) -> tuple[Array, Array]:
+        """Nodal forces along y and x (n,) under the flat punch of ``half_width`` and the force 1: the increments of
+        pressing."""
 
-    def stage(self, share: float) -> tuple[Array, Array]:
-        """Nodal forces along y and x (n,) under the parabola, pressed up to ``share`` of the half-width."""
+    def stage(self, half_width: float, share: float) -> tuple[Array, Array]:
+        """Nodal forces along y and x (n,) under the parabola, pressed up to ``share`` of the ``half_width`` of the
+        contact, which belongs to the force 1."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,7 @@ class Punch:
         Nodes, from the vertex of the parabola.
     weights : (n,) array
         Factors that turn tractions into forces.
-    growth : two of (n,) array
+    forces : two of (n,) array
         Nodal forces along y and x.
     points : (k,) array
         Points between the corners, ascending, which may be few.
@@ -106,7 +107,7 @@ class Punch:
     corners: tuple[float, float]
     x: Array
     weights: Array
-    growth: tuple[Array, Array]
+    forces: tuple[Array, Array]
     points: Array
     left: tuple[Array, Array]
     last: float = 2.5e-3
@@ -116,12 +117,16 @@ class Punch:
         """Half of the distance of the corners."""
         return (self.corners[1] - self.corners[0]) / 2
 
-    def stage(self, share: float) -> tuple[Array, Array]:
-        """Nodal forces along y and x (n,) under the parabola, pressed up to ``share`` of the punch's half-width."""
-        scaled = self.x / (self.half_width * share)
+    def growth(self, _: float, /) -> tuple[Array, Array]:
+        """As of :class:`Stages`: the forces, as the punch has about the half-width."""
+        return self.forces
+
+    def stage(self, half_width: float, share: float) -> tuple[Array, Array]:
+        """As of :class:`Stages`: punches of all half-widths have tractions of the same form."""
+        scaled = self.x / (half_width * share)
         p, q = (
             self.weights * self._summed(scaled, float(forces.sum()), left)
-            for forces, left in zip(self.growth, self.left, strict=True)
+            for forces, left in zip(self.forces, self.left, strict=True)
         )
         # correct the sums: the discretisation error is small, but not compared with the increment of the last step
         return p * share**2 / p.sum(), (q - q.sum() / p.sum() * p) * share**2 / p.sum()

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipk, ellipkm1
 
 from partialslip.arrays import Array
-from partialslip.friction.coupled import Relative, punched
+from partialslip.friction.coupled_step import Relative, punched
 from partialslip.friction.zone_ends import read_stick_zone
 from partialslip.march.cells import compliance, graded_cells
 
@@ -106,22 +106,20 @@ class PunchGrowth:
 
 @dataclass(frozen=True)
 class OnCells:
-    """Stages of pressing as forces on the cells between ``vertices`` (c + 1,), up to a contact of ``half_width``."""
+    """Stages of pressing as forces on the cells between ``vertices`` (c + 1,)."""
 
     punch: PunchGrowth
     vertices: Array
-    half_width: float
     last: float = 1e-4  # last step of pressing, in half-widths: stages are as exact as cells are
 
-    @property
-    def growth(self) -> tuple[Array, Array]:
-        """Forces under the flat punch, (c,) along y and x."""
-        p, q = self.punch.resultants(self.vertices / self.half_width)
+    def growth(self, half_width: float, /) -> tuple[Array, Array]:
+        """As of :class:`partialslip.friction.pressing.Stages`."""
+        p, q = self.punch.resultants(self.vertices / half_width)
         return -np.diff(p), -np.diff(q)
 
-    def stage(self, share: float) -> tuple[Array, Array]:
-        """Forces (c,) along y and x under the parabola, pressed up to ``share`` of the half-width."""
-        p, q = self.punch.stage(self.vertices / (self.half_width * share))
+    def stage(self, half_width: float, share: float) -> tuple[Array, Array]:
+        """As of :class:`partialslip.friction.pressing.Stages`."""
+        p, q = self.punch.stage(self.vertices / (half_width * share))
         return -np.diff(p) * share**2, -np.diff(q) * share**2
 
 

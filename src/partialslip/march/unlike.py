@@ -102,7 +102,8 @@ class UnlikeBodies(driver.Problem[UnlikeLevel]):
     def solve(self, level: UnlikeLevel | None, mesh: tuple[float, float]) -> UnlikeLevel:
         wider = 1.0
         while True:
-            found = _solve_on(self, self.path, self.cells(level, mesh, wider), self.clock)
+            near = max(level.a) if level else None
+            found = _solve_on(self, self.path, self.cells(level, mesh, wider), near, self.clock)
             touching = [found.pressing.x] + ([found.history.bound] if found.history else [])
             if not any(forces[0] or forces[-1] for forces in touching):
                 return found
@@ -193,7 +194,10 @@ def _extent(scene: Scene) -> float:
     return max(abs(end) for end in found) / scene.length
 
 
-def _solve_on(problem: UnlikeBodies, path: Path | None, vertices: Array, clock: Clock) -> UnlikeLevel:
+def _solve_on(
+    problem: UnlikeBodies, path: Path | None, vertices: Array, near: float | None, clock: Clock
+) -> UnlikeLevel:
+    """Solve on the cells between ``vertices``, for a contact of about the half-width ``near`` if that is known."""
     scene = problem.scene
     x, widths, L = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices), scene.length
     with clock.phase("compliance"):
@@ -213,12 +217,12 @@ def _solve_on(problem: UnlikeBodies, path: Path | None, vertices: Array, clock: 
             places = vertices * L + scene.origin
             begins, shear = (on_cells(each, places) / scene.P for each in (problem.start.p, problem.start.q))
             path = replace(path, before=shear)
-        stages = partial(OnCells, problem.punch, vertices) if problem.punch else None
-        line = coupled.Nodes(x, widths, ends, None, problem.punch is not None, stages=stages)
+        stages = OnCells(problem.punch, vertices) if problem.punch else None
+        line = coupled.Nodes(x, widths, ends, None, problem.punch is not None, near=near, stages=stages)
         moved = stretched(x, scene.origin / L)
-        stretch, near = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
+        stretch, allowed = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
         f = scene.friction.at(x * L + scene.origin)
-        history, pressing, first = coupled.march(C, gap, stretch, moved[1], f, path, begins, line, near)
+        history, pressing, first = coupled.march(C, gap, stretch, moved[1], f, path, begins, line, allowed)
         at_points = tuple(ends(p, q) for p, q in zip(history.pressures, (history.q1, history.q2), strict=True))
         level = UnlikeLevel(vertices, history, None, pressing, first, at_points)  # type: ignore[arg-type]
         return replace(level, stick=_stick_zone(level, problem.punch), kinks=_kinks(level))
@@ -299,7 +303,7 @@ def _path_errors(problem: UnlikeBodies, path: Path, level: UnlikeLevel, clock: C
     """Errors of the load steps, on the cells of the ``level``."""
     if not level.history or not level.stick:
         return {}
-    finer = _solve_on(problem, other_steps(path), level.vertices, clock)
+    finer = _solve_on(problem, other_steps(path), level.vertices, max(level.a), clock)
     if not finer.history or not finer.stick:
         return {}
     places = {id(level.history): level.ends, id(finer.history): finer.ends}

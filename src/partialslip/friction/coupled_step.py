@@ -1,0 +1,243 @@
+"""One load step of two coupled bodies: pressure moves the surfaces along x, and shear opens the gap.
+
+Scaled as in :mod:`partialslip.friction.history`. The surfaces' relative displacements u (upper body less lower body,
+along x) and v (opening, along y) under normal forces p and tangential forces q (of the lower body on the upper one):
+
+    u = C_xx q + C_xy p,    v = C_xy^T q + C_yy p.
+"""
+
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.linalg as la
+
+from partialslip.arrays import Array, Mask, submatrix
+from partialslip.friction.active_set import Sides, Solution, solve_bounded
+from partialslip.friction.history import resting
+from partialslip.friction.partition import Factors, Forces, longest
+from partialslip.friction.trail import Trail
+
+_ROUNDING = 16 * float(np.finfo(float).eps)
+_PATIENCE = 4  # cost: iterations without progress before the method changes
+_CLOSE = 32  # cost: changes of sides in an iteration without progress below which rounding errors may matter
+
+Pair = tuple[Solution, Solution]
+_Solver = Callable[[Array, Array], Forces]  # forces for the displacements (2, n) that sum to the totals (2,)
+
+
+@dataclass(frozen=True)
+class Relative:
+    """Relative compliances (n, n) of the contact nodes of two bodies.
+
+    ``xx``, ``yy`` and ``xy`` are C_xx, C_yy and C_xy; ``xx`` is None without friction, ``xy`` None if it vanishes or is
+    neglected. ``yx`` gives the opening of the gap by q; default: the transpose of ``xy``, by reciprocity. It is zero in
+    Goodman's approximation.
+    """
+
+    xx: Array | None
+    yy: Array
+    xy: Array | None
+    yx: Array | None = None
+
+    @property
+    def opening(self) -> Array:
+        """``yx``, by default from reciprocity."""
+        assert self.xy is not None
+        return self.xy.T if self.yx is None else self.yx
+
+    def moved(self, p: Array, q: Array) -> tuple[Array, Array]:
+        """Relative displacements (n,) along x, and opening along y, under the forces ``p`` and ``q`` (n,)."""
+        assert self.xx is not None
+        assert self.xy is not None
+        return self.xx @ q + self.xy @ p, self.yy @ p + self.opening @ q
+
+    @cached_property
+    def factors(self) -> Factors | None:
+        """Factors of all of them, with friction and coupling; None if they are not symmetric."""
+        return Factors(self) if self.yx is None else None
+
+
+@dataclass(frozen=True)
+class LoadStep:
+    """Problem of one load step with friction ``f`` (n,): p sums to ``P`` over the ``gap`` (n,) before loading, q sums
+    to ``Q``, and nodes that stick have the relative displacement ``kept`` (n,) along x, up to a rigid shift.
+    ``factors`` are those of the compliances, which many steps share."""
+
+    xx: Array
+    yy: Array
+    xy: Array
+    yx: Array
+    f: Array
+    P: float
+    gap: Array
+    Q: float
+    kept: Array
+    factors: Factors | None = None
+
+    @cached_property
+    def _load(self) -> Array:
+        """Displacements (2, n) of nodes that touch and stick, along y and x."""
+        return np.stack([-self.gap, self.kept])
+
+    def sweep(self, p: Solution, q: Solution) -> tuple[Solution, Solution]:
+        """One fixed-point iteration: solve for p with the old q, then for q with the new p; both problems are
+        convex."""
+        n, pushed = len(self.gap), self.gap + self.yx @ q.x
+        pressed = solve_bounded(self.yy, -pushed, np.zeros(n), np.full(n, np.inf), self.P, p.sides)
+        on = np.flatnonzero(pressed.x > 0)
+        bound = self.f[on] * pressed.x[on]
+        free = (self.kept - self.xy @ pressed.x)[on]
+        held = solve_bounded(submatrix(self.xx, on, on), free, -bound, bound, self.Q, q.sides[on])
+        sheared = held.spread(on, n)
+        moved = self.yx @ (sheared.x - q.x)  # opening due to the change of q, which p does not include yet
+        return replace(pressed, residual=np.abs(moved - moved[on].mean()) / np.diag(self.yy)), sheared
+
+    def newton(self, p: Solution, q: Solution) -> tuple[Solution, Solution] | None:
+        """Solve for p and q together, iterating on the partition from that of ``p`` and ``q``; None if that fails."""
+        touch, slip = p.x > 0, q.sides * (p.x > 0)
+        fewest, chances, iteration, refined = 2 * len(touch), _PATIENCE, 0, False
+        solver, found = None, None
+        while chances > 0:
+            iteration += 1
+            if not (touch & (slip == 0)).any():
+                return None
+            solver = solver or self._solver(touch, slip)
+            found = self._linear_solve(solver, touch, slip, refined, found)
+            opening, rest = self._off(found, (0, 0) if refined else longest(touch & (slip == 0)))
+            scale, (p_new, q_new, _) = self._scale(found), found
+            noise = _ROUNDING * scale
+            pushed = p_new - opening / np.diag(self.yy)
+            augmented, bound = q_new - rest / np.diag(self.xx), self.f * p_new
+            touches = pushed > noise[0]
+            slips = (augmented > bound + noise[1]).astype(np.int8) - (augmented < -bound - noise[1])
+            # nodes on the bound to rounding, where the loads return to an earlier state, go on as they are
+            slips = touches * np.where((slip != 0) & (slip * augmented > bound - noise[1]), slip, slips)
+            if np.array_equal(touches, touch) and np.array_equal(slips, slip):
+                if not refined:
+                    refined, iteration = True, iteration - 1
+                    continue
+                zero = np.zeros(len(self.gap))
+                p_off, q_off = (abs(float(x.sum()) - total) for x, total in ((p_new, self.P), (q_new, self.Q)))
+                p_in, q_in = np.maximum(p_new, 0.0), np.clip(q_new, -bound, bound)
+                p_rest, q_rest = np.where(touch, 0.0, np.maximum(opening, 0.0)), np.where(slip == 0, 0.0, rest)
+                p_left = np.abs(p_new - np.maximum(pushed, 0.0)) + np.abs(p_new - p_in)
+                q_left = np.where(touch, np.abs(q_new - np.clip(augmented, -bound, bound)), zero)
+                return (
+                    Solution(p_in, p_rest, p_left, p_off, iteration, iteration - 1),
+                    Solution(q_in, q_rest, q_left, q_off, 0),
+                )
+            wrong = int((touches != touch).sum() + (slips != slip).sum())
+            chances = _PATIENCE if wrong < fewest else chances - 1
+            touch, slip, fewest = touches, slips, min(wrong, fewest)
+            refined = wrong <= _CLOSE and chances < _PATIENCE
+            solver = found = None
+        return None
+
+    def _linear_solve(
+        self, solve: _Solver, touch: Mask, slip: Sides, refined: bool, found: Forces | None = None
+    ) -> Forces:
+        """Forces of one partition, whose linear system ``solve`` solves: nodes that ``touch`` have no gap, nodes that
+        stick keep their displacement, and q = ``slip`` f p at nodes that slip; ``refined`` to rounding, from those that
+        were ``found``."""
+        totals = np.array([self.P, self.Q])
+        found = found or solve(self._load, totals)
+        if not refined:
+            return found
+        opening, rest = self._off(found)
+        sticks = touch & (slip == 0)
+        left = -np.stack([np.where(touch, opening, 0.0), np.where(sticks, rest, 0.0)])
+        change = solve(left, totals - [found.p.sum(), found.q.sum()])
+        return Forces(*(each + more for each, more in zip(found, change, strict=True)))
+
+    def _scale(self, found: Forces) -> Array:
+        """Scale (2, n) of rounding errors of the forces."""
+        p, q, (approach, shift) = found
+        result: Array = (np.abs(p).sum() + np.abs(q).sum()) + np.stack(
+            [
+                (np.abs(self.gap) + abs(approach)) / np.diag(self.yy),
+                (np.abs(self.kept) + abs(shift)) / np.diag(self.xx),
+            ]
+        )
+        return result
+
+    def _off(self, found: Forces, but: tuple[int, int] = (0, 0)) -> Array:
+        """Opening of the gap, and slip, under the forces, (2, n). Nodes from the first up to the second of ``but``,
+        which are known to touch and to stick, are left out."""
+        p, q, (approach, shift) = found
+        result = np.zeros((2, len(p)))
+        for rows in (slice(0, but[0]), slice(but[1], None)):
+            result[0, rows] = self.yy[rows] @ p + self.yx[rows] @ q + self.gap[rows] - approach
+            result[1, rows] = self.xx[rows] @ q + self.xy[rows] @ p - self.kept[rows] - shift
+        return result
+
+    def _solver(self, touch: Mask, slip: Sides) -> _Solver:
+        """What solves the linear system of one partition."""
+        if self.factors and (partition := self.factors.partition(touch, slip, self.f)):
+            return partition.solve
+        on, sticks = np.flatnonzero(touch), np.flatnonzero(touch & (slip == 0))
+        i, end = len(on), len(on) + len(sticks)
+        dragged = self.f[on] * slip[on]
+        matrix = np.zeros((end + 2, end + 2))
+        matrix[:i, :i] = submatrix(self.yy, on, on) + submatrix(self.yx, on, on) * dragged
+        matrix[:i, i:end] = submatrix(self.yx, on, sticks)
+        matrix[i:end, :i] = submatrix(self.xx, sticks, on) * dragged + submatrix(self.xy, sticks, on)
+        matrix[i:end, i:end] = submatrix(self.xx, sticks, sticks)
+        matrix[:i, -2] = matrix[i:end, -1] = -1  # rigid shifts
+        matrix[-2, :i] = 1
+        matrix[-1, :i], matrix[-1, i:end] = dragged, 1
+        factors = la.lu_factor(matrix, overwrite_a=True, check_finite=False)
+
+        def solve(load: Array, totals: Array) -> Forces:
+            solution = la.lu_solve(factors, np.concatenate([load[0][on], load[1][sticks], totals]), check_finite=False)
+            p, q = np.zeros(len(touch)), np.zeros(len(touch))
+            p[on] = solution[:i]
+            q[on] = dragged * p[on]
+            q[sticks] = solution[i:end]
+            return Forces(p, q, solution[-2:])
+
+        return solve
+
+
+def punched(C: Relative, f: float, sides: Sides) -> tuple[Array, Array]:
+    """Normal and tangential forces (n,) under a flat punch with the force 1 that covers all nodes, with friction; from
+    the guess that nodes slip under q = ``sides`` f p (n,)."""
+    assert C.xx is not None
+    assert C.xy is not None
+    zero = np.zeros(len(C.yy))
+    guess = replace(resting(zero), x=zero + 1 / len(zero)), replace(resting(zero), rest=-sides.astype(float))
+    p, q = solve(LoadStep(C.xx, C.yy, C.xy, C.opening, zero + f, 1.0, zero, 0.0, zero), [guess])
+    return p.x, q.x
+
+
+def solve_near(
+    step: LoadStep, starts: Sequence[tuple[Solution, Solution]], trail: Trail | None, key: Hashable
+) -> tuple[Solution, Solution]:
+    """Solve one step, first from what the ``trail`` knows of it under its ``key``."""
+    found = solve(step, [*starts, *(trail.starts(key) if trail else [])])
+    if trail:
+        trail.keep(key, found)
+    return found
+
+
+def solve(step: LoadStep, starts: Sequence[tuple[Solution, Solution]]) -> tuple[Solution, Solution]:
+    """Solve one step by Newton's method on the partition, from the partitions of ``starts``.
+
+    If no iteration converges, a fixed-point sweep, which contracts unless friction is very large, gives the next start.
+    The iteration ends when sweeps stop reducing the residual, at rounding.
+    """
+    iterations, changes, least, chances = 0, 0, np.inf, _PATIENCE
+    while chances > 0:
+        for p, q in reversed(starts):
+            if (p.x > 0).any() and (together := step.newton(p, q)):
+                p, q = together
+                return p, replace(q, iterations=iterations, changes=changes)
+        p, q = step.sweep(*starts[0])
+        starts = [(p, q)]
+        iterations += p.iterations + q.iterations
+        changes += p.changes + q.changes
+        left = float(p.residual.max())
+        chances = _PATIENCE if left < least else chances - 1
+        least = min(left, least)
+    return replace(p, iterations=0, changes=0), replace(q, iterations=iterations, changes=changes)
