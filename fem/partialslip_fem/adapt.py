@@ -9,6 +9,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.bars import BARS
 from partialslip.errors import InputError
+from partialslip.friction.coupled import HALF
 from partialslip.friction.step_errors import steps_matter
 from partialslip.friction.zone_ends import apart
 from partialslip.result import Clock
@@ -30,6 +31,7 @@ _KINK_SLACK = 1.5
 _MOST_UNKNOWNS = 200_000  # limit: on a mesh from which no finer one is made
 _CHOICES = 13  # cost: accuracies tried, from the one asked for to the loosest, when an allowance does not suffice
 _MOST_CUTS = 16  # limit: meshes whose contact line cuts the contact; the next line is a tenth of a wider on both sides
+_OF_HALF = 0.01  # cost: element size at the corners of the second punch of pressing, in half-widths of the contact
 _WORTH = 1.2  # cost: of the unknowns of the present mesh: a mesh with fewer is not worth solving on
 
 
@@ -108,7 +110,7 @@ class _Refinement:
         self.largest_end_element = np.inf
         self.error, self.error_before, self.calmer = np.inf, np.inf, 1.0
         self.step_errors: Mapping[str, float] | None = None  # None until the steps are chosen
-        self.path_errors: Mapping[str, float] = {}  # of the steps of coupled bodies, which are as asked for
+        self.path_errors: Mapping[str, float] = {}  # of the steps of coupled bodies
         self.waited = self.cuts = 0
 
     @property
@@ -280,6 +282,11 @@ class _Refinement:
             sizes |= {
                 point: size for point in np.linspace(low, high, count + 2)[1:-1].tolist() if size > sizes[points[0]]
             }
+        if self.problem.coupled and self.problem.sized and not self.problem.beta:
+            size, middle = _OF_HALF * a / coarsest, (solution.left + solution.right) / 2
+            for point in (middle - HALF * a, middle + HALF * a):  # corners of the second punch of pressing
+                if grading.at(np.array([point]))[0] > size:
+                    sizes[point] = size
         sizes |= self._at_kinks_of_friction(grading, contact, coarsest)
         # two vertices far nearer to each other than elements are wide make an element without an area
         kept = apart(sorted(sizes, key=lambda point: sizes[point]), _MERGED * min(sizes.values()))
@@ -304,7 +311,9 @@ class _Refinement:
     def _keep_steps(self) -> None:
         """Keep the load steps of the present solution for all meshes to come, and their errors."""
         solution, problem = self.solution, self.problem
-        if solution.enclosed and solution.history and not solution.coupled:
+        if solution.coupled and solution.history and problem.path:
+            self.problem = replace(problem, path=replace(problem.path, substeps=solution.history.path.substeps))
+        elif solution.enclosed and solution.history:
             self.step_errors = solution.step_errors
             self.problem = replace(problem, path=replace(solution.history.path, before=None))
             self.goal = Goal.at(max(self.goal.accuracy, worst(self.step_errors)), self.problem)

@@ -171,6 +171,8 @@ class Problem:
         Bulk strain of the lower surface at load points 1 and 2, at the scene's x = 0, and its slope along x.
     similar : bool
         Whether the contact keeps its shape while it grows, as in Hertz contact of half-planes.
+    sized : bool
+        The same, nearly, of bodies of a size, if they are alike.
     nearly_similar : bool
         The same in bodies of a size, which are mirror images of themselves, on elements of one size: the contact
         nearly keeps its shape, and elements are as fine for what it was when it was small.
@@ -202,6 +204,7 @@ class Problem:
     inside: bool = True
     strains: tuple[tuple[float, float], ...] = ((0.0, 0.0), (0.0, 0.0))
     similar: bool = False
+    sized: bool = False
     nearly_similar: bool = False
     accuracy: float = 1e-3
     turns: bool = False
@@ -278,6 +281,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         inside=plan.needs("subsurface"),
         strains=tuple((lower_strain(scene, sigma), lower_strain(scene, slope * L)) for _, sigma, slope in at_ends),
         similar=parabolic and not scene.finite,
+        sized=parabolic and scene.finite,
         nearly_similar=parabolic and scene.finite and scene.fem.size is not None and all(part.even for part in parts),
         accuracy=scene.fem.accuracy,
         turns=plan.needs("moment"),

@@ -53,9 +53,7 @@ def to_result(
     extra = {"back_solves": len(displaced), "factorizations": adapted.factorizations + restored}
 
     shares = {"discretisation": adapted.errors, "rounding": dict.fromkeys(adapted.errors, rounding_error(solution))}
-    # errors of the steps alone say nothing of quantities whose discretisation errors are not known: meshes as given
-    path_errors = {key: error for key, error in solution.path_errors.items() if key in adapted.errors}
-    if step_errors := summed(solution.step_errors, path_errors):
+    if step_errors := summed(solution.step_errors, solution.path_errors):
         shares["steps"] = step_errors
 
     def forces(state: State) -> Array:
@@ -68,7 +66,8 @@ def to_result(
     known = found.centre is not None
     shear = (solution.shear(history.q1), solution.shear(history.q2)) if history else None
     tractions = Polynomials(pressure, shear, pressures[0] if pressures else None, known, L, stress, origin)
-    keys = [key for key in {**adapted.errors, **step_errors} if known or key not in ("m", "n")]
+    keys = [key for key in adapted.errors if known or key not in ("m", "n")]
+    # errors of the steps alone say nothing of quantities whose discretisation errors are not known: meshes as given
     estimate = {key: float(sum(share.get(key, 0.0) for share in shares.values())) for key in keys}
     (left1, right1), (left2, right2) = solution.contact_ends
     return Result(
@@ -98,11 +97,11 @@ def to_result(
         certificate=certified,
         last_cycle_change=change,
         estimate=estimate,
-        shares=shares if estimate else {},
+        shares={name: share for name, share in shares.items() if share},
         notes=found.notes
         + doubted
         + _note_on_pieces(solution)
-        + (steps_of_coupled(history, path_errors, accuracy) if solution.coupled else ())
+        + (steps_of_coupled(history, solution.path_errors, accuracy) if solution.coupled else ())
         + _note_on_the_middle(scene, solution, adapted)
         + _note_on_the_allowance(adapted, scene)
         + doubts(change, estimate, accuracy),

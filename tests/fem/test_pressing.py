@@ -112,6 +112,26 @@ def test_punches_add_up_to_a_parabola():
         assert not q.any()
 
 
+def test_punches_of_like_bodies_of_a_size_add_up():
+    """The closed form: shear t/sqrt(1 - t^2) under flat punches, which grows like their half-width, makes
+    2 x sqrt(1 - x^2); after a part of the half-width, the square of that part times this."""
+    x = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 201))
+    edges = np.concatenate([[-1.0], np.sin(np.linspace(-np.pi / 2, np.pi / 2, 402)[1:-1:2]), [1.0]])
+    weights, normal, shear = (
+        np.diff(edges)[: len(x)],
+        np.diff(np.arcsin(edges)) / np.pi,
+        -np.diff(np.sqrt(1 - edges**2)),
+    )
+    left = 0.5 + np.arcsin(x[3:-3]) / np.pi, -np.sqrt(1 - x[3:-3] ** 2)
+    stages = Punch((-1.0, 1.0), x, weights, (normal, shear), x[3:-3], left, sized=True)
+    for share, nodes, error in ((1.0, 0.99, 1e-2), (0.9, 0.88, 1e-2)):  # of 201 nodes
+        _, q = stages.stage(1.0, share)
+        root = np.sqrt(np.maximum(1 - (x / share) ** 2, 0.0))
+        expected = share * 2 * x * root / (weights @ root * 2 / np.pi / share)  # at nodes, too, the sum is the load
+        inside = np.abs(x) < nodes
+        assert q[inside] / weights[inside] == pytest.approx(expected[inside], abs=error)
+
+
 def test_a_stage_bears_its_load_and_no_shear():
     """Whatever the nodes are: a sum of q left over would have to slip in the last step, on one side only."""
     random = np.random.default_rng(1)
@@ -184,7 +204,8 @@ def test_blocks_are_pressed_as_step_by_step(monkeypatch):
         stepped = partialslip.run(of, "fem")["fem"]
         change = found.traction.q2 - np.interp(found.traction.x, stepped.traction.x, stepped.traction.q2)
         off.append(np.linalg.norm(change) / np.linalg.norm(found.traction.q2))
-    assert stepped.estimate["q2"] > 3 * found.estimate["q2"]
+    assert stepped.shares["steps"]["q2"] > 3 * found.shares["steps"]["q2"]
+    assert not found.estimate  # elements as given: what is known of the steps alone is no estimate
     assert off[1] < 0.1
     assert off[1] < off[0] / 1.5
     assert stepped.counts["normal_solves"] > 2 * found.counts["normal_solves"]
@@ -224,3 +245,68 @@ def test_estimates_of_unlike_half_planes_hold(accuracy, march):
     assert abs(result.n / result.a - INDEPENDENT) < result.estimate["n"]
     assert abs(result.a / march.a - 1) < result.estimate["a"] + march.estimate["a"]
     assert result.estimate["m"] < accuracy
+
+
+PAD = partialslip.parse_scene(
+    {
+        "name": "pressed-pad",
+        "material": {"E": 72.1e9, "nu": 0.33},
+        "profile": {"kind": "hertz", "R": 0.01},
+        "friction": {"f": 0.3},
+        "load": {"P": 135750.0},
+        "bodies": {
+            "upper": {"kind": "pad", "width": 10e-3, "height": 5e-3, "support": "sides"},
+            "lower": {"kind": "block", "width": 40e-3, "height": 4e-3, "support": "roller"},
+        },
+        "fem": {"accuracy": 1e-3},
+    }
+)
+PARTS = np.array([0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9])
+
+
+def locked_in(scene):
+    """Shear at ``PARTS`` of the half-width, odd in x, and what is said of its error."""
+    result = partialslip.run(scene, "fem")["fem"]
+    right, left = (result.traction.at(side * PARTS * result.a).q1 for side in (1, -1))
+    return (right - left) / 2, result
+
+
+def shape(q):
+    """Amplitude of x sqrt(1 - x^2) in the shear, and what is left of it, relative."""
+    form = PARTS * np.sqrt(1 - PARTS**2)
+    amplitude = float(q @ form / (form @ form))
+    return amplitude, float(np.linalg.norm(q - amplitude * form) / np.linalg.norm(q))
+
+
+def test_a_pad_is_pressed_with_the_shear_of_the_closed_form(monkeypatch):
+    """Surfaces of like bodies of a size move along x with the same strain wherever they are pressed: the shear that is
+    locked in is x sqrt(1 - x^2). Its size is that of a step-by-step solution, which only scatters about that form."""
+    amplitude, off = shape(locked_in(PAD)[0])
+    assert off < 0.02
+    finer, q1 = locked_in(PAD.replace(fem={"accuracy": 1e-4}))
+    assert shape(finer)[0] == pytest.approx(amplitude, rel=0.01)
+    assert q1.estimate["q1"] < 0.03
+    monkeypatch.setattr(coupled, "_similar", lambda *_: None)
+    monkeypatch.setattr(coupled, "_nearly_similar", lambda *_: None)
+    steps, by_steps = locked_in(PAD.replace(fem={"size": 0.02}, load={"steps": 64}))
+    assert shape(steps)[0] == pytest.approx(amplitude, rel=0.05)
+    assert by_steps.shares["steps"]["q1"] > 0.1
+
+
+@pytest.mark.fault
+def test_shear_of_a_pad_that_does_not_grow_is_seen(monkeypatch):
+    """Deliberate fault: stages of like bodies of a size as of unlike half-planes, whose shear under one force does not
+    grow with the half-width. The second punch does not enter the stages, and tells how similar bodies are."""
+    monkeypatch.setattr(coupled, "Punch", lambda *args: Punch(*args[:-1]))
+    assert shape(locked_in(PAD)[0])[1] > 0.1
+
+
+def test_a_pad_that_slips_while_it_is_pressed_goes_step_by_step():
+    """A contact of a quarter of the height: a second punch finds other forces than similarity would have them, as much
+    of the first one slips. Slip that only goes on needs few steps."""
+    scene = PAD.replace(load={"P": 15 * PAD.P}, bodies={"lower": {"height": 3e-3}, "upper": {"height": 3e-3}})
+    q, result = locked_in(scene)
+    assert result.counts["pressing_steps"] == 2
+    assert result.m < 0.4 * result.a
+    assert np.abs(q[PARTS > 0.4]) == pytest.approx(0.3 * result.traction.at(PARTS[PARTS > 0.4] * result.a).p, rel=0.01)
+    assert result.estimate["q1"] < 0.05

@@ -29,7 +29,9 @@ TURNING = {"sigma": [-1e8, 1e8]}  # slip turns round on the way from load point 
 
 @pytest.fixture(scope="module")
 def few():
-    return solved(1, **TURNING)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(step_errors, "_MOST_STEPS", 1)
+        return solved(1, **TURNING)
 
 
 @pytest.mark.slow
@@ -42,6 +44,15 @@ def test_steps_in_which_slip_turns_round_are_known_to_be_too_few(few):
     assert len(told(few)) == 1
 
 
+@pytest.mark.slow
+def test_steps_become_more_until_they_suffice_or_up_to_a_limit(few):
+    """One step is refined like 16 that are asked for, and is known as well."""
+    found, asked = solved(1, **TURNING), solved(16, **TURNING)
+    assert found.shares["steps"]["m"] < few.shares["steps"]["m"] / 4
+    assert found.m == pytest.approx(asked.m, abs=(found.estimate["m"] + asked.estimate["m"]) * found.a)
+    assert "16 steps" in told(found)[0]
+
+
 def test_steps_that_suffice_are_not_told():
     result = solved(1)
     assert result.shares["steps"]["m"] < 1e-6
@@ -50,7 +61,8 @@ def test_steps_that_suffice_are_not_told():
 
 @pytest.mark.fault
 def test_halves_alone_see_too_little(few, monkeypatch):
-    """Deliberate fault: a step and its halves end with the same stick zone, which moves past both in between."""
+    """Deliberate fault: a step and its halves end with the same stick zone, which moves past both in between, so that
+    one step seems to suffice."""
     monkeypatch.setattr(step_errors.Path, "with_steps", lambda self, _: self)
     blind = solved(1, **TURNING)
     assert blind.shares["steps"]["m"] < 1e-3

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
 from partialslip.friction.coupled_step import LoadStep, Pair, Relative, solve_near
 from partialslip.friction.history import History, certified, follow, resting, still
@@ -23,7 +23,8 @@ _TIMES = 8  # limit: iterations of the half-width in self-similar pressing
 # that is no progress: nodes that are covered or not move the ends
 _SLOPES, _SLOWEST = (-2.0, -0.5), 0.5
 _PUNCHES = np.array([1.0, 0.5, 0.25])  # half-widths of flat punches on bodies of a size, in that of the contact
-_ROUGH = 0.1  # accuracy: largest error of q for which these are used
+HALF = 0.5  # accuracy: half-width of a second punch that tells how similar like bodies of a size are, in the first's
+_ROUGH = 0.1  # accuracy: largest error of q for which punches are used
 _SETTLED = 0.03  # accuracy: error of the half-width that is left, in the tolerance of the ends
 _FAR = 10.0  # accuracy: gap, in half-widths, that stays open
 _ENDS = 15.0  # accuracy: tolerance of q over tolerance of the ends
@@ -40,14 +41,16 @@ class Nodes:
     rise=...) -> (left, right)``, the ends of the contact under nodal forces along y and x, (n,) each. ``resultants(p,
     q) -> (points, normal, tangential)``: points (k,) within the contact, and the forces on their left, (k,) each;
     needed without ``stages``. ``similar``: whether half-planes are pressed together under a parabolic gap, so that all
-    stages of pressing are similar; ``stages`` gives them, by default from a flat punch on the nodes.
-    ``nearly_similar``: the same of bodies of a size; ``near``: about its half-width. ``trail``: where steps begin."""
+    stages of pressing are similar; ``stages`` gives them, by default from a flat punch on the nodes. ``sized``: the
+    same of like bodies of a size, nearly; ``nearly_similar``: of any bodies of a size. ``near``: about the half-width.
+    ``trail``: where steps begin."""
 
     x: Array
     weights: Array
     ends: Callable[..., tuple[float, float]]
     resultants: Callable[[Array, Array], tuple[Array, Array, Array]] | None
     similar: bool
+    sized: bool = False
     nearly_similar: bool = False
     near: float | None = None
     trail: Trail | None = None
@@ -96,11 +99,15 @@ def press(
         return float(np.sqrt(norm @ (q - other) ** 2 / size)) if size > 0 else 0.0
 
     vertex, settled = 0.0, _SETTLED * accuracy / _ENDS
-    if line is not None and (line.similar or line.nearly_similar):
+    if line is not None and (line.similar or line.sized or line.nearly_similar):
         vertex = _vertex(line.x, gap)
         line = replace(line, x=line.x - vertex)
-    if line is not None and line.similar:
-        return _similar(C, gap, f, line, vertex, steps(1)[-1], settled, step, off)
+    if (
+        line is not None
+        and (line.similar or line.sized)
+        and (alike := _similar(C, gap, f, line, vertex, steps(1)[-1], settled, step, off))
+    ):
+        return alike
     if line is not None and line.nearly_similar:
         near = line.near or line.half_width(steps(1)[-1])
         if found := _nearly_similar(C, gap, f, line, near, settled, step, off):
@@ -148,15 +155,27 @@ def _settled(
 
 def _similar(
     C: Relative, gap: Array, f: Array, line: Nodes, vertex: float, first: Pair, accuracy: float, step: _Press, off: _Off
-) -> Pressed:
+) -> Pressed | None:
     """Press self-similarly about the ``vertex``, from which the nodes of the ``line`` count, with last steps of two
-    sizes; the difference is the error estimate. Steps begin where the ``first`` one ended, which bears all of P."""
+    sizes; the difference is the error estimate. Steps begin where the ``first`` one ended, which bears all of P. None
+    if like bodies of a size are not as similar as that."""
+    none = resting(0 * gap)
 
     def press(stages: Stages, size: float, reach: float) -> Pair:
         p, q = stages.stage(reach, 1 - size)
         return step(1.0, gap, C.moved(p, q)[0], (replace(first[0], x=p), replace(first[1], x=q)))
 
-    reach, count, none = line.near or line.half_width(first), 1, resting(0 * gap)
+    def punched(covered: Mask) -> Punch:
+        """The flat punch that has ``covered`` these nodes."""
+        found = step(1.0, np.where(covered, 0.0, _FAR * reach), none.x, (none, none), _ANEW)
+        p, q = found[0].x, found[1].x
+        corners = line.ends(p, q, rise=CORNER)  # between the last node and the next one
+        assert line.resultants
+        points, *forces = line.resultants(p, q)
+        between = corners[0] - vertex, corners[1] - vertex
+        return Punch(between, line.x, line.weights, (p, q), points - vertex, (forces[0], forces[1]), line.sized)
+
+    reach, count, unlike = line.near or line.half_width(first), 1, 0.0
     stages, corners, covered = line.stages, None, none.x > 0
     last, left = first, np.inf
     while count < _MOST:
@@ -164,23 +183,21 @@ def _similar(
             before, covered = covered, np.abs(line.x) <= reach * (1 + _STICKS)
             if np.array_equal(covered, before):
                 break
-            punch = step(1.0, np.where(covered, 0.0, _FAR * reach), none.x, (none, none))
-            p, q = punch[0].x, punch[1].x
-            corners = line.ends(p, q, rise=CORNER)  # between the last node and the next one
-            assert line.resultants
-            points, *forces = line.resultants(p, q)
-            between = corners[0] - vertex, corners[1] - vertex
-            stages = Punch(between, line.x, line.weights, (p, q), points - vertex, (forces[0], forces[1]))
-            count += 1
+            stages, count = (punch := punched(covered)), count + 1
+            corners = punch.corners[0] + vertex, punch.corners[1] + vertex
         assert stages
         last, reach, left, more = _settled(line, reach, accuracy, partial(press, stages, stages.last / 2))
         count += more
         if line.stages:
             break
     assert stages
+    if line.sized:
+        half = np.abs(line.x) <= HALF * reach
+        if not half.any() or (unlike := punch.differs(punched(half))) > _ROUGH:
+            return None
     rough = press(stages, stages.last, reach)
-    errors = {"q": off(last[1].x, rough[1].x), "a": _moved(line, last, rough) + left}
-    return Pressed(*_certified([last]), count + 1, errors, stages.growth(reach), f, corners)
+    errors = {"q": off(last[1].x, rough[1].x) + unlike, "a": _moved(line, last, rough) + left}
+    return Pressed(*_certified([last]), count + 1 + line.sized, errors, stages.growth(reach), f, corners)
 
 
 def _nearly_similar(

@@ -10,8 +10,14 @@ tractions under flat punches,
 and the problem of one punch determines all stages. One small last step from an earlier stage is then solved with all
 conditions of contact and friction, which gives the certificate.
 
-In bodies of a size the stages are nearly similar: what a punch does at x/s depends on (s/W)^2, W being the size. What
-counts of an earlier stage are the displacements at which points stick,
+Half-planes of the same material move alike along x, but in bodies of a size both are strained by the force, with the
+same strain wherever it acts. Then q under a flat punch with one force grows like its half-width, and
+
+    q(x) = int_x^a q_flat(x/s) 2 s ds / a^3,
+
+with a second punch to tell how far that is true. In other bodies of a size the stages are nearly similar: what a punch
+does at x/s depends on (s/W)^2, W being the size. What counts of an earlier stage are the displacements at which points
+stick,
 
     u(x) = int_0^a u_flat(x/s; s) P'(s) ds,
 
@@ -102,6 +108,9 @@ class Punch:
         Points between the corners, ascending, which may be few.
     left : two of (k,) array
         Forces along y and x on the left of the ``points``.
+    sized : bool
+        Whether bodies are alike and of a size: the strain with which their surfaces move along x under a force is the
+        same for all punches, so that q under one force grows like the half-width.
     """
 
     corners: tuple[float, float]
@@ -110,12 +119,22 @@ class Punch:
     forces: tuple[Array, Array]
     points: Array
     left: tuple[Array, Array]
+    sized: bool = False
     last: float = 2.5e-3
 
     @property
     def half_width(self) -> float:
         """Half of the distance of the corners."""
         return (self.corners[1] - self.corners[0]) / 2
+
+    def differs(self, other: "Punch") -> float:
+        """Relative error of the assumption that q grows like the half-width, from the ``other`` punch: the forces along
+        x on either side of the middle are in proportion to the spread of those along y. It knows the half-width better
+        than the corners do, beside which elements may be large."""
+        sides = np.array([self.x < 0, self.x > 0])
+        own, its = ((sides * q).sum(axis=1) / np.sqrt(p @ self.x**2) for p, q in (self.forces, other.forces))
+        scale = float(np.abs(own).max())
+        return float(np.abs(its - own).max() / scale) if scale > 0 else 0.0
 
     def growth(self, _: float, /) -> tuple[Array, Array]:
         """As of :class:`Stages`: the forces, as the punch has about the half-width."""
@@ -125,16 +144,19 @@ class Punch:
         """As of :class:`Stages`: punches of all half-widths have tractions of the same form."""
         scaled = self.x / (half_width * share)
         p, q = (
-            self.weights * self._summed(scaled, float(forces.sum()), left)
-            for forces, left in zip(self.forces, self.left, strict=True)
+            self.weights * self._summed(scaled, float(forces.sum()), left, sized)
+            for forces, left, sized in zip(self.forces, self.left, (False, self.sized), strict=True)
         )
         # correct the sums: the discretisation error is small, but not compared with the increment of the last step
-        return p * share**2 / p.sum(), (q - q.sum() / p.sum() * p) * share**2 / p.sum()
+        grown = share ** (3 if self.sized else 2)
+        return p * share**2 / p.sum(), (q - q.sum() / p.sum() * p) * grown / p.sum()
 
-    def _summed(self, x: Array, total: float, left: Array) -> Array:
-        """2 |x| times the integral of traction(t)/t^2 from |x| to 1 at ``x`` (m,), lengths in half-widths; from the
-        forces on the ``left`` (k,) of the points and the ``total``. With t = sin(angle), they are nearly linear in the
-        angle, even beside the corners, where nodal tractions are inaccurate."""
+    def _summed(self, x: Array, total: float, left: Array, sized: bool) -> Array:
+        """2 |x|^k times the integral of traction(t)/t^(k + 1) from |x| to 1 at ``x`` (m,), k = 2 if the traction grows
+        with the half-width of the ``sized`` punch, else 1, lengths in half-widths; from the forces on the ``left`` (k,)
+        of the points and the ``total``. With t = sin(angle), they are nearly linear in the angle, even beside the
+        corners, where nodal tractions are inaccurate."""
+        power, kernel = (2, _of_third_power) if sized else (1, _of_second_power)
         middle = sum(self.corners) / 2
         points = np.concatenate([[-1.0], (self.points - middle) / self.half_width, [1.0]])
         left, result = np.concatenate([[0.0], left, [total]]), np.zeros(len(x))
@@ -143,14 +165,25 @@ class Punch:
             beyond = (at > _TELLING) & (at < 1)
             angle = np.concatenate([[0.0], np.arcsin(at[beyond]), [np.pi / 2]])
             force = np.concatenate([[np.interp(0.0, at, outside)], outside[beyond], [0.0]])
-            density, cotangent = -np.diff(force) / np.diff(angle), np.append(1 / np.tan(angle[1:-1]), 0.0)
-            sums = np.append(np.cumsum((density[1:] * -np.diff(cotangent))[::-1])[::-1], 0.0)
+            density, beyond_angle = -np.diff(force) / np.diff(angle), np.append(kernel(angle[1:-1]), 0.0)
+            sums = np.append(np.cumsum((density[1:] * -np.diff(beyond_angle))[::-1])[::-1], 0.0)
             side = np.flatnonzero((way * x < 1) & ((way * x > 0) | ((x == 0) & (way > 0))))
             own = np.arcsin(way * x[side])
             cell = np.searchsorted(angle, own, "right") - 1
-            inner = sums[cell] - density[cell] * cotangent[cell]
-            result[side] = 2 * (np.sin(own) * inner + density[cell] * np.cos(own))
+            inner, near = sums[cell] - density[cell] * beyond_angle[cell], np.maximum(own, _TELLING)
+            result[side] = 2 * np.sin(near) ** power * (inner + density[cell] * kernel(near))
         return result
+
+
+def _of_second_power(angle: Array) -> Array:
+    """Integral of 1/sin^2 from the ``angle`` (m,) to pi/2."""
+    return 1 / np.tan(angle)
+
+
+def _of_third_power(angle: Array) -> Array:
+    """Integral of 1/sin^3 from the ``angle`` (m,) to pi/2."""
+    result: Array = (np.cos(angle) / np.sin(angle) ** 2 - np.log(np.tan(angle / 2))) / 2
+    return result
 
 
 @dataclass(frozen=True)

@@ -116,8 +116,8 @@ def permanent_zone(x: Array, history: History, stick: StickInterval) -> tuple[fl
 
 
 def steps_of_coupled(history: History | None, errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:
-    """A note on load steps of coupled bodies, which are as asked for, where their ``errors`` are beyond the
-    ``accuracy`` or, if empty, not known."""
+    """A note on load steps of coupled bodies, where their ``errors`` are beyond the ``accuracy`` or, if empty, not
+    known."""
     if not history or not history.path.moves:
         return ()
     bars = Asked(accuracy, accuracy).bars

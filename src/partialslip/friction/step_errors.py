@@ -2,6 +2,7 @@
 
 import itertools
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +18,7 @@ Errors = dict[str, float]
 Indices = npt.NDArray[np.int64]
 
 _NOTHING = 0.01  # accuracy: of what the accuracy allows: errors of steps that matter to nobody
+_MOST_STEPS = 16  # limit: steps from load point to load point that an accuracy of coupled bodies leads to
 _PROBED = 7  # accuracy: fewest steps from load point to load point with which those of coupled bodies are compared
 _SHEARS = ("change", "q1", "q2")
 
@@ -79,6 +81,15 @@ def other_steps(path: Path) -> Path:
     """The ``path`` in half as large steps, and others that end at odd fractions of each way: where a stick zone moves
     past both ends of a step, halves alone may see nothing of it."""
     return path.halved.with_steps(max(2 * path.substeps + 1, _PROBED))
+
+
+def more_steps(path: Path, errors: Mapping[str, float], others: Mapping[str, float], accuracy: float) -> Path | None:
+    """The ``path`` of coupled bodies in twice as many steps, if their ``errors`` are more than half of what the
+    ``accuracy`` (of a) allows, and more than the ``others``; None if not, or if there would be too many."""
+    allowed = {key: max(BARS[key] * accuracy / 2, others.get(key, 0.0)) for key in errors}
+    if 2 * path.substeps > _MOST_STEPS or all(errors[key] <= most for key, most in allowed.items()):
+        return None
+    return replace(path, substeps=2 * path.substeps)
 
 
 def summed(*errors: Mapping[str, float]) -> Errors:

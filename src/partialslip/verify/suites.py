@@ -73,7 +73,7 @@ def book() -> list[Case]:
         methods = tuple(dict.fromkeys(way.method for way in derivations(problem)))
         scene, unlike = problem.scene, not problem.scene.material.alike
         reference = "" if scene.finite else next(known for known in REFERENCES if known in methods)
-        if unlike:  # the load steps of coupled bodies are as asked for
+        if unlike:  # the load steps of coupled bodies are as many as a loose accuracy needs
             scene = scene.replace(fem={"accuracy": 1e-3})
         cases.append(
             Case(number, scene, methods, _PRESSED if unlike else _LEVELS.get(number, {}), reference, hard=problem.why)
