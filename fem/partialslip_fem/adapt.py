@@ -10,7 +10,7 @@ from partialslip.arrays import Array
 from partialslip.bars import BARS
 from partialslip.errors import InputError
 from partialslip.friction.coupled import HALF
-from partialslip.friction.step_errors import steps_matter
+from partialslip.friction.step_errors import more_steps, steps_matter
 from partialslip.friction.zone_ends import apart
 from partialslip.result import Clock
 from partialslip_fem import estimate, goals, solving
@@ -198,6 +198,7 @@ class _Refinement:
         )
         if choose:
             self._keep_steps()
+            self._refine_steps()
         elif self.step_errors is not None:
             self.solution = replace(self.solution, step_errors=self.step_errors)
         self.path_errors = self.solution.path_errors or self.path_errors
@@ -311,12 +312,23 @@ class _Refinement:
     def _keep_steps(self) -> None:
         """Keep the load steps of the present solution for all meshes to come, and their errors."""
         solution, problem = self.solution, self.problem
-        if solution.coupled and solution.history and problem.path:
-            self.problem = replace(problem, path=replace(problem.path, substeps=solution.history.path.substeps))
-        elif solution.enclosed and solution.history:
+        if solution.enclosed and solution.history and not solution.coupled:
             self.step_errors = solution.step_errors
             self.problem = replace(problem, path=replace(solution.history.path, before=None))
             self.goal = Goal.at(max(self.goal.accuracy, worst(self.step_errors)), self.problem)
+
+    def _refine_steps(self) -> None:
+        """Take more load steps of coupled bodies for all meshes to come, as long as their errors count."""
+        while (problem := self.problem).path and (before := self.solution).path_errors:
+            assert problem.path
+            more = more_steps(problem.path, before.path_errors, before.step_errors, problem.accuracy)
+            if not more:
+                return
+            self.problem = replace(problem, path=more)
+            self.solution = solving.solve_contact(
+                self.problem, before.bodies, before.factored, self.clock, True, before=before
+            )
+            self.iterations += before.iterations
 
     def _errors_of_ends(self, at_ends: Array, at_kinks: Array) -> dict[str, float]:
         """Errors due to elements of given sizes at ends and kinks, to round faces and to corners."""

@@ -200,21 +200,15 @@ def _contact_forces(
             reach,
             trail,
         )
-        near, all_nodes = BARS["q"] * problem.accuracy, np.arange(len(line.x))
+        near = BARS["q"] * problem.accuracy
         loaded = C, gap, stretch, moved[1], problem.f_at(line.x)
-        more: Path | None = path
-        left: step_errors.Errors = {}
-        while more:
-            path, more = more, None
-            history, pressing, first = coupled.march(*loaded, path, pressed, along, near)
-            nodes = np.flatnonzero(history.bound > 0)
-            if check and path.moves:
-                others = step_errors.other_steps(path)
-                finer, *_ = coupled.march(*loaded, others, pressed, replace(along, trail=None), near)
-                left = _path_errors(problem, line, history, finer)
-                beside = step_errors.pressed_together(history, first, line.weights, all_nodes) if first else {}
-                more = step_errors.more_steps(path, left, beside, problem.accuracy)
+        history, pressing, first = coupled.march(*loaded, path, pressed, along, near)
+        nodes = np.flatnonzero(history.bound > 0)
         most = np.maximum(*history.pressures) if problem.pressing else None
+        left: step_errors.Errors = {}
+        if check and path.moves:
+            finer, *_ = coupled.march(*loaded, step_errors.other_steps(path), pressed, replace(along, trail=None), near)
+            left = _path_errors(problem, line, history, finer)
         return _ContactForces(pressing, history.of(nodes), nodes, first, left, most=most, trail=trail)
     opened = gap if path else gap - problem.strains[1][0] * stretch[1]
     arms = line.x if problem.turns else None
