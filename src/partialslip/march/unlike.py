@@ -35,9 +35,6 @@ from partialslip.scene.materials import Material
 
 _MESHES = ((1e-2, 0.2), (1e-3, 0.1), (3e-4, 0.05), (1e-4, 0.025))  # accuracy: (cell size at the ends, in a; growth)
 _INNER = 8.0  # cost: size of cells at kinks over the size at the ends
-# accuracy: the same where the surfaces touch first, beside which q/p is x ln|x|: with 8, q1 of pressed bodies was off
-# by 2e-3, of which the change from mesh to mesh told a fifth
-_AT_VERTEX = 1.0
 _NEAR = 10.0  # accuracy: cells at ends closer to each other than a/10 are reduced in proportion
 _SMALLEST = 1e-9  # accuracy: in a: closer ends are merged, and smaller cells are not requested
 _BEYOND = 1.2  # accuracy: extent of the cells, in that of the contact without coupling ...
@@ -185,18 +182,15 @@ class UnlikeBodies(driver.Problem[UnlikeLevel]):
             a = max(level.a)
             fine, inner = apart(level.fine, _SMALLEST * a), [*level.kinks]
         inner += [(kink - self.scene.origin) / self.scene.length for kink in self.scene.profile.kinks]
+        inner += [0.0] if self.punch else []  # where the surfaces touch first, q/p is x ln|x|
         ends = np.sort(fine)
         gaps = np.diff(ends)
         gap = np.minimum(np.append(gaps, np.inf), np.append(np.inf, gaps)) / a
         sizes = np.maximum(size * np.minimum(_NEAR * gap, 1.0), _SMALLEST) * a
-        vertex = [0.0] if self.punch and np.abs(ends).min() > _AT_VERTEX * size * a else []
-        fixed = len(fine) + len(vertex)
-        others = [kink for kink in apart(inner, _INNER * size * a, [*fine, *vertex])[fixed:] if abs(kink) < far]
-        inside = np.append(np.full(len(others), _INNER * size * a), [_AT_VERTEX * size * a for _ in vertex])
-        others += vertex
+        others = [kink for kink in apart(inner, _INNER * size * a, fine)[len(fine) :] if abs(kink) < far]
         points = np.concatenate([ends, others, [-far, far]])
         wide = growth * (far - self.width)
-        every = np.concatenate([sizes, inside, [wide, wide]])
+        every = np.concatenate([sizes, np.full(len(others), _INNER * size * a), [wide, wide]])
         order = np.argsort(points)
         return graded_cells(points[order], every[order], growth)
 
