@@ -158,7 +158,7 @@ def _similar(
 ) -> Pressed | None:
     """Press self-similarly about the ``vertex``, from which the nodes of the ``line`` count, with last steps of two
     sizes; the difference is the error estimate. Steps begin where the ``first`` one ended, which bears all of P. None
-    if like bodies of a size are not as similar as that."""
+    if like bodies of a size are not as similar as that, or touch elsewhere."""
     none = resting(0 * gap)
 
     def press(stages: Stages, size: float, reach: float) -> Pair:
@@ -181,6 +181,8 @@ def _similar(
     while count < _MOST:
         if not line.stages:
             before, covered = covered, np.abs(line.x) <= reach * (1 + _STICKS)
+            if not covered.any():  # the contact is elsewhere than where the gap is smallest
+                return None
             if np.array_equal(covered, before):
                 break
             stages, count = (punch := punched(covered)), count + 1
