@@ -283,7 +283,7 @@ class _Refinement:
             sizes |= {
                 point: size for point in np.linspace(low, high, count + 2)[1:-1].tolist() if size > sizes[points[0]]
             }
-        if self.problem.coupled and self.problem.sized and not self.problem.beta:
+        if self.problem.sized:
             size, middle = _OF_HALF * a / coarsest, (solution.left + solution.right) / 2
             for point in (middle - HALF * a, middle + HALF * a):  # corners of the second punch of pressing
                 if grading.at(np.array([point]))[0] > size:
@@ -318,13 +318,13 @@ class _Refinement:
             self.goal = Goal.at(max(self.goal.accuracy, worst(self.step_errors)), self.problem)
 
     def _refine_steps(self) -> None:
-        """Take more load steps of coupled bodies for all meshes to come, as long as their errors count."""
-        while (problem := self.problem).path and (before := self.solution).path_errors:
-            assert problem.path
-            more = more_steps(problem.path, before.path_errors, before.step_errors, problem.accuracy)
+        """Take more load steps of coupled bodies for all meshes to come, as long as their errors count, but none for
+        which an allowance was not planned."""
+        while not self.expense.limited and (path := self.problem.path) and (before := self.solution).path_errors:
+            more = more_steps(path, before.path_errors, before.step_errors, self.problem.accuracy)
             if not more:
                 return
-            self.problem = replace(problem, path=more)
+            self.problem = replace(self.problem, path=more)
             self.solution = solving.solve_contact(
                 self.problem, before.bodies, before.factored, self.clock, True, before=before
             )

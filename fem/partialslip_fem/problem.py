@@ -169,13 +169,11 @@ class Problem:
         Whether displacements inside the bodies are needed.
     strains : two of (float, float)
         Bulk strain of the lower surface at load points 1 and 2, at the scene's x = 0, and its slope along x.
-    similar : bool
-        Whether the contact keeps its shape while it grows, as in Hertz contact of half-planes.
-    sized : bool
-        The same, nearly, of bodies of a size, if they are alike.
+    parabolic : bool
+        Whether the gap is a parabola in which the bodies are pressed together by P alone, with one f.
     nearly_similar : bool
-        The same in bodies of a size, which are mirror images of themselves, on elements of one size: the contact
-        nearly keeps its shape, and elements are as fine for what it was when it was small.
+        Whether bodies of a size are mirror images of themselves, on elements of one size: the contact nearly keeps its
+        shape, and elements are as fine for what it was when it was small.
     accuracy : float
         Accuracy asked for: error of the contact's ends, in its half-width.
     turns : bool
@@ -203,8 +201,7 @@ class Problem:
     coupled: bool = True
     inside: bool = True
     strains: tuple[tuple[float, float], ...] = ((0.0, 0.0), (0.0, 0.0))
-    similar: bool = False
-    sized: bool = False
+    parabolic: bool = False
     nearly_similar: bool = False
     accuracy: float = 1e-3
     turns: bool = False
@@ -250,6 +247,20 @@ class Problem:
         return (upper - lower) / sum(part.compliance for part in self.parts)
 
     @property
+    def similar(self) -> bool:
+        """Whether the contact keeps its shape while it grows, as in Hertz contact of half-planes."""
+        return self.parabolic and not self._sized
+
+    @property
+    def sized(self) -> bool:
+        """The same, nearly, of bodies of one material and of a size, which are coupled."""
+        return self.parabolic and self._sized and self.coupled and not (self.beta or self.start)
+
+    @property
+    def _sized(self) -> bool:
+        return any(part.finite for part in self.parts)
+
+    @property
     def meshed(self) -> bool:
         """Whether every body has a mesh from a file."""
         return all(part.mesh for part in self.parts)
@@ -280,8 +291,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
         strains=tuple((lower_strain(scene, sigma), lower_strain(scene, slope * L)) for _, sigma, slope in at_ends),
-        similar=parabolic and not scene.finite,
-        sized=parabolic and scene.finite,
+        parabolic=parabolic,
         nearly_similar=parabolic and scene.finite and scene.fem.size is not None and all(part.even for part in parts),
         accuracy=scene.fem.accuracy,
         turns=plan.needs("moment"),

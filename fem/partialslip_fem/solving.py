@@ -195,7 +195,7 @@ def _contact_forces(
             ends,
             partial(resultants_of, line),
             problem.similar,
-            problem.sized and not problem.beta,
+            problem.sized,
             problem.nearly_similar,
             reach,
             trail,

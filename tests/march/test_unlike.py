@@ -154,9 +154,9 @@ def test_coupling_of_the_wrong_sign_is_seen(monkeypatch, sheared):
 
 def test_ends_of_a_pressed_stick_zone_are_known_no_better_than_those_of_the_contact():
     """The stick zone is the same part of the contact while P increases: its ends share the contact's errors. With this
-    friction it is all of the contact but 9e-6 of it."""
+    friction it is all of the contact."""
     found = solved("friction.f=0.7", "load.Q=[0,0]")
-    assert found.m == found.n == pytest.approx(found.a, rel=1e-5)
+    assert found.m == found.n == pytest.approx(found.a)
     assert found.estimate["a"] > 0
     assert min(found.estimate["m"], found.estimate["n"]) > 0.99 * found.estimate["a"]
 
@@ -172,9 +172,9 @@ def test_a_path_may_be_continued(sheared):
         partialslip.run(other, "march", start=sheared.state)
 
 
-RIGID = partialslip.parse_scene(
+STIFF = partialslip.parse_scene(
     {
-        "name": "steel-on-rubber",
+        "name": "stiff-on-aluminium",
         "material": {"E": 70e9, "nu": 0.3, "upper": {"E": 2e12, "nu": 0.3}},
         "profile": {"kind": "hertz", "R": 0.05},
         "friction": {"f": 0.87},
@@ -188,7 +188,7 @@ def closed():
     """Half-width of the contact without any step of pressing: flat punches of all half-widths s below |x|, each under
     the growth of P = K s^2, close the parabolic gap at x by 2 K s g(x/s). So 1/K is proportional to the integral of
     g(v)/v^3 over v > 1, with g = arccosh without friction."""
-    punch = PunchGrowth.of(dundurs(RIGID), RIGID.friction.f)
+    punch = PunchGrowth.of(dundurs(STIFF), STIFF.friction.f)
     edges = np.concatenate([-punch.vertices[:0:-1], punch.vertices])
     density = np.concatenate([punch.normal[::-1], punch.normal])
 
@@ -202,20 +202,20 @@ def closed():
     inverse = 1 - root**2
     opened, alone = potential(1 / inverse) - potential(np.ones(1)), np.arccosh(1 / inverse)
     found, hertz = ((opening * inverse * 2 * root) @ weights for opening in (opened, alone))
-    return np.sqrt(2 / np.pi * found / hertz) * RIGID.length
+    return np.sqrt(2 / np.pi * found / hertz) * STIFF.length
 
 
 @pytest.mark.parametrize("method", ["march", "fem"])
 def test_half_width_of_pressed_bodies_is_the_one_at_which_the_gap_closes(method):
     """What one step of pressing assumes of the half-width must be what it finds."""
-    result = partialslip.run(RIGID, method)[method]
+    result = partialslip.run(STIFF, method)[method]
     assert result.a == pytest.approx(closed(), rel=result.estimate["a"] + 3e-5)  # cells of the punch grow by 5 %
 
 
 def test_finite_elements_find_the_stick_zone_of_the_punch_beside_the_end():
     """A slip zone of 2e-3 a: with a half-width that is 2e-3 a off, as it was, both of its ends are wrong."""
-    punch = PunchGrowth.of(dundurs(RIGID), RIGID.friction.f)
-    result = partialslip.run(RIGID, "fem")["fem"]
+    punch = PunchGrowth.of(dundurs(STIFF), STIFF.friction.f)
+    result = partialslip.run(STIFF, "fem")["fem"]
     assert 1e-3 < 1 - punch.stick < 3e-3
     assert result.m / result.a == pytest.approx(punch.stick, abs=result.estimate["m"])
     assert result.estimate["m"] < 3e-4
@@ -225,14 +225,14 @@ def test_finite_elements_find_the_stick_zone_of_the_punch_beside_the_end():
 def test_a_half_width_that_was_only_assumed_is_found_out(monkeypatch):
     """Deliberate fault: the half-width is assumed 2e-3 off. Both methods share that step, and agree."""
     monkeypatch.setattr(coupled, "_settled", lambda _, reach, __, press: (press(wide := 1.002 * reach), wide, 0.0, 1))
-    wrong = [partialslip.run(RIGID, method)[method].a for method in ("march", "fem")]
+    wrong = [partialslip.run(STIFF, method)[method].a for method in ("march", "fem")]
     assert np.abs(np.array(wrong) / closed() - 1).min() > 1e-4
 
 
 def test_cells_are_small_where_pressed_bodies_touch_first():
     """Beside the vertex q/p is x ln|x|. Cells there were as large as elsewhere if two ends were near to each other, and
     the change from mesh to mesh told a fifth of the error of q1."""
-    result = partialslip.run(RIGID.replace(fem={"accuracy": 1e-3}), "march")["march"]
+    result = partialslip.run(STIFF.replace(fem={"accuracy": 1e-3}), "march")["march"]
     cells = result.traction.cells
     middle = np.diff(cells)[np.abs(cells[1:] + cells[:-1]) < 2e-2 * result.a]
     assert middle.max() < 0.02 * result.a
@@ -241,6 +241,6 @@ def test_cells_are_small_where_pressed_bodies_touch_first():
 
 @pytest.mark.slow
 def test_shear_of_pressed_bodies_is_known_as_well_as_is_said():
-    loose, fine = (partialslip.run(RIGID.replace(fem={"accuracy": at}), "march")["march"] for at in (2e-4, 2e-5))
-    off = norm_errors(loose.traction, fine.traction, RIGID.friction.f, ("q1",))["q1"]
+    loose, fine = (partialslip.run(STIFF.replace(fem={"accuracy": at}), "march")["march"] for at in (2e-4, 2e-5))
+    off = norm_errors(loose.traction, fine.traction, STIFF.friction.f, ("q1",))["q1"]
     assert off < loose.estimate["q1"]

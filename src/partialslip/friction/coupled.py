@@ -13,7 +13,7 @@ from partialslip.friction.active_set import Solution
 from partialslip.friction.coupled_step import LoadStep, Pair, Relative, solve_near
 from partialslip.friction.history import History, certified, follow, resting, still
 from partialslip.friction.path import Path
-from partialslip.friction.pressing import Pressed, Punch, Punches, Stages
+from partialslip.friction.pressing import Pressed, Punch, Punches, Stages, disproportion
 from partialslip.friction.trail import Trail
 from partialslip.friction.zone_ends import CORNER
 
@@ -153,53 +153,59 @@ def _settled(
         reach -= off / min(max(slope, _SLOPES[0]), _SLOPES[1])
 
 
+def _covered(line: Nodes, half_width: float) -> Mask:
+    """Nodes (n,) that a flat punch of the ``half_width`` covers."""
+    result: Mask = np.abs(line.x) <= half_width * (1 + _STICKS)
+    return result
+
+
+def _punch(line: Nodes, half_width: float, guess: Pair, step: _Press) -> Pair:
+    """Forces under the flat punch of the ``half_width`` and the force 1, from a ``guess`` of them."""
+    covered = _covered(line, half_width)
+    return step(1.0, np.where(covered, 0.0, _FAR * half_width), np.zeros(len(covered)), guess, _ANEW)
+
+
 def _similar(
     C: Relative, gap: Array, f: Array, line: Nodes, vertex: float, first: Pair, accuracy: float, step: _Press, off: _Off
 ) -> Pressed | None:
     """Press self-similarly about the ``vertex``, from which the nodes of the ``line`` count, with last steps of two
     sizes; the difference is the error estimate. Steps begin where the ``first`` one ended, which bears all of P. None
     if like bodies of a size are not as similar as that, or touch elsewhere."""
-    none = resting(0 * gap)
+    none = resting(0 * gap), resting(0 * gap)
 
     def press(stages: Stages, size: float, reach: float) -> Pair:
         p, q = stages.stage(reach, 1 - size)
         return step(1.0, gap, C.moved(p, q)[0], (replace(first[0], x=p), replace(first[1], x=q)))
 
-    def punched(covered: Mask) -> Punch:
-        """The flat punch that has ``covered`` these nodes."""
-        found = step(1.0, np.where(covered, 0.0, _FAR * reach), none.x, (none, none), _ANEW)
-        p, q = found[0].x, found[1].x
-        corners = line.ends(p, q, rise=CORNER)  # between the last node and the next one
+    def from_a_punch(half_width: float) -> Punch:
+        p, q = (each.x for each in _punch(line, half_width, none, step))
+        left, right = line.ends(p, q, rise=CORNER)  # between the last node and the next one
         assert line.resultants
         points, *forces = line.resultants(p, q)
-        between = corners[0] - vertex, corners[1] - vertex
+        between = left - vertex, right - vertex
         return Punch(between, line.x, line.weights, (p, q), points - vertex, (forces[0], forces[1]), line.sized)
 
     reach, count, unlike = line.near or line.half_width(first), 1, 0.0
-    stages, corners, covered = line.stages, None, none.x > 0
-    last, left = first, np.inf
-    while count < _MOST:
-        if not line.stages:
-            before, covered = covered, np.abs(line.x) <= reach * (1 + _STICKS)
-            if not covered.any():  # the contact is elsewhere than where the gap is smallest
-                return None
-            if np.array_equal(covered, before):
-                break
-            stages, count = (punch := punched(covered)), count + 1
-            corners = punch.corners[0] + vertex, punch.corners[1] + vertex
-        assert stages
-        last, reach, left, more = _settled(line, reach, accuracy, partial(press, stages, stages.last / 2))
-        count += more
-        if line.stages:
+    while True:
+        covered = _covered(line, reach)
+        if not covered.any():  # the contact is elsewhere than where the gap is smallest
+            return None
+        stages = line.stages or from_a_punch(reach)
+        last, reach, left, pressed = _settled(line, reach, accuracy, partial(press, stages, stages.last / 2))
+        count += pressed + (line.stages is None)
+        if line.stages or count >= _MOST or np.array_equal(_covered(line, reach), covered):
             break
-    assert stages
+    growth = stages.growth(reach)
     if line.sized:
-        half = np.abs(line.x) <= HALF * reach
-        if not half.any() or (unlike := punch.differs(punched(half))) > _ROUGH:
+        if not _covered(line, HALF * reach).any():
+            return None
+        half = _punch(line, HALF * reach, none, step)
+        if (unlike := disproportion(line.x, growth, (half[0].x, half[1].x))) > _ROUGH:
             return None
     rough = press(stages, stages.last, reach)
     errors = {"q": off(last[1].x, rough[1].x) + unlike, "a": _moved(line, last, rough) + left}
-    return Pressed(*_certified([last]), count + 1 + line.sized, errors, stages.growth(reach), f, corners)
+    corners = None if line.stages else line.ends(*growth, rise=CORNER)
+    return Pressed(*_certified([last]), count + 1 + line.sized, errors, growth, f, corners)
 
 
 def _nearly_similar(
@@ -212,9 +218,9 @@ def _nearly_similar(
 
     def punch(half_width: float, like: Pair, wider: float) -> Pair:
         """The punch, from one that is so many times ``wider``."""
-        covered, nearest = np.abs(line.x) <= half_width * (1 + _STICKS), np.searchsorted(middles, line.x * wider)
+        covered, nearest = _covered(line, half_width), np.searchsorted(middles, line.x * wider)
         guess = replace(none, x=covered.astype(float)), replace(none, rest=like[1].rest[nearest] * covered)
-        return step(1.0, np.where(covered, 0.0, _FAR * half_width), none.x, guess, _ANEW)
+        return _punch(line, half_width, guess, step)
 
     middles, under = (line.x[1:] + line.x[:-1]) / 2, [(none, none)]
     for half_width, wider in zip(half_widths.tolist(), (1.0, *_PUNCHES[:-1] / _PUNCHES[1:]), strict=True):
@@ -236,11 +242,10 @@ def _nearly_similar(
     if errors["q"] > _ROUGH:
         return None
     p, q = (each.x for each in punch(reach, under[0], half_widths[0] / reach))
-    corners = line.ends(p, q, rise=CORNER)
-    return Pressed(*_certified([last]), len(under) + count + 2, errors, (p, q), f, corners)
+    return Pressed(*_certified([last]), len(under) + count + 2, errors, (p, q), f, line.ends(p, q, rise=CORNER))
 
 
-def _certified(done: Sequence[tuple[Solution, Solution]]) -> tuple[Solution, Solution]:
+def _certified(done: Sequence[Pair]) -> Pair:
     """Last solution, with the residuals of all steps."""
     return certified([p for p, _ in done]), certified([q for _, q in done])
 

@@ -81,7 +81,7 @@ class LoadStep:
         """Displacements (2, n) of nodes that touch and stick, along y and x."""
         return np.stack([-self.gap, self.kept])
 
-    def sweep(self, p: Solution, q: Solution) -> tuple[Solution, Solution]:
+    def sweep(self, p: Solution, q: Solution) -> Pair:
         """One fixed-point iteration: solve for p with the old q, then for q with the new p; both problems are
         convex."""
         n, pushed = len(self.gap), self.gap + self.yx @ q.x
@@ -94,7 +94,7 @@ class LoadStep:
         moved = self.yx @ (sheared.x - q.x)  # opening due to the change of q, which p does not include yet
         return replace(pressed, residual=np.abs(moved - moved[on].mean()) / np.diag(self.yy)), sheared
 
-    def newton(self, p: Solution, q: Solution) -> tuple[Solution, Solution] | None:
+    def newton(self, p: Solution, q: Solution) -> Pair | None:
         """Solve for p and q together, iterating on the partition from that of ``p`` and ``q``; None if that fails."""
         touch, slip = p.x > 0, q.sides * (p.x > 0)
         fewest, chances, iteration, refined = 2 * len(touch), _PATIENCE, 0, False
@@ -211,9 +211,7 @@ def punched(C: Relative, f: float, sides: Sides) -> tuple[Array, Array]:
     return p.x, q.x
 
 
-def solve_near(
-    step: LoadStep, starts: Sequence[tuple[Solution, Solution]], trail: Trail | None, key: Hashable
-) -> tuple[Solution, Solution]:
+def solve_near(step: LoadStep, starts: Sequence[Pair], trail: Trail | None, key: Hashable) -> Pair:
     """Solve one step, first from what the ``trail`` knows of it under its ``key``."""
     found = solve(step, [*starts, *(trail.starts(key) if trail else [])])
     if trail:
@@ -221,7 +219,7 @@ def solve_near(
     return found
 
 
-def solve(step: LoadStep, starts: Sequence[tuple[Solution, Solution]]) -> tuple[Solution, Solution]:
+def solve(step: LoadStep, starts: Sequence[Pair]) -> Pair:
     """Solve one step by Newton's method on the partition, from the partitions of ``starts``.
 
     If no iteration converges, a fixed-point sweep, which contracts unless friction is very large, gives the next start.

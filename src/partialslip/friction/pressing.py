@@ -127,15 +127,6 @@ class Punch:
         """Half of the distance of the corners."""
         return (self.corners[1] - self.corners[0]) / 2
 
-    def differs(self, other: "Punch") -> float:
-        """Relative error of the assumption that q grows like the half-width, from the ``other`` punch: the forces along
-        x on either side of the middle are in proportion to the spread of those along y. It knows the half-width better
-        than the corners do, beside which elements may be large."""
-        sides = np.array([self.x < 0, self.x > 0])
-        own, its = ((sides * q).sum(axis=1) / np.sqrt(p @ self.x**2) for p, q in (self.forces, other.forces))
-        scale = float(np.abs(own).max())
-        return float(np.abs(its - own).max() / scale) if scale > 0 else 0.0
-
     def growth(self, _: float, /) -> tuple[Array, Array]:
         """As of :class:`Stages`: the forces, as the punch has about the half-width."""
         return self.forces
@@ -173,6 +164,17 @@ class Punch:
             inner, near = sums[cell] - density[cell] * beyond_angle[cell], np.maximum(own, _TELLING)
             result[side] = 2 * np.sin(near) ** power * (inner + density[cell] * kernel(near))
         return result
+
+
+def disproportion(x: Array, punch: tuple[Array, Array], other: tuple[Array, Array]) -> float:
+    """Relative error of the assumption that q under the force 1 grows like the half-width, from forces along y and x
+    under two flat punches, (n,) each, at ``x`` (n,) from their middle: those along x on either side are in proportion
+    to the spread of those along y, which tells the half-width better than corners do, beside which elements may be
+    large."""
+    sides = np.array([x < 0, x > 0])
+    own, its = ((sides * q).sum(axis=1) / np.sqrt(p @ x**2) for p, q in (punch, other))
+    scale = float(np.abs(own).max())
+    return float(np.abs(its - own).max() / scale) if scale > 0 else 0.0
 
 
 def _of_second_power(angle: Array) -> Array:

@@ -106,7 +106,7 @@ def pressed_together(history: History, pressed: Pressed, weights: Array, nodes: 
     held = np.sqrt(weights[nodes])
     least = _least(history, held)
     norms = {key: max(float(np.linalg.norm(getattr(history, key) / held)), least) for key in ("q1", "q2")}
-    ends = ("a", "left", "right") if history.path.moves else ("a", "left", "right", "m", "n")
+    ends = "a", "left", "right", *(() if history.path.moves else ("m", "n"))
     return dict.fromkeys(ends, pressed.errors.get("a", 0.0)) | {
         key: float(off / norm) for key, norm in norms.items() if norm > 0
     }
