@@ -111,6 +111,7 @@ class _Refinement:
         self.error, self.error_before, self.calmer = np.inf, np.inf, 1.0
         self.step_errors: Mapping[str, float] | None = None  # None until the steps are chosen
         self.path_errors: Mapping[str, float] = {}  # of the steps of coupled bodies
+        self.plates_error: float | None = None  # None until it is estimated
         self.waited = self.cuts = 0
 
     @property
@@ -151,7 +152,14 @@ class _Refinement:
         """The present solution as the last one; ``settled`` is its accuracy, if there is an allowance."""
         reached_accuracy = settled if self.expense.limited else None
         return Adapted(
-            self.solution, self.errors, self.meshes, self.factored, self.iterations, self.width, reached_accuracy
+            self.solution,
+            self.errors,
+            self.meshes,
+            self.factored,
+            self.iterations,
+            self.width,
+            reached_accuracy,
+            self.plates_error,
         )
 
     def settle(self) -> Adapted | None:
@@ -346,6 +354,8 @@ class _Refinement:
         """
         other = estimate.neighbour(self.solution, self.problem, self.block_width, self.clock)
         self.factored, self.iterations = self.factored + other.factored, self.iterations + other.iterations
+        if self.solution.plates and other.plates:
+            self.plates_error = self.solution.plates.apart(other.plates)
         smooth = estimate.smooth_errors(self.solution, other, self.eased, self.problem.breaks)
         self.errors = estimate.combined(self.solution, smooth, self.end_errors)
         return smooth

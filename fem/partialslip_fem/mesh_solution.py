@@ -13,6 +13,7 @@ from partialslip.friction.history import History
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.trail import Trail
 from partialslip.friction.zone_ends import StickInterval, turning_points
+from partialslip.result.plates import Plates
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import Body
 from partialslip_fem.recovery import traction
@@ -55,6 +56,8 @@ class MeshSolution:
         The same of the load path of coupled bodies, besides the steps in which they were pressed together.
     dissimilar : bool
         Whether shear moves surfaces along y as it does in half-planes of unlike materials (Dundurs' beta is not 0).
+    plates : Plates or None
+        How the plates of two finite bodies move, scaled.
     first, most : (n,) arrays or None
         Where the pressure varies: normal forces on all nodes of the contact line at load point 1, and the largest ones
         on the path.
@@ -86,6 +89,7 @@ class MeshSolution:
     trail: Trail | None = None
     path_errors: Mapping[str, float] = field(default_factory=dict)
     dissimilar: bool = False
+    plates: Plates | None = None
 
     @property
     def slips_when_pressed(self) -> bool:
@@ -269,6 +273,8 @@ class Adapted:
         Half-width of blocks that stand for half-planes, in contact half-widths.
     settled : float or None
         Accuracy that the allowance of CPU seconds sufficed for; None without an allowance.
+    plates_error : float or None
+        Estimated error of the compliance of the plates, relative.
     """
 
     solution: MeshSolution
@@ -278,3 +284,4 @@ class Adapted:
     iterations: int
     width: float
     settled: float | None = None
+    plates_error: float | None = None

@@ -275,7 +275,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         If a mesh file cannot be read.
     """
     P, A, L, origin = scene.P, scene.material.A, scene.length, scene.origin
-    parts, at_ends = parts_of(scene, L), [scene.load.along[end] for end in scene.load.ends]
+    parts, at_ends = parts_of(scene, L), [scene.load.tension[end] for end in scene.load.ends]
     parabolic = isinstance(scene.profile, Hertz) and scene.even and not (scene.presses_anew or scene.friction.varies)
     return Problem(
         gap=lambda x: scene.gap_at(x * L + origin) / (A * P),
@@ -290,7 +290,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         breaks=tuple(((scene.profile.curvature.breaks - origin) / L).tolist()),
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
-        strains=tuple((lower_strain(scene, sigma), lower_strain(scene, slope * L)) for _, sigma, slope in at_ends),
+        strains=tuple((lower_strain(scene, sigma), lower_strain(scene, slope * L)) for sigma, slope in at_ends),
         parabolic=parabolic,
         nearly_similar=parabolic and scene.finite and scene.fem.size is not None and all(part.even for part in parts),
         accuracy=scene.fem.accuracy,

@@ -1,6 +1,7 @@
 """The result of the last mesh, in SI units: tractions, zones, certificate, estimates, counts, notes."""
 
 import numpy as np
+from msgspec.structs import replace
 
 from partialslip.arrays import Array
 from partialslip.friction.history import certificate, last_cycle_change
@@ -10,6 +11,7 @@ from partialslip.friction.restart import begun, known_to
 from partialslip.friction.step_errors import summed
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, StressAt, Traction
+from partialslip.result.plates import Plates
 from partialslip.result.state import State
 from partialslip.scene import Scene
 from partialslip_fem.displacements import displace_bodies
@@ -32,6 +34,9 @@ def to_result(
     ``plan`` says whether to solve for displacements inside the bodies; ``clock`` has counted the CPU seconds.
     """
     solution, L, stress = adapted.solution, scene.length, scene.P / scene.length
+    plates = _plates(adapted, scene)
+    if scene.load.displacement is not None and plates:
+        scene = replace(scene, load=replace(scene.load, Q_found=tuple(plates.at_points.tolist())))
     origin = problem.origin * L
     accuracy = adapted.settled or scene.fem.accuracy
     pressure = solution.pressure()
@@ -114,6 +119,23 @@ def to_result(
         undetermined={"stresses": _SLIDES} if inside and not known_inside else {},
         surface=along_surfaces(displaced, solution.contact_ends, L, stress, origin) if displaced else None,
         edges=edges_near_contact(solution, L, origin),
+        plates=plates,
+    )
+
+
+def _plates(adapted: Adapted, scene: Scene) -> Plates | None:
+    """Plates of two finite bodies, in SI units."""
+    if not (found := adapted.solution.plates):
+        return None
+    A, P = scene.material.A, scene.P
+    return Plates(
+        Q=P * found.Q,
+        at_points=P * found.at_points,
+        displacement=A * P * found.displacement,
+        approach=A * P * found.approach,
+        compliance=A * found.compliance,
+        loop=found.loop * [A * P, P],
+        error=adapted.plates_error,
     )
 
 

@@ -102,7 +102,7 @@ def reduced(scene: Scene) -> Scene:
     """
     effects, load, fem = scene.effects, scene.load, scene.fem
     if effects.shear is False:
-        load = replace(load, Q=(0.0,) * len(load.Q))
+        load = replace(load, Q=(0.0,) * len(load.Q), displacement=None, spring=None, Q_found=None)
     if effects.tension is False:
         load = replace(load, sigma=(0.0,) * len(load.sigma), sigma_slope=(0.0,) * len(load.sigma_slope))
     if effects.varying_pressure is False and scene.presses_anew:
@@ -132,11 +132,13 @@ def _forced(scene: Scene) -> dict[Effect, bool]:
 def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
     """Decisions for ``scene``, taking forced loads and forced coupling into account."""
     load, f, forced = scene.load, scene.friction.f, _forced(scene)
-    Q, sigma, slope = zip(*load.along, strict=True)
+    sigma, slope = zip(*load.tension, strict=True)
+    driving, moved = load.driving, load.displacement is not None
+    drives_by: tuple[str, Dimension] = ("displacement", "m") if moved else ("Q", "N/m")
     tension: dict[str, tuple[Sequence[float], Dimension]] = {"sigma": (sigma, "Pa"), "sigma_slope": (slope, "Pa/m")}
     stretched = [f"{key} goes between {scene.units.span(each, of)}" for key, (each, of) in tension.items() if any(each)]
     coupled = forced.get("coupling", not scene.mirrored)
-    tangential = any(Q) or bool(stretched) or forced.get("shear", False) or forced.get("tension", False)
+    tangential = any(driving) or moved or bool(stretched) or forced.get("shear", False) or forced.get("tension", False)
     friction = forced.get("friction", tangential or coupled) and not (scene.slides or scene.free)
     drives = "tangential loads act" if tangential else "pressure moves the surfaces along x"
     why = f"{drives} and f = {scene.friction.shown}"
@@ -146,7 +148,9 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
         no_friction = "f = 0: no traction holds the surfaces along x"
     else:
         no_friction = "|Q| >= f P at a load point: the contact slides as a whole"
-    small = "tension is small: both ends of a Hertz contact slip the same way" if small_tension(scene) else ""
+    small = ""
+    if not moved and small_tension(scene):
+        small = "tension is small: both ends of a Hertz contact slip the same way"
     opposing = "tension may turn the slip at one end of the contact"
     history = _why_history(scene, coupled, start)
     units, anew = scene.units, scene.presses_anew
@@ -161,7 +165,8 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
                    f"the bodies turn until the moment of the pressure is {turned}",
                    "no moment acts, and the gap is even" if scene.even else "the bodies do not turn"),
         "friction": (friction, why, no_friction),
-        "shear": (any(Q), f"Q goes between {scene.units.span(Q, 'N/m')}", "Q = 0 at every load point"),
+        "shear": (any(driving) or moved, f"{drives_by[0]} goes between {scene.units.span(driving, drives_by[1])}",
+                  "Q = 0 at every load point"),
         "tension": (bool(stretched), ", ".join(stretched),
                     "sigma = 0 at every load point"
                     + ": the problem is symmetric in x up to sign" * (not scene.friction.varies)),
@@ -195,6 +200,8 @@ def _why_history(scene: Scene, coupled: bool, start: bool) -> str:
         return "the path goes on from a state"
     if coupled:
         return "pressure and shear move the surfaces together: what they lock in depends on the path"
+    if load.displacement is not None:
+        return "plates are moved: the force follows from the path"
     if not load.in_phase:
         return f"{scene.varying} are out of phase: locked-in tractions depend on the path"
     if scene.presses_anew:
@@ -215,14 +222,17 @@ def _refuse(scene: Scene, forced: dict[Effect, bool], own: _Decisions, start: bo
     coupled = "coupling" in on or (not scene.mirrored and "coupling" not in off)
     tangential: tuple[Effect, ...] = ("friction", "shear", "tension")
     unheld = scene.slides or scene.free
+    moved = scene.load.displacement is not None
     reasons: list[tuple[Effect, bool, str]] = [
         ("normal", "normal" in off, "without pressure there is no contact"),
+        ("friction", "friction" in off and moved, "plates are moved, and drag the bodies along by friction"),
         *((each, each in on and unheld and not own[each][0], own["friction"][2]) for each in tangential),
         ("opposing-slip", "opposing-slip" in off and not scene.load.in_phase,
          f"{scene.varying} are out of phase, and slip reverses"),
         ("varying-pressure", "varying-pressure" in on and not scene.presses_anew, own["varying-pressure"][2]),
         ("history", "history" in off and own["history"][0]
-         and (coupled or scene.presses_anew or not scene.load.in_phase), own["history"][1]),
+         and (coupled or scene.presses_anew or not scene.load.in_phase or moved),
+         own["history"][1]),
         ("history", "history" in off and start, own["history"][1]),
         ("finite-size", "finite-size" in on and not scene.finite, "bodies.upper and bodies.lower have no size"),
         ("far-field", "far-field" in on and None not in (scene.bodies.upper, scene.bodies.lower),

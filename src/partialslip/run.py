@@ -256,8 +256,16 @@ def run(
         if not isinstance(start, State):
             raise InputError(f"start = {start!r:.60}: must be a State; partialslip.load_state reads one from a file")
         start.check(scene)
+        if scene.load.displacement is not None:
+            given = list(scene.load.displacement)
+            raise InputError(f"load.displacement = {given}: must be left out with a start, whose plates are not known")
     effects = plan(scene, subsurface=subsurface, start=start is not None)
     chosen = chosen_methods(scene, methods)
+    if scene.load.displacement is not None:
+        if "fem" not in chosen:
+            shown = ", ".join(chosen)
+            raise InputError(f"methods = {shown}: must have fem among them, which finds Q from load.displacement")
+        chosen = tuple(sorted(chosen, key=lambda name: name != "fem"))
     tasks = {name: (name, reduced(scene), effects) for name in chosen}
     if effects.missing:
         whole = replace(scene, effects=Effects())
@@ -266,8 +274,10 @@ def run(
     for name, (method, what, its) in tasks.items():
         if stresses and _finds_stresses(what, method, results):
             its = plan(what, subsurface=True, start=start is not None)
+        what = _driven(what, results)
         solve = METHODS[method].solver(keep=keep, allowance=allowance, rig_of=rig_of)
         results[name] = _slid(what, solve(what, its, _told_by(name, progress), start))
+    scene = _driven(scene, results)
     for result in results.values():
         effects.accept(result.regime)
     # no bars for finite and unlike bodies or for a fixed element size: there is no reference; none for effects forced
@@ -283,6 +293,15 @@ def _finds_stresses(scene: Scene, method: str, before: Mapping[str, Result]) -> 
     if scene.finite or not scene.material.alike:
         return method == "fem"
     return method in ("exact", "march") or not any(result.surface for result in before.values())
+
+
+def _driven(scene: Scene, before: Mapping[str, Result]) -> Scene:
+    """Return ``scene`` with the Q that fem has found, if displacements of plates drive it; otherwise as it is."""
+    if scene.load.displacement is None or "fem" not in before:
+        return scene
+    plates = before["fem"].plates
+    assert plates
+    return replace(scene, load=replace(scene.load, Q_found=tuple(plates.at_points.tolist())))
 
 
 def _slid(scene: Scene, result: Result) -> Result:

@@ -26,7 +26,8 @@ class Solution:
     ``rest`` (n,) is C x - g - shift: 0 between the bounds, >= 0 at the lower bound and <= 0 at the upper bound.
     ``residual`` (n,) is the distance of each multiplier from the projection of the augmented multiplier, ``imbalance``
     the distance of the sum from the total, both in units of x. ``iterations`` counts the linear solves of the
-    active-set iteration, ``changes`` the changes of the active set: 0 if one linear solve sufficed.
+    active-set iteration, ``changes`` the changes of the active set: 0 if one linear solve sufficed. ``shift`` is the
+    rigid one.
     """
 
     x: Array
@@ -35,6 +36,7 @@ class Solution:
     imbalance: float
     iterations: int
     changes: int = 0
+    shift: float = 0.0
 
     def spread(self, where: Indices, count: int) -> "Solution":
         """The solution at ``count`` members, of which those with the indices ``where`` have been solved; the others
@@ -244,7 +246,8 @@ def solve_bounded(
     fit = r - r[pivoting.free].mean() if pivoting.free.any() else r
     residual = np.abs(x - np.clip(x - fit / pivoting.diagonal, lower, upper))
     rest = np.clip(r, np.where(x < upper, 0.0, -np.inf), np.where(x > lower, 0.0, np.inf))
-    return Solution(x, rest, residual, abs(float(x.sum()) - total), pivoting.iterations, pivoting.changes)
+    imbalance = abs(float(x.sum()) - total)
+    return Solution(x, rest, residual, imbalance, pivoting.iterations, pivoting.changes, shift)
 
 
 def _rounding(x: Array, total: float) -> float:

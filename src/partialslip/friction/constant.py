@@ -18,7 +18,7 @@ from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Factored, Sides, Solution, solve_bounded
 from partialslip.friction.history import History, Steps, follow, resting, still
 from partialslip.friction.path import Path
-from partialslip.friction.path_following import Bounds, Follower, Leg, SlidesError, noise
+from partialslip.friction.path_following import Bounds, Follower, Leg, SlidesError, joined, noise
 from partialslip.scene.model import require_carried
 
 _AT = 1e-12  # accuracy: distance from the bound, relative, at which a node is on it
@@ -246,7 +246,7 @@ class _Contact:
             leg = self._follower.leg(Bounds.constant(self._bound), start, change[1:3] @ self._stretch, Q, self._stages)
         except SlidesError:  # so near to sliding that rounding lets no node stick: a step still has an answer
             return _Done(start, load, change, self._one_step(start, float(load[0]), change, None))
-        found = Solution(leg.forces, leg.rest, leg.residual, leg.imbalance, 1, leg.pivots)
+        found = Solution(leg.forces, leg.rest, leg.residual, leg.imbalance, 1, leg.pivots, leg.shift)
         return _Done(start, load, change, found, leg)
 
     def _mirrored(self, start: Array, load: Array, change: Array) -> _Done | None:
@@ -263,7 +263,9 @@ class _Contact:
             return None
         leg = before.leg.mirrored
         residual = before.found.residual + off
-        found = replace(before.found, x=leg.forces, rest=leg.rest, residual=residual, iterations=0, changes=0)
+        found = replace(
+            before.found, x=leg.forces, rest=leg.rest, residual=residual, iterations=0, changes=0, shift=leg.shift
+        )
         return _Done(start, load, change, found, leg)
 
     def _completed(self, history: History) -> History:
@@ -277,25 +279,27 @@ class _Contact:
             lows, highs = zip(*(each.range for each in last), strict=True)
             history = replace(history, q1=np.min(lows, axis=0), q2=np.max(highs, axis=0))
         stages = [self._around(each) for each in last]
-        ways, forces = tuple(way for way, _ in stages), np.concatenate([states for _, states in stages])
+        ways, forces = tuple(way for way, _, _ in stages), np.concatenate([states for _, states, _ in stages])
+        shifts = joined([shifts for *_, shifts in stages])
         return replace(
             history,
             slipped=slipped,
             dissipated=float(self._bound @ slipped.sum(axis=0)),
-            around=Steps(ways, forces, self._normal[None], self._f),
+            around=Steps(ways, forces, self._normal[None], self._f, shifts),
             turns=path.in_phase and any(each.turns for each in last),
             changed=last[path.ends[1]].changed if path.in_phase else None,
             events=events,
         )
 
-    def _around(self, done: _Done) -> tuple[tuple[float, ...], Array]:
-        """Fractions of a leg, ascending to 1, and the forces (s, n) there."""
+    def _around(self, done: _Done) -> tuple[tuple[float, ...], Array, Array]:
+        """Fractions of a leg, ascending to 1, the forces (s, n) there, and the rigid shifts (s,) up to there."""
         if done.leg:
-            return self._stages, done.leg.stages
+            return self._stages, done.leg.stages, done.leg.shifts
         count, Q = self._path.substeps, float(done.load[0] - done.change[0])
         shares = (np.arange(1, count + 1) / count).tolist()
         between = [
-            self._one_step(done.start, Q + share * float(done.change[0]), share * done.change, None).x
+            self._one_step(done.start, Q + share * float(done.change[0]), share * done.change, None)
             for share in shares[:-1]
         ]
-        return tuple(shares), np.array([*between, done.found.x])
+        states = [*between, done.found]
+        return tuple(shares), np.array([each.x for each in states]), np.array([each.shift for each in states])

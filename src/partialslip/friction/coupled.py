@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from partialslip.arrays import Array, Mask
+from partialslip.errors import InputError
 from partialslip.friction.active_set import Solution
 from partialslip.friction.coupled_step import LoadStep, Pair, Relative, solve_near
 from partialslip.friction.history import History, certified, follow, resting, still
@@ -308,8 +309,12 @@ def march(
         kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0] + change[2] * bent
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the previous step, and this step of the previous cycle
         P = float(load[3]) if path.presses_anew else 1.0
-        this = LoadStep(xx, C.yy, xy, full.opening, f, P, gap, Q, kept, full.factors)
+        if path.actuator is not None:  # which was bent by the forces before the step
+            Q = float(change[0]) + path.actuator * float(before.x.sum())
+        this = LoadStep(xx, C.yy, xy, full.opening, f, P, gap, Q, kept, full.factors, path.actuator)
         normal, sheared = solve_near(this, starts, line.trail if line is not None else None, ("path", len(done)))
+        if path.actuator is not None and not ((normal.x > 0) & (sheared.sides == 0)).any():
+            raise InputError("load.displacement: must keep |Q| below f P; the contact slides on the way")
         done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
         return sheared, normal.x
 

@@ -8,7 +8,7 @@ along x) and v (opening, along y) under normal forces p and tangential forces q 
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import scipy.linalg as la
@@ -63,7 +63,10 @@ class Relative:
 class LoadStep:
     """Problem of one load step with friction ``f`` (n,): p sums to ``P`` over the ``gap`` (n,) before loading, q sums
     to ``Q``, and nodes that stick have the relative displacement ``kept`` (n,) along x, up to a rigid shift.
-    ``factors`` are those of the compliances, which many steps share."""
+    ``factors`` are those of the compliances, which many steps share.
+
+    If an ``actuator`` drives the bodies, its end moves by ``Q``: by the shift, and its compliance times the sum of q.
+    """
 
     xx: Array
     yy: Array
@@ -75,6 +78,17 @@ class LoadStep:
     Q: float
     kept: Array
     factors: Factors | None = None
+    actuator: float | None = None
+
+    @property
+    def _totals(self) -> Array:
+        return np.array([self.P, self.Q])
+
+    def _borne(self, found: Forces) -> Array:
+        """What of the totals (2,) the forces bear."""
+        p, q, (_, shift) = found
+        Q = float(q.sum())
+        return np.array([p.sum(), Q if self.actuator is None else self.actuator * Q + shift])
 
     @cached_property
     def _load(self) -> Array:
@@ -89,10 +103,21 @@ class LoadStep:
         on = np.flatnonzero(pressed.x > 0)
         bound = self.f[on] * pressed.x[on]
         free = (self.kept - self.xy @ pressed.x)[on]
-        held = solve_bounded(submatrix(self.xx, on, on), free, -bound, bound, self.Q, q.sides[on])
-        sheared = held.spread(on, n)
+        sheared = self._held(submatrix(self.xx, on, on), free, bound, q.sides[on]).spread(on, n)
         moved = self.yx @ (sheared.x - q.x)  # opening due to the change of q, which p does not include yet
         return replace(pressed, residual=np.abs(moved - moved[on].mean()) / np.diag(self.yy)), sheared
+
+    def _held(self, C: Array, free: Array, bound: Array, sides: Sides) -> Solution:
+        """Tangential forces of the nodes that touch, for given normal ones. The end of an actuator is one more node,
+        which always sticks, and bears what the others do."""
+        if self.actuator is None:
+            return solve_bounded(C, free, -bound, bound, self.Q, sides)
+        # a uniform displacement under all forces, whose sum is 0, is part of the rigid shift
+        uniform, all_bound = float(np.trace(C)) / len(C), np.append(bound, np.inf)
+        every = np.pad(C, (0, 1)) + uniform
+        every[-1, -1] += self.actuator
+        found = solve_bounded(every, np.append(free, -self.Q), -all_bound, all_bound, 0.0, np.append(sides, 0))
+        return replace(found, **{key: getattr(found, key)[:-1] for key in ("x", "rest", "residual")})
 
     def newton(self, p: Solution, q: Solution) -> Pair | None:
         """Solve for p and q together, iterating on the partition from that of ``p`` and ``q``; None if that fails."""
@@ -119,14 +144,14 @@ class LoadStep:
                     refined, iteration = True, iteration - 1
                     continue
                 zero = np.zeros(len(self.gap))
-                p_off, q_off = (abs(float(x.sum()) - total) for x, total in ((p_new, self.P), (q_new, self.Q)))
+                p_off, q_off = np.abs(self._borne(found) - self._totals).tolist()
                 p_in, q_in = np.maximum(p_new, 0.0), np.clip(q_new, -bound, bound)
                 p_rest, q_rest = np.where(touch, 0.0, np.maximum(opening, 0.0)), np.where(slip == 0, 0.0, rest)
                 p_left = np.abs(p_new - np.maximum(pushed, 0.0)) + np.abs(p_new - p_in)
                 q_left = np.where(touch, np.abs(q_new - np.clip(augmented, -bound, bound)), zero)
                 return (
-                    Solution(p_in, p_rest, p_left, p_off, iteration, iteration - 1),
-                    Solution(q_in, q_rest, q_left, q_off, 0),
+                    Solution(p_in, p_rest, p_left, p_off, iteration, iteration - 1, float(found.rigid[0])),
+                    Solution(q_in, q_rest, q_left, q_off, 0, 0, float(found.rigid[1])),
                 )
             wrong = int((touches != touch).sum() + (slips != slip).sum())
             chances = _PATIENCE if wrong < fewest else chances - 1
@@ -141,14 +166,14 @@ class LoadStep:
         """Forces of one partition, whose linear system ``solve`` solves: nodes that ``touch`` have no gap, nodes that
         stick keep their displacement, and q = ``slip`` f p at nodes that slip; ``refined`` to rounding, from those that
         were ``found``."""
-        totals = np.array([self.P, self.Q])
+        totals = self._totals
         found = found or solve(self._load, totals)
         if not refined:
             return found
         opening, rest = self._off(found)
         sticks = touch & (slip == 0)
         left = -np.stack([np.where(touch, opening, 0.0), np.where(sticks, rest, 0.0)])
-        change = solve(left, totals - [found.p.sum(), found.q.sum()])
+        change = solve(left, totals - self._borne(found))
         return Forces(*(each + more for each, more in zip(found, change, strict=True)))
 
     def _scale(self, found: Forces) -> Array:
@@ -175,7 +200,7 @@ class LoadStep:
     def _solver(self, touch: Mask, slip: Sides) -> _Solver:
         """What solves the linear system of one partition."""
         if self.factors and (partition := self.factors.partition(touch, slip, self.f)):
-            return partition.solve
+            return partial(partition.solve, actuator=self.actuator)
         on, sticks = np.flatnonzero(touch), np.flatnonzero(touch & (slip == 0))
         i, end = len(on), len(on) + len(sticks)
         dragged = self.f[on] * slip[on]
@@ -187,6 +212,9 @@ class LoadStep:
         matrix[:i, -2] = matrix[i:end, -1] = -1  # rigid shifts
         matrix[-2, :i] = 1
         matrix[-1, :i], matrix[-1, i:end] = dragged, 1
+        if self.actuator is not None:
+            matrix[-1] *= self.actuator
+            matrix[-1, -1] = 1
         factors = la.lu_factor(matrix, overwrite_a=True, check_finite=False)
 
         def solve(load: Array, totals: Array) -> Forces:

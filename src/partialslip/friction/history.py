@@ -138,6 +138,13 @@ class History:
         return result
 
     @property
+    def shifts(self) -> tuple[float, float]:
+        """Rigid shift from the beginning of the path to load points 1 and 2 of the last cycle; nan where cycles were
+        skipped."""
+        since = np.cumsum([step.shift for step in self.points])[-len(self.path.cycle) :]
+        return float(since[self.path.ends[0]]), float(since[self.path.ends[1]])
+
+    @property
     def repeats(self) -> bool:
         """Whether q changed over the last cycle by less than ``STEADY`` times the change over half a cycle."""
         return bool(self._moved.max() <= STEADY * np.abs(self.change).max())
@@ -267,12 +274,13 @@ SHEARS: dict[str, Callable[[History], Array]] = {
 class Steps(NamedTuple):
     """Load steps of a cycle: the ways to each load point, as ascending fractions up to 1, and the states at the ends of
     the steps, in turn: tangential ``forces`` (s, n), and normal forces, ``pressures`` (s, n), or (1, n) where they are
-    constant; with the coefficient of friction ``f`` (n,)."""
+    constant; with the coefficient of friction ``f`` (n,), and the rigid ``shifts`` (s,) since the cycle began."""
 
     ways: tuple[tuple[float, ...], ...]
     forces: Array
     pressures: Array
     f: Array
+    shifts: Array
 
     def of(self, nodes: npt.NDArray[np.int64]) -> "Steps":
         """Steps of some ``nodes`` only (indices)."""
@@ -304,7 +312,7 @@ def resting(forces: Array) -> Solution:
 def still(before: Solution) -> Solution:
     """Solution of a step in which no load changes: the forces ``before`` the step, without slip and residuals."""
     zero = 0 * before.x
-    return replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0)
+    return replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0, shift=0.0)
 
 
 def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bool = False) -> History:
@@ -336,7 +344,7 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
         ended.append(points[-1].x)
         skipped = limit(ended, bound) if hastens else None
         if skipped is not None:
-            points[-1], ended = replace(points[-1], x=skipped), [skipped]
+            points[-1], ended = replace(points[-1], x=skipped, shift=np.nan), [skipped]
     steps = [step for way in went for step, _ in way]
     ends = [way[-1] for way in went]
     slips = np.cumsum([sum(-step.rest for step, _ in way) for way in went], axis=0)
@@ -370,7 +378,7 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
         dissipated=dissipated,
         end=(ends[-1][0].x, ends[-1][1]),
         load_steps=taken,
-        around=Steps(tuple(ways), forces, pressures, f),
+        around=Steps(tuple(ways), forces, pressures, f, np.cumsum([step.shift for step in steps])),
         f=f,
         **anew,
     )
@@ -379,10 +387,10 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
 def _reversed(path: Path, first: Solution, went: "_Way", f: Array) -> History:
     """Cycle from the first loading to load point 2: the change from load point 1 to 2 is twice that (Masing's rule)."""
     forces, slip, pressure = first.x, -2 * np.sum([step.rest for step, _ in went], axis=0), went[-1][1]
-    way = replace(first, rest=-slip, iterations=0, changes=0)
+    way = replace(first, rest=-slip, iterations=0, changes=0, shift=2 * first.shift)
     return History(
         path=path,
-        points=[first, replace(way, x=-forces, rest=-way.rest), way],
+        points=[first, replace(way, x=-forces, rest=-way.rest, shift=-way.shift), way],
         at_ends=(-forces, forces),
         q1=-forces,
         q2=forces,
@@ -392,7 +400,7 @@ def _reversed(path: Path, first: Solution, went: "_Way", f: Array) -> History:
         dissipated=2 * float(forces @ slip),
         end=(forces, pressure),
         load_steps=len(went),
-        around=Steps(((1.0,), (1.0,)), np.array([-forces, forces]), pressure[None], f),
+        around=Steps(((1.0,), (1.0,)), np.array([-forces, forces]), pressure[None], f, np.array([-way.shift, 0.0])),
         f=f,
     )
 
@@ -413,13 +421,14 @@ def _go(advance: Advance, before: Solution, start: Array, end: Array, fractions:
 
 
 def certified(steps: Sequence[Solution]) -> Solution:
-    """Last of the ``steps``, with the largest residuals and the summed work of all steps."""
+    """Last of the ``steps``, with the largest residuals, the whole shift and the summed work of all steps."""
     return replace(
         steps[-1],
         residual=np.maximum.reduce([step.residual for step in steps]),
         imbalance=max(step.imbalance for step in steps),
         iterations=sum(step.iterations for step in steps),
         changes=sum(step.changes for step in steps),
+        shift=sum(step.shift for step in steps),
     )
 
 

@@ -161,8 +161,9 @@ class Partition:
         system = np.concatenate([left, rows.take(self._along_x, axis=1)], axis=1)
         self._factors = la.lu_factor(system, overwrite_a=True, check_finite=False) if len(on) else None
 
-    def solve(self, load: Array, totals: Array) -> Forces:
-        """Forces for the displacements ``load`` (2, n), along y and x, that sum to ``totals`` (2,)."""
+    def solve(self, load: Array, totals: Array, actuator: float | None = None) -> Forces:
+        """Forces for the displacements ``load`` (2, n), along y and x, that sum to ``totals`` (2,). The second of these
+        may be that of the shift and the ``actuator`` times the sum of q (:class:`coupled_step.LoadStep`)."""
         by, cut, end = self._by, 2 * self._begin, 2 * len(self._order)
         given = np.column_stack([by.loaded(load)[:end], by.by_rigid[:end]])
         last = by.L[cut:end, cut:end] @ given[cut:]
@@ -174,6 +175,8 @@ class Partition:
             forces[self._along_x] = found[len(self._along_y) :]
         first = given[:cut] - by.L[cut:end, :cut].T @ forces
         sums = by.by_rigid[:cut].T @ first + np.stack([forces[::2].sum(axis=0), forces[1::2].sum(axis=0)])
+        if actuator is not None:
+            sums[1] = actuator * sums[1] + [0.0, 0.0, 1.0]
         rigid = np.linalg.solve(sums[:, 1:], totals - sums[:, 0])
         weights = np.append(1.0, rigid)
         every = np.zeros(len(by.L))

@@ -22,7 +22,8 @@ _SHARE = 0.5
 @dataclass(frozen=True)
 class Path:
     """Loads at the points of a ``cycle``, scaled: Q, the relative strain of the surfaces due to bulk tension at the
-    scene's x = 0, and its slope along x; where the pressure varies, then P and M, too.
+    scene's x = 0, and its slope along x; where the pressure varies, then P and M, too. Where an ``actuator`` of this
+    compliance drives the bodies (0: a rigid one; None: none does), its displacement stands in place of Q.
 
     ``ends`` are the indices of load points 1 and 2, the extremes of the cycle; ``in_phase`` says whether the points lie
     on one line. The path begins at ``begin`` with the tangential forces ``before`` (n,) (None: zero), goes to the last
@@ -52,6 +53,7 @@ class Path:
     settled: float = 0.0
     followed: bool = False
     turns: bool = False
+    actuator: float | None = None
 
     @property
     def fractions(self) -> tuple[tuple[float, ...], ...]:
@@ -93,11 +95,15 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | No
     """Scaled path of the loads of ``scene`` from ``start`` (default: zero load); None if ``plan`` has no friction."""
     if not plan.needs("friction"):
         return None
-    P, load = scene.P, scene.load
+    P, load, A = scene.P, scene.load, scene.material.A
     begins = (start.Q, start.sigma, start.sigma_slope) if start else (0.0, 0.0, 0.0)
-    L = scene.length
+    L, unit, actuator = scene.length, P, None  # unit of Q or of the displacement
+    if load.displacement is not None:
+        unit, actuator = A * P, 1 / (A * load.spring) if load.spring else 0.0
+    points = [(drives, *tension) for drives, tension in zip(load.driving, load.tension, strict=True)]
     along = [
-        (Q / P, lower_strain(scene, sigma), lower_strain(scene, slope * L)) for Q, sigma, slope in (begins, *load.along)
+        (drives / unit, lower_strain(scene, sigma), lower_strain(scene, slope * L))
+        for drives, sigma, slope in (begins, *points)
     ]
     half, one_way = start is None and not plan.needs("history"), False
     loads: list[tuple[float, ...]] = [*along]
@@ -105,16 +111,24 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | No
         presses = scaled_pressing(scene)
         loads = [(*each, *down) for each, down in zip(along, (presses[-1], *presses), strict=True)]
         changes = np.abs(np.diff([loads[0], loads[-1], *loads[1:]], axis=0))
-        one_way = (
-            scene.even and not scene.friction.varies and bool((changes[:, 0] >= scene.friction.f * changes[:, 3]).all())
-        )
+        even = scene.even and actuator is None and not scene.friction.varies
+        one_way = even and bool((changes[:, 0] >= scene.friction.f * changes[:, 3]).all())
     begin, *cycle = loads
     # under mean loads the change of a cycle falls with its number only, and little of q changes
     accuracy = scene.fem.accuracy
     near = min(max(_SETTLED * accuracy, _STILL[0]), _STILL[1]) if load.fully_reversed else _SHARE * accuracy
     cycles, settled = (load.cycles, 0.0) if load.cycles else (MOST_CYCLES, near)
     return Path(
-        tuple(cycle), load.ends, load.in_phase, cycles, load.steps, begin, half=half, one_way=one_way, settled=settled
+        tuple(cycle),
+        load.ends,
+        load.in_phase,
+        cycles,
+        load.steps,
+        begin,
+        half=half,
+        one_way=one_way,
+        settled=settled,
+        actuator=actuator,
     )
 
 

@@ -91,12 +91,14 @@ class Leg:
         Nodes that slip at the end.
     dissipated : float
         Work against friction.
-    stages : (s, n) array
-        Forces at the requested stages.
+    stages, shifts : (s, n), (s,) array
+        Forces, and rigid shift, at the requested stages.
     residual : (n,) array
         Errors in units of force: of the displacements, by a product with C, and of the bounds.
     imbalance : float
         Distance of the sum of forces from the prescribed one.
+    shift : float
+        Rigid shift.
     events, pivots : int
         Number of instants at which rates changed, and of nodes that changed between sticking and slipping.
     """
@@ -111,15 +113,17 @@ class Leg:
     slips: Mask
     dissipated: float
     stages: Array
+    shifts: Array
     residual: Array
     imbalance: float
+    shift: float
     events: int
     pivots: int
 
     @property
     def mirrored(self) -> "Leg":
         """The leg from minus the forces under minus the loads, without events of its own."""
-        turned = {key: -getattr(self, key) for key in ("forces", "rest", "stages")}
+        turned = {key: -getattr(self, key) for key in ("forces", "rest", "stages", "shifts", "shift")}
         return replace(self, lowest=-self.highest, highest=-self.lowest, events=0, pivots=0, **turned)
 
     @property
@@ -127,6 +131,12 @@ class Leg:
         """Slip along +x and along -x, (2, n)."""
         result: Array = np.array([self.path - self.rest, self.path + self.rest]) / 2
         return result
+
+
+def joined(shifts: Sequence[Array]) -> Array:
+    """Rigid shifts since the beginning of legs that follow each other, from those since each leg began."""
+    begins = np.cumsum([0.0, *(leg[-1] for leg in shifts)])
+    return np.concatenate([begin + leg for begin, leg in zip(begins.tolist(), shifts, strict=False)])
 
 
 def noise(rate: Array, g: Array, shift: float, diagonal: Array) -> Array:
@@ -207,7 +217,7 @@ class _Leg:
         self._checked = 0
 
     def followed(self, stages: Sequence[float]) -> Leg:
-        wanted, states, events = [*stages], list[Array](), 0
+        wanted, states, events = [*stages], list[tuple[Array, float]](), 0
         for piece, end in enumerate(self._bounds.at[1:].tolist()):
             self._enter(piece)
             while True:
@@ -217,7 +227,8 @@ class _Leg:
                 node, way, step = self._next(end)
                 rate = self._rate()
                 while wanted and wanted[0] <= self._at + step:
-                    states.append(self._forces + (wanted.pop(0) - self._at) * rate)
+                    share = wanted.pop(0) - self._at
+                    states.append((self._forces + share * rate, self._shift + share * float(self._p[-1])))
                 self._advance(rate, step)
                 if node is None:
                     break
@@ -225,7 +236,7 @@ class _Leg:
                 self._forces[node] = way * self._bound[node]
                 events += 1
             self._at = end
-        return self._result(np.array(states).reshape(-1, len(self._forces)), events)
+        return self._result(states, events)
 
     def _enter(self, piece: int) -> None:
         """Begin a piece of the leg, in which no node touches or opens."""
@@ -260,7 +271,7 @@ class _Leg:
         self._tableau.pivot(node, self._tableau.column(node))
         self._pivots += 1
 
-    def _result(self, stages: Array, events: int) -> Leg:
+    def _result(self, states: Sequence[tuple[Array, float]], events: int) -> Leg:
         self._refine()
         off = np.abs(self._off()) / self._diagonal
         change = self._forces - self._start
@@ -274,9 +285,11 @@ class _Leg:
             stuck=self._stuck,
             slips=~(self._tableau.sticks | self._open),
             dissipated=self._dissipated,
-            stages=stages,
+            stages=np.array([forces for forces, _ in states]).reshape(-1, len(change)),
+            shifts=np.array([shift for _, shift in states]),
             residual=np.maximum(off, self._beyond),
             imbalance=abs(float(change.sum()) - self._Q),
+            shift=self._shift,
             events=events,
             pivots=self._pivots,
         )

@@ -17,7 +17,7 @@ from partialslip.friction.active_set import Solution, spread
 from partialslip.friction.history import History, Steps, follow, resting
 from partialslip.friction.normal import Presses
 from partialslip.friction.path import Path
-from partialslip.friction.path_following import Bounds, Follower, Leg
+from partialslip.friction.path_following import Bounds, Follower, Leg, joined
 from partialslip.scene.model import require_carried
 
 _STAGES = 32  # accuracy: fewest stages between load points at which forces are kept
@@ -112,7 +112,7 @@ class _Contact:
         g, Q = (change[1:3] @ self._stretch)[on], float(load[0]) - float(start.sum())
         leg = self._follower.leg(bounds, start, g, Q, self._stages)
         self._legs.append(_Done(pressed, bounds, leg))
-        found = Solution(leg.forces, leg.rest, leg.residual, leg.imbalance, 1, leg.pivots)
+        found = Solution(leg.forces, leg.rest, leg.residual, leg.imbalance, 1, leg.pivots, leg.shift)
         return found.spread(on, self._count), self._spread(pressed.values[-1])
 
     def _spread(self, values: Array) -> Array:
@@ -127,6 +127,7 @@ class _Contact:
             np.concatenate([each.pressed.stages(self._stages) for each in last]),
         ]
         forces, pressures = stages
+        shifts = joined([each.leg.shifts for each in last])
         bounds = self._f * pressures
         room = np.maximum((bounds - forces).min(axis=0) + (bounds + forces).min(axis=0), 0.0)
         changed = np.full(self._count, np.nan)
@@ -139,7 +140,7 @@ class _Contact:
             held=self._spread(np.logical_and.reduce([each.held for each in last])).astype(bool),
             slipped=np.array([self._spread(each) for each in np.sum([each.leg.slipped for each in last], axis=0)]),
             dissipated=sum(each.leg.dissipated for each in last),
-            around=Steps((self._stages,) * len(last), forces, pressures, self._f),
+            around=Steps((self._stages,) * len(last), forces, pressures, self._f, shifts),
             turns=turns,
             changed=changed if path.in_phase else None,
             events=sum(each.leg.events for each in self._legs),

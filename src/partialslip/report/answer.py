@@ -83,15 +83,16 @@ def answer_heading(run: Run) -> str:
 def answers(run: Run) -> list[tuple[str, str]]:
     """Return pairs of quantity and value of ``run``.
 
-    Quantities are the stick zone, a, p0, and at both load points the largest shear and the largest sigma_xx along the
-    surface of the lower body.
+    Quantities are the stick zone, a, p0, at both load points the largest shear and the largest sigma_xx along the
+    surface of the lower body, and the forces, displacements and stiffnesses of the plates of two finite bodies.
 
     A value has the digits that the method's own estimate of its error leaves, and the error: ``0.888 +- 0.003``. Values
     that the answering method does not know come from the first that knows them, which is named. What the noise and
     the spacing of a given profile make has lines of its own.
     """
     result = run.results[run.answering]
-    return [*_stick(run, result), *_noise(run), *_spacing(run), *_contact(run, result), *_shears(run), *_stresses(run)]
+    own = [*_stick(run, result), *_noise(run), *_spacing(run), *_contact(run, result)]
+    return [*own, *_shears(run), *_stresses(run), *_plates(run)]
 
 
 def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
@@ -186,6 +187,25 @@ def _stresses(run: Run) -> Iterator[tuple[str, str]]:
         where = "away from the contact" if far else f"at x = {_number(place, error, exponent)} {label}"
         value = _stress(run, float(sigma.max()), known, f"q{point + 1}")
         yield f"largest sigma_xx, {point + 1}", f"{value} {where}{_by(known)}"
+
+
+def _plates(run: Run) -> Iterator[tuple[str, str]]:
+    """Yield what moves the plates of two finite bodies along x, by how much, and what they resist per unit depth."""
+    known = _first(run, lambda result: result.plates is not None)
+    if not known or not (plates := known.result.plates):
+        return
+    error, by = math.nan if plates.error is None else plates.error, _by(known)
+    if run.scene.load.displacement is not None:
+        exponent, label = _unit(run, float(np.abs(plates.at_points).max()), "N/m")
+        forces = [_number(Q, error * abs(Q), exponent) for Q in plates.at_points]
+        yield "Q", f"{', '.join(forces)} {label}{by}"
+    exponent, label = _unit(run, float(np.abs(plates.displacement).max()), "m")
+    if np.isfinite(plates.displacement).all():
+        moved = [_number(each, error * abs(each), exponent) for each in plates.displacement]
+        yield "plates along x", f"{', '.join(moved)} {label} at load points 1, 2{by}"
+    exponent, label = _unit(run, max(plates.stiffness), "Pa")
+    along = [_number(each, error * each, exponent) for each in plates.stiffness]
+    yield "stiffness, x and y", f"{', '.join(along)} {label} per unit depth, while all sticks{by}"
 
 
 def _first(run: Run, knows: Callable[[Result], bool]) -> _Known | None:

@@ -6,6 +6,7 @@ from partialslip.result.fields import DeformedBody as DeformedBody
 from partialslip.result.fields import Slip as Slip
 from partialslip.result.fields import StressAt as StressAt
 from partialslip.result.fields import SurfaceStress as SurfaceStress
+from partialslip.result.plates import Plates as Plates
 from partialslip.result.result import FRICTIONLESS as FRICTIONLESS
 from partialslip.result.result import PATH_DEPENDENT as PATH_DEPENDENT
 from partialslip.result.result import EndSlip as EndSlip

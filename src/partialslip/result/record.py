@@ -47,6 +47,18 @@ class TractionRecord(Short, msgspec.Struct, frozen=True, omit_defaults=True):
     p1: Numbers | None = None
 
 
+class PlatesRecord(Short, msgspec.Struct, frozen=True, omit_defaults=True):
+    """Record of :class:`partialslip.result.Plates`; ``loop`` is None in ledgers."""
+
+    Q: Numbers
+    at_points: Numbers
+    displacement: Numbers
+    approach: Numbers
+    compliance: tuple[Numbers, Numbers]
+    loop: tuple[Numbers, ...] | None = None
+    error: Number = None
+
+
 class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """A :class:`partialslip.Result` as plain data, without bodies, edges, state and fields at other points.
 
@@ -54,8 +66,8 @@ class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaul
     ``stick_half_width``, ``stick_centre``, ``p_max``, ``settings``, ``counts``, ``limits``, ``certificate``,
     ``last_cycle_change``, ``estimate``, ``shares``, ``undetermined``, ``path_dependent``, ``end_slips``,
     ``permanent``, ``notes``, ``cost``. ``contact_ends`` are the left and right end (m) at load point 1 and at load
-    point 2. ``slip``, ``surface`` and ``traction`` are None if the result has none, and in ledgers,
-    which keep no curves.
+    point 2. ``plates`` are those of two finite bodies. ``slip``, ``surface`` and ``traction`` are None if the result
+    has none, and in ledgers, which keep no curves.
     """
 
     a: Number
@@ -83,6 +95,7 @@ class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaul
     slip: SlipRecord | None = None
     surface: SurfaceRecord | None = None
     traction: TractionRecord | None = None
+    plates: PlatesRecord | None = None
 
     @classmethod
     def of(cls, result: Result, curves: bool = True) -> "ResultRecord":
@@ -92,6 +105,8 @@ class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaul
         known["slip"] = slip and _of(SlipRecord, slip)
         known["surface"] = surface and SurfaceRecord(plain(surface.x), plain(surface.sigma))
         known["traction"] = _of(TractionRecord, result.traction) if curves else None
+        plates = result.plates
+        known["plates"] = plates and _of(PlatesRecord, plates, **({} if curves else {"loop": None}))
         return _of(cls, result, **known)
 
 

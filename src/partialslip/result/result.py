@@ -8,6 +8,7 @@ from partialslip.arrays import Array
 from partialslip.frame import frame
 from partialslip.result.cost import Cost
 from partialslip.result.fields import DeformedBody, Slip, StressAt, SurfaceStress
+from partialslip.result.plates import Plates
 from partialslip.result.state import State
 from partialslip.result.traction import Traction
 from partialslip.shown import Drawn
@@ -100,6 +101,9 @@ class Result(Drawn):
     edges : (Array, Array) or ()
         Element edges of the lower and the upper body near the contact, (k, 2, 2) by edge, end and x, y, m, undeformed;
         only edges long enough to be seen. Empty for methods without elements.
+    plates : Plates or None
+        Forces and displacements of the plates that hold two finite bodies (:class:`partialslip.result.Plates`), and
+        how stiff the rig is (fem).
     """
 
     method: str
@@ -129,6 +133,7 @@ class Result(Drawn):
     end_slips: tuple[EndSlip, EndSlip] | None = None
     permanent: tuple[float, float] | None = None
     edges: tuple[Array, Array] | tuple[()] = ()
+    plates: Plates | None = None
 
     def __repr__(self) -> str:
         """Method, regime, a, m, n and p0, in a line."""

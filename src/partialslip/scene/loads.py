@@ -11,7 +11,7 @@ from partialslip.errors import InputError
 from partialslip.scene.table import ROUGH, Positive, Table
 
 _FEW, _MOST = 2, 1000  # limit: least and largest number of load points
-_LISTS = ("Q", "sigma", "sigma_slope", "P", "M", "e")
+_LISTS = ("Q", "displacement", "Q_found", "sigma", "sigma_slope", "P", "M", "e")
 Turns = Annotated[tuple[float, ...], msgspec.Meta(min_length=_FEW, max_length=_MOST)]
 Forces = Annotated[tuple[Positive, ...], msgspec.Meta(min_length=_FEW, max_length=_MOST)]
 
@@ -24,8 +24,11 @@ class Load(Table, frozen=True, kw_only=True):
     values at the load points; instead the eccentricity ``e`` = M/P (m) may be given: P and M, not e, vary linearly
     between the load points. Without either M = 0. ``Q`` (N/m) and ``sigma`` (Pa, bulk tension of the lower body less
     that of the upper body) are values at the load points: usually points 1 and 2, between which the loads cycle in
-    phase, or more points. With ``sigma_slope`` (Pa/m) the bulk tension varies along x: it is sigma + sigma_slope x. The
-    path begins at P and M of the last load point with Q = sigma = sigma_slope = 0, goes to the last point, and then
+    phase, or more points. Two finite bodies may be driven by the ``displacement`` (m) of the lower body's plate along
+    x, less that of the upper body's, in place of Q; where an elastic actuator drives them, ``spring`` (N/m per m and
+    unit depth, Pa) is its stiffness. Q is then a result, which a run adds as ``Q_found`` (N/m). With ``sigma_slope``
+    (Pa/m) the bulk tension varies along x: it is sigma + sigma_slope x. The path begins at P and M of the last load
+    point without Q, sigma and sigma_slope, where the displacement counts from, goes to the last point, and then
     ``cycles`` times through all points; by default until nothing changes any more. Methods that follow the path take at
     least ``steps`` load steps between points.
     """
@@ -36,6 +39,9 @@ class Load(Table, frozen=True, kw_only=True):
     M: float | Turns | None = None
     e: float | Turns | None = None
     Q: Turns = (0.0, 0.0)
+    displacement: Turns | None = None
+    spring: Positive | None = None
+    Q_found: Turns | None = None
     sigma: Turns = (0.0, 0.0)
     sigma_slope: Turns = (0.0, 0.0)
     cycles: Annotated[int, msgspec.Meta(ge=1, le=1000)] | None = None
@@ -44,6 +50,11 @@ class Load(Table, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         if self.M is not None and self.e is not None:
             raise InputError(f"load.e = {self.e}: must not be given together with load.M")
+        for key in ("spring", "Q_found"):
+            if getattr(self, key) is not None and self.displacement is None:
+                raise InputError(f"load.{key} = {getattr(self, key)}: must be given only with load.displacement")
+        if self.displacement is not None and any(self.Q):
+            raise InputError(f"load.Q = {list(self.Q)}: must be left out with load.displacement, from which it follows")
         lists = {key: len(getattr(self, key)) for key in _LISTS if self._matters(key)}
         for key, length in list(lists.items())[1:]:
             first, count = next(iter(lists.items()))
@@ -56,16 +67,37 @@ class Load(Table, frozen=True, kw_only=True):
         return isinstance(values, tuple) and (any(values) or len(values) > _FEW)
 
     @property
+    def driving(self) -> tuple[float, ...]:
+        """What drives the bodies along x at the load points: Q (N/m), or the displacement (m)."""
+        return self._at_points("Q" if self.displacement is None else "displacement")
+
+    @property
+    def tension(self) -> tuple[tuple[float, float], ...]:
+        """(sigma, sigma_slope) at the load points."""
+        return tuple(zip(self._at_points("sigma"), self._at_points("sigma_slope"), strict=True))
+
+    @property
     def points(self) -> tuple[tuple[float, float], ...]:
-        """(Q, sigma) at the load points of the cycle."""
-        return tuple(zip(self._at_points("Q"), self._at_points("sigma"), strict=True))
+        """(Q, sigma) at the load points of the cycle.
+
+        Raises
+        ------
+        InputError
+            If displacements are given, and Q has not been found.
+        """
+        if self.displacement is None:
+            Q = self._at_points("Q")
+        elif self.Q_found is None:
+            given = list(self.displacement)
+            raise InputError(f"load.displacement = {given}: must be load.Q here; only runs with fem find Q")
+        else:
+            Q = self.Q_found
+        return tuple(zip(Q, self._at_points("sigma"), strict=True))
 
     @property
     def along(self) -> tuple[tuple[float, float, float], ...]:
-        """(Q, sigma, sigma_slope), all loads along x, at the load points of the cycle."""
-        return tuple(
-            (Q, sigma, slope) for (Q, sigma), slope in zip(self.points, self._at_points("sigma_slope"), strict=True)
-        )
+        """(Q, sigma, sigma_slope), all loads along x, at the load points of the cycle; raises as :attr:`points`."""
+        return tuple((Q, *tension) for (Q, _), tension in zip(self.points, self.tension, strict=True))
 
     def _at_points(self, key: str) -> tuple[float, ...]:
         """Values of ``key`` at the load points; zeros where it is not given."""
@@ -78,7 +110,7 @@ class Load(Table, frozen=True, kw_only=True):
 
     def pressing(self, P: float) -> tuple[tuple[float, float], ...]:
         """(P, M) at the load points, N/m and N; ``P`` (N/m) where the normal force is not given."""
-        forces = self._at_points("P") if self.P is not None else (P,) * len(self.points)
+        forces = self._at_points("P") if self.P is not None else (P,) * len(self.driving)
         moments = self._at_points("M")
         if self.e is not None:
             moments = tuple(force * e for force, e in zip(forces, self._at_points("e"), strict=True))
@@ -91,14 +123,14 @@ class Load(Table, frozen=True, kw_only=True):
 
     @property
     def _all(self) -> Array:
-        """Q, sigma, P, M and sigma_slope at the load points, (points, 5)."""
-        slopes = np.array(self._at_points("sigma_slope"))[:, None]
-        return np.concatenate([self.points, self.pressing(1.0), slopes], axis=1)
+        """What drives the bodies, sigma, P, M and sigma_slope at the load points, (points, 5)."""
+        (sigma, slope), (P, M) = zip(*self.tension, strict=True), zip(*self.pressing(1.0), strict=True)
+        return np.array([self.driving, sigma, P, M, slope]).T
 
     @property
     def ends(self) -> tuple[int, int]:
         """Indices of load points 1 and 2, the extremes of the cycle in the order of visits: the extremes of Q, or of
-        sigma where Q is constant, or of P, or of M, or of sigma_slope."""
+        the displacement, or of sigma where Q is constant, or of P, or of M, or of sigma_slope."""
         values = self._leading
         first, second = sorted((int(np.argmin(values)), int(np.argmax(values))))
         return (first, second) if first != second else (0, len(values) - 1)
@@ -117,7 +149,7 @@ class Load(Table, frozen=True, kw_only=True):
         the next load point. Phase 0 is load point 1, 0.5 load point 2, 1 load point 1 again; load points between them
         divide the ways into equal parts."""
         first, second = self.ends
-        count = len(self.points)
+        count = len(self.driving)
         position = np.interp(phases, [0.0, 0.5, 1.0], [first, second, first + count])
         passed = np.floor(position).astype(np.int64)
         return passed % count, position - passed
@@ -148,18 +180,18 @@ class Load(Table, frozen=True, kw_only=True):
     def dsigma(self) -> float:
         """sigma2 - sigma1, Pa (paper, eq. (3))."""
         first, second = self.ends
-        return self.points[second][1] - self.points[first][1]
+        return self.tension[second][0] - self.tension[first][0]
 
     @property
     def dslope(self) -> float:
         """Change of sigma_slope from load point 1 to 2, Pa/m."""
         first, second = self.ends
-        return self.along[second][2] - self.along[first][2]
+        return self.tension[second][1] - self.tension[first][1]
 
     @property
     def path_steps(self) -> int:
         """Least number of load steps of the whole path: to the last load point, and ``cycles`` times through all."""
-        return self.steps * (1 + (self.cycles or 1) * len(self.points))
+        return self.steps * (1 + (self.cycles or 1) * len(self.driving))
 
     @property
     def Q_mean(self) -> float:
@@ -170,8 +202,8 @@ class Load(Table, frozen=True, kw_only=True):
     @property
     def fully_reversed(self) -> bool:
         """Whether P and M are constant and the other loads are in phase with Q1 = -Q2 and sigma1 = -sigma2, without
-        mean loads."""
-        first, second = (self.along[end] for end in self.ends)
+        mean loads; so are displacements."""
+        first, second = ((self.driving[end], *self.tension[end]) for end in self.ends)
         return (
             self.in_phase and not self.presses_anew and all(one == -two for one, two in zip(first, second, strict=True))
         )

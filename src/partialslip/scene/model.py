@@ -162,6 +162,8 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             sizes = f"from {SMALLEST} to {LARGEST} with this E and R"
             raise InputError(f"load.{given[0]} = {value!r}: must give P and sqrt(A R P) {sizes}")
         self._check_moment()
+        if self.load.displacement is not None:
+            self._check_driven(list(self.load.displacement))
         if self.finite and any(self.load.sigma_slope):
             raise InputError(
                 f"load.sigma_slope = {list(self.load.sigma_slope)}: must be 0 or left out with finite bodies"
@@ -175,6 +177,14 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         for name, body in self.bodies:
             if body.kind == "pad" and body.width is not None and body.height is not None:
                 self._check_pad(name, body.width, body.height)
+
+    def _check_driven(self, displacement: list[float]) -> None:
+        """Raise InputError if plates cannot drive the bodies."""
+        if self.bodies.upper is None or self.bodies.lower is None:
+            why = "bodies.upper and bodies.lower; a half-plane has no plate, and its displacement is infinite"
+            raise InputError(f"load.displacement = {displacement}: must be given only with {why}")
+        if self.friction.f == 0:
+            raise InputError(f"friction.f = {self.friction.shown}: must be > 0 with load.displacement")
 
     def _check_moment(self) -> None:
         """Raise InputError if a moment is given to bodies that do not turn, or an uneven gap to a pad."""
@@ -270,7 +280,10 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
 
     @property
     def slides(self) -> bool:
-        """Whether the contact slides: friction cannot carry Q, |Q| >= f P at a load point."""
+        """Whether the contact slides: friction cannot carry Q, |Q| >= f P at a load point. Plates that are moved by
+        displacements never let it: a contact that slides is refused where it is solved."""
+        if self.load.displacement is not None:
+            return False
         pairs = zip(self.load.points, self.pressing, strict=True)
         return not self.free and any(abs(Q) >= self.friction.f * P for (Q, _), (P, _) in pairs)
 
@@ -286,7 +299,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     @property
     def free(self) -> bool:
         """Whether there is neither friction nor shear force: nothing sticks, and the bodies do not slide."""
-        return self.friction.f == 0 and not any(Q for Q, _ in self.load.points)
+        return self.friction.f == 0 and not any(self.load.driving)
 
     @property
     def meshed(self) -> bool:
@@ -321,7 +334,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     @property
     def only_pressed(self) -> bool:
         """Whether no load follows the pressing: Q and sigma are zero, and the pressure does not vary."""
-        return not self.presses_anew and not any(map(any, self.load.along))
+        return not self.presses_anew and not any(map(any, (self.load.driving, *self.load.tension)))
 
     @property
     def largest(self) -> int:

@@ -1,0 +1,59 @@
+"""How the plates that hold two finite bodies move, and how stiff the rig is."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.shown import Short
+
+
+@dataclass(frozen=True, repr=False)
+class Plates(Short):
+    """Plates that hold two finite bodies: forces and displacements per unit depth, in the steady cycle.
+
+    Parameters
+    ----------
+    Q : (2,) array
+        Shear force at load points 1 and 2, N/m.
+    at_points : (c,) array
+        Shear force at all c load points of the cycle, N/m.
+    displacement : (2,) array
+        Displacement along x of the lower body's plate less that of the upper body's at load points 1 and 2, m, since
+        the bodies were pressed together; positive where Q is. NaN if it is not known: cycles on the way to the steady
+        state were skipped.
+    approach : (2,) array
+        Approach of the plates along y since the bodies first touched, m.
+    compliance : (2, 2) array
+        Displacements along x and y (rows) under unit forces along x and y (columns) at load point 2, 1/Pa, while
+        nothing slips and the contact keeps its size.
+    loop : (k, 2) array
+        Displacement (m, from its value where the cycle begins) and Q (N/m) along the cycle, first and last point the
+        same.
+    error : float or None
+        Estimated error of the compliance, relative: what elements of another order change. None on meshes as given.
+    """
+
+    Q: Array
+    at_points: Array
+    displacement: Array
+    approach: Array
+    compliance: Array
+    loop: Array
+    error: float | None = None
+
+    @property
+    def stiffness(self) -> tuple[float, float]:
+        """Forces along x and along y per displacement, N/m per m and unit depth (Pa), while nothing slips and the
+        contact keeps its size; the other force does not change."""
+        return 1 / float(self.compliance[0, 0]), 1 / float(self.compliance[1, 1])
+
+    def apart(self, other: "Plates") -> float:
+        """Change of the compliances from the ``other`` plates to these, relative to the larger one."""
+        return float(np.abs(self.compliance - other.compliance).max() / np.abs(self.compliance).max())
+
+    @property
+    def work(self) -> float:
+        """Area of the loop, J/m: the work of Q over a cycle, which friction consumes where no other load changes."""
+        moved, Q = self.loop.T
+        return float(((moved[1:] - moved[:-1]) * (Q[1:] + Q[:-1])).sum() / 2)

@@ -1,0 +1,196 @@
+"""Plates of finite bodies: their stiffness against another element family, their displacements as loads, energy."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+import skfem
+from skfem.models.elasticity import lame_parameters, linear_elasticity
+
+from partialslip import InputError, parse_scene, run
+from partialslip.friction import coupled
+
+E, NU = 72.1e9, 0.33
+SCENE = {
+    "name": "plates", "material": {"E": E, "nu": NU}, "profile": {"kind": "hertz", "R": 0.01}, "friction": {"f": 0.3},
+    "load": {"P": 135750.0, "Q": [5e3, 30e3], "cycles": 20, "steps": 4},
+    "bodies": {
+        "upper": {"width": 6e-3, "height": 3e-3, "support": "sides"},
+        "lower": {"width": 8e-3, "height": 2e-3, "support": "roller"},
+    },
+    "fem": {"size": 0.04},
+}  # fmt: skip
+CLAMPED = {"bodies.upper.support": "clamped", "bodies.lower.support": "clamped"}
+PULLED = {"bodies.lower.pulled": True, "bodies.upper.support": "clamped"}
+ALIKE = {"bodies.upper": {"width": 8e-3, "height": 3e-3}, "bodies.lower": {"width": 8e-3, "height": 3e-3}}
+
+
+def solved(changes=None):
+    return run(parse_scene(SCENE).replace(changes or {}), "fem")["fem"]
+
+
+def graded(low, high, at_low, at_high):
+    """Mesh lines between ``low`` and ``high``, half of their distance from the ends apart, down to the sizes given
+    there."""
+    middle, lines = (low + high) / 2, [low, high]
+    for end, size, way in ((low, at_low, 1), (high, at_high, -1)):
+        count = int(np.log(abs(middle - end) / size) / np.log(1.5)) + 1
+        lines += (end + way * np.geomspace(size, abs(middle - end), count)).tolist()
+    return np.unique(np.round(lines, 15))
+
+
+def bonded(scene, a, fine=1e-4):
+    """Compliance (2, 2) of the plates of two blocks that are bonded where \\|x\\| <= ``a``, by elements of eight nodes
+    on one mesh of rectangles for each body: another element family, another solver, no condensation."""
+    bodies = []
+    for body, way in ((scene.bodies.lower, -1), (scene.bodies.upper, 1)):
+        side, corner = body.width / 2, 1e-3 * body.height
+        x = [graded(-side, -a, corner, fine * a), graded(-a, a, fine * a, fine * a), graded(a, side, fine * a, corner)]
+        depth = graded(0.0, body.height, fine * a, corner)
+        mesh = skfem.MeshQuad.init_tensor(np.unique(np.concatenate(x)), np.sort(way * depth))
+        basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementQuadS2()), intorder=5)
+        bodies.append((body, way, basis, linear_elasticity(*lame_parameters(E, NU)).assemble(basis)))
+    plates, offset, glued = [], 0, []
+    for body, way, basis, _ in bodies:
+        at = basis.doflocs
+        sides = np.abs(np.abs(at[0]) - body.width / 2) < 1e-12
+        back, face = np.abs(at[1] - way * body.height) < 1e-12, (at[1] == 0) & (np.abs(at[0]) <= a * (1 + 1e-12))
+        along_x = np.zeros(basis.N, bool)
+        along_x[np.concatenate([basis.nodal_dofs[0], basis.facet_dofs[0]])] = True
+        if body.pulled:
+            sides &= at[0] < 0
+        on_x = {"clamped": back, "roller": sides, "sides": sides}[body.support]
+        on_y = {"clamped": back, "roller": back, "sides": sides}[body.support]
+        plates += [offset + np.flatnonzero(on_x & along_x), offset + np.flatnonzero(on_y & ~along_x)]
+        nodes = np.flatnonzero(face)
+        glued.append(offset + nodes[np.lexsort((at[0, nodes], ~along_x[nodes]))])
+        offset += basis.N
+    K = skfem.bmat([[bodies[0][3], None], [None, bodies[1][3]]], "csr")
+    one = np.arange(offset)
+    one[glued[1]] = glued[0]
+    kept = np.setdiff1d(np.arange(offset), glued[1])
+    numbers = np.empty(offset, int)
+    numbers[kept] = np.arange(len(kept))
+    J = sp.csr_matrix((np.ones(offset), (np.arange(offset), numbers[one])), (offset, len(kept)))
+    K = (J.T @ K @ J).tocsc()
+    held = numbers[np.concatenate(plates)]
+    free = np.setdiff1d(np.arange(len(kept)), held)
+    u = np.zeros((len(kept), 2))
+    u[numbers[plates[2]], 0] = u[numbers[plates[3]], 1] = 1.0
+    solve = spla.splu(K[free][:, free])
+    for column in range(2):
+        u[free, column] = solve.solve(-(K[free][:, held] @ u[held, column]))
+    return np.linalg.inv(u.T @ (K @ u))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("changes", [{}, CLAMPED, PULLED], ids=["sides and roller", "clamped", "pulled"])
+def test_stiffness_against_another_element_family(changes):
+    scene = parse_scene(SCENE).replace({**changes, "fem.size": None, "fem.accuracy": 1e-3, "load.steps": 1})
+    found = run(scene, "fem")["fem"]
+    other = bonded(scene, found.a)
+    assert np.diag(found.plates.compliance) == pytest.approx(np.diag(other), rel=1e-4)
+    assert found.plates.compliance == pytest.approx(other, abs=2e-4 * other.max())
+    assert 0 < found.plates.error < 3e-4
+
+
+@pytest.mark.parametrize("spring", [None, 3e9])
+@pytest.mark.parametrize("changes", [{}, ALIKE], ids=["coupled", "mirror images"])
+def test_displacements_of_plates_are_the_inverse_of_forces(changes, spring):
+    """On one mesh: moved as far as Q moves them, plates bear Q; all else is the same. An elastic actuator goes Q/k
+    farther."""
+    found = solved(changes)
+    given = found.plates.displacement + (found.plates.Q / spring if spring else 0.0)
+    back = solved({**changes, "load.Q": [0.0, 0.0], "load.displacement": given.tolist(), "load.spring": spring})
+    assert np.abs(back.plates.Q / found.plates.Q - 1).max() < 1e-9
+    assert back.plates.displacement == pytest.approx(found.plates.displacement, rel=1e-9)
+    assert (back.m, back.n, back.a) == pytest.approx((found.m, found.n, found.a), rel=1e-9)
+    assert back.certificate["kkt"] < 1e-9
+
+
+@pytest.mark.fault
+def test_an_actuator_that_is_softer_in_steps_than_between_them(monkeypatch):
+    """Deliberate fault: steps take an elastic actuator for softer than the path does that leads to them."""
+    step = coupled.LoadStep
+
+    def softer(*given):
+        return step(*given[:10], *(actuator and 1.1 * actuator for actuator in given[10:]))
+
+    monkeypatch.setattr(coupled, "LoadStep", softer)
+    found = solved()
+    given = found.plates.displacement + found.plates.Q / 3e9
+    back = solved({"load.Q": [0.0, 0.0], "load.displacement": given.tolist(), "load.spring": 3e9})
+    assert np.abs(back.plates.Q / found.plates.Q - 1).max() > 1e-3
+
+
+@pytest.mark.parametrize("changes", [{}, ALIKE], ids=["coupled", "mirror images"])
+def test_work_of_the_actuator_is_what_friction_consumes(changes):
+    """Where Q alone changes; on the way, load steps leave out what the loop is rounder than a polygon."""
+    off = []
+    for steps in (4, 8, 16):
+        found = solved({**changes, "load.steps": steps, "load.Q": [-30e3, 30e3]})
+        off.append(abs(found.plates.work / found.slip.dissipated - 1))
+    assert off[2] < off[1] / 1.8 < off[0] / 3.2
+    assert off[2] < 1.2e-2
+
+
+def test_mirror_images_turn_the_displacement_round():
+    one, other = solved(ALIKE), solved({**ALIKE, "load.Q": [-5e3, -30e3]})
+    assert other.plates.displacement == pytest.approx(-one.plates.displacement, rel=1e-3)  # no mesh is even
+    assert other.plates.approach == pytest.approx(one.plates.approach, rel=1e-5)
+
+
+def test_plates_that_stand_still_bear_what_tension_asks_for():
+    """A specimen that is pulled on between plates that do not move takes its pad along: Q against the pull, as much
+    less than by the stuck stiffness as slips."""
+    free = solved(PULLED | {"load.Q": [0.0, 0.0], "load.sigma": [-1e7, 1e7]})
+    held = solved(PULLED | {"load.Q": [0.0, 0.0], "load.displacement": [0.0, 0.0], "load.sigma": [-1e7, 1e7]})
+    stuck = -free.plates.displacement * held.plates.stiffness[0]
+    assert held.plates.displacement == pytest.approx([0.0, 0.0], abs=1e-18)
+    assert np.all(np.sign(held.plates.Q) == np.sign(stuck))
+    assert np.all(np.abs(held.plates.Q) < np.abs(stuck))
+    assert np.all(np.abs(held.plates.Q) > 0.8 * np.abs(stuck))
+
+
+def test_units_do_not_matter():
+    """Bodies ten times as large under ten times the force per depth move ten times as far and are as stiff."""
+    large = {"load.P": 1357500.0, "load.Q": [5e4, 30e4], "profile.R": 0.1}
+    large |= {"bodies.upper": {"width": 6e-2, "height": 3e-2}, "bodies.lower": {"width": 8e-2, "height": 2e-2}}
+    one, other = solved().plates, solved(large).plates
+    assert other.displacement == pytest.approx(10 * one.displacement, rel=1e-9)
+    assert other.stiffness == pytest.approx(one.stiffness, rel=1e-9)
+
+
+def test_half_planes_have_no_plates():
+    assert solved({"bodies.lower": None, "bodies.upper": None}).plates is None
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"load.Q": [0.0, 0.0], "load.displacement": [-1e-4, 1e-4]}, r"load.displacement: must keep \|Q\| below f P"),
+        (
+            {"load.displacement": [-1e-6, 1e-6]},
+            r"load.Q = \[5000.0, 30000.0\]: must be left out with load.displacement",
+        ),
+        ({"load.spring": 1e9}, "load.spring = 1000000000.0: must be given only with load.displacement"),
+        ({"load.Q": [0.0, 0.0], "load.displacement": [-1e-6, 1e-6], "bodies.lower": None}, "a half-plane has no plate"),
+        ({"load.Q": [0.0, 0.0], "load.displacement": [-1e-6, 1e-6], "friction.f": 0.0}, "friction.f = 0: must be > 0"),
+        ({"load.Q": [0.0, 0.0], "load.displacement": [0.0, 1e-6], "load.sigma": [0.0, 1e6, 0.0]}, "as many numbers as"),
+        ({"load.Q": [0.0, 0.0], "load.displacement": [0.0, 1e-6], "effects.friction": False}, "effects.friction"),
+    ],
+)
+def test_bad_input_is_one_line(changes, told):
+    with pytest.raises(InputError, match=told):
+        solved(changes)
+
+
+def test_only_finite_elements_find_q():
+    scene = parse_scene(SCENE).replace({"load.Q": [0.0, 0.0], "load.displacement": [-1e-6, 2e-6]})
+    with pytest.raises(InputError, match="must have fem among them"):
+        run(scene, "exact")
+    both = run(scene, ("exact", "fem"))
+    assert both.scene.load.points[0][0] == pytest.approx(both["fem"].plates.Q[0], rel=1e-12)
+    assert both["exact"].traction.dq.size
+    with pytest.raises(InputError, match="only runs with fem find Q"):
+        _ = scene.load.points
