@@ -273,6 +273,6 @@ def test_more_than_the_memory_holds(rejected, monkeypatch):
 
 @pytest.mark.parametrize("name", ["results.json", "tractions.csv", "report.html"])
 def test_a_folder_where_a_file_must_go(rejected, tmp_path, name):
-    place = Path("results", "hertz-shear", name)
+    place = Path("mine", name)
     (tmp_path / place).mkdir(parents=True)
-    assert rejected(None, SHIPPED) == f"partialslip: {place}: cannot be written: is a folder\n"
+    assert rejected(None, [*SHIPPED, "--out", "mine"]) == f"partialslip: {place}: cannot be written: is a folder\n"

@@ -106,13 +106,16 @@ def test_commands(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["benchmark", "list"]) == 0
     assert main(["benchmark", "run", "--code", "march", "--problems", "PS-02"]) == 0
-    assert main(["benchmark", "score", "results/benchmark-march"]) == 0
+    (answers,) = tmp_path.glob("results/benchmark-march-*")
+    assert f"in {answers.relative_to(tmp_path)} (settings: problems)" in capsys.readouterr().out
+    assert main(["benchmark", "score", str(answers)]) == 0
     assert "partialslip march" in capsys.readouterr().out
-    assert main(["benchmark", "build", "results/benchmark-march", "--problems", "PS-02"]) == 0
-    page = (tmp_path / "results/benchmark/book.html").read_text("utf-8")
+    assert main(["benchmark", "build", str(answers), "--problems", "PS-02"]) == 0
+    (book,) = {*(tmp_path / "results").iterdir()} - {answers}
+    page = (book / "book.html").read_text("utf-8")
     assert "PS-02 Cattaneo and Mindlin" in page
     assert "partialslip march" in page
-    assert {path.name for path in (tmp_path / "results/benchmark").iterdir()} >= {
+    assert {path.name for path in book.iterdir()} >= {
         "book.html", "problems.zip", "badge-partialslip-march.svg",
     }  # fmt: skip
     assert main(["benchmark", "run", "--code", "ansys"]) == 2

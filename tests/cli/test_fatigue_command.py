@@ -2,6 +2,8 @@
 
 import csv
 import json
+import os
+import re
 
 import pytest
 
@@ -22,7 +24,7 @@ def test_tables_and_files(here, capsys):
     printed = capsys.readouterr().out
     for line in ("fretting-aluminium, lower body, by exact: 8 load points", "Averaged over 0.05 mm", "ruiz F2 = "):
         assert line in printed
-    folder = here / "results" / "fretting-aluminium-fatigue"
+    (folder,) = here.glob("results/fretting-aluminium-fatigue-*")
     names = {path.name for path in folder.iterdir() if not path.name.startswith(".")}
     texts = {"fatigue.json", "along-surface.csv", "over-depth.csv", "report.html"}
     assert names == texts | {"stresses.svg", "criteria.svg", "planes.svg"}
@@ -46,18 +48,21 @@ def test_criteria_in_capitals_and_the_former_name_of_an_option(here):
     """--method is the former name of --with: the same settings, so the same folder."""
     for how in (["--with", "exact"], ["--method", "exact"]):
         assert main(["fatigue", "fretting-aluminium", "--criterion", "SWT", *how]) == 0
-    assert [path.name for path in (here / "results").iterdir()] == ["fretting-aluminium-fatigue"]
+    assert len(list((here / "results").iterdir())) == 1
 
 
-def test_the_same_request_writes_to_the_same_folder(here):
-    ruiz = ["fatigue", "fretting-aluminium", "--criterion", "ruiz"]
-    for _ in range(2):
-        assert main(ruiz) == 0
-    assert main([*ruiz, "--distance", "50e-6"]) == 0
-    assert {path.name for path in (here / "results").iterdir()} == {
-        "fretting-aluminium-fatigue",
-        "fretting-aluminium-fatigue-2",
-    }
+def test_the_same_request_writes_to_the_same_folder(here, capsys):
+    """Constants of the criteria are settings here; those of the scene have the usual folder, however they are given."""
+    run = ["fatigue", "fretting-aluminium"]
+    every = [*run, "--criterion", "principal,swt,ruiz"]
+    for arguments in ([*run, "--distance", "50e-6"], [*run, "--set", "fatigue.distance=50e-6"], run, every):
+        assert main(arguments) == 0
+    assert len(list((here / "results").iterdir())) == 2
+    found = [line.rpartition(" in ")[2] for line in capsys.readouterr().out.splitlines() if line.startswith("written")]
+    usual = os.path.join("results", "fretting-aluminium-fatigue")
+    assert found[0] == found[1]
+    assert re.fullmatch(re.escape(usual) + r"-[0-9a-f]{8} \(settings: fatigue.distance\)", found[0])
+    assert found[2:] == [usual, usual]
 
 
 @pytest.mark.parametrize(

@@ -44,7 +44,7 @@ def test_a_reader_that_has_gone(tmp_path, arguments):
     code, _, said = partialslip(tmp_path, *arguments, stdout=writer)
     os.close(writer)
     assert (code, said) == (141, "")
-    assert (tmp_path / "results" / "hertz-shear" / "results.json").exists() == (arguments == EXACT)
+    assert len(list(tmp_path.glob("results/hertz-shear-*/results.json"))) == (arguments == EXACT)
 
 
 @pytest.mark.parametrize(("closing", "code"), [(">&-", 2), ("2>&-", 2), ("2>/dev/full", 2), ("<&-", 2)])

@@ -1,6 +1,6 @@
 """Exported decks and meshes: what is in them is the scene."""
 
-import os
+import re
 from dataclasses import replace
 from itertools import pairwise
 
@@ -326,6 +326,22 @@ def test_command(tmp_path, monkeypatch, capsys):
     coarse = ("--size", "0.5", "--growth", "1")
     for to, options in (("calculix", []), ("abaqus", []), ("calculix", []), ("calculix", ["--stiffer", "2"])):
         assert main(["export", SCENE, "--to", to, *coarse, *options]) == 0
-    assert capsys.readouterr().out.splitlines()[-1].startswith(f"written: results{os.sep}{SCENE}-calculix-2.inp (")
-    decks = sorted(path.name for path in (tmp_path / "results").iterdir())
-    assert decks == [f"{SCENE}-{end}.inp" for end in ("abaqus", "calculix-2", "calculix")]
+    written = capsys.readouterr().out.splitlines()
+    assert written[0] == written[2]
+    assert written[3].endswith(".inp (settings: size, growth, stiffer)")
+    decks = sorted(re.sub("-[0-9a-f]{8}[.]", "-HASH.", path.name) for path in (tmp_path / "results").iterdir())
+    assert decks == [f"{SCENE}-{to}-HASH.inp" for to in ("abaqus", "calculix", "calculix")]
+
+
+def test_the_deck_of_the_scene_alone_has_the_usual_name(tmp_path, monkeypatch):
+    """Whatever was written before, and however its own settings are given. An edited deck stays."""
+    monkeypatch.chdir(tmp_path)
+    for options in (["--size", "0.5"], [], ["--size", "5e-2", "--set", "load.steps=1"]):
+        assert main(["export", SCENE, "--to", "gmsh", *options]) == 0
+    usual = tmp_path / "results" / f"{SCENE}-gmsh.msh"
+    assert len(list(usual.parent.iterdir())) == 2
+    mesh = usual.read_bytes()
+    usual.write_text("edited", "utf-8")
+    assert main(["export", SCENE, "--to", "gmsh"]) == 0
+    assert usual.read_text("utf-8") == "edited"
+    assert mesh in [path.read_bytes() for path in usual.parent.iterdir()]

@@ -8,6 +8,7 @@ import pytest
 
 import partialslip
 from partialslip import halfplane
+from partialslip.methods import METHODS
 
 SCENE = partialslip.load_scene("fretting-aluminium")
 
@@ -60,6 +61,38 @@ def test_coordinates_are_broadcast(exact):
     found = exact.stress_at(x, y)
     assert found.shape == (2, 3, 2, 3)
     np.testing.assert_allclose(found[..., 1, 2], exact.stress_at(x[2], y[1, 0]), rtol=0, atol=1e-12 * exact.p0)
+
+
+KINDS = {  # changes of the scene, and the methods that solve it
+    "one pressure": ({}, ("exact", "march", "fem")),
+    "sliding": ({"load": {"Q": [-5e4, 5e4]}}, ("exact", "march", "fem")),
+    "varying pressure": ({"load": {"P": [1e5, 1.3e5], "sigma": [0.0, 0.0]}}, ("exact", "march", "fem")),
+    "unlike materials": ({"material": {"upper": {"E": 2.1e11, "nu": 0.3}}}, ("march", "fem")),
+    "blocks": ({"bodies": {"lower": {"width": 0.02, "height": 0.01}}}, METHODS),
+}
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(("kind", "method"), [(kind, method) for kind, (_, some) in KINDS.items() for method in some])
+def test_tractions_are_nan_at_nan_and_zero_at_infinity(kind, method):
+    scene = SCENE.replace(KINDS[kind][0], fem={"accuracy": 1e-2})
+    result = partialslip.run(scene, [method])[method]
+    x = result.a * np.array([[0.3, np.nan, np.inf], [np.nan, -np.inf, 10]])
+    found = [each for each in result.traction.at(x) if each is not None]
+    for each in found:
+        np.testing.assert_array_equal(each.ravel()[1:], [np.nan, 0, np.nan, 0, 0])
+        assert np.isfinite(each[0, 0])
+    assert all(np.isnan(each) for each in result.traction.at(np.nan) if each is not None)
+    np.testing.assert_array_equal(result.traction.at([]).p, [])
+
+
+def test_tractions_of_a_table_are_nan_at_nan_and_zero_at_infinity(tmp_path):
+    x = np.linspace(-2e-4, 2e-4, 9)
+    table = "\n".join(["x,p,dq", *(f"{each},{4e8 - 1e16 * each**2},{1e8 - 2.5e15 * each**2}" for each in x)])
+    (tmp_path / "mine.csv").write_text(table, "utf-8")
+    at = partialslip.score(SCENE, tmp_path / "mine.csv")["mine.csv"].traction.at([0, np.nan, np.inf, -np.inf])
+    np.testing.assert_allclose(at.p, [4e8, np.nan, 0, 0])
+    np.testing.assert_allclose(at.dq, [1e8, np.nan, 0, 0])
 
 
 def test_points_that_are_none_are_refused_in_one_line(exact):

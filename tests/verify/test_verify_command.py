@@ -210,6 +210,31 @@ def test_a_case_that_changed_under_its_name_is_solved_again(change, tmp_path, mo
     assert verified.again == (() if change == "nothing" else ("made",))
 
 
+def test_settings_that_are_not_the_defaults_have_folders_of_their_own(tmp_path, monkeypatch):
+    """Whatever ran before, and also if the defaults are given."""
+
+    def verified(_settings, _makers, _keys, _studies, folder, *_):
+        (folder / "results.json").write_text("{}", "utf-8")
+        folders.append(folder.name)
+        return driver.Verification({}, [])
+
+    monkeypatch.setattr(driver, "_verify", verified)
+    monkeypatch.chdir(tmp_path)
+    folders = []
+    for name, settings in (
+        ("quick", {"ladder": True}),
+        ("quick", {"only": ["hertz-shear"]}),
+        ("quick", {}),
+        ("stress", {"seed": 1}),
+        ("stress", {"seed": 0, "count": 100, "method": "exact"}),
+        ("stress", {}),
+    ):
+        found = driver.verify_suite(name, **settings)
+        assert bool(found.elsewhere) == (len(folders[-1].split("-")) == 3)
+    assert (folders[2], folders[4], folders[5]) == ("verify-quick", "verify-stress", "verify-stress")
+    assert len({*folders}) == 5
+
+
 def test_two_processes_find_what_one_finds(tmp_path):
     """And Python gives the verdicts that the command writes."""
     one, two = (

@@ -53,7 +53,7 @@ def add(commands: "Commands") -> None:
                       "fem-P1, fem-P2, equivalent, calculix-mortar, calculix-penalty, getfem, getfem-graded or "
                       "kratos")  # fmt: skip
     runs.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
-    add_out(runs, "results/benchmark-CODE")
+    add_out(runs, "results/benchmark-CODE[-HASH]")
     runs.set_defaults(command=_run, overrides=[])
 
     reads = parts.add_parser("read", help="turn a table of tractions into an answer",
@@ -85,10 +85,10 @@ def add(commands: "Commands") -> None:
                               "decks, and a scoreboard and badges of the given answers.",
                               examples=["partialslip benchmark build",
                                         "partialslip benchmark build my-answers results/benchmark-march"])  # fmt: skip
-    builds.add_argument("folders", nargs="*", metavar="FOLDER", help="folders with answers")
+    builds.add_argument("folders", nargs="*", default=[], metavar="FOLDER", help="folders with answers")
     builds.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
     add_pdf(builds)
-    add_out(builds, "results/benchmark")
+    add_out(builds, "results/benchmark[-HASH]")
     builds.set_defaults(command=_build, overrides=[])
 
 
@@ -110,15 +110,15 @@ def _run(options: argparse.Namespace) -> int:
 
     check_folder(options.out)
     installed(options.code)
-    some = chosen_problems(options.problems)
+    some, name = chosen_problems(options.problems), f"benchmark-{options.code}"
     with (
-        results_folder(options, "benchmark", f"benchmark-{options.code}", None) as (folder, passed),
+        results_folder(options, "benchmark", name, None, {}, lambda: {"code": options.code}) as (folder, elsewhere),
         counting(options.code) as progress,
     ):
         found = code_answers(options.code, some, progress, folder)
     console = output()
     code = _print_grades(found, some)
-    print_written([folder / META, *(folder / f"{number}.json" for number in found.answers)], console, passed)
+    print_written([folder / META, *(folder / f"{number}.json" for number in found.answers)], console, elsewhere)
     return code
 
 
@@ -202,7 +202,7 @@ def _build(options: argparse.Namespace) -> int:
     some = chosen_problems(options.problems)
     submissions = [read_submission(folder, read_problems()) for folder in options.folders]
     names = badge_names(submissions)
-    with results_folder(options, "benchmark", "benchmark", None) as (folder, passed):
+    with results_folder(options, "benchmark", "benchmark", None) as (folder, elsewhere):
         html, data = book_page(some, submissions, origin(options)), book_zip(some)
         badges = dict(zip(names, map(badge, submissions), strict=True))
         files = write_texts(Path(folder), {"book.html": html} | badges)
@@ -214,5 +214,5 @@ def _build(options: argparse.Namespace) -> int:
                 raise
         else:
             files += write_pdf(html, Path(folder), "book.pdf")
-    print_written(files, output(), passed)
+    print_written(files, output(), elsewhere)
     return 0

@@ -1,11 +1,12 @@
 """Functions shared by several commands."""
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import partialslip
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
 
     from partialslip.batch.ledger import Ledger
     from partialslip.origin import Made
-    from partialslip.output.place import Place
+    from partialslip.output.place import Place, Request
     from partialslip.report.page import Section
     from partialslip.run import Run
     from partialslip.scene import Scene
@@ -45,9 +46,10 @@ def add_out(
     metavar: str = "DIR",
 ) -> None:
     """Add ``--out``, with the default ``usual`` and ``short`` forms, and ``--force`` to ``parser``."""
-    parser.add_argument(*short, "--out", metavar=metavar, help=f"{what} (default: {usual})")
+    parser.add_argument(*short, "--out", metavar=metavar, help=f"{what} (default: {usual}, HASH of the options)")
     parser.add_argument("--force", action="store_true",
                         help="overwrite the files of another scene or other settings")  # fmt: skip
+    parser.set_defaults(default=parser.get_default)  # the command without options has a folder of its own
 
 
 def add_method(parser: argparse.ArgumentParser, text: str, **more: Any) -> None:
@@ -136,12 +138,12 @@ def check_folder(out: str | None) -> None:
 
 
 # Options that do not change the results.
-_NEUTRAL = {"command", "scene", "overrides", "own_process", "line"}
+_NEUTRAL = {"command", "scene", "overrides", "own_process", "line", "default"}
 _NEUTRAL |= {"out", "force", "json", "pdf", "verbose", "save", "processes", "cluster"}
 
 
 def results_folder(
-    options: argparse.Namespace, command: str, name: str, scene: "Scene | None", **inputs: object
+    options: argparse.Namespace, command: str, name: str, scene: "Scene | None", *more: Any
 ) -> "AbstractContextManager[Place]":
     """Choose and lock the folder for the files of a command (:func:`partialslip.output.place.placed`).
 
@@ -154,47 +156,92 @@ def results_folder(
         The usual folder is results/``name``.
     scene : Scene or None
         Scene as the user gave it.
-    inputs : optional
-        By option: an input file, whose content counts, or a setting as the command understands it.
+    more : optional
+        ``known``, ``usual`` and ``constants`` of :func:`request`.
     """
     from partialslip.output.place import placed
 
-    return placed(Path("results") / name, options.out, _request(options, command, scene, inputs), options.force)
+    asked = request(options, command, scene, *more)
+    return placed(Path("results") / name, options.out, asked, options.force)
 
 
 def folder_if_wanted(
-    options: argparse.Namespace, command: str, name: str, scene: "Scene", **inputs: object
+    options: argparse.Namespace, command: str, name: str, scene: "Scene", *more: Any
 ) -> AbstractContextManager[tuple[Path | None, str]]:
     """As :func:`results_folder`; but with ``--json`` and without ``--out`` there is no folder, None."""
     if options.json and options.out is None:
         return nullcontext((None, ""))
-    return results_folder(options, command, name, scene, **inputs)
+    return results_folder(options, command, name, scene, *more)
 
 
-def _request(
-    options: argparse.Namespace, command: str, scene: "Scene | None", inputs: Mapping[str, object]
-) -> dict[str, Any]:
-    """Return command, scene and settings as plain data: what must be the same for files to be overwritten."""
+def request(
+    options: argparse.Namespace,
+    command: str,
+    scene: "Scene | None",
+    known: Mapping[str, object] = {},
+    usual: Callable[[], Mapping[str, object]] = dict,
+    constants: bool = False,
+) -> "Request":
+    """Return what the command is asked for: what must be the same for files to be overwritten.
+
+    Parameters
+    ----------
+    options : Namespace
+    command : str
+    scene : Scene or None
+        Scene as the user gave it.
+    known : mapping
+        By option: an input file, whose content counts, or a setting as the command understands it.
+    usual : callable
+        ``usual()``: what of ``known`` the command takes without options, where it is not the default of the parser, and
+        what the usual folder is named after. Called only where it decides.
+    constants : bool
+        Whether constants of fatigue criteria change the results.
+    """
+    from partialslip.output.place import Request
+
+    def data(of: "Scene | None", settings: Mapping[str, object]) -> dict[str, Any]:
+        return {"command": command, "scene": _content(of, constants), "settings": _plain(settings)}
+
+    given = {key: value for key, value in vars(options).items() if key not in _NEUTRAL}
+    asked = data(scene, {**given, **known})
+    if options.out is not None:
+        return Request(asked, None)
+    try:
+        own = partialslip.load_scene(options.scene) if scene and options.overrides else scene
+    except InputError:  # the file lacks what --set gives
+        return Request(asked, None)
+    return Request(asked, data(own, {**{key: options.default(key) for key in given}, **usual()}))
+
+
+def _content(scene: "Scene | None", constants: bool) -> dict[str, Any]:
+    """Return ``scene`` as plain data, without its title; with its ``constants`` of fatigue criteria."""
+    if scene is None:
+        return {}
+    import msgspec
+
     from partialslip.batch.ledger import scene_content
+
+    fatigue = {"fatigue": msgspec.to_builtins(scene.fatigue)} if constants else {}
+    return {key: value for key, value in scene_content(scene).items() if key != "title"} | fatigue
+
+
+def _plain(settings: Mapping[str, object]) -> dict[str, object]:
+    """Return ``settings`` that are given, as plain data."""
     from partialslip.output.place import content
 
-    given = {key: value for key, value in vars(options).items() if key not in _NEUTRAL} | {**inputs}
     return {
-        "command": command,
-        "scene": {key: value for key, value in (scene_content(scene) if scene else {}).items() if key != "title"},
-        "settings": {
-            key: content(value) if isinstance(value, Path) else value
-            for key, value in given.items()
-            if value is not None and value is not False
-        },
+        key: content(value) if isinstance(value, Path) else value
+        for key, value in settings.items()
+        if value is not None and value is not False
     }
 
 
-def print_written(files: list[Path], console: "Console", passed: str = "") -> None:
-    """Print the paths of ``files`` on ``console``, and what the usual place holds if the files are elsewhere."""
+def print_written(files: list[Path], console: "Console", elsewhere: str = "") -> None:
+    """Print the paths of ``files`` on ``console``, and why they are ``elsewhere`` than usual, if they are."""
     places = [f"{', '.join(names)} in {folder}" for folder, names in _by_folder(files).items()]
     text = str(files[0]) if len(files) == 1 else "; ".join(places)
-    console.print(f"written: {text}{_instead(passed)}", soft_wrap=True, markup=False)
+    console.print(f"written: {text}{_why(elsewhere)}", soft_wrap=True, markup=False)
 
 
 def _by_folder(files: list[Path]) -> dict[Path, list[str]]:
@@ -205,31 +252,24 @@ def _by_folder(files: list[Path]) -> dict[Path, list[str]]:
     return folders
 
 
-def _instead(passed: str) -> str:
-    return f" ({passed})" if passed else ""
+def _why(elsewhere: str) -> str:
+    return f" ({elsewhere})" if elsewhere else ""
 
 
-def study_ledger(place: "Place") -> "Ledger":
-    """Open the ledger of a study in the folder ``place``, from which a stopped study continues.
-
-    Tell that the study starts in another folder than usual, and how to extend the usual one; and how many entries of
-    the ledger were made by other source files.
-    """
+def study_ledger(folder: Path) -> "Ledger":
+    """Open the ledger of a study in ``folder``, from which a stopped study continues. Tell how many entries of the
+    ledger were made by other source files."""
     from partialslip.batch.ledger import Ledger
     from partialslip.cli.consoles import messages
 
-    ledger = Ledger(place.path / "ledger.jsonl")
-    console = messages()
-    if place.passed:
-        text = f"{place.passed}; starting in {place.path}; --out and --force with the former folder reuse its cases"
-        console.print(text, soft_wrap=True, markup=False)
+    ledger = Ledger(folder / "ledger.jsonl")
     if count := ledger.outdated:
-        console.print(f"{ledger.path}: {count:,} entries ignored: made by other source files", markup=False)
+        messages().print(f"{ledger.path}: {count:,} entries ignored: made by other source files", markup=False)
     return ledger
 
 
 def print_outcome(
-    outcome: "Run", options: argparse.Namespace, files: list[Path], lines: Sequence[str] = (), passed: str = ""
+    outcome: "Run", options: argparse.Namespace, files: list[Path], lines: Sequence[str] = (), elsewhere: str = ""
 ) -> int:
     """Print a run and return the exit code.
 
@@ -242,8 +282,8 @@ def print_outcome(
         Files written.
     lines : sequence of str
         Lines to print before the last one.
-    passed : str
-        What the usual folder holds, if the files are elsewhere.
+    elsewhere : str
+        Why the files are not in the usual folder, if they are not.
     """
     from partialslip.cli.consoles import output
     from partialslip.report import print_run, record
@@ -253,7 +293,7 @@ def print_outcome(
     else:
         console, folders = output(), _by_folder(files)
         places = [str(folder if len(names) > 1 else folder / names[0]) for folder, names in folders.items()]
-        where = f"files in {', '.join(places)}{_instead(passed)}" if places else ""
+        where = f"files in {', '.join(places)}{_why(elsewhere)}" if places else ""
         print_run(outcome, console, verbose=options.verbose, lines=lines, where=where)
         if options.verbose and files:
             print_written(files, console)

@@ -40,7 +40,7 @@ def add(topics: "Commands") -> None:
     add_scene(cost)
     cost.add_argument("--repeats", type=int, default=3, metavar="N", help="repeats of each setting (default: 3)")
     cost.add_argument("--peers", metavar="FILE", help="results of other codes, JSON lines, to add to the diagram")
-    add_out(cost, "results/NAME-cost")
+    add_out(cost, "results/NAME-cost[-HASH]")
     add_verbose(cost, "the settings that another one beats in cost and error, and how errors fall with unknowns")
     add_pdf(cost)
     cost.set_defaults(command=_cost)
@@ -63,9 +63,9 @@ def _cost(options: argparse.Namespace) -> int:
     peers = ladder.read_peers(Path(options.peers), scene.name) if options.peers is not None else []
     name = f"{scene.name}-cost"
     known = {"peers": options.peers and Path(options.peers)}
-    with results_folder(options, "study cost", name, scene, **known) as place:
+    with results_folder(options, "study cost", name, scene, known) as place:
         folder = place.path
-        ledger = study_ledger(place)
+        ledger = study_ledger(folder)
         with working(name) as tell:
             found = ladder.measure_costs(scene, ledger, options.repeats, lambda *state: tell(_progress(*state)))
         texts = {
@@ -103,7 +103,7 @@ def _cost(options: argparse.Namespace) -> int:
         console.print(f"{len(found) - len(best)} other settings cost more for the error: --verbose, or cost.csv")
     for line in against:
         console.print(line, soft_wrap=True, markup=False)
-    print_written(files, console, place.passed)
+    print_written(files, console, place.elsewhere)
     return 0
 
 

@@ -31,7 +31,7 @@ def add(topics: "Commands") -> None:
         ],
     )
     add_scene(effects)
-    add_out(effects, "results/NAME-effects")
+    add_out(effects, "results/NAME-effects[-HASH]")
     add_pdf(effects)
     effects.set_defaults(command=_effects)
 
@@ -48,7 +48,7 @@ def _effects(options: argparse.Namespace) -> int:
     from partialslip.study.effects.figure import effects_svg
 
     name = f"{scene.name}-effects"
-    with results_folder(options, "study effects", name, scene) as (folder, passed), working(name) as tell:
+    with results_folder(options, "study effects", name, scene) as (folder, elsewhere), working(name) as tell:
         study = worth.study_effects(scene, tell)
         texts = {
             "effects.json": json_text(worth.effects_record(study)),
@@ -67,5 +67,5 @@ def _effects(options: argparse.Namespace) -> int:
     print_table(console, *worth.costs_table(study))
     for line in worth.refusals(study):
         console.print(line, soft_wrap=True, markup=False)
-    print_written(files, console, passed)
+    print_written(files, console, elsewhere)
     return 0

@@ -31,7 +31,7 @@ def add(commands: "Commands") -> None:
         ],
     )
     add_scene(equivalents)
-    add_out(equivalents, "results/NAME-equivalent")
+    add_out(equivalents, "results/NAME-equivalent[-HASH]")
     equivalents.set_defaults(command=_equivalent)
 
 
@@ -50,7 +50,7 @@ def _equivalent(options: argparse.Namespace) -> int:
         rig = rig_of(scene)
         found = stand_ins(scene, rig, tell)
     named = found.scene.replace(name=f"{scene.name}-half-planes", title=f"Half-planes that act like {scene.name}"[:200])
-    with results_folder(options, "equivalent", f"{scene.name}-equivalent", scene) as (folder, passed):
+    with results_folder(options, "equivalent", f"{scene.name}-equivalent", scene) as (folder, elsewhere):
         files = write_files(
             folder,
             {RIG: lambda path: write_rig(rig, path), SCENE: lambda path: path.write_text(scene_toml(named), "utf-8")},
@@ -61,7 +61,7 @@ def _equivalent(options: argparse.Namespace) -> int:
     console.print(f"{scene.name}: {in_words(scene, found.scene, found.data)}", markup=False)
     _print_shares(shares(rig, scene), console)
     console.print(f"The data hold where |x| <= {scene.units.length(rig.reach)}.", markup=False)
-    print_written(files, console, passed)
+    print_written(files, console, elsewhere)
     return 0
 
 

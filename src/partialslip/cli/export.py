@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_out, add_scene, print_written
+from partialslip.cli.common import add_out, add_scene, print_written, request
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
@@ -31,16 +31,16 @@ def add(commands: "Commands") -> None:
     exports.add_argument("--to", required=True, choices=_TO,
                          help="calculix, abaqus: an input deck, ready to run; gmsh: the meshes of both "
                          "bodies")  # fmt: skip
-    exports.add_argument("--size", metavar="H", default="0.05",
+    exports.add_argument("--size", metavar="H", default=0.05,
                          help="element size along the contact, in contact half-widths, if P varies in those of the "
                          "smallest contact (default: 0.05)")  # fmt: skip
-    exports.add_argument("--growth", metavar="G", default="0.1",
+    exports.add_argument("--growth", metavar="G", default=0.1,
                          help="growth of the element size per unit of distance from the contact (default: "
                          "0.1)")  # fmt: skip
     exports.add_argument("--width", metavar="W",
                          help="width of the blocks on either side of the contact, in contact half-widths (default: "
                          "wide enough for --size)")  # fmt: skip
-    exports.add_argument("--stiffer", metavar="K", default="1",
+    exports.add_argument("--stiffer", metavar="K", default=1.0,
                          help="make bodies K times stiffer and the gap K times flatter: same tractions, but smaller "
                          "slopes of the surfaces, which half-planes neglect (default: 1)")  # fmt: skip
     exports.add_argument("--ends", metavar="X,...",
@@ -51,7 +51,7 @@ def add(commands: "Commands") -> None:
                          "--size)")  # fmt: skip
     exports.add_argument("--penalty", action="store_true",
                          help="calculix: penalty contact instead of mortar contact")  # fmt: skip
-    add_out(exports, "results/NAME-TO.inp or .msh", "-o", what="file to write", metavar="FILE")
+    add_out(exports, "results/NAME-TO[-HASH].inp or .msh", "-o", what="file to write", metavar="FILE")
     exports.set_defaults(command=_export)
 
 
@@ -82,12 +82,14 @@ def _export(options: argparse.Namespace) -> int:
         penalty=options.penalty,
     )
     usual = Path("results") / f"{scene.name}-{options.to}{FORMATS[options.to]}"
-    path, passed = write_placed(usual, options.out, write, options.force)
-    print_written([path], output(), passed)
+    known = {"size": size, "growth": growth, "width": width, "stiffer": stiffer, "ends": ends or None, "fine": fine}
+    asked = request(options, "export", scene, known, lambda: {"to": options.to})
+    path, elsewhere = write_placed(usual, options.out, asked, write, options.force)
+    print_written([path], output(), elsewhere)
     return 0
 
 
-def _number(text: str, option: str, least: float, most: float) -> float:
+def _number(text: str | float, option: str, least: float, most: float) -> float:
     try:
         number = float(text)
     except ValueError:

@@ -50,7 +50,7 @@ def add(commands: "Commands") -> None:
     add_method(fatigue, told, choices=REFERENCES)
     fatigue.add_argument("--body", choices=("lower", "upper"), default="lower", metavar="BODY",
                          help="lower or upper (default: lower)")  # fmt: skip
-    add_out(fatigue, "results/NAME-fatigue", "-o")
+    add_out(fatigue, "results/NAME-fatigue[-HASH]", "-o")
     add_pdf(fatigue)
     fatigue.set_defaults(command=_fatigue)
 
@@ -75,8 +75,15 @@ def _fatigue(options: argparse.Namespace) -> int:
     except InputError as error:
         raise InputError(f"{options.scene}: {error}") from None
     name = f"{scene.name}-fatigue"
-    settings = {"criterion": names, "fatigue": scene_constants(scene), "distance": None}
-    with results_folder(options, "fatigue", name, scene, **settings) as (folder, passed), working(name) as tell:
+    known = {"criterion": names, "distance": None}  # the distance is in the scene
+
+    def usual() -> dict[str, object]:
+        return {"criterion": chosen(scene, None), "method": None}
+
+    with (
+        results_folder(options, "fatigue", name, scene, known, usual, True) as (folder, elsewhere),
+        working(name) as tell,
+    ):
         result = with_stresses(scene, options.method, tell)
         tell("criteria")
         found = assess(scene, result, names, body=options.body)
@@ -85,16 +92,8 @@ def _fatigue(options: argparse.Namespace) -> int:
         files = write_assessment(found, figures, folder)
         files += write_study(options, folder, f"{scene.name}: fatigue", scene, sections(found, figures))
     _print(found, console := output())
-    print_written(files, console, passed)
+    print_written(files, console, elsewhere)
     return 0
-
-
-def scene_constants(scene: "partialslip.Scene") -> dict[str, object]:
-    """Return the table fatigue of ``scene`` as plain data."""
-    import msgspec
-
-    constants: dict[str, object] = msgspec.to_builtins(scene.fatigue)
-    return {key: value for key, value in constants.items() if value is not None}
 
 
 def _print(found: "Assessment", console: "Console") -> None:

@@ -22,7 +22,7 @@ def add(commands: "Commands") -> None:
     )
     told = "a shipped scene or a TOML file, with the profile to map and the loads to mark (default: Hertz)"
     add_scene(maps, told, optional=True)
-    add_out(maps, "results/map, results/NAME-map")
+    add_out(maps, "results/map, results/NAME-map[-HASH]")
     maps.set_defaults(command=_map)
 
 
@@ -36,11 +36,11 @@ def _map(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import output, working
     from partialslip.map import place, stick_map, varying_map, write_map
 
-    with results_folder(options, "map", name, scene) as (folder, passed), working(name) as tell:
+    with results_folder(options, "map", name, scene) as (folder, elsewhere), working(name) as tell:
         data = varying_map(scene, tell) if scene and scene.presses_anew else stick_map(scene, tell)
         files = write_map(data, folder)
     console = output()
     for line in place(data):
         console.print(line, soft_wrap=True, markup=False)
-    print_written(files, console, passed)
+    print_written(files, console, elsewhere)
     return 0

@@ -24,7 +24,7 @@ def add(commands: "Commands") -> None:
     )
     told = "a shipped scene or a TOML file, with a Hertz profile; the sliders start at the scene's loads"
     add_scene(page, f"{told} (default: {_SCENE})", optional=True, usual=_SCENE)
-    add_out(page, "results/NAME-page", what="folder for page.html")
+    add_out(page, "results/NAME-page[-HASH]", what="folder for page.html")
     page.set_defaults(command=_page)
 
 
@@ -37,7 +37,7 @@ def _page(options: argparse.Namespace) -> int:
     from partialslip.output.files import write_texts
 
     text = live_page(scene)
-    with results_folder(options, "page", f"{scene.name}-page", scene) as (folder, passed):
+    with results_folder(options, "page", f"{scene.name}-page", scene) as (folder, elsewhere):
         files = write_texts(folder, {"page.html": text})
-    print_written(files, output(), passed)
+    print_written(files, output(), elsewhere)
     return 0

@@ -62,7 +62,7 @@ def add(commands: "Commands") -> None:
     runs.add_argument("--save", metavar="FILE",
                       help="write the state at the end of the load path to FILE, .npz (of fem, else of "
                       "march)")  # fmt: skip
-    add_out(runs, "results/NAME")
+    add_out(runs, "results/NAME[-HASH]")
     add_pdf(runs)
     add_verbose(runs, "limits, slip, certificates, costs by phase, and the effects with reasons")
     runs.add_argument("--json", action="store_true", help="print results.json and nothing else; files only with --out")
@@ -95,7 +95,14 @@ def _run(options: argparse.Namespace) -> int:
     priced_at, allowance = time.process_time(), None
     chosen = sorted({*(methods or default_methods(scene))})
     known = {"methods": chosen, "start": options.start and Path(options.start)}
-    with folder_if_wanted(options, "run", scene.name, scene, **known) as (folder, passed):
+
+    def usual() -> dict[str, object]:
+        if methods is None:
+            return {"methods": chosen}
+        # the default methods may take seconds to find: one of these two is always among them
+        return {"methods": sorted(default_methods(scene)) if {"fem", "equivalent"} & {*methods} else []}
+
+    with folder_if_wanted(options, "run", scene.name, scene, known, usual) as (folder, elsewhere):
         if price:
             scene = partialslip.load_scene(options.scene, [*price.overrides, *options.overrides])
             allowance = Allowance(budget - price.closing_s - price.start_s) if budget else None
@@ -119,7 +126,7 @@ def _run(options: argparse.Namespace) -> int:
                 save = Path(options.save)
                 files += write_files(save.parent, {save.name: _state(outcome).save})
             files += write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
-    return print_outcome(outcome, options, files, [_paid(price, outcome, priced_at)] if price else [], passed)
+    return print_outcome(outcome, options, files, [_paid(price, outcome, priced_at)] if price else [], elsewhere)
 
 
 def _budget(options: argparse.Namespace, scene: "Scene", methods: list[str] | None) -> float | None:

@@ -66,7 +66,7 @@ def add(commands: "Commands") -> None:
                         help="largest allowed error of a, m and n, as a fraction of a (p: 10 times, q: 15 times, at "
                         "most 0.1); or three numbers for contact, stick zone and tractions: 1e-3,1e-2,5e-2; none above "
                         "0.1")  # fmt: skip
-    add_out(scores, "results/NAME-FILE")
+    add_out(scores, "results/NAME-FILE[-HASH]")
     add_pdf(scores)
     add_verbose(scores, "what was read from the file, and costs and effects of the reference")
     scores.add_argument("--json", action="store_true", help="print results.json, nothing else; files only with --out")
@@ -105,8 +105,16 @@ def _score(options: argparse.Namespace) -> int:
     beside = file.with_suffix(".frd")  # has the mesh of a .dat
     mesh = beside if file.suffix.lower() == ".dat" and beside.is_file() else None
     known = {"file": file, "mesh": mesh, "factors": factors, "reference": options.reference or reference(scene).method}
+
+    def usual() -> dict[str, object]:
+        method = known["reference"] if options.reference is None else reference(scene).method
+        return known | {"factors": (1, 1, 1), "reference": method}
+
     name = f"{scene.name}-{file.stem}"
-    with folder_if_wanted(options, "score", name, scene, **known) as (folder, passed), working(scene.name) as tell:
+    with (
+        folder_if_wanted(options, "score", name, scene, known, usual) as (folder, elsewhere),
+        working(scene.name) as tell,
+    ):
         outcome = partialslip.score(
             scene,
             file,
@@ -120,7 +128,7 @@ def _score(options: argparse.Namespace) -> int:
             progress=tell,
         )
         files = write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
-    return print_outcome(outcome, options, files, passed=passed)
+    return print_outcome(outcome, options, files, elsewhere=elsewhere)
 
 
 def _bar(text: str) -> Asked:

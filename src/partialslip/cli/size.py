@@ -50,7 +50,7 @@ def add(topics: "Commands") -> None:
                       help="address of a Dask scheduler; the cluster's workers solve the cases")  # fmt: skip
     size.add_argument("--one-mesh", action="store_true",
                       help="one mesh per size, without further meshes to check the error of the mesh")  # fmt: skip
-    add_out(size, "results/NAME-size")
+    add_out(size, "results/NAME-size-HASH")
     add_pdf(size)
     size.set_defaults(command=_size)
 
@@ -83,7 +83,7 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", plac
     from partialslip.study.size.figure import grid_svg, size_svg
 
     folder = place.path
-    ledger = study_ledger(place)
+    ledger = study_ledger(folder)
     name = f"{scene.name}-size"
     with counting(name) as progress, workers(options.cluster, options.processes) as executor:
         entries = sizes.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
@@ -116,5 +116,5 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", plac
     figures = [Section(name.removesuffix(".svg"), (), text) for name, text in texts.items() if name.endswith(".svg")]
     sections = [*figures, *sections, *([Section("Notes", lines)] if lines else [])]
     page = write_study(options, folder, f"{scene.name}: size of the bodies", scene, sections)
-    print_written([ledger.path, *write_texts(folder, texts), *page], console, place.passed)
+    print_written([ledger.path, *write_texts(folder, texts), *page], console, place.elsewhere)
     return 1 if any(entry.error for entry in entries) else 0

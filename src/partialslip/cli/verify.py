@@ -46,7 +46,7 @@ def add(commands: "Commands") -> None:
     for field, what in (("project", "project"), ("author", "author"), ("reviewer", "reviewer"),
                         ("document", "document number")):  # fmt: skip
         verify.add_argument(f"--{field}", default="", metavar="TEXT", help=f"{what}, for the title block of the report")
-    add_out(verify, "results/verify-SUITE")
+    add_out(verify, "results/verify-SUITE[-HASH]")
     add_verbose(verify, "one row for each case and method, also if there are many and nothing is missed")
     verify.set_defaults(command=_verify)
 
@@ -82,7 +82,7 @@ def _verify(options: argparse.Namespace) -> int:
             soft_wrap=True,
             markup=False,
         )
-    print_written(verified.files, console, verified.passed_over)
+    print_written(verified.files, console, verified.elsewhere)
     if verified.missing:
         console.print(verified.missing, soft_wrap=True, markup=False)
     return verified.conclusion.code

@@ -1,15 +1,21 @@
-"""Choose the place of a command's files: nothing is overwritten in silence.
+"""Choose the place of a command's files: it follows from the request, and nothing is overwritten in silence.
 
-A hidden file in the folder holds the request that the files answer: command, scene and the settings that change the
-results. The same request overwrites the files. Other requests go to another folder, NAME-2, NAME-3 and so on; a folder
-that the user names is refused instead. A single file is overwritten only by the same content.
+A request is command, scene and the settings that change the results. The plain request is that of the command without
+options, for the scene as its file has it. A plain request goes to NAME, all others go to NAME-HASH, with a checksum of
+the request: the same request goes to the same folder, whatever ran before. One case is left: two scene files of one
+name, or two editions of one file, both have plain requests. Then NAME belongs to the request that it holds, and the
+other one goes to its NAME-HASH.
+
+A hidden file in the folder holds the request that the files answer. The same request overwrites the files. A folder
+that holds something else is refused. A single file is overwritten only by the same content.
 """
 
-import itertools
+import hashlib
 import json
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -26,8 +32,45 @@ RESULTS = ("results.json", "report.html", "ledger.jsonl", "effects.json", "fatig
 _TRIES, _PAUSE = 20, 0.1  # cost: s: the holder of a lock writes the request at once
 _LARGEST, _LARGEST_REQUEST = 2**40, 2**24  # limit: bytes of a file, and of a request
 _LONGEST, _MOST = 24, 3  # display: characters of a setting, and number of settings, in a message
+_DIGITS = 8  # limit: of a checksum in a name: two of 1,000 requests share one by a chance of 1e-4: one is refused
+_WHO = ("command", "scene.name")  # whose files they are
 
-Request = Mapping[str, Any]
+Data = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a command is asked for.
+
+    Parameters
+    ----------
+    asked : mapping
+        Plain data: ``command``, ``scene`` and ``settings``, with all that changes the results.
+    plain : mapping or None
+        The same of the command without options, for the scene as its file has it. None if there is no such request, as
+        the file needs an option to be a scene, or if the user names the place.
+    """
+
+    asked: Data
+    plain: Data | None
+
+    def __post_init__(self) -> None:
+        for key in ("asked", "plain"):  # as JSON reads them back
+            object.__setattr__(self, key, json.loads(json.dumps(getattr(self, key))))
+
+    def places(self, usual: Path, suffix: str = "") -> list[Path]:
+        """Return where the answer may go, the first choice first: ``usual`` for a plain request only, and ``usual``
+        with a checksum of the request before ``suffix``."""
+        text = json.dumps(self.asked, sort_keys=True)
+        digest = hashlib.sha256(text.encode()).hexdigest()[:_DIGITS]
+        own = usual.with_name(f"{usual.name.removesuffix(suffix)}-{digest}{suffix}")
+        return [usual, own] if self.asked == self.plain else [own]
+
+    @property
+    def changed(self) -> str:
+        """Names of the settings that differ from the plain request, in words; empty if none do."""
+        names = _differing(self.asked, self.plain) if self.plain is not None else []
+        return f"settings: {_some([_short(name) for name in names])}" if names else ""
 
 
 class Place(NamedTuple):
@@ -37,12 +80,12 @@ class Place(NamedTuple):
     ----------
     path : Path
         Folder or file.
-    passed : str
-        What the usual place holds, in words, if the files go elsewhere; empty otherwise.
+    elsewhere : str
+        Why this is not the usual place, in words: the settings, or what the usual place holds. Empty if it is.
     """
 
     path: Path
-    passed: str = ""
+    elsewhere: str = ""
 
 
 @contextmanager
@@ -52,23 +95,24 @@ def placed(usual: Path, out: str | Path | None, request: Request, force: bool = 
     Parameters
     ----------
     usual : Path
-        Folder if ``out`` is None. If it holds the answer to another request, ``usual``-2, ``usual``-3, ...
+        Folder of plain requests. If ``out`` is None, other requests, and a plain one if ``usual`` holds the answer to
+        another one, go to ``usual``-HASH (:meth:`Request.places`).
     out : str or Path or None
         Folder that the user names.
-    request : mapping
-        Plain data: ``command``, ``scene`` and ``settings``.
+    request : Request
     force : bool
         Whether to overwrite the answer to another request. No file is removed.
 
     Raises
     ------
     InputError
-        If ``out`` holds the answer to another request, the folder cannot be written, or another process answers the
-        same request there.
+        If the folder holds the answer to another request, it cannot be written, or another process answers the same
+        request there.
     """
-    asked, passed = _plain(request), ""
+    folders, elsewhere = (request.places(usual), request.changed) if out is None else ([Path(out)], "")
+    asked = dict(request.asked)
     with ExitStack() as stack:
-        for folder in [Path(out)] if out is not None else _numbered(usual, ""):
+        for folder in folders:
             held = None if force else _other(folder, asked)
             if held is None:
                 try:
@@ -78,22 +122,26 @@ def placed(usual: Path, out: str | Path | None, request: Request, force: bool = 
                         break
                     stack.pop_all().close()  # another process has just finished there
                 except FolderInUseError:
-                    if out is not None or (held := _asked_by_holder(folder, asked)) is None:
+                    if folder == folders[-1] or (held := _asked_by_holder(folder, asked)) is None:
                         raise
-            if out is not None:
+            if folder == folders[-1]:
                 raise InputError(f"--out {folder}: holds {held}: name another folder, or overwrite it with --force")
-            passed = passed or f"{folder} holds {held}"
+            elsewhere = f"{folder} holds {held}"
         stack.enter_context(_answering(folder, asked))
-        yield Place(folder, passed)
+        yield Place(folder, elsewhere)
 
 
-def write_placed(usual: Path, out: str | Path | None, write: Callable[[Path], object], force: bool = False) -> Place:
-    """Write one file: at ``out`` if the user names it, else at ``usual``, or ``usual``-2, ``usual``-3, ...
+def write_placed(
+    usual: Path, out: str | Path | None, request: Request, write: Callable[[Path], object], force: bool = False
+) -> Place:
+    """Write one file, at ``out`` if the user names it, else at ``usual`` or ``usual``-HASH, as :func:`placed` chooses a
+    folder. A file does not hold its request: its content decides whether it may be overwritten.
 
     Parameters
     ----------
     usual : Path
     out : str or Path or None
+    request : Request
     write : callable
         Writes to the path given to it.
     force : bool
@@ -102,37 +150,22 @@ def write_placed(usual: Path, out: str | Path | None, write: Callable[[Path], ob
     Raises
     ------
     InputError
-        If ``out`` has other content, or the folder cannot be written.
+        If the file has other content, or the folder cannot be written.
     """
-    passed = ""
-    for path in [Path(out)] if out is not None else _numbered(usual, usual.suffix):
-        if force:
-            write_files(path.parent, {path.name: write})
-            return Place(path)
+    paths, elsewhere = (request.places(usual, usual.suffix), request.changed) if out is None else ([Path(out)], "")
+    if force:
+        write_files(paths[0].parent, {paths[0].name: write})
+        return Place(paths[0], elsewhere)
+    for path in paths:
         if write_new_file(path, write):
-            return Place(path, passed)
-        if out is not None:
-            raise InputError(f"--out {path}: {_first_lines(path)}: name another file, or overwrite it with --force")
-        passed = passed or f"{path} {_first_lines(path)}"
-    raise AssertionError  # the numbers do not end
+            return Place(path, elsewhere)
+        elsewhere = f"{path} {_first_lines(path)}"
+    raise InputError(f"--out {path}: {_first_lines(path)}: name another file, or overwrite it with --force")
 
 
 def content(path: Path) -> list[str]:
     """Return the name of an input file, without the folder, and a checksum of its content, for a request."""
     return [path.name, checksum(path, _LARGEST)[:16]]
-
-
-def _numbered(usual: Path, suffix: str) -> Iterator[Path]:
-    """Yield ``usual`` and the same name with -2, -3, ... before ``suffix``, without end."""
-    yield usual
-    for number in itertools.count(2):
-        yield usual.with_name(f"{usual.name.removesuffix(suffix)}-{number}{suffix}")
-
-
-def _plain(request: Request) -> dict[str, Any]:
-    """Return ``request`` as JSON reads it back."""
-    plain: dict[str, Any] = json.loads(json.dumps(request))
-    return plain
 
 
 @contextmanager
@@ -153,7 +186,7 @@ def _answering(folder: Path, asked: dict[str, Any]) -> Iterator[None]:
         raise
 
 
-def _write_request(folder: Path, request: Request | None) -> None:
+def _write_request(folder: Path, request: Data | None) -> None:
     write_texts(folder, {NAME: json.dumps(request, indent=1) + "\n"})
 
 
@@ -194,25 +227,39 @@ def _files(folder: Path) -> dict[str, int]:
         return {}
 
 
-def _in_words(held: Request, asked: Request) -> str:
+def _in_words(held: Data, asked: Data) -> str:
     """Return the request ``held`` in words, with the settings that differ from ``asked``."""
-    theirs, ours = _flat(held), _flat(asked)
-    who = " ".join(str(theirs[key]) for key in ("command", "scene.name") if theirs.get(key))
-    if any(theirs.get(key) != ours.get(key) for key in ("command", "scene.name")):
+    theirs, differ = _flat(held), _differing(held, asked)
+    who = " ".join(str(theirs[key]) for key in _WHO if theirs.get(key))
+    if any(key in differ for key in _WHO):
         return who
-    differ = [key for key in {**theirs, **ours} if theirs.get(key) != ours.get(key)]
-    shown = [_setting(key, theirs.get(key)) for key in differ[:_MOST]]
-    more = [f"{len(differ) - _MOST} more"] if len(differ) > _MOST else []
-    return f"{who} with other settings: {', '.join(shown + more)}"
+    return f"{who} with other settings: {_some([_setting(key, theirs.get(key)) for key in differ])}"
+
+
+def _differing(one: Data, other: Data) -> list[str]:
+    """Return the dotted names of the settings in which two requests differ."""
+    first, second = _flat(one), _flat(other)
+    return [key for key in {**first, **second} if first.get(key) != second.get(key)]
+
+
+def _some(texts: list[str]) -> str:
+    """Return the first few of ``texts``, and how many more there are."""
+    more = [f"{len(texts) - _MOST} more"] if len(texts) > _MOST else []
+    return ", ".join(texts[:_MOST] + more)
 
 
 def _setting(key: str, value: object) -> str:
-    name = key.removeprefix("scene.").removeprefix("settings.")
+    name = _short(key)
     text = f"{value:g}" if isinstance(value, float) else json.dumps(value)
     return f"no {name}" if value is None else f"{name} = {text}" if len(text) <= _LONGEST else f"other {name}"
 
 
-def _flat(request: Request, before: str = "") -> dict[str, Any]:
+def _short(key: str) -> str:
+    """Return a dotted name of a request as the user knows it."""
+    return key.removeprefix("scene.").removeprefix("settings.")
+
+
+def _flat(request: Data, before: str = "") -> dict[str, Any]:
     """Return the settings of nested tables by dotted name."""
     flat: dict[str, Any] = {}
     for key, value in request.items():

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array, Indices
+from partialslip.arrays import Array, Indices, Mask
 from partialslip.errors import InputError
 from partialslip.shown import Short
 
@@ -28,7 +28,7 @@ class AtPoints:
     function: Callable[..., Any]
 
     def __call__(self, *coordinates: npt.ArrayLike) -> Any:
-        """Return the values at ``coordinates``, which are broadcast to one shape.
+        """Return the values at ``coordinates``, which are broadcast to one shape; NaN where a coordinate is NaN.
 
         Raises
         ------
@@ -40,14 +40,18 @@ class AtPoints:
         except (TypeError, ValueError) as error:
             raise InputError(f"points: must be numbers or arrays of numbers of shapes that fit: {error}") from None
         found = self.function(*(each.ravel() for each in points))
-        shape = points[0].shape
+        unknown = np.any([np.isnan(each) for each in points], axis=0)
         if isinstance(found, tuple):
-            return type(found)(*(_shaped(each, shape) for each in found))
-        return _shaped(found, shape)
+            return type(found)(*(_shaped(each, unknown) for each in found))
+        return _shaped(found, unknown)
 
 
-def _shaped(values: Array | None, shape: tuple[int, ...]) -> Any:
-    return None if values is None else values.reshape((*values.shape[:-1], *shape))[()]
+def _shaped(values: Array | None, unknown: Mask) -> Any:
+    """Return ``values`` (..., k) in the shape of the points, NaN at the ``unknown`` ones."""
+    if values is None:
+        return None
+    found = values.reshape((*values.shape[:-1], *unknown.shape))
+    return (np.where(unknown, np.nan, found) if unknown.any() else found)[()]
 
 
 def at_points(function: Callable[..., Any] | None) -> AtPoints | None:

@@ -60,7 +60,7 @@ class Traction(Short):
         Tractions at ``x``, (n,) each.
     at : callable
         ``at(x) -> TractionAt``: tractions at any points, a number, a list or an array of any shape (m), interpolated by
-        the method; zero outside the contact. It gives what ``values`` has, and None for the rest.
+        the method; zero outside the contact, NaN at NaN. It gives what ``values`` has, and None for the rest.
     breaks : (k,) array
         Points where the tractions are not smooth, m: the ends of the contact and of the stick zone.
     cells : (c + 1,) array or None

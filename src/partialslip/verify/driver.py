@@ -18,7 +18,7 @@ from partialslip.judge import Conclusion, Outcome
 from partialslip.methods import REFERENCES
 from partialslip.output.files import write_texts
 from partialslip.output.page import write_pdf
-from partialslip.output.place import placed
+from partialslip.output.place import Request, placed
 from partialslip.plan import plan
 from partialslip.report.figure import traction_svg
 from partialslip.report.files import PAGE, PDF, tractions_csv, write_page
@@ -54,15 +54,15 @@ class Verification:
         Library missing for the PDF; empty if the PDF was written.
     again : tuple of str
         Cases solved again, because scene, settings or source files had changed since an earlier, stopped run.
-    passed_over : str
-        What the usual folder holds, if the files are in another one; else empty.
+    elsewhere : str
+        Why the files are not in the usual folder; empty if they are.
     """
 
     verdicts: dict[str, list[CaseVerdict]]
     files: list[Path]
     missing: str = ""
     again: tuple[str, ...] = ()
-    passed_over: str = ""
+    elsewhere: str = ""
 
     @property
     def conclusion(self) -> Conclusion:
@@ -115,7 +115,7 @@ def verify_suite(
     out : str or Path, optional
         Folder for ``ledger.jsonl``, ``results.json``, ``results.csv``, ``report.html``, ``report.pdf`` and ``scenes``
         (``scene.toml``, ``tractions.csv``, ``tractions.svg`` and ``sketch.svg`` of each scene, except random ones).
-        Default: ``results/verify-SUITE``, or ``results/verify-SUITE-2`` and so on if that folder has other settings.
+        Default: ``results/verify-SUITE``, with other settings than the default ones ``results/verify-SUITE-HASH``.
     force : bool
         Whether to write into a folder that holds another verification or other results.
     include : sequence of str or Path
@@ -138,10 +138,10 @@ def verify_suite(
     settings, makers, keys = _cases(name, only, method, seed, count, ladder)
     settings = replace(settings, block=block)
     studies = [read_study(Path(each)) for each in include]
-    request = {"command": "verify", "settings": {**settings.asked, "only": settings.only}}
-    with placed(Path("results") / _folder(settings), out, request, force) as place:
+    request = Request(_request(settings), _request(_settings(name)))
+    with placed(Path("results") / f"verify-{name}", out, request, force) as place:
         done = _verify(settings, makers, keys, studies, place.path, processes, progress)
-    return dataclasses.replace(done, passed_over=place.passed)
+    return dataclasses.replace(done, elsewhere=place.elsewhere)
 
 
 def _verify(
@@ -221,26 +221,44 @@ def _cases(
     name: Suite, only: Sequence[str], method: str | None, seed: int | None, count: int | None, ladder: bool
 ) -> tuple[Settings, Makers, dict[str, str]]:
     """Return the settings, the functions that make the cases, and the ledger's keys, by case."""
+    settings = _settings(name, only, method, seed, count, ladder)
+    if settings.method is None or settings.seed is None or settings.count is None:
+        makers, extra = suite(name, only), {"ladder": list(SIZES)} if ladder else {}
+        return settings, makers, {case: key_of(_content(make()) | extra) for case, make in makers.items()}
+    makers = stress_suite(settings.method, settings.seed, settings.count, only)
+    # the name holds seed and number, which determine a random scene
+    return settings, makers, {case: key_of({"method": settings.method, "case": case}) for case in makers}
+
+
+def _settings(
+    name: Suite,
+    only: Sequence[str] = (),
+    method: str | None = None,
+    seed: int | None = None,
+    count: int | None = None,
+    ladder: bool = False,
+) -> Settings:
+    """Return the settings of a verification, with the defaults of the suite."""
     if name not in SUITES:
         raise InputError(f"--suite {name!r}: must be one of {', '.join(SUITES)}")
     settings = Settings(suite=name, only=tuple(only), ladder=ladder)
-    own = {"method": method, "seed": seed, "count": count}
     if name != "stress":
-        for key, value in own.items():
+        for key, value in {"method": method, "seed": seed, "count": count}.items():
             if value is not None:
                 raise InputError(f"--{key} {value}: only with --suite stress")
-        makers, extra = suite(name, only), {"ladder": list(SIZES)} if ladder else {}
-        return settings, makers, {case: key_of(_content(make()) | extra) for case, make in makers.items()}
+        return settings
     if ladder:
         raise InputError("--ladder: not with --suite stress: random scenes have no exact solution on each mesh")
     method = "exact" if method is None else method
     if method not in REFERENCES:
         raise InputError(f"--method {method!r}: must be one of {', '.join(REFERENCES)}")
     seed, count = _within("seed", seed, 0, 0), _within("count", count, 100, 1)
-    makers = stress_suite(method, seed, count, only)
-    # the name holds seed and number, which determine a random scene
-    keys = {case: key_of({"method": method, "case": case}) for case in makers}
-    return replace(settings, method=method, seed=seed, count=count), makers, keys
+    return replace(settings, method=method, seed=seed, count=count)
+
+
+def _request(settings: Settings) -> dict[str, Any]:
+    """Return what a verification is asked for as plain data (:class:`partialslip.output.place.Request`)."""
+    return {"command": "verify", "settings": {**settings.asked, "only": settings.only, "ladder": settings.ladder}}
 
 
 def _content(case: Case) -> dict[str, Any]:
@@ -265,12 +283,6 @@ def _within(key: str, value: int | None, usual: int, least: int) -> int:
     if not least <= number <= _MOST:
         raise InputError(f"--{key} {number}: must be a whole number from {least} to {_MOST}")
     return number
-
-
-def _folder(settings: Settings) -> str:
-    """Return the default name of the folder."""
-    parts = ["verify", settings.suite, settings.method, "only" if settings.only else None]
-    return "-".join(filter(None, parts))
 
 
 def _ledger(folder: Path) -> Ledger:
