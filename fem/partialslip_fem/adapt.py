@@ -79,7 +79,7 @@ def adapt(
         if refinement.finished:
             refinement.check_steps()
             if refinement.solution.enclosed:  # finer steps may lead to a wider contact
-                return refinement.adapted(max(refinement.goal.accuracy, refinement.error / goals.BAR))
+                return refinement.adapted(max(accuracy, refinement.error / goals.BAR))
         refinement.plan_next_mesh()
 
 
@@ -173,7 +173,7 @@ class _Refinement:
         if self.end_errors and not affordable:
             if self.error == np.inf:
                 self._estimate_together()
-            return self.adapted(max(self.goal.accuracy, worst(self.errors) / goals.BAR))
+            return self.adapted(max(self.problem.accuracy, worst(self.errors) / goals.BAR))
         if affordable and affordable is not self.goal:
             self.least = self.least * affordable.growth / self.goal.growth
             self.goal = affordable
