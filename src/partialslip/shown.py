@@ -40,12 +40,25 @@ class Drawn(Notebook):
 
     __slots__ = ()
 
-    def plot(self, axes: "Axes | None" = None) -> "Axes":
-        """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of all methods over x/a on matplotlib ``axes`` (default: new axes).
+    def plot(self, axes: "Axes | None" = None, what: str = "tractions", in_units: bool = False) -> "Axes":
+        """Draw tractions or stresses along the contact on matplotlib ``axes`` (default: new axes). Returns the axes.
 
-        A result alone does not know f: its plot shows q/p0. Returns the axes.
+        Parameters
+        ----------
+        axes : matplotlib Axes, optional
+        what : "tractions", "shear" or "stress"
+            p/p0 and q/(f p0), q = (q2 - q1)/2, of all methods; or q1 and q2; or sigma_xx along the surface of the lower
+            body at load points 1 and 2.
+        in_units : bool
+            Whether shear and stresses are drawn in the units of the scene over x, not in f p0 or p0 over x/a.
+            A result alone knows neither f nor the scene: its shear is scaled by p0, its units are SI.
+
+        Raises
+        ------
+        InputError
+            If ``what`` is none of these, or no method knows it.
         """
-        drawn: Axes = _display().plot(self, axes)
+        drawn: Axes = _display().plot(self, axes, what, in_units)
         return drawn
 
 

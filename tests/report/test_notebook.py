@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import partialslip
+from partialslip import InputError
 from partialslip.report import answer, rows
 from partialslip.report.files import tractions_csv
 
@@ -111,6 +112,39 @@ def test_plot_of_a_result_on_axes_of_ones_own(run):
     np.testing.assert_allclose(q * fem.p0, fem.traction.at(x * fem.a).dq / 2, atol=1e-9 * fem.p0)
     (zone,) = (patch for patch in mine.patches if patch.get_label().startswith("stick"))
     assert (zone.get_x(), zone.get_x() + zone.get_width()) == pytest.approx((-fem.m / fem.a, fem.n / fem.a))
+
+
+@pytest.mark.parametrize(("in_units", "across", "up"), [(False, "x/a", "q/(f p0)"), (True, "x in mm", "q in MPa")])
+def test_plot_of_shear_at_the_load_points(run, in_units, across, up):
+    axes = run.plot(what="shear", in_units=in_units)
+    assert (axes.get_xlabel(), axes.get_ylabel()) == (across, up)
+    exact = run.results["exact"]
+    a, unit = (1e-3, 1e6) if in_units else (exact.a, 0.5 * exact.p0)
+    lines = {line.get_label(): line.get_xydata() for line in axes.lines}
+    x, q = lines["q2, exact"].T
+    np.testing.assert_allclose(q * unit, exact.traction.at(x * a).q2, atol=1e-9 * exact.p0)
+    assert {"q1, exact", "q1, fem", "q2, fem", "bounds f p"} < lines.keys()
+    matplotlib.pyplot.close(axes.figure)
+
+
+def test_plot_of_stresses_and_a_title_above_it():
+    found = partialslip.run("hertz-shear", "exact", subsurface=True)
+    axes = found.plot(what="stress", in_units=True)
+    axes.set_title("Stress")
+    largest = max(np.max(line.get_ydata()) for line in axes.lines)
+    assert largest * 1e6 == pytest.approx(found["exact"].surface.largest[1], rel=1e-12)
+    axes.figure.draw_without_rendering()
+    assert not axes.title.get_window_extent().overlaps(axes.get_legend().get_window_extent())
+    matplotlib.pyplot.close(axes.figure)
+
+
+@pytest.mark.parametrize(
+    ("what", "in_units", "told"),
+    [("pressure", False, "must be one of"), ("stress", False, "no result of this run"), ("tractions", True, "share")],
+)
+def test_what_cannot_be_plotted_is_one_line(run, what, in_units, told):
+    with pytest.raises(InputError, match=told):
+        run.plot(matplotlib.figure.Figure().subplots(), what, in_units)
 
 
 def test_data_frames(run):

@@ -70,8 +70,13 @@ def mesh_svg(run: Run) -> str:
 
 def draw_run(axes: "Axes", run: Run) -> None:
     """Draw the tractions of all methods of ``run`` on ``axes``, scaled by the reference."""
+    draw_tractions(axes, from_reference(run), run.scene.friction)
+
+
+def from_reference(run: Run) -> dict[str, Result]:
+    """Return the results of ``run`` by method, that of the reference first."""
     first = run.reference or next(iter(run.results))
-    draw_tractions(axes, {first: run.results[first]} | run.results, run.scene.friction)
+    return {first: run.results[first]} | run.results
 
 
 def draw_tractions(axes: "Axes", results: Mapping[str, Result], friction: Friction | None = None) -> None:

@@ -5,10 +5,12 @@ from typing import TYPE_CHECKING
 from partialslip.judge import Comparison
 from partialslip.output.page import template
 from partialslip.report import answer, rows
-from partialslip.report.figure import draw_run, draw_tractions
+from partialslip.report.figure import from_reference
+from partialslip.report.levels import Shown, draw
 from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.scene import Scene
+from partialslip.units import SI
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,14 +22,15 @@ def html(what: Scene | Result | Comparison | Run) -> str:
     return template("partialslip.report", "notebook.html").render(named)
 
 
-def plot(what: Result | Run, axes: "Axes | None" = None) -> "Axes":
-    """Draw the tractions of ``what`` on ``axes`` (default: axes of a new pyplot figure). Returns the axes."""
+def plot(what: Result | Run, axes: "Axes | None", shown: Shown, in_units: bool) -> "Axes":
+    """Draw ``what`` on ``axes`` (default: axes of a new pyplot figure); see :func:`partialslip.report.levels.draw`.
+    Returns the axes."""
     if axes is None:
         from matplotlib import pyplot
 
         axes = pyplot.subplots(layout="constrained")[1]
     if isinstance(what, Result):
-        draw_tractions(axes, {what.method: what})
+        draw(axes, {what.method: what}, shown, None, SI if in_units else None)
     else:
-        draw_run(axes, what)
+        draw(axes, from_reference(what), shown, what.scene.friction, what.scene.units if in_units else None)
     return axes
