@@ -167,8 +167,10 @@ def test_missing_file(tmp_path):
 
 @pytest.mark.slow
 def test_a_pad_on_a_pulled_specimen_goes_on():
-    """Tension bends the specimen, so that p has a moment though the bodies do not turn: the state was refused."""
-    scene = load_scene(str(PAD), ["fem.accuracy=1e-2"])
+    """Tension bends the specimen, so that p has a moment though the bodies do not turn: the state was refused.
+
+    Both runs have meshes of their own, on which ends of zones differ by about a tenth of their estimates."""
+    scene = load_scene(str(PAD), ["fem.accuracy=1e-4"])
     found = run(scene, ["fem"])["fem"]
     again = run(scene, ["fem"], start=found.state)["fem"]
     assert (again.m, again.n) == pytest.approx((found.m, found.n), abs=1e-5 * found.a)
