@@ -47,7 +47,8 @@ def solve_sized(job: Job, keep: "Kept | None" = None) -> Sized:
     if not scene.finite:
         return Sized(labels=job.labels, run=plain, stresses=spots)
     try:
-        alike = run(scene, "equivalent")
+        alike = run(scene, "equivalent", subsurface=job.stresses)
+        spots |= {EQUIVALENT: hot_spots(scene, alike["equivalent"])} if job.stresses else {}
     except InputError as error:
         return Sized(labels=job.labels, run=plain, stresses=spots, refused=str(error))
     against = compared(scene, whole.plan, {"fem": whole["fem"], **alike.results}, None)

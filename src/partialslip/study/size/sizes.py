@@ -14,7 +14,7 @@ from partialslip.batch.job import Sharing
 from partialslip.batch.ledger import Ledger
 from partialslip.batch.sweep import Progress, sweep
 from partialslip.fatigue import HotSpot
-from partialslip.fatigue.spots import off_by
+from partialslip.fatigue.spots import SIGMA, off_by
 from partialslip.scene import Scene
 from partialslip.study.size.axes import ACCURACY, Axis, cases
 from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE, Sized, solve_sized
@@ -173,7 +173,8 @@ def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], d
     for name, (off, errors) in differences.items():
         for key, spot in meshes[-1].stresses.get(name, {}).items():
             if key in true:
-                off[key], errors[key] = off_by(spot, true[key]), _sum(spot.error, true[key].error)
+                own = spot.error if name == HALF_PLANE else _rig_error(meshes[-1])
+                off[key], errors[key] = off_by(spot, true[key]), _sum(own, true[key].error)
     return differences
 
 
@@ -188,6 +189,12 @@ def _with_mesh_errors(meshes: Sequence[Sized]) -> dict[str, HotSpot]:
         error = float(np.fmax(_sum(spot.error), changed))
         found[key] = replace(spot, error=None if math.isnan(error) else error)
     return found
+
+
+def _rig_error(entry: Sized) -> float:
+    """Return the error of the largest sigma_xx of equivalent half-planes that the mesh of the rig makes."""
+    assert entry.equivalent
+    return entry.equivalent.methods["equivalent"].shares.get("rig", {}).get(SIGMA) or 0.0
 
 
 def _sum(*errors: float | None) -> float:
