@@ -113,7 +113,8 @@ class Rig:
         return result
 
     def shares(self, p: Array, q: Array) -> tuple[Array, Array]:
-        """Shares (2, ..., k) of the lower and the upper body in :meth:`shift` and in :meth:`opening`."""
+        """Shares (2, ..., k) of the lower and the upper body in :meth:`shift` and in :meth:`opening` under tractions
+        with the moments ``p`` and ``q`` (..., k)."""
         of = self.terms
         shift, opening = q @ of.lower_xx + p @ of.lower_xy.T, p @ of.lower_yy + q @ of.lower_xy
         return np.stack([shift, self.shift(p, q) - shift]), np.stack([opening, self.opening(p, q) - opening])

@@ -14,7 +14,7 @@ from partialslip.units import Dimension
 
 _SURFACE = "surface"
 _MODELS = (FEM, HALF_PLANE, EQUIVALENT)
-NOT_ASKED = "no stresses: the scene has no table fatigue; --set effects.subsurface=true tells the largest sigma_xx"
+NOT_ASKED = "no stresses: not asked for by a table fatigue; --set effects.subsurface=true tells the largest sigma_xx"
 
 
 def stresses_of(study: SizeStudy) -> SizeStudy:
