@@ -45,21 +45,31 @@ def characterise_bodies(scene: Scene) -> Rig:
 def _terms(parts: Sequence[Part], sizes: tuple[float, float, float], order: int, backend: Backend) -> Terms:
     """Sum of the terms of all bodies, on a mesh of these ``sizes``, or by elements of this ``order`` on a given one."""
     points, places = chebyshev.chebpts1(_TERMS), chebyshev.chebpts1(_TERMS + 1)
-    forced, pulled = np.zeros((2, 2, _TERMS, _TERMS + 1)), np.zeros((2, _TERMS))
+    along, across = _to_powers(points), _to_powers(places)
+    even = not any(part.pulled or part.mesh for part in parts)  # bodies are their own mirror images, meshes are not
+    found, pulled = (
+        {"lower": np.zeros((3, _TERMS, _TERMS)), "upper": np.zeros((3, _TERMS, _TERMS))},
+        np.zeros((2, _TERMS)),
+    )
     for part in parts:
-        found = surroundings(part, _REACH * points, _REACH * places, order if part.mesh else _ORDER, sizes, backend)
+        around = surroundings(part, _REACH * points, _REACH * places, order if part.mesh else _ORDER, sizes, backend)
         # the mesh of the upper body is mirrored: along y, forces and displacements have the other sign
         way = 1 if part.name == "lower" else -1
-        forced += np.array([[1, way], [way, 1]])[..., None, None] * found.forced
-        pulled -= found.stretched  # of the lower body
-    along, across = _to_powers(points), _to_powers(places)
-    (xx, xy), (yx, yy) = (along @ forced @ across.T)[..., :_TERMS]
-    # by reciprocity
+        forced = np.array([[1, way], [way, 1]])[..., None, None] * around.forced
+        found[part.name] = _symmetric((along @ forced @ across.T)[..., :_TERMS], even)
+        pulled -= around.stretched  # of the lower body
+    xx, yy, xy = found["lower"] + found["upper"]
+    return Terms(xx, yy, xy, pulled @ along.T / _REACH, *found["lower"])
+
+
+def _symmetric(forced: Array, even: bool) -> Array:
+    """xx, yy and xy (3, k, k) from ``forced`` (2, 2, k, k), by reciprocity; zeros where ``even`` bodies have none."""
+    (xx, xy), (yx, yy) = forced
     xx, yy, xy = (xx + xx.T) / 2, (yy + yy.T) / 2, (xy + yx.T) / 2
-    if not any(part.pulled or part.mesh for part in parts):  # bodies are their own mirror images, which meshes are not
+    if even:
         odd = np.add.outer(range(_TERMS), range(_TERMS)) % 2 == 1
         xx, yy, xy = np.where(odd, 0.0, xx), np.where(odd, 0.0, yy), np.where(odd, xy, 0.0)
-    return Terms(xx, yy, xy, pulled @ along.T / _REACH)
+    return np.array([xx, yy, xy])
 
 
 def _to_powers(points: Array) -> Array:

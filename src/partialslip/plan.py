@@ -12,7 +12,7 @@ from msgspec.structs import replace
 
 from partialslip.errors import InputError
 from partialslip.gradual import may_turn_round, small_tension
-from partialslip.scene import WIDTHS, Bodies, Effects, Friction, Scene
+from partialslip.scene import WIDTHS, Bodies, Effects, Fatigue, Friction, Scene
 from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.units import Dimension
 
@@ -92,6 +92,13 @@ def plan(scene: AnyScene, *, subsurface: bool = False, start: bool = False) -> P
             left_out[effect] = f"forced off, though {own[effect][1]}" if off else why_not
     missing = {effect: why for effect, (needed, why, _) in own.items() if needed and forced.get(effect) is False}
     return Plan(called_for, left_out, missing)
+
+
+def asks_for_stresses(scene: Scene) -> bool:
+    """Whether sweeps and studies of ``scene`` are to find stresses: it has a constant of fatigue criteria, or forces
+    subsurface on. Plans for them then call for subsurface."""
+    forced = scene.effects.subsurface
+    return scene.fatigue != Fatigue() if forced is None else forced
 
 
 def reduced(scene: Scene) -> Scene:

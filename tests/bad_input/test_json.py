@@ -80,7 +80,7 @@ def test_every_number_that_is_written_is_read():
 
 READERS = {
     "results.json": (load_result, '{"schema": "partialslip/result/3", '),
-    "rig.json": (load_rig, '{"schema": "partialslip/rig/1", '),
+    "rig.json": (load_rig, '{"schema": "partialslip/rig/2", '),
     "PS-01.json": (lambda path: read_submission(path.parent, read_problems()), '{"values": {}, '),
     "peers.jsonl": (lambda path: read_peers(path, "s"), '{"scene": "s", '),
 }

@@ -184,3 +184,17 @@ def test_a_script_may_use_all_cores_without_a_guard(tmp_path):
     )
     done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False)
     assert (done.stdout, done.stderr) == ("begun\n2\n", "")
+
+
+@pytest.mark.usefixtures("solved")
+def test_a_scene_that_asks_for_stresses_has_columns_of_them():
+    """Values, places, errors against the reference, and estimates; a scene that does not ask has none, and no work."""
+    asking = SCENE.replace({"fatigue.distance": 5e-5, "fem.accuracy": 1e-3})
+    row = partialslip.sweep(asking, {"friction.f": F[:1]}, ["exact", "fem"]).iloc[0]
+    exact = partialslip.run(asking.replace({"friction.f": F[0]}), "exact", subsurface=True)["exact"]
+    assert (row["sigma_xx.x"], row["sigma_xx"]) == exact.surface.largest
+    for key in ("sigma_xx", "swt", "swt.line", "principal"):
+        assert row[f"fem.error.{key}"] == pytest.approx(abs(row[f"fem.{key}"] / row[key] - 1))
+        assert row[f"fem.error.{key}"] < row[f"fem.estimate.{key}"] < 0.1
+    plain = partialslip.sweep(SCENE, {"friction.f": F[:1]}, ["exact", "fem"])
+    assert not [name for name in plain if "sigma_xx" in name or "swt" in name]

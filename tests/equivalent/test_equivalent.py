@@ -34,7 +34,8 @@ def made(scene, reach=5e-3, **terms):
         arrays[key] = np.zeros((5, 5))
         for (i, j), value in terms.get(key, {}).items():
             arrays[key][i, j] = value * reach ** (i + j)
-    own = Terms(**arrays, pulled=np.zeros((2, 5)))
+    halves = {f"lower_{key}": arrays[key] / 2 for key in arrays}
+    own = Terms(**arrays, pulled=np.zeros((2, 5)), **halves)
     return Rig(key_of(scene), reach, own, own)
 
 

@@ -18,7 +18,8 @@ def rig(**terms):
     for key, some in terms.items():
         for (i, j), value in some.items():
             arrays[key][i, j] = arrays[key][j, i] = value
-    own = Terms(**arrays, pulled=np.zeros((2, 7)))
+    halves = {f"lower_{key}": arrays[key] / 2 for key in arrays}
+    own = Terms(**arrays, pulled=np.zeros((2, 7)), **halves)
     return Rig(key_of(SCENE), 4e-3, own, own)
 
 

@@ -16,7 +16,10 @@ from partialslip.batch.ledger import Ledger
 from partialslip.batch.sweep import Progress, Task, workers
 from partialslip.batch.sweep import sweep as work_through
 from partialslip.errors import InputError
+from partialslip.fatigue import HotSpot
+from partialslip.fatigue.spots import off_by
 from partialslip.frame import frame
+from partialslip.plan import asks_for_stresses
 from partialslip.record import Record
 from partialslip.run import chosen_methods
 from partialslip.scene import Scene
@@ -79,6 +82,11 @@ def sweep(
         missed or not judged; ``failure``: why the point could not be solved, empty if it was. Errors and estimates of
         a, m and n are fractions of a, those of p and q are relative L2. ``fem.factorizations``: 0 where a point
         found its meshes factored by another point. Values that do not exist are NaN or None.
+
+        A scene with constants of the table ``fatigue``, or with ``effects.subsurface = true``, also has ``sigma_xx``,
+        the largest along the surface of the lower body, Pa, and ``sigma_xx.x``, its place; of each criterion ``swt``,
+        ``swt.x`` and, with ``fatigue.distance``, ``swt.point``, ``swt.line`` and ``swt.area``
+        (:func:`partialslip.assess`); and ``error.*`` and ``estimate.*``, relative.
 
     Raises
     ------
@@ -146,6 +154,7 @@ def _job(scene: Scene, methods: Iterable[str] | None, point: Mapping[str, Any]) 
         scene,
         chosen_methods(scene, methods),
         {key: value if isinstance(value, float) else str(value) for key, value in point.items()},
+        asks_for_stresses(scene),
     )
 
 
@@ -163,11 +172,12 @@ def _row(point: Mapping[str, Any], solved: Solved, first: str | None = None) -> 
     """Columns of a point; those of fem do not precede those of the ``first`` method."""
     if solved.run is None:
         return {**point, **dict.fromkeys(("method", *_VALUES, "cpu_s", "outcome")), "failure": solved.error}
-    return {**point, **_columns(solved.run, first), "outcome": str(solved.run.outcome), "failure": ""}
+    return {**point, **_columns(solved, solved.run, first), "outcome": str(solved.run.outcome), "failure": ""}
 
 
-def _columns(run: Record, first: str | None) -> dict[str, Any]:
-    """Columns of a solved point, those of the reference first, or of the ``first`` method instead of fem."""
+def _columns(solved: Solved, run: Record, first: str | None) -> dict[str, Any]:
+    """Columns of a solved point and its ``run``, those of the reference first, or of the ``first`` method instead of
+    fem."""
     reference = run.reference or next(iter(run.methods))
     reference = first if first and reference == "fem" else reference
     columns: dict[str, Any] = {"method": reference}
@@ -181,7 +191,17 @@ def _columns(run: Record, first: str | None) -> dict[str, Any]:
         columns[f"{own}cpu_s"] = result.cost.cpu_s
         if "factorizations" in result.counts:
             columns[f"{own}factorizations"] = result.counts["factorizations"]
+        true = {} if name == run.reference else solved.stresses.get(run.reference or "", {})
+        columns |= {own + key: value for key, value in _stresses(solved.stresses.get(name, {}), true).items()}
     return columns
+
+
+def _stresses(spots: Mapping[str, HotSpot], true: Mapping[str, HotSpot]) -> dict[str, float | None]:
+    """Columns of hot spots: values, places of those at the surface, errors against the ``true`` ones, and estimates."""
+    values: dict[str, float | None] = {key: spot.value for key, spot in spots.items()}
+    places = {f"{key}.x": spot.x for key, spot in spots.items() if "." not in key}
+    errors = {f"error.{key}": off_by(spot, true[key]) for key, spot in spots.items() if key in true}
+    return values | places | errors | {f"estimate.{key}": spot.error for key, spot in spots.items()}
 
 
 @contextmanager

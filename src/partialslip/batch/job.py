@@ -16,6 +16,7 @@ import msgspec
 from partialslip.batch.ledger import key_of, scene_content
 from partialslip.batch.sweep import Task
 from partialslip.errors import InputError, PartialslipError
+from partialslip.fatigue import HotSpot, hot_spots
 from partialslip.report import Record, record, write_run
 from partialslip.result.memory import process_peak_mb
 from partialslip.run import Run, run
@@ -37,11 +38,14 @@ class Job:
     methods : tuple of str
     labels : mapping of str to str or float
         Point of the study.
+    stresses : bool
+        Whether to find hot spots (:func:`partialslip.fatigue.hot_spots`).
     """
 
     scene: Scene
     methods: tuple[str, ...]
     labels: Labels = field(default_factory=dict)
+    stresses: bool = False
 
     @property
     def key(self) -> str:
@@ -87,12 +91,15 @@ class Solved(msgspec.Struct, frozen=True, kw_only=True):
         Message in one line; empty if the job succeeded.
     process : ProcessCost or None
         Cost of the process, if the job had a process to itself.
+    stresses : mapping of str to mapping of str to HotSpot
+        Hot spots by method and quantity; empty if the job asks for no stresses.
     """
 
     labels: Labels
     run: Record | None = None
     error: str = ""
     process: ProcessCost | None = None
+    stresses: Mapping[str, Mapping[str, HotSpot]] = {}
 
 
 def solve_job(job: Job, keep: "Kept | None" = None) -> Solved:
@@ -102,10 +109,12 @@ def solve_job(job: Job, keep: "Kept | None" = None) -> Solved:
 
 def _solved(job: Job, keep: "Kept | None" = None) -> tuple[Solved, Run | None]:
     try:
-        outcome = run(job.scene, job.methods, keep=keep)
+        outcome = run(job.scene, job.methods, subsurface=job.stresses, keep=keep)
+        found = outcome.results.items() if job.stresses else ()
+        spots = {name: hot_spots(job.scene, result) for name, result in found}
     except InputError as error:  # a library missing on this machine must not enter the ledger, and is raised
         return Solved(labels=job.labels, error=str(error)), None
-    return Solved(labels=job.labels, run=record(outcome, curves=False)), outcome
+    return Solved(labels=job.labels, run=record(outcome, curves=False), stresses=spots), outcome
 
 
 class Sharing:

@@ -80,8 +80,6 @@ def _run(options: argparse.Namespace) -> int:
     check_report(options)
     if options.save == "":
         raise InputError("--save '': must name a file")
-    if options.fields and methods == ["equivalent"]:
-        raise InputError("--fields: needs the method exact, march or fem: add one to --with")
     scene = partialslip.load_scene(options.scene, options.overrides)
     start = partialslip.load_state(options.start) if options.start is not None else None
     budget = _budget(options, scene, methods)

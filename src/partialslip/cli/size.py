@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from partialslip.scene import Scene
     from partialslip.study.size.axes import Axis
 
+_WORDS = ("half-planes", "unit", "stresses")  # headings of columns of words
+
 
 def add(topics: "Commands") -> None:
     """Add the topic to the parser of ``topics``."""
@@ -78,8 +80,9 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", plac
     from partialslip.cli.consoles import counting, output
     from partialslip.output.files import csv_text, write_texts
     from partialslip.output.tables import print_table
+    from partialslip.plan import asks_for_stresses
     from partialslip.report.page import Section
-    from partialslip.study.size import sizes, tables
+    from partialslip.study.size import sizes, stresses, tables
     from partialslip.study.size.figure import grid_svg, size_svg
 
     folder = place.path
@@ -92,25 +95,33 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", plac
     sections = list[Section]()
     if len(axes) == 1:
         study = tables.size_study(scene, axes[0], entries)
+        ends, stress = study.part(sizes.DIFFERENCES), stresses.stresses_of(study)
         texts |= {"points.csv": tables.points_csv(study), "laws.csv": tables.laws_csv(study)}
+        texts |= {"stresses.csv": stresses.stresses_csv(study)} if study.spots else {}
         console.print(tables.size_heading(study), style="bold", markup=False)
-        if study.trends:
-            texts["size.svg"] = size_svg(study)
-        found = [(each.title, tables.differences_table(study, each)) for each in study.models]
+        for name, part in (("size.svg", ends), ("stress.svg", stress)):
+            if part.trends:
+                texts[name] = size_svg(part)
+        found = [(each.title, tables.differences_table(ends, each)) for each in ends.models]
+        found += [("Stresses", stresses.largest_table(study))]
+        found += [
+            (f"{each.title} in stresses", stresses.stress_differences_table(study, each)) for each in stress.models
+        ]
         found += [("Laws", tables.laws_table(study)), ("Sizes needed", tables.needed_table(study))]
         for title, (headings, rows) in found:
             if rows:
-                words = (1,) if headings[1] == tables.HALF_PLANES else ()
+                words = tuple(k for k in (1,) if headings[k] in _WORDS)
                 console.print(f"\n{title}", style="bold", markup=False)
                 print_table(console, headings, rows, (0, *words))
                 sections.append(Section(title, (), "", "", headings, rows, words))
-        lines = tables.size_notes(study)
+        lines = [*stresses.in_short(study), *tables.size_notes(study)]
     else:
-        for quantity in sizes.DIFFERENCES:
+        for quantity in (*sizes.DIFFERENCES, *sizes.stress_quantities(entries)):
             grid = sizes.grid(axes, entries, quantity)
             names = tuple(each.label(scene.units) for each in axes)
             texts[f"map-{quantity}.svg"] = grid_svg(*grid, (names[0], names[1]), f"{scene.name}: change of {quantity}")
         lines = tables.case_remarks(axes, entries)
+    lines += [] if asks_for_stresses(scene) else [stresses.NOT_ASKED]
     for line in lines:
         console.print(line, soft_wrap=True, markup=False)
     figures = [Section(name.removesuffix(".svg"), (), text) for name, text in texts.items() if name.endswith(".svg")]

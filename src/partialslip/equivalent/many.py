@@ -63,7 +63,8 @@ def _shortened(rig: Rig, farthest: float) -> Rig:
     size += np.abs(rig.terms.pulled[0]) * powers
     count = max(int(np.flatnonzero(size >= _LEAST * size.max())[-1]) + 1, 2)
     xx, yy, xy = (each[:count, :count] for each in rig.terms[:3])
-    own = Terms(xx, yy, xy, rig.terms.pulled[:, :count])
+    lower = (each[:count, :count] for each in rig.terms[4:])
+    own = Terms(xx, yy, xy, rig.terms.pulled[:, :count], *lower)
     return Rig(rig.key, rig.reach, own, own)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.equivalent.data import Data, data_of, moments_of
 from partialslip.equivalent.estimate import estimate
+from partialslip.equivalent.stresses import stress_errors, with_stresses
 from partialslip.equivalent.words import in_words
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import contact, tilted_contact
@@ -40,7 +41,7 @@ class StandIns(NamedTuple):
 
 def solve(
     scene: Scene,
-    _: Plan,
+    plan: Plan,
     progress: Callable[[str], None] = lambda _: None,
     start: State | None = None,
     *,
@@ -54,6 +55,8 @@ def solve(
     Parameters
     ----------
     scene : Scene
+    plan : Plan
+        Effects that the scene calls for; of these only subsurface decides something: whether to find stresses.
     progress : callable, optional
         Called with a line of text from time to time.
     start : State, optional
@@ -83,6 +86,15 @@ def solve(
     if rig.terms.xy.any() and found.stick_centre is not None:  # not mirror images
         undetermined |= dict.fromkeys(("q1", "q2"), _PRESSED)
         notes = (*(note for note in notes if not note.startswith("q1 and q2")), f"q1 and q2: {_PRESSED}")
+    stressed = None
+    if plan.needs("subsurface"):
+        with clock.phase("stresses"):
+            stressed = _with_stresses(scene, rig, seen, closed, progress)
+    if stressed:
+        known = max(stressed.estimate.get(key, 0.0) for key in ("q", "q1", "q2"))
+        found_off = stress_errors(scene, rig, stressed, errors["q"] + known)
+        shares = shares | {key: {**shares.get(key, {}), "sigma_xx": error} for key, error in found_off.items()}
+        errors["sigma_xx"] = sum(found_off.values())
     levels = {key: errors["q"] for key in ("q1", "q2") if found.traction.values.levels and key not in undetermined}
     return replace(
         found,
@@ -93,10 +105,21 @@ def solve(
         shares=shares,
         notes=(*([rig.note] if rig.note else []), in_words(scene, seen, data), *notes),
         undetermined=undetermined,
-        surface=None,
-        stress_at=None,
+        surface=stressed.surface if stressed else None,
+        stress_at=stressed.stress_at if stressed else None,
         state=None,
     )
+
+
+def _with_stresses(scene: Scene, rig: Rig, seen: Scene, closed: bool, progress: Callable[[str], None]) -> Result | None:
+    """Result of the half-planes ``seen`` with the stresses of the bodies: by marching where there is no closed form of
+    q1 and q2; None where the contact slides, and these are not known."""
+    plan = plan_of(seen, subsurface=True)
+    found = solve_exactly(seen, plan) if closed else solve_by_marching(seen, plan, added=partial(_added, rig))
+    if closed and not found.stress_at and not seen.slides:
+        progress("march for the stresses")
+        found = solve_by_marching(seen, plan)
+    return with_stresses(scene, rig, seen, found) if found.stress_at else None
 
 
 def stand_ins(scene: Scene, rig: Rig, progress: Callable[[str], None] = lambda _: None) -> StandIns:

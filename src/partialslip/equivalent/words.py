@@ -56,7 +56,7 @@ def shares(rig: Rig, scene: Scene) -> tuple[Share, ...]:
 
 def _shares(rig: Rig, scene: Scene) -> tuple[Share, ...]:
     A, reach = scene.material.A, rig.reach
-    xx, yy, xy, pulled = (np.where(np.abs(terms) > _ROUNDING, terms, 0.0) for terms in rig.terms)
+    xx, yy, xy, pulled = (np.where(np.abs(terms) > _ROUNDING, terms, 0.0) for terms in rig.terms[:4])
     strain = scene.material.bodies[0].A / 4
     columns = (
         ("P", "N/m", A * yy[:, 0], A * xy[:, 0]),

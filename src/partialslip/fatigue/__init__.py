@@ -17,3 +17,5 @@ from partialslip.fatigue.edges import edges as edges
 from partialslip.fatigue.invariants import crossland as crossland
 from partialslip.fatigue.invariants import dang_van as dang_van
 from partialslip.fatigue.planes import Critical as Critical
+from partialslip.fatigue.spots import HotSpot as HotSpot
+from partialslip.fatigue.spots import hot_spots as hot_spots

@@ -2,11 +2,14 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
-from partialslip.arrays import Array, Indices
+from partialslip.arrays import Array, Complex, Indices
 from partialslip.scene import Load
+
+_Values = TypeVar("_Values", Array, Complex)
 
 
 @dataclass(frozen=True)
@@ -46,13 +49,13 @@ class Phases:
         weight = (position - ends[after - 1]) / (ends[after] - ends[after - 1])
         return (after - 2) % (len(ends) - 1), after - 1, np.clip(weight, 0.0, 1.0)
 
-    def interpolate(self, at_steps: Callable[[Sequence[int]], Array], phases: Array) -> Array:
+    def interpolate(self, at_steps: Callable[[Sequence[int]], _Values], phases: Array) -> _Values:
         """Values (s, ...) at ``phases`` (s,) from those ``at_steps(numbers) -> (k, ...)``."""
         before, after, weight = self.between(phases)
         used = np.unique(np.concatenate([before[weight < 1], after[weight > 0]]))
         values = at_steps(used.tolist())
         weight = weight.reshape(-1, *(1,) * (values.ndim - 1))
         low, high = (np.minimum(np.searchsorted(used, each), len(used) - 1) for each in (before, after))
-        found: Array = np.where(weight > 0, values[high], values[low])
+        found: _Values = np.where(weight > 0, values[high], values[low])
         inner = (weight > 0) & (weight < 1)
         return np.where(inner, (1 - weight) * values[low] + weight * found, found) if inner.any() else found

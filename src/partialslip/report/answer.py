@@ -101,11 +101,9 @@ def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
         return
     errors = [_estimate(result, key) * result.a for key in "mn"]
     exponent, label = _unit(run, result.a, "m")
-    ends = [_number(end, error, exponent) for end, error in zip((-result.m, result.n), errors, strict=True)]
+    ends = [number(end, error, exponent) for end, error in zip((-result.m, result.n), errors, strict=True)]
     yield "stick zone", f"[{ends[0]}, {ends[1]}] {label}"
-    shares = [
-        _number(end / result.a, error / result.a) for end, error in zip((result.m, result.n), errors, strict=True)
-    ]
+    shares = [number(end / result.a, error / result.a) for end, error in zip((result.m, result.n), errors, strict=True)]
     yield "m, n", f"{shares[0]} a, {shares[1]} a"
     if result.permanent is None:
         return
@@ -115,7 +113,7 @@ def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
     if math.isnan(result.permanent[0]):
         yield "never slips", "no point: the stick zone moves across the contact"
     else:
-        ends = [_number(end, error, exponent) for end, error in zip(result.permanent, errors, strict=True)]
+        ends = [number(end, error, exponent) for end, error in zip(result.permanent, errors, strict=True)]
         yield "never slips", f"[{ends[0]}, {ends[1]}] {label}"
 
 
@@ -144,13 +142,13 @@ def _scatter(deviations: Mapping[str, float | None]) -> str:
 def _contact(run: Run, result: Result) -> Iterator[tuple[str, str]]:
     error = _estimate(result, "a")
     exponent, label = _unit(run, result.a, "m")
-    yield "a", f"{_number(result.a, error * result.a, exponent)} {label}"
+    yield "a", f"{number(result.a, error * result.a, exponent)} {label}"
     if not run.scene.even or run.scene.presses_anew:
         for point, ends in enumerate(result.ends, start=1):
-            left, right = (_number(end, error * result.a, exponent) for end in ends)
+            left, right = (number(end, error * result.a, exponent) for end in ends)
             yield f"contact, load point {point}", f"[{left}, {right}] {label}"
     exponent, label = _unit(run, result.p0, "Pa")
-    yield "p0", f"{_number(result.p0, error * result.p0, exponent)} {label}"
+    yield "p0", f"{number(result.p0, error * result.p0, exponent)} {label}"
 
 
 def _shears(run: Run) -> Iterator[tuple[str, str]]:
@@ -184,7 +182,7 @@ def _stresses(run: Run) -> Iterator[tuple[str, str]]:
         beside = np.abs(surface.x[[max(index - 1, 0), min(index + 1, last)]] - place).max()
         error = _estimate(known.result, "a") * known.result.a if _at_an_end(place, known.result) else float(beside)
         far = index in (0, last)
-        where = "away from the contact" if far else f"at x = {_number(place, error, exponent)} {label}"
+        where = "away from the contact" if far else f"at x = {number(place, error, exponent)} {label}"
         value = _stress(run, float(sigma.max()), known, f"q{point + 1}")
         yield f"largest sigma_xx, {point + 1}", f"{value} {where}{_by(known)}"
 
@@ -197,14 +195,14 @@ def _plates(run: Run) -> Iterator[tuple[str, str]]:
     error, by = math.nan if plates.error is None else plates.error, _by(known)
     if run.scene.load.displacement is not None:
         exponent, label = _unit(run, float(np.abs(plates.at_points).max()), "N/m")
-        forces = [_number(Q, error * abs(Q), exponent) for Q in plates.at_points]
+        forces = [number(Q, error * abs(Q), exponent) for Q in plates.at_points]
         yield "Q", f"{', '.join(forces)} {label}{by}"
     exponent, label = _unit(run, float(np.abs(plates.displacement).max()), "m")
     if np.isfinite(plates.displacement).all():
-        moved = [_number(each, error * abs(each), exponent) for each in plates.displacement]
+        moved = [number(each, error * abs(each), exponent) for each in plates.displacement]
         yield "plates along x", f"{', '.join(moved)} {label} at load points 1, 2{by}"
     exponent, label = _unit(run, max(plates.stiffness), "Pa")
-    along = [_number(each, error * each, exponent) for each in plates.stiffness]
+    along = [number(each, error * each, exponent) for each in plates.stiffness]
     yield "stiffness, x and y", f"{', '.join(along)} {label} per unit depth, while all sticks{by}"
 
 
@@ -243,7 +241,7 @@ def _stress(run: Run, value: float, known: _Known, key: str) -> str:
     as the square root of h there, and adds h to the norm: the largest value is known to the root of the norm's error.
     """
     exponent, label = _unit(run, value, "Pa")
-    return f"{_number(value, math.sqrt(_estimate(known.result, key)) * abs(value), exponent)} {label}"
+    return f"{number(value, math.sqrt(_estimate(known.result, key)) * abs(value), exponent)} {label}"
 
 
 def _estimate(result: Result, key: str) -> float:
@@ -262,7 +260,7 @@ def _unit(run: Run, size: float, of: Dimension) -> tuple[int, str]:
     return scale(abs(size), of, units)
 
 
-def _number(value: float, error: float, exponent: int = 0) -> str:
+def number(value: float, error: float, exponent: int = 0) -> str:
     """Return ``value`` in units of ten to the ``exponent``, with the decimals that the ``error`` leaves, and the error
     rounded up to one digit; with few digits if the error is NaN."""
     value, error = value / 10.0**exponent, error / 10.0**exponent

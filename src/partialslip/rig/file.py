@@ -15,7 +15,7 @@ from partialslip.scene import Scene
 from partialslip.seal import edited, sealed_text
 from partialslip.strictjson import converted, parsed
 
-SCHEMA = "partialslip/rig/1"
+SCHEMA = "partialslip/rig/2"
 _LARGEST = 2**20  # limit: bytes
 _MOST = 64  # limit: terms
 _Row = Annotated[list[float], msgspec.Meta(min_length=2, max_length=_MOST)]
@@ -27,6 +27,9 @@ class _Terms(msgspec.Struct, forbid_unknown_fields=True):
     yy: _Rows
     xy: _Rows
     pulled: _Rows
+    lower_xx: _Rows
+    lower_yy: _Rows
+    lower_xy: _Rows
 
 
 class _File(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
@@ -83,13 +86,15 @@ def load_rig(path: str | os.PathLike[str], scene: Scene | None = None) -> Rig:
 
 
 def _arrays(name: str, found: _Terms, count: int) -> Terms:
-    shapes = {"xx": (count, count), "yy": (count, count), "xy": (count, count), "pulled": (2, count)}
+    shapes = dict.fromkeys(("xx", "yy", "xy", "lower_xx", "lower_yy", "lower_xy"), (count, count)) | {
+        "pulled": (2, count)
+    }
     arrays = {}
     for key, shape in shapes.items():
         rows = getattr(found, key)
         if len(rows) != shape[0] or any(len(row) != shape[1] for row in rows):
             raise InputError(f"{name}.{key}: must have {shape[0]} rows of {shape[1]} numbers")
         arrays[key] = np.array(rows)
-        if key in ("xx", "yy") and not np.array_equal(arrays[key], arrays[key].T):
+        if key in ("xx", "yy", "lower_xx", "lower_yy") and not np.array_equal(arrays[key], arrays[key].T):
             raise InputError(f"{name}.{key}: must be symmetric")
     return Terms(**arrays)

@@ -32,12 +32,17 @@ class Terms(NamedTuple):
     pulled : (2, k) array
         u and v that a tension of the lower body adds to those of uniform strain, relative to reach and to the strain of
         a long body; element i belongs to (x/reach)^i. Zero unless the body is pulled.
+    lower_xx, lower_yy, lower_xy : (k, k) array
+        Share of the lower body in xx, yy and xy.
     """
 
     xx: Array
     yy: Array
     xy: Array
     pulled: Array
+    lower_xx: Array
+    lower_yy: Array
+    lower_xy: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +79,7 @@ class Rig:
     @property
     def uncoupled(self) -> "Rig":
         """The rig without what p does along x and q along y."""
-        terms, rough = (each._replace(xy=0 * each.xy) for each in (self.terms, self.rough))
+        terms, rough = (each._replace(xy=0 * each.xy, lower_xy=0 * each.xy) for each in (self.terms, self.rough))
         return replace(self, terms=terms, rough=rough)
 
     @property
@@ -106,6 +111,13 @@ class Rig:
         """Coefficients (..., k) of u/A under tractions with the moments ``p`` and ``q`` (..., k)."""
         result: Array = q @ self.terms.xx + p @ self.terms.xy.T
         return result
+
+    def shares(self, p: Array, q: Array) -> tuple[Array, Array]:
+        """Shares (2, ..., k) of the lower and the upper body in :meth:`shift` and in :meth:`opening` under tractions
+        with the moments ``p`` and ``q`` (..., k)."""
+        of = self.terms
+        shift, opening = q @ of.lower_xx + p @ of.lower_xy.T, p @ of.lower_yy + q @ of.lower_xy
+        return np.stack([shift, self.shift(p, q) - shift]), np.stack([opening, self.opening(p, q) - opening])
 
 
 def key_of(scene: Scene) -> str:

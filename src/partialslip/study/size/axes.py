@@ -13,6 +13,7 @@ import numpy as np
 
 from partialslip.batch.job import Job
 from partialslip.errors import InputError
+from partialslip.plan import asks_for_stresses
 from partialslip.run import run
 from partialslip.scene import Scene
 from partialslip.scene.dimensions import DIMENSIONS
@@ -125,7 +126,9 @@ def cases(scene: Scene, axes: Sequence[Axis], accuracies: Sequence[float] = (1.0
         for accuracy in accuracies:
             own = deepcopy(data)
             own["fem"]["accuracy"] = scene.fem.accuracy * accuracy
-            found.append(Job(parse_scene(own), COMPARED_METHODS, {**labels, ACCURACY: accuracy}))
+            point = parse_scene(own)
+            labelled = {**labels, ACCURACY: accuracy}
+            found.append(Job(point, COMPARED_METHODS, labelled, asks_for_stresses(point)))
     return found
 
 

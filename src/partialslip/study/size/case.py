@@ -4,17 +4,22 @@ from typing import TYPE_CHECKING
 
 from partialslip.batch.job import Job, Solved
 from partialslip.errors import InputError
+from partialslip.fatigue import hot_spots
 from partialslip.record import Record, record
+from partialslip.result import Result
 from partialslip.run import compared, run
+from partialslip.scene import Scene
 
 if TYPE_CHECKING:
     from partialslip_fem import Kept
 
 COMPARED_METHODS = ("exact", "equivalent", "fem")
+FEM, HALF_PLANE, EQUIVALENT = "fem", "half-plane", "equivalent"
 
 
 class Sized(Solved, frozen=True, kw_only=True):
-    """Outcome of a case: ``run`` compares the finite elements with half-planes.
+    """Outcome of a case: ``run`` compares the finite elements with half-planes; ``stresses`` are hot spots by
+    :data:`FEM`, :data:`HALF_PLANE` and :data:`EQUIVALENT`.
 
     Parameters
     ----------
@@ -31,16 +36,27 @@ class Sized(Solved, frozen=True, kw_only=True):
 def solve_sized(job: Job, keep: "Kept | None" = None) -> Sized:
     """Solve ``job`` by the exact method and finite elements, and by equivalent half-planes where these exist; ``keep``
     as in :func:`partialslip.run`."""
+    scene = job.scene
     try:
-        whole = run(job.scene, ("exact", "fem"), keep=keep)
+        whole = run(scene, ("exact", "fem"), subsurface=job.stresses, keep=keep)
+        found = {FEM: whole["fem"], HALF_PLANE: _with_stresses(scene, whole["exact"])} if job.stresses else {}
+        spots = {name: hot_spots(scene, result) for name, result in found.items()}
     except InputError as error:
         return Sized(labels=job.labels, error=str(error))
     plain = record(whole, curves=False)
-    if not job.scene.finite:
-        return Sized(labels=job.labels, run=plain)
+    if not scene.finite:
+        return Sized(labels=job.labels, run=plain, stresses=spots)
     try:
-        alike = run(job.scene, "equivalent")
+        alike = run(scene, "equivalent", subsurface=job.stresses)
+        spots |= {EQUIVALENT: hot_spots(scene, alike["equivalent"])} if job.stresses else {}
     except InputError as error:
-        return Sized(labels=job.labels, run=plain, refused=str(error))
-    against = compared(job.scene, whole.plan, {"fem": whole["fem"], **alike.results}, None)
-    return Sized(labels=job.labels, run=plain, equivalent=record(against, curves=False))
+        return Sized(labels=job.labels, run=plain, stresses=spots, refused=str(error))
+    against = compared(scene, whole.plan, {"fem": whole["fem"], **alike.results}, None)
+    return Sized(labels=job.labels, run=plain, stresses=spots, equivalent=record(against, curves=False))
+
+
+def _with_stresses(scene: Scene, exact: Result) -> Result:
+    """Return the half-planes of ``scene`` with stresses: by march where the ``exact`` method does not know them."""
+    if scene.slides or (exact.stress_at and not exact.path_dependent):
+        return exact
+    return run(scene, "march", subsurface=True)["march"]

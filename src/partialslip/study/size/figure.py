@@ -9,8 +9,8 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.output.svg import svg
+from partialslip.study.size.case import EQUIVALENT, HALF_PLANE
 from partialslip.study.size.law import LEVELS, Kind, Needed, PointStatus, Trend
-from partialslip.study.size.sizes import DIFFERENCES, EQUIVALENT, HALF_PLANE
 from partialslip.study.size.tables import SizeModel, SizeStudy, size_heading
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 _LEVELS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3)  # display: contours of the change
 _NAMES = {
     "a": "a", "p0": "p0, largest p", "p": "p, relative L2", "m": "m, in a", "n": "n, in a", "q": "q, relative L2",
+    "sigma_xx": "sigma_xx, largest",
 }  # fmt: skip
 _COLUMNS = 2  # display: panels side by side: few, to be read on a phone
 _FARTHEST = 10.0  # display: times the largest size: what is shown of extrapolated sizes
@@ -36,7 +37,7 @@ def size_svg(study: SizeStudy) -> str:
     Circles are the half-plane's, squares those of equivalent half-planes. Fitted points are filled, others open. Lines
     show the laws, errors of the mesh are grey, and marks on the levels the sizes from which on the difference is below.
     """
-    found = [quantity for quantity in DIFFERENCES if any(trend.quantity == quantity for trend in study.trends)]
+    found = [quantity for quantity in study.quantities if any(trend.quantity == quantity for trend in study.trends)]
     count = -(-len(found) // _COLUMNS)
     title = textwrap.fill(size_heading(study), _LINE)
 
@@ -63,7 +64,7 @@ def size_svg(study: SizeStudy) -> str:
 
 def _draw_quantity(axes: "Axes", study: SizeStudy, quantity: str) -> None:
     """Draw points, laws and needed sizes of one quantity."""
-    title, across = [_NAMES[quantity]], axes.get_yaxis_transform()
+    title, across = [_NAMES.get(quantity, quantity)], axes.get_yaxis_transform()
     for model in study.models:
         for trend in (each for each in model.trends if each.quantity == quantity):
             _draw_trend(axes, study, model, trend)

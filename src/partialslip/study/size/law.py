@@ -9,7 +9,7 @@ import numpy.typing as npt
 from scipy.stats import t as student
 
 from partialslip.arrays import Array
-from partialslip.study.size.sizes import CLEAR, DIFFERENCES, Sizes
+from partialslip.study.size.sizes import CLEAR, Sizes
 
 LEVELS = (1e-2, 1e-3, 1e-4)  # display: differences for which the sizes needed are told
 _FEWEST = 3  # accuracy: points of a law
@@ -150,7 +150,7 @@ class Trend:
 
 def trends(sizes: Sizes) -> list[Trend]:
     """Return the trends of all quantities that have a value at one size above 0 at least."""
-    known = [quantity for quantity in DIFFERENCES if np.isfinite(sizes.off[quantity][sizes.size > 0]).any()]
+    known = [quantity for quantity, off in sizes.off.items() if np.isfinite(off[sizes.size > 0]).any()]
     return [trend(sizes, quantity) for quantity in known]
 
 

@@ -7,17 +7,19 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from partialslip.arrays import Array
 from partialslip.batch.job import Sharing
 from partialslip.batch.ledger import Ledger
 from partialslip.batch.sweep import Progress, sweep
+from partialslip.fatigue import HotSpot
+from partialslip.fatigue.spots import SIGMA, off_by
 from partialslip.scene import Scene
 from partialslip.study.size.axes import ACCURACY, Axis, cases
-from partialslip.study.size.case import Sized, solve_sized
+from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE, Sized, solve_sized
 
 DIFFERENCES = ("a", "p0", "p", "m", "n", "q")
-HALF_PLANE, EQUIVALENT = "half-plane", "equivalent"
 CLEAR = 10.0  # accuracy: a difference counts if it exceeds the mesh's error by this factor
 _COARSER = 8.0  # accuracy: ratio of the accuracies of two successive meshes
 _FINER = 3  # limit: largest number of additional meshes where the half-plane's difference is not clear
@@ -45,7 +47,7 @@ def measure(
     control : bool
         Whether to solve each point on at least two meshes: for the scene's accuracy and for one eight times coarser.
         Where the difference of the half-plane is less than ten times the mesh's error, up to three further meshes
-        follow, each eight times finer.
+        follow, each eight times finer. Differences of stresses call for no further meshes.
 
     Returns
     -------
@@ -85,7 +87,8 @@ class Sizes:
     size : (k,) array
         Values along the axis.
     off : mapping of str to (k,) array
-        Difference by quantity: a and p0 (largest p) relative, m and n as fractions of a, p and q in relative L2.
+        Difference by quantity: a and p0 (largest p) relative, m and n as fractions of a, p and q in relative L2, and
+        stresses (:func:`stress_quantities`) relative to those of the finite elements.
     mesh : mapping of str to (k,) array
         Part of the difference that may be an error of the meshes; NaN if not known.
     failed : mapping of float to str
@@ -102,8 +105,10 @@ class Sizes:
 def along(axis: Axis, entries: Iterable[Sized], name: str = HALF_PLANE) -> Sizes:
     """Return the sweep along ``axis`` of the half-planes ``name`` from ``entries`` of a ledger."""
     entries = list(entries)
+    keys = (*DIFFERENCES, *stress_quantities(entries))
+    none = dict.fromkeys(keys, math.nan)
     points = {
-        point[0]: found[name]
+        point[0]: tuple(none | each for each in found[name])
         for point, meshes in sorted(_by_point([axis], entries).items())
         if name in (found := _differences(meshes))
     }
@@ -111,10 +116,25 @@ def along(axis: Axis, entries: Iterable[Sized], name: str = HALF_PLANE) -> Sizes
     return Sizes(
         name,
         np.array(list(points)),
-        {key: np.array([off[key] for off, _ in points.values()]) for key in DIFFERENCES},
-        {key: np.array([mesh[key] for _, mesh in points.values()]) for key in DIFFERENCES},
+        {key: np.array([off[key] for off, _ in points.values()]) for key in keys},
+        {key: np.array([mesh[key] for _, mesh in points.values()]) for key in keys},
         {size: error for size, error in sorted(errors.items()) if size not in points},
     )
+
+
+def stress_quantities(entries: Iterable[Sized]) -> tuple[str, ...]:
+    """Return the stresses of ``entries``, in the order of :func:`partialslip.fatigue.hot_spots`."""
+    return tuple(dict.fromkeys(key for entry in entries for key in entry.stresses.get(FEM, {})))
+
+
+def hot_spots_along(axis: Axis, entries: Iterable[Sized]) -> dict[float, Mapping[str, Mapping[str, HotSpot]]]:
+    """Return the hot spots on the finest mesh by value along ``axis``, and by :data:`FEM`, :data:`HALF_PLANE` and
+    :data:`EQUIVALENT`, from ``entries``. Errors are those of :func:`along`."""
+    return {
+        point[0]: {**meshes[-1].stresses, FEM: _with_mesh_errors(meshes)}
+        for point, meshes in sorted(_by_point([axis], entries).items())
+        if meshes[-1].stresses
+    }
 
 
 def refused(axes: Sequence[Axis], entries: Iterable[Sized]) -> dict[tuple[float, ...], str]:
@@ -149,7 +169,37 @@ def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], d
         left, rig = _left(meshes[-1])
         both = {key: mesh[key] + rig.get(key, 0.0) for key in DIFFERENCES}
         differences[EQUIVALENT] = ({key: left.get(key, math.nan) for key in DIFFERENCES}, both)
+    true = _with_mesh_errors(meshes)
+    for name, (off, errors) in differences.items():
+        for key, spot in meshes[-1].stresses.get(name, {}).items():
+            if key in true:
+                own = spot.error if name == HALF_PLANE else _rig_error(meshes[-1])
+                off[key], errors[key] = off_by(spot, true[key]), _sum(own, true[key].error)
     return differences
+
+
+def _with_mesh_errors(meshes: Sequence[Sized]) -> dict[str, HotSpot]:
+    """Return the hot spots of the finite elements on the finest mesh; their error is the larger of the estimate and
+    the change by the last refinement, as stresses at the ends of the contact converge like square roots."""
+    coarser = [each for each in meshes[:-1] if _dofs(each) != _dofs(meshes[-1])]
+    rough = coarser[-1].stresses.get(FEM, {}) if coarser else {}
+    found = {}
+    for key, spot in meshes[-1].stresses.get(FEM, {}).items():
+        changed = off_by(rough[key], spot) if key in rough else math.nan
+        error = float(np.fmax(_sum(spot.error), changed))
+        found[key] = replace(spot, error=None if math.isnan(error) else error)
+    return found
+
+
+def _rig_error(entry: Sized) -> float:
+    """Return the error of the largest sigma_xx of equivalent half-planes that the mesh of the rig makes."""
+    assert entry.equivalent
+    return entry.equivalent.methods["equivalent"].shares.get("rig", {}).get(SIGMA) or 0.0
+
+
+def _sum(*errors: float | None) -> float:
+    """Return the sum of ``errors``; NaN if one is not known."""
+    return sum(math.nan if error is None else error for error in errors)
 
 
 def _clear(meshes: Sequence[Sized]) -> bool:
@@ -203,7 +253,8 @@ def grid(axes: Sequence[Axis], entries: Iterable[Sized], quantity: str) -> tuple
     """
     x, y = (np.array(each.values) for each in axes)
     points = {
-        point: _differences(meshes)[HALF_PLANE][0][quantity] for point, meshes in _by_point(axes, entries).items()
+        point: _differences(meshes)[HALF_PLANE][0].get(quantity, math.nan)
+        for point, meshes in _by_point(axes, entries).items()
     }
     return x, y, np.array([[points.get((first, second), math.nan) for first in x.tolist()] for second in y.tolist()])
 

@@ -1,15 +1,16 @@
 """What a study of sizes found, as headings, rows and notes: for the terminal, CSV files and pages."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
+from partialslip.fatigue import HotSpot
 from partialslip.output.files import csv_text
 from partialslip.scene import Scene
 from partialslip.study.size.axes import Axis
-from partialslip.study.size.case import Sized
+from partialslip.study.size.case import EQUIVALENT, HALF_PLANE, Sized
 from partialslip.study.size.law import LEVELS, Kind, PointStatus, Trend, trends
-from partialslip.study.size.sizes import DIFFERENCES, EQUIVALENT, HALF_PLANE, Sizes, along, refused
+from partialslip.study.size.sizes import Sizes, along, hot_spots_along, refused
 
 Rows = list[tuple[str, ...]]
 _MARKS = {
@@ -54,6 +55,14 @@ class SizeModel:
         """Title of a table of the differences."""
         return f"Differences of the {self.name}" if self.name == HALF_PLANE else "Differences of equivalent half-planes"
 
+    def part(self, quantities: Collection[str]) -> "SizeModel":
+        """Return the same for some ``quantities`` alone."""
+        off, mesh = (
+            {key: each[key] for key in each if key in quantities} for each in (self.sizes.off, self.sizes.mesh)
+        )
+        trends = [trend for trend in self.trends if trend.quantity in quantities]
+        return SizeModel(replace(self.sizes, off=off, mesh=mesh), trends)
+
 
 @dataclass(frozen=True)
 class SizeStudy:
@@ -67,12 +76,25 @@ class SizeStudy:
         The half-plane, then equivalent half-planes if a case has them.
     remarks : tuple of str
         Cases that failed or have no equivalent half-planes, and why.
+    spots : mapping of float to mapping of str to mapping of str to HotSpot
+        Hot spots by size, by finite elements and names of half-planes, and by quantity; empty if the scene asks for no
+        stresses.
     """
 
     scene: Scene
     axis: Axis
     models: tuple[SizeModel, ...]
     remarks: tuple[str, ...]
+    spots: Mapping[float, Mapping[str, Mapping[str, HotSpot]]] = field(default_factory=dict)
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """Quantities that are compared."""
+        return tuple(self.models[0].sizes.off)
+
+    def part(self, quantities: Collection[str]) -> "SizeStudy":
+        """Return the study of some ``quantities`` alone, without remarks."""
+        return replace(self, models=tuple(model.part(quantities) for model in self.models), remarks=())
 
     @property
     def label(self) -> str:
@@ -89,7 +111,7 @@ def size_study(scene: Scene, axis: Axis, entries: Sequence[Sized]) -> SizeStudy:
     """Evaluate the ``entries`` of a ledger for a sweep of ``scene`` along ``axis``."""
     sweeps = [along(axis, entries, name) for name in (HALF_PLANE, EQUIVALENT)]
     models = tuple(SizeModel(each, trends(each)) for each in sweeps if each.name == HALF_PLANE or each.size.size)
-    return SizeStudy(scene, axis, models, tuple(case_remarks([axis], entries)))
+    return SizeStudy(scene, axis, models, tuple(case_remarks([axis], entries)), hot_spots_along(axis, entries))
 
 
 def case_remarks(axes: Sequence[Axis], entries: Sequence[Sized]) -> list[str]:
@@ -100,7 +122,7 @@ def case_remarks(axes: Sequence[Axis], entries: Sequence[Sized]) -> list[str]:
         if entry.error
     ]
     if without := refused(axes, entries):
-        points = [_short(*point) if len(point) == 1 else f"({', '.join(map(_short, point))})" for point in without]
+        points = [short(*point) if len(point) == 1 else f"({', '.join(map(short, point))})" for point in without]
         reason, where = next(iter(without.values())), _listed_points(points)
         lines.append(f"no equivalent half-planes at {where}: {reason}")
     return lines
@@ -122,12 +144,12 @@ def differences_table(study: SizeStudy, model: SizeModel) -> tuple[tuple[str, ..
     found = model.sizes
     points = {trend.quantity: trend.points for trend in model.trends}
     solved: dict[float, tuple[str, ...]] = {
-        size: (*(_marked(found.off[key][k], points[key][k]) for key in points), _share(found, k))
+        size: (*(marked(found.off[key][k], points[key][k]) for key in points), share(found, points, k))
         for k, size in enumerate(found.size.tolist())
     }
     without = study.models[0].sizes.size.tolist() if model.name == EQUIVALENT else ()
     failed = {size: (*["-"] * len(points), "") for size in (*found.failed, *without)}
-    rows = [(_short(size), *cells) for size, cells in sorted((failed | solved).items())] if points else []
+    rows = [(short(size), *cells) for size, cells in sorted((failed | solved).items())] if points else []
     return ("size", *points, "mesh"), rows
 
 
@@ -152,7 +174,7 @@ def _by_quantity(study: SizeStudy) -> list[tuple[str, str, Trend]]:
     """Quantity, model and trend: the models of a quantity one after the other."""
     return [
         (trend.quantity, model.name, trend)
-        for quantity in DIFFERENCES
+        for quantity in study.quantities
         for model in study.models
         for trend in model.trends
         if trend.quantity == quantity
@@ -209,24 +231,26 @@ def laws_csv(study: SizeStudy) -> str:
     return csv_text(head, rows)
 
 
-def _marked(difference: float, point: PointStatus) -> str:
+def marked(difference: float, point: PointStatus) -> str:
+    """Return a difference as text, with the letter of its point."""
     if point in _MARKS:
         return f"{difference:.1e} {_MARKS[point]}"
     return "-" if math.isnan(difference) else f"{difference:.1e}"
 
 
-def _share(sizes: Sizes, k: int) -> str:
-    """Return the largest share of a difference that may be an error of the mesh, as text."""
-    shares = [sizes.mesh[key][k] / sizes.off[key][k] for key in DIFFERENCES if sizes.off[key][k] > 0]
+def share(sizes: Sizes, quantities: Collection[str], k: int) -> str:
+    """Return the largest share of a difference of ``quantities`` that may be an error of the mesh, as text."""
+    shares = [sizes.mesh[key][k] / sizes.off[key][k] for key in quantities if sizes.off[key][k] > 0]
     known = [share for share in shares if not math.isnan(share)]
     return "" if not known else f"{max(known):.1%}" if max(known) < 1 else "> 100%"
 
 
-def _short(size: float) -> str:
+def short(size: float) -> str:
+    """Return a size as text."""
     return f"{size:.4g}"
 
 
 def _listed(sizes: Sequence[float]) -> str:
     if len(sizes) <= _LISTED:
-        return ", ".join(map(_short, sizes))
-    return f"{len(sizes)} from {_short(min(sizes))} to {_short(max(sizes))}"
+        return ", ".join(map(short, sizes))
+    return f"{len(sizes)} from {short(min(sizes))} to {short(max(sizes))}"

@@ -1,0 +1,103 @@
+"""The stresses of a size study as headings, rows, sentences and CSV: what breaks a body, beside where it sticks."""
+
+import math
+from collections.abc import Iterable
+
+from partialslip.fatigue import HotSpot
+from partialslip.fatigue.places import OVER
+from partialslip.output.files import csv_text
+from partialslip.report.answer import number, scale
+from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE
+from partialslip.study.size.sizes import DIFFERENCES, Sizes
+from partialslip.study.size.tables import Rows, SizeModel, SizeStudy, marked, share, short
+from partialslip.units import Dimension
+
+_SURFACE = "surface"
+_MODELS = (FEM, HALF_PLANE, EQUIVALENT)
+NOT_ASKED = "no stresses: not asked for by a table fatigue; --set effects.subsurface=true tells the largest sigma_xx"
+
+
+def stresses_of(study: SizeStudy) -> SizeStudy:
+    """Return the part of ``study`` that compares stresses."""
+    return study.part([key for key in study.quantities if key not in DIFFERENCES])
+
+
+def largest_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
+    """Return headings and rows of the largest stresses along the surface of the lower body, by quantity and size:
+    values of finite elements and half-planes, and their places x."""
+    units = study.scene.units
+    keys = [key for key in study.quantities if key not in DIFFERENCES and "." not in key]
+    known = [name for name in _MODELS if any(found.get(name) for found in study.spots.values())]
+    largest = max((abs(spot.x) for found in study.spots.values() for spot in found[FEM].values()), default=0.0)
+    length = scale(largest, "m", units)
+    rows: Rows = []
+    for key in keys:
+        of, top = _largest(study, key)
+        unit = scale(top, of, units) if of != "1" else (0, "")
+        for size, found in study.spots.items():
+            spots = [found.get(name, {}).get(key) for name in known]
+            rows.append(
+                (key, unit[1], short(size), *(cell for spot in spots for cell in _cells(spot, unit[0], length[0])))
+            )
+    heads = [head for name in known for head in (name, f"x, {length[1]}")]
+    return ("largest", "unit", "size", *heads), rows
+
+
+def _largest(study: SizeStudy, key: str) -> tuple[Dimension, float]:
+    spots = [found[FEM][key] for found in study.spots.values() if key in found[FEM]]
+    return spots[0].of, max(abs(spot.value) for spot in spots)
+
+
+def _cells(spot: HotSpot | None, exponent: int, length: int) -> tuple[str, str]:
+    """Value with its error, and place."""
+    if spot is None:
+        return "-", ""
+    error = math.nan if spot.error is None else spot.error * abs(spot.value)
+    return number(spot.value, error, exponent), f"{spot.x / 10.0**length:.4g}"
+
+
+def stress_differences_table(study: SizeStudy, model: SizeModel) -> tuple[tuple[str, ...], Rows]:
+    """Return headings and rows of the relative differences of stresses, by size and place; letters as in
+    :func:`partialslip.study.size.tables.differences_table`."""
+    part = model.part(stresses_of(study).quantities)
+    sizes, points = part.sizes, {trend.quantity: trend.points for trend in part.trends}
+    columns = dict.fromkeys(key.partition(".")[0] for key in points)
+    rows: Rows = []
+    for k, size in enumerate(sizes.size.tolist()):
+        for place in (_SURFACE, *OVER):
+            keys = [column if place == _SURFACE else f"{column}.{place}" for column in columns]
+            shown = [key for key in keys if key in points and not math.isnan(sizes.off[key][k])]
+            if shown:
+                cells = [marked(sizes.off[key][k], points[key][k]) if key in shown else "" for key in keys]
+                rows.append((short(size), place, *cells, share(sizes, shown, k)))
+    return ("size", "stresses", *columns, "mesh"), rows
+
+
+def in_short(study: SizeStudy) -> list[str]:
+    """Return by how much the half-plane is off in the largest stresses, and in m and n, a line for each size."""
+    sizes = study.models[0].sizes
+    keys = [key for key in stresses_of(study).quantities if "." not in key]
+    lines = []
+    for k, size in enumerate(sizes.size.tolist()):
+        stresses, ends = _percents(sizes, keys, k, ""), _percents(sizes, ("m", "n"), k, " of a")
+        if stresses:
+            lines.append("; ".join(filter(None, (f"size {short(size)}: the half-plane is off by {stresses}", ends))))
+    return lines
+
+
+def _percents(sizes: Sizes, quantities: Iterable[str], k: int, of: str) -> str:
+    known = {key: sizes.off[key][k] for key in quantities if not math.isnan(sizes.off[key][k])}
+    return ", ".join(f"{100 * off:.2g} %{of} in {key}" for key, off in known.items())
+
+
+def stresses_csv(study: SizeStudy) -> str:
+    """Return the hot spots of ``study`` as CSV, one row per size, model and quantity, in the scene's units."""
+    units = study.scene.units
+    rows = [
+        (size, name, key, units.from_si(spot.value, spot.of), units.label(spot.of), units.from_si(spot.x, "m"),
+         "" if spot.error is None or math.isnan(spot.error) else spot.error)
+        for size, found in study.spots.items()
+        for name, spots in found.items()
+        for key, spot in spots.items()
+    ]  # fmt: skip
+    return csv_text(("size", "by", "quantity", "value", "unit", units.heading("x", "m"), "relative error"), rows)
