@@ -19,7 +19,7 @@ from partialslip.friction.normal import press
 from partialslip.friction.path import Path, load_path, stretched
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.regime import steady_state, steps_of_coupled
-from partialslip.friction.step_errors import along_path, more_steps, other_steps, pressed_together, summed
+from partialslip.friction.step_errors import along_path, other_steps, pressed_together, summed
 from partialslip.friction.zone_ends import StickInterval, apart, contact_ends, kinks, read_stick_zone, within
 from partialslip.halfplane.tractions import CoupledTractions
 from partialslip.march import driver
@@ -85,11 +85,11 @@ class UnlikeLevel(driver.Level):
 
 class UnlikeBodies(driver.Problem[UnlikeLevel]):
     """Half-planes of unlike materials, for :func:`partialslip.march.driver.march`: ``beta``, zero without coupling, and
-    the ``punch`` of self-similar pressing. ``followed`` are the errors of ``checked`` load steps, on the first cells
-    that are not coarse; if there are to be more, those of the next cells."""
+    the ``punch`` of self-similar pressing. ``followed`` are the errors of the load steps, on the first cells that are
+    not coarse. Twice as many steps would cost twice as much on these and all finer cells: they stay as asked for."""
 
     telling = ("a",)
-    steps_count = False  # there are more of them only up to a limit
+    steps_count = False  # they are as asked for
 
     def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock) -> None:
         super().__init__(scene, start, clock, load_path(scene, plan, start), (scene.origin, scene.length), _MESHES)
@@ -98,7 +98,6 @@ class UnlikeBodies(driver.Problem[UnlikeLevel]):
         self.punch = PunchGrowth.of(self.beta, scene.friction.f) if self.beta and similar else None
         self.width = _extent(scene)
         self.followed: Errors = {}
-        self.checked = 0
 
     def solve(self, level: UnlikeLevel | None, mesh: tuple[float, float]) -> UnlikeLevel:
         wider = 1.0
@@ -111,16 +110,9 @@ class UnlikeBodies(driver.Problem[UnlikeLevel]):
             wider *= _WIDER
 
     def mesh_errors(self, level: UnlikeLevel, before: UnlikeLevel) -> Errors:
-        done = level.history.path if level.history else None
-        if done and done.moves and self.beta and self.path and done.substeps != self.checked:
-            self.followed, self.checked = _path_errors(self, done, level, self.clock), done.substeps
-            if more := more_steps(self.path, self.followed, _step_errors(level), self.scene.fem.accuracy):
-                self.path = more  # from the next mesh on
+        if not self.followed and self.path and self.path.moves and self.beta:
+            self.followed = _path_errors(self, self.path, level, self.clock)
         return _mesh_errors(level, before, self)
-
-    def enough(self, meshed: Errors, stepped: Errors) -> bool:
-        more = self.followed and self.path and self.path.substeps != self.checked
-        return not more and super().enough(meshed, stepped)
 
     def step_errors(self, level: UnlikeLevel) -> Errors:
         return summed(_step_errors(level), self.followed)
