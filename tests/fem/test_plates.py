@@ -1,5 +1,7 @@
 """Plates of finite bodies: their stiffness against another element family, their displacements as loads, energy."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -7,8 +9,11 @@ import scipy.sparse.linalg as spla
 import skfem
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
+import partialslip
 from partialslip import InputError, parse_scene, run
+from partialslip.cli import main
 from partialslip.friction import coupled
+from partialslip.scene.writing import scene_toml
 
 E, NU = 72.1e9, 0.33
 SCENE = {
@@ -194,3 +199,20 @@ def test_only_finite_elements_find_q():
     assert both["exact"].traction.dq.size
     with pytest.raises(InputError, match="only runs with fem find Q"):
         _ = scene.load.points
+
+
+def test_a_run_of_moved_plates_is_recorded_and_read_back(tmp_path, monkeypatch, capsys):
+    """Page, sketch and results.json; the record has the Q that was found, and runs again from its scene."""
+    monkeypatch.chdir(tmp_path)
+    scene = parse_scene(SCENE).replace({"load.Q": [0.0, 0.0], "load.displacement": [2e-7, 1.5e-6]})
+    Path("scene.toml").write_text(scene_toml(scene), "utf-8")
+    assert main(["run", "scene.toml", "--with", "fem", "--out", "there"]) == 0
+    printed = capsys.readouterr().out
+    assert "stiffness, x and y" in printed
+    assert "\n  Q " in printed
+    assert "lower \N{MINUS SIGN} upper plate" in Path("there/report.html").read_text("utf-8")
+    kept = partialslip.load_result("there/results.json")
+    plates = kept.methods["fem"].plates
+    assert kept.scene.load.Q_found == plates.at_points
+    again = run(kept.scene, "fem")["fem"]
+    assert tuple(again.plates.Q) == pytest.approx(plates.Q, rel=1e-12)

@@ -159,17 +159,21 @@ def _rollers(start: Point, end: Point, out: Point) -> list[str]:
 
 
 def _loads(scene: Scene) -> list[str]:
-    """Return arrows and texts of P, Q and sigma."""
-    Q, sigma, slope = ([*each] for each in zip(*scene.load.along, strict=True))
+    """Return arrows and texts of P, Q, or the displacement of plates in its place, and sigma."""
+    load = scene.load
+    sigma, slope = ([*each] for each in zip(*load.tension, strict=True))
     top = 26.0
     pressing = [(P, M or 0.0) for P, M in scene.pressing]
     P, moment = ([each[i] for each in pressing] for i in (0, 1))
     shown = f"P = {_normal(P, 'N/m', scene.units)}"
     shown += f", M = {_normal(moment, 'N', scene.units)}" if any(moment) else ""
     shapes = [_arrow((_MIDDLE, top), (_MIDDLE, top + _ARROW)), _text(_MIDDLE + 8, top + 10, shown)]
-    if any(Q):
+    if load.displacement is not None:
+        shapes.append(_text(6, top + 24, f"lower \u2212 upper plate: {_values([*load.driving], 'm', scene.units)}"))
+    elif any(load.driving):
         shapes += [_arrow((_MIDDLE - 10 - _ARROW, top + 20), (_MIDDLE - 10, top + 20))]
-        shapes += [_text(_MIDDLE - 18 - _ARROW, top + 24, f"Q = {_values(Q, 'N/m', scene.units)}", "end")]
+        shown = f"Q = {_values([*load.driving], 'N/m', scene.units)}"
+        shapes += [_text(_MIDDLE - 18 - _ARROW, top + 24, shown, "end")]
     if any(sigma) or any(slope):
         lower = scene.bodies.lower
         half, height = _HALF_PLANE if lower is None else _GIVEN if lower.mesh is not None else _drawn(scene, lower)[0]
