@@ -274,10 +274,12 @@ def run(
     for name, (method, what, its) in tasks.items():
         if stresses and _finds_stresses(what, method, results):
             its = plan(what, subsurface=True, start=start is not None)
-        what = _driven(what, results)
+        if method != "fem" and "fem" in results:
+            what = _forced(what, results["fem"])
         solve = METHODS[method].solver(keep=keep, allowance=allowance, rig_of=rig_of)
         results[name] = _slid(what, solve(what, its, _told_by(name, progress), start))
-    scene = _driven(scene, results)
+    if "fem" in results:
+        scene = driven(scene, results["fem"])
     for result in results.values():
         effects.accept(result.regime)
     # no bars for finite and unlike bodies or for a fixed element size: there is no reference; none for effects forced
@@ -295,13 +297,20 @@ def _finds_stresses(scene: Scene, method: str, before: Mapping[str, Result]) -> 
     return method in ("exact", "march") or not any(result.surface for result in before.values())
 
 
-def _driven(scene: Scene, before: Mapping[str, Result]) -> Scene:
-    """Return ``scene`` with the Q that fem has found, if displacements of plates drive it; otherwise as it is."""
-    if scene.load.displacement is None or "fem" not in before:
+def driven(scene: Scene, result: Result) -> Scene:
+    """Return ``scene`` with the Q that its ``result`` found, if displacements of plates drive it; otherwise as it
+    is."""
+    if scene.load.displacement is None or not result.plates:
         return scene
-    plates = before["fem"].plates
-    assert plates
-    return replace(scene, load=replace(scene.load, Q_found=tuple(plates.at_points.tolist())))
+    return replace(scene, load=replace(scene.load, Q_found=tuple(result.plates.at_points.tolist())))
+
+
+def _forced(scene: Scene, result: Result) -> Scene:
+    """Return ``scene`` under the forces that its ``result`` found, for methods that know no plates."""
+    if scene.load.displacement is None or not result.plates:
+        return scene
+    Q = tuple(result.plates.at_points.tolist())
+    return replace(scene, load=replace(scene.load, Q=Q, displacement=None, spring=None, Q_found=None))
 
 
 def _slid(scene: Scene, result: Result) -> Result:

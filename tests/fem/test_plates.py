@@ -1,5 +1,6 @@
 """Plates of finite bodies: their stiffness against another element family, their displacements as loads, energy."""
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,8 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 import partialslip
 from partialslip import InputError, parse_scene, run
 from partialslip.cli import main
+from partialslip.equivalent import stand_ins
+from partialslip.export.model import outlined
 from partialslip.friction import coupled
 from partialslip.scene.writing import scene_toml
 
@@ -166,6 +169,12 @@ def test_units_do_not_matter():
     assert other.stiffness == pytest.approx(one.stiffness, rel=1e-9)
 
 
+def test_a_soft_actuator_is_certified():
+    found = solved({"load.Q": [0.0, 0.0], "load.displacement": [-1e-6, 1e-6], "load.spring": 1e-3})
+    assert np.abs(found.plates.Q).max() < 2e-9
+    assert found.certificate["equilibrium"] < 1e-12
+
+
 def test_half_planes_have_no_plates():
     assert solved({"bodies.lower": None, "bodies.upper": None}).plates is None
 
@@ -196,9 +205,13 @@ def test_only_finite_elements_find_q():
         run(scene, "exact")
     both = run(scene, ("exact", "fem"))
     assert both.scene.load.points[0][0] == pytest.approx(both["fem"].plates.Q[0], rel=1e-12)
-    assert both["exact"].traction.dq.size
-    with pytest.raises(InputError, match="only runs with fem find Q"):
-        _ = scene.load.points
+    forces = scene.replace({"load.displacement": None, "load.Q": both["fem"].plates.at_points.tolist()})
+    for method in ("exact", "march", "equivalent"):
+        under_forces, beside_fem = run(forces, method)[method], run(scene, (method, "fem"))[method]
+        assert (beside_fem.m, beside_fem.n) == (under_forces.m, under_forces.n)
+    for of in (partial(stand_ins, rig=None), outlined, lambda each: each.load.points):
+        with pytest.raises(InputError, match="only runs with fem find Q"):
+            of(scene)
 
 
 def test_a_run_of_moved_plates_is_recorded_and_read_back(tmp_path, monkeypatch, capsys):

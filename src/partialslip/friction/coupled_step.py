@@ -84,6 +84,11 @@ class LoadStep:
     def _totals(self) -> Array:
         return np.array([self.P, self.Q])
 
+    @property
+    def _units(self) -> Array:
+        """Units of the totals, (2,), in that of force."""
+        return np.array([1.0, 1.0 if self.actuator is None else self.actuator + float(np.diag(self.xx).max())])
+
     def _borne(self, found: Forces) -> Array:
         """What of the totals (2,) the forces bear."""
         p, q, (_, shift) = found
@@ -144,7 +149,7 @@ class LoadStep:
                     refined, iteration = True, iteration - 1
                     continue
                 zero = np.zeros(len(self.gap))
-                p_off, q_off = np.abs(self._borne(found) - self._totals).tolist()
+                p_off, q_off = (np.abs(self._borne(found) - self._totals) / self._units).tolist()
                 p_in, q_in = np.maximum(p_new, 0.0), np.clip(q_new, -bound, bound)
                 p_rest, q_rest = np.where(touch, 0.0, np.maximum(opening, 0.0)), np.where(slip == 0, 0.0, rest)
                 p_left = np.abs(p_new - np.maximum(pushed, 0.0)) + np.abs(p_new - p_in)
