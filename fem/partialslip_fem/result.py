@@ -1,7 +1,6 @@
 """The result of the last mesh, in SI units: tractions, zones, certificate, estimates, counts, notes."""
 
 import numpy as np
-from msgspec.structs import replace
 
 from partialslip.arrays import Array
 from partialslip.friction.history import certificate, last_cycle_change
@@ -35,8 +34,8 @@ def to_result(
     """
     solution, L, stress = adapted.solution, scene.length, scene.P / scene.length
     plates = _plates(adapted, scene)
-    if scene.load.displacement is not None and plates:
-        scene = replace(scene, load=replace(scene.load, Q_found=tuple(plates.at_points.tolist())))
+    if plates:
+        scene = plates.told(scene)
     origin = problem.origin * L
     accuracy = adapted.settled or scene.fem.accuracy
     pressure = solution.pressure()

@@ -278,8 +278,8 @@ def run(
             what = _forced(what, results["fem"])
         solve = METHODS[method].solver(keep=keep, allowance=allowance, rig_of=rig_of)
         results[name] = _slid(what, solve(what, its, _told_by(name, progress), start))
-    if "fem" in results:
-        scene = driven(scene, results["fem"])
+    if "fem" in results and (plates := results["fem"].plates):
+        scene = plates.told(scene)
     for result in results.values():
         effects.accept(result.regime)
     # no bars for finite and unlike bodies or for a fixed element size: there is no reference; none for effects forced
@@ -297,19 +297,11 @@ def _finds_stresses(scene: Scene, method: str, before: Mapping[str, Result]) -> 
     return method in ("exact", "march") or not any(result.surface for result in before.values())
 
 
-def driven(scene: Scene, result: Result) -> Scene:
-    """Return ``scene`` with the Q that its ``result`` found, if displacements of plates drive it; otherwise as it
-    is."""
-    if scene.load.displacement is None or not result.plates:
-        return scene
-    return replace(scene, load=replace(scene.load, Q_found=tuple(result.plates.at_points.tolist())))
-
-
 def _forced(scene: Scene, result: Result) -> Scene:
     """Return ``scene`` under the forces that its ``result`` found, for methods that know no plates."""
     if scene.load.displacement is None or not result.plates:
         return scene
-    Q = tuple(result.plates.at_points.tolist())
+    Q = result.plates.told(scene).load.Q_found
     return replace(scene, load=replace(scene.load, Q=Q, displacement=None, spring=None, Q_found=None))
 
 

@@ -184,8 +184,7 @@ def _checked(scene: Scene) -> Scene:
         raise InputError("material.upper, material.lower: the bodies differ; must be of one material for equivalent")
     if len({P for P, _ in scene.pressing}) > 1:
         raise InputError("load.P: must be constant for equivalent, as the bodies bend with P; use fem")
-    if scene.load.displacement is not None:
-        raise scene.load.not_a_force()
+    scene.load.require_forces()
     return scene
 
 

@@ -178,8 +178,7 @@ def _check(scene: Scene) -> None:
     if not scene.profile.even:
         raise InputError("profile.x: must begin at 0 to export; only even gaps")
     scene.require_uniform_friction("to export")
-    if scene.load.displacement is not None:
-        raise scene.load.not_a_force()
+    scene.load.require_forces()
     if any(scene.load.sigma_slope):
         raise InputError(f"load.sigma_slope = {list(scene.load.sigma_slope)}: must be 0 or left out to export")
     if scene.meshed:

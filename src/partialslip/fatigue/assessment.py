@@ -15,7 +15,7 @@ from partialslip.fatigue.named import RUIZ, Criterion, beyond, check_distance, c
 from partialslip.fatigue.places import OVER, averaged, depths, largest_at, surface_points
 from partialslip.fatigue.planes import Critical
 from partialslip.result import Result
-from partialslip.run import driven, with_stresses
+from partialslip.run import with_stresses
 from partialslip.scene import Scene
 from partialslip.scene.reading import AnyScene, as_scene
 
@@ -166,7 +166,7 @@ def assess(
         raise InputError(f"body {body!r}: must be of {', '.join(BODIES)}")
     check_distance(scene, body)
     result = with_stresses(scene) if result is None else result
-    scene = driven(scene, result)
+    scene = result.plates.told(scene) if result.plates else scene
     if result.stress_at is None:
         why = result.undetermined.get("stresses", "run the scene with subsurface=True, or by another method")
         raise InputError(f"{result.method}: stresses are not known; {why}")

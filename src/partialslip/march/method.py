@@ -44,8 +44,7 @@ def solve(
         mean displacements of the cells of half-planes along x, in A. Of bodies of like materials.
     """
     clock = Clock(allowance)
-    if scene.load.displacement is not None:
-        raise scene.load.not_a_force()
+    scene.load.require_forces()
     if not scene.material.alike:
         return march(unlike.UnlikeBodies(scene, plan, start, clock), progress)[0]
     problem = similar.SimilarBodies(scene, plan, start, clock, added)

@@ -3,8 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
+from msgspec.structs import replace
 
 from partialslip.arrays import Array
+from partialslip.scene import Scene
 from partialslip.shown import Short
 
 
@@ -41,6 +43,12 @@ class Plates(Short):
     compliance: Array
     loop: Array
     error: float | None = None
+
+    def told(self, scene: Scene) -> Scene:
+        """Return ``scene`` with the Q that its plates bear, if their displacements drive it; otherwise as it is."""
+        if scene.load.displacement is None:
+            return scene
+        return replace(scene, load=replace(scene.load, Q_found=tuple(self.at_points.tolist())))
 
     @property
     def stiffness(self) -> tuple[float, float]:

@@ -85,18 +85,16 @@ class Load(Table, frozen=True, kw_only=True):
         InputError
             If displacements are given, and Q has not been found.
         """
-        if self.displacement is None:
-            Q = self._at_points("Q")
-        elif self.Q_found is None:
-            raise self.not_a_force()
-        else:
-            Q = self.Q_found
+        if self.Q_found is None:
+            self.require_forces()
+        Q = self._at_points("Q") if self.Q_found is None else self.Q_found
         return tuple(zip(Q, self._at_points("sigma"), strict=True))
 
-    def not_a_force(self) -> InputError:
-        """The error that displacements are given where forces are needed."""
-        given = list(self.displacement or ())
-        return InputError(f"load.displacement = {given}: must be load.Q here; only runs with fem find Q")
+    def require_forces(self) -> None:
+        """Raise InputError if displacements of plates are given in place of Q."""
+        if self.displacement is not None:
+            given = list(self.displacement)
+            raise InputError(f"load.displacement = {given}: must be load.Q here; only runs with fem find Q")
 
     @property
     def along(self) -> tuple[tuple[float, float, float], ...]:
