@@ -41,6 +41,7 @@ def test_changes_that_vanish_are_left_out():
     assert fitted_order([1.0, 0.5, 0.25], [0.4, 0.0, 0.1]) == pytest.approx(1)
     assert fitted_order([1.0, 0.5], [0.0, 0.1]) is None
     assert math.isnan(power([1.0], [1.0]))
+    assert math.isnan(power([2.0, 2.0], [1.0, 3.0]))
 
 
 def test_ratios_beyond_any_number_end():

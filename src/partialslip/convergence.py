@@ -20,8 +20,8 @@ TRUSTED, NOT_TRUSTED = 1.25, 3.0  # accuracy: safety factors
 
 
 def power(x: Sequence[float], y: Sequence[float]) -> float:
-    """Return k of the power law ``y = C x^k``, by least squares in logarithms; NaN for fewer than two points."""
-    if len(x) < 2:
+    """Return k of the power law ``y = C x^k``, by least squares in logarithms; NaN for fewer than two different x."""
+    if len(set(x)) < 2:
         return math.nan
     return float(np.polyfit(np.log(x), np.log(np.maximum(y, 1e-300)), 1)[0])
 

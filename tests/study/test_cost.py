@@ -56,9 +56,11 @@ def test_what_was_measured_is_not_measured_again(tmp_path, monkeypatch):
         return made.solved(case.scene, case.labels, errors, ProcessCost(1.0, 0.5, 100.0, 1.0), exact=fem, fem=fem)
 
     monkeypatch.setattr(cost, "solve_apart", apart)
-    monkeypatch.setattr(cost, "ladder", lambda scene: [Job(scene, ("exact", "fem"), {"series": "P4", "setting": "1"})])
+    jobs = [Job(SCENE, ("exact", "fem"), {"series": "P4", "setting": "1"})]
+    monkeypatch.setattr(cost, "ladder", lambda *_: jobs)
     cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), 1)
-    (found,) = cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), 3)
+    (found,), left = cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), 3)
+    assert left == 0
     assert len(solved) == 3
     assert found.cpu_s == 2.0
 
@@ -74,16 +76,56 @@ def test_a_study_of_cost_says_what_runs_and_how_long_it_takes(tmp_path, monkeypa
 
     monkeypatch.setattr(cost, "solve_apart", apart)
     cases = [Job(SCENE, ("exact", "fem"), {"series": "P4, adapted", "setting": setting}) for setting in walls]
-    monkeypatch.setattr(cost, "ladder", lambda _: cases)
+    monkeypatch.setattr(cost, "ladder", lambda *_: cases)
     told = []
     cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), 2, lambda *state: told.append(_progress(*state)))
     assert told == [
-        "run 1 of 4: P4, adapted, accuracy 0.01",
-        "run 2 of 4: P4, adapted, accuracy 1e-05, 3 s left",
-        "run 3 of 4: P4, adapted, accuracy 0.01, 10 s left",
-        "run 4 of 4: P4, adapted, accuracy 1e-05, 9 s left",
+        "run 1 of at most 4: P4, adapted, accuracy 0.01",
+        "run 2 of at most 4: P4, adapted, accuracy 1e-05, 3 s left",
+        "run 3 of at most 4: P4, adapted, accuracy 0.01, 10 s left",
+        "run 4 of at most 4: P4, adapted, accuracy 1e-05, 9 s left",
         "drawing",
     ]
+
+
+def test_a_budget_leaves_settings_dearer_than_the_rest(tmp_path, monkeypatch):
+    """Settings cost 1, 2, 4 and 8 s in one series, and nothing in another that comes later. Each repeat solves the same
+    settings; what was solved before counts, too."""
+    solved = []
+
+    def apart(case):
+        seconds = float(case.labels["setting"])
+        solved.append(seconds)
+        errors = dict.fromkeys(cost.ERRORS, 1e-3)
+        costs = {"exact": {"cost": made.cost(seconds), "counts": {"dofs": 10}}}
+        return made.solved(SCENE, case.labels, errors, ProcessCost(seconds, 0.0, 100.0, seconds), **costs)
+
+    monkeypatch.setattr(cost, "solve_apart", apart)
+    cases = [Job(SCENE, ("exact",), {"series": "dear", "setting": each}) for each in ("1", "2", "4", "8")]
+    cheap = [Job(SCENE, ("exact",), {"series": "cheap", "setting": each}) for each in ("0", "0.0")]
+    monkeypatch.setattr(cost, "ladder", lambda *_: [*cases, *cheap])
+    told, ledger = [], Ledger(tmp_path / "ledger.jsonl")
+
+    def measured(budget):
+        told.clear()
+        progress = lambda *state: told.append(state)  # noqa: E731
+        found, left = cost.measure_costs(SCENE, ledger, 2, progress, budget=budget)
+        assert told[-1][:2] == (2 * len(found), 2 * len(found))
+        return [float(point.setting) for point in found], left
+
+    assert measured(2.5) == ([1, 2], 4)
+    assert solved == [1, 2] * 2
+    assert measured(2.5) == ([1, 2], 4)
+    assert len(solved) == 4
+    assert measured(3.5) == ([1, 2, 0, 0], 2)
+    assert measured(5.0) == ([1, 2, 4], 3)
+    assert solved[8:] == [4, 4]
+
+
+def test_a_ladder_is_of_the_methods_asked_for():
+    assert {case.methods for case in cost.ladder(SCENE, ("march",))} == {("exact", "march")}
+    first = [case.labels["series"] for case in cost.ladder(SCENE, ("exact", "fem"))][:11]
+    assert len(set(first)) == 11  # the cheapest setting of each series
 
 
 def test_every_setting_says_what_it_is():

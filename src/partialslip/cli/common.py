@@ -1,6 +1,7 @@
 """Functions shared by several commands."""
 
 import argparse
+import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
@@ -140,6 +141,19 @@ def check_folder(out: str | None) -> None:
 # Options that do not change the results.
 _NEUTRAL = {"command", "scene", "overrides", "own_process", "line", "default"}
 _NEUTRAL |= {"out", "force", "json", "pdf", "verbose", "save", "processes", "cluster"}
+
+
+def seconds(budget: str, others: str = "") -> float:
+    """Return the CPU seconds of ``--budget``, which may be followed by s; ``others`` names what else is allowed."""
+    try:
+        found = float(budget.removesuffix("s"))
+    except ValueError:
+        found = 0.0
+    if not 0 < found < math.inf:
+        raise InputError(
+            f"--budget {budget!r}: must be a number of seconds > 0, for example 5s{others and ','}{others}"
+        )
+    return found
 
 
 def results_folder(

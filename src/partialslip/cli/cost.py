@@ -15,6 +15,7 @@ from partialslip.cli.common import (
     check_report,
     print_written,
     results_folder,
+    seconds,
     study_ledger,
     write_study,
 )
@@ -30,15 +31,23 @@ def add(topics: "Commands") -> None:
     cost = topics.add_parser(
         "cost",
         help="errors against CPU seconds, over a ladder of settings of every method",
-        description="Solve a scene with a ladder of settings of every method, one process per setting. Print errors "
-        "against CPU seconds. A stopped study continues.",
+        description="Solve a scene with a ladder of settings of every method, one process per setting, as far as the "
+        "budget lets it: the cheapest setting of each series first. Print errors against CPU seconds. A stopped study "
+        "continues.",
         examples=[
-            "partialslip study cost hertz-large-tension --repeats 1",
-            "partialslip study cost hertz-small-tension --peers benchmarks/peers/measured.jsonl",
+            "partialslip study cost hertz-large-tension",
+            "partialslip study cost hertz-large-tension --with march,fem --budget 300s",
+            "partialslip study cost hertz-small-tension --budget none --repeats 3 --peers "
+            "benchmarks/peers/measured.jsonl",
         ],
     )
     add_scene(cost)
-    cost.add_argument("--repeats", type=int, default=3, metavar="N", help="repeats of each setting (default: 3)")
+    cost.add_argument("--with", dest="methods", metavar="METHODS", default="exact,march,fem",
+                      help="methods of exact, march and fem, separated by commas (default: all)")  # fmt: skip
+    cost.add_argument("--budget", metavar="SECONDS", default="60s",
+                      help="CPU seconds of all processes of a repeat, or none: the whole ladder (default: "
+                      "60s)")  # fmt: skip
+    cost.add_argument("--repeats", type=int, default=1, metavar="N", help="repeats of each setting (default: 1)")
     cost.add_argument("--peers", metavar="FILE", help="results of other codes, JSON lines, to add to the diagram")
     add_out(cost, "results/NAME-cost[-HASH]")
     add_verbose(cost, "the settings that another one beats in cost and error, and how errors fall with unknowns")
@@ -51,6 +60,8 @@ def _cost(options: argparse.Namespace) -> int:
     check_report(options)
     if options.repeats < 1:
         raise InputError(f"--repeats {options.repeats}: must be >= 1")
+    budget = math.inf if options.budget == "none" else seconds(options.budget, " or none")
+    methods = [method.strip() for method in options.methods.split(",")]
     scene = partialslip.load_scene(options.scene, options.overrides)
 
     from partialslip.cli.consoles import output, working
@@ -60,28 +71,42 @@ def _cost(options: argparse.Namespace) -> int:
     from partialslip.study.cost import ladder
     from partialslip.study.cost.figure import errors_svg, phases_svg
 
+    for method in methods:
+        if method not in ladder.LADDERS:
+            raise InputError(f"--with {method!r}: must be of {', '.join(ladder.LADDERS)}")
     peers = ladder.read_peers(Path(options.peers), scene.name) if options.peers is not None else []
     name = f"{scene.name}-cost"
-    known = {"peers": options.peers and Path(options.peers)}
-    with results_folder(options, "study cost", name, scene, known) as place:
+    known = {"peers": options.peers and Path(options.peers), "methods": sorted({*methods}), "budget": str(budget)}
+
+    def usual() -> dict[str, object]:
+        return {"methods": sorted(ladder.LADDERS), "budget": str(seconds(options.default("budget")))}
+
+    with results_folder(options, "study cost", name, scene, known, usual) as place:
         folder = place.path
         ledger = study_ledger(folder)
         with working(name) as tell:
-            found = ladder.measure_costs(scene, ledger, options.repeats, lambda *state: tell(_progress(*state)))
+            found, left = ladder.measure_costs(
+                scene, ledger, options.repeats, lambda *state: tell(_progress(*state)), methods, budget
+            )
         texts = {
             "cost.csv": csv_text(*ladder.cost_table([*found, *peers])),
             "cost.svg": errors_svg(found, peers, f"{scene.name}: error against cost"),
             "phases.svg": phases_svg(found, f"{scene.name}: where the time goes"),
         }
-        best = {id(point) for point in ladder.front(found)}
+        front = ladder.front(found)
+        best = {id(point) for point in front}
         head = ["series (* on the front)", "setting", "m, in a", "n, in a", "q, norm", "unknowns", "CPU s", "process"]
         rows = [_row(point, id(point) in best) for point in [*found, *peers]]
         slopes = [
             [each, *(_number(value, ".2f") for value in of.values())] for each, of in ladder.slopes(found).items()
         ]
         exponents = ["exponent against unknowns", "m, n", "q", "CPU"]
-        heading = f"{scene.name}: what accuracy costs, medians of {options.repeats}"
+        heading = f"{scene.name}: what accuracy costs" + (
+            f", medians of {options.repeats}" if options.repeats > 1 else ""
+        )
         against = _against(found, peers)
+        if left:
+            against.insert(0, f"{left} settings were left: {options.budget} of CPU are spent (--budget)")
         sections = [
             Section("Errors and costs", against, texts["cost.svg"], "", head, rows, (1,)),
             Section("Growth with the unknowns", (), texts["phases.svg"], "", exponents, slopes),
@@ -98,9 +123,8 @@ def _cost(options: argparse.Namespace) -> int:
         print_table(console, head, rows, words=(0, 1))
         print_table(console, exponents, slopes)
     else:
-        front = [_row(point, False) for point in found if id(point) in best]
-        print_table(console, ["series", *head[1:]], front, words=(0, 1))
-        console.print(f"{len(found) - len(best)} other settings cost more for the error: --verbose, or cost.csv")
+        print_table(console, ["series", *head[1:]], [_row(point, False) for point in front], words=(0, 1))
+        console.print(f"{len(found) - len(front)} other settings cost more for the error: --verbose, or cost.csv")
     for line in against:
         console.print(line, soft_wrap=True, markup=False)
     print_written(files, console, place.elsewhere)
@@ -111,7 +135,7 @@ def _progress(done: int, total: int, setting: str, left: float) -> str:
     """Return the progress of the study as text."""
     if done == total:
         return "drawing"
-    return f"run {done + 1} of {total}: {setting}{'' if math.isnan(left) else f', {left:.0f} s left'}"
+    return f"run {done + 1} of at most {total}: {setting}{'' if math.isnan(left) else f', {left:.0f} s left'}"
 
 
 def _row(point: "CostPoint", front: bool) -> list[str]:

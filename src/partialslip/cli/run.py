@@ -1,7 +1,6 @@
 """partialslip run: solve a scene, compare the methods, write the report."""
 
 import argparse
-import math
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +18,7 @@ from partialslip.cli.common import (
     origin,
     print_long_path,
     print_outcome,
+    seconds,
 )
 from partialslip.errors import InputError
 
@@ -133,12 +133,7 @@ def _budget(options: argparse.Namespace, scene: "Scene", methods: list[str] | No
         return None
     if options.accuracy is not None:
         raise InputError("--budget: must not be given together with --accuracy")
-    try:
-        budget = float(options.budget.removesuffix("s"))
-    except ValueError:
-        budget = 0.0
-    if not 0 < budget < math.inf:
-        raise InputError(f"--budget {options.budget!r}: must be a number of seconds > 0, for example 5s")
+    budget = seconds(options.budget)
     if methods and "fem" not in methods:
         raise InputError("--budget: needs the method fem: add fem to --with")
     if scene.fem.size is not None or scene.meshed:

@@ -1,6 +1,7 @@
 """Errors of ends and tractions due to finite steps of the load path."""
 
 import itertools
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
@@ -84,12 +85,16 @@ def other_steps(path: Path) -> Path:
 
 
 def more_steps(path: Path, errors: Mapping[str, float], others: Mapping[str, float], accuracy: float) -> Path | None:
-    """The ``path`` of coupled bodies in twice as many steps, if their ``errors`` are more than half of what the
-    ``accuracy`` (of a) allows, and more than the ``others``; None if not, or if there would be too many."""
+    """The ``path`` of coupled bodies in as many steps as make their ``errors``, of first order in the steps, no more
+    than half of what the ``accuracy`` (of a) allows, or than the ``others``; a power of 2 times as many, as far as
+    the limit lets them. None if there are enough, or would be too many."""
     allowed = {key: max(BARS[key] * accuracy / 2, others.get(key, 0.0)) for key in errors}
-    if 2 * path.substeps > _MOST_STEPS or all(errors[key] <= most for key, most in allowed.items()):
+    most = _MOST_STEPS // path.substeps
+    excess = max((errors[key] / each for key, each in allowed.items()), default=0.0)
+    if most < 2 or excess <= 1:
         return None
-    return replace(path, substeps=2 * path.substeps)
+    power = min(math.ceil(math.log2(min(excess, most))), int(math.log2(most)))
+    return replace(path, substeps=path.substeps * 2**power)
 
 
 def summed(*errors: Mapping[str, float]) -> Errors:

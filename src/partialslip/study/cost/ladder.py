@@ -1,11 +1,12 @@
 """Errors against CPU seconds, over a ladder of settings of every method."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import zip_longest
 from pathlib import Path
 from statistics import median
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
@@ -41,6 +42,9 @@ _ADAPTED: dict[str, tuple[dict[str, Any], tuple[float, ...]]] = {
 _LARGEST_FILE = 100_000_000  # limit: bytes
 _UNIFORM = {"P1": 1, "P2": 2, "P4": 4}  # fixed: orders of the elements of uniform meshes
 _SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)  # display: of their elements, in a
+
+
+_Setting = tuple[str, dict[str, Any]]  # its name, and what it sets of finite elements
 
 
 @dataclass(frozen=True)
@@ -83,8 +87,19 @@ class CostPoint:
         return max(of_stick) if of_stick else self.errors["a"]
 
 
-def ladder(scene: Scene) -> list[Job]:
-    """Return the jobs for all settings of ``scene``, cheapest first within each series.
+LADDERS = ("exact", "march", "fem")  # fixed: methods with a ladder
+
+
+class Measured(NamedTuple):
+    """What was measured: ``points``, and how many settings were ``left`` as the budget was spent."""
+
+    points: list[CostPoint]
+    left: int
+
+
+def ladder(scene: Scene, methods: Collection[str] = LADDERS) -> list[Job]:
+    """Return the jobs for all settings of ``scene`` by ``methods``, in the order in which a budget is spent: the
+    cheapest setting of each series, then the next of each.
 
     Raises
     ------
@@ -95,40 +110,45 @@ def ladder(scene: Scene) -> list[Job]:
         raise InputError(
             f"{scene.name}: a cost study needs the exact method: half-planes of equal material, loads in phase"
         )
-    cases = [_case(scene, ("exact",), "exact", "", {})]
+    found = [_series(scene, "exact", "exact", [("", {})])]
     if plan(scene).needs("friction"):
-        cases += [
-            _case(scene, ("exact", "march"), "march", _asked(asked), {"accuracy": asked})
-            for asked in (1e-3, 1e-4, 1e-5, 1e-6)
-        ]
-    for series, (fixed, accuracies) in _ADAPTED.items():
-        cases += [
-            _case(scene, ("exact", "fem"), f"{series}, adapted", _asked(asked), {**fixed, "accuracy": asked})
-            for asked in accuracies
-        ]
-    for series, order in _UNIFORM.items():
+        found.append(_series(scene, "march", "march", [_asked(each) for each in (1e-3, 1e-4, 1e-5, 1e-6)]))
+    for name, (fixed, accuracies) in _ADAPTED.items():
+        found.append(_series(scene, "fem", f"{name}, adapted", [_asked(each) for each in accuracies], fixed))
+    for name, order in _UNIFORM.items():
         sizes = _SIZES if order > 1 else (*_SIZES, 0.005)
-        cases += [
-            _case(scene, ("exact", "fem"), f"{series}, uniform", f"h = {size:g} a", {"order": order, "size": size})
-            for size in sizes
-        ]
-    return cases
+        settings: list[_Setting] = [(f"h = {size:g} a", {"size": size}) for size in sizes]
+        found.append(_series(scene, "fem", f"{name}, uniform", settings, {"order": order}))
+    wanted = [series for series in found if series[0].methods[-1] in methods]
+    return [case for rung in zip_longest(*wanted) for case in rung if case]
 
 
-def _asked(accuracy: float) -> str:
+def _asked(accuracy: float) -> _Setting:
     digits, _, power = f"{accuracy:.0e}".partition("e")
-    return f"accuracy {digits}e{int(power)}"
+    return f"accuracy {digits}e{int(power)}", {"accuracy": accuracy}
 
 
-def _case(scene: Scene, methods: tuple[str, ...], series: str, setting: str, fem: dict[str, Any]) -> Job:
-    data = msgspec.to_builtins(scene)
-    data["fem"] = {**data["fem"], **fem}
-    return Job(parse_scene(data), methods, {"series": series, "setting": setting})
+def _series(
+    scene: Scene, method: str, name: str, settings: Iterable[_Setting], fixed: Mapping[str, Any] = {}
+) -> list[Job]:
+    """Return the jobs of one series, cheapest first: ``settings`` of finite elements, beside those that are
+    ``fixed``."""
+    found, methods = [], tuple(dict.fromkeys(("exact", method)))
+    for setting, fem in settings:
+        data = msgspec.to_builtins(scene)
+        data["fem"] = {**data["fem"], **fixed, **fem}
+        found.append(Job(parse_scene(data), methods, {"series": name, "setting": setting}))
+    return found
 
 
 def measure_costs(
-    scene: Scene, ledger: Ledger, repeats: int, progress: Callable[[int, int, str, float], None] = lambda *_: None
-) -> list[CostPoint]:
+    scene: Scene,
+    ledger: Ledger,
+    repeats: int,
+    progress: Callable[[int, int, str, float], None] = lambda *_: None,
+    methods: Collection[str] = LADDERS,
+    budget: float = math.inf,
+) -> Measured:
     """Solve the ladder of ``scene``, one new process per job. Jobs in ``ledger`` are not solved again.
 
     Parameters
@@ -139,25 +159,45 @@ def measure_costs(
         Each repeat runs the whole ladder, so that other load on the machine affects all settings alike.
     progress : callable
         ``progress(done, total, next, seconds_left)``, with the next setting as text. The seconds follow from the wall
-        seconds of the same setting in an earlier repeat, else from the mean of all settings; NaN at first.
+        seconds of the same setting in an earlier repeat, else from the mean of all settings, up to the budget; NaN at
+        first.
+    methods : collection of str
+        Of :data:`LADDERS`.
+    budget : float
+        CPU seconds of all processes of a repeat, those in ``ledger`` included. A setting is left if the setting before
+        it in its series took more than the rest, and so are all later settings of the series.
     """
-    cases = ladder(scene)
-    runs = [
-        Job(case.scene, case.methods, {**case.labels, "repeat": repeat}) for repeat in range(repeats) for case in cases
-    ]
-    keys = [case.key for case in runs]
-    settings = [", ".join(filter(None, (str(case.labels[name]) for name in ("series", "setting")))) for case in runs]
-    seconds: dict[str, float] = {}
-    for number, (case, key, setting) in enumerate(zip(runs, keys, settings, strict=True)):
-        unsolved = [each for each, its in zip(settings[number:], keys[number:], strict=True) if its not in ledger]
-        usual = float(np.mean([*seconds.values()])) if seconds else math.nan
-        progress(number, len(runs), setting, sum(seconds.get(each, usual) for each in unsolved))
-        if key not in ledger:
-            ledger.add(key, solve_apart(case))
-        if process := ledger.read(key, Solved).process:
-            seconds[setting] = process.wall_s
-    progress(len(runs), len(runs), "", 0.0)
-    return points(ledger.read(key, Solved) for key in keys)
+    cases = ladder(scene, methods)
+    names = [", ".join(filter(None, map(str, case.labels.values()))) for case in cases]
+    runs = [[replace(case, labels={**case.labels, "repeat": repeat}) for case in cases] for repeat in range(repeats)]
+    keys = [[run.key for run in repeat] for repeat in runs]
+    wanted, found, walls = list(range(len(cases))), list[Solved](), dict[str, float]()
+    for repeat in range(repeats):
+        kept, rest, last = list[int](), budget, dict[str | float, float]()
+        for number, index in enumerate(wanted):
+            series = cases[index].labels["series"]
+            if not repeat and last.get(series, 0.0) > rest:
+                continue
+            usual, ahead = float(np.mean([*walls.values()])) if walls else math.nan, wanted[number:]
+            every = [(repeat, ahead, rest), *((later, kept + ahead, budget) for later in range(repeat + 1, repeats))]
+            left = (
+                min(sum(walls.get(names[each], usual) for each in some if keys[of][each] not in ledger), most)
+                for of, some, most in every
+            )
+            total = len(found) + sum(len(some) for _, some, _ in every)
+            progress(len(found), total, names[index], sum(left))
+            key = keys[repeat][index]
+            if key not in ledger:
+                ledger.add(key, solve_apart(runs[repeat][index]))
+            entry = ledger.read(key, Solved)
+            found.append(entry)
+            kept.append(index)
+            if process := entry.process:
+                spent = process.cpu_s + process.report_cpu_s
+                walls[names[index]], last[series], rest = process.wall_s, spent, rest - spent
+        wanted = kept
+    progress(len(found), len(found), "", 0.0)
+    return Measured(points(found), len(cases) - len(wanted))
 
 
 def points(entries: Iterable[Solved]) -> list[CostPoint]:
