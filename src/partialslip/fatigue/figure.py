@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _WIDE, _DEEP = 2.0, 1.2  # display: half-width and depth of the stress fields, in a
 _COLUMNS, _ROWS = 97, 28  # display: points of a field in each body
 _LEVELS = 10  # display: of contours
+_ABREAST = 4  # display: least number of polar plots that a row has room for
 _LINES = (("-", "black"), ("--", "black"), (":", "black"), ("-", "0.55"), ("--", "0.55"), ("-.", "black"))
 _COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_xy")
 
@@ -45,13 +46,14 @@ def stress_svg(found: Assessment) -> str:
             for point, axes in enumerate(row):
                 for y, field in fields:
                     values = np.ma.masked_invalid(field[point, component] / 10.0**exponent)
-                    axes.contourf(x / a, y / a, values, levels, cmap="Greys_r", extend="both")
+                    filled = axes.contourf(x / a, y / a, values, levels, cmap="Greys_r", extend="both")
                     lines = axes.contour(x / a, y / a, values, levels, colors="black", linewidths=0.5)
                     axes.clabel(lines, lines.levels[::2], fontsize=6, fmt="%g")
                 _outline(axes, found)
                 axes.set(xlim=(x[0] / a, x[-1] / a), ylim=(-_DEEP, _DEEP), aspect="equal")
                 axes.set_title(f"{_COMPONENTS[component]}, {unit}, load point {point + 1}", fontsize=9, loc="left")
             row[0].set_ylabel("y/a")
+            figure.colorbar(filled, ax=row, aspect=12, pad=0.02).ax.tick_params(labelsize=7)
         for axes in grid[-1]:
             axes.set_xlabel("x/a")
 
@@ -122,9 +124,13 @@ def planes_svg(found: Assessment) -> str:
         return ""
     angle = np.linspace(0, 2 * np.pi, 721)
 
+    columns = max(len(rated), _ABREAST)
+
     def draw(figure: "Figure") -> None:
-        grid = np.ravel(figure.subplots(1, len(rated), subplot_kw={"projection": "polar"}))
-        for axes, (name, rating) in zip(grid, rated.items(), strict=True):
+        grid = figure.subplots(1, columns, subplot_kw={"projection": "polar"})
+        for axes in grid[len(rated) :]:
+            axes.remove()
+        for axes, (name, rating) in zip(grid, rated.items(), strict=False):
             at, measure = rating.surface, rating.criterion.measure
             assert measure
             stress = found.stress(np.array([at.x]), np.array([at.depth]))
@@ -140,4 +146,4 @@ def planes_svg(found: Assessment) -> str:
             axes.set_thetagrids(np.arange(0, 360, 45))
             axes.tick_params(labelsize=7)
 
-    return svg(draw, (2.1 * len(rated) + 0.4, 2.9))
+    return svg(draw, (2.1 * columns + 0.4, 2.9))
