@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 _LACKING = "an answer without a headline target"
 _PROBLEMS = "numbers of problems, or patterns such as PS-0*, separated by commas (default: all)"
 
+_TITLED = 144  # display: columns of a terminal from which on a table has the titles of the problems
+
 
 def add(commands: "Commands") -> None:
     """Add the command to the parser of ``commands``."""
@@ -161,13 +163,15 @@ def _score(options: argparse.Namespace) -> int:
 def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> int:
     """Print the grades of a submission, with the target that decides. Returns the exit code: 4 if an answer lacks a
     headline target."""
+    from partialslip.benchmark.grade import NOT_GRADED, NOT_OFFERED
     from partialslip.benchmark.measured import GROUPS
     from partialslip.benchmark.scoreboard import grades, standing
     from partialslip.cli.consoles import output
     from partialslip.judge.outcome import UNJUDGED
     from partialslip.output.tables import print_table
 
-    table, lacking = [], []
+    console, table, lacking = output(), [], list[str]()
+    titled, short = console.width >= _TITLED, {NOT_OFFERED: "-", NOT_GRADED: "?"}
     for number, found in grades(some, submission).items():
         worst, answer = found.overall, submission.answers[number]
         error = "" if worst.error is None else f"{worst.error:.1e}"
@@ -175,11 +179,14 @@ def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> in
         spent = "" if answer.cpu_s is None else f"{answer.cpu_s:.2g}"
         if not found.counts:
             lacking.append(f"{number} ({', '.join(found.lacks) if found.answered else 'no values'})")
-        table.append((number, some[number].title, worst.grade, *groups, worst.worst, error, spent))
-    console = output()
+        graded = [short.get(grade, grade) for grade in (worst.grade, *groups)]
+        table.append((number, *([some[number].title] if titled else []), *graded, worst.worst, error, spent))
     console.print(f"{submission.meta.code} {submission.meta.version}", markup=False)
-    heads = ("", "problem", "grade", *GROUPS, "worst", "error", "CPU s")
-    print_table(console, heads, table, words=range(4 + len(GROUPS)))
+    heads = ("", *(["problem"] if titled else []), "grade", *GROUPS, "worst", "error", "CPU s")
+    print_table(console, heads, table, words=range(len(heads) - 2))
+    used = [f"{mark}: {grade}" for grade, mark in short.items() if any(mark in row for row in table)]
+    if used:
+        console.print("; ".join(used), markup=False)
     whole = standing(submission)
     told = "; ".join(group.text for group in whole.groups)
     console.print(f"{whole.counted} of {whole.of} problems count: {told}", markup=False, soft_wrap=True)
