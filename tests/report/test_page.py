@@ -127,6 +127,20 @@ def test_ids_are_unique(page):
     assert len(ids) == len(set(ids))
 
 
+def test_stresses_and_shear_are_drawn_where_stresses_are_asked_for():
+    """Together with q1 and q2; a contact without friction has no shear to draw."""
+    plain = partialslip.run(SCENE, ["exact"])
+    asked = partialslip.run(SCENE, ["exact"], subsurface=True)
+    smooth = partialslip.run(SCENE.replace({"friction.f": 0.0, "load.Q": [0, 0]}), ["exact"], subsurface=True)
+    drawn = {name: run_page(run, MADE) for name, run in {"plain": plain, "asked": asked, "smooth": smooth}.items()}
+    assert {name: "<h2>At load points 1 and 2</h2>" in page for name, page in drawn.items()} == {
+        "plain": False, "asked": True, "smooth": True,
+    }  # fmt: skip
+    assert "q1, exact" in drawn["asked"]
+    assert "sigma_xx, load point 2" in drawn["asked"]
+    assert "q1, exact" not in drawn["smooth"]
+
+
 def test_a_study_has_the_same_frame():
     section = Section("Errors", ["One line."], "<svg></svg>", "Of costs.", ("case", "error"), [("first", "1e-3")])
     page = study_page("study of it", SCENE, MADE, [section])

@@ -7,20 +7,26 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
+from partialslip.output.svg import svg
 from partialslip.report.answer import scale
-from partialslip.report.figure import draw_tractions
+from partialslip.report.figure import draw_tractions, from_reference
 from partialslip.result import Result
 from partialslip.scene import Friction
 from partialslip.units import Dimension, Units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from partialslip.run import Run
 
 Shown = Literal["tractions", "shear", "stress"]
 _SHOWN = ("tractions", "shear", "stress")
 _LINES = ("--", "-")  # display: of the first method, at load points 1 and 2
 _MARKS = (("s", "o"), ("^", "v"), ("<", ">"))  # display: of the other methods in turn, at load points 1 and 2
 _MOST = 41  # display: marks on a curve
+_REACH = 3.0  # display: farthest distance from the middle of the contact, in a
+_SIZE = 6.4, 4.0  # display: of one plot, inches
 _BELOW = -0.17  # display: of the legend: leaves room for the label of the axis, and none is needed above for a title
 
 
@@ -56,6 +62,22 @@ def draw(
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, _BELOW), ncols=2, frameon=False, fontsize=9)
 
 
+def levels_svg(run: "Run") -> str:
+    """Return q1 and q2, if they are known, and sigma_xx along the surface as SVG, in the units of the scene. Empty if
+    no result has stresses: only then are they asked for."""
+    every: tuple[Shown, ...] = ("shear", "stress")
+    some = [shown for shown in every if any(_curves(result, shown) for result in run.results.values())]
+    if "stress" not in some:
+        return ""
+    results, friction, units = from_reference(run), run.scene.friction, run.scene.units
+
+    def draw_all(figure: "Figure") -> None:
+        for axes, shown in zip(figure.subplots(len(some), 1, squeeze=False).flat, some, strict=True):
+            draw(axes, results, shown, friction, units)
+
+    return svg(draw_all, (_SIZE[0], _SIZE[1] * len(some)))
+
+
 def _draw_levels(
     axes: "Axes", results: Mapping[str, Result], shown: Shown, friction: Friction | None, units: Units | None
 ) -> None:
@@ -72,13 +94,15 @@ def _draw_levels(
         (length, across), (unit, up) = _axis("x", first.a, "m", units), _axis(name, largest, "Pa", units)
     elif shown == "shear" and friction is not None and friction.f:
         unit, up = friction.f * first.p0, "q/(f p0)"
+    middle = float(np.mean(first.ends))
     for number, (method, (x, levels)) in enumerate(known.items()):
         for point, (values, line, mark) in enumerate(zip(levels, _LINES, _MARKS[number % len(_MARKS)], strict=True), 1):
             label = f"{name}{point}, {method}" if shown == "shear" else f"{name}, load point {point}, {method}"
             style: dict[str, Any] = {"ls": line, "lw": 1.2}
             some = np.arange(len(x))
             if number:  # marks on the lines of the first
-                some = np.unique(np.abs(x[:, None] - np.linspace(x[0], x[-1], _MOST)).argmin(axis=0))
+                left, right = max(x[0], middle - _REACH * first.a), min(x[-1], middle + _REACH * first.a)
+                some = np.unique(np.abs(x[:, None] - np.linspace(left, right, _MOST)).argmin(axis=0))
                 style = {"ls": "", "marker": mark, "ms": 4.5, "mfc": "white"}
             axes.plot(x[some] / length, values[some] / unit, color="black", label=label, **style)
     if shown == "shear" and friction is not None:
@@ -91,6 +115,8 @@ def _draw_levels(
                 axes.plot(traction.x / length, -bound, **style)
     axes.axhline(0, color="0.7", lw=0.6, zorder=0)
     axes.set(xlabel=across, ylabel=up)
+    if shown == "stress":
+        axes.set_xlim((middle - _REACH * first.a) / length, (middle + _REACH * first.a) / length)
 
 
 def _curves(result: Result, shown: Shown) -> tuple[Array, tuple[Array, Array]] | None:

@@ -8,6 +8,7 @@ from partialslip.output.page import render_page
 from partialslip.report import answer, rows
 from partialslip.report.answer import amounts
 from partialslip.report.figure import mesh_svg, profile_svg, traction_svg
+from partialslip.report.levels import levels_svg
 from partialslip.report.sketch import sketch_svg
 from partialslip.run import Run
 from partialslip.scene import Scene
@@ -53,6 +54,7 @@ def run_page(run: Run, made: Made) -> str:
         answer=answer,
         figure=traction_svg(run),
         amounts=amounts(run.results, run.scene.units),
+        levels=levels_svg(run),
         mesh=mesh_svg(run),
         profile=profile_svg(run.scene),
         sketch=sketch_svg(run.scene),
