@@ -48,12 +48,14 @@ def book_page(problems: Mapping[str, Problem], submissions: Sequence[Submission]
 
 
 def book_zip(problems: Mapping[str, Problem]) -> bytes:
-    """The ``problems`` by number as plain data, a zip that stands alone: how to take part, and for each problem a JSON
-    file with everything, the scene as TOML, the targets as CSV, meshes and decks."""
-    readme = (resources("partialslip.benchmark") / "zip_readme.txt").read_text("utf-8")
+    """The ``problems`` by number as plain data, a zip that stands alone: how to take part, a workflow that grades
+    answers, and for each problem a JSON file with everything, scene as TOML, targets as CSV, meshes and decks."""
+    package = resources("partialslip.benchmark")
+    readme = (package / "zip_readme.txt").read_text("utf-8")
     limits = ", ".join(f"{grade} {limit:g}" for grade, limit in LIMITS.items())
     listed = "\n".join(f"{number}  {problem.title}" for number, problem in problems.items())
     content = {"README.txt": readme.format(edition=EDITION, limits=limits, problems=listed).encode()}
+    content["grade.yml"] = (package / "grade.yml").read_bytes()
     for number, problem in problems.items():
         own = {name: text.encode() for name, text in _files(problem).items()} | model_files(problem)
         content |= {f"{number}/{name}": data for name, data in own.items()}
@@ -93,7 +95,7 @@ def _boards(problems: Mapping[str, Problem], submissions: Sequence[Submission]) 
 
 def _code(submission: Submission) -> tuple[str, ...]:
     meta = submission.meta
-    return (f"{meta.code} {meta.version}".strip(), meta.settings, meta.machine)
+    return (f"{meta.code} {meta.version}".strip(), meta.settings, meta.machine, meta.author)
 
 
 def _ladders(problem: Problem, submissions: Sequence[Submission]) -> list[tuple[str, ...]]:
