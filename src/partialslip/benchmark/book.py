@@ -1,7 +1,5 @@
 """The book of the benchmark: a page with all problems and the scoreboard, and a zip of plain data."""
 
-import io
-import zipfile
 from collections.abc import Mapping, Sequence
 from importlib.resources import files as resources
 
@@ -14,13 +12,12 @@ from partialslip.benchmark.problem import EDITION, SETTINGS, Problem, read_froze
 from partialslip.benchmark.scoreboard import Board, scoreboard
 from partialslip.benchmark.submission import Submission
 from partialslip.origin import Made, origin_lines
-from partialslip.output.files import csv_text, json_text
+from partialslip.output.files import csv_text, json_text, zipped
 from partialslip.output.page import render_page
 from partialslip.report import rows
 from partialslip.report.sketch import sketch_svg
 from partialslip.scene.writing import scene_tables, scene_toml
 
-_EARLY = (1980, 1, 1, 0, 0, 0)  # fixed: date of all files in the zip: the same content gives the same zip
 _COLUMNS = 8  # display: codes side by side in a scoreboard
 
 
@@ -59,11 +56,7 @@ def book_zip(problems: Mapping[str, Problem]) -> bytes:
     for number, problem in problems.items():
         own = {name: text.encode() for name, text in _files(problem).items()} | model_files(problem)
         content |= {f"{number}/{name}": data for name, data in own.items()}
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in content.items():
-            archive.writestr(zipfile.ZipInfo(name, _EARLY), data, zipfile.ZIP_DEFLATED)
-    return buffer.getvalue()
+    return zipped(content)
 
 
 def _files(problem: Problem) -> dict[str, str]:
