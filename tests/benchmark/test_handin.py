@@ -103,6 +103,11 @@ def linked_out(folder):
     (folder / "decks" / "job.inp").symlink_to("../../other.inp")
 
 
+def linked_table(folder):
+    (folder / "PS-02.csv").rename(folder.parent / "other.csv")
+    (folder / "PS-02.csv").symlink_to("../other.csv")
+
+
 def piped(folder):
     os.mkfifo(folder / "pipe.inp")
 
@@ -127,6 +132,8 @@ SPOILED = {
     "input outside": (more_inputs("../x.inp"), r"inputs.'../x.inp': must be the path of an"),
     "answer as input": (more_inputs("PS-02.json"), r"inputs.'PS-02.json': must be the path"),
     "input linked from outside": (linked_out, r"inputs.'decks/job.inp': must be the path of an input file"),
+    "table linked from outside": (linked_table, r"PS-02.csv: must be a file of the folder, not a link to a file"),
+    "absolute path": (more_inputs("/etc/hostname"), r"inputs.'/etc/hostname': must be the path of an input file"),
     "input empty": (lambda folder: (written("e.inp", "")(folder), more_inputs("e.inp")(folder)),
                     r"inputs.'e.inp': must not be an empty file"),
     "file not listed": (written("more.inp", DECK), rf'more.inp: must be listed in the table inputs of meta.toml, as '

@@ -59,8 +59,8 @@ def _input_faults(folder: Path, meta: Meta) -> Iterator[str]:
     own = {META} | {f"{file.stem}{suffix}" for file in folder.glob("*.json") for suffix in (".json", ".csv")}
     for name, given in meta.inputs.items():
         told, file = f"{folder / META}: inputs.{name!r}", folder / name
-        inside = file.resolve().is_relative_to(folder.resolve()) and str(PurePosixPath(name)) == name
-        if not inside or name in own or ".." in PurePosixPath(name).parts:
+        plain = str(PurePosixPath(name)) == name and ".." not in PurePosixPath(name).parts
+        if not plain or name in own or not _inside(file, folder):
             yield f"{told}: must be the path of an input file in the folder, such as decks/job.inp"
             continue
         try:
@@ -75,7 +75,12 @@ def _input_faults(folder: Path, meta: Meta) -> Iterator[str]:
     for file in sorted(folder.rglob("*")):
         name = file.relative_to(folder).as_posix()
         hidden = any(part.startswith(".") for part in file.relative_to(folder).parts)
-        if file.is_dir() or hidden or name in own or name in meta.inputs:
+        if file.is_dir() or hidden or name in meta.inputs:
+            continue
+        if not _inside(file, folder):
+            yield f"{file}: must be a file of the folder, not a link to a file elsewhere"
+            continue
+        if name in own:
             continue
         try:
             listed = f'"{name}" = "{checksum(file, _LARGEST)}"'
@@ -83,6 +88,11 @@ def _input_faults(folder: Path, meta: Meta) -> Iterator[str]:
             yield str(error)
         else:
             yield f"{file}: must be listed in the table inputs of {META}, as {listed}, or left out"
+
+
+def _inside(file: Path, folder: Path) -> bool:
+    """Whether ``file`` lies in ``folder``, and is no link to elsewhere."""
+    return file.resolve().is_relative_to(folder.resolve())
 
 
 def _answer_faults(folder: Path, problem: Problem, answer: Answer) -> Iterator[str]:

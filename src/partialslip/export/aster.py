@@ -116,7 +116,7 @@ def _wrapped(words: Iterable[str]) -> Iterator[str]:
 
 def _commands(made: Named) -> Iterator[str]:
     model, f = made.model, made.model.f
-    yield "DEBUT(PAR_LOT='NON')"
+    yield "DEBUT()"
     yield f"MESH = LIRE_MAILLAGE(FORMAT='ASTER', UNITE={_MESH})"
     sides = ", ".join(f"'{_group(body, line)}'" for body, mesh in made.meshes.items() for line in mesh.lines)
     yield f"MESH = MODI_MAILLAGE(reuse=MESH, MAILLAGE=MESH, ORIE_PEAU=_F(GROUP_MA_PEAU=({sides})))"
