@@ -255,17 +255,21 @@ def test_the_table_of_code_aster_is_scored(tmp_path, monkeypatch):
 
 
 def test_the_table_of_moose_is_scored(tmp_path, monkeypatch):
-    """By the names of the multipliers. Where the loads are fully reversed load point 2 is enough."""
+    """By the names of the multipliers. Where the loads are fully reversed load point 2 is enough. The multiplier of
+    friction is -q, as the header says."""
     scene = load_scene(SCENE)
-    deck = moose_blocks(moose_files(scene, modelled(scene, **COARSE), "deck")["deck.i"].decode())
+    text = moose_files(scene, modelled(scene, **COARSE), "deck")["deck.i"].decode()
+    assert "q is -frictional_tangential_lm" in text
+    deck = moose_blocks(text)
     exact = run(scene, "exact")["exact"]
     x = np.linspace(-1.2, 1.2, 481) * exact.a
     at = exact.traction.at(x)
     columns = ["id", *deck["VectorPostprocessors"]["tractions"]["variable"].split(), "x", "y", "z"]
-    table = np.column_stack([np.arange(len(x)), at.p, at.q2, x, 0 * x, 0 * x])
+    table = np.column_stack([np.arange(len(x)), at.p, -at.q2, x, 0 * x, 0 * x])
     monkeypatch.chdir(tmp_path)
     np.savetxt("deck.csv", table, delimiter=",", header=",".join(columns), comments="")
-    assert score(scene, "deck.csv").comparisons["deck.csv"].m < 2e-3
+    assert "--factors 1,1,-1" in score(scene, "deck.csv").results["deck.csv"].notes[0]
+    assert score(scene, "deck.csv", factors=(1.0, 1.0, -1.0)).comparisons["deck.csv"].m < 2e-3
 
 
 @pytest.mark.parametrize("to", ["moose", "code-aster"])

@@ -32,12 +32,11 @@ def moose_files(scene: Scene, model: Model, name: str) -> dict[str, bytes]:
 
     made = named(scene, model, "moose")
     first, second = made.ends
-    shear = f", q is {_CONTACT}_tangential_lm" if model.f else ""
+    shear = f", q is -{_CONTACT}_tangential_lm, as MOOSE's tangent on a surface that faces up is -x" if model.f else ""
     notes = (
         "time counts increments; tractions of load points 1 and 2 are in",
         f"{name}_tractions_{first:04d}.csv and {name}_tractions_{second:04d}.csv:",
         f"x, p is {_CONTACT}_normal_lm{shear}",
-        *(("the sign of q is that of MOOSE's tangent: partialslip score says if it is the other one",) * bool(model.f)),
     )
     lines = [*heading(scene, model, "MOOSE deck", notes), *_lines(_tree(made, name))]
     with TemporaryDirectory() as folder:
