@@ -7,6 +7,7 @@ from partialslip.benchmark.book import book_zip as book_zip
 from partialslip.benchmark.grade import Graded as Graded
 from partialslip.benchmark.grade import Mark as Mark
 from partialslip.benchmark.grade import graded as graded
+from partialslip.benchmark.handin import handed_in as handed_in
 from partialslip.benchmark.ladder import CLIMB_HEADS as CLIMB_HEADS
 from partialslip.benchmark.ladder import Climb as Climb
 from partialslip.benchmark.ladder import climb_rows as climb_rows
@@ -47,6 +48,7 @@ __all__ = [
     "climb_rows",
     "climbs",
     "graded",
+    "handed_in",
     "read_problems",
     "read_submission",
     "scoreboard",

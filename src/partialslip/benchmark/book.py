@@ -1,7 +1,5 @@
 """The book of the benchmark: a page with all problems and the scoreboard, and a zip of plain data."""
 
-import io
-import zipfile
 from collections.abc import Mapping, Sequence
 from importlib.resources import files as resources
 
@@ -14,13 +12,12 @@ from partialslip.benchmark.problem import EDITION, SETTINGS, Problem, read_froze
 from partialslip.benchmark.scoreboard import Board, scoreboard
 from partialslip.benchmark.submission import Submission
 from partialslip.origin import Made, origin_lines
-from partialslip.output.files import csv_text, json_text
+from partialslip.output.files import csv_text, json_text, zipped
 from partialslip.output.page import render_page
 from partialslip.report import rows
 from partialslip.report.sketch import sketch_svg
 from partialslip.scene.writing import scene_tables, scene_toml
 
-_EARLY = (1980, 1, 1, 0, 0, 0)  # fixed: date of all files in the zip: the same content gives the same zip
 _COLUMNS = 8  # display: codes side by side in a scoreboard
 
 
@@ -48,20 +45,18 @@ def book_page(problems: Mapping[str, Problem], submissions: Sequence[Submission]
 
 
 def book_zip(problems: Mapping[str, Problem]) -> bytes:
-    """The ``problems`` by number as plain data, a zip that stands alone: how to take part, and for each problem a JSON
-    file with everything, the scene as TOML, the targets as CSV, meshes and decks."""
-    readme = (resources("partialslip.benchmark") / "zip_readme.txt").read_text("utf-8")
+    """The ``problems`` by number as plain data, a zip that stands alone: how to take part, a workflow that grades
+    answers, and for each problem a JSON file with everything, scene as TOML, targets as CSV, meshes and decks."""
+    package = resources("partialslip.benchmark")
+    readme = (package / "zip_readme.txt").read_text("utf-8")
     limits = ", ".join(f"{grade} {limit:g}" for grade, limit in LIMITS.items())
     listed = "\n".join(f"{number}  {problem.title}" for number, problem in problems.items())
     content = {"README.txt": readme.format(edition=EDITION, limits=limits, problems=listed).encode()}
+    content["grade.yml"] = (package / "grade.yml").read_bytes()
     for number, problem in problems.items():
         own = {name: text.encode() for name, text in _files(problem).items()} | model_files(problem)
         content |= {f"{number}/{name}": data for name, data in own.items()}
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in content.items():
-            archive.writestr(zipfile.ZipInfo(name, _EARLY), data, zipfile.ZIP_DEFLATED)
-    return buffer.getvalue()
+    return zipped(content)
 
 
 def _files(problem: Problem) -> dict[str, str]:
@@ -93,7 +88,7 @@ def _boards(problems: Mapping[str, Problem], submissions: Sequence[Submission]) 
 
 def _code(submission: Submission) -> tuple[str, ...]:
     meta = submission.meta
-    return (f"{meta.code} {meta.version}".strip(), meta.settings, meta.machine)
+    return (f"{meta.code} {meta.version}".strip(), meta.settings, meta.machine, meta.author)
 
 
 def _ladders(problem: Problem, submissions: Sequence[Submission]) -> list[tuple[str, ...]]:

@@ -1,6 +1,7 @@
 """A problem as plain files for any code: meshes of both bodies in four formats, loads and supports, and decks."""
 
 import importlib.util
+from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -9,9 +10,13 @@ from partialslip.benchmark.increments import gradual
 from partialslip.benchmark.problem import Problem
 from partialslip.errors import InputError
 from partialslip.export.abaqus import abaqus_deck
+from partialslip.export.aster import aster_files
 from partialslip.export.calculix import calculix_deck
 from partialslip.export.model import Model, modelled
+from partialslip.export.moose import moose_files
+from partialslip.export.named import UNTESTED
 from partialslip.output.files import json_text
+from partialslip.scene import Scene
 
 _FORMATS = (".msh", ".inp", ".vtu")
 _WITH_H5PY = (".med",)
@@ -25,7 +30,8 @@ def files(problem: Problem) -> dict[str, bytes]:
     ``model.json``: bodies, supports and load steps in SI units. ``lower`` and ``upper`` with .msh, .inp, .med (if h5py
     is installed) and .vtu: a body's mesh of quadrilaterals, in m, with the groups contact, face, back, left, right
     and, if there is a holder, flanks. ``calculix-mortar.inp``, ``calculix-penalty.inp`` and ``abaqus.inp``: decks.
-    None where the problem cannot be exported.
+    ``moose-untested`` (.i, .msh) and ``code_aster-untested`` (.comm, .mail, .export): decks that nobody of this project
+    has run, where they carry the loads. None where the problem cannot be exported.
     """
     scene = gradual(problem.scene)
     try:
@@ -39,7 +45,16 @@ def files(problem: Problem) -> dict[str, bytes]:
         "abaqus.inp": abaqus_deck(scene, flat),
     }
     texts = {"model.json": json_text(_told(made))} | {name: "\n".join(deck) + "\n" for name, deck in decks.items()}
-    return {name: text.encode() for name, text in texts.items()} | _meshes(made)
+    return {name: text.encode() for name, text in texts.items()} | _untested(scene, flat) | _meshes(made)
+
+
+def _untested(scene: Scene, flat: Model) -> dict[str, bytes]:
+    """Decks for codes that this project has never run; none for a code that cannot carry the loads."""
+    found: dict[str, bytes] = {}
+    for name, deck in {"moose": moose_files, "code_aster": aster_files}.items():
+        with suppress(InputError):
+            found |= deck(scene, flat, f"{name}-{UNTESTED}")
+    return found
 
 
 def _told(made: Model) -> dict[str, Any]:

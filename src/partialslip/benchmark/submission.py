@@ -4,7 +4,7 @@ import itertools
 import os
 import re
 import unicodedata
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -34,19 +34,41 @@ _LIKE_LATIN = str.maketrans(
 
 
 class Meta(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Who found the values: ``code`` and its ``version``, ``machine``, and ``settings`` in words.
+    """Who found the values, and how.
 
-    Raises InputError if a text has control characters, line ends or marks of the direction of writing.
+    Only ``code`` and ``version`` must be there to read a folder. To hand it in, all must
+    (:func:`partialslip.benchmark.handed_in`).
+
+    Parameters
+    ----------
+    code, version : str
+    settings : str
+        In words.
+    machine : str
+    author : str
+        Who ran the code.
+    inputs : mapping of str to str
+        SHA-256 checksums of the input files, by path in the folder.
+
+    Raises
+    ------
+    InputError
+        If a text has control characters, line ends or marks of the direction of writing.
     """
 
     code: Annotated[str, msgspec.Meta(min_length=1, max_length=60)]
     version: Annotated[str, msgspec.Meta(max_length=60)]
     settings: Annotated[str, msgspec.Meta(max_length=400)] = ""
     machine: Annotated[str, msgspec.Meta(max_length=200)] = ""
+    author: Annotated[str, msgspec.Meta(max_length=200)] = ""
+    inputs: dict[str, str] = {}
 
     def __post_init__(self) -> None:
-        for name in self.__struct_fields__:
+        for name in ("code", "version", "settings", "machine", "author"):
             _check_text(name, getattr(self, name))
+        for name, checksum in self.inputs.items():
+            _check_text("inputs", name)
+            _check_text(f"inputs.{name!r}", checksum)
 
 
 class Rung(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -114,44 +136,75 @@ def read_submission(folder: str | os.PathLike[str], known: Mapping[str, Problem]
     InputError
         If a file cannot be read, has a field or a value that is not allowed, or answers no problem of the benchmark.
     """
-    path = Path(folder)
-    if not path.is_dir():
-        raise InputError(f"{folder}: must be a folder with {META} and PS-01.json and so on")
-    meta, answers = _read_meta(path), dict[str, Answer]()
-    for file in sorted(path.glob("*.json")):
-        number = file.stem
-        if number not in known:
-            raise InputError(f"{file}: no problem has this number; known are {', '.join(known)}")
-        answers[number] = _answer(file, known[number].targets)
-    if not answers:
-        raise InputError(f"{folder}: no answers; must have PS-01.json and so on")
+    meta, answers, wrong = examined(folder, known)
+    if wrong or meta is None:
+        raise InputError(wrong[0])
     return Submission(meta, answers)
 
 
-def _answer(file: Path, targets: Mapping[str, Target]) -> Answer:
-    answer = decoded(read_bytes(file, _LARGEST), Answer, str(file))
-    _check_ladder(file, answer)
+def examined(
+    folder: str | os.PathLike[str], known: Mapping[str, Problem]
+) -> tuple[Meta | None, dict[str, Answer], list[str]]:
+    """Read a submission as far as it can be read. Parameters as for :func:`read_submission`.
+
+    Returns
+    -------
+    Meta or None, dict of str to Answer, list of str
+        The answers that can be read, and a line for each thing that is wrong. There is a line if meta is None.
+    """
+    path = Path(folder)
+    if not path.is_dir():
+        return None, {}, [f"{folder}: must be a folder with {META} and PS-01.json and so on"]
+    meta, answers, wrong = None, dict[str, Answer](), list[str]()
+    try:
+        meta = _read_meta(path)
+    except InputError as error:
+        wrong.append(str(error))
+    files = sorted(path.glob("*.json"))
+    for file in files:
+        number = file.stem
+        if number not in known:
+            wrong.append(f"{file}: no problem has this number; known are {', '.join(known)}")
+            continue
+        try:
+            answer = decoded(read_bytes(file, _LARGEST), Answer, str(file))
+        except InputError as error:
+            wrong.append(str(error))
+            continue
+        answers[number] = answer
+        wrong += [f"{file}: {line}" for line in (*_ladder_faults(answer), *_unknown(answer, known[number].targets))]
+    if not files:
+        wrong.append(f"{folder}: no answers; must have PS-01.json and so on")
+    return meta, answers, wrong
+
+
+def _unknown(answer: Answer, targets: Mapping[str, Target]) -> Iterator[str]:
     found = {"values": answer.values} | {
         f"ladder[{place}].values": rung.values for place, rung in enumerate(answer.ladder)
     }
     for name, values in found.items():
         for key in values:
             if key not in targets:
-                raise InputError(f"{file}: {name}.{key}: no target has this key; known are {', '.join(targets)}")
-    return answer
+                yield f"{name}.{key}: no target has this key; known are {', '.join(targets)}"
 
 
 def check_apart(submissions: Sequence[Submission]) -> None:
-    """Raise InputError if readers could not tell two ``submissions`` apart: code, version, settings and machine are the
-    same, or the names of two codes look the same, such as a Latin and a Cyrillic a."""
+    """Raise InputError if readers could not tell two ``submissions`` apart: code, version, settings, machine and author
+    are the same, or the names of two codes look the same, such as a Latin and a Cyrillic a."""
     known: dict[str, str] = {}
     for place, each in enumerate(submissions):
         code = each.meta.code
-        if any(each.meta == other.meta for other in submissions[:place]):
-            raise InputError(f"code {code!r}: answers twice, with the same version, settings and machine: must differ")
+        if any(_told(each.meta) == _told(other.meta) for other in submissions[:place]):
+            same = "with the same version, settings and machine, by the same author"
+            raise InputError(f"code {code!r}: answers twice, {same}: must differ")
         other = known.setdefault(_seen(code), code)
         if other != code:
             raise InputError(f"code {code!a} looks like {other!a}: names of codes must look different")
+
+
+def _told(meta: Meta) -> Meta:
+    """What readers see of ``meta``."""
+    return msgspec.structs.replace(meta, inputs={})
 
 
 def _seen(text: str) -> str:
@@ -161,21 +214,18 @@ def _seen(text: str) -> str:
     return " ".join("".join(each for each in plain if unicodedata.category(each) != "Cf").split())
 
 
-def _check_ladder(file: Path, answer: Answer) -> None:
-    """Raise InputError if the ladder has one or two meshes, does not go from coarse to fine, or ends elsewhere than the
-    answer."""
+def _ladder_faults(answer: Answer) -> Iterator[str]:
+    """Lines if the ladder has one or two meshes, does not go from coarse to fine, or ends elsewhere than the answer."""
     sizes = [rung.h for rung in answer.ladder]
     if not sizes:
         return
     if len(sizes) < _FEWEST:
-        raise InputError(f"{file}: ladder: must have {_FEWEST} meshes or more, not {len(sizes)}")
+        yield f"ladder: must have {_FEWEST} meshes or more, not {len(sizes)}"
     for place, (before, after) in enumerate(itertools.pairwise(sizes), start=1):
         if not after < before:
-            raise InputError(
-                f"{file}: ladder[{place}].h = {after}: must be less than {before}, that of the mesh before"
-            )
+            yield f"ladder[{place}].h = {after}: must be less than {before}, that of the mesh before"
     if answer.ladder[-1].values != answer.values:
-        raise InputError(f"{file}: values: must be those of the last mesh of the ladder")
+        yield "values: must be those of the last mesh of the ladder"
 
 
 def add_answer(

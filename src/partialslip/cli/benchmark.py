@@ -14,6 +14,7 @@ from partialslip.cli.common import (
     print_written,
     results_folder,
 )
+from partialslip.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -33,7 +34,7 @@ def add(commands: "Commands") -> None:
         "benchmark",
         help="numbered problems with frozen targets, for any code",
         description="List the problems of the benchmark, answer them with a method of partialslip, score the answers "
-        "of any code, or write the book.",
+        "of any code, check them before they are handed in, or write the book.",
         examples=[
             "partialslip benchmark list",
             "partialslip benchmark score my-answers",
@@ -81,6 +82,16 @@ def add(commands: "Commands") -> None:
     scores.add_argument("folder", metavar="FOLDER", help="folder with the answers")
     scores.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
     scores.set_defaults(command=_score)
+
+    checks = parts.add_parser("check", help="check answers before they are handed in",
+                              description="Check a folder of answers before it is handed in: author, version, "
+                              "settings, machine, input files with their checksums, values and tables of tractions. "
+                              "Print a line for each thing that is wrong, or the grades.",
+                              unjudged=_LACKING,
+                              examples=["partialslip benchmark check my-answers",
+                                        "partialslip benchmark check --help"])  # fmt: skip
+    checks.add_argument("folder", metavar="FOLDER", help="folder with the answers")
+    checks.set_defaults(command=_check)
 
     builds = parts.add_parser("build", help="write the book",
                               description="Write the book of problems as HTML and PDF, a zip of plain data, meshes and "
@@ -138,12 +149,34 @@ def _read(options: argparse.Namespace) -> int:
 
 
 def _score(options: argparse.Namespace) -> int:
-    from partialslip.benchmark import CLIMB_HEADS, climb_rows, read_problems, read_submission
+    from partialslip.benchmark import read_problems, read_submission
     from partialslip.benchmark.problem import chosen_problems
+
+    return _graded(read_submission(options.folder, read_problems()), chosen_problems(options.problems))
+
+
+def _check(options: argparse.Namespace) -> int:
+    from partialslip.benchmark import handed_in, read_problems
+    from partialslip.cli.consoles import output
+    from partialslip.errors import one_line
+
+    known = read_problems()
+    submission, wrong = handed_in(options.folder, known)
+    for line in wrong:
+        output().print(one_line(line), markup=False, soft_wrap=True)
+    if submission is None:
+        raise InputError(f"{options.folder}: not accepted: {len(wrong)} thing{'s' * (len(wrong) > 1)} to correct")
+    code = _graded(submission, known)
+    output().print(f"accepted: {options.folder} can be handed in", markup=False, soft_wrap=True)
+    return code
+
+
+def _graded(submission: "Submission", some: "Mapping[str, Problem]") -> int:
+    """Print grades and ladders of a submission. Returns the exit code of :func:`_print_grades`."""
+    from partialslip.benchmark import CLIMB_HEADS, climb_rows
     from partialslip.cli.consoles import output
     from partialslip.output.tables import print_table
 
-    submission, some = read_submission(options.folder, read_problems()), chosen_problems(options.problems)
     code = _print_grades(submission, some)
     every = len(some) == 1
     rows = [

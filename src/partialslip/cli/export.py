@@ -11,7 +11,7 @@ from partialslip.errors import InputError
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
 
-_TO = ("calculix", "abaqus", "gmsh")
+_TO = ("calculix", "abaqus", "gmsh", "moose", "code-aster")
 
 
 def add(commands: "Commands") -> None:
@@ -29,8 +29,8 @@ def add(commands: "Commands") -> None:
     )
     add_scene(exports)
     exports.add_argument("--to", required=True, choices=_TO,
-                         help="calculix, abaqus: an input deck, ready to run; gmsh: the meshes of both "
-                         "bodies")  # fmt: skip
+                         help="calculix, abaqus: an input deck, ready to run; gmsh: the meshes of both bodies; moose, "
+                         "code-aster: an archive with a deck that this project has never run")  # fmt: skip
     exports.add_argument("--size", metavar="H", default=0.05,
                          help="element size along the contact, in contact half-widths, if P varies in those of the "
                          "smallest contact (default: 0.05)")  # fmt: skip
@@ -51,7 +51,7 @@ def add(commands: "Commands") -> None:
                          "--size)")  # fmt: skip
     exports.add_argument("--penalty", action="store_true",
                          help="calculix: penalty contact instead of mortar contact")  # fmt: skip
-    add_out(exports, "results/NAME-TO[-HASH].inp or .msh", "-o", what="file to write", metavar="FILE")
+    add_out(exports, "results/NAME-TO[-HASH].inp, .msh or .zip", "-o", what="file to write", metavar="FILE")
     exports.set_defaults(command=_export)
 
 

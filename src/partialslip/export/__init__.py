@@ -6,12 +6,22 @@ from pathlib import Path
 
 from partialslip.errors import InputError
 from partialslip.export.abaqus import abaqus_deck
+from partialslip.export.aster import aster_files
 from partialslip.export.calculix import calculix_deck
 from partialslip.export.model import GROWTH, SIZE, modelled
+from partialslip.export.moose import moose_files
+from partialslip.export.named import UNTESTED
+from partialslip.output.files import zipped
 from partialslip.scene.reading import AnyScene, as_scene
 
 # Suffix of the file by format.
-FORMATS = {"calculix": ".inp", "abaqus": ".inp", "gmsh": ".msh"}
+FORMATS = {
+    "calculix": ".inp",
+    "abaqus": ".inp",
+    "gmsh": ".msh",
+    "moose": f"-{UNTESTED}.zip",
+    "code-aster": f"-{UNTESTED}.zip",
+}
 
 
 def export(
@@ -28,8 +38,9 @@ def export(
 ) -> Callable[[Path], None]:
     """Return a function that writes ``scene`` to a path, for another code.
 
-    The file has the meshes of both bodies; for calculix and abaqus also contact and load steps, ready to run. It is in
-    the scene's units (:attr:`Scene.shown_in`); for calculix the unit of length may be smaller, as its comments say.
+    The file has the meshes of both bodies; for calculix and abaqus also contact and load steps, ready to run. For moose
+    and code-aster it is an archive of the files of a deck, which nobody of this project has run. It is in the scene's
+    units (:attr:`Scene.shown_in`); for calculix the unit of length may be smaller, as its comments say.
 
     Parameters
     ----------
@@ -37,7 +48,7 @@ def export(
         A scene, the name of a shipped one, or the path of a scene file.
         With an even gap.
     to : str
-        "calculix", "abaqus" or "gmsh".
+        "calculix", "abaqus", "gmsh", "moose" or "code-aster".
     size, width, growth, stiffer, ends, fine
         As for :func:`partialslip.export.model.modelled`.
     penalty : bool
@@ -60,12 +71,15 @@ def export(
         from partialslip_meshes.write import write_quads
 
         return partial(write_quads, bodies={part.name: part.mesh for part in made.in_units(scene.units).parts})
+    if to in ("moose", "code-aster"):
+        archive = zipped((moose_files if to == "moose" else aster_files)(scene, made, f"{scene.name}-{UNTESTED}"))
+        return lambda path: _write(path, archive)
     lines = (
         abaqus_deck(scene, made) if to == "abaqus" else calculix_deck(scene, made, "penalty" if penalty else "mortar")
     )
-    deck = "\n".join(lines) + "\n"
+    deck = ("\n".join(lines) + "\n").encode("ascii")
     return lambda path: _write(path, deck)
 
 
-def _write(path: Path, deck: str) -> None:
-    path.write_text(deck, "ascii")
+def _write(path: Path, content: bytes) -> None:
+    path.write_bytes(content)

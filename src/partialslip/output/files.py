@@ -7,6 +7,7 @@ import io
 import itertools
 import os
 import tempfile
+import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,6 +18,7 @@ from partialslip.errors import InputError, printable
 from partialslip.inputfile import check_replaceable
 from partialslip.output.lock import lock, make_folder
 
+_EARLY = (1980, 1, 1, 0, 0, 0)  # fixed: date of all files in an archive
 _FORMULA = ("=", "+", "-", "@")  # what a formula begins with
 
 
@@ -50,6 +52,15 @@ def _plain(cell: object) -> object:
 def json_text(data: object) -> str:
     """Return ``data``, of types known to msgspec, as indented JSON text; null in place of NaN and infinity."""
     return msgspec.json.format(msgspec.json.encode(data), indent=1).decode() + "\n"
+
+
+def zipped(content: Mapping[str, bytes]) -> bytes:
+    """Return files, by name, as a ZIP archive: the same content gives the same bytes."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in content.items():
+            archive.writestr(zipfile.ZipInfo(name, _EARLY), data, zipfile.ZIP_DEFLATED)
+    return buffer.getvalue()
 
 
 def write_files(folder: Path, files: Mapping[str, Callable[[Path], object]]) -> list[Path]:

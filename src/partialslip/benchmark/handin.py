@@ -1,0 +1,118 @@
+"""Hand in answers: what a folder must have to enter the scoreboard, beyond what it must have to be read."""
+
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path, PurePosixPath
+
+from partialslip.benchmark.measured import answer_from
+from partialslip.benchmark.problem import Problem
+from partialslip.benchmark.submission import META, Answer, Meta, Submission, examined
+from partialslip.errors import InputError
+from partialslip.inputfile import checksum
+
+_DUE = {"author": "who ran the code", "version": "the version of the code", "settings": "elements and contact in words",
+        "machine": "processor and system"}  # fmt: skip
+_LARGEST = 2**30  # limit: bytes of an input file
+_WILD = 10.0  # limit: largest error, in the scale of a target: no code is so far off, but values in mm and MPa are
+_SAME = 1e-6  # limit: largest difference of a value from that of its table, in the scale of the target
+
+
+def handed_in(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> tuple[Submission | None, list[str]]:
+    """Check a folder of answers before it is handed in.
+
+    The folder must be one that :func:`read_submission` reads. All of ``meta.toml`` must be filled in. Each file of the
+    folder must be ``meta.toml``, an answer PS-01.json, a table of tractions PS-01.csv, a hidden file, or an input file
+    that ``inputs`` lists with its checksum. A value must be the one that the table beside it gives, within 1e-6 of the
+    scale of the target.
+
+    Parameters
+    ----------
+    folder : str or path
+    known : mapping of str to Problem
+        Problems by number.
+
+    Returns
+    -------
+    Submission or None, list of str
+        The submission if nothing is wrong, and a line for each thing that is wrong.
+    """
+    path = Path(folder)
+    meta, answers, wrong = examined(path, known)
+    if meta is not None:
+        wrong += _meta_faults(path, meta)
+        wrong += _input_faults(path, meta)
+    for number, answer in answers.items():
+        wrong += _answer_faults(path, known[number], answer)
+    return (Submission(meta, answers) if meta is not None and not wrong else None), wrong
+
+
+def _meta_faults(folder: Path, meta: Meta) -> Iterator[str]:
+    for name, content in _DUE.items():
+        if not getattr(meta, name).strip():
+            yield f"{folder / META}: {name} = {getattr(meta, name)!r}: must be {content}"
+    if not meta.inputs:
+        yield f"{folder / META}: inputs: must be a table of the input files and their SHA-256 checksums"
+
+
+def _input_faults(folder: Path, meta: Meta) -> Iterator[str]:
+    """Lines for input files that are not as ``meta`` says, and for files that it does not list."""
+    own = {META} | {f"{file.stem}{suffix}" for file in folder.glob("*.json") for suffix in (".json", ".csv")}
+    for name, given in meta.inputs.items():
+        told, file = f"{folder / META}: inputs.{name!r}", folder / name
+        plain = str(PurePosixPath(name)) == name and ".." not in PurePosixPath(name).parts
+        if not plain or name in own or not _inside(file, folder):
+            yield f"{told}: must be the path of an input file in the folder, such as decks/job.inp"
+            continue
+        try:
+            true, empty = checksum(file, _LARGEST), not file.stat().st_size
+        except InputError as error:
+            yield f"{told}: {error}"
+            continue
+        if empty:
+            yield f"{told}: must not be an empty file"
+        elif given != true:
+            yield f"{told} = {given!r}: must be {true!r}, the SHA-256 checksum of the file"
+    for file in sorted(folder.rglob("*")):
+        name = file.relative_to(folder).as_posix()
+        hidden = any(part.startswith(".") for part in file.relative_to(folder).parts)
+        if file.is_dir() or hidden or name in meta.inputs:
+            continue
+        if not _inside(file, folder):
+            yield f"{file}: must be a file of the folder, not a link to a file elsewhere"
+            continue
+        if name in own:
+            continue
+        try:
+            listed = f'"{name}" = "{checksum(file, _LARGEST)}"'
+        except InputError as error:
+            yield str(error)
+        else:
+            yield f"{file}: must be listed in the table inputs of {META}, as {listed}, or left out"
+
+
+def _inside(file: Path, folder: Path) -> bool:
+    """Whether ``file`` lies in ``folder``, and is no link to elsewhere."""
+    return file.resolve().is_relative_to(folder.resolve())
+
+
+def _answer_faults(folder: Path, problem: Problem, answer: Answer) -> Iterator[str]:
+    file, table = folder / f"{problem.number}.json", folder / f"{problem.number}.csv"
+    targets = {key: target for key, target in problem.targets.items() if answer.values.get(key) is not None}
+    if not targets and not answer.note.strip():
+        yield f"{file}: values: must have a value, or note must say why there is none"
+    given = {key: value for key, value in answer.values.items() if value is not None and key in targets}
+    for key, value in given.items():
+        target = targets[key]
+        if not abs(value - target.value) <= _WILD * target.scale:
+            most = f"{_WILD * target.scale:.3g} {target.unit}"
+            yield f"{file}: values.{key} = {value:.9g}: must be within {most} of the target; all values are in SI units"
+    if os.path.lexists(table):
+        try:
+            told = answer_from(problem, table).values
+        except InputError as error:
+            yield str(error)
+            return
+        for key, value in given.items():
+            seen = told.get(key)
+            if seen is not None and not abs(value - seen) <= _SAME * targets[key].scale:
+                yield f"{file}: values.{key} = {value:.9g}: must be {seen:.9g}, as {table.name} has it, or left out"
