@@ -74,7 +74,7 @@ def _loads(scene: Scene) -> list[str]:
     if np.size(load.P) > 1 and np.ptp(load.P):
         more.append(f"P from {min(load.P) / max(load.P):.3g}")
     if scene.friction.x:
-        more.append("f at " + ", ".join(f"{place / pressed.a:g}" for place in scene.friction.x) + " a")
+        more.append("at " + ", ".join(f"{place / pressed.a:g}" for place in scene.friction.x) + " a")
     if np.size(load.e) > 1:
         more.append(f"e of {max(load.e) / pressed.a:.3g} a")
     if scene.fem.size:
@@ -96,7 +96,8 @@ def measured(folder: Path) -> str:
         found: dict[str, dict[str, object]] = {}
         for verdict in entry["verdicts"]:
             row = found.setdefault(verdict["method"], {"cpu_s": round(verdict["cpu_s"], 3)})
-            if verdict["error"] is not None and verdict["quantity"] in COLUMNS:
+            judged = verdict["outcome"] != "not judged" and verdict["error"] is not None
+            if judged and verdict["quantity"] in COLUMNS:
                 row[verdict["quantity"]] = f"{verdict['error']:.3g}"
         for method, row in found.items():
             known = {"case": entry["case"], "method": method} | made | row

@@ -12,7 +12,8 @@ from partialslip.verify.hard_cases.scenes import Family
 
 _HEAD = """# Hard cases
 
-These scenes make contact codes fail. For each family of scenes this page gives the reason and the requirements.
+These scenes are hard for contact codes. For each family of scenes this page gives the reason and the requirements. The
+reasons are those of mechanics and of earlier editions of partialslip; no other code was run on these scenes.
 `partialslip verify --suite full` runs all scenes after the shipped scenes, and `partialslip verify --suite full --only
 NAME` runs one scene. The methods in brackets solve the scene. [The last section](#loads-and-what-was-measured) has the
 loads of every case, and errors and cost of every method.
