@@ -45,7 +45,7 @@ Smith-Watson-Topper (SWT) and Fatemi-Socie (FS) with k = 1 and sigma_y = 330 MPa
 
 ## In the elements
 
-What most codes report is the stress in the elements. The table has the relative error of the largest value at the
+A finite element code reports stresses in its elements. The table has the relative error of the largest value at the
 centroids of the triangles, and of the average by area over the triangles whose centroid is in the half disc. The
 meshes are uniform along the contact and coarsen away from it. The size is `fem.size`; linear elements of this size are
 half as long as quadratic ones, so that both have about as many nodes.

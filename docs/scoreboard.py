@@ -1,5 +1,5 @@
-"""Regenerate the page of the scoreboard: python docs/scoreboard.py writes scoreboard.md from benchmarks/submissions and
-benchmarks/peers/increments.jsonl."""
+"""Regenerate the page of the scoreboard: python docs/scoreboard.py writes scoreboard.md from benchmarks/submissions,
+benchmarks/start.json and benchmarks/peers/increments.jsonl."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 
 from partialslip.benchmark import Problem, Submission, read_problems, read_submission, scoreboard, standing
+from partialslip.benchmark.codes import CODES, Own
+from partialslip.benchmark.grade import best_grade
 from partialslip.benchmark.measured import GROUPS
 from partialslip.benchmark.problem import EDITION
 from partialslip.halfplane import contact
@@ -17,7 +19,38 @@ from partialslip.halfplane.turning import half_cycle
 
 DOCS = Path(__file__).parent
 SUBMISSIONS = DOCS.parent / "benchmarks" / "submissions"
+START = DOCS.parent / "benchmarks" / "start.json"
 INCREMENTS = DOCS.parent / "benchmarks" / "peers" / "increments.jsonl"
+NAMES = {  # short titles of the problems, as rows have at most 120 characters
+    "PS-01": "Hertz",
+    "PS-02": "Cattaneo, Mindlin",
+    "PS-03": "small tension",
+    "PS-04": "near the transition",
+    "PS-05": "large tension",
+    "PS-06": "zone off the middle",
+    "PS-07": "zone of 1e-4 a",
+    "PS-08": "near sliding",
+    "PS-09": "near stuck",
+    "PS-10": "flat, small tension",
+    "PS-11": "flat, large tension",
+    "PS-12": "table of a profile",
+    "PS-13": "plane stress",
+    "PS-14": "nu = 0.4999",
+    "PS-15": "mean loads",
+    "PS-16": "settling",
+    "PS-17": "ratcheting",
+    "PS-18": "out of phase",
+    "PS-19": "varying P, ends slip",
+    "PS-20": "varying P, ends stick",
+    "PS-21": "varying M",
+    "PS-22": "unlike, sheared",
+    "PS-23": "two blocks",
+    "PS-24": "pad on a specimen",
+    "PS-25": "unlike, pressed",
+    "PS-26": "meshes do not match",
+    "PS-27": "slip turns round",
+}
+COLUMNS = 4  # codes of partialslip side by side
 PLACE = -0.8  # x/a, as in benchmarks/peers/increments.py
 
 _HEAD = """\
@@ -25,8 +58,16 @@ _HEAD = """\
 
 Grades of codes on the [problems of the benchmark](howto/benchmark.md), edition {edition}, from A (every target within
 1e-4) to E (beyond 5e-2), with CPU seconds in brackets. A dash: the code does not offer the problem, or one of the
-targets, or there was no time to run it. *none*: the code did not converge; the note in its answer tells where. The
-answers are in `benchmarks/submissions`; they were measured on one machine, which other work shared.
+targets, or there was no time to run it. *none*: the code did not converge; the note in its answer tells where. *At
+best* is the highest grade that the uncertainty of the targets allows: no code can have a better one.
+
+**One clock.** CPU seconds of CalculiX, GetFEM and Kratos are those of their whole process, without the meshes, which
+partialslip makes. Seconds of partialslip's methods were measured in a process that was warm. The first number is the
+solution, meshes included (P1 and P2: of the finest mesh); the second is a whole process, solution and start. Only whole
+processes should be compared between codes. The start is {starts} CPU s: Python and libraries, measured on another, busy
+machine ({machine}; `benchmarks/start.py`) than the answers ({others}), which other work shared, too. On the machine of
+[the cost of accuracy](cost.md) it was 0.65 s. CalculiX solves slices of three dimensions, two layers of nodes held in
+plane strain: twice the unknowns that a plane code has on the same mesh. The answers are in `benchmarks/submissions`.
 
 The last table has, for each code, the number of problems that count (every target of contact, stick and tractions has a
 value), and the worst grade of each group of targets. "1 not offered": one problem with other values lacks values of the
@@ -38,32 +79,37 @@ _WRONG = """
 
 ## What each code gets wrong
 
-All codes but partialslip have elements of 0.05 a along the contact (Kratos: 0.1 a). No target at one point can be
-better than such elements allow: next to the ends of contact and stick zone, where tractions fall like a square root,
-an error of 1 to 2 % is that of the elements.
+Versions and settings are those of the tables above. All codes but partialslip have elements of 0.05 a along the contact
+(Kratos: 0.1 a). No target at one point can be better than such elements allow: next to the ends of contact and stick
+zone, where tractions fall like a square root, an error of 1 to 2 % is that of the elements. What is wrong here is wrong
+in these versions with these settings and meshes.
 
-- **CalculiX, penalty contact.** a is right to 1e-3. q depends on the stiffness of sticking, which the user chooses,
-  and on the state before: after the load has turned round, q is off by 0.2 f p0 next to the stick zone in PS-03, and
-  by 0.27 at x = -0.9 a in PS-07. With the table of PS-12, p wiggles by 5 % along the contact and a is 2.4 % too wide,
+- **CalculiX 2.20, penalty contact** (C3D8; 1000 E/a on overlap, 100 E/a on stick, which the export chose). a is right
+  to 1e-3. q depends on the stiffness of sticking, which the user chooses ([how much](symptoms.md#which-stiffness)), and
+  on the state before: after the load has turned round, q is off by 0.2 f p0 next to the stick zone in PS-03, and by
+  0.27 at x = -0.9 a in PS-07. With the table of PS-12, p wiggles by 5 % along the contact and a is 2.4 % too wide,
   without a message, while GetFEM finds a to 1e-3 on the same mesh. At nu = 0.4999 (PS-14) nodal pressures scatter so
   much that no contact can be told. In PS-06 and PS-17, both of large tension, increments are cut until it gives up.
-  Varying P (PS-19, PS-20), a contact that rocks (PS-21), blocks (PS-23) and unlike materials (PS-25) work.
-- **CalculiX, mortar contact.** It converges where penalties give up (PS-06, PS-17), costs less, and is right to about
-  an element: a to 1e-3, q where it does not fall steeply to 1 %. Next to a stick zone of 1e-4 a (PS-07) no element is
-  small enough. It is wrong without a message if a is less than 100 units of length ([calculix](howto/calculix.md)):
-  the deck has the unit that it needs.
-- **GetFEM.** It solved every problem that was tried, from one script. On uniform meshes the grade is that of the last
-  element in the contact: p at 0.9 a is off by 1.5 %. At the corners of the flat (PS-10, PS-11), where elements are
-  fine, the linear multipliers overshoot and p_max is 7 % too large. At nu = 0.4999 (PS-14) m is off by 0.16 a. Meshes
-  graded to the ends that a first run found give two grades more at four times the cost.
-- **Kratos, mortar contact.** Pressure and first loading are right. When the load turns round, the state of nodes
-  beside the stick zone goes wrong without a message, and the result depends on the increments: in PS-05 dq is off by
-  0.8, 0.09 and 0.02 of 2 f p0 with 8, 16 and 32 increments a step. Kratos' own factor of the tangential penalty
-  (tangent_factor = 0.025) makes this worse; the adapter takes 1. With tension (PS-03, PS-06, PS-23), near sliding
-  (PS-08) and at nu = 0.4999 (PS-14) Newton's method does not converge. The adapter does not turn bodies (PS-21).
-- **partialslip.** Linear and quadratic elements of one size (P1, P2) lose a grade or two where the contact has
-  corners (PS-10, PS-11) and where nu = 0.4999 (PS-14). The marching method has the exact pressure, so its errors are
-  those of q alone.
+  Varying P (PS-19, PS-20), a contact that rocks (PS-21), blocks (PS-23) and unlike materials (PS-25) converge.
+- **CalculiX 2.20, mortar contact** (C3D8; hard pressure, 1e5 E/a on stick). It converges where penalties give up
+  (PS-06, PS-17), costs less in 15 of the 18 problems that both solve, and is right to about an element: a to 1e-3, q
+  where it does not fall steeply to 1 %. Next to a stick zone of 1e-4 a (PS-07) no element is small enough. It is wrong
+  without a message if a is less than 100 units of length ([calculix](howto/calculix.md)): the deck has the unit that it
+  needs.
+- **GetFEM 5.4.2** (Q2, linear multipliers, constant of the augmented conditions E/a). It solved every problem that was
+  tried, from one script. On uniform meshes the grade is that of the last element in the contact: p at 0.9 a is off by
+  1.5 %. At the corners of the flat (PS-10, PS-11), where elements are fine, the linear multipliers overshoot and p_max
+  is 7 % too large. At nu = 0.4999 (PS-14) m is off by 0.16 a. Meshes graded to the ends that a first run found give one
+  to three grades more at three to four times the cost, in the seven problems that ran.
+- **Kratos 10.4.4, mortar contact** (linear quadrilaterals, augmented Lagrangian, tangent_factor 1, 8 increments).
+  Pressure and first loading are right. When the load turns round, the state of nodes beside the stick zone goes wrong
+  without a message, and the result depends on the increments: in PS-05 dq is off by 0.8, 0.09 and 0.02 of 2 f p0 with
+  8, 16 and 32 increments a step. Kratos' own factor of the tangential penalty (tangent_factor = 0.025) makes this
+  worse; the adapter takes 1. With tension (PS-03, PS-06, PS-23), near sliding (PS-08) and at nu = 0.4999 (PS-14)
+  Newton's method does not converge. The adapter does not turn bodies (PS-21).
+- **partialslip.** Linear and quadratic elements of one size (P1, P2) lose a grade or two where the contact has corners
+  (PS-10, PS-11) and where nu = 0.4999 (PS-14). The marching method has the exact pressure, so its errors are those of q
+  alone.
 """
 
 _ROW = "| " + " | ".join(["{}"] * 10) + " |"
@@ -105,10 +151,21 @@ def page() -> str:
     found = [read_submission(folder, problems) for folder in sorted(SUBMISSIONS.iterdir())]
     own = [each for each in found if each.meta.code.startswith("partialslip ")]
     others = [each for each in found if each not in own]
-    tables = [_table(problems, own, "a"), _table(problems, others, chr(ord("a") + len(own)))]
+    parts = [*(own[first : first + COLUMNS] for first in range(0, len(own), COLUMNS)), others]
+    firsts = [chr(ord("a") + sum(map(len, parts[:number]))) for number in range(len(parts))]
+    tables = [_table(problems, part, first) for part, first in zip(parts, firsts, strict=True)]
     runs = [json.loads(line) for line in INCREMENTS.read_text("utf-8").splitlines()]
     table = _increments(problems["PS-27"], runs)
-    return _HEAD.format(edition=EDITION) + "\n".join([*tables, _standings([*own, *others])]) + _WRONG + table
+    return _head(found) + "\n".join([*tables, _standings([*own, *others])]) + _WRONG + table
+
+
+def _head(found: Sequence[Submission]) -> str:
+    """Head of the page: what the grades and the seconds of the codes ``found`` are."""
+    told = json.loads(START.read_text("utf-8"))
+    starts = ", ".join(f"{seconds:.2g} ({method})" for method, seconds in told["start"].items())
+    machines = ", ".join(sorted({each.meta.machine for each in found}))
+    text = _HEAD.format(edition=EDITION, starts=starts, machine=told["machine"], others=machines)
+    return "\n\n".join(fill(part, 120, break_on_hyphens=False) for part in text.strip().split("\n\n")) + "\n\n"
 
 
 def _increments(problem: Problem, runs: Sequence[Mapping[str, Any]]) -> str:
@@ -165,9 +222,20 @@ def _table(problems: Mapping[str, Problem], found: Sequence[Submission], first: 
         for letter, each in zip(letters, found, strict=True)
     )
     codes = [fill(line, 120, subsequent_indent="  ", break_on_hyphens=False) for line in told]
-    lines = ["| | " + " | ".join(letters) + " |", "|---|" + "---|" * len(letters)]
-    lines += [f"| {row[0]} | " + " | ".join(row[1:]) + " |" for row in scoreboard(problems, found).rows]
+    lines = ["| problem | at best | " + " | ".join(letters) + " |", "|---|---|" + "---|" * len(letters)]
+    for number, *cells in scoreboard(problems, found).rows:
+        shown = [_whole(each, number, cell) for each, cell in zip(found, cells, strict=True)]
+        lines.append(f"| {number} {NAMES[number]} | {best_grade(problems[number])} | " + " | ".join(shown) + " |")
     return "\n".join([*codes, "", *lines]) + "\n"
+
+
+def _whole(submission: Submission, number: str, cell: str) -> str:
+    """``cell`` of the table; for a method of partialslip with the seconds of a whole process beside the solution's."""
+    code = CODES.get(submission.meta.code.removeprefix("partialslip "))
+    if not (isinstance(code, Own) and cell.endswith(" s)")):
+        return cell
+    start = json.loads(START.read_text("utf-8"))["start"][code.method]
+    return f"{cell.removesuffix(' s)')}; {submission.answers[number].cpu_s + start:.2g} s)"
 
 
 if __name__ == "__main__":

@@ -4,6 +4,8 @@ import runpy
 from pathlib import Path
 
 from partialslip.benchmark import read_problems, read_submission
+from partialslip.benchmark.grade import best_grade
+from partialslip.benchmark.scoreboard import grades
 
 DOCS = Path(__file__).parents[2] / "docs"
 SCRIPT = runpy.run_path(str(DOCS / "scoreboard.py"))
@@ -19,3 +21,27 @@ def test_exact_answers_are_the_targets():
         for key, value in answer.values.items():
             target = read_problems()[number].targets[key]
             assert abs(value - target.value) <= 1e-9 * target.scale
+
+
+def test_uncertain_targets_bound_the_grade():
+    """Problems whose targets come from methods with errors of their own cannot have an A."""
+    bounded = {number: best_grade(problem) for number, problem in read_problems().items() if best_grade(problem) != "A"}
+    assert bounded == {"PS-18": "B", "PS-22": "C", "PS-24": "B", "PS-25": "B"}
+
+
+def test_no_answer_has_a_better_grade_than_the_targets_allow():
+    problems = read_problems()
+    for folder in SCRIPT["SUBMISSIONS"].iterdir():
+        for number, graded in grades(problems, read_submission(folder, problems)).items():
+            assert graded.overall.grade >= best_grade(problems[number])
+
+
+def test_whole_processes_cost_more_than_solutions():
+    own = read_submission(SCRIPT["SUBMISSIONS"] / "exact", read_problems())
+    assert SCRIPT["_whole"](own, "PS-02", "A (0.02 s)").startswith("A (0.02; 0.")
+    other = read_submission(SCRIPT["SUBMISSIONS"] / "getfem", read_problems())
+    assert SCRIPT["_whole"](other, "PS-02", "E (2.8 s)") == "E (2.8 s)"
+
+
+def test_every_problem_has_a_short_title():
+    assert SCRIPT["NAMES"].keys() == read_problems().keys()

@@ -18,11 +18,11 @@ from partialslip.result import Result
 from partialslip.run import run
 from partialslip.scene import Hertz
 
-_DIGITS = 1e-9  # accuracy: uncertainty of closed forms, in the scale of the quantity
+_DIGITS = 1e-9  # accuracy: uncertainty of exact solutions, in the scale of the quantity
 _FOLLOWED = 1e-6  # accuracy: uncertainty where slip turns round, unless the second way is farther off
 _ENDS = ("left_1", "right_1", "left_2", "right_2")
 _GRADUAL = "quadratures and an integral equation along the gradual path"
-_NEAR = 1e-3  # accuracy: another method that is farther off does not check the digits of a closed form
+_NEAR = 1e-3  # accuracy: another method that is farther off does not check the digits of an exact solution
 _EVEN = 1e-4  # accuracy: of a: nearer to each other places are one
 _FINE = 1e-5  # accuracy: asked of march and fem
 _CONSISTENT = 3.0  # accuracy: difference from a rough method, in its own estimate, that confirms a value
@@ -70,14 +70,14 @@ def derivations(problem: Problem) -> tuple[Derivation, ...]:
         )
     if reference(scene).method != "exact":
         return fem, march
-    return Derivation("exact", _GRADUAL if slip_reverses(scene) else "closed form"), march, fem
+    return Derivation("exact", _GRADUAL if slip_reverses(scene) else "exact solution"), march, fem
 
 
 def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: None) -> tuple[dict[str, Target], str]:
     """Find the targets of ``problem``, and its regime.
 
-    The uncertainty is that of a closed form; where slip turns round, the difference from the nearest other method; or
-    the largest of the method's estimate and the differences between the methods.
+    The uncertainty is that of an exact solution; where slip turns round, the difference from the nearest other method;
+    or the largest of the method's estimate and the differences between the methods.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def _slip(problem: Problem, a: float) -> dict[str, Quantity]:
 
 
 def _of_exact(checked: float, turns: bool) -> float:
-    """Uncertainty of an exact value that the nearest other method finds within ``checked``. Of a closed form: its
+    """Uncertainty of an exact value that the nearest other method finds within ``checked``. Of one step's: its
     digits, unless no other method comes near. Where slip ``turns`` round there is none, and it is ``checked``."""
     if turns:
         return max(checked, _FOLLOWED)

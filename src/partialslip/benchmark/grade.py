@@ -81,6 +81,13 @@ def graded(problem: Problem, answer: Answer) -> Graded:
     return Graded(max(counted, key=lambda mark: (_rank(mark), mark.error or 0.0)), marks, errors)
 
 
+def best_grade(problem: Problem) -> str:
+    """The highest grade of the whole that the uncertainty of the targets of ``problem`` allows."""
+    headline = [target for target in problem.targets.values() if target.group in HEADLINE]
+    unsure = max(target.uncertainty for target in headline)
+    return next((grade for grade, limit in LIMITS.items() if unsure <= _SURE * limit), NOT_GRADED)
+
+
 def _mark(targets: Mapping[str, Target], errors: Mapping[str, float]) -> Mark:
     missing = [key for key in targets if key not in errors]
     if missing:

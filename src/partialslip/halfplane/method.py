@@ -1,4 +1,4 @@
-"""The exact method: solves a scene in closed form."""
+"""The exact method: solves a scene by formulas, elliptic integrals, quadratures or an integral equation."""
 
 import functools
 import math

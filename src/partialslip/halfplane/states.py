@@ -1,4 +1,4 @@
-"""States of a steady cycle by phase, from which stresses follow: contacts and shear tractions in closed form."""
+"""States of a steady cycle by phase, from which stresses follow: contacts and shear tractions, known exactly."""
 
 from dataclasses import dataclass
 from typing import Protocol

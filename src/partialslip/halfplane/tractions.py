@@ -22,7 +22,7 @@ def sample(breaks: Array) -> Array:
 
 @dataclass(frozen=True)
 class ExactTractions:
-    """Tractions of the steady state in closed form.
+    """Tractions of the steady state of the exact method.
 
     The contact ``pressed``, the coefficient of friction ``f``, the change of shear traction over half a ``cycle`` (None
     if nothing sticks) and ``levels``, the shear tractions at the load points (None if no closed form gives them).

@@ -27,12 +27,14 @@ _POINTS = 4001  # accuracy: of the table of the gap
 class GetFEM:
     """GetFEM with elements of ``size`` a and of ``order``; with ``fine``, a second run has elements of ``fine`` a at
     the ends that the first found. It takes so many ``increments`` a step (None: as
-    :func:`partialslip.benchmark.increments.gradual` says)."""
+    :func:`partialslip.benchmark.increments.gradual` says). ``augmentation`` is the constant of the augmented
+    conditions, in E/a."""
 
     size: float
     fine: float | None = None
     order: int = 2
     increments: int | None = None
+    augmentation: float = 1.0
 
     @property
     def version(self) -> str | None:
@@ -44,7 +46,8 @@ class GetFEM:
         """Settings in words."""
         where = f", {self.fine:g} a at the ends that a first run found" if self.fine else ""
         kind = f"Q{self.order} elements of {self.size:g} a along the contact{where}"
-        return f"{kind}; linear multipliers, augmented conditions (Alart and Curnier){told(self.increments)}"
+        constant = "" if self.augmentation == 1 else f", constant {self.augmentation:g} E/a"
+        return f"{kind}; linear multipliers, augmented conditions (Alart and Curnier){constant}{told(self.increments)}"
 
     def solve(self, scene: Scene) -> CodeOutcome | None:
         """Solve ``scene``; None if its meshes cannot be made."""
@@ -54,9 +57,10 @@ class GetFEM:
         for fine in (None, self.fine) if self.fine else (None,):
             with tempfile.TemporaryDirectory() as folder:
                 try:
-                    parameters = _written(scene, Path(folder), self.size, ends, fine) | {"order": self.order}
+                    parameters = _written(scene, Path(folder), self.size, ends, fine)
                 except InputError:
                     return None
+                parameters |= {"order": self.order, "augmentation": self.augmentation}
                 found = solved(HOST, scene, parameters, Path(folder))
             cpu_s, memory_mb = cpu_s + (found.cpu_s or 0.0), max(memory_mb, found.memory_mb or 0.0)
             if not found.result:

@@ -12,9 +12,11 @@ from partialslip.verify.hard_cases.scenes import Family
 
 _HEAD = """# Hard cases
 
-These scenes make contact codes fail. For each family of scenes this page gives the reason and the requirements.
+These scenes are hard for contact codes. For each family of scenes this page gives the reason and the requirements. The
+reasons are those of mechanics and of earlier editions of partialslip; no other code was run on these scenes.
 `partialslip verify --suite full` runs all scenes after the shipped scenes, and `partialslip verify --suite full --only
-NAME` runs one scene. The methods in brackets solve the scene.
+NAME` runs one scene. The methods in brackets solve the scene. [The last section](#loads-and-what-was-measured) has the
+loads of every case, and errors and cost of every method.
 
 Unless an entry has other bars, every result must meet these requirements:
 
@@ -58,7 +60,7 @@ def hard_cases() -> list[Case]:
 
 
 def catalogue_page() -> str:
-    """Return the catalogue as Markdown, the text of docs/hard-cases.md."""
+    """Return the catalogue as Markdown, the first part of docs/hard-cases.md."""
     lines = [_HEAD]
     for family in FAMILIES:
         lines += [f"## {family.title}", _filled(family.hard)]

@@ -6,10 +6,10 @@ contact line, linear, with Alart and Curnier's augmented conditions; slip counts
 assembles, its semismooth Newton and its default direct solver solve. Lengths are in a, stresses in p0 and displacements
 in p0 a/E, so that Newton's residual means the same for p and q.
 
-PARAMETERS, in SI units: a; p0; f; order of the elements; gap (x, values); start, an approach that makes the bodies
-touch; bodies lower and upper: mesh, E, nu, lines (numbers of the physical groups by name), held (names of lines along x
-and along y), pulled; strain of a unit tension; steps (name, P, Q, sigma, M, increments); turns; points, numbers of the
-steps of load points 1 and 2; table, the file to write.
+PARAMETERS, in SI units: a; p0; f; order of the elements; augmentation, the constant of the augmented conditions in E/a;
+gap (x, values); start, an approach that makes the bodies touch; bodies lower and upper: mesh, E, nu, lines (numbers of
+the physical groups by name), held (names of lines along x and along y), pulled; strain of a unit tension; steps (name,
+P, Q, sigma, M, increments); turns; points, numbers of the steps of load points 1 and 2; table, the file to write.
 """
 
 import json
@@ -107,7 +107,7 @@ class Contact:
         length = gf.asm_generic(along, 0, "1", line, gf.Model("real"))
         for name, value in {
             "f": self.f,
-            "r": 1.0,
+            "r": told["augmentation"],
             "length": length,
             "moved0": 0.0,
             "strain": 0.0,

@@ -1,0 +1,111 @@
+"""Regenerate the page of the hard cases: python docs/hard_cases.py [FOLDER] writes hard-cases.md from the catalogue and
+benchmarks/hard_cases.csv. With FOLDER, that of ``partialslip verify --suite full``, the figures of that run come first.
+"""
+
+import csv
+import json
+import sys
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from textwrap import fill
+
+import numpy as np
+
+from partialslip.halfplane import contact
+from partialslip.scene import Scene
+from partialslip.verify import FAMILIES
+from partialslip.verify.case import Case
+from partialslip.verify.hard_cases.catalogue import catalogue_page
+
+DOCS = Path(__file__).parent
+MEASURED = DOCS.parent / "benchmarks" / "hard_cases.csv"
+COLUMNS = ("case", "method", "a", "m", "n", "p", "q", "certificate", "cpu_s", "machine", "date")
+
+_TOLD = """
+## Loads, and what was measured
+
+One run of `partialslip verify --suite full` on a busy machine with two cores ({machine}), {date}; other work made its
+CPU seconds longer. *Q_f* is dQ/(2 f P) and *s_f* is dsigma/(f p0), with the larger P where P varies and the largest f
+where f varies; both have a sign. The half-width of the contact is 1 mm, E is 72.8 GPa. The profile is Hertz, or a flat
+of half-width b with round corners. *m* and *n* are errors against the reference, in a; the method without errors is the
+reference. A dash: not judged, no such quantity, or not in the run. CPU seconds are those of the solution, without the
+start of the process. The largest residual of all certificates in the run is {certificate:.0e}; the bar is 1e-7.
+
+| case | Q_f | s_f | f | nu | profile | more | method | m | n | CPU s |
+|---|---|---|---|---|---|---|---|---|---|---|
+"""
+
+
+def page() -> str:
+    """Content of the page."""
+    with MEASURED.open(encoding="utf-8", newline="") as file:
+        rows = {(row["case"], row["method"]): row for row in csv.DictReader(file)}
+    largest = max(float(row["certificate"]) for row in rows.values() if row["certificate"])
+    machine = " and ".join(sorted({row["machine"] for row in rows.values()}))
+    cases = [case for family in FAMILIES for case in family.cases]
+    lines = [line for case in cases for line in _lines(case, rows)]
+    date = max(row["date"] for row in rows.values())
+    told = _TOLD.format(machine=machine, certificate=largest, date=date)
+    head, table = told.split("\n\n| case")
+    title, text = head.strip().split("\n\n")
+    told = f"\n{title}\n\n{fill(text, 120, break_on_hyphens=False)}\n\n| case{table}"
+    return catalogue_page() + told + "\n".join(lines) + "\n"
+
+
+def _lines(case: Case, rows: Mapping[tuple[str, str], Mapping[str, str]]) -> Iterable[str]:
+    """Rows of the table for ``case``, one a method: what it is stands in the first one."""
+    first = [f"`{case.name}`", *_loads(case.scene)]
+    for method in case.methods:
+        row = rows.get((case.name, method), {})
+        errors = ["–" if not row.get(key) else f"{float(row[key]):.0e}" for key in "mn"]
+        cost = f"{float(row['cpu_s']):.2g}" if row else "–"
+        yield "| " + " | ".join([*first, method, *errors, cost]) + " |"
+        first = [""] * len(first)
+
+
+def _loads(scene: Scene) -> list[str]:
+    """Q_f, s_f, f, nu, profile of ``scene``, and what else is special of it."""
+    pressed, load, f = contact(scene), scene.load, scene.friction.f
+    Q, sigma = np.array(load.Q) / (f * pressed.P), np.array(load.sigma) / (f * pressed.p0)
+    share, tension, mean_Q, mean_sigma = (Q[1] - Q[0]) / 2, sigma[1] - sigma[0], Q.mean(), sigma.mean()
+    more = []
+    if max(abs(mean_Q), abs(mean_sigma)) > 1e-9:
+        more.append(f"means {mean_Q:.3g} f P, {mean_sigma:.3g} f p0")
+    if np.size(load.P) > 1 and np.ptp(load.P):
+        more.append(f"P from {min(load.P) / max(load.P):.3g}")
+    if scene.friction.x:
+        more.append("at " + ", ".join(f"{place / pressed.a:g}" for place in scene.friction.x) + " a")
+    if np.size(load.e) > 1:
+        more.append(f"e of {max(load.e) / pressed.a:.3g} a")
+    if scene.fem.size:
+        more.append(f"elements {scene.fem.size:g} a")
+    near = f"1 - {1 - share:.0e}" if 0.99 < share < 1 else f"{share:.3g}"
+    given = scene.friction.given
+    frictions = ", ".join(f"{each:g}" for each in given) if isinstance(given, tuple) else f"{given:g}"
+    b = getattr(scene.profile, "b", None)
+    profile = f"flat, b = {b / pressed.a:.4g} a" if b else "Hertz"
+    return [near, f"{tension:.4g}", frictions, f"{scene.material.nu:g}", profile, "; ".join(more)]
+
+
+def measured(folder: Path) -> str:
+    """Content of the file of figures, from the ledger of a verification in ``folder``."""
+    lines = [",".join(COLUMNS)]
+    for text in (folder / "ledger.jsonl").read_text("utf-8").splitlines():
+        entry = json.loads(text)
+        made = {"machine": entry["made"]["machine"]["processor"], "date": entry["made"]["date"][:10]}
+        found: dict[str, dict[str, object]] = {}
+        for verdict in entry["verdicts"]:
+            row = found.setdefault(verdict["method"], {"cpu_s": round(verdict["cpu_s"], 3)})
+            judged = verdict["outcome"] != "not judged" and verdict["error"] is not None
+            if judged and verdict["quantity"] in COLUMNS:
+                row[verdict["quantity"]] = f"{verdict['error']:.3g}"
+        for method, row in found.items():
+            known = {"case": entry["case"], "method": method} | made | row
+            lines.append(",".join(str(known.get(name, "")) for name in COLUMNS))
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    if sys.argv[1:]:
+        MEASURED.write_text(measured(Path(sys.argv[1])), "utf-8")
+    (DOCS / "hard-cases.md").write_text(page(), "utf-8")
