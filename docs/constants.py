@@ -108,7 +108,9 @@ def constants() -> list[Constant]:
                     shared = "", ""
                 last = node.end_lineno
                 kind, what = _split(own)
-                values = [" ".join((ast.get_source_segment(text, value) or "").split()) for _, value in names]
+                statement = "\n".join(lines[node.lineno - 1 : node.end_lineno])  # the whole text takes a second in all
+                ast.increment_lineno(node, 1 - node.lineno)
+                values = [" ".join((ast.get_source_segment(statement, value) or "").split()) for _, value in names]
                 for (name, _), value in zip(names, values, strict=True):
                     found.append(Constant(package, module, name, value, kind or shared[0], what or shared[1]))
     return found

@@ -30,7 +30,10 @@ from partialslip.scene.reading import load_scene, parse_scene
 DOCS = Path(__file__).parents[1] / "docs"
 SHIPPED = "src/partialslip/scene/shipped/fretting-aluminium.toml"
 # Pages that run with the slow tests
-HEAVY = {"howto/rig.md", "howto/equivalent.md", "howto/fatigue.md", "howto/benchmark.md", "howto/python.md"}
+HEAVY = {
+    "howto/rig.md", "howto/equivalent.md", "howto/fatigue.md", "howto/benchmark.md", "howto/python.md", "howto/size.md",
+    "sizes/half-plane.md",
+}  # fmt: skip
 BLOCK = re.compile(r"^(?:<!-- (not run: [^\n]+|slow) -->\n)?```(\w+)\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
 NUMBER = r"-?\d+(?:\.\d+)?e[-+]\d+|-?\d+\.\d+"
 PARTS = re.compile(rf"(\.\.\.|(?<![\w.])(?:{NUMBER})(?![\w.]))")

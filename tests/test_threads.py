@@ -52,7 +52,7 @@ def alone():
     return [solved(settings) for settings in SETTINGS]
 
 
-@pytest.mark.parametrize(("threads", "times"), [pytest.param(3, 1), pytest.param(8, 10, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("threads", "times"), [pytest.param(3, 1), pytest.param(8, 3, marks=pytest.mark.slow)])
 def test_as_one_after_the_other(alone, threads, times):
     """Each thread makes the same runs in another order."""
 

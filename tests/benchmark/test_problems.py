@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from closed import CLOSED
 
 from partialslip import load_scene
 from partialslip.benchmark import read_problems
-from partialslip.benchmark.freeze import derivations, frozen_parts
+from partialslip.benchmark.freeze import frozen_parts
 from partialslip.benchmark.measured import GROUPS, quantities
 from partialslip.benchmark.problem import EDITION, chosen_problems, problem_checksum, read_frozen, texts
 from partialslip.errors import InputError
@@ -16,7 +17,6 @@ from partialslip.scene import Effects, Fatigue
 from partialslip.scene.reading import shipped_scenes
 
 PROBLEMS = read_problems()
-CLOSED = [number for number, problem in PROBLEMS.items() if derivations(problem)[0].method == "exact"]
 
 
 def test_no_problem_and_no_target_moves_within_an_edition():

@@ -1,17 +1,18 @@
 """Runs stopped at any moment by Ctrl-C or kill -9: no partial files, and a rerun works."""
 
 import json
-import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from partialslip.cli import main
-from partialslip.output import place
+from partialslip.output import files, place
 from partialslip.output.files import write_files
 from partialslip.output.lock import NAME  # this file may stay; the lock does not
 
@@ -30,32 +31,60 @@ RUN = (
 VERIFY = ("verify", "--suite", "stress", "--only", "1", "--only", "2", "--processes", "1", "--out", "out")
 FILES = ["report.html", "results.json", "state.npz", "tractions.csv"]
 
-# Runs the command line with a stop at the n-th of the system calls that change files in the folder out; without n it
-# counts them. Elsewhere Python writes, too: the bytecode of modules, on the first run alone.
+# Runs the command line as often as asked, with a stop at the n-th of the system calls that change files in the folder
+# out; n = 0 counts them. Each run is a fork of one process, which has imported everything: to start Python anew and to
+# import all modules takes longer than the run.
 STOPPER = """
-import os, signal, sys
+import json, os, signal, sys
 from partialslip.cli import main
-stop, kind, count, out = int(sys.argv[1]), int(sys.argv[2]), 0, os.path.join(os.path.realpath("out"), "")
-def hooked(event, arguments):
-    global count
-    writes = event == "open" and isinstance(arguments[2], int) and arguments[2] & (os.O_WRONLY | os.O_RDWR | os.O_CREAT)
-    paths = (os.path.join(os.path.abspath(os.fsdecode(a)), "") for a in arguments if isinstance(a, (str, bytes)))
-    here = any(path.startswith(out) for path in paths)
-    if here and (writes or event in ("os.rename", "os.remove", "os.mkdir", "os.chmod", "tempfile.mkstemp")):
-        count += 1
-        if count == stop:
-            os.kill(os.getpid(), kind)
-sys.addaudithook(hooked)
-code = main(sys.argv[3:])
-print("moments", count, file=sys.stderr)
-sys.exit(code)
+requests, answers = os.fdopen(os.dup(0)), os.fdopen(os.dup(1), "w")
+for own in (0, 1):
+    os.dup2(os.open(os.devnull, os.O_RDWR), own)
+assert main(json.loads(sys.argv[1])) == 0
+def run(stop, kind, arguments):
+    count, out = 0, os.path.join(os.path.realpath("out"), "")
+    def hooked(event, given):
+        nonlocal count
+        writes = event == "open" and isinstance(given[2], int) and given[2] & (os.O_WRONLY | os.O_RDWR | os.O_CREAT)
+        paths = (os.path.join(os.path.abspath(os.fsdecode(a)), "") for a in given if isinstance(a, (str, bytes)))
+        here = any(path.startswith(out) for path in paths)
+        if here and (writes or event in ("os.rename", "os.remove", "os.mkdir", "os.chmod", "tempfile.mkstemp")):
+            count += 1
+            if count == stop:
+                os.kill(os.getpid(), kind)
+    sys.addaudithook(hooked)
+    code = main(arguments)
+    print("moments", count, file=sys.stderr)
+    sys.exit(code)
+for line in requests:
+    folder, *asked = json.loads(line)
+    ours, its = os.pipe()
+    child = os.fork()
+    if not child:
+        os.dup2(its, 2)
+        os.close(its)
+        sys.stderr = open(2, "w", closefd=False)
+        os.chdir(folder)
+        run(*asked)
+    os.close(its)
+    with os.fdopen(ours) as said:
+        told = said.read()
+    print(json.dumps([os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), told]), file=answers, flush=True)
 """
 
 
-def stopped(folder, at, kind=signal.SIGKILL, arguments=RUN):
-    command = [sys.executable, "-c", STOPPER, str(at), str(int(kind)), *arguments]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, env=os.environ)
-    return done.returncode, done.stderr
+@pytest.fixture(scope="module")
+def stopped(tmp_path_factory):
+    """Runs the command line in a folder up to a moment; returns exit code and stderr."""
+    command = [sys.executable, "-c", STOPPER, json.dumps(RUN)]
+    folder = tmp_path_factory.mktemp("first")
+    with subprocess.Popen(command, cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+
+        def call(folder, at, kind=signal.SIGKILL, arguments=RUN):
+            print(json.dumps([str(folder), at, int(kind), arguments]), file=process.stdin, flush=True)
+            return json.loads(process.stdout.readline())
+
+        yield call
 
 
 def whole(folder):
@@ -77,14 +106,14 @@ def whole(folder):
     return [name for name in names if name in FILES], [name for name in names if name not in FILES]
 
 
-def moments(folder):
+def moments(stopped, folder):
     """Return the number of moments at which to stop."""
     code, said = stopped(folder, 0)
     assert code == 0
     return int(said.split("moments")[1])
 
 
-def stop_and_rerun(folder, at, kind):
+def stop_and_rerun(stopped, folder, at, kind):
     code, said = stopped(folder, at, kind)
     assert code == (-signal.SIGKILL if kind == signal.SIGKILL else 130), said
     _, left = whole(folder / "out")
@@ -98,14 +127,14 @@ def stop_and_rerun(folder, at, kind):
 
 @pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
 @pytest.mark.parametrize("at", [2, 7])
-def test_stopped_at_a_write(tmp_path, at, kind):
-    stop_and_rerun(tmp_path, at, kind)
+def test_stopped_at_a_write(stopped, tmp_path, at, kind):
+    stop_and_rerun(stopped, tmp_path, at, kind)
 
 
 @pytest.mark.parametrize(
     ("at", "cases", "kind"), [(25, 1, signal.SIGKILL), pytest.param(35, 2, signal.SIGINT, marks=pytest.mark.slow)]
 )
-def test_a_verification_stopped_at_a_write_goes_on(tmp_path, at, cases, kind):
+def test_a_verification_stopped_at_a_write_goes_on(stopped, tmp_path, at, cases, kind):
     """Before the second case is in the ledger, and while the PDF is written."""
     assert stopped(tmp_path, at, kind, VERIFY)[0] == (-signal.SIGKILL if kind == signal.SIGKILL else 130)
     ledger = tmp_path / "out" / "ledger.jsonl"
@@ -121,15 +150,15 @@ def test_a_verification_stopped_at_a_write_goes_on(tmp_path, at, cases, kind):
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
 @pytest.mark.parametrize("earlier", [False, True], ids=["first run", "over earlier files"])
-def test_stopped_at_every_write(tmp_path, kind, earlier):
+def test_stopped_at_every_write(stopped, tmp_path, kind, earlier):
     """A first run also writes what is asked of the folder, and then the same as a run over earlier files, which stay
     complete. One signal comes at every second write, the other one at the writes between."""
-    first, again = moments(tmp_path), moments(tmp_path)
+    first, again = (moments(stopped, tmp_path) for _ in range(2))
     assert first > again >= 4 * len(FILES)
     for at in range(1 + (kind == signal.SIGINT), (again if earlier else first - again + 3) + 1, 2):
         folder = tmp_path if earlier else tmp_path / str(at)
         folder.mkdir(exist_ok=True)
-        stop_and_rerun(folder, at, kind)
+        stop_and_rerun(stopped, folder, at, kind)
 
 
 @pytest.mark.slow
@@ -137,11 +166,11 @@ def test_stopped_at_every_write(tmp_path, kind, earlier):
 @pytest.mark.parametrize("arguments", [("run", "hertz-shear", "--fields", "--out", "out"), ("map", "--out", "out")])
 def test_stopped_at_any_time(tmp_path, kind, arguments):
     """At times spread over the whole run, start-up and finite elements included; march is stopped at every write."""
+    command = [sys.executable, "-m", "partialslip", *arguments]
     begin = time.monotonic()
-    assert stopped(tmp_path, 0, arguments=arguments)[0] == 0
+    assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
     spent = time.monotonic() - begin
     for share in np.linspace(0.3, 1.05, 6):
-        command = [sys.executable, "-c", STOPPER, "0", "0", *arguments]
         process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         try:
             process.communicate(timeout=share * spent)
@@ -152,7 +181,7 @@ def test_stopped_at_any_time(tmp_path, kind, arguments):
                 assert "partialslip: interrupted" in said.splitlines()
                 assert "Traceback" not in said
         whole(tmp_path / "out")
-    assert stopped(tmp_path, 0, arguments=arguments)[0] == 0
+    assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
 
 
 def test_half_a_file_never_takes_a_name(tmp_path):
@@ -171,10 +200,32 @@ def test_half_a_file_never_takes_a_name(tmp_path):
     assert (tmp_path / "a.txt").read_text("utf-8") == "half"
 
 
+def test_a_file_that_is_removed_before_it_is_locked_is_made_again(tmp_path, monkeypatch):
+    """Another process tidies up between the making of a temporary file and its lock."""
+    true, made = tempfile.mkstemp, []
+
+    def taken(**where):
+        handle, name = true(**where)
+        if not made:
+            files._unlink_if_free(Path(name))
+        made.append(name)
+        return handle, name
+
+    def write(path):
+        path.write_text("whole", "utf-8")
+        files._unlink_if_free(path)
+        assert path.exists()  # as it is locked
+
+    monkeypatch.setattr(tempfile, "mkstemp", taken)
+    write_files(tmp_path, {"a.txt": write})
+    assert len(made) == 2
+    assert [path.read_text("utf-8") for path in tmp_path.iterdir()] == ["whole"]
+
+
 def test_only_what_nobody_writes_is_tidied_up(tmp_path):
     """Temporary files of killed writes are removed; files that another process is writing, and other files, stay."""
     code = (
-        "import sys, time; from pathlib import Path; from partialslip.report.files import write_files\n"
+        "import sys, time; from pathlib import Path; from partialslip.output.files import write_files\n"
         "def write(path):\n path.write_text('half', 'utf-8'); print('busy', flush=True); time.sleep(60)\n"
         "write_files(Path('.'), {'a.txt': write})"
     )

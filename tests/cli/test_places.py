@@ -15,6 +15,8 @@ import pytest
 import partialslip
 from partialslip.cli import common, main
 from partialslip.errors import InputError
+from partialslip.map import files as map_files
+from partialslip.map import grid
 from partialslip.output import lock, place
 from partialslip.output.files import write_new_file
 from partialslip.output.place import NAME, Request, placed, write_placed
@@ -40,6 +42,14 @@ def plain(**scene):
 def own(asked):
     """The folder of a request alone."""
     return asked.places(USUAL)[-1]
+
+
+@pytest.fixture
+def coarse(monkeypatch):
+    """Maps of few zones, without figures: where they go does not depend on what is in them."""
+    monkeypatch.setattr(grid, "_COUNT", 4)
+    for name in ("map_svg", "ends_svg"):
+        monkeypatch.setattr(map_files, name, lambda _: "<svg/>")
 
 
 @pytest.fixture(autouse=True)
@@ -265,6 +275,7 @@ def test_runs(capsys):
 @pytest.mark.parametrize(
     ("command", "name"), [("map", "hertz-shear-map"), ("page", "hertz-shear-page"), ("export", "hertz-shear-gmsh.msh")]
 )
+@pytest.mark.usefixtures("coarse")
 def test_the_usual_folder_is_that_of_the_scene_alone(command, name):
     """Whatever ran before, and however its own settings are given."""
     more = ["--to", "gmsh", "--size", "0.5"] if command == "export" else []
@@ -278,6 +289,7 @@ def test_the_usual_folder_is_that_of_the_scene_alone(command, name):
     assert folders() == sorted([other, name])
 
 
+@pytest.mark.usefixtures("coarse")
 def test_an_edited_scene_file(capsys):
     """Its results do not overwrite those of the former edition; with --set each edition has a folder of its own."""
     text = (Path(partialslip.__file__).parent / "scene/shipped/hertz-shear.toml").read_text("utf-8")

@@ -24,7 +24,8 @@ def ratio(name, *overrides):
     return known / true, true / scene.fem.accuracy
 
 
-@pytest.mark.parametrize("asked", [pytest.param(1e-5, marks=pytest.mark.slow), 2e-5])
+@pytest.mark.slow
+@pytest.mark.parametrize("asked", [1e-5, 2e-5])
 def test_estimate_bounds_the_error_by_less_than_6_times_it(asked):
     """The estimate is to be below the error at one end in twenty; the error has no least size, so that the bound is
     one on average."""

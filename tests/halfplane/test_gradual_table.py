@@ -71,7 +71,7 @@ def test_random_loads():
 
 @pytest.mark.slow
 def test_many_random_loads():
-    assert off(*turned(100, SEED + 1)) < 1e-6
+    assert off(*turned(50, SEED + 1)) < 1e-6
 
 
 @pytest.mark.slow
@@ -142,14 +142,14 @@ def test_beyond_the_table_there_is_nothing():
 
 def test_loads_with_an_inner_zone():
     """The solver follows the inner zone; the table does not, where all points that slipped inside slip again."""
-    Qf, sf = turned(3, SEED + 4, inner=True)
-    assert len(Qf) == 3
+    Qf, sf = turned(1, SEED + 4, inner=True)
+    assert len(Qf) == 1
     assert off(Qf, sf) < 1e-6
 
 
 @pytest.mark.slow
 def test_many_loads_with_an_inner_zone():
-    assert off(*turned(30, SEED + 6, inner=True)) < 1e-6
+    assert off(*turned(15, SEED + 6, inner=True)) < 1e-6
 
 
 def test_an_inner_zone_that_matters_is_left_out():

@@ -259,11 +259,11 @@ def slow(first, end, step=1):
 
 
 # Of 7,000 scenes the first 1,600 showed all that was wrong once, but for scenes that nearly stick: of these more.
-# Gradual loads whose slip turns round are followed, which takes seconds a scene: of these the first 214, four of each
+# Gradual loads whose slip turns round are followed, which takes seconds a scene: of these the first 96, two of each
 # kind on each profile; number 70 once went on for ever. More of them are in test_certificate, in test_gradual_table and
-# in ``verify --suite stress``.
+# in ``verify --suite stress``, which has a hundred scenes of another seed.
 NEARLY_STUCK = slow(KINDS.index("near-stuck"), 7_500, len(KINDS))
-FOLLOWED = 214
+FOLLOWED = 2 * len(KINDS) * len(PROFILES)
 
 
 def tried(number):
@@ -280,7 +280,12 @@ def tried(number):
 
 @pytest.mark.parametrize(
     "numbers",
-    [(*range(9), *range(12, 17), 18, 19), slow(0, 107), slow(107, FOLLOWED), slow(FOLLOWED, 640), NEARLY_STUCK],
+    [
+        (*range(9), *range(12, 17), 18, 19),
+        *(slow(k, k + 24) for k in range(0, FOLLOWED, 24)),
+        slow(FOLLOWED, 640),
+        NEARLY_STUCK,
+    ],
     ids=str,
 )
 def test_random_scenes(numbers):
@@ -289,7 +294,8 @@ def test_random_scenes(numbers):
     assert not found, "\n".join(map(str, found))
 
 
-@pytest.mark.parametrize("numbers", [range(48), slow(48, 600), slow(600, 1_200)], ids=str)
+# The range is arbitrary: nine of each kind on each pressure beyond the first 48.
+@pytest.mark.parametrize("numbers", [range(48), slow(48, 336), slow(336, 624)], ids=str)
 def test_random_pressures(numbers):
     found = list(trials(of_random_pressure, numbers))
     assert not found, "\n".join(map(str, found))

@@ -55,6 +55,7 @@ def test_the_bound_on_the_mean_where_fully_reversed_shear_ratchets():
     assert exact(RATCHET).regime == "ratchets"
 
 
+@pytest.mark.slow
 def test_the_bound_on_the_mean_holds_all_along_the_way():
     """Between the load points p may be low where q is not: marching in steps ratchets where both load points allow a
     steady state (tests/march/test_varying_march.py)."""

@@ -140,6 +140,7 @@ def test_march_agrees_with_the_closed_form(scene, slips):
     assert np.array(result["march"].ends) == pytest.approx(np.array(result["exact"].ends))
 
 
+@pytest.mark.slow
 def test_march_ratchets_where_the_bound_says_so():
     """The mean of Q beyond and within the bound of the closed form, by 0.01 f P, under a varying moment."""
     a, e = (0.9, 0.9), (0.1, -0.1)

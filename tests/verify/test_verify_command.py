@@ -14,6 +14,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from random_marches import FINEST
 
 from partialslip.batch import ledger
 from partialslip.batch.ledger import Ledger
@@ -28,10 +29,12 @@ from partialslip.verify.hard_cases.given_meshes import shifted
 from partialslip.verify.random_scenes import KINDS, PROFILES, draw
 from partialslip.verify.suites import _same, stress_numbers
 from partialslip.verify.verdicts import VerificationRecord
+from partialslip_fem import goals
 
 ROOT = Path(__file__).parents[2]
 ROOTS = ("src/partialslip", "fem/partialslip_fem", "meshes/partialslip_meshes")
 
+PARTS = 4  # of a test of random scenes of all kinds
 STRESS = ["verify", "--suite", "stress", "--method", "march", "--seed", "5", "--processes", "1"]
 
 
@@ -164,7 +167,7 @@ def test_a_killed_verification_takes_up_nothing_of_other_code(edited, tmp_path):
     for root in ROOTS:
         shutil.copytree(ROOT / root, tmp_path / root, ignore=shutil.ignore_patterns("__pycache__"))
     paths = os.pathsep.join(str((tmp_path / root).parent) for root in ROOTS)
-    environment = {**os.environ, "PYTHONPATH": paths, "PYTHONDONTWRITEBYTECODE": "1"}
+    environment = {**os.environ, "PYTHONPATH": paths}
 
     def verified(*program):
         command = [sys.executable, *program, *STRESS, "--only", "1", "--out", "out"]
@@ -323,12 +326,14 @@ def test_random_scenes_have_certificates(method, count):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("part", range(2))
+@pytest.mark.parametrize("part", range(PARTS))
 @pytest.mark.parametrize("method", ["march", "fem"])
-def test_random_scenes_of_all_kinds_have_certificates(method, part):
+def test_random_scenes_of_all_kinds_have_certificates(method, part, monkeypatch):
     """All kinds of loads, on the profiles in turn. More draws of one seed have seen nothing more: of 2,000 scenes by
-    march and 200 by finite elements all had their certificates."""
-    numbers = [kind + len(KINDS) * (kind % len(PROFILES)) for kind in range(part, len(KINDS), 2)]
+    march and 200 by finite elements all had their certificates. Finite elements are not refined to the end, which takes
+    minutes where a stick zone fades away (tests/fem/test_random_cycles.py has such a scene)."""
+    monkeypatch.setattr(goals, "FINEST", FINEST)
+    numbers = [kind + len(KINDS) * (kind % len(PROFILES)) for kind in range(part, len(KINDS), PARTS)]
     certified(stress_suite(method, 1, 1, list(map(str, numbers))))
 
 

@@ -1,6 +1,8 @@
 """Files: written whole or not at all; tables as CSV, data as JSON."""
 
+import contextlib
 import csv
+import errno
 import filecmp
 import glob
 import io
@@ -16,7 +18,7 @@ import msgspec
 
 from partialslip.errors import InputError, printable
 from partialslip.inputfile import check_replaceable
-from partialslip.output.lock import lock, make_folder
+from partialslip.output.lock import TRIES, lock, make_folder
 
 _EARLY = (1980, 1, 1, 0, 0, 0)  # fixed: date of all files in an archive
 _FORMULA = ("=", "+", "-", "@")  # what a formula begins with
@@ -151,10 +153,8 @@ def _beside(path: Path, write: Callable[[Path], object]) -> Iterator[Path]:
     beginning, ending = f".{path.stem}-", f".partial{path.suffix}"
     for left in path.parent.glob(glob.escape(beginning) + "*" + glob.escape(ending)):
         _unlink_if_free(left)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=beginning, suffix=ending)
-    made = Path(name)
+    handle, made = _locked_file(path.parent, beginning, ending)
     try:
-        lock(handle)
         write(made)
         made.chmod(0o666 & ~_umask())
         os.fsync(handle)  # the content must be on the disk before the name
@@ -162,6 +162,21 @@ def _beside(path: Path, write: Callable[[Path], object]) -> Iterator[Path]:
     finally:
         os.close(handle)
         made.unlink(missing_ok=True)
+
+
+def _locked_file(folder: Path, beginning: str, ending: str) -> tuple[int, Path]:
+    """Make a temporary file and lock it. Returns the handle and the path.
+
+    Until the file is locked, another process takes it for one of a killed write, and may remove it: then another file
+    is made.
+    """
+    for _ in range(TRIES):
+        handle, name = tempfile.mkstemp(dir=folder, prefix=beginning, suffix=ending)
+        with contextlib.suppress(FileNotFoundError):
+            if lock(handle) is not False and os.path.samestat(os.fstat(handle), os.stat(name)):
+                return handle, Path(name)
+        os.close(handle)
+    raise OSError(errno.EBUSY, "other processes keep removing its temporary files")
 
 
 def _unlink_if_free(path: Path) -> None:

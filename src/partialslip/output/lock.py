@@ -17,7 +17,7 @@ except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
 NAME = ".partialslip.lock"
-_TRIES = 20  # cost: to open and lock a file
+TRIES = 20  # cost: to open and lock a file
 _BEYOND = 1 << 30  # limit: byte locked on Windows: beyond the text, because locked bytes cannot be read
 
 
@@ -109,7 +109,7 @@ def lock(handle: int) -> bool | None:
 
 def _taken(path: Path) -> tuple[int, str]:
     """Open and lock the file at ``path``. Returns the handle, and the holder if another process has the lock."""
-    for _ in range(_TRIES):
+    for _ in range(TRIES):
         try:
             make_folder(path.parent)
             handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
