@@ -15,6 +15,7 @@ from partialslip_fem.problem import Problem
 _SAFE = 2.0  # accuracy: on the error of the elements away from the ends of the contact (measured on rigs)
 # accuracy: of the error of q that pressing in steps locks in: that of the displacement, relative (measured on rigs)
 _OF_LOCKED = 5e-3
+_FEWEST = 4  # limit: nodes in contact of which two can be left out
 
 
 def plates_of(problem: Problem, solution: MeshSolution) -> Plates | None:
@@ -35,7 +36,7 @@ def plates_of(problem: Problem, solution: MeshSolution) -> Plates | None:
         at_points=np.array([float(each.x.sum()) for each in history.points[-len(history.path.cycle) :]]),
         displacement=np.array(history.shifts),
         approach=np.array([_approach(C, *each) for each in zip((first, last), sheared, opened, strict=True)]),
-        compliance=_stuck(C, np.flatnonzero(last > 0)),
+        compliance=_stuck_between(C, solution.lower.x, np.flatnonzero(last > 0), (solution.left, solution.right)),
         loop=np.column_stack([np.append(0.0, moved), np.append(Q[-1], Q)]),
     )
 
@@ -45,9 +46,8 @@ def compliance_error(problem: Problem, solution: MeshSolution, other: MeshSoluti
 
     Two independent parts, as root of the sum of squares. Bodies that stick on the same elements are compared with those
     of the ``other`` solution, whose elements are of another order: errors of singular corners fall with the order k
-    like k^(-4 e), with the exponent e of the displacements there. The contact that sticks ends on a node: its ends are
-    known to the distance of the next node, and to the error ``of_ends`` (in contact half-widths) of the contact. How
-    the compliance answers to that is what a contact changes that is shorter by a node.
+    like k^(-4 e), with the exponent e of the displacements there. The ends of what sticks are known to the distance of
+    the next node, and to the error ``of_ends`` (in contact half-widths) of the contact.
     """
     C, D = solution.relative, other.relative
     if not C or not D or not solution.history:
@@ -56,16 +56,13 @@ def compliance_error(problem: Problem, solution: MeshSolution, other: MeshSoluti
     k, j = solution.lower.order, other.lower.order
     begin, end = max(-(-first // k), -(-another // j)), min(last // k, final // j)  # vertices, which both share
     x, on = solution.lower.x, np.arange(begin * k, end * k + 1)
-    compliance = _stuck(C, on)
+    compliance, by_width = _answering(C, x, on)
     unit = np.abs(compliance).max()
     changed = np.abs(compliance - _stuck(D, np.arange(begin * j, end * j + 1))).max() / unit
     exponents = [exponent for part in problem.parts for exponent in part.exponents.values()]
     elements = _SAFE * changed / abs(1 - (k / j) ** (4 * min(exponents, default=1.0)))
-    shorter = np.abs(_stuck(C, on[1:-1]) - compliance).max() / unit
-    width = x[on[-1]] - x[on[0]]
-    answer = shorter / np.log(width / (x[on[-2]] - x[on[1]]))
-    spacing = max(x[first] - x[first - 1], x[last + 1] - x[last]) / (width / 2)
-    return math.hypot(elements, answer * (spacing + of_ends))
+    spacing = max(x[first] - x[first - 1], x[last + 1] - x[last]) / ((x[last] - x[first]) / 2)
+    return math.hypot(elements, np.abs(by_width).max() / unit * (spacing + of_ends))
 
 
 def displacement_error(solution: MeshSolution, plates: Plates, of_compliance: float | None) -> float | None:
@@ -95,6 +92,24 @@ def _approach(C: Relative, p: Array, q: Array, gap: Array) -> float:
     if C.xy is not None:
         opening = opening + C.opening[on] @ q
     return float(opening.mean())
+
+
+def _stuck_between(C: Relative, x: Array, on: Indices, ends: tuple[float, float]) -> Array:
+    """Displacements of :func:`_stuck` of bodies that stick from end to end; the last nodes ``on`` the contact are off
+    its ``ends`` by up to the distance of the next node."""
+    compliance, by_width = _answering(C, x, on)
+    result: Array = compliance + by_width * np.log((ends[1] - ends[0]) / (x[on[-1]] - x[on[0]]))
+    return result
+
+
+def _answering(C: Relative, x: Array, on: Indices) -> tuple[Array, Array]:
+    """Displacements of :func:`_stuck`, and their derivative by the logarithm of the width, from a contact that is
+    shorter by a node at both ends; (2, 2) each."""
+    compliance = _stuck(C, on)
+    if len(on) < _FEWEST:
+        return compliance, 0 * compliance
+    wider = np.log((x[on[-1]] - x[on[0]]) / (x[on[-2]] - x[on[1]]))
+    return compliance, (compliance - _stuck(C, on[1:-1])) / wider
 
 
 def _stuck(C: Relative, on: Indices) -> Array:
