@@ -19,6 +19,7 @@ from partialslip_fem.expense import Expense, work_again
 from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_first_mesh, too_narrow, widened
 from partialslip_fem.goals import Goal, course, gaps, size_reached, worst
 from partialslip_fem.mesh_solution import Adapted
+from partialslip_fem.plates import compliance_error
 from partialslip_fem.problem import Problem
 
 _CALMER = (0.4, 0.85)  # cost: smallest and largest factor of the growth after a mesh whose error is too large
@@ -111,6 +112,7 @@ class _Refinement:
         self.error, self.error_before, self.calmer = np.inf, np.inf, 1.0
         self.step_errors: Mapping[str, float] | None = None  # None until the steps are chosen
         self.path_errors: Mapping[str, float] = {}  # of the steps of coupled bodies
+        self.path_moves = self.solution.path_moves
         self.plates_error: float | None = None  # None until it is estimated
         self.waited = self.cuts = 0
 
@@ -209,8 +211,9 @@ class _Refinement:
             self._refine_steps()
         elif self.step_errors is not None:
             self.solution = replace(self.solution, step_errors=self.step_errors)
-        self.path_errors = self.solution.path_errors or self.path_errors
-        self.solution = replace(self.solution, path_errors=self.path_errors)
+        if self.solution.path_errors:
+            self.path_errors, self.path_moves = self.solution.path_errors, self.solution.path_moves
+        self.solution = replace(self.solution, path_errors=self.path_errors, path_moves=self.path_moves)
         solution = self.solution
         self.expense.measure(solution.dofs, expected)
         self.meshes, self.factored = self.meshes + 1, self.factored + solution.factored
@@ -354,10 +357,9 @@ class _Refinement:
         """
         other = estimate.neighbour(self.solution, self.problem, self.block_width, self.clock)
         self.factored, self.iterations = self.factored + other.factored, self.iterations + other.iterations
-        if self.solution.plates and other.plates:
-            self.plates_error = self.solution.plates.apart(other.plates)
         smooth = estimate.smooth_errors(self.solution, other, self.eased, self.problem.breaks)
         self.errors = estimate.combined(self.solution, smooth, self.end_errors)
+        self.plates_error = compliance_error(self.problem, self.solution, other, self.errors["a"])
         return smooth
 
     def _affordable_goal(self) -> Goal | None:

@@ -35,9 +35,9 @@ def size(tolerance: float, exponent: float) -> float:
 
 
 def _first(values: Array, k: Array) -> float:
-    """First of ``k`` where ``values`` are not positive; without one, their first minimum; without either, 1."""
-    below = np.flatnonzero(values <= 0)
-    if len(below):
-        return float(k[below[0]])
-    turns = np.flatnonzero((values[1:-1] <= values[:-2]) & (values[1:-1] < values[2:]))
-    return float(k[1 + turns[0]]) if len(turns) else 1.0
+    """First of ``k`` where ``values`` are not positive or have a minimum, beside which a complex exponent lies; 1
+    without either."""
+    turns = np.zeros(len(k), dtype=bool)
+    turns[1:-1] = (values[1:-1] <= values[:-2]) & (values[1:-1] < values[2:])
+    found = np.flatnonzero(turns | (values <= 0))
+    return float(k[found[0]]) if len(found) else 1.0

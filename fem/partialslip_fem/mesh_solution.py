@@ -9,11 +9,11 @@ from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array, Indices
 from partialslip.friction.active_set import Solution
+from partialslip.friction.coupled_step import Relative
 from partialslip.friction.history import History
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.trail import Trail
 from partialslip.friction.zone_ends import StickInterval, turning_points
-from partialslip.result.plates import Plates
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import Body
 from partialslip_fem.recovery import traction
@@ -54,10 +54,12 @@ class MeshSolution:
         Errors of the load steps (:mod:`partialslip.friction.step_errors`), where they were asked for.
     path_errors : mapping of str to float
         The same of the load path of coupled bodies, besides the steps in which they were pressed together.
+    path_moves : (2, 2) array
+        Errors of the displacement of the plates, and of Q, at load points 1 and 2 (columns), of the same load path.
     dissimilar : bool
         Whether shear moves surfaces along y as it does in half-planes of unlike materials (Dundurs' beta is not 0).
-    plates : Plates or None
-        How the plates of two finite bodies move, scaled.
+    relative : Relative or None
+        Compliances of the nodes of the contact line, of two finite bodies.
     first, most : (n,) arrays or None
         Where the pressure varies: normal forces on all nodes of the contact line at load point 1, and the largest ones
         on the path.
@@ -88,8 +90,9 @@ class MeshSolution:
     passing: tuple[float, ...] = ()
     trail: Trail | None = None
     path_errors: Mapping[str, float] = field(default_factory=dict)
+    path_moves: Array = field(default_factory=lambda: np.zeros((2, 2)))
     dissimilar: bool = False
-    plates: Plates | None = None
+    relative: Relative | None = None
 
     @property
     def slips_when_pressed(self) -> bool:

@@ -1,44 +1,88 @@
 """How the plates of two finite bodies move, from the forces between the bodies; scaled."""
 
+import math
+
 import numpy as np
 import scipy.linalg as la
 
 from partialslip.arrays import Array, Indices, submatrix
 from partialslip.friction.coupled_step import Relative
-from partialslip.friction.history import History
 from partialslip.result.plates import Plates
+from partialslip_fem.mesh_solution import MeshSolution
+from partialslip_fem.mortar import projected
+from partialslip_fem.problem import Problem
+
+_SAFE = 2.0  # accuracy: on the error of the elements away from the ends of the contact (measured on rigs)
+# accuracy: of the error of q that pressing in steps locks in: that of the displacement, relative (measured on rigs)
+_OF_LOCKED = 5e-3
+_FEWEST = 4  # limit: nodes in contact of which two can be left out
 
 
-def plates_of(
-    C: Relative, history: History | None, nodes: Indices, pressures: tuple[Array, Array], gaps: tuple[Array, Array]
-) -> Plates | None:
-    """Plates of two bodies with the relative compliances ``C``; None without friction.
-
-    Parameters
-    ----------
-    C : Relative
-    history : History or None
-        Of the ``nodes`` of the contact line that are in contact.
-    nodes : (k,) int array
-    pressures, gaps : two of (n,) array
-        Normal forces, and gap without them, at load points 1 and 2.
-    """
-    if not history:
+def plates_of(problem: Problem, solution: MeshSolution) -> Plates | None:
+    """Plates of the two finite bodies of ``solution``; None if a body is a half-plane, or without friction."""
+    C, history = solution.relative, solution.history
+    if not C or not history:
         return None
-    on_line = np.zeros((2, len(C.yy)))
-    on_line[:, nodes] = history.at_ends
-    approach = [_approach(C, *each) for each in zip(pressures, on_line, gaps, strict=True)]
+    last = solution.pressing.x
+    first = solution.first
+    if first is None:
+        first = solution.on_line(history.pressures[0]) if solution.coupled else last
+    gap, lower = projected(solution.lower, problem.gap, problem.breaks), solution.bodies[0]
+    opened = [gap - strain * lower.stretch[1] for strain, _ in problem.strains]
+    sheared = [solution.on_line(q) for q in history.at_ends]
     around = history.around
     moved, Q = around.shifts, around.forces.sum(axis=1)
-    loop = np.column_stack([np.append(0.0, moved), np.append(Q[-1], Q)])
     return Plates(
-        Q=on_line.sum(axis=1),
         at_points=np.array([float(each.x.sum()) for each in history.points[-len(history.path.cycle) :]]),
         displacement=np.array(history.shifts),
-        approach=np.array(approach),
-        compliance=_stuck(C, np.flatnonzero(pressures[1] > 0)),
-        loop=loop,
+        approach=np.array([_approach(C, *each) for each in zip((first, last), sheared, opened, strict=True)]),
+        compliance=_stuck_between(C, solution.lower.x, np.flatnonzero(last > 0), (solution.left, solution.right)),
+        loop=np.column_stack([np.append(0.0, moved), np.append(Q[-1], Q)]),
     )
+
+
+def compliance_error(problem: Problem, solution: MeshSolution, other: MeshSolution, of_ends: float) -> float | None:
+    """Error of the plates' compliance by ``solution``, relative; None if it has no plates.
+
+    Two independent parts, as root of the sum of squares. Bodies that stick on the same elements are compared with those
+    of the ``other`` solution, whose elements are of another order: errors of singular corners fall with the order k
+    like k^(-4 e), with the exponent e of the displacements there. The ends of what sticks are known to the distance of
+    the next node, and to the error ``of_ends`` (in contact half-widths) of the contact.
+    """
+    C, D = solution.relative, other.relative
+    if not C or not D or not solution.history:
+        return None
+    (first, last), (another, final) = _touching(solution), _touching(other)
+    k, j = solution.lower.order, other.lower.order
+    begin, end = max(-(-first // k), -(-another // j)), min(last // k, final // j)  # vertices, which both share
+    x, on = solution.lower.x, np.arange(begin * k, end * k + 1)
+    compliance, by_width = _answering(C, x, on)
+    unit = np.abs(compliance).max()
+    changed = np.abs(compliance - _stuck(D, np.arange(begin * j, end * j + 1))).max() / unit
+    exponents = [exponent for part in problem.parts for exponent in part.exponents.values()]
+    elements = _SAFE * changed / abs(1 - (k / j) ** (4 * min(exponents, default=1.0)))
+    spacing = max(x[first] - x[first - 1], x[last + 1] - x[last]) / ((x[last] - x[first]) / 2)
+    return math.hypot(elements, np.abs(by_width).max() / unit * (spacing + of_ends))
+
+
+def displacement_error(solution: MeshSolution, plates: Plates, of_compliance: float | None) -> float | None:
+    """Error of the displacement of the ``plates`` by ``solution``, under given loads; None if the error of their
+    compliance is not known. Q and tension may move the plates opposite ways: the error of the compliance counts for
+    each. The load steps of coupled bodies add theirs, and so does the shear that pressing them in steps locks in."""
+    if of_compliance is None:
+        return None
+    C = plates.compliance[0, 0]
+    moved, Q = solution.path_moves
+    known = plates.displacement[np.isfinite(plates.displacement)]  # not of cycles that were skipped
+    most = max(np.abs(known).max(initial=0.0), C * np.abs(plates.at_points).max())
+    locked = max(solution.step_errors.get(key, 0.0) for key in ("q1", "q2"))
+    return float((of_compliance + _OF_LOCKED * locked) * most + np.nan_to_num(moved + C * Q).max())
+
+
+def _touching(solution: MeshSolution) -> tuple[int, int]:
+    """First and last node in contact at load point 2."""
+    on = np.flatnonzero(solution.pressing.x > 0)
+    return int(on[0]), int(on[-1])
 
 
 def _approach(C: Relative, p: Array, q: Array, gap: Array) -> float:
@@ -48,6 +92,24 @@ def _approach(C: Relative, p: Array, q: Array, gap: Array) -> float:
     if C.xy is not None:
         opening = opening + C.opening[on] @ q
     return float(opening.mean())
+
+
+def _stuck_between(C: Relative, x: Array, on: Indices, ends: tuple[float, float]) -> Array:
+    """Displacements of :func:`_stuck` of bodies that stick from end to end; the last nodes ``on`` the contact are off
+    its ``ends`` by up to the distance of the next node."""
+    compliance, by_width = _answering(C, x, on)
+    result: Array = compliance + by_width * np.log((ends[1] - ends[0]) / (x[on[-1]] - x[on[0]]))
+    return result
+
+
+def _answering(C: Relative, x: Array, on: Indices) -> tuple[Array, Array]:
+    """Displacements of :func:`_stuck`, and their derivative by the logarithm of the width, from a contact that is
+    shorter by a node at both ends; (2, 2) each."""
+    compliance = _stuck(C, on)
+    if len(on) < _FEWEST:
+        return compliance, 0 * compliance
+    wider = np.log((x[on[-1]] - x[on[0]]) / (x[on[-2]] - x[on[1]]))
+    return compliance, (compliance - _stuck(C, on[1:-1])) / wider
 
 
 def _stuck(C: Relative, on: Indices) -> Array:

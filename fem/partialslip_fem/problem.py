@@ -6,6 +6,7 @@ A is the compliance of the pair of bodies, R the profile's radius and P the norm
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -115,14 +116,11 @@ class Part:
         )
         return along_x, along_y
 
-    def corners(self, tolerance: float) -> dict[Corner, float]:
-        """Element sizes at the singular corners of a block.
-
-        With these sizes the corners change the contact by about ``tolerance``, relative.
-        """
+    @cached_property
+    def exponents(self) -> dict[Corner, float]:
+        """Exponents of the displacements at the singular corners of a block."""
         assert self.extent
-        width, height = self.extent
-        across, (low, deep) = math.pi / 2, self.holder or self.extent
+        across, width, low = math.pi / 2, self.extent[0], (self.holder or self.extent)[0]
         held = set(self.held[0]) & set(self.held[1])
         found: dict[Corner, float] = {}
         if held:  # a held side meets a free side
@@ -132,8 +130,16 @@ class Part:
             found["shoulder"] = held_exponent(angle, self.kappa)
         if self.holder and low != width and ("shoulder" not in found or low > width):
             found["notch"] = free_exponent(3 * across)
-        least = min(width, height, low, deep)
-        return {corner: least * size(tolerance, exponent) for corner, exponent in found.items()}
+        return found
+
+    def corners(self, tolerance: float) -> dict[Corner, float]:
+        """Element sizes at the singular corners of a block.
+
+        With these sizes the corners change the contact by about ``tolerance``, relative.
+        """
+        assert self.extent
+        least = min(*self.extent, *(self.holder or self.extent))
+        return {corner: least * size(tolerance, exponent) for corner, exponent in self.exponents.items()}
 
 
 @dataclass(frozen=True)

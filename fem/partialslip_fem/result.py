@@ -18,6 +18,7 @@ from partialslip_fem.estimate import rounding_error
 from partialslip_fem.fields import along_surfaces, deformed, edges_near_contact
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
 from partialslip_fem.mortar import nodal_forces
+from partialslip_fem.plates import displacement_error, plates_of
 from partialslip_fem.problem import Problem, rescaled
 from partialslip_fem.recovery import Polynomials
 from partialslip_fem.stresses import BodyStresses
@@ -33,7 +34,7 @@ def to_result(
     ``plan`` says whether to solve for displacements inside the bodies; ``clock`` has counted the CPU seconds.
     """
     solution, L, stress = adapted.solution, scene.length, scene.P / scene.length
-    plates = _plates(adapted, scene)
+    plates = _plates(problem, adapted, scene)
     if plates:
         scene = plates.told(scene)
     origin = problem.origin * L
@@ -122,19 +123,20 @@ def to_result(
     )
 
 
-def _plates(adapted: Adapted, scene: Scene) -> Plates | None:
+def _plates(problem: Problem, adapted: Adapted, scene: Scene) -> Plates | None:
     """Plates of two finite bodies, in SI units."""
-    if not (found := adapted.solution.plates):
+    if not (found := plates_of(problem, adapted.solution)):
         return None
     A, P = scene.material.A, scene.P
+    off = displacement_error(adapted.solution, found, adapted.plates_error)
     return Plates(
-        Q=P * found.Q,
         at_points=P * found.at_points,
         displacement=A * P * found.displacement,
         approach=A * P * found.approach,
         compliance=A * found.compliance,
         loop=found.loop * [A * P, P],
         error=adapted.plates_error,
+        displacement_error=None if off is None else A * P * off,
     )
 
 

@@ -19,13 +19,11 @@ from partialslip.friction.steps import follow_or_step
 from partialslip.friction.trail import Trail
 from partialslip.friction.zone_ends import within
 from partialslip.result import Clock
-from partialslip.result.plates import Plates
 from partialslip_fem.bodies import Grading, Kept, Shared, bodies_key, condense, mesh_bodies
 from partialslip_fem.contact import CondensedBody, relative_compliances
 from partialslip_fem.elasticity import Body
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import nodal_forces, projected
-from partialslip_fem.plates import plates_of
 from partialslip_fem.problem import Problem
 from partialslip_fem.zones import contact_ends_of, growth_when_pressed, resultants_of, shear_kinks, stick_zone_of
 from partialslip_meshes import Mesh
@@ -110,6 +108,7 @@ def solve_contact(
         relative = shared.relative[problem.coupled]
     with clock.phase("contact"):
         line, both = bodies[0].body, _together(problem, relative)
+        kept = replace(relative) if all(part.finite for part in problem.parts) else None  # without its factors
         forces = _contact_forces(problem, relative, bodies[0], check, shared, before)
         history, nodes, errors = forces.history, forces.nodes, forces.step_errors
         ends_under = partial(contact_ends_of, line, beta=problem.beta if both else 0.0)
@@ -147,26 +146,13 @@ def solve_contact(
         return MeshSolution(
             bodies, factored, nodes, forces.pressing, history, left, right, stick, ends_at_1, kinks, both,
             forces.pressed, errors, forces.first, forces.most, problem.largest, passing, forces.trail,
-            path_errors, both and problem.beta != 0, _plates(problem, relative, bodies[0], forces),
+            path_errors, forces.path_moves, both and problem.beta != 0, kept,
         )  # fmt: skip
 
 
 def _together(problem: Problem, C: Relative) -> bool:
     """Whether p and q are solved together, step by step: where ``C`` couples them, or plates are moved."""
     return C.xy is not None or (problem.path is not None and problem.path.actuator is not None)
-
-
-def _plates(problem: Problem, C: Relative, lower: CondensedBody, forces: "_ContactForces") -> Plates | None:
-    """Plates of two finite bodies; None where a body has none."""
-    if not all(part.finite for part in problem.parts):
-        return None
-    gap = projected(lower.body, problem.gap, problem.breaks)
-    first, second = (gap - strain * lower.stretch[1] for strain, _ in problem.strains)
-    last, history = forces.pressing.x, forces.history
-    at_first = last if forces.first is None else forces.first
-    if history and forces.first is None and _together(problem, C):
-        at_first = _on_line(lower.body, forces.nodes, history.pressures[0])
-    return plates_of(C, history, forces.nodes, (at_first, last), (first, second))
 
 
 def _on_line(line: Body, nodes: Indices, values: Array) -> Array:
@@ -188,6 +174,7 @@ class _ContactForces:
     first: Array | None = None
     most: Array | None = None
     trail: Trail | None = None
+    path_moves: Array = field(default_factory=lambda: np.zeros((2, 2)))
 
 
 def _contact_forces(
@@ -226,10 +213,11 @@ def _contact_forces(
         nodes = np.flatnonzero(history.bound > 0)
         most = np.maximum(*history.pressures) if problem.pressing else None
         left: step_errors.Errors = {}
+        moves = np.zeros((2, 2))
         if check and path.moves:
             finer, *_ = coupled.march(*loaded, step_errors.other_steps(path), pressed, replace(along, trail=None), near)
-            left = _path_errors(problem, line, history, finer)
-        return _ContactForces(pressing, history.of(nodes), nodes, first, left, most=most, trail=trail)
+            left, moves = _path_errors(problem, line, history, finer), step_errors.of_plates(history, finer)
+        return _ContactForces(pressing, history.of(nodes), nodes, first, left, None, most, trail, moves)
     opened = gap if path else gap - problem.strains[1][0] * stretch[1]
     arms = line.x if problem.turns else None
     if problem.pressing:

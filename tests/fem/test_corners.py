@@ -14,12 +14,15 @@ RIGHT = np.pi / 2
 
 def test_exponents_are_williams():
     """Free notches of 270 and 360 degrees, 0.5445 and 1/2; held beside free at 90 degrees and nu = 0.3 in plane strain,
-    0.711; none for a corner that is free on both sides."""
+    0.711; at 270 degrees 0.342 + 0.034 i, before the real one at 0.870, and 0.282 at nu = 0.45; none for a corner that
+    is free on both sides."""
     assert free_exponent(3 * RIGHT) == pytest.approx(0.5445, abs=5e-4)
     assert free_exponent(4 * RIGHT) == pytest.approx(0.5, abs=5e-4)
     assert held_exponent(RIGHT, 1.8) == pytest.approx(0.711, abs=1e-3)
     assert held_exponent(RIGHT, 1.0004) == pytest.approx(0.5946, abs=1e-3)
     assert held_exponent(2 * RIGHT, 1.8) == pytest.approx(0.5, abs=1e-3)
+    assert held_exponent(3 * RIGHT, 1.8) == pytest.approx(0.3417, abs=2e-3)
+    assert held_exponent(3 * RIGHT, 1.2) == pytest.approx(0.2818, abs=1e-3)
     assert free_exponent(RIGHT) == 1.0
 
 

@@ -192,14 +192,16 @@ def _plates(run: Run) -> Iterator[tuple[str, str]]:
     known = _first(run, lambda result: result.plates is not None)
     if not known or not (plates := known.result.plates):
         return
-    error, by = math.nan if plates.error is None else plates.error, _by(known)
-    if run.scene.load.displacement is not None:
+    error, off = (math.nan if each is None else each for each in (plates.error, plates.displacement_error))
+    load, by = run.scene.load, _by(known)
+    if load.displacement is not None:
         exponent, label = _unit(run, float(np.abs(plates.at_points).max()), "N/m")
-        forces = [number(Q, error * abs(Q), exponent) for Q in plates.at_points]
+        forces = [number(Q, off * plates.stiffness[0], exponent) for Q in plates.at_points]
         yield "Q", f"{', '.join(forces)} {label}{by}"
     exponent, label = _unit(run, float(np.abs(plates.displacement).max()), "m")
     if np.isfinite(plates.displacement).all():
-        moved = [number(each, error * abs(each), exponent) for each in plates.displacement]
+        given = load.displacement is not None and load.spring is None
+        moved = [number(each, 0.0 if given else off, exponent) for each in plates.displacement]
         yield "plates along x", f"{', '.join(moved)} {label} at load points 1, 2{by}"
     exponent, label = _unit(run, max(plates.stiffness), "Pa")
     along = [number(each, error * each, exponent) for each in plates.stiffness]

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
 from msgspec.structs import replace
 
 from partialslip.arrays import Array
@@ -16,8 +15,6 @@ class Plates(Short):
 
     Parameters
     ----------
-    Q : (2,) array
-        Shear force at load points 1 and 2, N/m.
     at_points : (c,) array
         Shear force at all c load points of the cycle, N/m.
     displacement : (2,) array
@@ -31,18 +28,22 @@ class Plates(Short):
         nothing slips and the contact keeps its size.
     loop : (k, 2) array
         Displacement (m, from its value where the cycle begins) and Q (N/m) along the cycle, first and last point the
-        same.
+        same. Between load steps it is straight: ``load.steps`` makes it finer.
     error : float or None
-        Estimated error of the compliance, relative: what elements of another order change. None on meshes as given.
+        Estimated error of the compliance, relative; None on meshes as given. Elements of another order tell what those
+        away from the contact's ends leave, and the next node and the error of the contact what the ends leave.
+    displacement_error : float or None
+        Estimated error of the displacement under given loads, m; None on meshes as given. If the plates are moved, Q
+        is off by this times the stiffness.
     """
 
-    Q: Array
     at_points: Array
     displacement: Array
     approach: Array
     compliance: Array
     loop: Array
     error: float | None = None
+    displacement_error: float | None = None
 
     def told(self, scene: Scene) -> Scene:
         """Return ``scene`` with the Q that its plates bear, if their displacements drive it; otherwise as it is."""
@@ -55,10 +56,6 @@ class Plates(Short):
         """Forces along x and along y per displacement, N/m per m and unit depth (Pa), while nothing slips and the
         contact keeps its size; the other force does not change."""
         return 1 / float(self.compliance[0, 0]), 1 / float(self.compliance[1, 1])
-
-    def apart(self, other: "Plates") -> float:
-        """Change of the compliances from the ``other`` plates to these, relative to the larger one."""
-        return float(np.abs(self.compliance - other.compliance).max() / np.abs(self.compliance).max())
 
     @property
     def work(self) -> float:

@@ -50,13 +50,13 @@ class TractionRecord(Short, msgspec.Struct, frozen=True, omit_defaults=True):
 class PlatesRecord(Short, msgspec.Struct, frozen=True, omit_defaults=True):
     """Record of :class:`partialslip.result.Plates`; ``loop`` is None in ledgers."""
 
-    Q: Numbers
     at_points: Numbers
     displacement: Numbers
     approach: Numbers
     compliance: tuple[Numbers, Numbers]
     loop: tuple[Numbers, ...] | None = None
     error: Number = None
+    displacement_error: Number = None
 
 
 class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
