@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from partialslip import InputError, halfplane, load_scene
@@ -80,12 +80,13 @@ def test_signs_mirror_the_zone(Qf, sf, signs):
 
 
 @given(SHEARS, TENSIONS, SHAPES)
+@example(0.99999, 35.0, HERTZ)  # a zone of 2e-84 leaves no room, and rounding must not make it negative
 def test_shear_stays_within_friction_and_leaves_room_for_a_mean(Qf, sf, shape):
     zone = stick_zone(Qf, sf, shape)
     x = np.concatenate([np.sin(np.linspace(-1.57, 1.57, 201)), zone.centre + zone.half_width * np.linspace(-1, 1, 41)])
     q = half_range(np.clip(x, -1, 1), zone, shape)
     assert (np.abs(q) <= shape.pressure(np.clip(x, -1, 1)) + 1e-11).all()
     bound = one_step(Qf, sf, shape).mean_load_bound
-    assert -1e-10 <= bound <= 1 - Qf + 1e-10  # rounding of moments times sf
+    assert 0 <= bound <= 1 - Qf + 1e-10  # rounding of moments times sf
     if zone.s > 0:
         assert bound == pytest.approx(1 - Qf, abs=1e-10)
