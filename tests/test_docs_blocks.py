@@ -32,7 +32,7 @@ SHIPPED = "src/partialslip/scene/shipped/fretting-aluminium.toml"
 # Pages that run with the slow tests
 HEAVY = {
     "howto/rig.md", "howto/equivalent.md", "howto/fatigue.md", "howto/benchmark.md", "howto/python.md", "howto/size.md",
-    "sizes/half-plane.md",
+    "sizes/half-plane.md", "symptoms.md", "howto/accuracy.md",
 }  # fmt: skip
 BLOCK = re.compile(r"^(?:<!-- (not run: [^\n]+|slow) -->\n)?```(\w+)\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
 NUMBER = r"-?\d+(?:\.\d+)?e[-+]\d+|-?\d+\.\d+"

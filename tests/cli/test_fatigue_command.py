@@ -51,6 +51,7 @@ def test_criteria_in_capitals_and_the_former_name_of_an_option(here):
     assert len(list((here / "results").iterdir())) == 1
 
 
+@pytest.mark.slow
 def test_the_same_request_writes_to_the_same_folder(here, capsys):
     """Constants of the criteria are settings here; those of the scene have the usual folder, however they are given."""
     run = ["fatigue", "fretting-aluminium"]

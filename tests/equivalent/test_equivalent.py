@@ -231,6 +231,7 @@ def solved(*settings, name=SCENE):
     return run(load_scene(name, list(settings)), ["equivalent"])["equivalent"]
 
 
+@pytest.mark.slow
 def test_units_do_not_matter():
     """Lengths in mm and stresses in MPa as if they were m and Pa."""
     one = solved(*UNLIKE)

@@ -216,6 +216,7 @@ def test_other_units_change_nothing(assessed):
         assert rating.surface.value == pytest.approx(factor * assessed.ratings[name].surface.value, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_notebooks_show_tables_and_curves(assessed):
     html = assessed._repr_html_()
     assert html.count("<tr") >= 7

@@ -178,6 +178,7 @@ def test_a_soft_actuator_is_certified():
     assert found.certificate["equilibrium"] < 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_corners_left_coarse_are_told(monkeypatch):
     """Deliberate fault: elements are not refined at the corners of bodies. Both orders of elements share this mesh, and
@@ -228,6 +229,7 @@ def test_bad_input_is_one_line(changes, told):
         solved(changes)
 
 
+@pytest.mark.slow
 def test_only_finite_elements_find_q():
     scene = parse_scene(SCENE).replace({"load.Q": [0.0, 0.0], "load.displacement": [-1e-6, 2e-6]})
     with pytest.raises(InputError, match="must have fem among them"):

@@ -278,6 +278,7 @@ def shape(q):
     return amplitude, float(np.linalg.norm(q - amplitude * form) / np.linalg.norm(q))
 
 
+@pytest.mark.slow
 def test_a_pad_is_pressed_with_the_shear_of_the_closed_form(monkeypatch):
     """Surfaces of like bodies of a size move along x with the same strain wherever they are pressed: the shear that is
     locked in is x sqrt(1 - x^2). Its size is that of a step-by-step solution, which only scatters about that form."""
