@@ -48,6 +48,7 @@ def test_every_example_is_here():
     assert {path.stem for path in EXAMPLES.glob("*.py")} == SHOWN.keys()
 
 
+@pytest.mark.slow
 def test_an_example_runs_alone(tmp_path):
     printed = in_a_process_of_its_own("first_run", tmp_path)
     assert [text for text in SHOWN["first_run"] if text not in printed] == []
@@ -59,6 +60,7 @@ def test_an_example_shows_what_it_is_for(name, run):
     assert [text for text in SHOWN[name] if text not in printed] == []
 
 
+@pytest.mark.slow
 def test_a_second_run_of_the_sweep_solves_nothing(run):
     first, second = run("size_of_a_body"), run("size_of_a_body")
     assert [text for text in SHOWN["size_of_a_body"] if text not in first] == []

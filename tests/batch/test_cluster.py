@@ -16,6 +16,7 @@ from partialslip.batch.ledger import Ledger
 from partialslip.batch.sweep import sweep, workers
 
 
+@pytest.mark.slow
 def test_a_dask_cluster_goes_on_where_a_worker_is_killed(tmp_path):
     pytest.importorskip("distributed")
     file, folder = tmp_path / "scheduler.json", ["--local-directory", str(tmp_path)]

@@ -186,6 +186,7 @@ def test_a_script_may_use_all_cores_without_a_guard(tmp_path):
     assert (done.stdout, done.stderr) == ("begun\n2\n", "")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("solved")
 def test_a_scene_that_asks_for_stresses_has_columns_of_them():
     """Values, places, errors against the reference, and estimates; a scene that does not ask has none, and no work."""

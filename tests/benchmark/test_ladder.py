@@ -90,6 +90,7 @@ def test_a_ladder_that_is_none_is_said_to_be(change, said, tmp_path):
         read_submission(tmp_path, {"PS-02": PROBLEM})
 
 
+@pytest.mark.slow
 def test_linear_elements_answer_on_a_ladder(tmp_path):
     found = code_answers("fem-P1", {"PS-02": PROBLEM})
     answer = found.answers["PS-02"]

@@ -68,6 +68,7 @@ def test_the_half_planes_are_named(done):
     assert "written: rig.json, half-planes.toml" in out
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("done")
 def test_the_half_planes_of_the_file_do_what_the_bodies_do(call, folder):
     """By exact and by march, and the same in both scenes."""

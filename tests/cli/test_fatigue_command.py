@@ -19,6 +19,7 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_tables_and_files(here, capsys):
     assert main([*SWT, "--distance", "50e-6"]) == 0
     printed = capsys.readouterr().out
@@ -37,6 +38,7 @@ def test_tables_and_files(here, capsys):
     assert "Critical planes" in (folder / "report.html").read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_other_units(here, capsys):
     assert main([*SWT, "--set", "shown_in=N-mm", "--out", "mm"]) == 0
     assert "MPa^2 mm" in capsys.readouterr().out
@@ -44,6 +46,7 @@ def test_other_units(here, capsys):
     assert head == "x [mm],depth [mm],swt [MPa]"
 
 
+@pytest.mark.slow
 def test_criteria_in_capitals_and_the_former_name_of_an_option(here):
     """--method is the former name of --with: the same settings, so the same folder."""
     for how in (["--with", "exact"], ["--method", "exact"]):

@@ -125,6 +125,7 @@ def stop_and_rerun(stopped, folder, at, kind):
     assert whole(folder / "out") == (FILES, [])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
 @pytest.mark.parametrize("at", [2, 7])
 def test_stopped_at_a_write(stopped, tmp_path, at, kind):

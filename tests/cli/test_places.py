@@ -130,6 +130,7 @@ def test_a_named_folder_is_refused_unless_forced():
         answer(one, "mine")
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_settings_that_are_left_out_of_the_request_are_noticed(monkeypatch):
     """Deliberate fault: a request has command and scene only, so that other settings overwrite."""
@@ -251,6 +252,7 @@ def folders():
     return sorted(path.name for path in Path("results").iterdir())
 
 
+@pytest.mark.slow
 def test_runs(capsys):
     """A title changes no result; neither does a setting or a method that the scene has anyway."""
     usual = Path("results", "hertz-shear")
@@ -289,6 +291,7 @@ def test_the_usual_folder_is_that_of_the_scene_alone(command, name):
     assert folders() == sorted([other, name])
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("coarse")
 def test_an_edited_scene_file(capsys):
     """Its results do not overwrite those of the former edition; with --set each edition has a folder of its own."""
@@ -318,6 +321,7 @@ def test_a_file_that_needs_an_option_has_no_usual_folder(capsys):
     assert capsys.readouterr().out.endswith(f"; files in {Path('results', name)}\n")
 
 
+@pytest.mark.slow
 def test_scores_of_another_content_or_factor():
     """The folder of the file does not count, its content does."""
     rows = [f"{x},{4e8 * (1 - (x / 1e-3) ** 2) ** 0.5},{3e8 * x**2 * 1e6}" for x in np.linspace(-1e-3, 1e-3, 41)]

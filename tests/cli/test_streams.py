@@ -149,6 +149,7 @@ def test_the_second_in_a_folder_is_told(tmp_path, monkeypatch, capsys):
     assert not (tmp_path / "out" / NAME).exists()
 
 
+@pytest.mark.slow
 def test_terminated_in_order(tmp_path):
     """One line, no worker and no lock left, no leaked semaphore."""
     process = started(tmp_path, *VERIFY, "--processes", "2")

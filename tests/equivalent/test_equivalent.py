@@ -263,6 +263,7 @@ def test_it_does_not_matter_which_body_is_called_upper():
     assert ends(solved(*swapped, *loads)) == pytest.approx(ends(solved(*UNLIKE)), rel=1e-11)
 
 
+@pytest.mark.slow
 def test_steps_and_cycles_do_not_matter():
     found = [solved(*UNLIKE, *more) for more in ((), ("load.steps=7", "load.cycles=4"))]
     assert np.array_equal(ends(found[0]), ends(found[1]))

@@ -50,6 +50,7 @@ def test_the_estimate_holds_for_each_stress(fem):
     assert off_by(found["sigma_xx"], true["sigma_xx"]) < 1e-3
 
 
+@pytest.mark.slow
 def test_under_mean_loads_march_tells_the_stresses():
     pulled = SCENE.replace({"load.sigma": [0.0, 4e7], "fem.accuracy": 1e-3})
     fem = partialslip.run(pulled, "fem", subsurface=True)["fem"]

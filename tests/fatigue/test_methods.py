@@ -18,6 +18,7 @@ def assessed(name, method, *overrides, criteria=CRITERIA, body="lower"):
     return partialslip.assess(scene, result, criteria, body=body)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("method", "peak", "average"),
     # The edge of fem is off by up to the accuracy, 1e-3 a: its square root at the peak, and a few times as much as 1e-3
@@ -42,6 +43,7 @@ def test_mean_loads():
         assert rating.averages["area"].value == pytest.approx(exact.ratings[name].averages["area"].value, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_the_round_face_of_a_pad_is_its_surface():
     """Beside the contact the pad is above y = 0, which is no part of it."""
     pad = str(Path(__file__).parents[2] / "docs" / "scenes" / "finite-pad.toml")

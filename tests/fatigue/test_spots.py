@@ -47,6 +47,7 @@ def test_without_tension_nothing_is_largest():
     assert hot_spots(pressed, partialslip.run(pressed, "exact", subsurface=True)["exact"]) == {}
 
 
+@pytest.mark.slow
 def test_stresses_are_mirrored_with_the_loads_and_scale_with_them(exact):
     found = hot_spots(SCENE, exact)
     turned = SCENE.replace({"load.Q": [-Q for Q in SCENE.load.Q]})
@@ -79,6 +80,7 @@ def test_the_estimate_needs_the_error_at_the_ends_of_the_contact(exact, monkeypa
     assert off_by(found["swt"], hot_spots(SCENE, exact)["swt"]) > found["swt"].error
 
 
+@pytest.mark.slow
 def test_a_distance_that_leaves_the_body_leaves_the_averages_out():
     block = {"width": 4e-3, "height": 4e-3}
     scene = SCENE.replace(bodies={"upper": block, "lower": block}, fatigue={"distance": 5e-3}, fem={"accuracy": 1e-2})

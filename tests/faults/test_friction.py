@@ -61,6 +61,7 @@ def test_friction_silently_none(monkeypatch, sound, red):
     red.comparison("q", scene)
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_bound_of_the_pressure_before(monkeypatch, red):
     """Pressure of unlike bodies changes with shear; what bounds friction is the one of the step before."""

@@ -39,6 +39,7 @@ def fem(allowance=None):
     return solve(SCENE, plan(SCENE), allowance=allowance)
 
 
+@pytest.mark.slow
 def test_enough_changes_nothing(counter):
     free, rich = fem(), fem(Allowance(1e9, counter))
     assert (rich.m, rich.n, rich.a) == (free.m, free.n, free.a)
@@ -60,6 +61,7 @@ def test_what_is_spent_after_the_first_mesh_gives_a_coarser_answer_that_says_so(
     assert any("allowed suffice" in note for note in found.notes)
 
 
+@pytest.mark.slow
 def test_what_is_allowed_is_kept_and_buys_accuracy(counter):
     reached = []
     for allowed in (20, 40, 80):

@@ -77,10 +77,12 @@ def ratios(scene):
     return abs(left + 1) / fem.estimate["left"], abs(right - 1) / fem.estimate["right"]
 
 
+@pytest.mark.slow
 def test_ends_of_a_coarse_table_are_within_their_estimates():
     assert max(ratios(table())) < 1
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_interpolated_gaps_would_be_seen(monkeypatch):
     """Deliberate fault: the gap at the nodes; estimates that go by the order know nothing of its error."""

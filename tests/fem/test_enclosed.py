@@ -50,6 +50,7 @@ def test_a_contact_that_every_line_cuts_is_refused(monkeypatch):
         solved()
 
 
+@pytest.mark.slow
 def test_a_contact_that_finer_steps_widen_gets_a_wider_line(monkeypatch):
     """Steps are halved on the last mesh; here the contact then reaches the ends of its line."""
     *_, meshes = solved()

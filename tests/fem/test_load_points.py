@@ -103,6 +103,7 @@ def test_kinks_left_out_are_seen(monkeypatch):
     assert off(solve(scene(), plan(scene()))).max() > 2e-3
 
 
+@pytest.mark.slow
 def test_pressure_of_coupled_bodies_is_kept_at_both_load_points():
     """|q1| <= f p1 and |q2| <= f p2, at nodes, where p2 is another one than p1."""
     given = partialslip.load_scene("hertz-shear", ["material.upper={E=200e9, nu=0.3}", "fem.accuracy=1e-2"])

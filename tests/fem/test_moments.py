@@ -83,6 +83,7 @@ def test_bodies_that_do_not_turn_would_be_seen(monkeypatch):
     assert outcome.comparisons["fem"].errors["M"] > 1e-2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("M", [(1000.0, -1000.0), (0.0, 300.0)])
 def test_contacts_that_a_moment_moves_by_many_half_widths(M):
     """The blocks reach beyond the whole way of the contact, not only beyond 16 of its half-widths."""

@@ -105,6 +105,7 @@ def test_stiffness_against_another_element_family(changes):
     assert np.abs(found.plates.compliance - other).max() / other.max() < found.plates.error < 3e-4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spring", [None, 3e9])
 @pytest.mark.parametrize("changes", [{}, ALIKE], ids=["coupled", "mirror images"])
 def test_displacements_of_plates_are_the_inverse_of_forces(changes, spring):
@@ -119,6 +120,7 @@ def test_displacements_of_plates_are_the_inverse_of_forces(changes, spring):
     assert back.certificate["kkt"] < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_an_actuator_that_is_softer_in_steps_than_between_them(monkeypatch):
     """Deliberate fault: steps take an elastic actuator for softer than the path does that leads to them."""
@@ -134,6 +136,7 @@ def test_an_actuator_that_is_softer_in_steps_than_between_them(monkeypatch):
     assert np.abs(back.plates.at_points / found.plates.at_points - 1).max() > 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("changes", [{}, ALIKE], ids=["coupled", "mirror images"])
 def test_work_of_the_actuator_is_what_friction_consumes(changes):
     """Where Q alone changes; on the way, load steps leave out what the loop is rounder than a polygon."""
@@ -145,12 +148,14 @@ def test_work_of_the_actuator_is_what_friction_consumes(changes):
     assert off[2] < 1.2e-2
 
 
+@pytest.mark.slow
 def test_mirror_images_turn_the_displacement_round():
     one, other = solved(ALIKE), solved({**ALIKE, "load.Q": [-5e3, -30e3]})
     assert other.plates.displacement == pytest.approx(-one.plates.displacement, rel=1e-3)  # no mesh is even
     assert other.plates.approach == pytest.approx(one.plates.approach, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_plates_that_stand_still_bear_what_tension_asks_for():
     """A specimen that is pulled on between plates that do not move takes its pad along: Q against the pull, as much
     less than by the stuck stiffness as slips."""
@@ -245,6 +250,7 @@ def test_only_finite_elements_find_q():
             of(scene)
 
 
+@pytest.mark.slow
 def test_a_run_of_moved_plates_is_recorded_and_read_back(tmp_path, monkeypatch, capsys):
     """Page, sketch and results.json; the record has the Q that was found, and runs again from its scene."""
     monkeypatch.chdir(tmp_path)

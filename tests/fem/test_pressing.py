@@ -294,6 +294,7 @@ def test_a_pad_is_pressed_with_the_shear_of_the_closed_form(monkeypatch):
     assert by_steps.shares["steps"]["q1"] > 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_shear_of_a_pad_that_does_not_grow_is_seen(monkeypatch):
     """Deliberate fault: stages of like bodies of a size as of unlike half-planes, whose shear under one force does not
@@ -302,6 +303,7 @@ def test_shear_of_a_pad_that_does_not_grow_is_seen(monkeypatch):
     assert shape(locked_in(PAD)[0])[1] > 0.1
 
 
+@pytest.mark.slow
 def test_a_pad_that_slips_while_it_is_pressed_goes_step_by_step():
     """A contact of a quarter of the height: a second punch finds other forces than similarity would have them, as much
     of the first one slips. Slip that only goes on needs few steps."""

@@ -128,6 +128,7 @@ def test_half_a_turn_swaps_the_bodies():
     assert whole < 2e-3
 
 
+@pytest.mark.slow
 def test_units():
     """Lengths and loads per length times 3: the same stresses."""
     scene = load_scene("hertz-small-tension", ["fem.accuracy=1e-2", *BLOCKS])

@@ -159,6 +159,7 @@ def test_coupling_of_the_upper_body_without_its_sign_is_seen(monkeypatch):
     assert np.abs(rig_of(*both).terms.xy).max() > 1e-2
 
 
+@pytest.mark.slow
 def test_bodies_that_are_their_own_mirror_images_turn_nothing():
     """Nothing tells left from right, though the elements do; a specimen that is held at its left end does."""
     terms = rig_of("bodies.lower={width=16e-3, height=9e-3}", PAD).terms

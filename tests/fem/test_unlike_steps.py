@@ -53,12 +53,14 @@ def test_steps_become_more_until_they_suffice_or_up_to_a_limit(few):
     assert "8 steps" in told(found)[0]
 
 
+@pytest.mark.slow
 def test_steps_that_suffice_are_not_told():
     result = solved(1)
     assert result.shares["steps"]["m"] < 1e-6
     assert not told(result)
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_halves_alone_see_too_little(few, monkeypatch):
     """Deliberate fault: a step and its halves end with the same stick zone, which moves past both in between, so that

@@ -63,6 +63,7 @@ def test_without_tangential_loads_both_contacts_are_found():
     assert result["fem"].regime == result["exact"].regime == "stuck"
 
 
+@pytest.mark.slow
 def test_contacts_that_have_nothing_in_common():
     """A moment moves the contact by more than its width: a contact line around one has not the moment of the other."""
     scene = varying((1, 0.9), 0.02, 0.0, (-2, 2), cycles=1)

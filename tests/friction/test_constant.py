@@ -50,6 +50,7 @@ def followed(tangential, stretch, bound, path):
     return found[1:]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", [Hertz(), Punch(0.5)], ids=["Hertz", "flat"])
 def test_legs_in_one_step_are_those_that_are_gradual(shape):
     """On random loads with mean values one step is taken only where it leads to what following the leg leads to, and

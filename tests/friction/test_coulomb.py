@@ -52,6 +52,7 @@ def test_other_marches(name, method):
     assert any(march.each("slip").any() for march in marches)
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_coupling_left_short_is_seen():
     """Deliberate fault: pressure moves the surfaces by a thousandth less than it does."""

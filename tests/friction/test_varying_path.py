@@ -105,6 +105,7 @@ def march(more):
     return run(scene, ["march"])["march"]
 
 
+@pytest.mark.slow
 def test_slip_that_turns_round_under_nearly_constant_pressure():
     """A P that varies by 1e-6 gives what a constant one gives: m = 0.7245161751 a under gradual loads."""
     found = march(1e-6)
@@ -135,6 +136,7 @@ def narrow(accuracy=1e-4):
     return run(scene, ["fem"])["fem"]
 
 
+@pytest.mark.slow
 def test_rounding_of_small_elements_is_corrected_on_the_way():
     """The zone is that of constant pressure, where exact gives m = -0.706828 a and n = 0.920919 a."""
     found = narrow()
@@ -167,6 +169,7 @@ def test_ends_at_varying_pressure_that_do_not_wander(monkeypatch):
     assert off_and_known()[1] > 1
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_rounding_of_small_elements_that_is_left(monkeypatch):
     """Deliberate fault: rounding that the events of small elements add up is not corrected."""

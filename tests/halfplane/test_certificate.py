@@ -45,6 +45,7 @@ def test_all_conditions_hold_under_random_loads(seed):
         judged += 1
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_a_zone_inside_left_out_is_seen():
     """The steady state at (0.9, 14) without the zone inside that slips for a while is the same at its end, and violates

@@ -134,6 +134,7 @@ def test_methods_agree_on_random_coefficients(seed):
         assert abs(getattr(fem, key) - getattr(exact, key)) < 1e-4 * a
 
 
+@pytest.mark.slow
 def test_points_inside_that_slip_first_are_refused():
     with pytest.raises(InputError, match="more than one zone sticks; use march"):
         run(varying([0.9, 0.1, 0.9]), ["exact"])

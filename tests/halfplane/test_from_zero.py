@@ -56,6 +56,7 @@ def test_march_agrees(Qf, sf, mean):
         assert off < 2 * marched.estimate[key]
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_a_path_that_begins_in_the_steady_cycle_is_seen(monkeypatch):
     """Deliberate fault: nothing is locked in, as if the loads had no mean."""
@@ -81,11 +82,13 @@ def test_loads_are_held_within_the_bound():
         assert scaled @ weights == pytest.approx(force * np.pi / 2, abs=1e-5)
 
 
+@pytest.mark.slow
 def test_one_cycle_does_not_lead_to_the_steady_state_of_mean_loads():
     assert "q1" in exact(0.55, 7.0, MEAN, "load.cycles=1").undetermined
     assert not exact(0.55, 7.0, REVERSED, "load.cycles=2").undetermined
 
 
+@pytest.mark.slow
 def test_fully_reversed_loads_lock_in_next_to_nothing():
     q1, q2 = levels(exact(0.55, 7.0, REVERSED))
     assert np.abs(q1 + q2).max() < 1e-5
@@ -103,6 +106,7 @@ def test_signs_of_the_loads(turn, mirror):
     np.testing.assert_allclose(other, turn * plain[:, ::mirror], atol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_ways_on_which_slip_does_not_hold_are_refused(monkeypatch):
     """Large means make zones slip within the stick zone on the way; without the check of the conditions q is wrong

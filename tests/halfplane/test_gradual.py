@@ -59,6 +59,7 @@ def test_the_condition_is_the_rate_along_the_way(shape):
         assert near or turns == turns_round(Qf, sf, zone.s, zone.centre, zone.half_width)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("Qf", "sf", "known", "turns"),
     [
@@ -91,6 +92,7 @@ def test_a_stick_zone_that_drifts_and_is_too_narrow_to_follow_is_refused():
     assert default_methods(its) == ("march", "fem")
 
 
+@pytest.mark.slow
 def test_exact_is_the_reference_where_gradual_loads_are_solved(monkeypatch):
     its = scene(0.3, 1.3, "fem.accuracy=1e-2")
     assert partialslip.run(its, ["exact", "march"]).reference == "exact"

@@ -65,6 +65,7 @@ def known_beside_borders():
     return *loads, solved(*loads)
 
 
+@pytest.mark.slow
 def test_random_loads():
     assert off(*turned(8)) < 1e-6
 
@@ -79,6 +80,7 @@ def test_loads_beside_all_borders():
     assert off(*beside_borders()) < 1e-6
 
 
+@pytest.mark.slow
 def test_loads_beside_borders():
     assert off(*known_beside_borders()) < 1e-6
 

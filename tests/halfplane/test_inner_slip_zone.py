@@ -24,6 +24,7 @@ def parted():
     return half, half.phases[0]
 
 
+@pytest.mark.slow
 def test_conditions_hold_while_the_inner_zone_slips():
     half, phase = parted()
     shares = np.linspace(0, 1, 9)[1:]
@@ -116,6 +117,7 @@ def test_a_kink_beside_the_right_end_left_out_is_seen(monkeypatch):
         steady(Loads(9.55338, np.pi * 0.53022), Hertz())
 
 
+@pytest.mark.slow
 def test_states_are_mixed_where_their_parts_meet_and_between():
     """A state is on the way to itself; half-way between two states that are alike, places at which parts meet are, too,
     and q on the bound stays there. States with other parts are not mixed."""

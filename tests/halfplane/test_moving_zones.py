@@ -84,6 +84,7 @@ def loads(Qf, sf):
     return Loads(sf, np.pi * Qf)
 
 
+@pytest.mark.slow
 def test_two_nodes_beside_the_stick_zone_tell_that_its_end_takes_points_back():
     assert off_where_points_are_taken_back() < 1e-4
 

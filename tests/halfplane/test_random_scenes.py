@@ -419,6 +419,7 @@ def refusals(numbers):
             yield number, field, repr(error)
 
 
+@pytest.mark.slow
 def test_random_scenes_that_cannot_be():
     """Each is refused in one line that begins with the field."""
     found = list(refusals(range(1000)))

@@ -31,6 +31,7 @@ def exact(*given, **named):
     return partialslip.run(scene(*given, **named), ["exact"])["exact"]
 
 
+@pytest.mark.slow
 def test_a_scene_has_one_answer():
     """The scene of docs/theory.md, section 7: one step leaves m at 0.700 a."""
     found = exact(*DRIFT)
@@ -58,6 +59,7 @@ def test_methods_agree_on_the_points_that_never_slip(method, more):
     assert -found.m < found.permanent[0] - 1e-3 * found.a
 
 
+@pytest.mark.slow
 def test_where_no_point_sticks_throughout_the_levels_are_known():
     found = exact(*NO_POINT)
     assert np.isnan(found.permanent).all()
@@ -130,6 +132,7 @@ def test_room_for_a_mean_of_Q_is_that_all_along_the_way(Qf, sf, room):
     assert found.mean_load_bound == pytest.approx(2 / np.pi * least.sum() * (x[1] - x[0]), abs=5e-5)
 
 
+@pytest.mark.slow
 def test_profiles_other_than_hertz():
     """A given pressure is that of its profile; the shipped flat and rounded contact turns round, too."""
     found = exact(0.7, 5.0, name="flat-rounded")
@@ -155,6 +158,7 @@ def test_both_ways_into_slip_that_turns_round_are_continuous():
         assert cycle(Qf, low).ends == pytest.approx(cycle(Qf, high).ends, abs=1e-5)
 
 
+@pytest.mark.slow
 def test_hysteresis_of_slip_that_turns_round():
     """One step would have another displacement."""
     loop = halfplane.hysteresis(UNIT, 1.0, 1.0, 2 * UNIT.P * DRIFT[0], DRIFT[1], count=21)

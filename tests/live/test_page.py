@@ -242,6 +242,7 @@ SETTINGS = "document.getElementById('opposite').click();" + "".join(
 )
 
 
+@pytest.mark.slow
 def test_a_link_holds_the_settings(browser, folder):
     page = opened(browser, folder)
     page.run(SETTINGS)

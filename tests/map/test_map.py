@@ -84,6 +84,7 @@ def test_files_without_a_scene(tmp_path, monkeypatch, capsys):
     assert names(tmp_path / "results" / "map") == FILES
 
 
+@pytest.mark.slow
 def test_table_against_one_zone_at_a_time(hertz):
     table = rows(hertz)
     assert list(table[0]) == ["Qf", "sf", "m_over_a", "n_over_a", "half_width_over_a", "regime", "loads"]
@@ -180,6 +181,7 @@ def test_labels_keep_apart(hertz):
     assert apart[~np.eye(len(places), dtype=bool)].min() > 12  # points; the text is 8 high
 
 
+@pytest.mark.slow
 def test_same_map_same_files(hertz, tmp_path):
     assert main(["map", "--out", str(tmp_path)]) == 0
     assert {name: (tmp_path / name).read_bytes() for name in FILES} == {
@@ -187,6 +189,7 @@ def test_same_map_same_files(hertz, tmp_path):
     }
 
 
+@pytest.mark.slow
 def test_a_scene_on_the_map(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["map", "hertz-large-tension"]) == 0
@@ -204,6 +207,7 @@ def test_a_scene_on_the_map(tmp_path, monkeypatch, capsys):
     assert {"the scene's loads", "hertz-large-tension"} < set(texts(folder / "map.svg"))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("coarse")
 def test_a_punch_on_the_map(tmp_path, capsys):
     assert main(["map", "flat-rounded", "--out", str(tmp_path)]) == 0
@@ -229,6 +233,7 @@ def test_finite_bodies_are_said_to_be_left_out():
     assert lines[-1] == "the map shows half-planes: bodies.lower left out"
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("coarse")
 def test_the_map_reaches_up_to_the_scene():
     data = stick_map(scene("load.sigma=[-3e9, 3e9]"))
@@ -329,6 +334,7 @@ def test_stopped_in_the_middle_of_a_file(tmp_path, monkeypatch):
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
+@pytest.mark.slow
 def test_figures_of_the_documents_are_made(tmp_path, monkeypatch, hertz):
     monkeypatch.setattr("sys.argv", ["figures.py", str(tmp_path / "figures")])
     runpy.run_path(str(DOCS / "figures.py"), run_name="__main__")

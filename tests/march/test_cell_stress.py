@@ -147,6 +147,7 @@ def test_smoothed_shear_keeps_the_forces_and_is_continuous():
     assert np.abs(off[np.abs(np.abs(middle) - 0.6) > 0.01]).max() < 1e-5
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_shear_left_constant_on_cells_is_seen(monkeypatch):
     """Deliberate fault: stresses of the cells as they are, with jumps of q between them."""

@@ -231,6 +231,7 @@ def test_the_place_of_a_narrow_stick_zone_is_known(k, tension):
     assert largest_ratio(k, tension) <= 1.5
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_a_narrow_zone_errs_as_a_wide_one(monkeypatch):
     """Deliberate fault: the change of a narrow zone from mesh to mesh is taken for one of the cells beside its ends."""

@@ -76,6 +76,7 @@ def sheared():
     return solved()
 
 
+@pytest.mark.slow
 def test_finite_elements_agree(sheared):
     scene = load_scene("hertz-shear", [*SHEARED, "fem.accuracy=1e-3"])
     run = partialslip.run(scene, ["march", "fem"])
@@ -152,6 +153,7 @@ def test_coupling_of_the_wrong_sign_is_seen(monkeypatch, sheared):
     assert np.abs(wrong.traction.q2 - sheared.traction.q2).max() > 1e-2 * sheared.p0
 
 
+@pytest.mark.slow
 def test_ends_of_a_pressed_stick_zone_are_known_no_better_than_those_of_the_contact():
     """The stick zone is the same part of the contact while P increases: its ends share the contact's errors. With this
     friction it is all of the contact."""
@@ -205,6 +207,7 @@ def closed():
     return np.sqrt(2 / np.pi * found / hertz) * STIFF.length
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["march", "fem"])
 def test_half_width_of_pressed_bodies_is_the_one_at_which_the_gap_closes(method):
     """What one step of pressing assumes of the half-width must be what it finds."""
@@ -212,6 +215,7 @@ def test_half_width_of_pressed_bodies_is_the_one_at_which_the_gap_closes(method)
     assert result.a == pytest.approx(closed(), rel=result.estimate["a"] + 3e-5)  # cells of the punch grow by 5 %
 
 
+@pytest.mark.slow
 def test_finite_elements_find_the_stick_zone_of_the_punch_beside_the_end():
     """A slip zone of 2e-3 a: with a half-width that is 2e-3 a off, as it was, both of its ends are wrong."""
     punch = PunchGrowth.of(dundurs(STIFF), STIFF.friction.f)
@@ -221,6 +225,7 @@ def test_finite_elements_find_the_stick_zone_of_the_punch_beside_the_end():
     assert result.estimate["m"] < 3e-4
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_a_half_width_that_was_only_assumed_is_found_out(monkeypatch):
     """Deliberate fault: the half-width is assumed 2e-3 off. Both methods share that step, and agree."""

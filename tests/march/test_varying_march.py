@@ -176,6 +176,7 @@ def test_march_in_steps_ratchets_under_constant_pressure_where_the_way_says_so()
     assert regimes == [["large tension"] * 2, ["ratchets"] * 2]
 
 
+@pytest.mark.slow
 def test_regimes_at_the_bound_on_the_mean_are_not_judged():
     """The net slip of a cycle vanishes as the mean approaches the bound: 0.004 f P beyond it march with 1e-2 sees
     none, 0.012 f P beyond it does, in the steps that it chooses."""
@@ -199,6 +200,7 @@ def test_counts_of_constant_pressure_do_not_change():
     assert (one.traction.dq == other.traction.dq).all()
 
 
+@pytest.mark.slow
 def test_slip_that_begins_in_the_wrong_direction_is_known():
     """The adhered traction of the whole contact changes its sign inside the right slip zone: points there first slip on
     in the direction of the way before. exact and march say so; tractions, and m and n with them, end as in one step."""

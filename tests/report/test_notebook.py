@@ -159,6 +159,7 @@ def test_data_frames(run):
         assert whole[key].tolist() == [float(row[key]) for row in table]
 
 
+@pytest.mark.slow
 def test_what_is_not_determined_is_not_a_number():
     scene = partialslip.load_scene(
         "hertz-large-tension", ["load.sigma=[1e8, 9e8]", "load.Q=[3e4, 2.2e5]", "fem.accuracy=1e-3"]

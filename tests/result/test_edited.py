@@ -42,6 +42,7 @@ def load(path):
         return load_result(path)
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_a_changed_digit_is_seen(file):
     """In 200 of all numbers of a file, the last digit but one of the mantissa."""

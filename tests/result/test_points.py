@@ -72,6 +72,7 @@ KINDS = {  # changes of the scene, and the methods that solve it
 }
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(("kind", "method"), [(kind, method) for kind, (_, some) in KINDS.items() for method in some])
 def test_tractions_are_nan_at_nan_and_zero_at_infinity(kind, method):

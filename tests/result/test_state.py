@@ -30,6 +30,7 @@ def from_zero(method, cycles, extra):
     return run(load_scene("hertz-large-tension", [*MEAN, f"load.cycles={cycles}", *extra]), [method]).results[method]
 
 
+@pytest.mark.slow
 def test_a_state_of_one_method_starts_another():
     start = solved("march", 1).state
     assert solved("fem", 1, start).m == pytest.approx(solved("fem", 2).m, rel=1e-4)
@@ -68,6 +69,7 @@ def test_a_state_of_one_constant_a_cell_is_seen(monkeypatch):
     assert all(error > 1.5 * found.estimate[key] for key, error in errors.items())
 
 
+@pytest.mark.slow
 def test_states_of_earlier_versions_are_read(tmp_path):
     """They had one constant a cell, and no error."""
     path, state = tmp_path / "old.npz", solved("march", 1).state
@@ -94,6 +96,7 @@ def test_what_is_saved_is_read(tmp_path):
     assert np.array_equal(again.q.c, state.q.c)
 
 
+@pytest.mark.slow
 def test_the_pressure_of_another_contact_is_noted():
     state = solved("march", 1).state
     narrow = replace(state, p=PPoly(state.p.c * 1.5, state.p.x / 1.5))
@@ -102,6 +105,7 @@ def test_the_pressure_of_another_contact_is_noted():
         assert any("another contact" in note for note in solved(method, 1, narrow).notes)
 
 
+@pytest.mark.slow
 def test_another_moment_is_refused():
     coarse = ("fem.accuracy=1e-2",)
     moved = ("load.e=2e-4", *coarse)

@@ -195,6 +195,7 @@ def test_a_longer_smoothing_length_is_advised_where_it_scatters_less(tmp_path):
     assert smoothest(kinked.profile.measured) <= 4e-4
 
 
+@pytest.mark.slow
 def test_noise_is_told_and_judges_nothing(tmp_path, capsys):
     flat_of(tmp_path, 0, 4e-4)
     out = tmp_path / "out"

@@ -20,6 +20,7 @@ def soft(monkeypatch):
     monkeypatch.setattr(spoiling, "penalty", lambda _: found)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("soft")
 def test_no_spoiled_table_is_read_wrong_without_saying_so():
     read = list(spoiling.readings(SCENE, "151"))

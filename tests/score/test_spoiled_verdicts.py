@@ -198,6 +198,7 @@ def one_step(name):
     return x, p, scene.friction.f * truth.p0 * change.traction(pressed.scaled(x))
 
 
+@pytest.mark.slow
 @pytest.mark.fault
 def test_a_strip_without_points_that_is_taken_for_none(tmp_path, monkeypatch):
     """Deliberate fault: a right table is missed where an end of the stick zone comes back over less than a spacing."""
@@ -233,6 +234,7 @@ def test_a_spoiled_table_does_not_pass(name, spoil, outcomes, tmp_path):
         assert {"m", "n", "q"} <= set(comparison.unjudged)
 
 
+@pytest.mark.slow
 def test_the_command_says_so(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     scene = ["--set", "load.Q=[-31415.92653589793,31415.92653589793]", "--set", "load.sigma=[-3e9,3e9]"]

@@ -201,6 +201,7 @@ def test_start_report_and_other_methods_are_in_the_price():
     assert known.price(scene, 1e-3, 4, ("fem",), 1.4).cpu_s == pytest.approx(2 * alone.cpu_s)
 
 
+@pytest.mark.slow
 def test_the_cheapest_and_the_best():
     known, scene = prices.fit(entries(), OVERHEADS, "a machine"), partialslip.load_scene("hertz-shear")
     assert known.cheapest(scene, 1e-5).order == 4

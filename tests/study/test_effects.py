@@ -151,6 +151,7 @@ def test_half_a_cycle_tells_the_whole(method, which):
     assert half.slip.dissipated == pytest.approx(whole.slip.dissipated, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_half_a_cycle_tells_the_whole_of_any_body():
     """Masing's rule of one step needs nothing of the bodies but a symmetric positive definite compliance, and slip that
     does not turn round."""
@@ -349,6 +350,7 @@ def imported(code):
     return set(json.loads(done.stdout.strip().splitlines()[-1].replace("'", '"')))
 
 
+@pytest.mark.slow
 def test_imports_are_those_of_what_is_built(tmp_path):
     run = "import partialslip as p; s = p.load_scene('hertz-shear', ['fem.size=0.2', 'fem.factor=superlu']); "
     assert imported(run + "p.run(s, ['exact', 'march'])") == set()

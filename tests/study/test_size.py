@@ -387,6 +387,7 @@ def test_the_error_of_the_rig_is_an_error_of_the_mesh():
     assert size.along(axis, found).mesh["a"] == pytest.approx(3e-5)
 
 
+@pytest.mark.slow
 def test_equivalent_half_planes_leave_a_tenth_of_the_difference():
     """Blocks of width 8 a. Without equivalent half-planes the case stands, and says why; half-planes need none."""
     (case,) = make(scene(accuracy=1e-2), [read("bodies.*.width+bodies.*.height=8a")])

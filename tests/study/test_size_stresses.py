@@ -78,6 +78,7 @@ def test_the_change_by_the_last_mesh_is_an_error_of_stresses():
     assert np.isnan(size.along(axis, meshes[1:]).mesh["sigma_xx"]).all()
 
 
+@pytest.mark.slow
 def test_a_case_has_stresses_if_the_scene_asks_for_them():
     """Under a mean load march tells those of the half-plane; without asking nothing is solved for inside the bodies."""
     plain = scene(accuracy=1e-2)

@@ -1,10 +1,13 @@
 """Problems of the benchmark as cases of the verification."""
 
+import pytest
+
 from partialslip.judge import Outcome
 from partialslip.verify.case import run_case
 from partialslip.verify.suites import suite
 
 
+@pytest.mark.slow
 def test_problems_of_the_book_meet_the_bars():
     verdicts = run_case(suite("book", ["PS-05"])["PS-05"]())
     assert {verdict.method for verdict in verdicts} == {"exact", "march", "fem"}

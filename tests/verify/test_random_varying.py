@@ -41,6 +41,7 @@ def test_varying_scenes_are_of_every_kind():
         assert scene.load.in_phase or kind.startswith("out of phase")
 
 
+@pytest.mark.slow
 def test_the_reference_is_exact_where_it_has_a_closed_form(monkeypatch):
     for name in ("draw_varying", "reference"):  # the same for all methods
         monkeypatch.setattr(suites, name, functools.cache(getattr(suites, name)))

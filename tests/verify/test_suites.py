@@ -59,6 +59,7 @@ def test_the_exact_method_is_not_for_loads_out_of_phase():
     assert 0 < len(exact) < 50
 
 
+@pytest.mark.slow
 def test_the_book_is_a_suite_of_the_benchmarks_own_scenes():
     problems = read_problems()
     makers = suite("book")

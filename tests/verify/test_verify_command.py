@@ -93,6 +93,7 @@ def test_what_is_raised_is_a_verdict(monkeypatch):
     assert (found.quantity, found.outcome, found.reason) == ("finishes", "missed", "ZeroDivisionError: none left")
 
 
+@pytest.mark.slow
 def test_interrupted_it_goes_on(tmp_path, capsys, monkeypatch):
     """Ctrl-C in the third scene: two are written; the next run solves the other two, and one after that all four."""
     solved = []
@@ -238,6 +239,7 @@ def test_settings_that_are_not_the_defaults_have_folders_of_their_own(tmp_path, 
     assert len({*folders}) == 5
 
 
+@pytest.mark.slow
 def test_two_processes_find_what_one_finds(tmp_path):
     """And Python gives the verdicts that the command writes."""
     one, two = (
