@@ -1,6 +1,7 @@
 """Regenerate the page of the scoreboard: python docs/scoreboard.py writes scoreboard.md from benchmarks/submissions,
 benchmarks/start.json and benchmarks/peers/increments.jsonl."""
 
+import functools
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -161,7 +162,7 @@ def page() -> str:
 
 def _head(found: Sequence[Submission]) -> str:
     """Head of the page: what the grades and the seconds of the codes ``found`` are."""
-    told = json.loads(START.read_text("utf-8"))
+    told = _start()
     starts = ", ".join(f"{seconds:.2g} ({method})" for method, seconds in told["start"].items())
     machines = ", ".join(sorted({each.meta.machine for each in found}))
     text = _HEAD.format(edition=EDITION, starts=starts, machine=told["machine"], others=machines)
@@ -234,8 +235,14 @@ def _whole(submission: Submission, number: str, cell: str) -> str:
     code = CODES.get(submission.meta.code.removeprefix("partialslip "))
     if not (isinstance(code, Own) and cell.endswith(" s)")):
         return cell
-    start = json.loads(START.read_text("utf-8"))["start"][code.method]
-    return f"{cell.removesuffix(' s)')}; {submission.answers[number].cpu_s + start:.2g} s)"
+    whole = submission.answers[number].cpu_s + _start()["start"][code.method]
+    return f"{cell.removesuffix(' s)')}; {whole:.2g} s)"
+
+
+@functools.cache
+def _start() -> dict[str, Any]:
+    """CPU seconds of the start of a process by method, and where they were measured."""
+    return json.loads(START.read_text("utf-8"))
 
 
 if __name__ == "__main__":

@@ -217,7 +217,7 @@ def _contact_forces(
         if check and path.moves:
             finer, *_ = coupled.march(*loaded, step_errors.other_steps(path), pressed, replace(along, trail=None), near)
             left, moves = _path_errors(problem, line, history, finer), step_errors.of_plates(history, finer)
-        return _ContactForces(pressing, history.of(nodes), nodes, first, left, None, most, trail, moves)
+        return _ContactForces(pressing, history.of(nodes), nodes, first, left, most=most, trail=trail, path_moves=moves)
     opened = gap if path else gap - problem.strains[1][0] * stretch[1]
     arms = line.x if problem.turns else None
     if problem.pressing:

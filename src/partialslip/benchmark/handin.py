@@ -97,10 +97,10 @@ def _inside(file: Path, folder: Path) -> bool:
 
 def _answer_faults(folder: Path, problem: Problem, answer: Answer) -> Iterator[str]:
     file, table = folder / f"{problem.number}.json", folder / f"{problem.number}.csv"
-    targets = {key: target for key, target in problem.targets.items() if answer.values.get(key) is not None}
-    if not targets and not answer.note.strip():
-        yield f"{file}: values: must have a value, or note must say why there is none"
+    targets = problem.targets
     given = {key: value for key, value in answer.values.items() if value is not None and key in targets}
+    if not given and not answer.note.strip():
+        yield f"{file}: values: must have a value, or note must say why there is none"
     for key, value in given.items():
         target = targets[key]
         if not abs(value - target.value) <= _WILD * target.scale:

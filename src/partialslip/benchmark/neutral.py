@@ -9,11 +9,10 @@ from typing import Any
 from partialslip.benchmark.increments import gradual
 from partialslip.benchmark.problem import Problem
 from partialslip.errors import InputError
+from partialslip.export import UNTESTED_DECKS
 from partialslip.export.abaqus import abaqus_deck
-from partialslip.export.aster import aster_files
 from partialslip.export.calculix import calculix_deck
 from partialslip.export.model import Model, modelled
-from partialslip.export.moose import moose_files
 from partialslip.export.named import UNTESTED
 from partialslip.output.files import json_text
 from partialslip.scene import Scene
@@ -51,9 +50,9 @@ def files(problem: Problem) -> dict[str, bytes]:
 def _untested(scene: Scene, flat: Model) -> dict[str, bytes]:
     """Decks for codes that this project has never run; none for a code that cannot carry the loads."""
     found: dict[str, bytes] = {}
-    for name, deck in {"moose": moose_files, "code_aster": aster_files}.items():
+    for name, deck in UNTESTED_DECKS.items():
         with suppress(InputError):
-            found |= deck(scene, flat, f"{name}-{UNTESTED}")
+            found |= deck(scene, flat, f"{name.replace('-', '_')}-{UNTESTED}")
     return found
 
 

@@ -89,7 +89,7 @@ def add(commands: "Commands") -> None:
                               "Print a line for each thing that is wrong, or the grades.",
                               unjudged=_LACKING,
                               examples=["partialslip benchmark check my-answers",
-                                        "partialslip benchmark check --help"])  # fmt: skip
+                                        "partialslip benchmark check results/benchmark-march"])  # fmt: skip
     checks.add_argument("folder", metavar="FOLDER", help="folder with the answers")
     checks.set_defaults(command=_check)
 

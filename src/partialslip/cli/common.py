@@ -2,7 +2,7 @@
 
 import argparse
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -141,6 +141,15 @@ def check_folder(out: str | None) -> None:
 # Options that do not change the results.
 _NEUTRAL = {"command", "scene", "overrides", "own_process", "line", "default"}
 _NEUTRAL |= {"out", "force", "json", "pdf", "verbose", "save", "processes", "cluster"}
+
+
+def methods_of(text: str, known: Collection[str]) -> list[str]:
+    """Return the methods of ``--with``, separated by commas; each must be ``known``."""
+    methods = [method.strip() for method in text.split(",")]
+    for method in methods:
+        if method not in known:
+            raise InputError(f"--with {method!r}: must be of {', '.join(known)}")
+    return methods
 
 
 def seconds(budget: str, others: str = "") -> float:

@@ -15,6 +15,7 @@ from partialslip.cli.common import (
     check_folder,
     check_report,
     folder_if_wanted,
+    methods_of,
     origin,
     print_long_path,
     print_outcome,
@@ -72,10 +73,7 @@ def add(commands: "Commands") -> None:
 def _run(options: argparse.Namespace) -> int:
     from partialslip.methods import METHODS
 
-    methods = None if options.methods is None else [method.strip() for method in options.methods.split(",")]
-    for method in methods or []:
-        if method not in METHODS:
-            raise InputError(f"--with {method!r}: must be of {', '.join(METHODS)}")
+    methods = None if options.methods is None else methods_of(options.methods, METHODS)
     check_folder(options.out)
     check_report(options)
     if options.save == "":

@@ -14,14 +14,10 @@ from partialslip.export.named import UNTESTED
 from partialslip.output.files import zipped
 from partialslip.scene.reading import AnyScene, as_scene
 
+# Decks of several files, which nobody of the project has run
+UNTESTED_DECKS = {"moose": moose_files, "code-aster": aster_files}
 # Suffix of the file by format.
-FORMATS = {
-    "calculix": ".inp",
-    "abaqus": ".inp",
-    "gmsh": ".msh",
-    "moose": f"-{UNTESTED}.zip",
-    "code-aster": f"-{UNTESTED}.zip",
-}
+FORMATS = {"calculix": ".inp", "abaqus": ".inp", "gmsh": ".msh"} | dict.fromkeys(UNTESTED_DECKS, f"-{UNTESTED}.zip")
 
 
 def export(
@@ -71,8 +67,8 @@ def export(
         from partialslip_meshes.write import write_quads
 
         return partial(write_quads, bodies={part.name: part.mesh for part in made.in_units(scene.units).parts})
-    if to in ("moose", "code-aster"):
-        archive = zipped((moose_files if to == "moose" else aster_files)(scene, made, f"{scene.name}-{UNTESTED}"))
+    if to in UNTESTED_DECKS:
+        archive = zipped(UNTESTED_DECKS[to](scene, made, f"{scene.name}-{UNTESTED}"))
         return lambda path: _write(path, archive)
     lines = (
         abaqus_deck(scene, made) if to == "abaqus" else calculix_deck(scene, made, "penalty" if penalty else "mortar")

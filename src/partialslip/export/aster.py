@@ -22,20 +22,8 @@ FIN()"""
 
 
 def aster_files(scene: Scene, model: Model, name: str) -> dict[str, bytes]:
-    """Files of the deck by name: ``name``.comm, ``name``.mail and ``name``.export.
-
-    Parameters
-    ----------
-    scene : Scene
-    model : Model
-        Made from ``scene``, in SI units.
-    name : str
-
-    Raises
-    ------
-    InputError
-        As :func:`partialslip.export.named.named`.
-    """
+    """Files of the deck by name: ``name``.comm, ``name``.mail and ``name``.export. Parameters and errors as of
+    :func:`partialslip.export.named.named`."""
     made = named(scene, model, "code-aster")
     notes = (
         "for Code_Aster 16 or later; time counts increments",

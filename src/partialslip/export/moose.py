@@ -14,20 +14,8 @@ _CONTACT = "frictional"  # its multipliers are frictional_normal_lm and friction
 
 
 def moose_files(scene: Scene, model: Model, name: str) -> dict[str, bytes]:
-    """Files of the deck by name: ``name``.i and ``name``.msh.
-
-    Parameters
-    ----------
-    scene : Scene
-    model : Model
-        Made from ``scene``, in SI units.
-    name : str
-
-    Raises
-    ------
-    InputError
-        As :func:`partialslip.export.named.named`.
-    """
+    """Files of the deck by name: ``name``.i and ``name``.msh. Parameters and errors as of
+    :func:`partialslip.export.named.named`."""
     from partialslip_meshes.write import write_quads
 
     made = named(scene, model, "moose")

@@ -67,7 +67,15 @@ class Named:
 
 
 def named(scene: Scene, model: Model, to: str) -> Named:
-    """Name the lines of ``model``, made from ``scene`` in SI units, for the code ``to``.
+    """Name the lines of a model.
+
+    Parameters
+    ----------
+    scene : Scene
+    model : Model
+        Made from ``scene``, in SI units.
+    to : str
+        Name of the code, for messages.
 
     Raises
     ------

@@ -130,7 +130,7 @@ def planes_svg(found: Assessment) -> str:
         grid = figure.subplots(1, columns, subplot_kw={"projection": "polar"})
         for axes in grid[len(rated) :]:
             axes.remove()
-        for axes, (name, rating) in zip(grid, rated.items(), strict=False):
+        for axes, (name, rating) in zip(grid[: len(rated)], rated.items(), strict=True):
             at, measure = rating.surface, rating.criterion.measure
             assert measure
             stress = found.stress(np.array([at.x]), np.array([at.depth]))

@@ -1,6 +1,5 @@
 """Files: written whole or not at all; tables as CSV, data as JSON."""
 
-import contextlib
 import csv
 import errno
 import filecmp
@@ -18,7 +17,7 @@ import msgspec
 
 from partialslip.errors import InputError, printable
 from partialslip.inputfile import check_replaceable
-from partialslip.output.lock import TRIES, lock, make_folder
+from partialslip.output.lock import TRIES, is_at, lock, make_folder
 
 _EARLY = (1980, 1, 1, 0, 0, 0)  # fixed: date of all files in an archive
 _FORMULA = ("=", "+", "-", "@")  # what a formula begins with
@@ -172,9 +171,8 @@ def _locked_file(folder: Path, beginning: str, ending: str) -> tuple[int, Path]:
     """
     for _ in range(TRIES):
         handle, name = tempfile.mkstemp(dir=folder, prefix=beginning, suffix=ending)
-        with contextlib.suppress(FileNotFoundError):
-            if lock(handle) is not False and os.path.samestat(os.fstat(handle), os.stat(name)):
-                return handle, Path(name)
+        if lock(handle) is not False and is_at(handle, Path(name)):
+            return handle, Path(name)
         os.close(handle)
     raise OSError(errno.EBUSY, "other processes keep removing its temporary files")
 

@@ -107,6 +107,13 @@ def lock(handle: int) -> bool | None:
     return True
 
 
+def is_at(handle: int, path: Path) -> bool:
+    """Whether the open file ``handle`` is the one at ``path``, which another process may have removed."""
+    with contextlib.suppress(FileNotFoundError):
+        return os.path.samestat(os.fstat(handle), os.stat(path))
+    return False
+
+
 def _taken(path: Path) -> tuple[int, str]:
     """Open and lock the file at ``path``. Returns the handle, and the holder if another process has the lock."""
     for _ in range(TRIES):
@@ -119,11 +126,10 @@ def _taken(path: Path) -> tuple[int, str]:
             holder = os.read(handle, 200).decode(errors="replace")
             os.close(handle)
             return -1, holder or "another process"
-        with contextlib.suppress(FileNotFoundError):  # the previous holder has just removed the file
-            if os.path.samestat(os.fstat(handle), os.stat(path)):
-                os.truncate(handle, 0)
-                os.write(handle, f"process {os.getpid()} on {platform.node()}".encode(errors="replace"))
-                return handle, ""
+        if is_at(handle, path):  # the previous holder has not just removed the file
+            os.truncate(handle, 0)
+            os.write(handle, f"process {os.getpid()} on {platform.node()}".encode(errors="replace"))
+            return handle, ""
         os.close(handle)
     raise OSError(errno.EBUSY, "other processes keep locking it")
 

@@ -94,15 +94,15 @@ def _draw_levels(
         (length, across), (unit, up) = _axis("x", first.a, "m", units), _axis(name, largest, "Pa", units)
     elif shown == "shear" and friction is not None and friction.f:
         unit, up = friction.f * first.p0, "q/(f p0)"
-    middle = float(np.mean(first.ends))
+    low, high = (float(np.mean(first.ends)) + way * _REACH * first.a for way in (-1, 1))
     for number, (method, (x, levels)) in enumerate(known.items()):
         for point, (values, line, mark) in enumerate(zip(levels, _LINES, _MARKS[number % len(_MARKS)], strict=True), 1):
             label = f"{name}{point}, {method}" if shown == "shear" else f"{name}, load point {point}, {method}"
             style: dict[str, Any] = {"ls": line, "lw": 1.2}
             some = np.arange(len(x))
             if number:  # marks on the lines of the first
-                left, right = max(x[0], middle - _REACH * first.a), min(x[-1], middle + _REACH * first.a)
-                some = np.unique(np.abs(x[:, None] - np.linspace(left, right, _MOST)).argmin(axis=0))
+                places = np.linspace(max(x[0], low), min(x[-1], high), _MOST)
+                some = np.unique(np.abs(x[:, None] - places).argmin(axis=0))
                 style = {"ls": "", "marker": mark, "ms": 4.5, "mfc": "white"}
             axes.plot(x[some] / length, values[some] / unit, color="black", label=label, **style)
     if shown == "shear" and friction is not None:
@@ -116,7 +116,7 @@ def _draw_levels(
     axes.axhline(0, color="0.7", lw=0.6, zorder=0)
     axes.set(xlabel=across, ylabel=up)
     if shown == "stress":
-        axes.set_xlim((middle - _REACH * first.a) / length, (middle + _REACH * first.a) / length)
+        axes.set_xlim(low / length, high / length)
 
 
 def _curves(result: Result, shown: Shown) -> tuple[Array, tuple[Array, Array]] | None:

@@ -97,6 +97,22 @@ class Measured(NamedTuple):
     left: int
 
 
+class _Run(NamedTuple):
+    """One repeat of a setting: its job, the job's key, and the names of setting and series."""
+
+    job: Job
+    key: str
+    name: str
+    series: str
+    repeat: int
+
+    @classmethod
+    def of(cls, case: Job, repeat: int) -> "_Run":
+        name = ", ".join(filter(None, map(str, case.labels.values())))
+        job = replace(case, labels={**case.labels, "repeat": repeat})
+        return cls(job, job.key, name, str(case.labels["series"]), repeat)
+
+
 def ladder(scene: Scene, methods: Collection[str] = LADDERS) -> list[Job]:
     """Return the jobs for all settings of ``scene`` by ``methods``, in the order in which a budget is spent: the
     cheapest setting of each series, then the next of each.
@@ -168,36 +184,28 @@ def measure_costs(
         it in its series took more than the rest, and so are all later settings of the series.
     """
     cases = ladder(scene, methods)
-    names = [", ".join(filter(None, map(str, case.labels.values()))) for case in cases]
-    runs = [[replace(case, labels={**case.labels, "repeat": repeat}) for case in cases] for repeat in range(repeats)]
-    keys = [[run.key for run in repeat] for repeat in runs]
-    wanted, found, walls = list(range(len(cases))), list[Solved](), dict[str, float]()
-    for repeat in range(repeats):
-        kept, rest, last = list[int](), budget, dict[str | float, float]()
-        for number, index in enumerate(wanted):
-            series = cases[index].labels["series"]
-            if not repeat and last.get(series, 0.0) > rest:
-                continue
-            usual, ahead = float(np.mean([*walls.values()])) if walls else math.nan, wanted[number:]
-            every = [(repeat, ahead, rest), *((later, kept + ahead, budget) for later in range(repeat + 1, repeats))]
-            left = (
-                min(sum(walls.get(names[each], usual) for each in some if keys[of][each] not in ledger), most)
-                for of, some, most in every
-            )
-            total = len(found) + sum(len(some) for _, some, _ in every)
-            progress(len(found), total, names[index], sum(left))
-            key = keys[repeat][index]
-            if key not in ledger:
-                ledger.add(key, solve_apart(runs[repeat][index]))
-            entry = ledger.read(key, Solved)
-            found.append(entry)
-            kept.append(index)
-            if process := entry.process:
-                spent = process.cpu_s + process.report_cpu_s
-                walls[names[index]], last[series], rest = process.wall_s, spent, rest - spent
-        wanted = kept
+    queue = [_Run.of(case, repeat) for repeat in range(repeats) for case in cases]
+    found, left, rest = list[Solved](), set[str](), budget
+    walls, last = dict[str, float](), dict[str, float]()  # seconds of settings, CPU seconds of the last one of a series
+    while queue:
+        run = queue[0]
+        if run.repeat == 0 and last.get(run.series, 0.0) > rest:
+            left.add(run.name)
+            queue = [each for each in queue if each.name not in left]
+            continue
+        usual = float(np.mean([*walls.values()])) if walls else math.nan
+        ahead = sum(walls.get(each.name, usual) for each in queue if each.key not in ledger)
+        most = budget * (repeats - 1) + rest if run.repeat == 0 else budget * (repeats - run.repeat)
+        progress(len(found), len(found) + len(queue), run.name, min(ahead, most))
+        if run.key not in ledger:
+            ledger.add(run.key, solve_apart(run.job))
+        found.append(ledger.read(run.key, Solved))
+        if process := found[-1].process:
+            spent = process.cpu_s + process.report_cpu_s
+            walls[run.name], last[run.series], rest = process.wall_s, spent, rest - spent
+        queue = queue[1:]
     progress(len(found), len(found), "", 0.0)
-    return Measured(points(found), len(cases) - len(wanted))
+    return Measured(points(found), len(left))
 
 
 def points(entries: Iterable[Solved]) -> list[CostPoint]:
