@@ -28,7 +28,7 @@ RUN = (
     "--out",
     "out",
 )
-VERIFY = ("verify", "--suite", "stress", "--only", "1", "--only", "2", "--processes", "1", "--out", "out")
+VERIFY = ("verify", "--suite", "stress", "--only", "1", "--only", "2", "--processes", "1", "--pdf", "--out", "out")
 FILES = ["report.html", "results.json", "state.npz", "tractions.csv"]
 
 # Runs the command line as often as asked, with a stop at the n-th of the system calls that change files in the folder

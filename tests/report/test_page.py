@@ -263,7 +263,7 @@ def test_a_pdf_is_written_on_request(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     "command",
     ["run hertz-shear", "score hertz-shear none.csv", "study cost hertz-shear", "study effects hertz-shear",
-     "study size hertz-shear --over friction.f=0.1,0.2"],
+     "study size hertz-shear --over friction.f=0.1,0.2", "verify"],
 )  # fmt: skip
 def test_a_missing_library_is_named_before_anything_is_solved(command, tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "weasyprint", None)

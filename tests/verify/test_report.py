@@ -4,7 +4,6 @@ import csv
 import html
 import json
 import re
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -44,7 +43,7 @@ def folder(tmp_path_factory):
     (folder / "study").mkdir()
     (folder / "study" / "cost.svg").write_text(SVG, "utf-8")
     (folder / "study" / "cost.csv").write_text("setting,m\n", "utf-8")
-    verified(folder, include=[folder / "study"])
+    verified(folder, include=[folder / "study"], pdf=True)
     return folder
 
 
@@ -157,7 +156,6 @@ def test_a_missed_bar_cannot_be_overlooked(tmp_path, monkeypatch):
         return replace(solve(one, method), certificate={"kkt": 1e-3})
 
     monkeypatch.setattr(case, "_solve", stopped_early)
-    monkeypatch.setitem(sys.modules, "weasyprint", None)
     verified(tmp_path)
     text = page(tmp_path)
     assert re.search(r'<div class="verdict">[1-9]\d* of \d+ verdicts missed</div>', text)
@@ -170,7 +168,6 @@ def test_a_missed_bar_cannot_be_overlooked(tmp_path, monkeypatch):
 
 def test_stopped_and_continued_it_is_the_same(folder, tmp_path, monkeypatch):
     """Ctrl-C in the second case: the first case is not solved again, and is fully reported."""
-    monkeypatch.setitem(sys.modules, "weasyprint", None)
     solved = []
 
     def stopped(scene, methods):
@@ -199,20 +196,8 @@ def test_stopped_and_continued_it_is_the_same(folder, tmp_path, monkeypatch):
     ]
 
 
-def test_without_weasyprint_there_is_the_page(tmp_path, monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "weasyprint", None)
-    arguments = ["verify", "--suite", "stress", "--only", "1", "--method", "march", "--processes", "1"]
-    assert main([*arguments, "--out", str(tmp_path)]) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == (
-        "report.pdf needs WeasyPrint: pip install 'partialslip[pdf]'"
-    )  # fmt: skip
-    assert not (tmp_path / "report.pdf").exists()
-    assert page(tmp_path).endswith("</html>\n")
-
-
 @pytest.mark.slow
-def test_random_scenes_are_summed_up(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "weasyprint", None)
+def test_random_scenes_are_summed_up(tmp_path):
     verified = verify_suite("stress", method="exact", seed=5, count=10, processes=1, out=tmp_path)
     text = page(tmp_path)
     assert '<section class="scene" id=' not in text  # no scene has a section of its own

@@ -38,12 +38,6 @@ PARTS = 4  # of a test of random scenes of all kinds
 STRESS = ["verify", "--suite", "stress", "--method", "march", "--seed", "5", "--processes", "1"]
 
 
-@pytest.fixture(autouse=True)
-def without_pdf(monkeypatch):
-    """Skip the PDF: slow, and tested elsewhere."""
-    monkeypatch.setitem(sys.modules, "weasyprint", None)
-
-
 def verify(tmp_path, *arguments):
     return main([*arguments, "--out", str(tmp_path)]), json.loads((tmp_path / "results.json").read_text("utf-8"))
 

@@ -3,7 +3,7 @@
 import argparse
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_method, add_out, add_verbose, check_folder, print_written
+from partialslip.cli.common import add_method, add_out, add_pdf, add_verbose, check_folder, check_report, print_written
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -47,12 +47,14 @@ def add(commands: "Commands") -> None:
                         ("document", "document number")):  # fmt: skip
         verify.add_argument(f"--{field}", default="", metavar="TEXT", help=f"{what}, for the title block of the report")
     add_out(verify, "results/verify-SUITE[-HASH]")
+    add_pdf(verify)
     add_verbose(verify, "one row for each case and method, also if there are many and nothing is missed")
     verify.set_defaults(command=_verify)
 
 
 def _verify(options: argparse.Namespace) -> int:
     check_folder(options.out)
+    check_report(options)
 
     from partialslip.cli.consoles import counting, output
     from partialslip.verify.driver import verify_suite
@@ -71,6 +73,7 @@ def _verify(options: argparse.Namespace) -> int:
             force=options.force,
             include=options.include,
             ladder=options.ladder,
+            pdf=options.pdf,
             block=TitleBlock(options.project, options.author, options.reviewer, options.document),
             progress=progress,
         )
@@ -83,6 +86,4 @@ def _verify(options: argparse.Namespace) -> int:
             markup=False,
         )
     print_written(verified.files, console, verified.elsewhere)
-    if verified.missing:
-        console.print(verified.missing, soft_wrap=True, markup=False)
     return verified.conclusion.code

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import maximum_filter1d
+from numpy.lib.stride_tricks import sliding_window_view
 
 from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
@@ -194,7 +194,7 @@ class History:
         off = np.abs(self.points[last].x - self.points[last - cycle].x)
         counts = (self.bound > 0) & (np.isfinite(self.changed) if self.changed is not None else True)
         moved: Array = np.divide(off, self.bound, out=np.zeros_like(off), where=counts)
-        result: Array = maximum_filter1d(moved, _BESIDE)
+        result: Array = sliding_window_view(np.pad(moved, _BESIDE // 2), _BESIDE).max(axis=-1)
         return result
 
     @property

@@ -12,12 +12,11 @@ from msgspec.structs import replace
 
 from partialslip.batch.ledger import Ledger, key_of, scene_content
 from partialslip.batch.sweep import Progress, Task, sweep, workers
-from partialslip.errors import InputError, MissingLibraryError
+from partialslip.errors import InputError
 from partialslip.inputfile import read_text
 from partialslip.judge import Conclusion, Outcome
 from partialslip.methods import REFERENCES
 from partialslip.output.files import write_texts
-from partialslip.output.page import write_pdf
 from partialslip.output.place import Request, placed
 from partialslip.plan import plan
 from partialslip.report.figure import traction_svg
@@ -50,8 +49,6 @@ class Verification:
         Verdicts by case.
     files : list of Path
         Files written.
-    missing : str
-        Library missing for the PDF; empty if the PDF was written.
     again : tuple of str
         Cases solved again, because scene, settings or source files had changed since an earlier, stopped run.
     elsewhere : str
@@ -60,7 +57,6 @@ class Verification:
 
     verdicts: dict[str, list[CaseVerdict]]
     files: list[Path]
-    missing: str = ""
     again: tuple[str, ...] = ()
     elsewhere: str = ""
 
@@ -92,6 +88,7 @@ def verify_suite(
     force: bool = False,
     include: Sequence[str | Path] = (),
     ladder: bool = False,
+    pdf: bool = False,
     block: TitleBlock = TitleBlock(),  # noqa: B008 - immutable
     progress: Progress = lambda *_: None,
 ) -> Verification:
@@ -113,15 +110,17 @@ def verify_suite(
         Number of parallel processes (default: number of cores). With more than one, a script must call this function
         under ``if __name__ == "__main__":``, because each process imports the script.
     out : str or Path, optional
-        Folder for ``ledger.jsonl``, ``results.json``, ``results.csv``, ``report.html``, ``report.pdf`` and ``scenes``
-        (``scene.toml``, ``tractions.csv``, ``tractions.svg`` and ``sketch.svg`` of each scene, except random ones).
-        Default: ``results/verify-SUITE``, with other settings than the default ones ``results/verify-SUITE-HASH``.
+        Folder for ``ledger.jsonl``, ``results.json``, ``results.csv``, ``report.html`` and ``scenes`` (``scene.toml``,
+        ``tractions.csv``, ``tractions.svg`` and ``sketch.svg`` of each scene, except random ones). Default:
+        ``results/verify-SUITE``, with other settings than the default ones ``results/verify-SUITE-HASH``.
     force : bool
         Whether to write into a folder that holds another verification or other results.
     include : sequence of str or Path
         Folders of studies (``partialslip study``); their figures are put into the report.
     ladder : bool
         Whether to add a refinement ladder (:mod:`partialslip.verify.ladder`) to each case that allows one.
+    pdf : bool
+        Whether to write the report as ``report.pdf``, too.
     block : TitleBlock
         Project, author, reviewer and document number for the report.
     progress : callable
@@ -132,6 +131,8 @@ def verify_suite(
     InputError
         If a suite, case, method or study does not exist, if the folder cannot be written or ``out`` holds other
         results, or if another process writes to the folder.
+    MissingLibraryError
+        If a library for the PDF is missing.
     """
     if processes is not None and processes < 1:
         raise InputError(f"--processes {processes}: must be >= 1")
@@ -140,7 +141,7 @@ def verify_suite(
     studies = [read_study(Path(each)) for each in include]
     request = Request(_request(settings), _request(_settings(name)))
     with placed(Path("results") / f"verify-{name}", out, request, force) as place:
-        done = _verify(settings, makers, keys, studies, place.path, processes, progress)
+        done = _verify(settings, makers, keys, studies, place.path, processes, pdf, progress)
     return dataclasses.replace(done, elsewhere=place.elsewhere)
 
 
@@ -151,6 +152,7 @@ def _verify(
     studies: Sequence[Study],
     folder: Path,
     processes: int | None,
+    pdf: bool,
     progress: Progress,
 ) -> Verification:
     ledger = _ledger(folder)
@@ -166,17 +168,13 @@ def _verify(
         entries = {case: ledger.read(key, Entry) for case, key in keys.items()}
         figures, sketches = (_figures(folder / _SCENES, entries, name) for name in (_FIGURE, _SKETCH))
         page = document(Account(settings, entries, figures, sketches, studies))
-        files, missing = write_page(page, folder), ""
-        try:
-            files += write_pdf(page, folder, PDF)
-        except MissingLibraryError as error:
-            missing = str(error)
+        files = write_page(page, folder, pdf=pdf)
         verdicts = _verdicts(ledger, keys)
     except BaseException:
         write_verdicts(folder, settings, _verdicts(ledger, keys), finished=False)
         raise
     files = [ledger.path, *write_verdicts(folder, settings, verdicts, finished=True), *files]
-    return Verification(verdicts, files, missing, again)
+    return Verification(verdicts, files, again)
 
 
 def solve_and_judge(make: Maker, folder: Path | None, ladder: bool = False) -> Entry:
