@@ -34,7 +34,7 @@ from partialslip.friction.threads import one_thread
 from partialslip.gradual import turns_round
 from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_path.half_cycle import steady
-from partialslip.halfplane.gradual_path.room import room
+from partialslip.halfplane.gradual_path.mean_bound import room
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.steady import stick_zone, transition
 from partialslip.judge import compare

@@ -9,9 +9,9 @@ import time
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.friction.constant import march
+from partialslip.friction.coulomb_constant_pressure import march
 from partialslip.friction.history import History
-from partialslip.friction.path import Path
+from partialslip.friction.load_path import Path
 from partialslip.friction.threads import one_thread
 from partialslip.friction.zone_ends import read_stick_zone as read_zone
 from partialslip.halfplane.hertz import Hertz

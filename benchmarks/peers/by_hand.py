@@ -14,7 +14,7 @@ from statistics import median
 from partialslip import load_scene, plan, run
 from partialslip.friction.threads import one_thread
 from partialslip.judge import compare
-from partialslip_fem.model import solve_meshed
+from partialslip_fem.method import solve_meshed
 from partialslip_meshes import block
 
 SCENES = ("hertz-large-tension", "hertz-small-tension")

@@ -1,4 +1,4 @@
 """Finite elements: two elastic bodies in frictional contact, in plane strain or plane stress."""
 
 from partialslip_fem.bodies import Kept as Kept
-from partialslip_fem.model import solve as solve
+from partialslip_fem.method import solve as solve

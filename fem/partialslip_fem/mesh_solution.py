@@ -12,7 +12,7 @@ from partialslip.friction.active_set import Solution
 from partialslip.friction.coupled_step import Relative
 from partialslip.friction.history import History
 from partialslip.friction.pressing import Pressed
-from partialslip.friction.trail import Trail
+from partialslip.friction.warm_start import Trail
 from partialslip.friction.zone_ends import StickInterval, turning_points
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import Body

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
-from partialslip.friction.path import Path, load_path, lower_strain, scaled_pressing
+from partialslip.friction.load_path import Path, load_path, lower_strain, scaled_pressing
 from partialslip.plan import Plan
 from partialslip.result.state import State
 from partialslip.scene import Friction, Hertz, Profile, Scene

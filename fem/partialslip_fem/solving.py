@@ -8,15 +8,15 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices
 from partialslip.bars import BARS
-from partialslip.friction import constant, coupled, step_errors, varying
+from partialslip.friction import coulomb_constant_pressure, coulomb_varying_pressure, coupled, step_errors
 from partialslip.friction.active_set import Solution
 from partialslip.friction.coupled_step import Relative
 from partialslip.friction.history import History, certified
+from partialslip.friction.load_path import Path, stretched
 from partialslip.friction.normal import Presses
-from partialslip.friction.path import Path, stretched
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.steps import follow_or_step
-from partialslip.friction.trail import Trail
+from partialslip.friction.warm_start import Trail
 from partialslip.friction.zone_ends import within
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, bodies_key, condense, mesh_bodies
@@ -234,7 +234,7 @@ def _contact_forces(
     slipping = before.slipping(line.x[nodes]) if before else None
     tangential = shared.tangential(C.xx, nodes)
     known = tangential.C, moved[:, nodes], pressing.x[nodes], problem.f_at(line.x[nodes])
-    history = constant.march(*known, path, tangential, slipping, problem.order)
+    history = coulomb_constant_pressure.march(*known, path, tangential, slipping, problem.order)
     return _ContactForces(pressing, history, nodes)
 
 
@@ -271,7 +271,7 @@ def _under_varying_pressure(
             path = replace(path, before=nodal_forces(line, problem.start[1]))
         at_largest = (first if problem.largest == 1 else second).x
         half_width = float(np.subtract(*contact_ends_of(line, at_largest)[::-1])) / 2
-        if not any(part.finite for part in problem.parts):  # see partialslip.friction.varying.march
+        if not any(part.finite for part in problem.parts):  # see partialslip.friction.coulomb_varying_pressure.march
             gap = projected(line, problem.gap, problem.breaks)
             holding = Presses(C.xx, gap, line.x if problem.turns else None)
 
@@ -279,7 +279,7 @@ def _under_varying_pressure(
         f = problem.f_at(line.x)
 
         def along(path: Path) -> History:
-            return varying.march(line.x, C.xx, moved, f, holding, path, problem.order)  # type: ignore[arg-type]
+            return coulomb_varying_pressure.march(line.x, C.xx, moved, f, holding, path, problem.order)  # type: ignore[arg-type]
 
         def errors(history: History, gradual: History) -> step_errors.Errors:
             on = [np.flatnonzero(each.bound > 0) for each in (history, gradual)]

@@ -8,7 +8,7 @@ from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
 from partialslip.friction.below import under_pressure, under_shear, under_tension
-from partialslip.friction.path import lower_strain
+from partialslip.friction.load_path import lower_strain
 from partialslip.friction.phases import Phases
 from partialslip.friction.piecewise import PiecewiseCauchy
 from partialslip.scene import Scene

@@ -7,8 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip_meshes.gmsh import ask
+from partialslip_meshes.grading import Eased, formula, in_effect
 from partialslip_meshes.mesh import Mesh, QuadMesh
-from partialslip_meshes.sizes import Eased, formula, in_effect
 
 # fixed: Squares of the largest ratio of neighbours on a line: gmsh's own, and one above all that the sizes ask for
 _SMOOTH, _UNSMOOTHED = 1.8, 4.0

@@ -25,7 +25,7 @@ class Method(NamedTuple):
 METHODS = {  # by preference
     "exact": Method("partialslip.halfplane.method"),
     "march": Method("partialslip.march.method", ("allowance",)),
-    "fem": Method("partialslip_fem.model", ("keep", "allowance"), ("+", "o")),
+    "fem": Method("partialslip_fem.method", ("keep", "allowance"), ("+", "o")),
     "equivalent": Method("partialslip.equivalent.method", ("rig_of",), refers=False),
 }
 REFERENCES = tuple(name for name, method in METHODS.items() if method.refers)

@@ -15,7 +15,7 @@ from partialslip.benchmark.neutral import files as problem_files
 from partialslip.cli import main
 from partialslip.errors import InputError
 from partialslip.export import export
-from partialslip.export import named as naming
+from partialslip.export import named_boundaries as naming
 from partialslip.export.aster import aster_files
 from partialslip.export.model import modelled
 from partialslip.export.moose import moose_files

@@ -8,7 +8,8 @@ from pairs import SIZE, units
 
 import partialslip
 from partialslip.friction.coupled_step import Relative
-from partialslip_fem import bodies, contact, elasticity, goals, model, solving
+from partialslip_fem import bodies, contact, elasticity, goals, solving
+from partialslip_fem import method as fem_method
 from partialslip_fem.farfield import FarField
 
 LARGE = "hertz-large-tension"
@@ -117,14 +118,14 @@ def test_tolerance_in_metres(monkeypatch, red):
     """What is less than an angstrom apart is taken to touch, in whatever unit that is."""
     in_mm = lambda: units(1e3, 1e-6, "fem", "large tension", SIZE).ends  # noqa: E731
     red.passes(in_mm(), 1e-9)
-    true = model.scaled
+    true = fem_method.scaled
 
     def tolerant(scene, *rest):
         problem = true(scene, *rest)
         least = 1e-10 / (scene.material.A * scene.P)
         return replace(problem, gap=lambda x: np.maximum(problem.gap(x) - least, 0.0))
 
-    monkeypatch.setattr(model, "scaled", tolerant)
+    monkeypatch.setattr(fem_method, "scaled", tolerant)
     red("invariance: units", in_mm(), 1e-9)
 
 

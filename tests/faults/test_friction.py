@@ -10,9 +10,9 @@ from scipy.interpolate import PPoly
 
 import partialslip
 from partialslip.bars import CERTIFICATE_BAR
-from partialslip.friction import constant, coupled_step, zone_ends
+from partialslip.friction import coulomb_constant_pressure, coupled_step, zone_ends
 from partialslip.friction.active_set import _BlockPivoting, solve_bounded
-from partialslip.friction.constant import march as true_march
+from partialslip.friction.coulomb_constant_pressure import march as true_march
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.march import similar as marching
 from partialslip.result.state import State
@@ -36,21 +36,23 @@ def march_with(change):
 @pytest.mark.fault
 def test_tension_of_the_wrong_sign(monkeypatch, sound, red):
     scene = sound(LARGE)
-    monkeypatch.setattr(constant, "march", march_with(lambda Q, strain: (Q, -strain)))
+    monkeypatch.setattr(coulomb_constant_pressure, "march", march_with(lambda Q, strain: (Q, -strain)))
     red.comparison("m", scene)
 
 
 @pytest.mark.fault
 def test_tension_left_out(monkeypatch, sound, red):
     scene = sound(LARGE)
-    monkeypatch.setattr(constant, "march", march_with(lambda Q, _: (Q, 0.0)))
+    monkeypatch.setattr(coulomb_constant_pressure, "march", march_with(lambda Q, _: (Q, 0.0)))
     red.comparison("n", scene)
 
 
 @pytest.mark.fault
 def test_friction_silently_smaller(monkeypatch, sound, red):
     scene = sound(LARGE)
-    monkeypatch.setattr(constant, "march", lambda C, x, normal, f, path, *_: true_march(C, x, normal, 0.9 * f, path))
+    monkeypatch.setattr(
+        coulomb_constant_pressure, "march", lambda C, x, normal, f, path, *_: true_march(C, x, normal, 0.9 * f, path)
+    )
     red.comparison("q", scene)
 
 
@@ -101,7 +103,7 @@ def test_history_not_committed_between_steps(monkeypatch, sound, red):
         return replace(true_march(C, x, normal, f, path), q1=first, q2=second)
 
     scene = sound(LARGE, *MEAN)
-    monkeypatch.setattr(constant, "march", forgetful)
+    monkeypatch.setattr(coulomb_constant_pressure, "march", forgetful)
     red.comparison("q", scene)
 
 
@@ -131,7 +133,7 @@ def test_stick_that_is_a_stiff_spring(monkeypatch, sound, red):
     """Penalty: what sticks creeps in proportion to its traction, here by about a hundredth of the slip."""
     scene = sound(LARGE)
     springs = lambda C, x, normal, f, path, *_: true_march(C + 0.01 * np.diag(1 / (f * normal)), x, normal, f, path)  # noqa: E731
-    monkeypatch.setattr(constant, "march", springs)
+    monkeypatch.setattr(coulomb_constant_pressure, "march", springs)
     red.comparison("n", scene)
 
 
@@ -149,7 +151,7 @@ def test_slip_of_the_other_body(monkeypatch, sound, red):
 
     scene = sound(LARGE)
     red.passes(off(), 1e-3)
-    monkeypatch.setattr(constant, "march", turned)
+    monkeypatch.setattr(coulomb_constant_pressure, "march", turned)
     red("dissipated energy", off(), 1e-3)
 
 
@@ -194,11 +196,11 @@ def test_iteration_that_ends_before_it_has_converged(monkeypatch, sound, red):
             return solve_bounded(*args)
 
     scene = sound(LARGE)
-    monkeypatch.setattr(constant, "solve_bounded", in_haste)
+    monkeypatch.setattr(coulomb_constant_pressure, "solve_bounded", in_haste)
     certificate = partialslip.run(scene, ["march"]).results["march"].certificate
     red("certificate: kkt", certificate["kkt"], CERTIFICATE_BAR)
 
 
 def test_faults_touch_what_is_used():
     """The names patched above are the ones the model calls."""
-    assert solving.constant is marching.constant is constant
+    assert solving.coulomb_constant_pressure is marching.coulomb_constant_pressure is coulomb_constant_pressure

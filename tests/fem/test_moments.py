@@ -10,7 +10,8 @@ from msgspec import to_builtins
 import partialslip
 from partialslip import parse_scene, run
 from partialslip.friction import normal
-from partialslip_fem import goals, model
+from partialslip_fem import goals
+from partialslip_fem import method as fem_method
 
 TABLE = np.linspace(-2e-3, 2.5e-3, 91)
 SIDES = np.where(TABLE < 0, TABLE**2 / 0.02, TABLE**2 / 0.04 + np.maximum(TABLE, 0) ** 4 * 3e4)
@@ -77,8 +78,8 @@ def test_constant_contacts_do_no_work_for_a_moment(monkeypatch):
 
 @pytest.mark.fault
 def test_bodies_that_do_not_turn_would_be_seen(monkeypatch):
-    scaled = model.scaled
-    monkeypatch.setattr(model, "scaled", lambda *args: replace(scaled(*args), turns=False))
+    scaled = fem_method.scaled
+    monkeypatch.setattr(fem_method, "scaled", lambda *args: replace(scaled(*args), turns=False))
     outcome = run(parse_scene(to_builtins(scene()) | {"fem": {"size": 0.1}}), ["exact", "fem"])
     assert outcome.comparisons["fem"].errors["M"] > 1e-2
 

@@ -11,7 +11,7 @@ from coulomb import recorded
 from random_marches import complaints, trials
 
 import partialslip
-from partialslip.friction import constant
+from partialslip.friction import coulomb_constant_pressure
 from partialslip.verify.random_scenes import KINDS, PROFILES, draw
 
 EVERY = [kind + len(KINDS) * (kind % len(PROFILES)) for kind in range(len(KINDS))]  # kinds of loads, profiles in turn
@@ -89,8 +89,10 @@ def test_slip_in_the_stick_zone_is_seen(solved):
 @pytest.mark.fault
 def test_displacements_kept_in_single_precision_are_seen(solved, monkeypatch):
     """Deliberate fault: what nodes that stick keep is rounded to seven digits from step to step."""
-    scene, solve = solved[0], constant.solve_bounded
-    monkeypatch.setattr(constant, "solve_bounded", lambda C, g, *rest: solve(C, np.float32(g).astype(float), *rest))
+    scene, solve = solved[0], coulomb_constant_pressure.solve_bounded
+    monkeypatch.setattr(
+        coulomb_constant_pressure, "solve_bounded", lambda C, g, *rest: solve(C, np.float32(g).astype(float), *rest)
+    )
     with recorded() as marches:
         partialslip.run(scene, ["fem"])
     assert any("a better answer" in complaint for march in marches for complaint in march.complaints())
@@ -102,13 +104,13 @@ def test_slip_of_the_way_back_is_seen(monkeypatch):
     scene = partialslip.load_scene(
         "hertz-large-tension", ["fem.accuracy=1e-2", "load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]"]
     )
-    true = constant.follow
+    true = coulomb_constant_pressure.follow
 
     def turned(*given, **named):
         found = true(*given, **named)
         return replace(found, slip=found.slip - found.net_slip)
 
-    monkeypatch.setattr(constant, "follow", turned)
+    monkeypatch.setattr(coulomb_constant_pressure, "follow", turned)
     with recorded() as marches:
         partialslip.run(scene, ["fem"])
     found = {complaint.split(",")[0] for march in marches for complaint in march.complaints()}

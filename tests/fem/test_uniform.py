@@ -5,7 +5,7 @@ import pytest
 
 import partialslip
 from partialslip import InputError, load_scene
-from partialslip.friction import active_set, constant
+from partialslip.friction import active_set, coulomb_constant_pressure
 from partialslip_fem import Kept, condensation
 
 
@@ -51,8 +51,8 @@ def test_inverted_once_for_all_loads(monkeypatch):
     """The dense inverse of what is in contact serves all loads, and friction is solved on the uniform mesh only."""
     inverted, marched, true = [], [], active_set.inverse
     monkeypatch.setattr(active_set, "inverse", lambda C: inverted.append(len(C)) or true(C))
-    march = constant.march
-    monkeypatch.setattr(constant, "march", lambda C, *rest: marched.append(len(C)) or march(C, *rest))
+    march = coulomb_constant_pressure.march
+    monkeypatch.setattr(coulomb_constant_pressure, "march", lambda C, *rest: marched.append(len(C)) or march(C, *rest))
     keep, settings = Kept(), ("fem.size=0.04", "load.sigma=[-2e8, 2e8]")
     for share in np.linspace(0.1, 1.0, 16).tolist():
         fem, _ = solved(*settings, f"load.Q=[{-9e4 * share}, {9e4 * share}]", keep=keep)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from partialslip.friction.path import Path
+from partialslip.friction.load_path import Path
 from partialslip.friction.step_errors import other_steps, summed
 from partialslip.friction.zone_ends import CORNER, ROUNDED, contact_ends
 

@@ -7,7 +7,7 @@ import pytest
 from cell_contact import cells, loads
 
 from partialslip.friction import history
-from partialslip.friction.constant import march
+from partialslip.friction.coulomb_constant_pressure import march
 from partialslip.friction.limit import limit
 
 BOUND = np.array([1.0, 2.0, 0.5, 0.0])

@@ -7,7 +7,7 @@ import pytest
 
 from partialslip.friction.coupled_step import LoadStep, Relative, solve
 from partialslip.friction.history import resting
-from partialslip.friction.trail import Trail
+from partialslip.friction.warm_start import Trail
 
 N = 60
 

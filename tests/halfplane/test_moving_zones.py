@@ -92,5 +92,5 @@ def test_two_nodes_beside_the_stick_zone_tell_that_its_end_takes_points_back():
 @pytest.mark.fault
 def test_a_few_nodes_anywhere_taken_for_the_noise_of_elements_would_be_seen(monkeypatch):
     """As it was: one step, and m 1.5e-3 a off while its estimate said 2e-5."""
-    monkeypatch.setattr("partialslip.friction.constant._SLIGHT", np.inf)
+    monkeypatch.setattr("partialslip.friction.coulomb_constant_pressure._SLIGHT", np.inf)
     assert off_where_points_are_taken_back() > 1e-3

@@ -12,7 +12,7 @@ from partialslip import load_scene, parse_scene, plan, run
 from partialslip.errors import InputError
 from partialslip.halfplane import contact
 from partialslip.halfplane import varying as halfplane_varying
-from partialslip.halfplane.mean import Mean, PressurePath
+from partialslip.halfplane.mean_pressure import Mean, PressurePath
 from partialslip.halfplane.method import solve
 from partialslip.halfplane.varying import closed_form, steady_cycle
 

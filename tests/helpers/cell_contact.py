@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from partialslip.friction.path import Path
+from partialslip.friction.load_path import Path
 from partialslip.halfplane.hertz import Hertz
 from partialslip.march.cells import compliance, forces, graded_cells
 

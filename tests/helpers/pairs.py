@@ -17,7 +17,8 @@ import numpy as np
 
 from partialslip import halfplane, load_scene, load_state, plan
 from partialslip.arrays import Array
-from partialslip.friction import constant, steps
+from partialslip.friction import coulomb_constant_pressure as coulomb
+from partialslip.friction import steps
 from partialslip.friction.coupled_step import Relative
 from partialslip.friction.history import History
 from partialslip.judge import Q_BAR, cell_means
@@ -25,14 +26,15 @@ from partialslip.march import method as marching
 from partialslip.march import similar
 from partialslip.result import Clock, Result
 from partialslip.scene import Scene
-from partialslip_fem import bodies, model, solving
+from partialslip_fem import bodies, solving
+from partialslip_fem import method as fem_method
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.mesh_solution import Adapted
 from partialslip_fem.mortar import transfer
 from partialslip_fem.problem import Problem
 from partialslip_meshes import Mesh, block
 
-METHODS = {"exact": halfplane.solve, "march": marching.solve, "fem": model.solve}
+METHODS = {"exact": halfplane.solve, "march": marching.solve, "fem": fem_method.solve}
 SIZE = "fem.size=0.05"
 MEAN = ("load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]")  # 0.1 .. 0.7 f P, 1 .. 5 f p0
 CIRCLE = ("load.Q=[15e4, 0, -15e4, 0]", "load.sigma=[2e8, 6e8, 2e8, -2e8]")
@@ -245,7 +247,7 @@ def substeps(steps: int, method: str, kind: str, *settings: str) -> Apart:
 
 def the_first_mesh() -> Any:
     """The finite elements of the first run in all that follow: where unlike bodies touch depends on the loads, too."""
-    true_uniform = model.uniform
+    true_uniform = fem_method.uniform
     first: list[Adapted] = []
 
     def uniform(problem: Problem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
@@ -253,7 +255,7 @@ def the_first_mesh() -> Any:
             first.append(true_uniform(problem, size, width, clock, *rest))
         return replace(first[0], solution=solving.solve_contact(problem, first[0].solution.bodies, 0, clock))
 
-    return instead(model, "uniform", uniform)
+    return instead(fem_method, "uniform", uniform)
 
 
 def restart(method: str, kind: str, *settings: str, own: bool = False) -> Apart:
@@ -310,14 +312,14 @@ def common_tension(tension: float, kind: str, *settings: str) -> Apart:
     """Both bodies stretched alike, by so many times what the scene's tension does to the lower one: what their finite
     elements, whose nodes do not match, say of the way their surfaces move is added to what the surfaces do."""
     scene = scene_of(kind, "fem.lower_size=0.7", *settings)
-    true_compliances, true_march = solving.relative_compliances, constant.march
+    true_compliances, true_march = solving.relative_compliances, coulomb.march
     moved: list[tuple[Array, Array]] = []
 
     def compliances(halves: tuple[CondensedBody, ...], *rest: Any) -> Relative:
         if len(halves[0].condensation.compliance) > len(halves[0].body.x):  # bodies that are only pressed do not shear
             lower, upper = (
                 stretched(half, part.kappa)
-                for half, part in zip(halves, model.scaled(scene, plan(scene)).parts, strict=True)
+                for half, part in zip(halves, fem_method.scaled(scene, plan(scene)).parts, strict=True)
             )
             moved[:] = [(halves[0].body.x, lower - transfer(halves[0].body, halves[1].body) @ upper)]
         return true_compliances(halves, *rest)
@@ -328,15 +330,15 @@ def common_tension(tension: float, kind: str, *settings: str) -> Apart:
         assert np.array_equal(x[nodes], stretch[0])
         return true_march(C, stretch + tension * np.array([[1.0], [0.0]]) * more[nodes], *rest)
 
-    true_scaled = model.scaled
+    true_scaled = fem_method.scaled
 
     def solved_back(*given: Any) -> Problem:  # factors are kept for stretched()
         return replace(true_scaled(*given), inside=True)
 
     patches = (
         instead(solving, "relative_compliances", compliances),
-        instead(constant, "march", march),
-        instead(model, "scaled", solved_back),
+        instead(coulomb, "march", march),
+        instead(fem_method, "scaled", solved_back),
     )
     return compared("fem", scene, scene, same, *patches)
 
@@ -353,7 +355,7 @@ def shifted(shift: float, approach: float, method: str, kind: str, *settings: st
     """All that is there moved along x, by so many lengths of the problem, and the bodies apart before they meet. Both
     runs know as little of the contact before they solve on the last meshes."""
     scene = scene_of(kind, *settings)
-    true_march, true_uniform = constant.march, model.uniform
+    true_march, true_uniform = coulomb.march, fem_method.uniform
 
     def moved(shift: float, approach: float) -> Any:
         def march(C: Array, x: Array, *rest: Any) -> Any:
@@ -370,7 +372,7 @@ def shifted(shift: float, approach: float, method: str, kind: str, *settings: st
             solution = solving.solve_on_meshes(meshes, there, here[0].mesh.points.max(), clock)
             return Adapted(solution, {}, 1, 1, solution.iterations, width)
 
-        return instead(model, "uniform", uniform) if method == "fem" else instead(constant, "march", march)
+        return instead(fem_method, "uniform", uniform) if method == "fem" else instead(coulomb, "march", march)
 
     with guise(moved(0.0, 0.0)):
         one = answer(on_one_mesh(method, scene), scene)
@@ -392,14 +394,14 @@ def shuffled(seed: int, *args: Any) -> Mesh:
 
 def reordered(seed: int, method: str, kind: str, *settings: str) -> Apart:
     """Nodes, elements and cells in any order."""
-    true_march = constant.march
+    true_march = coulomb.march
 
     def march(C: Array, x: Array, normal: Array, f: Array, path: Any) -> History:
         order = np.random.default_rng(seed).permutation(len(normal))
         return true_march(C[np.ix_(order, order)], x[:, order], normal[order], f[order], path).of(np.argsort(order))
 
     scene = scene_of(kind, *settings)
-    nodes, cells = instead(bodies, "block", partial(shuffled, seed)), instead(constant, "march", march)
+    nodes, cells = instead(bodies, "block", partial(shuffled, seed)), instead(coulomb, "march", march)
     return compared(method, scene, scene, same, nodes if method == "fem" else cells)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.friction.path import load_path
+from partialslip.friction.load_path import load_path
 from partialslip.halfplane.contact import contact
 from partialslip.halfplane.method import solve
 from partialslip.march.cells import compliance, forces, graded_cells

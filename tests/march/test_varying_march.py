@@ -7,9 +7,9 @@ import pytest
 from varying_scenes import varying
 
 from partialslip import parse_scene, run
-from partialslip.friction import varying as stepping
+from partialslip.friction import coulomb_varying_pressure as stepping
+from partialslip.friction.load_path import Path, stretched
 from partialslip.friction.normal import Presses
-from partialslip.friction.path import Path, stretched
 from partialslip.judge.verdict import Outcome
 from partialslip.march.cells import compliance, graded_cells
 

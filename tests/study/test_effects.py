@@ -13,11 +13,12 @@ import pytest
 import partialslip
 from partialslip import InputError, load_scene, plan
 from partialslip.cli import main
-from partialslip.friction.constant import march as follow_path
-from partialslip.friction.path import Path, stretched
+from partialslip.friction.coulomb_constant_pressure import march as follow_path
+from partialslip.friction.load_path import Path, stretched
 from partialslip.march import method as marching
 from partialslip.plan import reduced
-from partialslip_fem import Kept, bodies, condensation, model, solving
+from partialslip_fem import Kept, bodies, condensation, solving
+from partialslip_fem import method as fem_method
 
 SIZE = "fem.size=0.1"
 BLOCKS = ("bodies.lower.width=30e-3", "bodies.lower.height=10e-3", "bodies.upper.width=20e-3",
@@ -53,7 +54,7 @@ WORK = {
 def fem(*overrides, name="hertz-shear", subsurface=False):
     """Result of finite elements, with the forced effects of the scene."""
     scene = load_scene(name, [SIZE, *overrides])
-    return model.solve(reduced(scene), plan(scene, subsurface=subsurface))
+    return fem_method.solve(reduced(scene), plan(scene, subsurface=subsurface))
 
 
 def march(*overrides, name="hertz-shear"):
@@ -371,9 +372,9 @@ def test_imports_are_those_of_what_is_built(tmp_path):
 def test_a_kept_mesh_is_not_made_again(monkeypatch):
     keep = Kept()
     first, other = load_scene("hertz-shear", [SIZE]), load_scene("hertz-shear", [SIZE, "load.Q=[-1e5, 1e5]"])
-    model.solve(first, plan(first), keep=keep)
+    fem_method.solve(first, plan(first), keep=keep)
     monkeypatch.setattr(bodies, "block", None)
-    assert model.solve(other, plan(other), keep=keep).counts["factorizations"] == 0
+    assert fem_method.solve(other, plan(other), keep=keep).counts["factorizations"] == 0
 
 
 @pytest.mark.parametrize("scene", ["hertz-shear", "fretting-aluminium", "flat-rounded"])

@@ -14,7 +14,7 @@ from partialslip.march import similar as marching
 from partialslip.verify import FAMILIES, hard_cases, run_case
 from partialslip.verify.hard_cases.catalogue import catalogue_page
 from partialslip_fem import estimate
-from partialslip_fem.model import solve_meshed
+from partialslip_fem.method import solve_meshed
 
 CASES = {case.name: case for case in hard_cases()}
 CHEAP = (

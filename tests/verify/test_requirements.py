@@ -14,7 +14,7 @@ from partialslip.verify import REQUIREMENTS, Case, CaseVerdict, judge_case, numb
 from partialslip.verify import case as module
 from partialslip.verify.case import Failure, conclusions, solve_case, whole
 from partialslip.verify.verdicts import bar_left, nearest, print_verdicts
-from partialslip_fem import model
+from partialslip_fem import method as fem_method
 
 NAN = float("nan")
 CASE = Case("made", SCENE, ("fem",))
@@ -188,7 +188,7 @@ def test_a_case_is_solved_by_what_it_needs(monkeypatch):
 def test_finite_elements_are_solved_on_the_meshes_of_a_case(monkeypatch):
     """Given meshes are for finite elements only; without given meshes the finite elements make meshes."""
     meshed = replace(CASE, methods=("exact", "march", "fem"), meshes=lambda scene: [scene.name])
-    monkeypatch.setattr(model, "solve_meshed", lambda scene, _, meshes: (scene, meshes))
+    monkeypatch.setattr(fem_method, "solve_meshed", lambda scene, _, meshes: (scene, meshes))
     monkeypatch.setattr(module, "run", lambda scene, methods: Run(scene, None, {methods[0]: methods[0]}, {}))
     own = {"exact": "exact", "march": "march", "fem": "fem"}
     assert solve_case(meshed) == own | {"fem": (SCENE, [SCENE.name])}

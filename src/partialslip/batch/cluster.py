@@ -21,7 +21,7 @@ _BELOW = tuple(f"{name}." for name in _LOGGERS)
 
 # Evaluated on every worker; must work where partialslip is not installed.
 _ASK = """__import__("importlib.metadata").metadata.version("partialslip") if all(
-    __import__("importlib").import_module(each) for each in ("partialslip.batch.job", "partialslip_fem.model")
+    __import__("importlib").import_module(each) for each in ("partialslip.batch.job", "partialslip_fem.method")
 ) else ""
 """
 

@@ -13,7 +13,7 @@ from partialslip.export import UNTESTED_DECKS
 from partialslip.export.abaqus import abaqus_deck
 from partialslip.export.calculix import calculix_deck
 from partialslip.export.model import Model, modelled
-from partialslip.export.named import UNTESTED
+from partialslip.export.named_boundaries import UNTESTED
 from partialslip.output.files import json_text
 from partialslip.scene import Scene
 

@@ -64,7 +64,7 @@ def _fatigue(options: argparse.Namespace) -> int:
 
     from partialslip.cli.consoles import output, working
     from partialslip.fatigue import assess
-    from partialslip.fatigue.named import check_distance, chosen
+    from partialslip.fatigue.criteria import check_distance, chosen
     from partialslip.fatigue.page import drawn, sections, write_assessment
     from partialslip.run import with_stresses
 

@@ -145,7 +145,7 @@ def _price(
     """Return the price for ``--accuracy`` or ``budget``; None if neither is given."""
     if options.accuracy is None and budget is None:
         return None
-    import partialslip_fem.model  # noqa: F401 - imports count as start
+    import partialslip_fem.method  # noqa: F401 - imports count as start
     from partialslip.run import default_methods
     from partialslip.study.cost.prices import load_prices
 

@@ -10,7 +10,7 @@ from partialslip.export.aster import aster_files
 from partialslip.export.calculix import calculix_deck
 from partialslip.export.model import GROWTH, SIZE, modelled
 from partialslip.export.moose import moose_files
-from partialslip.export.named import UNTESTED
+from partialslip.export.named_boundaries import UNTESTED
 from partialslip.output.files import zipped
 from partialslip.scene.reading import AnyScene, as_scene
 

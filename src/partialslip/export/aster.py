@@ -6,7 +6,7 @@ import numpy as np
 
 from partialslip.arrays import Indices
 from partialslip.export.model import Model
-from partialslip.export.named import Named, heading, named
+from partialslip.export.named_boundaries import Named, heading, named
 from partialslip.scene import Scene
 
 _WIDEST = 80  # fixed: columns that Code_Aster reads of a line of its mesh files
@@ -23,7 +23,7 @@ FIN()"""
 
 def aster_files(scene: Scene, model: Model, name: str) -> dict[str, bytes]:
     """Files of the deck by name: ``name``.comm, ``name``.mail and ``name``.export. Parameters and errors as of
-    :func:`partialslip.export.named.named`."""
+    :func:`partialslip.export.named_boundaries.named`."""
     made = named(scene, model, "code-aster")
     notes = (
         "for Code_Aster 16 or later; time counts increments",

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.arrays import Array, Indices
+from partialslip.export.load_steps import Step
 from partialslip.export.model import Model
-from partialslip.export.path import Step
 from partialslip.scene import Scene
 
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
+from partialslip.export.load_steps import TOUCH, Step, slips_under_pressure, steps_of
 from partialslip.export.parts import Part, flat_parts
-from partialslip.export.path import TOUCH, Step, slips_under_pressure, steps_of
 from partialslip.halfplane.contact import contact
 from partialslip.scene import Pressing, Scene
 from partialslip.units import Units

@@ -6,7 +6,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from partialslip.export.model import Model
-from partialslip.export.named import Named, heading, named
+from partialslip.export.named_boundaries import Named, heading, named
 from partialslip.scene import Scene
 
 _TIE = 1e5  # accuracy: penalty that keeps the frame rigid, in E: its nodes move apart by 1e-5 of P/E at most
@@ -15,7 +15,7 @@ _CONTACT = "frictional"  # its multipliers are frictional_normal_lm and friction
 
 def moose_files(scene: Scene, model: Model, name: str) -> dict[str, bytes]:
     """Files of the deck by name: ``name``.i and ``name``.msh. Parameters and errors as of
-    :func:`partialslip.export.named.named`."""
+    :func:`partialslip.export.named_boundaries.named`."""
     from partialslip_meshes.write import write_quads
 
     made = named(scene, model, "moose")

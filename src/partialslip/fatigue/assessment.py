@@ -8,10 +8,10 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.fatigue.criteria import Ruiz, ruiz
+from partialslip.fatigue.criteria import RUIZ, Criterion, beyond, check_distance, chosen, criterion
+from partialslip.fatigue.critical_plane import Ruiz, ruiz
 from partialslip.fatigue.cycle import settled, stress_path, unknown_between
 from partialslip.fatigue.edges import Edge, edges
-from partialslip.fatigue.named import RUIZ, Criterion, beyond, check_distance, chosen, criterion
 from partialslip.fatigue.places import OVER, averaged, depths, largest_at, surface_points
 from partialslip.fatigue.planes import Critical
 from partialslip.result import Result

@@ -6,8 +6,8 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.fatigue.criteria import with_zz
-from partialslip.fatigue.named import Criterion, elastic
+from partialslip.fatigue.criteria import Criterion, elastic
+from partialslip.fatigue.critical_plane import with_zz
 from partialslip.result import Result
 from partialslip.scene import Load, Scene
 

@@ -9,7 +9,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.fatigue.assessment import Assessment, Rating, assess
-from partialslip.fatigue.named import RUIZ, chosen
+from partialslip.fatigue.criteria import RUIZ, chosen
 from partialslip.result import Result
 from partialslip.scene import Fatigue, Scene
 from partialslip.units import Dimension

@@ -13,9 +13,9 @@ from partialslip.errors import InputError
 from partialslip.friction.active_set import Solution
 from partialslip.friction.coupled_step import LoadStep, Pair, Relative, solve_near
 from partialslip.friction.history import History, certified, follow, resting, still
-from partialslip.friction.path import Path
+from partialslip.friction.load_path import Path
 from partialslip.friction.pressing import Pressed, Punch, Punches, Stages, disproportion
-from partialslip.friction.trail import Trail
+from partialslip.friction.warm_start import Trail
 from partialslip.friction.zone_ends import CORNER
 
 _STICKS = 1e-9  # accuracy: relative tolerance of the friction bound and of lengths

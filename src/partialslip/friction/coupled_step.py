@@ -17,7 +17,7 @@ from partialslip.arrays import Array, Mask, submatrix
 from partialslip.friction.active_set import Sides, Solution, solve_bounded
 from partialslip.friction.history import resting
 from partialslip.friction.partition import Factors, Forces, longest
-from partialslip.friction.trail import Trail
+from partialslip.friction.warm_start import Trail
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
 _PATIENCE = 4  # cost: iterations without progress before the method changes

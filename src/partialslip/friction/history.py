@@ -1,4 +1,5 @@
-"""Coulomb friction along a path of loads, step by step.
+"""Cycles of a path of loads: goes on until nothing changes, and records forces and slip. The law of friction is in
+:mod:`partialslip.friction.active_set`, and in the modules that begin with ``coulomb`` and ``coupled``.
 
 Scaled: lengths by sqrt(A R P), forces by P and displacements by A P, so that nothing depends on units.
 """
@@ -14,7 +15,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
 from partialslip.friction.limit import limit
-from partialslip.friction.path import Path
+from partialslip.friction.load_path import Path
 
 STEADY = 1e-6  # accuracy: change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
 # accuracy: change of a node's q over a cycle, relative to the largest sum of |q|: rounding (seen: 2.7e-14)

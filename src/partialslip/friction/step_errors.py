@@ -11,7 +11,7 @@ import numpy.typing as npt
 from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.friction.history import History
-from partialslip.friction.path import Path
+from partialslip.friction.load_path import Path
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.zone_ends import StickInterval
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from partialslip.bars import BARS
 from partialslip.friction.history import History
-from partialslip.friction.path import Path
+from partialslip.friction.load_path import Path
 from partialslip.friction.step_errors import Errors
 
 _CLOSES = 3  # cost: most cycles on which this is decided

@@ -12,7 +12,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.gradual import left_end_turns, turns_round
 from partialslip.halfplane.contact import Contact
-from partialslip.halfplane.room import mean_load_bound
+from partialslip.halfplane.mean_bound import mean_load_bound
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.slip import dissipation, slip
 from partialslip.halfplane.steady import NARROWEST, TOO_STEEP, UNEVEN_FRICTION, drive, stick_zone, stick_zones
@@ -134,7 +134,7 @@ class Loading:
     @cached_property
     def mean_load_bound(self) -> float:
         """Largest \\|Q_mean\\|/(f P) of a steady state whose half cycle this is; see
-        :func:`partialslip.halfplane.room.mean_load_bound`."""
+        :func:`partialslip.halfplane.mean_bound.mean_load_bound`."""
         return mean_load_bound(self.zone, self.seen, self.Qf, self.sf, self.gf, reverses=self.turns_round)
 
     @property

@@ -10,7 +10,7 @@ from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.levels import Levels
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.halfplane.mean import PressurePath
+from partialslip.halfplane.mean_pressure import PressurePath
 from partialslip.halfplane.stress import Acting, Fields, Points, Shear, StressState, half_of, reached
 from partialslip.halfplane.turning import Turning
 from partialslip.result import StickZone

@@ -10,7 +10,7 @@ from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.certificate import certificate
 from partialslip.halfplane.gradual_path.from_zero import MOST_CYCLES, from_zero
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
-from partialslip.halfplane.gradual_path.room import room
+from partialslip.halfplane.gradual_path.mean_bound import room
 from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Tractions

@@ -11,7 +11,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.halfplane.mean import Mean, PressurePath, PressureStage, common
+from partialslip.halfplane.mean_pressure import Mean, PressurePath, PressureStage, common
 from partialslip.halfplane.slip import dissipation
 from partialslip.result import EndSlip
 from partialslip.scene import Hertz, Scene

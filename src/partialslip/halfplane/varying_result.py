@@ -8,7 +8,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.halfplane.mean import PressurePath, common
+from partialslip.halfplane.mean_pressure import PressurePath, common
 from partialslip.halfplane.remarks import no_stresses, remarks, undetermined
 from partialslip.halfplane.states import Around, sliding_state, varying, without_shear
 from partialslip.halfplane.stress import BEYOND, along_surface

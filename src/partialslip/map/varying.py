@@ -15,7 +15,7 @@ import numpy.typing as npt
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact, contact
-from partialslip.halfplane.mean import Mean
+from partialslip.halfplane.mean_pressure import Mean
 from partialslip.halfplane.steady import stick_zones
 from partialslip.halfplane.varying import closed_form
 from partialslip.judge.reference import reference

@@ -15,7 +15,7 @@ import numpy as np
 from partialslip.arrays import Array, Indices
 from partialslip.bars import BARS
 from partialslip.friction.history import History
-from partialslip.friction.path import Path
+from partialslip.friction.load_path import Path
 from partialslip.friction.regime import SteadyState, doubts
 from partialslip.friction.restart import begun, known_to
 from partialslip.friction.zone_ends import StickInterval

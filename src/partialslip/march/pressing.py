@@ -9,7 +9,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.friction.normal import Presses
 from partialslip.halfplane.contact import Contact, contact
-from partialslip.halfplane.mean import Mean, common
+from partialslip.halfplane.mean_pressure import Mean, common
 from partialslip.march.cells import forces
 from partialslip.scene import Scene
 

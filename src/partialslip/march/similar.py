@@ -13,10 +13,10 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.bars import LEAST_SHEAR
-from partialslip.friction import constant, varying
+from partialslip.friction import coulomb_constant_pressure, coulomb_varying_pressure
 from partialslip.friction.active_set import spread
 from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
-from partialslip.friction.path import Path, load_path, stretched
+from partialslip.friction.load_path import Path, load_path, stretched
 from partialslip.friction.regime import permanent_zone, steady_state
 from partialslip.friction.step_errors import of_steps, steps_matter
 from partialslip.friction.steps import follow_or_step
@@ -237,10 +237,13 @@ def _solve_level(
 
         if path.presses_anew:
             presses = normal.presses(vertices, normally)
-            along = partial(varying.march, x, tangential, moved, f, presses)
+            along = partial(coulomb_varying_pressure.march, x, tangential, moved, f, presses)
             history, stepped = follow_or_step(along, path, scene.fem.accuracy, errors if choose else None)
         else:
-            history, stepped = constant.march(tangential, moved, normal.forces(frame, vertices), f, path), {}
+            history, stepped = (
+                coulomb_constant_pressure.march(tangential, moved, normal.forces(frame, vertices), f, path),
+                {},
+            )
         inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in reversed(history.visited)]
         if history.turns and history.never_slips is not None:
             inner.append(turning_points(x, history.never_slips, history.slips))

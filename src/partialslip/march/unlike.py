@@ -15,8 +15,8 @@ from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.friction import coupled
 from partialslip.friction.active_set import Solution, spread
 from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
+from partialslip.friction.load_path import Path, load_path, stretched
 from partialslip.friction.normal import press
-from partialslip.friction.path import Path, load_path, stretched
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.regime import steady_state, steps_of_coupled
 from partialslip.friction.step_errors import along_path, other_steps, pressed_together, summed

@@ -85,7 +85,7 @@ class Case:
         Method with which the others are compared: "exact", "march" where there is no closed form, or "": only
         certificates are judged.
     meshes : callable, optional
-        ``meshes(scene)``: given meshes for the finite elements (see :func:`partialslip_fem.model.solve_meshed`).
+        ``meshes(scene)``: given meshes for the finite elements (see :func:`partialslip_fem.method.solve_meshed`).
         There are then no usual bars.
     hard : str
         Why the scene is hard, and how other codes fail.
@@ -217,7 +217,7 @@ def _solve(case: Case, method: str) -> Result | Failure:
     try:
         with np.errstate(all="ignore"):  # the verdict "finite" finds NaN and infinity
             if method == "fem" and case.meshes:
-                from partialslip_fem.model import solve_meshed
+                from partialslip_fem.method import solve_meshed
 
                 return solve_meshed(case.scene, plan(case.scene), case.meshes(case.scene))
             return run(case.scene, [method]).results[method]

@@ -13,9 +13,9 @@ from partialslip.benchmark.codes.solved import CodeOutcome
 from partialslip.benchmark.increments import gradual, told
 from partialslip.benchmark.neutral import GROWTH
 from partialslip.errors import InputError
+from partialslip.export.load_steps import steps_of
 from partialslip.export.model import outlined
 from partialslip.export.parts import flat_parts
-from partialslip.export.path import steps_of
 from partialslip.result import Result
 from partialslip.scene import Scene
 

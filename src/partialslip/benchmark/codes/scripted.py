@@ -12,7 +12,7 @@ import msgspec
 from partialslip.benchmark.codes.process import LONGEST, python_with, ran
 from partialslip.benchmark.codes.solved import CodeOutcome
 from partialslip.errors import InputError
-from partialslip.export.path import Step
+from partialslip.export.load_steps import Step
 from partialslip.scene import Scene
 from partialslip.score.method import scored
 from partialslip.score.read import read

@@ -17,7 +17,7 @@ import numpy as np
 from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Factored, Sides, Solution, solve_bounded
 from partialslip.friction.history import History, Steps, follow, resting, still
-from partialslip.friction.path import Path
+from partialslip.friction.load_path import Path
 from partialslip.friction.path_following import Bounds, Follower, Leg, SlidesError, joined, noise
 from partialslip.scene.model import require_carried
 
@@ -48,7 +48,7 @@ def march(
         Relative compliance C of the nodes in contact.
     stretch : (2, n) array
         Displacements of the lower surface along x under the tension that strains it by 1, and under the tension that
-        strains it by x (:func:`partialslip.friction.path.stretched`).
+        strains it by x (:func:`partialslip.friction.load_path.stretched`).
     normal : (n,) array
         Normal forces.
     f : (n,) array

@@ -7,10 +7,10 @@ import pytest
 from cell_contact import cells, loads
 
 from partialslip.arrays import runs, submatrix
-from partialslip.friction import active_set, constant
+from partialslip.friction import active_set, coulomb_constant_pressure
 from partialslip.friction.active_set import Factored
-from partialslip.friction.constant import march
-from partialslip.friction.path import Path
+from partialslip.friction.coulomb_constant_pressure import march
+from partialslip.friction.load_path import Path
 from partialslip.friction.path_following import Bounds, Follower
 from partialslip.friction.zone_ends import read_stick_zone
 from partialslip.halfplane.gradual_path.half_cycle import steady
@@ -158,13 +158,13 @@ def half_cycles(monkeypatch, mirrored):
     """History of a drifting zone whose half cycles are ``mirrored`` as told; event by event, and at rest."""
     _, *problem = cells()
     with monkeypatch.context() as patched:
-        patched.setattr(constant._Contact, "_mirrored", mirrored)
+        patched.setattr(coulomb_constant_pressure._Contact, "_mirrored", mirrored)
         return march(*problem, 1.0, loads(0.62, 7.5))
 
 
 def test_half_cycles_are_mirror_images(monkeypatch):
     """A half cycle that begins where the one before began, mirrored, is not followed."""
-    found = half_cycles(monkeypatch, constant._Contact._mirrored)
+    found = half_cycles(monkeypatch, coulomb_constant_pressure._Contact._mirrored)
     whole = half_cycles(monkeypatch, lambda *_: None)
     assert found.turns
     assert found.events < whole.events
@@ -177,7 +177,7 @@ def test_half_cycles_are_mirror_images(monkeypatch):
 @pytest.mark.fault
 def test_mirror_images_of_half_cycles_that_begin_elsewhere(monkeypatch):
     """The loads are reversed, the forces are not yet: q is that of the first half cycle."""
-    right = constant._Contact._mirrored
+    right = coulomb_constant_pressure._Contact._mirrored
 
     def blind(self, start, load, change):
         return right(self, -self.legs[-1].start if self.legs else start, load, change)
@@ -215,7 +215,9 @@ def test_steps_on_an_inverse_multiply_by_the_compliance_once_or_twice(monkeypatc
     factored = Factored(C)
     factored.expect(100)
     factored.C = C.view(Counted)
-    monkeypatch.setattr(constant, "solve_bounded", lambda _, *rest: active_set.solve_bounded(factored.C, *rest))
+    monkeypatch.setattr(
+        coulomb_constant_pressure, "solve_bounded", lambda _, *rest: active_set.solve_bounded(factored.C, *rest)
+    )
     found = solved(replace(along(0.7, 0.0, 1), cycles=8), factored)
     assert found.iterations > found.load_steps
     assert found.load_steps < Counted.products <= 2 * found.load_steps + 1
@@ -254,7 +256,7 @@ def test_one_step_taken_for_enough(monkeypatch):
         return abs(zone.left - exact.left), max(step.residual.max() for step in found.points)
 
     assert off()[0] < 1e-4
-    monkeypatch.setattr(constant._Contact, "_suffices", lambda *_: True)
+    monkeypatch.setattr(coulomb_constant_pressure._Contact, "_suffices", lambda *_: True)
     error, residual = off()
     assert error > 1e-2
     assert residual < 1e-12
@@ -266,14 +268,14 @@ def test_rates_asked_for_at_the_end_of_the_leg_alone(monkeypatch):
     end turns round early; at the end all nodes slip on as they have, and one step seems enough."""
     _, *problem = cells()
     true = march(*problem, 1.0, loads(0.584, 2.6))
-    real = constant.solve_bounded
+    real = coulomb_constant_pressure.solve_bounded
 
     def nothing_pushed(tangential, g, lower, *rest):
         found = real(tangential, g, lower, *rest)
         return replace(found, x=0 * found.x, rest=0 * found.rest) if np.isneginf(lower).any() else found
 
-    monkeypatch.setattr(constant, "solve_bounded", nothing_pushed)
-    monkeypatch.setattr(constant._Contact, "_agrees", lambda *_: True)
+    monkeypatch.setattr(coulomb_constant_pressure, "solve_bounded", nothing_pushed)
+    monkeypatch.setattr(coulomb_constant_pressure._Contact, "_agrees", lambda *_: True)
     wrong = march(*problem, 1.0, loads(0.584, 2.6))
     assert true.turns
     assert not wrong.turns

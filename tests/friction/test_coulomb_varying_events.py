@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from partialslip import parse_scene, run
-from partialslip.friction import path_following, varying_path
+from partialslip.friction import coulomb_varying_events, path_following
+from partialslip.friction.load_path import Path
 from partialslip.friction.normal import Presses
-from partialslip.friction.path import Path
 from partialslip.friction.path_following import Bounds, Follower
 from partialslip.march import similar as marching
 from partialslip.march.cells import compliance
@@ -28,7 +28,7 @@ def cycle(*loads):
     C, x, press = pressed()
     points = tuple((Q, strain, 0.0, P, M) for Q, strain, P, M in loads)
     path = Path(points, (0, 1), True, 10, 1, begin=(0.0, 0.0, 0.0, *points[-1][3:]), followed=True)
-    return varying_path.march(C, np.array([x, x**2 / 2]), np.full(len(x), F), press, path), x
+    return coulomb_varying_events.march(C, np.array([x, x**2 / 2]), np.full(len(x), F), press, path), x
 
 
 def test_pressing_event_by_event():

@@ -15,8 +15,8 @@ import numpy as np
 from partialslip.arrays import Array, Mask, submatrix
 from partialslip.friction.active_set import Solution, spread
 from partialslip.friction.history import History, Steps, follow, resting
+from partialslip.friction.load_path import Path
 from partialslip.friction.normal import Presses
-from partialslip.friction.path import Path
 from partialslip.friction.path_following import Bounds, Follower, Leg, joined
 from partialslip.scene.model import require_carried
 
@@ -32,10 +32,10 @@ def march(tangential: Array, stretch: Array, f: Array, press: Presses, path: Pat
     Parameters
     ----------
     tangential, stretch, f, press, path
-        As for :func:`partialslip.friction.varying.march`.
+        As for :func:`partialslip.friction.coulomb_varying_pressure.march`.
     few : int
         Nodes that may slip both ways where slip does not turn round, as for
-        :func:`partialslip.friction.constant.march`.
+        :func:`partialslip.friction.coulomb_constant_pressure.march`.
 
     Raises SlidesError if no node sticks.
     """

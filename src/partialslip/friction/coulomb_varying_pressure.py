@@ -18,11 +18,11 @@ import numpy as np
 import scipy.linalg as la
 
 from partialslip.arrays import Array, Mask, submatrix
-from partialslip.friction import varying_path
+from partialslip.friction import coulomb_varying_events
 from partialslip.friction.active_set import Sides, Solution, solve_bounded, spread
 from partialslip.friction.history import History, follow, resting
+from partialslip.friction.load_path import Path
 from partialslip.friction.normal import Presses
-from partialslip.friction.path import Path
 from partialslip.friction.path_following import SlidesError
 from partialslip.scene.model import require_carried
 
@@ -57,11 +57,11 @@ def march(
         discretisations of both would be locked in.
     path : Path
     few : int
-        As for :func:`partialslip.friction.varying_path.march`.
+        As for :func:`partialslip.friction.coulomb_varying_events.march`.
     """
     if path.followed:
         with suppress(SlidesError):  # so near to sliding that rounding lets no node stick: steps still have an answer
-            return varying_path.march(tangential, stretch, f, press, path, few)
+            return coulomb_varying_events.march(tangential, stretch, f, press, path, few)
     first, *ways = (len(way) for way in path.fractions)
     cycle = sum(ways)
     sides: list[Sides] = []

@@ -1,4 +1,4 @@
-"""Element size over the distance from a point of the contact line."""
+"""Grading of meshes: the element size over the distance from a point of the contact line."""
 
 from typing import NamedTuple
 
