@@ -8,8 +8,7 @@ from partialslip.cli.common import (
     add_columns,
     add_out,
     add_pdf,
-    check_folder,
-    check_report,
+    check_output,
     columns_of,
     print_written,
     results_folder,
@@ -121,7 +120,7 @@ def _run(options: argparse.Namespace) -> int:
     from partialslip.benchmark.submission import META
     from partialslip.cli.consoles import counting, output
 
-    check_folder(options.out)
+    check_output(options)
     installed(options.code)
     some, name = chosen_problems(options.problems), f"benchmark-{options.code}"
     with (
@@ -237,8 +236,7 @@ def _build(options: argparse.Namespace) -> int:
     from partialslip.output.files import write_files, write_texts
     from partialslip.output.page import check_pdf, write_pdf
 
-    check_folder(options.out)
-    check_report(options)
+    check_output(options)
     some = chosen_problems(options.problems)
     submissions = [read_submission(folder, read_problems()) for folder in options.folders]
     names = badge_names(submissions)

@@ -4,7 +4,8 @@ import argparse
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_out, add_scene, check_folder, print_written, results_folder
+from partialslip.cli.answer import Answer, answered
+from partialslip.cli.common import add_out, add_scene, check_output
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -29,15 +30,12 @@ def add(commands: "Commands") -> None:
 
 
 def _page(options: argparse.Namespace) -> int:
-    check_folder(options.out)
+    check_output(options)
     scene = partialslip.load_scene(options.scene, options.overrides)
 
-    from partialslip.cli.consoles import output
     from partialslip.live import live_page
     from partialslip.output.files import write_texts
 
     text = live_page(scene)
-    with results_folder(options, "page", f"{scene.name}-page", scene) as (folder, elsewhere):
-        files = write_texts(folder, {"page.html": text})
-    print_written(files, output(), elsewhere)
-    return 0
+    name = f"{scene.name}-page"
+    return answered(options, "page", name, scene, lambda folder: Answer(write_texts(folder, {"page.html": text})))

@@ -12,8 +12,7 @@ from partialslip.cli.common import (
     add_pdf,
     add_scene,
     add_verbose,
-    check_folder,
-    check_report,
+    check_output,
     folder_if_wanted,
     methods_of,
     origin,
@@ -74,8 +73,7 @@ def _run(options: argparse.Namespace) -> int:
     from partialslip.methods import METHODS
 
     methods = None if options.methods is None else methods_of(options.methods, METHODS)
-    check_folder(options.out)
-    check_report(options)
+    check_output(options)
     if options.save == "":
         raise InputError("--save '': must name a file")
     scene = partialslip.load_scene(options.scene, options.overrides)

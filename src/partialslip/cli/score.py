@@ -14,8 +14,7 @@ from partialslip.cli.common import (
     add_pdf,
     add_scene,
     add_verbose,
-    check_folder,
-    check_report,
+    check_output,
     columns_of,
     folder_if_wanted,
     origin,
@@ -74,8 +73,7 @@ def add(commands: "Commands") -> None:
 
 
 def _score(options: argparse.Namespace) -> int:
-    check_folder(options.out)
-    check_report(options)
+    check_output(options)
     factors = _numbers(options.factors, float, "--factors", "three numbers, for example 1e-3,1e6,1e6", 3)
     at = () if options.at is None else _numbers(options.at, int, "--at", "two whole numbers, for example 3,4", 2)
     bar = None if options.bar is None else _bar(options.bar)

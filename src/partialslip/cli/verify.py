@@ -3,7 +3,7 @@
 import argparse
 from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_method, add_out, add_verbose, check_folder, print_written
+from partialslip.cli.common import add_method, add_out, add_verbose, check_output, print_written
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -52,7 +52,7 @@ def add(commands: "Commands") -> None:
 
 
 def _verify(options: argparse.Namespace) -> int:
-    check_folder(options.out)
+    check_output(options)
 
     from partialslip.cli.consoles import counting, output
     from partialslip.verify.driver import verify_suite
