@@ -70,7 +70,7 @@ def answered(
             files += write_page(html, folder, pdf=options.pdf)
     console = output()
     if found.heading:
-        console.print(found.heading, style="bold", markup=False)
+        console.print(found.heading, style="bold", soft_wrap=True, markup=False)
     for part in found.printed:
         if isinstance(part, str):
             console.print(part, soft_wrap=True, markup=False)
