@@ -133,7 +133,9 @@ def test_lines_lead_through_their_stick_zones(shape):
             if not len(Qf):
                 continue
             zones = grid._zones(Qf, sf, shape)
-            there = grid._tabled(grid.Line(0.0, Qf, sf), shape) if isinstance(shape, Hertz) else np.zeros(len(Qf), bool)
+            there = (
+                grid._tabled(grid.MapLine(0.0, Qf, sf), shape) if isinstance(shape, Hertz) else np.zeros(len(Qf), bool)
+            )
             found = zones.zone.half_width + way * zones.zone.centre
             np.testing.assert_allclose(found[~there], line.at, rtol=0, atol=1e-9)
             np.testing.assert_allclose(found[there], line.at, rtol=0, atol=1e-3)  # lines through a grid

@@ -21,7 +21,7 @@ from size_entries import entries, scene, sized
 import partialslip
 from partialslip.batch.job import Job, solve_job
 from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import Task, sweep, workers
+from partialslip.batch.sweep import Task, work_through, workers
 from partialslip.cli import main
 from partialslip.study.size import sizes as size
 from partialslip.study.size import tables
@@ -98,9 +98,9 @@ def test_a_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
 
     monkeypatch.setattr("partialslip.batch.job.solve_job", counted)
     with ThreadPoolExecutor(1) as executor:
-        sweep([case.task for case in cases[:4]], Ledger(path), executor)
+        work_through([case.task for case in cases[:4]], Ledger(path), executor)
         seen = []
-        sweep([case.task for case in (*cases, broken)], Ledger(path), executor, lambda *at: seen.append(at[:2]))
+        work_through([case.task for case in (*cases, broken)], Ledger(path), executor, lambda *at: seen.append(at[:2]))
     assert solved == [0, 1, 2, 3, 4, 5, 6]
     assert seen == [(4, 7), (5, 7), (6, 7), (7, 7)]
     assert "nothing" in Ledger(path)[broken.key]["error"]
@@ -123,7 +123,7 @@ def test_a_long_sweep_is_handed_over_bit_by_bit(tmp_path):
     tasks = [Task(str(number), lambda number: {"found": number}, number) for number in range(2000)]
     ledger = Ledger(tmp_path / "ledger.jsonl")
     with Counting(2) as executor:
-        sweep(tasks, ledger, executor)
+        work_through(tasks, ledger, executor)
     assert {entry["key"]: entry["found"] for entry in ledger} == {str(number): number for number in range(2000)}
     assert executor.most <= 256
 
@@ -138,7 +138,7 @@ def test_in_this_process_each_case_is_kept_before_the_next_begins(tmp_path):
         return {}
 
     with pytest.raises(KeyboardInterrupt), workers(processes=1) as executor:
-        sweep([Task(str(number), do, number) for number in range(5)], ledger, executor)
+        work_through([Task(str(number), do, number) for number in range(5)], ledger, executor)
     assert known == [0, 1, 2, 3]
 
 

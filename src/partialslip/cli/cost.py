@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.answer import Answer, answered
 from partialslip.cli.common import (
     add_out,
     add_pdf,
@@ -18,11 +17,12 @@ from partialslip.cli.common import (
     seconds,
     study_ledger,
 )
+from partialslip.cli.findings import Findings, present
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
-    from partialslip.study.cost.ladder import CostPoint, Measured
+    from partialslip.study.cost.ladder import CostPoint, MeasuredCosts
 
 
 def add(topics: "Commands") -> None:
@@ -72,7 +72,7 @@ def _cost(options: argparse.Namespace) -> int:
     def usual() -> dict[str, object]:
         return {"methods": sorted(ladder.LADDERS), "budget": str(seconds(options.default("budget")))}
 
-    def find(folder: Path) -> Answer:
+    def find(folder: Path) -> Findings:
         ledger = study_ledger(folder)
         with working(name) as tell:
             measured = ladder.measure_costs(
@@ -80,12 +80,12 @@ def _cost(options: argparse.Namespace) -> int:
             )
         return _evaluated(options, scene.name, measured, peers, ledger.path)
 
-    return answered(options, "study cost", name, scene, find, known, usual)
+    return present(options, "study cost", name, scene, find, known, usual)
 
 
 def _evaluated(
-    options: argparse.Namespace, name: str, measured: "Measured", peers: "list[CostPoint]", ledger: Path
-) -> Answer:
+    options: argparse.Namespace, name: str, measured: "MeasuredCosts", peers: "list[CostPoint]", ledger: Path
+) -> Findings:
     """Draw, write and tabulate what was ``measured`` of the scene ``name``."""
     from partialslip.output.files import csv_text, write_texts
     from partialslip.report.page import Section
@@ -122,7 +122,7 @@ def _evaluated(
             f"{beaten} other settings cost more for the error: --verbose, or cost.csv",
         ]
     files = [ledger, *write_texts(ledger.parent, texts)]
-    return Answer(files, heading, [ladder.SETTING, *tables, *against], heading, sections)
+    return Findings(files, heading, [ladder.SETTING, *tables, *against], heading, sections)
 
 
 def _progress(done: int, total: int, setting: str, left: float) -> str:

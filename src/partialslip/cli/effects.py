@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.answer import Answer, answered
 from partialslip.cli.common import add_out, add_pdf, add_scene, check_output
+from partialslip.cli.findings import Findings, present
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -40,7 +40,7 @@ def _effects(options: argparse.Namespace) -> int:
     from partialslip.study.effects import worth
     from partialslip.study.effects.figure import effects_svg
 
-    def find(folder: Path) -> Answer:
+    def find(folder: Path) -> Findings:
         with working(name) as tell:
             study = worth.study_effects(scene, tell)
             texts = {
@@ -55,6 +55,6 @@ def _effects(options: argparse.Namespace) -> int:
             *worth.refusals(study),
         ]
         sections = worth.effects_sections(study, texts["effects.svg"])
-        return Answer(files, worth.effects_heading(study), printed, f"{scene.name}: effects", sections)
+        return Findings(files, worth.effects_heading(study), printed, f"{scene.name}: effects", sections)
 
-    return answered(options, "study effects", name, scene, find)
+    return present(options, "study effects", name, scene, find)

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.answer import Answer, answered
 from partialslip.cli.common import add_out, add_scene, check_output
+from partialslip.cli.findings import Findings, present
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -59,14 +59,14 @@ def _equivalent(options: argparse.Namespace) -> int:
         f"The data hold where |x| <= {scene.units.length(rig.reach)}.",
     ]
 
-    def find(folder: Path) -> Answer:
+    def find(folder: Path) -> Findings:
         files: dict[str, Callable[[Path], object]] = {
             RIG: lambda path: write_rig(rig, path),
             SCENE: lambda path: path.write_text(scene_toml(named), "utf-8"),
         }
-        return Answer(write_files(folder, files), printed=printed)
+        return Findings(write_files(folder, files), printed=printed)
 
-    return answered(options, "equivalent", f"{scene.name}-equivalent", scene, find)
+    return present(options, "equivalent", f"{scene.name}-equivalent", scene, find)
 
 
 def _gains(found: "Sequence[Share]") -> "Section":

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.answer import Answer, answered
 from partialslip.cli.common import add_method, add_out, add_pdf, add_scene, check_output
+from partialslip.cli.findings import Findings, present
 from partialslip.errors import InputError
 from partialslip.methods import REFERENCES
 
@@ -70,7 +70,7 @@ def _fatigue(options: argparse.Namespace) -> int:
     def usual() -> dict[str, object]:
         return {"criterion": chosen(scene, None), "method": None}
 
-    def find(folder: Path) -> Answer:
+    def find(folder: Path) -> Findings:
         with working(name) as tell:
             result = with_stresses(scene, options.method, tell)
             tell("criteria")
@@ -79,9 +79,9 @@ def _fatigue(options: argparse.Namespace) -> int:
             figures = drawn(found)
             files = write_assessment(found, figures, folder)
         heading = tables.assessment_heading(found)
-        return Answer(files, heading, _printed(found), f"{scene.name}: fatigue", sections(found, figures))
+        return Findings(files, heading, _printed(found), f"{scene.name}: fatigue", sections(found, figures))
 
-    return answered(options, "fatigue", name, scene, find, known, usual, True)
+    return present(options, "fatigue", name, scene, find, known, usual, True)
 
 
 def _printed(found: "Assessment") -> "list[str | Section]":

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.answer import Answer, answered
 from partialslip.cli.common import add_out, add_scene, check_output
+from partialslip.cli.findings import Findings, present
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
@@ -38,9 +38,9 @@ def _map(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import working
     from partialslip.map import place, stick_map, varying_map, write_map
 
-    def find(folder: Path) -> Answer:
+    def find(folder: Path) -> Findings:
         with working(name) as tell:
             data = varying_map(scene, tell) if scene and scene.presses_anew else stick_map(scene, tell)
-            return Answer(write_map(data, folder), printed=place(data))
+            return Findings(write_map(data, folder), printed=place(data))
 
-    return answered(options, "map", name, scene, find)
+    return present(options, "map", name, scene, find)

@@ -4,8 +4,8 @@ import argparse
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.answer import Answer, answered
 from partialslip.cli.common import add_out, add_scene, check_output
+from partialslip.cli.findings import Findings, present
 
 if TYPE_CHECKING:
     from partialslip.cli.common import Commands
@@ -38,4 +38,4 @@ def _page(options: argparse.Namespace) -> int:
 
     text = live_page(scene)
     name = f"{scene.name}-page"
-    return answered(options, "page", name, scene, lambda folder: Answer(write_texts(folder, {"page.html": text})))
+    return present(options, "page", name, scene, lambda folder: Findings(write_texts(folder, {"page.html": text})))

@@ -86,9 +86,9 @@ def _score(options: argparse.Namespace) -> int:
         if options.file is not None:
             raise InputError(f"--template {options.file}: must go without a file: remove {options.file}")
         from partialslip.halfplane import contact
-        from partialslip.score.csvfile import template
+        from partialslip.score.csvfile import csv_template
 
-        sys.stdout.write(template(scene, contact(scene).a))
+        sys.stdout.write(csv_template(scene, contact(scene).a))
         return 0
     if options.file is None:
         raise InputError("FILE: missing: must be a file with tractions; --template prints a table to fill in")

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.answer import Answer, answered
 from partialslip.cli.common import add_out, add_pdf, add_scene, check_output, study_ledger
+from partialslip.cli.findings import Findings, present
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def _size(options: argparse.Namespace) -> int:
             raise InputError(f"--over {each.name}: must have at least 2 values, all > 0, for a map")
     name = f"{scene.name}-size"
 
-    def find(folder: Path) -> Answer:
+    def find(folder: Path) -> Findings:
         from partialslip.batch.sweep import workers
         from partialslip.cli.consoles import counting
         from partialslip.study.size import sizes
@@ -74,10 +74,10 @@ def _size(options: argparse.Namespace) -> int:
             entries = sizes.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
         return _evaluated(scene, axes, entries, ledger.path)
 
-    return answered(options, "study size", name, scene, find)
+    return present(options, "study size", name, scene, find)
 
 
-def _evaluated(scene: "Scene", axes: "list[Axis]", entries: "list[Sized]", ledger: Path) -> Answer:
+def _evaluated(scene: "Scene", axes: "list[Axis]", entries: "list[Sized]", ledger: Path) -> Findings:
     """Draw, write and tabulate the ``entries`` of a ledger."""
     from partialslip.output.files import csv_text, write_texts
     from partialslip.plan import asks_for_stresses
@@ -114,7 +114,7 @@ def _evaluated(scene: "Scene", axes: "list[Axis]", entries: "list[Sized]", ledge
         lines = tables.case_remarks(axes, entries)
     lines += [] if asks_for_stresses(scene) else [stresses.NOT_ASKED]
     figures = [Section(name.removesuffix(".svg"), (), text) for name, text in texts.items() if name.endswith(".svg")]
-    return Answer(
+    return Findings(
         [ledger, *write_texts(ledger.parent, texts)],
         heading,
         [*sections, *lines],

@@ -90,7 +90,7 @@ class CostPoint:
 LADDERS = ("exact", "march", "fem")  # fixed: methods with a ladder
 
 
-class Measured(NamedTuple):
+class MeasuredCosts(NamedTuple):
     """What was measured: ``points``, and how many settings were ``left`` as the budget was spent."""
 
     points: list[CostPoint]
@@ -164,7 +164,7 @@ def measure_costs(
     progress: Callable[[int, int, str, float], None] = lambda *_: None,
     methods: Collection[str] = LADDERS,
     budget: float = math.inf,
-) -> Measured:
+) -> MeasuredCosts:
     """Solve the ladder of ``scene``, one new process per job. Jobs in ``ledger`` are not solved again.
 
     Parameters
@@ -205,7 +205,7 @@ def measure_costs(
             walls[run.name], last[run.series], rest = process.wall_s, spent, rest - spent
         queue = queue[1:]
     progress(len(found), len(found), "", 0.0)
-    return Measured(points(found), len(left))
+    return MeasuredCosts(points(found), len(left))
 
 
 def points(entries: Iterable[Solved]) -> list[CostPoint]:

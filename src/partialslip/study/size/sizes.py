@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from partialslip.arrays import Array
 from partialslip.batch.job import Sharing
 from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import Progress, sweep
+from partialslip.batch.sweep import Progress, work_through
 from partialslip.fatigue import HotSpot
 from partialslip.fatigue.spots import SIGMA, off_by
 from partialslip.scene import Scene
@@ -62,7 +62,7 @@ def measure(
         If a worker process dies; finished cases are in the ledger.
     """
     solve, asked = Sharing(solve_sized), cases(scene, axes, (_COARSER, 1.0) if control else (1.0,))
-    sweep([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
+    work_through([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
     finer = [_COARSER**-k for k in range(1, _FINER + 1)] if control else []
     for accuracy in (each for each in finer if each * scene.fem.accuracy >= _FINEST):
         points = _by_point(axes, (ledger.read(case.key, Sized) for case in asked))
@@ -72,7 +72,7 @@ def measure(
             for case in cases(scene, axes, (accuracy,))
             if tuple(case.labels[each.name] for each in axes) in unclear
         ]
-        sweep([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
+        work_through([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
     return [ledger.read(case.key, Sized) for case in asked]
 
 

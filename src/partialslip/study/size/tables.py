@@ -122,7 +122,9 @@ def case_remarks(axes: Sequence[Axis], entries: Sequence[Sized]) -> list[str]:
         if entry.error
     ]
     if without := refused(axes, entries):
-        points = [short(*point) if len(point) == 1 else f"({', '.join(map(short, point))})" for point in without]
+        points = [
+            size_text(*point) if len(point) == 1 else f"({', '.join(map(size_text, point))})" for point in without
+        ]
         reason, where = next(iter(without.values())), _listed_points(points)
         lines.append(f"no equivalent half-planes at {where}: {reason}")
     return lines
@@ -144,12 +146,12 @@ def differences_table(study: SizeStudy, model: SizeModel) -> tuple[tuple[str, ..
     found = model.sizes
     points = {trend.quantity: trend.points for trend in model.trends}
     solved: dict[float, tuple[str, ...]] = {
-        size: (*(marked(found.off[key][k], points[key][k]) for key in points), share(found, points, k))
+        size: (*(marked(found.off[key][k], points[key][k]) for key in points), mesh_share(found, points, k))
         for k, size in enumerate(found.size.tolist())
     }
     without = study.models[0].sizes.size.tolist() if model.name == EQUIVALENT else ()
     failed = {size: (*["-"] * len(points), "") for size in (*found.failed, *without)}
-    rows = [(short(size), *cells) for size, cells in sorted((failed | solved).items())] if points else []
+    rows = [(size_text(size), *cells) for size, cells in sorted((failed | solved).items())] if points else []
     return ("size", *points, "mesh"), rows
 
 
@@ -238,19 +240,19 @@ def marked(difference: float, point: PointStatus) -> str:
     return "-" if math.isnan(difference) else f"{difference:.1e}"
 
 
-def share(sizes: Sizes, quantities: Collection[str], k: int) -> str:
+def mesh_share(sizes: Sizes, quantities: Collection[str], k: int) -> str:
     """Return the largest share of a difference of ``quantities`` that may be an error of the mesh, as text."""
     shares = [sizes.mesh[key][k] / sizes.off[key][k] for key in quantities if sizes.off[key][k] > 0]
     known = [share for share in shares if not math.isnan(share)]
     return "" if not known else f"{max(known):.1%}" if max(known) < 1 else "> 100%"
 
 
-def short(size: float) -> str:
+def size_text(size: float) -> str:
     """Return a size as text."""
     return f"{size:.4g}"
 
 
 def _listed(sizes: Sequence[float]) -> str:
     if len(sizes) <= _LISTED:
-        return ", ".join(map(short, sizes))
-    return f"{len(sizes)} from {short(min(sizes))} to {short(max(sizes))}"
+        return ", ".join(map(size_text, sizes))
+    return f"{len(sizes)} from {size_text(min(sizes))} to {size_text(max(sizes))}"

@@ -1,4 +1,4 @@
-"""The frame of a command that answers with files: choose a folder, find the answer, write files and report, print."""
+"""The frame of a command that finds something: choose a folder, find, write files and report, print."""
 
 import argparse
 from collections.abc import Callable, Sequence
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Answer:
+class Findings:
     """What a command found.
 
     Parameters
@@ -39,22 +39,22 @@ class Answer:
     code: int = 0
 
 
-def answered(
+def present(
     options: argparse.Namespace,
     command: str,
     name: str,
     scene: "Scene | None",
-    find: Callable[[Path], Answer],
+    find: Callable[[Path], Findings],
     *more: Any,
 ) -> int:
-    """Answer a command, and return the exit code.
+    """Find what a command asks for, write and print it, and return the exit code.
 
     Parameters
     ----------
     options, command, name, scene, more : optional
         As for :func:`partialslip.cli.common.results_folder`. A command with a report has a scene.
     find : callable
-        ``find(folder)`` writes the files of the answer into the folder, which is locked meanwhile.
+        ``find(folder)`` writes its files into the folder, which is locked meanwhile.
     """
     from partialslip.cli.consoles import output
     from partialslip.output.tables import print_table
