@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from partialslip.cli.common import (
+    Commands,
     add_columns,
     add_out,
     add_pdf,
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from partialslip.benchmark import Problem, Submission
-    from partialslip.cli.common import Commands
 
 _LACKING = "an answer without a headline target"
 _PROBLEMS = "numbers of problems, or patterns such as PS-0*, separated by commas (default: all)"
@@ -27,7 +27,7 @@ _PROBLEMS = "numbers of problems, or patterns such as PS-0*, separated by commas
 _TITLED = 144  # display: columns of a terminal from which on a table has the titles of the problems
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     benchmark = commands.add_parser(
         "benchmark",

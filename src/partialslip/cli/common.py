@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import partialslip
 from partialslip.errors import InputError
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from partialslip.run import Run
     from partialslip.scene import Scene
 
-    Commands = argparse._SubParsersAction[Any]
+Commands: TypeAlias = "argparse._SubParsersAction[Any]"
 
 _MANY_STEPS = 500  # cost: load steps of a path that take longer than all else
 

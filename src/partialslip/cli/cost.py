@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import partialslip
 from partialslip.cli.common import (
+    Commands,
     add_out,
     add_pdf,
     add_scene,
@@ -21,11 +22,10 @@ from partialslip.cli.findings import Findings, present
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
     from partialslip.study.cost.ladder import CostPoint, MeasuredCosts
 
 
-def add(topics: "Commands") -> None:
+def add(topics: Commands) -> None:
     """Add the topic to the parser of ``topics``."""
     cost = topics.add_parser(
         "cost",

@@ -2,17 +2,13 @@
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_out, add_pdf, add_scene, check_output
+from partialslip.cli.common import Commands, add_out, add_pdf, add_scene, check_output
 from partialslip.cli.findings import Findings, present
 
-if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
 
-
-def add(topics: "Commands") -> None:
+def add(topics: Commands) -> None:
     """Add the topic to the parser of ``topics``."""
     effects = topics.add_parser(
         "effects",

@@ -5,20 +5,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_out, add_scene, check_output
+from partialslip.cli.common import Commands, add_out, add_scene, check_output
 from partialslip.cli.findings import Findings, present
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from partialslip.cli.common import Commands
     from partialslip.equivalent import Share
     from partialslip.report.page import Section
 
 RIG, SCENE = "rig.json", "half-planes.toml"
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     equivalents = commands.add_parser(
         "equivalent",

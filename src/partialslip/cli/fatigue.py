@@ -5,18 +5,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_method, add_out, add_pdf, add_scene, check_output
+from partialslip.cli.common import Commands, add_method, add_out, add_pdf, add_scene, check_output
 from partialslip.cli.findings import Findings, present
 from partialslip.errors import InputError
 from partialslip.methods import REFERENCES
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
     from partialslip.fatigue import Assessment
     from partialslip.report.page import Section
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     fatigue = commands.add_parser(
         "fatigue",

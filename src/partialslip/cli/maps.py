@@ -2,18 +2,14 @@
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_out, add_scene, check_output
+from partialslip.cli.common import Commands, add_out, add_scene, check_output
 from partialslip.cli.findings import Findings, present
 from partialslip.errors import InputError
 
-if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
 
-
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     maps = commands.add_parser(
         "map",

@@ -1,19 +1,15 @@
 """partialslip page: a live page with sliders for loads and friction."""
 
 import argparse
-from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_out, add_scene, check_output
+from partialslip.cli.common import Commands, add_out, add_scene, check_output
 from partialslip.cli.findings import Findings, present
-
-if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
 
 _SCENE = "fretting-aluminium"
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     page = commands.add_parser(
         "page",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import partialslip
 from partialslip.allowance import Allowance
 from partialslip.cli.common import (
+    Commands,
     add_out,
     add_pdf,
     add_scene,
@@ -23,14 +24,13 @@ from partialslip.cli.common import (
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
     from partialslip.result.state import State
     from partialslip.run import Run
     from partialslip.scene import Scene
     from partialslip.study.cost.prices import Price
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     runs = commands.add_parser(
         "run",

@@ -4,11 +4,12 @@ import argparse
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import partialslip
 from partialslip.bars import LARGEST, Asked, asked
 from partialslip.cli.common import (
+    Commands,
     add_columns,
     add_out,
     add_pdf,
@@ -23,13 +24,10 @@ from partialslip.cli.common import (
 from partialslip.errors import InputError
 from partialslip.methods import REFERENCES
 
-if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
-
 _T = TypeVar("_T")
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     scores = commands.add_parser(
         "score",

@@ -5,12 +5,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_out, add_pdf, add_scene, check_output, study_ledger
+from partialslip.cli.common import Commands, add_out, add_pdf, add_scene, check_output, study_ledger
 from partialslip.cli.findings import Findings, present
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
     from partialslip.scene import Scene
     from partialslip.study.size.axes import Axis
     from partialslip.study.size.case import Sized
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 _WORDS = ("half-planes", "unit", "stresses")  # headings of columns of words
 
 
-def add(topics: "Commands") -> None:
+def add(topics: Commands) -> None:
     """Add the topic to the parser of ``topics``."""
     size = topics.add_parser(
         "size",
