@@ -45,7 +45,7 @@ def texts(svg):
 
 
 def test_the_scene_is_where_its_loads_are(data):
-    assert (data.point.P_change, data.point.Q_change) == pytest.approx((0.36, 0.64))
+    assert data.point.place == pytest.approx((0.36, 0.64))
     assert data.ratio == pytest.approx(0.4 * 0.5 * 400e6 * A / (0.64 * 0.5 * P))
     lines = place(data)
     assert lines[0] == "hertz-small-tension: small tension, m = 0.7571068 a, n = 0.6571068 a"

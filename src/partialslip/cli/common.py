@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import partialslip
 from partialslip.errors import InputError
+from partialslip.groups import grouped
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -258,10 +259,7 @@ def print_written(files: list[Path], console: "Console", elsewhere: str = "") ->
 
 def _by_folder(files: list[Path]) -> dict[Path, list[str]]:
     """Return the names of ``files`` by folder."""
-    folders: dict[Path, list[str]] = {}
-    for file in files:
-        folders.setdefault(file.parent, []).append(file.name)
-    return folders
+    return grouped((file.parent, file.name) for file in files)
 
 
 def _why(elsewhere: str) -> str:

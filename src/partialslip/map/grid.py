@@ -65,18 +65,17 @@ class Point:
 
     Parameters
     ----------
-    Qf, sf : float
-        Absolute values of the scaled loads.
+    place : (float, float)
+        Absolute values of the scaled loads along the two axes of the map.
     mirrored : bool
         Whether dQ and dsigma differ in sign; m and n are then swapped on the map.
     exact : Result or None
-        Result of the exact method; None if it does not hold.
+        Result of the exact method; None if it does not hold, or there is no closed form.
     missing : str
-        Why it does not hold.
+        Why.
     """
 
-    Qf: float
-    sf: float
+    place: tuple[float, float]
     mirrored: bool
     exact: Result | None
     missing: str = ""
@@ -142,7 +141,7 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
         raise InputError(f"load.P = {scene.load.P}: must be one number for a map over dQ and dsigma")
     pressed = contact(scene)
     point, missing = _point(scene, pressed)
-    top = max(_TOP, math.ceil(1.2 * point.sf)) if point else _TOP
+    top = max(_TOP, math.ceil(1.2 * point.place[1])) if point else _TOP
     data = _mapped(pressed.shape, top, progress)
     return replace(data, scene=scene, pressed=pressed, point=point, missing=missing)
 
@@ -283,4 +282,4 @@ def _point(scene: Scene, pressed: Contact) -> tuple[Point | None, str]:
     if sf > _HIGHEST:
         return None, f"dsigma = {scene.units.labelled(load.dsigma, 'Pa')} is more than {_HIGHEST:g} f p0"
     why = reference(scene).unknown.get("m", "")
-    return Point(Qf, sf, load.dQ * load.dsigma < 0, None if why else exact, why), ""
+    return Point((Qf, sf), load.dQ * load.dsigma < 0, None if why else exact, why), ""

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 import msgspec
 import numpy as np
 
+from partialslip.groups import grouped
 from partialslip.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
 from partialslip.plan import Plan
 from partialslip.result import Cost, Result
@@ -109,11 +110,12 @@ def units(run: Run) -> str:
 
 def unjudged(comparison: Comparison) -> list[str]:
     """Return quantities that exist and usually have a bar, but are not judged, one line per reason."""
-    reasons: dict[str, list[str]] = {}
-    for verdict in comparison.verdicts:
-        usual = verdict.quantity in BARS or verdict.quantity == "regime"
-        if verdict.outcome is Outcome.NOT_JUDGED and usual and verdict.reason != NO_BAR and verdict.known:
-            reasons.setdefault(verdict.reason, []).append(verdict.quantity)
+    reasons = grouped(
+        (verdict.reason, verdict.quantity)
+        for verdict in comparison.verdicts
+        if verdict.outcome is Outcome.NOT_JUDGED and verdict.reason != NO_BAR and verdict.known
+        if verdict.quantity in BARS or verdict.quantity == "regime"
+    )
     return [f"not judged: {', '.join(quantities)}: {reason}" for reason, quantities in reasons.items()]
 
 
@@ -220,10 +222,8 @@ def _spent(result: Result) -> list[str]:
 
 def run_notes(run: Run) -> list[str]:
     """Return why effects were forced off, and the notes of all methods; a note that several methods share once."""
-    by_note: dict[str, list[str]] = {run.plan.left_out[effect]: [effect] for effect in run.plan.missing}
-    for name, result in run.results.items():
-        for note in result.notes:
-            by_note.setdefault(note, []).append(name)
+    forced_off = [(run.plan.left_out[effect], str(effect)) for effect in run.plan.missing]
+    by_note = grouped([*forced_off, *((note, name) for name, result in run.results.items() for note in result.notes)])
     return [f"{', '.join(names)}: {note}" for note, names in by_note.items()]
 
 

@@ -15,6 +15,7 @@ from partialslip.batch.ledger import Ledger
 from partialslip.batch.sweep import Progress, work_through
 from partialslip.fatigue import HotSpot
 from partialslip.fatigue.spots import SIGMA, off_by
+from partialslip.groups import grouped
 from partialslip.scene import Scene
 from partialslip.study.size.axes import ACCURACY, Axis, cases
 from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE, Sized, solve_sized
@@ -145,11 +146,11 @@ def refused(axes: Sequence[Axis], entries: Iterable[Sized]) -> dict[tuple[float,
 
 def _by_point(axes: Sequence[Axis], entries: Iterable[Sized]) -> dict[tuple[float, ...], list[Sized]]:
     """Return the entries by point of the grid, from the coarsest mesh to the finest, without failed cases."""
-    points: dict[tuple[float, ...], list[Sized]] = {}
-    for entry in sorted(entries, key=lambda entry: -float(entry.labels[ACCURACY])):
-        if entry.run:
-            points.setdefault(tuple(float(entry.labels[each.name]) for each in axes), []).append(entry)
-    return points
+    return grouped(
+        (tuple(float(entry.labels[each.name]) for each in axes), entry)
+        for entry in sorted(entries, key=lambda entry: -float(entry.labels[ACCURACY]))
+        if entry.run
+    )
 
 
 def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], dict[str, float]]]:
