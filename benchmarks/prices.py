@@ -61,7 +61,7 @@ def measured(ledger: Ledger, cases: list[Job]) -> list[Solved]:
         print(f"{number} of {len(cases)}", end="\r", file=sys.stderr, flush=True)
         if each.key not in ledger:
             ledger.add(each.key, solve_apart(each))
-    return [Solved.of(ledger[each.key]) for each in cases]
+    return [ledger.read(each.key, Solved) for each in cases]
 
 
 def process(*options: str) -> tuple[float, int, str]:

@@ -23,7 +23,9 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 import pytest
 from biting import biting
+from refusing import check
 
+from partialslip.cli import main
 from partialslip_meshes import blocks, gmsh
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -62,3 +64,9 @@ def _biting(request, _remembered_meshes):
             yield
     else:
         yield
+
+
+@pytest.fixture
+def refused(capsys):
+    """Call with arguments: checks that they are refused as bad input, returns the message."""
+    return lambda *arguments: check(main(arguments), capsys.readouterr())

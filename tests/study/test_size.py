@@ -16,6 +16,7 @@ import made
 import msgspec
 import numpy as np
 import pytest
+from outline import texts as texts_of
 from size_entries import entries, scene, sized
 
 import partialslip
@@ -29,7 +30,7 @@ from partialslip.study.size.axes import axis as read
 from partialslip.study.size.axes import cases as make
 from partialslip.study.size.case import COMPARED_METHODS, Sized, solve_sized
 from partialslip.study.size.figure import grid_svg, size_svg
-from partialslip.study.size.law import Kind, PointStatus, trend
+from partialslip.study.size.law import Kind, PointStatus, Sizes, trend
 
 
 @pytest.mark.parametrize(
@@ -69,10 +70,10 @@ def test_bad_axes_are_refused_in_one_line(text):
 
 
 @pytest.mark.parametrize("values", ["1e5", "1e5,1e5", "0,1e5"])
-def test_a_map_needs_two_values_of_each(values, tmp_path, capsys):
+def test_a_map_needs_two_values_of_each(values, tmp_path, refused):
     command = ["study", "size", "hertz-shear", "--over", "friction.f=0.5,0.9", "--over", f"load.P={values}"]
-    assert main([*command, "--out", str(tmp_path / "map")]) == 2
-    assert capsys.readouterr().err == ("partialslip: --over load.P: must have at least 2 values, all > 0, for a map\n")
+    said = refused(*command, "--out", str(tmp_path / "map"))
+    assert said == "partialslip: --over load.P: must have at least 2 values, all > 0, for a map\n"
 
 
 def test_stars_stand_for_every_table_and_a_for_the_half_planes_half_width():
@@ -192,7 +193,7 @@ X = 4.0 * 2.0 ** np.arange(6)  # up to 128
 def made_sizes(off, mesh=0.0, x=X, **more):
     """Return sizes with one change and one error of the mesh for all quantities."""
     off, mesh = (np.broadcast_to(each, x.shape).astype(float) for each in (off, mesh))
-    return size.Sizes("W", x, dict.fromkeys(size.DIFFERENCES, off), dict.fromkeys(size.DIFFERENCES, mesh), **more)
+    return Sizes("W", x, dict.fromkeys(size.DIFFERENCES, off), dict.fromkeys(size.DIFFERENCES, mesh), **more)
 
 
 def test_the_law_of_made_up_sizes_is_found():
@@ -329,7 +330,7 @@ def test_table_csv_and_figure_mark_the_same_points():
     assert "f: fitted" in tables.size_notes(study)
 
     drawn = xml.etree.ElementTree.fromstring(size_svg(study))
-    texts = ["".join(text.itertext()).strip() for text in drawn.iter("{http://www.w3.org/2000/svg}text")]
+    texts = [text.strip() for text in texts_of(size_svg(study))]
     assert {"2", "4", "8", "16", "32", "64", "128", "not solved"} <= set(texts)
     assert {"half-plane, fitted", "half-plane, not fitted"} <= set(texts)
     assert not any("equivalent" in text for text in texts)
@@ -373,8 +374,7 @@ def test_both_half_planes_have_their_laws():
     assert [row[head.index("no equivalent")] for row in rows] == ["must be larger", "too large", "", "", "", ""]
     assert all(len(row) == len(head) for row in rows)
 
-    drawn = xml.etree.ElementTree.fromstring(size_svg(study))
-    texts = ["".join(text.itertext()).strip() for text in drawn.iter("{http://www.w3.org/2000/svg}text")]
+    texts = [text.strip() for text in texts_of(size_svg(study))]
     assert {"half-plane, fitted", "equivalent, fitted", "equivalent, not fitted"} <= set(texts)
 
 

@@ -23,8 +23,8 @@ def html(what: Scene | Result | Comparison | Run) -> str:
 
 
 def plot(what: Result | Run, axes: "Axes | None", shown: Shown, in_units: bool) -> "Axes":
-    """Draw ``what`` on ``axes`` (default: axes of a new pyplot figure); see :func:`partialslip.report.levels.draw`.
-    Returns the axes."""
+    """Draw ``what`` on ``axes`` (default: axes of a new pyplot figure), as
+    :func:`partialslip.report.levels.draw_levels`. Returns the axes."""
     if axes is None:
         from matplotlib import pyplot
 

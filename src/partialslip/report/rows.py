@@ -1,7 +1,7 @@
 """A run as texts and table cells, shared by terminal and page."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import msgspec
 import numpy as np
@@ -147,21 +147,17 @@ def verdict_lines(run: Run) -> tuple[str, ...]:
 
 def effects(plan: Plan) -> list[tuple[str, str, str]]:
     """Return rows of "called for" or "left out" (in the first row of each group), effect, and reason."""
-    groups = {"called for": plan.called_for, "left out": plan.left_out}
-    return [
-        (title if number == 0 else "", effect, why)
-        for title, group in groups.items()
-        for number, (effect, why) in enumerate(group.items())
-    ]
+    return _titled({"called for": plan.called_for.items(), "left out": plan.left_out.items()})
 
 
 def settings(scene: Scene) -> list[tuple[str, str, str]]:
     """Return rows of table (in the first row of each table), key and setting of ``scene``, in its units."""
-    return [
-        (table if number == 0 else "", *line)
-        for table, lines in _set(scene).items()
-        for number, line in enumerate(lines)
-    ]
+    return _titled(_set(scene))
+
+
+def _titled(groups: Mapping[str, Iterable[tuple[str, str]]]) -> list[tuple[str, str, str]]:
+    """Return the rows of ``groups`` by title, with the title in the first row of each."""
+    return [(title if number == 0 else "", *row) for title, rows in groups.items() for number, row in enumerate(rows)]
 
 
 def settings_of_tables(scene: Scene) -> list[tuple[str, str]]:
@@ -201,11 +197,7 @@ def methods(results: Mapping[str, Result], *, compared: bool = False, units: Uni
 
     With ``compared`` the values found are left out: the table of errors shows them.
     """
-    return [
-        (name if number == 0 else "", *line)
-        for name, result in results.items()
-        for number, line in enumerate(facts(result, compared, units).items())
-    ]
+    return _titled({name: facts(result, compared, units).items() for name, result in results.items()})
 
 
 def methods_in_short(results: Mapping[str, Result]) -> list[tuple[str, str]]:

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -19,9 +18,9 @@ from partialslip.groups import grouped
 from partialslip.scene import Scene
 from partialslip.study.size.axes import ACCURACY, Axis, cases
 from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE, Sized, solve_sized
+from partialslip.study.size.law import CLEAR, Sizes
 
 DIFFERENCES = ("a", "p0", "p", "m", "n", "q")
-CLEAR = 10.0  # accuracy: a difference counts if it exceeds the mesh's error by this factor
 _COARSER = 8.0  # accuracy: ratio of the accuracies of two successive meshes
 _FINER = 3  # limit: largest number of additional meshes where the half-plane's difference is not clear
 _FINEST = 1e-8  # limit: finest accuracy that rounding allows
@@ -75,32 +74,6 @@ def measure(
         ]
         work_through([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
     return [ledger.read(case.key, Sized) for case in asked]
-
-
-@dataclass(frozen=True)
-class Sizes:
-    """A sweep along one axis: how far half-planes are from the finite elements.
-
-    Parameters
-    ----------
-    name : str
-        ``half-plane``, or ``equivalent`` for half-planes with the data that make them act like the bodies.
-    size : (k,) array
-        Values along the axis.
-    off : mapping of str to (k,) array
-        Difference by quantity: a and p0 (largest p) relative, m and n as fractions of a, p and q in relative L2, and
-        stresses (:func:`stress_quantities`) relative to those of the finite elements.
-    mesh : mapping of str to (k,) array
-        Part of the difference that may be an error of the meshes; NaN if not known.
-    failed : mapping of float to str
-        Values along the axis without a solution, and why.
-    """
-
-    name: str
-    size: Array
-    off: Mapping[str, Array]
-    mesh: Mapping[str, Array]
-    failed: Mapping[float, str] = field(default_factory=dict)
 
 
 def along(axis: Axis, entries: Iterable[Sized], name: str = HALF_PLANE) -> Sizes:

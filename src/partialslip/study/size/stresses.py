@@ -8,8 +8,9 @@ from partialslip.fatigue.places import OVER
 from partialslip.output.files import csv_text
 from partialslip.report.answer import scale, with_error
 from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE
-from partialslip.study.size.sizes import DIFFERENCES, Sizes
-from partialslip.study.size.tables import Rows, SizeModel, SizeStudy, marked, mesh_share, size_text
+from partialslip.study.size.law import Sizes
+from partialslip.study.size.sizes import DIFFERENCES
+from partialslip.study.size.tables import Rows, SizeStudy, marked, mesh_share, size_text
 from partialslip.units import Dimension
 
 _SURFACE = "surface"
@@ -56,11 +57,11 @@ def _cells(spot: HotSpot | None, exponent: int, length: int) -> tuple[str, str]:
     return with_error(spot.value, error, exponent), f"{spot.x / 10.0**length:.4g}"
 
 
-def stress_differences_table(study: SizeStudy, model: SizeModel) -> tuple[tuple[str, ...], Rows]:
+def stress_differences_table(study: SizeStudy, model: Sizes) -> tuple[tuple[str, ...], Rows]:
     """Return headings and rows of the relative differences of stresses, by size and place; letters as in
     :func:`partialslip.study.size.tables.differences_table`."""
     part = model.part(stresses_of(study).quantities)
-    sizes, points = part.sizes, {trend.quantity: trend.points for trend in part.trends}
+    sizes, points = part, {trend.quantity: trend.points for trend in part.trends}
     columns = dict.fromkeys(key.partition(".")[0] for key in points)
     rows: Rows = []
     for k, size in enumerate(sizes.size.tolist()):
@@ -75,7 +76,7 @@ def stress_differences_table(study: SizeStudy, model: SizeModel) -> tuple[tuple[
 
 def in_short(study: SizeStudy) -> list[str]:
     """Return by how much the half-plane is off in the largest stresses, and in m and n, a line for each size."""
-    sizes = study.models[0].sizes
+    sizes = study.models[0]
     keys = [key for key in stresses_of(study).quantities if "." not in key]
     lines = []
     for k, size in enumerate(sizes.size.tolist()):
