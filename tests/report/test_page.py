@@ -265,10 +265,10 @@ def test_a_pdf_is_written_on_request(tmp_path, monkeypatch):
     ["run hertz-shear", "score hertz-shear none.csv", "study cost hertz-shear", "study effects hertz-shear",
      "study size hertz-shear --over friction.f=0.1,0.2"],
 )  # fmt: skip
-def test_a_missing_library_is_named_before_anything_is_solved(command, tmp_path, monkeypatch, capsys):
+def test_a_missing_library_is_named_before_anything_is_solved(command, tmp_path, monkeypatch, refused):
     monkeypatch.setitem(sys.modules, "weasyprint", None)
-    assert main([*command.split(), "--pdf", "--out", str(tmp_path / "none")]) == 2
-    assert capsys.readouterr().err == "partialslip: --pdf needs WeasyPrint: pip install 'partialslip[pdf]'\n"
+    said = refused(*command.split(), "--pdf", "--out", str(tmp_path / "none"))
+    assert said == "partialslip: --pdf needs WeasyPrint: pip install 'partialslip[pdf]'\n"
     assert not (tmp_path / "none").exists()
 
 
