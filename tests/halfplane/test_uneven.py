@@ -194,4 +194,4 @@ def test_marching_agrees(sigma):
     ("table", {"e": 2.4e-3}, "must keep the contact within profile.x, between -0.002 and 0.0025 m"),
 ])  # fmt: skip
 def test_bad_input_is_named(profile, load, message):
-    assert message in line_of(contact, made(profile, **load))
+    assert message in line_of(lambda: contact(made(profile, **load)))
