@@ -15,6 +15,7 @@ Every test that is marked as a deliberate fault fails if the fault does not bite
 """
 
 import functools
+import math
 import os
 import signal
 
@@ -25,7 +26,7 @@ import pytest
 from biting import biting
 from refusing import check
 
-from partialslip.cli import main
+from partialslip.cli import consoles, main
 from partialslip_meshes import blocks, gmsh
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -67,6 +68,8 @@ def _biting(request, _remembered_meshes):
 
 
 @pytest.fixture
-def refused(capsys):
-    """Call with arguments: checks that they are refused as bad input, returns the message."""
+def refused(capsys, monkeypatch):
+    """Call with arguments: checks that they are refused as bad input, returns the message. A slow machine adds no line
+    of progress to it."""
+    monkeypatch.setattr(consoles, "EVERY", math.inf)
     return lambda *arguments: check(main(arguments), capsys.readouterr())

@@ -1,6 +1,7 @@
 """The stick-zone map: data, files, figures and a scene's point; and the figures of the documents."""
 
 import csv
+import math
 import re
 import runpy
 from pathlib import Path
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 from outline import texts
 
-from partialslip.cli import main
+from partialslip.cli import consoles, main
 from partialslip.gradual import turns_round
 from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_path.half_cycle import steady
@@ -60,7 +61,8 @@ def scene(*overrides):
 
 @pytest.fixture
 def coarse(monkeypatch):
-    """Coarse maps, for tests independent of the resolution."""
+    """Coarse maps, for tests independent of the resolution; without progress, also on a slow machine."""
+    monkeypatch.setattr(consoles, "EVERY", math.inf)
     monkeypatch.setattr(grid, "_COUNT", 4)
     monkeypatch.setattr(grid, "_COUNT_KINKED", 4)
     monkeypatch.setattr(grid, "_RATIOS", np.linspace(0, 8, 5))
