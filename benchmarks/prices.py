@@ -21,7 +21,7 @@ from accuracy import random_scene
 
 import partialslip
 from partialslip.batch.job import Job, Solved, solve_apart
-from partialslip.batch.ledger import Ledger, key_of
+from partialslip.batch.ledger import Ledger, case_key
 from partialslip.study.cost import prices
 
 # accuracies by order and factorisation
@@ -61,7 +61,7 @@ def measured(ledger: Ledger, cases: list[Job]) -> list[Solved]:
         print(f"{number} of {len(cases)}", end="\r", file=sys.stderr, flush=True)
         if each.key not in ledger:
             ledger.add(each.key, solve_apart(each))
-    return [Solved.of(ledger[each.key]) for each in cases]
+    return [ledger.read(each.key, Solved) for each in cases]
 
 
 def process(*options: str) -> tuple[float, int, str]:
@@ -77,7 +77,7 @@ def process(*options: str) -> tuple[float, int, str]:
 
 def overheads(ledger: Ledger) -> dict[str, float]:
     """Start and closing of a run, and the march: medians of three, as multiples of the start of a case's process."""
-    key = key_of({"overheads": 1})
+    key = case_key({"overheads": 1})
     if key not in ledger:
         found = []
         with tempfile.TemporaryDirectory() as folder:
@@ -134,7 +134,7 @@ def _toml(data: dict[str, Any]) -> str:
 
 def taken(ledger: Ledger, name: str, file: str, *options: str) -> dict[str, Any]:
     """CPU seconds, exit code and last words of a run, and what its results.json says."""
-    key = key_of({"scene": name, "options": options})
+    key = case_key({"scene": name, "options": options})
     if key not in ledger:
         with tempfile.TemporaryDirectory() as folder:
             cpu, code, words = process(file, *options, "--out", folder)

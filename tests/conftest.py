@@ -15,6 +15,7 @@ Every test that is marked as a deliberate fault fails if the fault does not bite
 """
 
 import functools
+import math
 import os
 import signal
 
@@ -23,7 +24,9 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 import pytest
 from biting import biting
+from refusing import check
 
+from partialslip.cli import consoles, main
 from partialslip_meshes import blocks, gmsh
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -62,3 +65,11 @@ def _biting(request, _remembered_meshes):
             yield
     else:
         yield
+
+
+@pytest.fixture
+def refused(capsys, monkeypatch):
+    """Call with arguments: checks that they are refused as bad input, returns the message. A slow machine adds no line
+    of progress to it."""
+    monkeypatch.setattr(consoles, "EVERY", math.inf)
+    return lambda *arguments: check(main(arguments), capsys.readouterr())

@@ -3,9 +3,9 @@
 import re
 import runpy
 from pathlib import Path
-from xml.etree import ElementTree
 
 import pytest
+from outline import texts
 
 import partialslip
 from partialslip.report import answer, rows
@@ -21,10 +21,6 @@ NUMBER = re.compile(r"-?\d+\.\d+(?:e-\d+)?|\d+e-\d+")
 
 def section(name):
     return re.search(rf"^## {name}\n.*?(?=^## |\Z)", PAGE, re.MULTILINE | re.DOTALL)[0]
-
-
-def texts(svg):
-    return ["".join(node.itertext()) for node in ElementTree.fromstring(svg).iter() if node.tag.endswith("}text")]
 
 
 def same(text, other):

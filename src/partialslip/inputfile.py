@@ -55,9 +55,9 @@ def opened(path: Name, most: int, named: str | None = None) -> Iterator[Buffered
         raise InputError(f"{told}: cannot be read: {reason(error)}") from None
 
 
-def check_regular(path: Name, most: int, named: str | None = None) -> None:
+def check_regular(path: Name, most: int) -> None:
     """Raise InputError as :func:`opened`, before another library opens ``path``."""
-    with opened(path, most, named):
+    with opened(path, most):
         pass
 
 

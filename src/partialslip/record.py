@@ -14,11 +14,12 @@ from partialslip.errors import InputError
 from partialslip.halfplane.noise import Noise
 from partialslip.inputfile import read_bytes
 from partialslip.judge import Comparison, Outcome, Verdict, conclude, of_run
+from partialslip.judge.outcome import missed_by
 from partialslip.judge.recorded import conditions_again, judged_again
 from partialslip.judge.reference import reference_among
 from partialslip.origin import Made, versions
 from partialslip.plan import Effect, Plan
-from partialslip.result.record import Number, ResultRecord, plain
+from partialslip.result.record import Number, ResultRecord, record_of
 from partialslip.run import Run
 from partialslip.scene import Scene
 from partialslip.seal import KEY, edited, sealed_text
@@ -79,18 +80,10 @@ class ComparisonRecord(msgspec.Struct, frozen=True):
     @classmethod
     def of(cls, comparison: Comparison) -> "ComparisonRecord":
         """Make the record of ``comparison``."""
-        return cls(
-            outcome=comparison.outcome,
-            errors=plain(comparison.errors),
-            p_nodal=plain(comparison.p_nodal),
-            q_nodal=plain(comparison.q_nodal),
-            p_nodal_max=plain(comparison.p_nodal_max),
-            q_nodal_max=plain(comparison.q_nodal_max),
-            bars=plain(comparison.bars),
-            missed=comparison.missed,
-            verdicts=tuple(verdict.finite for verdict in comparison.verdicts),
-            conditions=tuple(verdict.finite for verdict in comparison.conditions),
+        verdicts, conditions = (
+            tuple(verdict.finite for verdict in some) for some in (comparison.verdicts, comparison.conditions)
         )
+        return record_of(cls, comparison, verdicts=verdicts, conditions=conditions)
 
     def judged_again(
         self, result: ResultRecord, reference: ResultRecord, conditions: tuple[Verdict, ...]
@@ -178,12 +171,8 @@ class Record(msgspec.Struct, frozen=True):
             for name, each in self.comparison.items()
             if reference and name in self.methods
         }
-        every = {name: (*(comparison[name].verdicts if name in comparison else ()), *known[name]) for name in known}
-        missed = tuple(
-            f"{name}: {verdict.text}"
-            for name, verdicts in every.items()
-            for verdict in verdicts
-            if verdict.outcome is Outcome.MISSED
+        missed = missed_by(
+            {name: (*(comparison[name].verdicts if name in comparison else ()), *known[name]) for name in known}
         )
         conclusions = {name: conclude(each.verdicts, each.conditions) for name, each in comparison.items()}
         sound = self.reference == reference_among(self.scene, self.methods)

@@ -17,6 +17,7 @@ from partialslip.frame import frame
 from partialslip.halfplane.method import spacing_error
 from partialslip.halfplane.noise import Noise, noise_of
 from partialslip.judge import Comparison, Conclusion, Outcome, Verdict, compare, conditions, of_run
+from partialslip.judge.outcome import missed_by
 from partialslip.judge.reference import ALL_EFFECTS, reference, reference_among
 from partialslip.methods import METHODS
 from partialslip.plan import Plan, plan, reduced
@@ -142,12 +143,7 @@ class Run(Drawn):
     def missed(self) -> tuple[str, ...]:
         """Missed bars and certificates as text."""
         compared = {name: comparison.verdicts for name, comparison in self.comparisons.items()}
-        return tuple(
-            f"{name}: {verdict.text}"
-            for name, own in self.conditions.items()
-            for verdict in (*compared.get(name, ()), *own)
-            if verdict.outcome is Outcome.MISSED
-        )
+        return missed_by({name: (*compared.get(name, ()), *own) for name, own in self.conditions.items()})
 
     @property
     def passed(self) -> bool:

@@ -3,24 +3,9 @@
 import json
 
 import pytest
+from refusing import check
 
 from partialslip.cli import main
-
-# Wording of the libraries below, which says nothing to whoever wrote the scene.
-FOREIGN = ("Traceback", "Object ", "Number ", "datetime", "str ", "`", "NoneType", "Errno")
-
-
-def check(code, printed):
-    """Assert that a command was refused; return the message."""
-    assert code == 2
-    assert printed.out == ""
-    assert printed.err.startswith("partialslip: ")
-    assert printed.err.endswith("\n")
-    assert len(printed.err.splitlines()) == 1
-    assert printed.err[:-1].isprintable()
-    assert len(printed.err) < 5000
-    assert not [word for word in FOREIGN if word in printed.err]
-    return printed.err
 
 
 @pytest.fixture

@@ -155,15 +155,6 @@ FRDS = {
 }
 
 
-@pytest.mark.parametrize("fault", FRDS)
-def test_frd(rejected, tmp_path, fault):
-    spoil, expected = FRDS[fault]
-    good = FRD.read_text("utf-8")
-    (tmp_path / "t.frd").write_text(spoil(good), "utf-8")
-    if expected:
-        assert expected in rejected(None, ["score", "hertz-shear", "t.frd"])
-
-
 DATS = {
     "empty": (lambda _: "", "no contact stresses; add"),
     "another file": (lambda _: TABLE, "no contact stresses; add"),
@@ -176,13 +167,18 @@ DATS = {
 }
 
 
-@pytest.mark.parametrize("fault", DATS)
-def test_dat(rejected, tmp_path, fault):
-    spoil, expected = DATS[fault]
+@pytest.mark.parametrize(
+    ("path", "fault"),
+    [*((FRD, fault) for fault in FRDS), *((DAT, fault) for fault in DATS)],
+    ids=lambda each: str(each)[-20:],
+)
+def test_results_of_calculix(rejected, tmp_path, path, fault):
+    spoil, expected = (FRDS if path is FRD else DATS)[fault]
     (tmp_path / "t.frd").write_bytes(FRD.read_bytes())
-    (tmp_path / "t.dat").write_text(spoil(DAT.read_text("utf-8")), "utf-8")
+    name = f"t{path.suffix}"
+    (tmp_path / name).write_text(spoil(path.read_text("utf-8")), "utf-8")
     if expected:
-        assert expected in rejected(None, ["score", "hertz-shear", "t.dat"])
+        assert expected in rejected(None, ["score", "hertz-shear", name])
 
 
 def test_dat_without_its_mesh(rejected, tmp_path):

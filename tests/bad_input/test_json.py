@@ -1,10 +1,12 @@
 """One strict reader of JSON: whatever is ambiguous is refused in one line, by every command that reads a file."""
 
 import json
+import re
 from typing import Any
 
 import msgspec
 import pytest
+from refusing import line_of
 
 from partialslip import InputError, load_result, load_rig
 from partialslip.batch.ledger import Ledger, _sealed
@@ -66,10 +68,9 @@ def test_sound_files_are_read_as_they_are(text):
 @pytest.mark.parametrize("what", BAD)
 def test_what_is_ambiguous_is_refused_in_one_line(what):
     text, said = BAD[what]
-    with pytest.raises(InputError, match=f"^file: .*{said}") as caught:
-        decoded(text, Found, "file")
-    assert "\n" not in str(caught.value)
-    assert len(str(caught.value)) < 400
+    told = line_of(decoded, text, Found, "file")
+    assert re.search(f"^file: .*{said}", told)
+    assert len(told) < 400
 
 
 def test_every_number_that_is_written_is_read():
@@ -94,9 +95,7 @@ def test_every_reader_is_strict(name, spoilt, tmp_path):
     read, begin = READERS[name]
     (tmp_path / "meta.toml").write_text('code = "mine"\nversion = "1"\n', "utf-8")
     (tmp_path / name).write_text(begin + spoilt, "utf-8")
-    with pytest.raises(InputError, match=f"{name}: .*(stands twice|must be a number|range|surrogate|deep)") as caught:
-        read(tmp_path / name)
-    assert "\n" not in str(caught.value)
+    assert re.search(f"{name}: .*(stands twice|must be a number|range|surrogate|deep)", line_of(read, tmp_path / name))
 
 
 def test_a_ledger_is_read_strictly(tmp_path):

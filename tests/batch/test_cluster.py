@@ -13,7 +13,7 @@ import partialslip
 from partialslip.batch.cluster import _silence
 from partialslip.batch.job import Job
 from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import sweep, workers
+from partialslip.batch.sweep import work_through, workers
 
 
 @pytest.mark.slow
@@ -42,7 +42,7 @@ def test_a_dask_cluster_goes_on_where_a_worker_is_killed(tmp_path):
                 crew[0].kill()
 
         with workers(address) as executor:
-            sweep([case.task for case in cases], ledger, executor, kill)
+            work_through([case.task for case in cases], ledger, executor, kill)
     finally:
         for process in (*crew, scheduler):
             process.kill()
@@ -81,11 +81,11 @@ from partialslip import load_scene
 from partialslip.cli.ending import ended
 from partialslip.batch.job import Job
 from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import sweep, workers
+from partialslip.batch.sweep import work_through, workers
 def main():
     tasks = [Job(load_scene("hertz-shear"), ("exact",), {"number": n}).task for n in range(int(sys.argv[3]))]
     with workers(sys.argv[1]) as executor:
-        sweep(tasks, Ledger(Path(sys.argv[2])), executor, lambda done, *_: print(done, flush=True))
+        work_through(tasks, Ledger(Path(sys.argv[2])), executor, lambda done, *_: print(done, flush=True))
     return 0
 sys.exit(ended(main))
 """

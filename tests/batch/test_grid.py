@@ -7,6 +7,7 @@ import known
 import made
 import numpy as np
 import pytest
+from refusing import line_of
 
 import partialslip
 from partialslip.batch import grid, job
@@ -168,9 +169,7 @@ def test_a_share_of_the_points_is_checked_by_finite_elements(solved):
     ],
 )
 def test_what_is_refused_before_anything_is_solved(solved, over, more, line):
-    with pytest.raises(partialslip.InputError) as raised:
-        partialslip.sweep(SCENE, over, **{"methods": "exact", **more})
-    assert str(raised.value).startswith(line)
+    assert line_of(partialslip.sweep, SCENE, over, **{"methods": "exact", **more}).startswith(line)
     assert solved == []
 
 

@@ -99,9 +99,8 @@ def test_json_has_no_colours():
     assert ESCAPE not in printed([*EXACT, "--json"], FORCE_COLOR="1")
 
 
-def test_a_shell_without_completion_is_refused(capsys):
-    assert main(["completion", "fish"]) == 2
-    assert "'bash'" in capsys.readouterr().err
+def test_a_shell_without_completion_is_refused(refused):
+    assert "'bash'" in refused("completion", "fish")
 
 
 def completed(script, line):

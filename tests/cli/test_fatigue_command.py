@@ -81,7 +81,6 @@ def test_the_same_request_writes_to_the_same_folder(here, capsys):
          "fretting-aluminium: fatigue.k_finley: unknown key; did you mean 'k_findley'?"),
     ],
 )  # fmt: skip
-def test_bad_input_gets_one_line(here, capsys, arguments, line):
-    assert main(["fatigue", "fretting-aluminium", *arguments]) == 2
-    assert capsys.readouterr().err == f"partialslip: {line}\n"
+def test_bad_input_gets_one_line(here, refused, arguments, line):
+    assert refused("fatigue", "fretting-aluminium", *arguments) == f"partialslip: {line}\n"
     assert not list(here.iterdir())

@@ -311,13 +311,9 @@ def test_what_cannot_be_exported(override, said):
         ([], "--to"),
     ],
 )
-def test_bad_options(options, said, capsys, tmp_path, monkeypatch):
+def test_bad_options(options, said, refused, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert main(["export", SCENE, *options]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert err.count("\n") == 1
-    assert said in err
+    assert said in refused("export", SCENE, *options)
     assert not list(tmp_path.iterdir())
 
 

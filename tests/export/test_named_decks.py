@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from decks import COARSE
 from named_decks import Mail, Table, aster_concepts, moose_blocks
+from refusing import line_of
 
 from partialslip import load_scene, score
 from partialslip.benchmark import read_problems
 from partialslip.benchmark.neutral import files as problem_files
 from partialslip.cli import main
-from partialslip.errors import InputError
 from partialslip.export import export
 from partialslip.export import named_boundaries as naming
 from partialslip.export.aster import aster_files
@@ -303,9 +303,7 @@ def test_command(to, tmp_path, monkeypatch, capsys):
     ],
 )  # fmt: skip
 def test_what_cannot_be_carried(to, overrides, said):
-    with pytest.raises(InputError, match=re.escape(said.format(to))) as caught:
-        export(load_scene(SCENE, overrides), to, **COARSE)
-    assert "\n" not in str(caught.value)
+    assert re.search(re.escape(said.format(to)), line_of(export, load_scene(SCENE, overrides), to, **COARSE))
 
 
 def parsed(files, tmp_path, monkeypatch):

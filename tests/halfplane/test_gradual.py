@@ -5,6 +5,7 @@ from functools import partial
 import numpy as np
 import pytest
 from boundary_elements import march
+from reversed_loads import scene
 
 import partialslip
 from partialslip.gradual import _QF, _SF, _SLOPE, may_turn_round, turns_round
@@ -17,13 +18,6 @@ from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.steady import stick_zone, stick_zones
 from partialslip.halfplane.turning import Turning, half_cycle
 from partialslip.run import default_methods
-
-
-def scene(Qf, sf, *overrides, name="hertz-large-tension"):
-    base = partialslip.load_scene(name)
-    unit, stress = base.friction.f * base.P, base.friction.f * contact(base).p0 / 2
-    loads = f"load.Q=[{-Qf * unit}, {Qf * unit}]", f"load.sigma=[{-sf * stress}, {sf * stress}]"
-    return partialslip.load_scene(name, [*loads, *overrides])
 
 
 def loading_of(its):

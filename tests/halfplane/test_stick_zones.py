@@ -2,10 +2,12 @@
 solver's path."""
 
 import math
+import re
 
 import mpmath as mp
 import numpy as np
 import pytest
+from refusing import line_of
 
 import partialslip
 from partialslip.errors import InputError
@@ -156,9 +158,7 @@ def test_shear_alone_sticks_over_the_contact_of_the_smaller_load():
     ],
 )
 def test_what_is_no_partial_slip_is_refused(f, dQ, dsigma, line):
-    with pytest.raises(InputError, match=f"^{line}") as raised:
-        stick_zone(PRESSED, f, dQ, dsigma)
-    assert "\n" not in str(raised.value)
+    assert re.search(f"^{line}", line_of(stick_zone, PRESSED, f, dQ, dsigma))
 
 
 def test_loads_of_an_array_that_slide_have_no_stick_zone():
@@ -327,9 +327,7 @@ def test_quartic_profile_satisfies_its_consistency_conditions(Qf, sf):
     ],
 )
 def test_pressures_that_no_contact_has_are_refused(function, line):
-    with pytest.raises(InputError, match=f"^pressure.*{line}") as raised:
-        contact_of(function, a=1.0)
-    assert "\n" not in str(raised.value)
+    assert re.search(f"^pressure.*{line}", line_of(contact_of, function, a=1.0))
 
 
 @pytest.mark.parametrize("a", [0.0, -1.0, math.nan, math.inf])
@@ -353,9 +351,7 @@ def test_a_half_width_that_no_contact_has_is_refused(a):
     ],
 )
 def test_tables_that_are_no_profile_are_refused(x, gap, line):
-    with pytest.raises(InputError, match=line) as raised:
-        scene({"kind": "tabulated", "x": x, "gap": gap})
-    assert "\n" not in str(raised.value)
+    assert re.search(line, line_of(scene, {"kind": "tabulated", "x": x, "gap": gap}))
 
 
 def test_a_contact_beyond_its_table_is_refused():

@@ -1,13 +1,15 @@
 """The steady state where slip turns round, as scenes see it: signs, units, energy, room for a mean of Q, stresses."""
 
 import functools
+from functools import partial
 
 import numpy as np
 import pytest
+import reversed_loads
 
 import partialslip
 from partialslip import halfplane
-from partialslip.halfplane import contact, contact_of
+from partialslip.halfplane import contact_of
 from partialslip.halfplane.gradual_path import slips
 from partialslip.halfplane.turning import Turning, half_cycle
 
@@ -20,11 +22,7 @@ def cycle(Qf, sf, pressed=UNIT):
     return half_cycle(pressed, 1.0, 2 * pressed.P * Qf, pressed.p0 * sf)
 
 
-def scene(Qf, sf, *more, name="hertz-shear"):
-    base = partialslip.load_scene(name)
-    limit, stress = base.friction.f * base.P, base.friction.f * contact(base).p0 / 2
-    loads = f"load.Q=[{-Qf * limit!r}, {Qf * limit!r}]", f"load.sigma=[{-sf * stress!r}, {sf * stress!r}]"
-    return partialslip.load_scene(name, [*loads, *more])
+scene = partial(reversed_loads.scene, name="hertz-shear")
 
 
 def exact(*given, **named):

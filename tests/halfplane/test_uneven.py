@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from msgspec import to_builtins
+from refusing import line_of
 
-from partialslip import InputError, parse_scene, run
+from partialslip import parse_scene, run
 from partialslip.halfplane import contact, contact_of, stick_zone
 from partialslip.halfplane.uneven import _Search, press
 
@@ -193,6 +194,4 @@ def test_marching_agrees(sigma):
     ("table", {"e": 2.4e-3}, "must keep the contact within profile.x, between -0.002 and 0.0025 m"),
 ])  # fmt: skip
 def test_bad_input_is_named(profile, load, message):
-    with pytest.raises(InputError) as error:
-        contact(made(profile, **load))
-    assert message in str(error.value)
+    assert message in line_of(lambda: contact(made(profile, **load)))

@@ -1,12 +1,12 @@
 """The live page as a file, without a browser: self-contained, errors in one line."""
 
-import html.parser
 import json
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from outline import Outline
 
 from partialslip.cli import main
 from partialslip.errors import InputError
@@ -18,32 +18,6 @@ from partialslip.halfplane.steady import stick_zones
 from partialslip.live import live_page
 from partialslip.output import place
 from partialslip.scene.reading import load_scene
-
-
-class Outline(html.parser.HTMLParser):
-    """Tags with their attributes, and the text of the elements that have an id or are scripts."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.tags, self.links, self.scripts, self._script = [], [], [], False
-        self.feed(text)
-        self.close()
-
-    def handle_starttag(self, tag, attributes):
-        self.tags.append((tag, dict(attributes)))
-        self.links += [value for key, value in attributes if key in ("href", "xlink:href", "src", "data", "action")]
-        self._script = tag == "script"
-
-    def handle_endtag(self, _):
-        self._script = False
-
-    def handle_data(self, data):
-        if self._script:
-            self.scripts.append(data)
-
-    @property
-    def scene(self):
-        return json.loads(self.scripts[0], parse_constant=lambda token: pytest.fail(token))
 
 
 @pytest.fixture(scope="module")
@@ -145,9 +119,7 @@ def test_scenes_that_it_is_not_for(scene, overrides, says):
         live_page(load_scene(scene, overrides))
 
 
-def test_refused_in_one_line(tmp_path, capsys):
-    assert main(["page", "flat-rounded", "--out", str(tmp_path / "out")]) == 2
-    assert capsys.readouterr().err.splitlines() == [
-        'partialslip: profile.kind = "flat-rounded": must be "hertz" for a live page (closed form for Hertz only)'
-    ]
+def test_refused_in_one_line(tmp_path, refused):
+    said = refused("page", "flat-rounded", "--out", str(tmp_path / "out"))
+    assert 'profile.kind = "flat-rounded": must be "hertz" for a live page (closed form for Hertz only)' in said
     assert not (tmp_path / "out").exists()

@@ -1,10 +1,12 @@
 """Meshes of other tools: what is read is what was written, in every format; what cannot be meant is one line."""
 
 import itertools
+import re
 
 import meshio
 import numpy as np
 import pytest
+from refusing import line_of
 
 from partialslip.errors import InputError, MissingLibraryError
 from partialslip_meshes import block, read
@@ -219,10 +221,9 @@ COUNT = 12
 @pytest.mark.parametrize("case", range(COUNT))
 def test_spoilt_meshes_are_refused_in_one_line(mesh, write, case):
     why, what = list(spoilt(mesh))[case]
-    with pytest.raises(InputError, match=why) as error:
-        read(FIELD, write(**what))
-    assert str(error.value).startswith(f"{FIELD} = '")
-    assert "\n" not in str(error.value)
+    told = line_of(read, FIELD, write(**what))
+    assert re.search(why, told)
+    assert told.startswith(f"{FIELD} = '")
 
 
 def test_all_spoilt_meshes_are_tried(mesh):

@@ -46,8 +46,8 @@ def printed(found, **options):
     ],
 )
 def test_digits_are_those_that_the_error_leaves(value, error, text):
-    assert answer.number(value, error) == text
-    shifted = answer.number(value * 1e-3, error * 1e-3, -3)
+    assert answer.with_error(value, error) == text
+    shifted = answer.with_error(value * 1e-3, error * 1e-3, -3)
     assert shifted == text
 
 

@@ -159,7 +159,7 @@ def test_a_study_of_cost_writes_its_page(tmp_path, monkeypatch):
 
     found = [point("exact", 1e-15, 0.1)]
     found += [point("P4, adapted", 10.0**-k, float(k), dofs=1000 * k) for k in (2, 3, 4)]
-    monkeypatch.setattr(ladder, "measure_costs", lambda *_: ladder.Measured(found, 2))
+    monkeypatch.setattr(ladder, "measure_costs", lambda *_: ladder.MeasuredCosts(found, 2))
     assert main(["study", "cost", "hertz-shear", "--set", "friction.f=0.4", "--out", str(tmp_path)]) == 0
     page = (tmp_path / "report.html").read_text("utf-8")
     assert page.count("<svg") == 3  # costs, phases, sketch
@@ -265,10 +265,10 @@ def test_a_pdf_is_written_on_request(tmp_path, monkeypatch):
     ["run hertz-shear", "score hertz-shear none.csv", "study cost hertz-shear", "study effects hertz-shear",
      "study size hertz-shear --over friction.f=0.1,0.2", "verify"],
 )  # fmt: skip
-def test_a_missing_library_is_named_before_anything_is_solved(command, tmp_path, monkeypatch, capsys):
+def test_a_missing_library_is_named_before_anything_is_solved(command, tmp_path, monkeypatch, refused):
     monkeypatch.setitem(sys.modules, "weasyprint", None)
-    assert main([*command.split(), "--pdf", "--out", str(tmp_path / "none")]) == 2
-    assert capsys.readouterr().err == "partialslip: --pdf needs WeasyPrint: pip install 'partialslip[pdf]'\n"
+    said = refused(*command.split(), "--pdf", "--out", str(tmp_path / "none"))
+    assert said == "partialslip: --pdf needs WeasyPrint: pip install 'partialslip[pdf]'\n"
     assert not (tmp_path / "none").exists()
 
 

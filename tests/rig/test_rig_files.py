@@ -7,6 +7,7 @@ import shutil
 
 import numpy as np
 import pytest
+from refusing import line_of
 
 from partialslip import load_scene, run
 from partialslip.errors import InputError
@@ -76,9 +77,7 @@ def test_the_rig_of_other_bodies_is_refused(file, what):
     else:
         scene = referring(file, *([changes] if isinstance(changes, str) else changes))
     said = f"^{re.escape(str(file))}: this rig has other bodies, supports or materials than {SCENE}; must be made"
-    with pytest.raises(InputError, match=said) as caught:
-        run(scene, ["equivalent"])
-    assert "\n" not in str(caught.value)
+    assert re.search(said, line_of(run, scene, ["equivalent"]))
 
 
 @pytest.mark.parametrize(
@@ -236,11 +235,10 @@ def test_spoiled_files_are_one_line(file, tmp_path, how):
     path = tmp_path / "rig.json"
     shutil.copy(file, path)
     spoil(path)
-    with pytest.raises(InputError, match=said) as caught:
-        run(referring(path), ["equivalent"])
-    assert str(caught.value).startswith(str(path))
-    assert "\n" not in str(caught.value)
-    assert len(str(caught.value)) < 400
+    told = line_of(run, referring(path), ["equivalent"])
+    assert re.search(said, told)
+    assert told.startswith(str(path))
+    assert len(told) < 400
 
 
 @pytest.mark.parametrize(("i", "j", "value"), [(2, 0, 1e300), (2, 0, -1e3), (1, 0, 1e300), (1, 1, -1e9)])
@@ -254,9 +252,7 @@ def test_terms_that_mean_nothing_are_one_line(file, tmp_path, i, j, value):
             data[kind]["yy"][i][j] = data[kind]["yy"][j][i] = value
 
     spoiled(change)(path)
-    with pytest.raises(InputError, match=r"^bodies: must be ") as caught:
-        run(referring(path), ["equivalent"])
-    assert "\n" not in str(caught.value)
+    assert re.search(r"^bodies: must be ", line_of(run, referring(path), ["equivalent"]))
 
 
 def test_files_that_cannot_be_written_are_one_line(tmp_path):

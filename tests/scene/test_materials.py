@@ -3,6 +3,7 @@
 import msgspec
 import numpy as np
 import pytest
+from refusing import line_of
 
 import partialslip
 from partialslip.errors import InputError
@@ -61,9 +62,7 @@ def test_two_bodies_of_one_material_are_alike():
     ],
 )
 def test_what_is_missing_is_named_in_one_line(material, message):
-    with pytest.raises(InputError) as error:
-        scene(**material)
-    assert str(error.value).startswith(message)
+    assert line_of(scene, **material).startswith(message)
 
 
 @pytest.mark.parametrize(("material", "name"), [

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from msgspec.structs import replace
+from refusing import line_of
 
 from partialslip import InputError, load_result, load_scene, run
 from partialslip.cli import main
@@ -131,9 +132,7 @@ def test_one_unit_stands_for_both_columns_and_none_for_that_of_the_scene(tmp_pat
 ])  # fmt: skip
 def test_units_that_contradict_or_are_unknown_are_refused(tmp_path, monkeypatch, text, lines, message):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(InputError) as error:
-        scene_of(Path(), *points(2e-7), text, lines)
-    assert message in str(error.value)
+    assert message in line_of(scene_of, Path(), *points(2e-7), text, lines)
     scene_of(Path(), *points(2e-7), SCENE, ("x [mm], gap [mil]",))  # the scene says what the heading does not
 
 
@@ -238,9 +237,7 @@ def hollow(x):
     (lambda text: text.replace("[1e-3, 1e-6]", "[1e-3, -1e-6]"), "profile.unit[1] = -1e-06: must be > 0.0"),
 ])  # fmt: skip
 def test_bad_keys_are_named(tmp_path, change, message):
-    with pytest.raises(InputError) as error:
-        scene_of(tmp_path, *points(2e-7), change(SCENE))
-    assert message in str(error.value)
+    assert message in line_of(scene_of, tmp_path, *points(2e-7), change(SCENE))
 
 
 @pytest.mark.parametrize(("lines", "message"), [
@@ -248,17 +245,14 @@ def test_bad_keys_are_named(tmp_path, change, message):
     (("1,2", "x"), "pad.csv: line 2: must have two numbers"),
 ])  # fmt: skip
 def test_bad_files_are_named(tmp_path, lines, message):
-    with pytest.raises(InputError) as error:
-        scene_of(tmp_path, *points(2e-7), lines=lines)
-    assert message in str(error.value)
+    assert message in line_of(scene_of, tmp_path, *points(2e-7), lines=lines)
 
 
 def test_points_that_are_not_convex_are_refused_with_the_place(tmp_path):
     x, values = points(1e-7)
-    with pytest.raises(InputError) as error:
-        scene_of(tmp_path, x, values - gap(x) + hollow(x))
-    assert "the points are off any convex gap by" in str(error.value)
-    place = float(str(error.value).split("at x = ")[1].split(" m ")[0])
+    refusal = line_of(scene_of, tmp_path, x, values - gap(x) + hollow(x))
+    assert "the points are off any convex gap by" in refusal
+    place = float(refusal.split("at x = ")[1].split(" m ")[0])
     assert 5e-4 < place < 1.3e-3
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
+from refusing import line_of
 
 import partialslip
 from partialslip.scene import (
@@ -43,10 +44,7 @@ def from_file(*overrides):
 
 
 def line(make):
-    with pytest.raises(partialslip.InputError) as raised:
-        make()
-    assert "\n" not in str(raised.value)
-    return str(raised.value).removeprefix("fretting-aluminium: ")
+    return line_of(make).removeprefix("fretting-aluminium: ")
 
 
 def test_numbers_of_numpy_become_those_of_a_scene_file():

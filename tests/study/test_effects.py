@@ -290,10 +290,9 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("settings", REFUSED)
-def test_what_cannot_be_forced_is_refused_in_one_line(settings, capsys, tmp_path):
+def test_what_cannot_be_forced_is_refused_in_one_line(settings, refused, tmp_path):
     overrides = [part for setting in settings.split(" ") for part in ("--set", setting)]
-    assert main(["run", "hertz-shear", "--with", "fem", "--set", SIZE, *overrides, "--out", str(tmp_path)]) == 2
-    (line,) = capsys.readouterr().err.strip().splitlines()
+    line = refused("run", "hertz-shear", "--with", "fem", "--set", SIZE, *overrides, "--out", str(tmp_path))
     assert REFUSED[settings] in line
     assert "effects" in line
 

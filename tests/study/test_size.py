@@ -16,12 +16,13 @@ import made
 import msgspec
 import numpy as np
 import pytest
+from outline import texts as texts_of
 from size_entries import entries, scene, sized
 
 import partialslip
 from partialslip.batch.job import Job, solve_job
 from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import Task, sweep, workers
+from partialslip.batch.sweep import Task, work_through, workers
 from partialslip.cli import main
 from partialslip.study.size import sizes as size
 from partialslip.study.size import tables
@@ -29,7 +30,7 @@ from partialslip.study.size.axes import axis as read
 from partialslip.study.size.axes import cases as make
 from partialslip.study.size.case import COMPARED_METHODS, Sized, solve_sized
 from partialslip.study.size.figure import grid_svg, size_svg
-from partialslip.study.size.law import Kind, PointStatus, trend
+from partialslip.study.size.law import Kind, PointStatus, Sizes, trend
 
 
 @pytest.mark.parametrize(
@@ -69,10 +70,10 @@ def test_bad_axes_are_refused_in_one_line(text):
 
 
 @pytest.mark.parametrize("values", ["1e5", "1e5,1e5", "0,1e5"])
-def test_a_map_needs_two_values_of_each(values, tmp_path, capsys):
+def test_a_map_needs_two_values_of_each(values, tmp_path, refused):
     command = ["study", "size", "hertz-shear", "--over", "friction.f=0.5,0.9", "--over", f"load.P={values}"]
-    assert main([*command, "--out", str(tmp_path / "map")]) == 2
-    assert capsys.readouterr().err == ("partialslip: --over load.P: must have at least 2 values, all > 0, for a map\n")
+    said = refused(*command, "--out", str(tmp_path / "map"))
+    assert said == "partialslip: --over load.P: must have at least 2 values, all > 0, for a map\n"
 
 
 def test_stars_stand_for_every_table_and_a_for_the_half_planes_half_width():
@@ -98,9 +99,9 @@ def test_a_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
 
     monkeypatch.setattr("partialslip.batch.job.solve_job", counted)
     with ThreadPoolExecutor(1) as executor:
-        sweep([case.task for case in cases[:4]], Ledger(path), executor)
+        work_through([case.task for case in cases[:4]], Ledger(path), executor)
         seen = []
-        sweep([case.task for case in (*cases, broken)], Ledger(path), executor, lambda *at: seen.append(at[:2]))
+        work_through([case.task for case in (*cases, broken)], Ledger(path), executor, lambda *at: seen.append(at[:2]))
     assert solved == [0, 1, 2, 3, 4, 5, 6]
     assert seen == [(4, 7), (5, 7), (6, 7), (7, 7)]
     assert "nothing" in Ledger(path)[broken.key]["error"]
@@ -123,7 +124,7 @@ def test_a_long_sweep_is_handed_over_bit_by_bit(tmp_path):
     tasks = [Task(str(number), lambda number: {"found": number}, number) for number in range(2000)]
     ledger = Ledger(tmp_path / "ledger.jsonl")
     with Counting(2) as executor:
-        sweep(tasks, ledger, executor)
+        work_through(tasks, ledger, executor)
     assert {entry["key"]: entry["found"] for entry in ledger} == {str(number): number for number in range(2000)}
     assert executor.most <= 256
 
@@ -138,7 +139,7 @@ def test_in_this_process_each_case_is_kept_before_the_next_begins(tmp_path):
         return {}
 
     with pytest.raises(KeyboardInterrupt), workers(processes=1) as executor:
-        sweep([Task(str(number), do, number) for number in range(5)], ledger, executor)
+        work_through([Task(str(number), do, number) for number in range(5)], ledger, executor)
     assert known == [0, 1, 2, 3]
 
 
@@ -192,7 +193,7 @@ X = 4.0 * 2.0 ** np.arange(6)  # up to 128
 def made_sizes(off, mesh=0.0, x=X, **more):
     """Return sizes with one change and one error of the mesh for all quantities."""
     off, mesh = (np.broadcast_to(each, x.shape).astype(float) for each in (off, mesh))
-    return size.Sizes("W", x, dict.fromkeys(size.DIFFERENCES, off), dict.fromkeys(size.DIFFERENCES, mesh), **more)
+    return Sizes("W", x, dict.fromkeys(size.DIFFERENCES, off), dict.fromkeys(size.DIFFERENCES, mesh), **more)
 
 
 def test_the_law_of_made_up_sizes_is_found():
@@ -329,7 +330,7 @@ def test_table_csv_and_figure_mark_the_same_points():
     assert "f: fitted" in tables.size_notes(study)
 
     drawn = xml.etree.ElementTree.fromstring(size_svg(study))
-    texts = ["".join(text.itertext()).strip() for text in drawn.iter("{http://www.w3.org/2000/svg}text")]
+    texts = [text.strip() for text in texts_of(size_svg(study))]
     assert {"2", "4", "8", "16", "32", "64", "128", "not solved"} <= set(texts)
     assert {"half-plane, fitted", "half-plane, not fitted"} <= set(texts)
     assert not any("equivalent" in text for text in texts)
@@ -373,8 +374,7 @@ def test_both_half_planes_have_their_laws():
     assert [row[head.index("no equivalent")] for row in rows] == ["must be larger", "too large", "", "", "", ""]
     assert all(len(row) == len(head) for row in rows)
 
-    drawn = xml.etree.ElementTree.fromstring(size_svg(study))
-    texts = ["".join(text.itertext()).strip() for text in drawn.iter("{http://www.w3.org/2000/svg}text")]
+    texts = [text.strip() for text in texts_of(size_svg(study))]
     assert {"half-plane, fitted", "equivalent, fitted", "equivalent, not fitted"} <= set(texts)
 
 

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.cli import main
 from partialslip.run import run
 from partialslip.verify import REQUIREMENTS, case, driver
 from partialslip.verify.driver import verify_suite
@@ -210,14 +209,10 @@ def test_random_scenes_are_summed_up(tmp_path):
 
 
 @pytest.mark.parametrize("content", [None, "no picture"])
-def test_what_is_no_study_is_refused(content, tmp_path, capsys):
+def test_what_is_no_study_is_refused(content, tmp_path, refused):
     (tmp_path / "study").mkdir()
     if content:
         (tmp_path / "study" / "cost.svg").write_text(content, "utf-8")
-    assert main(["verify", "--include", str(tmp_path / "study"), "--out", str(tmp_path / "none")]) == 2
-    printed = capsys.readouterr()
-    assert (
-        printed.err
-        == f"partialslip: --include {tmp_path / 'study'}: must be the folder of a study, with figures (.svg)\n"
-    )
+    said = refused("verify", "--include", str(tmp_path / "study"), "--out", str(tmp_path / "none"))
+    assert said == f"partialslip: --include {tmp_path / 'study'}: must be the folder of a study, with figures (.svg)\n"
     assert not (tmp_path / "none").exists()

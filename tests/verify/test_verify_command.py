@@ -290,11 +290,8 @@ def test_a_finished_run_begins_anew(tmp_path):
         (["--include", "nowhere"], "--include nowhere: must be the folder of a study"),
     ],
 )
-def test_what_it_refuses(arguments, said, tmp_path, capsys):
-    assert main(["verify", *arguments, "--out", str(tmp_path / "none")]) == 2
-    printed = capsys.readouterr()
-    assert printed.err.startswith(f"partialslip: {said}")
-    assert len(printed.err.splitlines()) == 1
+def test_what_it_refuses(arguments, said, tmp_path, refused):
+    assert refused("verify", *arguments, "--out", str(tmp_path / "none")).startswith(f"partialslip: {said}")
     assert not (tmp_path / "none").exists()
 
 

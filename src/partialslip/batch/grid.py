@@ -13,8 +13,7 @@ import numpy as np
 
 from partialslip.batch.job import Job, Sharing, Solved
 from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import Progress, Task, workers
-from partialslip.batch.sweep import sweep as work_through
+from partialslip.batch.sweep import Progress, Task, work_through, workers
 from partialslip.errors import InputError
 from partialslip.fatigue import HotSpot
 from partialslip.fatigue.spots import off_by

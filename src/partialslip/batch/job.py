@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from partialslip.batch.ledger import key_of, scene_content
+from partialslip.batch.ledger import case_key, scene_content
 from partialslip.batch.sweep import Task
 from partialslip.errors import InputError, PartialslipError
 from partialslip.fatigue import HotSpot, hot_spots
@@ -50,7 +50,7 @@ class Job:
     @property
     def key(self) -> str:
         """Key that identifies the job and the source files."""
-        return key_of({**msgspec.to_builtins(self), "scene": scene_content(self.scene)})
+        return case_key({**msgspec.to_builtins(self), "scene": scene_content(self.scene)})
 
     @property
     def task(self) -> Task:

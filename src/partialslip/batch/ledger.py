@@ -186,7 +186,7 @@ def _sum(text: bytes) -> bytes:
     return hashlib.sha256(text).hexdigest()[:16].encode()
 
 
-def key_of(data: Mapping[str, Any]) -> str:
+def case_key(data: Mapping[str, Any]) -> str:
     """Return the key of plain ``data``: a checksum of the data and of the source files."""
     text = json.dumps({"data": data, "code": source_checksum()}, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]

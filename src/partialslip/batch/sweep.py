@@ -33,7 +33,9 @@ class Task(NamedTuple):
     argument: Any
 
 
-def sweep(tasks: Collection[Task], ledger: Ledger, executor: Executor, progress: Progress = lambda *_: None) -> None:
+def work_through(
+    tasks: Collection[Task], ledger: Ledger, executor: Executor, progress: Progress = lambda *_: None
+) -> None:
     """Do the ``tasks`` that are not in the ``ledger``, and add the outcomes in the order of completion.
 
     Parameters

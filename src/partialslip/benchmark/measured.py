@@ -67,13 +67,12 @@ def quantities(scene: Scene, result: Result, places: tuple[float, ...], a: float
     return {key: each._replace(value=float(each.value), scale=float(each.scale)) for key, each in found}
 
 
-def answer_of(problem: Problem, result: Result, unknowns: int | None = None) -> Answer:
+def answer_of(problem: Problem, result: Result) -> Answer:
     """Answer to ``problem`` from a ``result``, with what it has of the targets."""
     values = quantities(problem.scene, result, problem.places, problem.targets["a"].value)
     return Answer(
         values={key: values[key].value for key in problem.targets if key in values},
         cpu_s=result.cost.cpu_s,
-        unknowns=unknowns,
         memory_mb=result.cost.peak_rss_mb,
     )
 

@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from partialslip.cli.common import (
+    Commands,
     add_columns,
     add_out,
     add_pdf,
-    check_folder,
-    check_report,
+    check_output,
     columns_of,
     print_written,
     results_folder,
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from partialslip.benchmark import Problem, Submission
-    from partialslip.cli.common import Commands
 
 _LACKING = "an answer without a headline target"
 _PROBLEMS = "numbers of problems, or patterns such as PS-0*, separated by commas (default: all)"
@@ -28,7 +27,7 @@ _PROBLEMS = "numbers of problems, or patterns such as PS-0*, separated by commas
 _TITLED = 144  # display: columns of a terminal from which on a table has the titles of the problems
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     benchmark = commands.add_parser(
         "benchmark",
@@ -121,7 +120,7 @@ def _run(options: argparse.Namespace) -> int:
     from partialslip.benchmark.submission import META
     from partialslip.cli.consoles import counting, output
 
-    check_folder(options.out)
+    check_output(options)
     installed(options.code)
     some, name = chosen_problems(options.problems), f"benchmark-{options.code}"
     with (
@@ -237,8 +236,7 @@ def _build(options: argparse.Namespace) -> int:
     from partialslip.output.files import write_files, write_texts
     from partialslip.output.page import check_pdf, write_pdf
 
-    check_folder(options.out)
-    check_report(options)
+    check_output(options)
     some = chosen_problems(options.problems)
     submissions = [read_submission(folder, read_problems()) for folder in options.folders]
     names = badge_names(submissions)

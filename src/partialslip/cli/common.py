@@ -5,10 +5,11 @@ import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import partialslip
 from partialslip.errors import InputError
+from partialslip.groups import grouped
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -16,11 +17,10 @@ if TYPE_CHECKING:
     from partialslip.batch.ledger import Ledger
     from partialslip.origin import Made
     from partialslip.output.place import Place, Request
-    from partialslip.report.page import Section
     from partialslip.run import Run
     from partialslip.scene import Scene
 
-    Commands = argparse._SubParsersAction[Any]
+Commands: TypeAlias = "argparse._SubParsersAction[Any]"
 
 _MANY_STEPS = 500  # cost: load steps of a path that take longer than all else
 
@@ -105,37 +105,27 @@ def print_long_path(scene: "Scene", methods: Sequence[str]) -> None:
         )
 
 
-def check_report(options: argparse.Namespace) -> None:
-    """Raise MissingLibraryError if ``--pdf`` is given and a library is missing, before anything is solved."""
-    if options.pdf:
+def check_output(options: argparse.Namespace) -> None:
+    """Check, before anything is solved, that files can be written.
+
+    Raises
+    ------
+    InputError
+        If ``--out`` is empty.
+    MissingLibraryError
+        If ``--pdf`` is given and a library is missing.
+    """
+    if options.out == "":
+        raise InputError("--out '': must name a folder")
+    if "pdf" in options and options.pdf:
         from partialslip.output.page import check_pdf
 
         check_pdf("--pdf")
 
 
-def write_study(
-    options: argparse.Namespace,
-    folder: Path,
-    title: str,
-    scene: "Scene",
-    sections: "list[Section]",
-) -> list[Path]:
-    """Write the report of a study into ``folder``. Returns the paths."""
-    from partialslip.report.files import write_page
-    from partialslip.report.page import study_page
-
-    return write_page(study_page(title, scene, origin(options), sections), folder, pdf=options.pdf)
-
-
 def add_verbose(parser: argparse.ArgumentParser, what: str) -> None:
     """Add ``--verbose``, which also prints ``what``, to ``parser``."""
     parser.add_argument("-v", "--verbose", action="store_true", help=f"also print {what}")
-
-
-def check_folder(out: str | None) -> None:
-    """Raise InputError if ``out``, the value of ``--out``, is empty."""
-    if out == "":
-        raise InputError("--out '': must name a folder")
 
 
 # Options that do not change the results.
@@ -269,10 +259,7 @@ def print_written(files: list[Path], console: "Console", elsewhere: str = "") ->
 
 def _by_folder(files: list[Path]) -> dict[Path, list[str]]:
     """Return the names of ``files`` by folder."""
-    folders: dict[Path, list[str]] = {}
-    for file in files:
-        folders.setdefault(file.parent, []).append(file.name)
-    return folders
+    return grouped((file.parent, file.name) for file in files)
 
 
 def _why(elsewhere: str) -> str:

@@ -3,12 +3,9 @@
 import argparse
 import sys
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import partialslip
-
-if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
+from partialslip.cli.common import Commands
 
 _SHELLS = ("bash", "zsh")
 _SCENES = {"bash": "_partialslip_scenes", "zsh": "_partialslip_scenes"}
@@ -28,7 +25,7 @@ _partialslip_scenes() {{
 }
 
 
-def add(commands: "Commands", root: argparse.ArgumentParser) -> None:
+def add(commands: Commands, root: argparse.ArgumentParser) -> None:
     """Add the command to ``commands``; it completes the commands and options of ``root``."""
     completion = commands.add_parser(
         "completion",

@@ -2,32 +2,30 @@
 
 import argparse
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
 from partialslip.cli.common import (
+    Commands,
     add_out,
     add_pdf,
     add_scene,
     add_verbose,
-    check_folder,
-    check_report,
+    check_output,
     methods_of,
-    print_written,
-    results_folder,
     seconds,
     study_ledger,
-    write_study,
 )
+from partialslip.cli.findings import Findings, present
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
-    from partialslip.study.cost.ladder import CostPoint
+    from partialslip.study.cost.ladder import CostPoint, MeasuredCosts
 
 
-def add(topics: "Commands") -> None:
+def add(topics: Commands) -> None:
     """Add the topic to the parser of ``topics``."""
     cost = topics.add_parser(
         "cost",
@@ -57,77 +55,74 @@ def add(topics: "Commands") -> None:
 
 
 def _cost(options: argparse.Namespace) -> int:
-    check_folder(options.out)
-    check_report(options)
+    check_output(options)
     if options.repeats < 1:
         raise InputError(f"--repeats {options.repeats}: must be >= 1")
     budget = math.inf if options.budget == "none" else seconds(options.budget, " or none")
     scene = partialslip.load_scene(options.scene, options.overrides)
+    name = f"{scene.name}-cost"
 
-    from partialslip.cli.consoles import output, working
-    from partialslip.output.files import csv_text, write_texts
-    from partialslip.output.tables import print_table
-    from partialslip.report.page import Section
+    from partialslip.cli.consoles import working
     from partialslip.study.cost import ladder
-    from partialslip.study.cost.figure import errors_svg, phases_svg
 
     methods = methods_of(options.methods, ladder.LADDERS)
     peers = ladder.read_peers(Path(options.peers), scene.name) if options.peers is not None else []
-    name = f"{scene.name}-cost"
     known = {"peers": options.peers and Path(options.peers), "methods": sorted({*methods}), "budget": str(budget)}
 
     def usual() -> dict[str, object]:
         return {"methods": sorted(ladder.LADDERS), "budget": str(seconds(options.default("budget")))}
 
-    with results_folder(options, "study cost", name, scene, known, usual) as place:
-        folder = place.path
+    def find(folder: Path) -> Findings:
         ledger = study_ledger(folder)
         with working(name) as tell:
-            found, left = ladder.measure_costs(
+            measured = ladder.measure_costs(
                 scene, ledger, options.repeats, lambda *state: tell(_progress(*state)), methods, budget
             )
-        texts = {
-            "cost.csv": csv_text(*ladder.cost_table([*found, *peers])),
-            "cost.svg": errors_svg(found, peers, f"{scene.name}: error against cost"),
-            "phases.svg": phases_svg(found, f"{scene.name}: where the time goes"),
-        }
-        front = ladder.front(found)
-        best = {id(point) for point in front}
-        head = ["series (* on the front)", "setting", "m, in a", "n, in a", "q, norm", "unknowns", "CPU s", "process"]
-        rows = [_row(point, id(point) in best) for point in [*found, *peers]]
-        slopes = [
-            [each, *(_number(value, ".2f") for value in of.values())] for each, of in ladder.slopes(found).items()
-        ]
-        exponents = ["exponent against unknowns", "m, n", "q", "CPU"]
-        heading = f"{scene.name}: what accuracy costs" + (
-            f", medians of {options.repeats}" if options.repeats > 1 else ""
-        )
-        against = _against(found, peers)
-        if left:
-            against.insert(0, f"{left} settings were left: {options.budget} of CPU are spent (--budget)")
-        sections = [
-            Section("Errors and costs", against, texts["cost.svg"], "", head, rows, (1,)),
-            Section("Growth with the unknowns", (), texts["phases.svg"], "", exponents, slopes),
-        ]
-        files = [
-            ledger.path,
-            *write_texts(folder, texts),
-            *write_study(options, folder, heading, scene, sections),
-        ]
-    console = output()
-    console.print(heading, style="bold", markup=False)
-    console.print(ladder.SETTING, markup=False)
+        return _evaluated(options, scene.name, measured, peers, ledger.path)
+
+    return present(options, "study cost", name, scene, find, known, usual)
+
+
+def _evaluated(
+    options: argparse.Namespace, name: str, measured: "MeasuredCosts", peers: "list[CostPoint]", ledger: Path
+) -> Findings:
+    """Draw, write and tabulate what was ``measured`` of the scene ``name``."""
+    from partialslip.output.files import csv_text, write_texts
+    from partialslip.report.page import Section
+    from partialslip.study.cost import ladder
+    from partialslip.study.cost.figure import errors_svg, phases_svg
+
+    found, left = measured
+    texts = {
+        "cost.csv": csv_text(*ladder.cost_table([*found, *peers])),
+        "cost.svg": errors_svg(found, peers, f"{name}: error against cost"),
+        "phases.svg": phases_svg(found, f"{name}: where the time goes"),
+    }
+    front = ladder.front(found)
+    best = {id(point) for point in front}
+    head = ["series (* on the front)", "setting", "m, in a", "n, in a", "q, norm", "unknowns", "CPU s", "process"]
+    rows = [_row(point, id(point) in best) for point in [*found, *peers]]
+    slopes = [[each, *(_number(value, ".2f") for value in of.values())] for each, of in ladder.slopes(found).items()]
+    exponents = ["exponent against unknowns", "m, n", "q", "CPU"]
+    heading = f"{name}: what accuracy costs" + (f", medians of {options.repeats}" if options.repeats > 1 else "")
+    against = _against(found, peers)
+    if left:
+        against.insert(0, f"{left} settings were left: {options.budget} of CPU are spent (--budget)")
+    sections = [
+        Section("Errors and costs", against, texts["cost.svg"], "", head, rows, (1,)),
+        Section("Growth with the unknowns", (), texts["phases.svg"], "", exponents, slopes),
+    ]
     if options.verbose:
-        print_table(console, head, rows, words=(0, 1))
-        print_table(console, exponents, slopes)
+        tables: list[str | Section] = [replace(section, title="") for section in sections]
     else:
-        print_table(console, ["series", *head[1:]], [_row(point, False) for point in front], words=(0, 1))
         beaten = sum(bool(point.errors) for point in found) - len(front)  # exact is what errors are measured against
-        console.print(f"{beaten} other settings cost more for the error: --verbose, or cost.csv")
-    for line in against:
-        console.print(line, soft_wrap=True, markup=False)
-    print_written(files, console, place.elsewhere)
-    return 0
+        shown = [_row(point, False) for point in front]
+        tables = [
+            Section("", headings=["series", *head[1:]], rows=shown, words=(1,)),
+            f"{beaten} other settings cost more for the error: --verbose, or cost.csv",
+        ]
+    files = [ledger, *write_texts(ledger.parent, texts)]
+    return Findings(files, heading, [ladder.SETTING, *tables, *against], heading, sections)
 
 
 def _progress(done: int, total: int, setting: str, left: float) -> str:

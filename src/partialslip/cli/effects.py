@@ -1,25 +1,14 @@
 """partialslip study effects: changes and costs by each effect of a scene."""
 
 import argparse
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import partialslip
-from partialslip.cli.common import (
-    add_out,
-    add_pdf,
-    add_scene,
-    check_folder,
-    check_report,
-    print_written,
-    results_folder,
-    write_study,
-)
-
-if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
+from partialslip.cli.common import Commands, add_out, add_pdf, add_scene, check_output
+from partialslip.cli.findings import Findings, present
 
 
-def add(topics: "Commands") -> None:
+def add(topics: Commands) -> None:
     """Add the topic to the parser of ``topics``."""
     effects = topics.add_parser(
         "effects",
@@ -37,35 +26,31 @@ def add(topics: "Commands") -> None:
 
 
 def _effects(options: argparse.Namespace) -> int:
-    check_folder(options.out)
-    check_report(options)
+    check_output(options)
     scene = partialslip.load_scene(options.scene, options.overrides)
+    name = f"{scene.name}-effects"
 
-    from partialslip.cli.consoles import output, working
+    from partialslip.cli.consoles import working
     from partialslip.output.files import json_text, write_texts
-    from partialslip.output.tables import print_table
+    from partialslip.report.page import Section
     from partialslip.study.effects import worth
     from partialslip.study.effects.figure import effects_svg
 
-    name = f"{scene.name}-effects"
-    with results_folder(options, "study effects", name, scene) as (folder, elsewhere), working(name) as tell:
-        study = worth.study_effects(scene, tell)
-        texts = {
-            "effects.json": json_text(worth.effects_record(study)),
-            "effects.csv": worth.effects_csv(study),
-            "effects.svg": effects_svg(study),
-        }
-        files = [
-            *write_texts(folder, texts),
-            *write_study(
-                options, folder, f"{scene.name}: effects", scene, worth.effects_sections(study, texts["effects.svg"])
-            ),
+    def find(folder: Path) -> Findings:
+        with working(name) as tell:
+            study = worth.study_effects(scene, tell)
+            texts = {
+                "effects.json": json_text(worth.effects_record(study)),
+                "effects.csv": worth.effects_csv(study),
+                "effects.svg": effects_svg(study),
+            }
+            files = write_texts(folder, texts)
+        printed: list[str | Section] = [
+            Section("", (), "", "", *worth.changes_table(study), (1,)),
+            Section("", (), "", "", *worth.costs_table(study)),
+            *worth.refusals(study),
         ]
-    console = output()
-    console.print(worth.effects_heading(study), style="bold", markup=False)
-    print_table(console, *worth.changes_table(study), words=(0, 1))
-    print_table(console, *worth.costs_table(study))
-    for line in worth.refusals(study):
-        console.print(line, soft_wrap=True, markup=False)
-    print_written(files, console, elsewhere)
-    return 0
+        sections = worth.effects_sections(study, texts["effects.svg"])
+        return Findings(files, worth.effects_heading(study), printed, f"{scene.name}: effects", sections)
+
+    return present(options, "study effects", name, scene, find)

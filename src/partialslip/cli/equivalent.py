@@ -1,23 +1,23 @@
 """partialslip equivalent: characterise the bodies of a scene as half-planes with other data."""
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_out, add_scene, check_folder, print_written, results_folder
+from partialslip.cli.common import Commands, add_out, add_scene, check_output
+from partialslip.cli.findings import Findings, present
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
-    from rich.console import Console
-
-    from partialslip.cli.common import Commands
     from partialslip.equivalent import Share
+    from partialslip.report.page import Section
 
 RIG, SCENE = "rig.json", "half-planes.toml"
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     equivalents = commands.add_parser(
         "equivalent",
@@ -36,10 +36,10 @@ def add(commands: "Commands") -> None:
 
 
 def _equivalent(options: argparse.Namespace) -> int:
-    check_folder(options.out)
+    check_output(options)
     scene = partialslip.load_scene(options.scene, options.overrides)
 
-    from partialslip.cli.consoles import output, working
+    from partialslip.cli.consoles import working
     from partialslip.equivalent import in_words, shares, stand_ins
     from partialslip.output.files import write_files
     from partialslip.rig import write_rig
@@ -50,31 +50,32 @@ def _equivalent(options: argparse.Namespace) -> int:
         rig = rig_of(scene)
         found = stand_ins(scene, rig, tell)
     named = found.scene.replace(name=f"{scene.name}-half-planes", title=f"Half-planes that act like {scene.name}"[:200])
-    with results_folder(options, "equivalent", f"{scene.name}-equivalent", scene) as (folder, elsewhere):
-        files = write_files(
-            folder,
-            {RIG: lambda path: write_rig(rig, path), SCENE: lambda path: path.write_text(scene_toml(named), "utf-8")},
-        )
-    console = output()
-    if rig.note:
-        console.print(f"{scene.name}: {rig.note}", markup=False)
-    console.print(f"{scene.name}: {in_words(scene, found.scene, found.data)}", markup=False)
-    _print_shares(shares(rig, scene), console)
-    console.print(f"The data hold where |x| <= {scene.units.length(rig.reach)}.", markup=False)
-    print_written(files, console, elsewhere)
-    return 0
+    printed: list[str | Section] = [
+        *([f"{scene.name}: {rig.note}"] if rig.note else []),
+        f"{scene.name}: {in_words(scene, found.scene, found.data)}",
+        "\nThe half-planes gain, where tractions act at x = 0:",
+        _gains(shares(rig, scene)),
+        f"The data hold where |x| <= {scene.units.length(rig.reach)}.",
+    ]
+
+    def find(folder: Path) -> Findings:
+        files: dict[str, Callable[[Path], object]] = {
+            RIG: lambda path: write_rig(rig, path),
+            SCENE: lambda path: path.write_text(scene_toml(named), "utf-8"),
+        }
+        return Findings(write_files(folder, files), printed=printed)
+
+    return present(options, "equivalent", f"{scene.name}-equivalent", scene, find)
 
 
-def _print_shares(found: "Sequence[Share]", console: "Console") -> None:
-    """Print what loads add to half-planes, in SI units with prefixes."""
-    from partialslip.output.tables import print_table
+def _gains(found: "Sequence[Share]") -> "Section":
+    """Return the table of what loads add to half-planes, in SI units with prefixes."""
+    from partialslip.report.page import Section
 
-    head = ("load", "curvature", "tilt", "tension", "its slope")
-    console.print("\nThe half-planes gain, where tractions act at x = 0:", markup=False)
     rows = []
     for share in found:
         name, size = ("1 MPa of sigma", 1e6) if share.load == "sigma" else (f"1 kN/m of {share.load}", 1e3)
         gains = [(share.curvature, "1/m", 1.0), (share.tilt, "rad", 1.0), (share.sigma, "MPa", 1e6)]
         gains.append((share.sigma_slope, "MPa/mm", 1e9))
         rows.append((name, *(f"{size * gain / unit:.4g} {label}" for gain, label, unit in gains)))
-    print_table(console, head, rows)
+    return Section("", headings=("load", "curvature", "tilt", "tension", "its slope"), rows=rows)

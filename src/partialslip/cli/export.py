@@ -2,19 +2,15 @@
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_out, add_scene, print_written, request
+from partialslip.cli.common import Commands, add_out, add_scene, print_written, request
 from partialslip.errors import InputError
-
-if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
 
 _TO = ("calculix", "abaqus", "gmsh", "moose", "code-aster")
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     exports = commands.add_parser(
         "export",

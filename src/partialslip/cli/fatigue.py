@@ -1,31 +1,21 @@
 """partialslip fatigue: assess a scene by fatigue criteria."""
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import (
-    add_method,
-    add_out,
-    add_pdf,
-    add_scene,
-    check_folder,
-    check_report,
-    print_written,
-    results_folder,
-    write_study,
-)
+from partialslip.cli.common import Commands, add_method, add_out, add_pdf, add_scene, check_output
+from partialslip.cli.findings import Findings, present
 from partialslip.errors import InputError
 from partialslip.methods import REFERENCES
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
-    from partialslip.cli.common import Commands
     from partialslip.fatigue import Assessment
+    from partialslip.report.page import Section
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     fatigue = commands.add_parser(
         "fatigue",
@@ -56,14 +46,13 @@ def add(commands: "Commands") -> None:
 
 
 def _fatigue(options: argparse.Namespace) -> int:
-    check_folder(options.out)
-    check_report(options)
+    check_output(options)
     if options.distance is not None:
         options.overrides.append(f"fatigue.distance={options.distance}")
     scene = partialslip.load_scene(options.scene, options.overrides)
 
-    from partialslip.cli.consoles import output, working
-    from partialslip.fatigue import assess
+    from partialslip.cli.consoles import working
+    from partialslip.fatigue import assess, tables
     from partialslip.fatigue.criteria import check_distance, chosen
     from partialslip.fatigue.page import drawn, sections, write_assessment
     from partialslip.run import with_stresses
@@ -80,36 +69,33 @@ def _fatigue(options: argparse.Namespace) -> int:
     def usual() -> dict[str, object]:
         return {"criterion": chosen(scene, None), "method": None}
 
-    with (
-        results_folder(options, "fatigue", name, scene, known, usual, True) as (folder, elsewhere),
-        working(name) as tell,
-    ):
-        result = with_stresses(scene, options.method, tell)
-        tell("criteria")
-        found = assess(scene, result, names, body=options.body)
-        tell("figures")
-        figures = drawn(found)
-        files = write_assessment(found, figures, folder)
-        files += write_study(options, folder, f"{scene.name}: fatigue", scene, sections(found, figures))
-    _print(found, console := output())
-    print_written(files, console, elsewhere)
-    return 0
+    def find(folder: Path) -> Findings:
+        with working(name) as tell:
+            result = with_stresses(scene, options.method, tell)
+            tell("criteria")
+            found = assess(scene, result, names, body=options.body)
+            tell("figures")
+            figures = drawn(found)
+            files = write_assessment(found, figures, folder)
+        heading = tables.assessment_heading(found)
+        return Findings(files, heading, _printed(found), f"{scene.name}: fatigue", sections(found, figures))
+
+    return present(options, "fatigue", name, scene, find, known, usual, True)
 
 
-def _print(found: "Assessment", console: "Console") -> None:
-    """Print the tables of an assessment."""
+def _printed(found: "Assessment") -> "list[str | Section]":
+    """Return the tables of an assessment and the lines between them."""
     from partialslip.fatigue import tables
-    from partialslip.output.tables import print_table
+    from partialslip.report.page import Section
 
-    console.print(tables.assessment_heading(found), style="bold", soft_wrap=True, markup=False)
+    parts = list[str | Section]()
     if found.ratings:
-        print_table(console, tables.RATINGS, tables.rating_rows(found), words=(0, 1))
+        parts.append(Section("", headings=tables.RATINGS, rows=tables.rating_rows(found), words=(1,)))
     if rows := tables.average_rows(found):
         distance = found.scene.units.length(found.scene.fatigue.distance or 0.0)
-        console.print(f"Averaged over {distance} from the surface:", markup=False)
-        print_table(console, tables.AVERAGES, rows, words=(0, 1))
+        parts.append(f"Averaged over {distance} from the surface:")
+        parts.append(Section("", headings=tables.AVERAGES, rows=rows, words=(1,)))
     if found.edges:
-        console.print(f"Ends of the contact, {tables.edge_units(found)}:", markup=False)
-        print_table(console, tables.EDGES, tables.edge_rows(found))
-    for line in tables.assessment_notes(found):
-        console.print(line, soft_wrap=True, markup=False)
+        parts.append(f"Ends of the contact, {tables.edge_units(found)}:")
+        parts.append(Section("", headings=tables.EDGES, rows=tables.edge_rows(found)))
+    return [*parts, *tables.assessment_notes(found)]

@@ -1,17 +1,15 @@
 """partialslip map: draw the stick zones over all loads."""
 
 import argparse
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import partialslip
-from partialslip.cli.common import add_out, add_scene, check_folder, print_written, results_folder
+from partialslip.cli.common import Commands, add_out, add_scene, check_output
+from partialslip.cli.findings import Findings, present
 from partialslip.errors import InputError
 
-if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
 
-
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     maps = commands.add_parser(
         "map",
@@ -27,20 +25,18 @@ def add(commands: "Commands") -> None:
 
 
 def _map(options: argparse.Namespace) -> int:
-    check_folder(options.out)
+    check_output(options)
     if options.scene is None and options.overrides:
         raise InputError(f"--set {options.overrides[0]}: must have a SCENE, for example hertz-shear")
     scene = None if options.scene is None else partialslip.load_scene(options.scene, options.overrides)
     name = "map" if scene is None else f"{scene.name}-map"
 
-    from partialslip.cli.consoles import output, working
+    from partialslip.cli.consoles import working
     from partialslip.map import place, stick_map, varying_map, write_map
 
-    with results_folder(options, "map", name, scene) as (folder, elsewhere), working(name) as tell:
-        data = varying_map(scene, tell) if scene and scene.presses_anew else stick_map(scene, tell)
-        files = write_map(data, folder)
-    console = output()
-    for line in place(data):
-        console.print(line, soft_wrap=True, markup=False)
-    print_written(files, console, elsewhere)
-    return 0
+    def find(folder: Path) -> Findings:
+        with working(name) as tell:
+            data = varying_map(scene, tell) if scene and scene.presses_anew else stick_map(scene, tell)
+            return Findings(write_map(data, folder), printed=place(data))
+
+    return present(options, "map", name, scene, find)

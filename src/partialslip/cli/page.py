@@ -1,18 +1,15 @@
 """partialslip page: a live page with sliders for loads and friction."""
 
 import argparse
-from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import add_out, add_scene, check_folder, print_written, results_folder
-
-if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
+from partialslip.cli.common import Commands, add_out, add_scene, check_output
+from partialslip.cli.findings import Findings, present
 
 _SCENE = "fretting-aluminium"
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     page = commands.add_parser(
         "page",
@@ -29,15 +26,12 @@ def add(commands: "Commands") -> None:
 
 
 def _page(options: argparse.Namespace) -> int:
-    check_folder(options.out)
+    check_output(options)
     scene = partialslip.load_scene(options.scene, options.overrides)
 
-    from partialslip.cli.consoles import output
     from partialslip.live import live_page
     from partialslip.output.files import write_texts
 
     text = live_page(scene)
-    with results_folder(options, "page", f"{scene.name}-page", scene) as (folder, elsewhere):
-        files = write_texts(folder, {"page.html": text})
-    print_written(files, output(), elsewhere)
-    return 0
+    name = f"{scene.name}-page"
+    return present(options, "page", name, scene, lambda folder: Findings(write_texts(folder, {"page.html": text})))

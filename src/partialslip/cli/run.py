@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import partialslip
 from partialslip.allowance import Allowance
 from partialslip.cli.common import (
+    Commands,
     add_out,
     add_pdf,
     add_scene,
     add_verbose,
-    check_folder,
-    check_report,
+    check_output,
     folder_if_wanted,
     methods_of,
     origin,
@@ -24,14 +24,13 @@ from partialslip.cli.common import (
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
     from partialslip.result.state import State
     from partialslip.run import Run
     from partialslip.scene import Scene
     from partialslip.study.cost.prices import Price
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     runs = commands.add_parser(
         "run",
@@ -74,8 +73,7 @@ def _run(options: argparse.Namespace) -> int:
     from partialslip.methods import METHODS
 
     methods = None if options.methods is None else methods_of(options.methods, METHODS)
-    check_folder(options.out)
-    check_report(options)
+    check_output(options)
     if options.save == "":
         raise InputError("--save '': must name a file")
     scene = partialslip.load_scene(options.scene, options.overrides)

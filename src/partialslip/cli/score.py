@@ -4,18 +4,18 @@ import argparse
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import partialslip
 from partialslip.bars import LARGEST, Asked, asked
 from partialslip.cli.common import (
+    Commands,
     add_columns,
     add_out,
     add_pdf,
     add_scene,
     add_verbose,
-    check_folder,
-    check_report,
+    check_output,
     columns_of,
     folder_if_wanted,
     origin,
@@ -24,13 +24,10 @@ from partialslip.cli.common import (
 from partialslip.errors import InputError
 from partialslip.methods import REFERENCES
 
-if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
-
 _T = TypeVar("_T")
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     scores = commands.add_parser(
         "score",
@@ -74,8 +71,7 @@ def add(commands: "Commands") -> None:
 
 
 def _score(options: argparse.Namespace) -> int:
-    check_folder(options.out)
-    check_report(options)
+    check_output(options)
     factors = _numbers(options.factors, float, "--factors", "three numbers, for example 1e-3,1e6,1e6", 3)
     at = () if options.at is None else _numbers(options.at, int, "--at", "two whole numbers, for example 3,4", 2)
     bar = None if options.bar is None else _bar(options.bar)
@@ -88,9 +84,9 @@ def _score(options: argparse.Namespace) -> int:
         if options.file is not None:
             raise InputError(f"--template {options.file}: must go without a file: remove {options.file}")
         from partialslip.halfplane import contact
-        from partialslip.score.csvfile import template
+        from partialslip.score.csvfile import csv_template
 
-        sys.stdout.write(template(scene, contact(scene).a))
+        sys.stdout.write(csv_template(scene, contact(scene).a))
         return 0
     if options.file is None:
         raise InputError("FILE: missing: must be a file with tractions; --template prints a table to fill in")

@@ -1,32 +1,23 @@
 """partialslip study size: half-planes against finite elements over sizes of bodies."""
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import (
-    add_out,
-    add_pdf,
-    add_scene,
-    check_folder,
-    check_report,
-    print_written,
-    results_folder,
-    study_ledger,
-    write_study,
-)
+from partialslip.cli.common import Commands, add_out, add_pdf, add_scene, check_output, study_ledger
+from partialslip.cli.findings import Findings, present
 from partialslip.errors import InputError
 
 if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
-    from partialslip.output.place import Place
     from partialslip.scene import Scene
     from partialslip.study.size.axes import Axis
+    from partialslip.study.size.case import Sized
 
 _WORDS = ("half-planes", "unit", "stresses")  # headings of columns of words
 
 
-def add(topics: "Commands") -> None:
+def add(topics: Commands) -> None:
     """Add the topic to the parser of ``topics``."""
     size = topics.add_parser(
         "size",
@@ -58,8 +49,7 @@ def add(topics: "Commands") -> None:
 
 
 def _size(options: argparse.Namespace) -> int:
-    check_folder(options.out)
-    check_report(options)
+    check_output(options)
     if options.processes is not None and options.processes < 1:
         raise InputError(f"--processes {options.processes}: must be >= 1")
     if len(options.over) > 2:
@@ -71,49 +61,49 @@ def _size(options: argparse.Namespace) -> int:
     for each in axes if len(axes) > 1 else []:
         if len(set(each.values)) < 2 or min(each.values) <= 0:
             raise InputError(f"--over {each.name}: must have at least 2 values, all > 0, for a map")
-    with results_folder(options, "study size", f"{scene.name}-size", scene) as place:
-        return _swept(options, scene, axes, place)
+    name = f"{scene.name}-size"
+
+    def find(folder: Path) -> Findings:
+        from partialslip.batch.sweep import workers
+        from partialslip.cli.consoles import counting
+        from partialslip.study.size import sizes
+
+        ledger = study_ledger(folder)
+        with counting(name) as progress, workers(options.cluster, options.processes) as executor:
+            entries = sizes.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
+        return _evaluated(scene, axes, entries, ledger.path)
+
+    return present(options, "study size", name, scene, find)
 
 
-def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", place: "Place") -> int:
-    from partialslip.batch.sweep import workers
-    from partialslip.cli.consoles import counting, output
+def _evaluated(scene: "Scene", axes: "list[Axis]", entries: "list[Sized]", ledger: Path) -> Findings:
+    """Draw, write and tabulate the ``entries`` of a ledger."""
     from partialslip.output.files import csv_text, write_texts
-    from partialslip.output.tables import print_table
     from partialslip.plan import asks_for_stresses
     from partialslip.report.page import Section
     from partialslip.study.size import sizes, stresses, tables
     from partialslip.study.size.figure import grid_svg, size_svg
 
-    folder = place.path
-    ledger = study_ledger(folder)
-    name = f"{scene.name}-size"
-    with counting(name) as progress, workers(options.cluster, options.processes) as executor:
-        entries = sizes.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
-    console = output()
-    texts = {"cases.csv": csv_text(*sizes.case_table(axes, entries))}
+    texts, heading = {"cases.csv": csv_text(*sizes.case_table(axes, entries))}, ""
     sections = list[Section]()
     if len(axes) == 1:
         study = tables.size_study(scene, axes[0], entries)
         ends, stress = study.part(sizes.DIFFERENCES), stresses.stresses_of(study)
         texts |= {"points.csv": tables.points_csv(study), "laws.csv": tables.laws_csv(study)}
         texts |= {"stresses.csv": stresses.stresses_csv(study)} if study.spots else {}
-        console.print(tables.size_heading(study), style="bold", markup=False)
-        for name, part in (("size.svg", ends), ("stress.svg", stress)):
-            if part.trends:
-                texts[name] = size_svg(part)
+        texts |= {name: size_svg(part) for name, part in (("size.svg", ends), ("stress.svg", stress)) if part.trends}
+        heading = tables.size_heading(study)
         found = [(each.title, tables.differences_table(ends, each)) for each in ends.models]
         found += [("Stresses", stresses.largest_table(study))]
         found += [
             (f"{each.title} in stresses", stresses.stress_differences_table(study, each)) for each in stress.models
         ]
         found += [("Laws", tables.laws_table(study)), ("Sizes needed", tables.needed_table(study))]
-        for title, (headings, rows) in found:
-            if rows:
-                words = tuple(k for k in (1,) if headings[k] in _WORDS)
-                console.print(f"\n{title}", style="bold", markup=False)
-                print_table(console, headings, rows, (0, *words))
-                sections.append(Section(title, (), "", "", headings, rows, words))
+        sections = [
+            Section(title, (), "", "", headings, rows, (1,) if headings[1] in _WORDS else ())
+            for title, (headings, rows) in found
+            if rows
+        ]
         lines = [*stresses.in_short(study), *tables.size_notes(study)]
     else:
         for quantity in (*sizes.DIFFERENCES, *sizes.stress_quantities(entries)):
@@ -122,10 +112,12 @@ def _swept(options: argparse.Namespace, scene: "Scene", axes: "list[Axis]", plac
             texts[f"map-{quantity}.svg"] = grid_svg(*grid, (names[0], names[1]), f"{scene.name}: change of {quantity}")
         lines = tables.case_remarks(axes, entries)
     lines += [] if asks_for_stresses(scene) else [stresses.NOT_ASKED]
-    for line in lines:
-        console.print(line, soft_wrap=True, markup=False)
     figures = [Section(name.removesuffix(".svg"), (), text) for name, text in texts.items() if name.endswith(".svg")]
-    sections = [*figures, *sections, *([Section("Notes", lines)] if lines else [])]
-    page = write_study(options, folder, f"{scene.name}: size of the bodies", scene, sections)
-    print_written([ledger.path, *write_texts(folder, texts), *page], console, place.elsewhere)
-    return 1 if any(entry.error for entry in entries) else 0
+    return Findings(
+        [ledger, *write_texts(ledger.parent, texts)],
+        heading,
+        [*sections, *lines],
+        f"{scene.name}: size of the bodies",
+        [*figures, *sections, *([Section("Notes", lines)] if lines else [])],
+        code=1 if any(entry.error for entry in entries) else 0,
+    )

@@ -1,14 +1,10 @@
 """partialslip study: solve many cases of a scene and evaluate them together."""
 
-from typing import TYPE_CHECKING
-
 from partialslip.cli import cost, effects, size
-
-if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
+from partialslip.cli.common import Commands
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     study = commands.add_parser(
         "study",

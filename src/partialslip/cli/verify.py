@@ -1,17 +1,13 @@
 """partialslip verify: judge the methods on shipped scenes, hard cases or random scenes, and write a report."""
 
 import argparse
-from typing import TYPE_CHECKING
 
-from partialslip.cli.common import add_method, add_out, add_pdf, add_verbose, check_folder, check_report, print_written
-
-if TYPE_CHECKING:
-    from partialslip.cli.common import Commands
+from partialslip.cli.common import Commands, add_method, add_out, add_pdf, add_verbose, check_output, print_written
 
 _SUITES = ("quick", "full", "book", "stress")
 
 
-def add(commands: "Commands") -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     verify = commands.add_parser(
         "verify",
@@ -53,8 +49,7 @@ def add(commands: "Commands") -> None:
 
 
 def _verify(options: argparse.Namespace) -> int:
-    check_folder(options.out)
-    check_report(options)
+    check_output(options)
 
     from partialslip.cli.consoles import counting, output
     from partialslip.verify.driver import verify_suite

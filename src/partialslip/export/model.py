@@ -14,7 +14,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.export.load_steps import TOUCH, Step, slips_under_pressure, steps_of
-from partialslip.export.parts import Part, flat_parts
+from partialslip.export.parts import MeshedBody, flat_parts
 from partialslip.halfplane.contact import contact
 from partialslip.scene import Pressing, Scene
 from partialslip.units import Units
@@ -38,7 +38,7 @@ class Model:
     ----------
     name : str
         Of the scene.
-    parts : two of Part
+    parts : two of MeshedBody
         The lower and the upper body.
     f : float
         Coefficient of friction.
@@ -57,7 +57,7 @@ class Model:
     """
 
     name: str
-    parts: tuple[Part, Part]
+    parts: tuple[MeshedBody, MeshedBody]
     f: float
     steps: tuple[Step, ...]
     a: float
@@ -82,7 +82,7 @@ class Model:
         """Convert the model from SI to ``units``."""
         of = units.from_si
 
-        def converted(part: Part) -> Part:
+        def converted(part: MeshedBody) -> MeshedBody:
             return replace(part, mesh=replace(part.mesh, points=of(part.mesh.points, "m")), E=of(part.E, "Pa"))
 
         lower, upper = self.parts

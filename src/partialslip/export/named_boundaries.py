@@ -14,7 +14,7 @@ from partialslip.arrays import Array, Indices
 from partialslip.errors import InputError
 from partialslip.export.deck import deck_heading
 from partialslip.export.model import Model
-from partialslip.export.parts import Part
+from partialslip.export.parts import MeshedBody
 from partialslip.scene import Scene
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ def heading(scene: Scene, model: Model, what: str, notes: tuple[str, ...]) -> li
     return [f"# {line}" for line in (told[0], *warning, *told[1:], *notes)]
 
 
-def _framed(upper: Part) -> tuple["QuadMesh", tuple[str, str]]:
+def _framed(upper: MeshedBody) -> tuple["QuadMesh", tuple[str, str]]:
     """Mesh of the ``upper`` body with the held lines as one or two, and their names along x and y. What is held along x
     is all that is held along y, or nothing of it."""
     along_x, along_y = upper.held
@@ -114,8 +114,8 @@ def _framed(upper: Part) -> tuple["QuadMesh", tuple[str, str]]:
     return replace(upper.mesh, lines=rest | merged), (next(iter(frames)), list(frames)[-1])
 
 
-def _pulls(lower: Part, to: str) -> dict[str, float]:
-    """Traction along x on the lines of :attr:`Part.pull` under a unit tension: the normal of each."""
+def _pulls(lower: MeshedBody, to: str) -> dict[str, float]:
+    """Traction along x on the lines of :attr:`MeshedBody.pull` under a unit tension: the normal of each."""
     free = ("right",) if lower.pulled else [name for name in lower.mesh.lines if name not in lower.held[0]]
     found = {}
     for name in free:

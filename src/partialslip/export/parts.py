@@ -20,7 +20,7 @@ _CORNERS = 1e-3  # accuracy: largest change of the contact by the elements at co
 
 
 @dataclass(frozen=True)
-class Part:
+class MeshedBody:
     """A body in plane strain.
 
     Parameters
@@ -90,7 +90,7 @@ class Part:
 def flat_parts(
     scene: Scene, a: float, reach: float, width: float, sizes: Mapping[float, float], growth: float, along: float,
     stiffer: float = 1.0,
-) -> tuple[Part, Part]:  # fmt: skip
+) -> tuple[MeshedBody, MeshedBody]:  # fmt: skip
     """The lower and the upper body of ``scene``, both below the line y = 0, on which their contact lines lie.
 
     A pad is flat along the contact line, and has its true shape beyond.
@@ -121,10 +121,16 @@ def flat_parts(
     shapes = parts_of(scene, a)
     constants = map(_in_plane_strain, scene.material.bodies)
     lower, upper = (
-        Part(shape.name, _mesh(shape, a, reach, width, _times(shape.fineness, sizes), growth, shape.fineness * along),
-             stiffer * E, nu, _held(shape), shape.pulled)
+        MeshedBody(
+            shape.name,
+            _mesh(shape, a, reach, width, _times(shape.fineness, sizes), growth, shape.fineness * along),
+            stiffer * E,
+            nu,
+            _held(shape),
+            shape.pulled,
+        )
         for shape, (E, nu) in zip(shapes, constants, strict=True)
-    )  # fmt: skip
+    )
     return lower, upper
 
 

@@ -169,7 +169,7 @@ def compare(
     own, scene = bars or {}, as_scene(scene)
     wanted = asked(accuracy)
     usual = {key: Bar(bar) for key, bar in wanted.bars.items()} if wanted else {}
-    applied = {key: beside(bar, key, reference) for key, bar in {**usual, **own}.items()}
+    applied = {key: plus_estimate(bar, key, reference) for key, bar in {**usual, **own}.items()}
     unknown = reference_of(scene).unknown
     every = measures(result, reference, scene, unknown)
     verdicts = [decide(each, applied.get(each.quantity), result) for each in every]
@@ -178,7 +178,7 @@ def compare(
     return Comparison((*verdicts, regime), conditions(result), *nodal)
 
 
-def beside(bar: Bar, quantity: str, reference: Result) -> Bar:
+def plus_estimate(bar: Bar, quantity: str, reference: Result) -> Bar:
     """Return the bar plus the error estimate of the ``reference``.
 
     The estimate's share of the state at the beginning does not count: every method is given the same state. Neither

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 
 from partialslip.bars import LEAST_SHEAR
-from partialslip.judge.comparison import beside
+from partialslip.judge.comparison import plus_estimate
 from partialslip.judge.verdict import NO_BAR, Bar, Outcome, Verdict, judged
 from partialslip.result import Result
 
@@ -33,7 +33,7 @@ def estimate_verdicts(verdicts: Iterable[Verdict], reference: Result) -> Iterato
         if verdict.estimate is None or verdict.error is None or unknown:
             continue
         least = max(_ROUNDING.get(verdict.quantity, 1e-9), _NOTHING * (verdict.bar or 0.0))
-        bar = beside(Bar(max(MOST * verdict.estimate, least)), verdict.quantity, reference)
+        bar = plus_estimate(Bar(max(MOST * verdict.estimate, least)), verdict.quantity, reference)
         outcome = Outcome.NOT_JUDGED if bar.value is None else judged(verdict.error, bar.value)
         yield Verdict(
             f"{ESTIMATE}{verdict.quantity}",

@@ -52,7 +52,7 @@ def norm_errors(traction: Traction, reference: Traction, f: float, keys: tuple[s
     }
 
 
-def resultants(traction: Traction, keys: tuple[str, ...]) -> dict[str, float]:
+def resultants_over_cells(traction: Traction, keys: tuple[str, ...]) -> dict[str, float]:
     """Return integrals of p, p_1 or q over all cells of the ``traction``, N/m, by key; ``keys`` names them."""
     cells = np.unique(np.concatenate([traction.breaks, [] if traction.cells is None else traction.cells]))
     sums = means(partial(fields, traction, keys=keys), cells, cells) @ np.diff(cells)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip.judge.means import means, moment, norm_errors, resultants
+from partialslip.judge.means import means, moment, norm_errors, resultants_over_cells
 from partialslip.result import Result, Traction
 from partialslip.scene import Scene
 
@@ -97,7 +97,7 @@ def _measured(result: Result, reference: Result, scene: Scene) -> Iterator[_Valu
     pressures = ("p",) if of.p1 is None and to.p1 is None else ("p_1", "p")
     levels = ("q1", "q2") if of.values.levels and to.values.levels else ()
     errors = norm_errors(of, to, f, (*pressures, "q", *levels))
-    sums = resultants(of, (*pressures, "q"))
+    sums = resultants_over_cells(of, (*pressures, "q"))
     applied = dict(zip(("p_1", "p"), scene.end_pressing, strict=True))
     for key in pressures:
         yield _apart(key.replace("p", "P"), "P", applied[key].P / scene.P, sums[key] / scene.P)

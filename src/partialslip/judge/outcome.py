@@ -130,5 +130,15 @@ def of_run(compared: Mapping[str, Conclusion], missed: Iterable[str], hold: Mapp
     return Conclusion(_outcome(bool(missed), passed), missed, whole.unjudged, whole.asked)
 
 
+def missed_by(verdicts: Mapping[str, Iterable[Verdict]]) -> tuple[str, ...]:
+    """Return missed ``verdicts``, by method, as text."""
+    return tuple(
+        f"{name}: {verdict.text}"
+        for name, some in verdicts.items()
+        for verdict in some
+        if verdict.outcome is Outcome.MISSED
+    )
+
+
 def _outcome(missed: bool, passed: bool) -> Outcome:
     return Outcome.MISSED if missed else Outcome.PASSED if passed else Outcome.NOT_JUDGED

@@ -13,7 +13,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_table import table
-from partialslip.map.grid import Line, stick_map
+from partialslip.map.grid import MapLine, stick_map
 from partialslip.output.labels import label_places
 from partialslip.output.page import template
 from partialslip.scene import Hertz, Scene
@@ -150,7 +150,7 @@ def _lines(top: float) -> dict[str, Any]:
     return {"m": labelled[:count], "n": labelled[count:], "border": _listed(border), "top": float(top)}
 
 
-def _points(line: Line, top: float) -> Array:
+def _points(line: MapLine, top: float) -> Array:
     """Return the points (k, 2) of a line on the map and slightly beyond."""
     on = (line.Qf <= 1) & (line.sf <= 1.5 * top)
     return np.column_stack([line.Qf[on], line.sf[on]])

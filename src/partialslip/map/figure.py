@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.map.grid import StickMap
+from partialslip.map.grid import Point, StickMap
 from partialslip.output.labels import CROSSING, label_lines
 from partialslip.output.svg import svg
 
@@ -34,9 +34,8 @@ def map_svg(data: StickMap) -> str:
         axes.fill_between([], [], [], hatch=_HATCH, fc="none", ec="black", lw=0, label=_ONE_STEP)
         avoided = np.column_stack(data.border[1:])  # no label on the border, nor on the scene's loads
         if data.point:
-            place = data.point.Qf, data.point.sf
-            axes.plot(*place, "*", ms=15, mfc="white", mec="black", clip_on=False, zorder=5, label="the scene's loads")
-            avoided = np.vstack([avoided, place])
+            mark_point(axes, data.point)
+            avoided = np.vstack([avoided, data.point.place])
         axes.tick_params(pad=9)  # room for the mark of a scene without dQ or dsigma, on an axis
         axes.set_title(data.scene.name if data.scene else "hertz", loc="left", fontsize=10)
         figure.legend(loc="outside lower left", ncols=2, frameon=False, fontsize=9)
@@ -45,6 +44,11 @@ def map_svg(data: StickMap) -> str:
         draw_lines(axes, ((of, at, np.column_stack([Qf, sf])) for of, lines in found for at, Qf, sf in lines), avoided)
 
     return svg(draw, _SIZE)
+
+
+def mark_point(axes: "Axes", point: Point) -> None:
+    """Mark the ``point`` of a scene, above all that the map shows."""
+    axes.plot(*point.place, "*", ms=15, mfc="white", mec="black", clip_on=False, zorder=6, label="the scene's loads")
 
 
 def draw_lines(

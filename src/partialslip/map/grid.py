@@ -51,7 +51,7 @@ class LoadedZones(NamedTuple):
     turned: Mask
 
 
-class Line(NamedTuple):
+class MapLine(NamedTuple):
     """Line of scaled loads ``Qf`` and ``sf`` (points,) of constant m or n, ``at``, as a fraction of a."""
 
     at: float
@@ -65,18 +65,17 @@ class Point:
 
     Parameters
     ----------
-    Qf, sf : float
-        Absolute values of the scaled loads.
+    place : (float, float)
+        Absolute values of the scaled loads along the two axes of the map.
     mirrored : bool
         Whether dQ and dsigma differ in sign; m and n are then swapped on the map.
     exact : Result or None
-        Result of the exact method; None if it does not hold.
+        Result of the exact method; None if it does not hold, or there is no closed form.
     missing : str
-        Why it does not hold.
+        Why.
     """
 
-    Qf: float
-    sf: float
+    place: tuple[float, float]
     mirrored: bool
     exact: Result | None
     missing: str = ""
@@ -90,9 +89,9 @@ class StickMap:
     ----------
     grid : LoadedZones
         Stick zones over the loads, (rows of equal sf, columns of equal Qf).
-    m_lines, n_lines : list of Line
+    m_lines, n_lines : list of MapLine
         Lines of equal m and of equal n.
-    border : Line
+    border : MapLine
         Border between small and large tension, where m = a.
     curves : LoadedZones
         (curves of equal Qf, points), the point on the border included.
@@ -107,9 +106,9 @@ class StickMap:
     """
 
     grid: LoadedZones
-    m_lines: list[Line]
-    n_lines: list[Line]
-    border: Line
+    m_lines: list[MapLine]
+    n_lines: list[MapLine]
+    border: MapLine
     curves: LoadedZones
     turns: LoadedZones
     scene: Scene | None = None
@@ -142,7 +141,7 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
         raise InputError(f"load.P = {scene.load.P}: must be one number for a map over dQ and dsigma")
     pressed = contact(scene)
     point, missing = _point(scene, pressed)
-    top = max(_TOP, math.ceil(1.2 * point.sf)) if point else _TOP
+    top = max(_TOP, math.ceil(1.2 * point.place[1])) if point else _TOP
     data = _mapped(pressed.shape, top, progress)
     return replace(data, scene=scene, pressed=pressed, point=point, missing=missing)
 
@@ -170,7 +169,7 @@ def _mapped(shape: Shape, top: float, progress: Callable[[str], None]) -> StickM
     )
 
 
-def _m_lines(m: float, shape: Shape) -> tuple[Line, Line]:
+def _m_lines(m: float, shape: Shape) -> tuple[MapLine, MapLine]:
     """Return the lines of equal m for small and large tension.
 
     n runs from m (dsigma or dQ is zero) to -m (no stick zone is left). The loads are explicit functions of the stick
@@ -178,18 +177,18 @@ def _m_lines(m: float, shape: Shape) -> tuple[Line, Line]:
     """
     c = m * _half_widths(0.0, 1.0)
     small, large = (shape.conditions(1 - m + 0 * c, c, s + 0 * c) for s in (1, -1))
-    return Line(m, small.Qf, small.sf), Line(m, large.Qf, large.sf)
+    return MapLine(m, small.Qf, small.sf), MapLine(m, large.Qf, large.sf)
 
 
-def _n_line(n: float, shape: Shape) -> Line:
+def _n_line(n: float, shape: Shape) -> MapLine:
     """Return the line of equal n: m runs from |n| to 1 (small tension), and back (large tension)."""
     c = _half_widths(max(n, 0.0), (1 + n) / 2)
     c, s = np.concatenate([c, c[-2::-1]]), np.repeat([1, -1], [len(c), len(c) - 1])
     loads = shape.conditions(np.maximum(1 + n - 2 * c, 0.0), c, s)
-    return Line(n, loads.Qf, loads.sf)
+    return MapLine(n, loads.Qf, loads.sf)
 
 
-def _lines(once: list[Line], of: str, shape: Shape) -> list[Line]:
+def _lines(once: list[MapLine], of: str, shape: Shape) -> list[MapLine]:
     """Return lines of equal m or n under gradual loads: the lines of a single step, ``once``, and in place of their
     parts where the table of gradual zones has others, lines through a fine grid of gradual zones."""
     if not isinstance(shape, Hertz):
@@ -200,15 +199,15 @@ def _lines(once: list[Line], of: str, shape: Shape) -> list[Line]:
     fine = _zones(Qf, sf, shape)
     contours = contour_generator(Qf, sf, np.where(fine.turned, np.nan, getattr(fine.zone, of)))
     levels = sorted({line.at for line in once})
-    there = [Line(at, *np.asarray(line, float).T) for at in levels for line in contours.lines(at)]
+    there = [MapLine(at, *np.asarray(line, float).T) for at in levels for line in contours.lines(at)]
     parts = [part for line in once for part in _parts(line, ~_tabled(line, shape))]
     parts += [part for line in there for part in _parts(line, _tabled(line, shape))]
     return [line for at in levels for line in _joined([part for part in parts if part.at == at])]
 
 
-def _joined(parts: list[Line]) -> list[Line]:
+def _joined(parts: list[MapLine]) -> list[MapLine]:
     """Return lines in which ``parts`` of lines, whose ends are next to each other, are one."""
-    lines: list[Line] = []
+    lines: list[MapLine] = []
     for part in sorted(parts, key=lambda part: -len(part.Qf)):
         points = np.column_stack([part.Qf, part.sf])
         while True:
@@ -219,18 +218,18 @@ def _joined(parts: list[Line]) -> list[Line]:
             line, way, turned = found
             lines = [other for other in lines if other is not line]
             points = np.concatenate([np.column_stack(line[1:])[::way], points[::turned]])
-        lines.append(Line(part.at, *points.T))
+        lines.append(MapLine(part.at, *points.T))
     return lines
 
 
-def _gap(join: tuple[Line, int, int], points: Array) -> float:
+def _gap(join: tuple[MapLine, int, int], points: Array) -> float:
     """Return the distance on the map from the end of a line, in one way, to the beginning of ``points``, in one way."""
     line, way, turned = join
     Qf, sf = np.column_stack(line[1:])[::way][-1] - points[::turned][0]
     return math.hypot(Qf, sf / _TOP)
 
 
-def _tabled(line: Line, shape: Shape) -> Mask:
+def _tabled(line: MapLine, shape: Shape) -> Mask:
     """Whether slip turns round at the points of a ``line``, and the table of gradual zones has them."""
     on = (line.Qf >= 0) & (line.Qf < 1) & (line.sf >= 0)
     Qf, sf = np.where(on, line.Qf, 0), np.where(on, line.sf, 0)
@@ -240,11 +239,11 @@ def _tabled(line: Line, shape: Shape) -> Mask:
     return result
 
 
-def _parts(line: Line, kept: Mask) -> list[Line]:
+def _parts(line: MapLine, kept: Mask) -> list[MapLine]:
     """Return the parts of a ``line`` whose points are ``kept``."""
     cuts = np.flatnonzero(np.diff(kept)) + 1
     numbers = (part for part in np.split(np.arange(len(kept)), cuts) if kept[part[0]] and len(part) > 1)
-    return [Line(line.at, line.Qf[part], line.sf[part]) for part in numbers]
+    return [MapLine(line.at, line.Qf[part], line.sf[part]) for part in numbers]
 
 
 def _half_widths(low: float, high: float) -> Array:
@@ -283,4 +282,4 @@ def _point(scene: Scene, pressed: Contact) -> tuple[Point | None, str]:
     if sf > _HIGHEST:
         return None, f"dsigma = {scene.units.labelled(load.dsigma, 'Pa')} is more than {_HIGHEST:g} f p0"
     why = reference(scene).unknown.get("m", "")
-    return Point(Qf, sf, load.dQ * load.dsigma < 0, None if why else exact, why), ""
+    return Point((Qf, sf), load.dQ * load.dsigma < 0, None if why else exact, why), ""

@@ -19,8 +19,7 @@ from partialslip.halfplane.mean_pressure import Mean
 from partialslip.halfplane.steady import stick_zones
 from partialslip.halfplane.varying import closed_form
 from partialslip.judge.reference import reference
-from partialslip.map.grid import require_friction
-from partialslip.result import Result
+from partialslip.map.grid import Point, require_friction
 from partialslip.run import run
 from partialslip.scene import Pressing, Scene
 
@@ -28,29 +27,6 @@ _COUNT = 50  # accuracy: steps along either axis
 _COUNT_KINKED = 15  # accuracy: the same for a pressure with corners, which is slower
 _PURPOSE = "for a map over dP and dQ"
 _ROUNDING = 1e-9  # accuracy: lengths in a
-
-
-@dataclass(frozen=True)
-class VaryingPoint:
-    """Place of a scene on the map over dP and dQ.
-
-    Parameters
-    ----------
-    P_change, Q_change : float
-        \\|dP\\|/P and \\|dQ\\|/(f P), P being the larger one.
-    mirrored : bool
-        Whether dQ and dsigma differ in sign; m and n are then swapped on the map.
-    exact : Result or None
-        Result of the exact method; None if there is no closed form.
-    missing : str
-        Why there is no closed form that holds.
-    """
-
-    P_change: float
-    Q_change: float
-    mirrored: bool
-    exact: Result | None
-    missing: str
 
 
 @dataclass(frozen=True)
@@ -70,7 +46,7 @@ class VaryingMap:
     regime : (rows, columns) array of str
         "small tension" or "large tension": both ends slip. "no slip": no end slips. "part of the cycle": an end slips
         at most during part of the cycle, and there is no closed form. "sliding".
-    point : VaryingPoint or None
+    point : Point or None
         Place of the scene; None if the contact slides.
     """
 
@@ -82,7 +58,7 @@ class VaryingMap:
     m: Array
     n: Array
     regime: npt.NDArray[np.str_]
-    point: VaryingPoint | None
+    point: Point | None
 
     @property
     def ratio(self) -> float:
@@ -172,7 +148,7 @@ def _slides(scene: Scene, dP: Array) -> Array:
     return result
 
 
-def _point(scene: Scene) -> VaryingPoint | None:
+def _point(scene: Scene) -> Point | None:
     if scene.slides:
         return None
     load, (one, other) = scene.load, (P for P, _ in scene.end_pressing)
@@ -181,4 +157,4 @@ def _point(scene: Scene) -> VaryingPoint | None:
     )
     exact = None if missing else run(scene, ["exact"]).results["exact"]
     dP, dQ = abs(other - one) / scene.P, abs(load.dQ) / (scene.friction.f * scene.P)
-    return VaryingPoint(dP, dQ, load.dQ * load.dsigma < 0, exact, missing)
+    return Point((dP, dQ), load.dQ * load.dsigma < 0, exact, missing)

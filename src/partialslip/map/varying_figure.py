@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.map.figure import draw_lines
+from partialslip.map.figure import draw_lines, mark_point
 from partialslip.map.grid import M_LEVELS, N_LEVELS
 from partialslip.map.varying import VaryingMap
 from partialslip.output.svg import svg
@@ -51,10 +51,8 @@ def varying_svg(data: VaryingMap) -> str:
         edges = [np.column_stack([dP, sticks]), np.column_stack([dP, slides])]
         avoided = np.vstack([*edges, *filter(len, border.allsegs[0])])
         if data.point:
-            place = data.point.P_change, data.point.Q_change
-            axes.plot(*place, "*", ms=15, mfc="white", mec="black", clip_on=False, ls="", zorder=6,
-                      label="the scene's loads")  # fmt: skip
-            avoided = np.vstack([avoided, place])
+            mark_point(axes, data.point)
+            avoided = np.vstack([avoided, data.point.place])
         figure.legend(loc="outside lower left", ncols=2, frameon=False, fontsize=9)
         figure.draw_without_rendering()  # label_lines needs the final size of the axes
         draw_lines(axes, _all_lines(axes, data), avoided, _CROSSING)

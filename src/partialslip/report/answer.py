@@ -101,9 +101,11 @@ def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
         return
     errors = [_estimate(result, key) * result.a for key in "mn"]
     exponent, label = _unit(run, result.a, "m")
-    ends = [number(end, error, exponent) for end, error in zip((-result.m, result.n), errors, strict=True)]
+    ends = [with_error(end, error, exponent) for end, error in zip((-result.m, result.n), errors, strict=True)]
     yield "stick zone", f"[{ends[0]}, {ends[1]}] {label}"
-    shares = [number(end / result.a, error / result.a) for end, error in zip((result.m, result.n), errors, strict=True)]
+    shares = [
+        with_error(end / result.a, error / result.a) for end, error in zip((result.m, result.n), errors, strict=True)
+    ]
     yield "m, n", f"{shares[0]} a, {shares[1]} a"
     if result.permanent is None:
         return
@@ -113,7 +115,7 @@ def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
     if math.isnan(result.permanent[0]):
         yield "never slips", "no point: the stick zone moves across the contact"
     else:
-        ends = [number(end, error, exponent) for end, error in zip(result.permanent, errors, strict=True)]
+        ends = [with_error(end, error, exponent) for end, error in zip(result.permanent, errors, strict=True)]
         yield "never slips", f"[{ends[0]}, {ends[1]}] {label}"
 
 
@@ -142,13 +144,13 @@ def _scatter(deviations: Mapping[str, float | None]) -> str:
 def _contact(run: Run, result: Result) -> Iterator[tuple[str, str]]:
     error = _estimate(result, "a")
     exponent, label = _unit(run, result.a, "m")
-    yield "a", f"{number(result.a, error * result.a, exponent)} {label}"
+    yield "a", f"{with_error(result.a, error * result.a, exponent)} {label}"
     if not run.scene.even or run.scene.presses_anew:
         for point, ends in enumerate(result.ends, start=1):
-            left, right = (number(end, error * result.a, exponent) for end in ends)
+            left, right = (with_error(end, error * result.a, exponent) for end in ends)
             yield f"contact, load point {point}", f"[{left}, {right}] {label}"
     exponent, label = _unit(run, result.p0, "Pa")
-    yield "p0", f"{number(result.p0, error * result.p0, exponent)} {label}"
+    yield "p0", f"{with_error(result.p0, error * result.p0, exponent)} {label}"
 
 
 def _shears(run: Run) -> Iterator[tuple[str, str]]:
@@ -182,7 +184,7 @@ def _stresses(run: Run) -> Iterator[tuple[str, str]]:
         beside = np.abs(surface.x[[max(index - 1, 0), min(index + 1, last)]] - place).max()
         error = _estimate(known.result, "a") * known.result.a if _at_an_end(place, known.result) else float(beside)
         far = index in (0, last)
-        where = "away from the contact" if far else f"at x = {number(place, error, exponent)} {label}"
+        where = "away from the contact" if far else f"at x = {with_error(place, error, exponent)} {label}"
         value = _stress(run, float(sigma.max()), known, f"q{point + 1}")
         yield f"largest sigma_xx, {point + 1}", f"{value} {where}{_by(known)}"
 
@@ -196,15 +198,15 @@ def _plates(run: Run) -> Iterator[tuple[str, str]]:
     load, by = run.scene.load, _by(known)
     if load.displacement is not None:
         exponent, label = _unit(run, float(np.abs(plates.at_points).max()), "N/m")
-        forces = [number(Q, off * plates.stiffness[0], exponent) for Q in plates.at_points]
+        forces = [with_error(Q, off * plates.stiffness[0], exponent) for Q in plates.at_points]
         yield "Q", f"{', '.join(forces)} {label}{by}"
     exponent, label = _unit(run, float(np.abs(plates.displacement).max()), "m")
     if np.isfinite(plates.displacement).all():
         given = load.displacement is not None and load.spring is None
-        moved = [number(each, 0.0 if given else off, exponent) for each in plates.displacement]
+        moved = [with_error(each, 0.0 if given else off, exponent) for each in plates.displacement]
         yield "plates along x", f"{', '.join(moved)} {label} at load points 1, 2{by}"
     exponent, label = _unit(run, max(plates.stiffness), "Pa")
-    along = [number(each, error * each, exponent) for each in plates.stiffness]
+    along = [with_error(each, error * each, exponent) for each in plates.stiffness]
     yield "stiffness, x and y", f"{', '.join(along)} {label} per unit depth, while all sticks{by}"
 
 
@@ -243,7 +245,7 @@ def _stress(run: Run, value: float, known: _Known, key: str) -> str:
     as the square root of h there, and adds h to the norm: the largest value is known to the root of the norm's error.
     """
     exponent, label = _unit(run, value, "Pa")
-    return f"{number(value, math.sqrt(_estimate(known.result, key)) * abs(value), exponent)} {label}"
+    return f"{with_error(value, math.sqrt(_estimate(known.result, key)) * abs(value), exponent)} {label}"
 
 
 def _estimate(result: Result, key: str) -> float:
@@ -262,7 +264,7 @@ def _unit(run: Run, size: float, of: Dimension) -> tuple[int, str]:
     return scale(abs(size), of, units)
 
 
-def number(value: float, error: float, exponent: int = 0) -> str:
+def with_error(value: float, error: float, exponent: int = 0) -> str:
     """Return ``value`` in units of ten to the ``exponent``, with the decimals that the ``error`` leaves, and the error
     rounded up to one digit; with few digits if the error is NaN."""
     value, error = value / 10.0**exponent, error / 10.0**exponent

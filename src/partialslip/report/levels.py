@@ -30,7 +30,7 @@ _SIZE = 6.4, 4.0  # display: of one plot, inches
 _BELOW = -0.17  # display: of the legend: leaves room for the label of the axis, and none is needed above for a title
 
 
-def draw(
+def draw_levels(
     axes: "Axes", results: Mapping[str, Result], shown: Shown, friction: Friction | None, units: Units | None
 ) -> None:
     """Draw ``results``, by method, on ``axes``; the first gives the scales. The legend stands below.
@@ -73,7 +73,7 @@ def levels_svg(run: "Run") -> str:
 
     def draw_all(figure: "Figure") -> None:
         for axes, shown in zip(figure.subplots(len(some), 1, squeeze=False).flat, some, strict=True):
-            draw(axes, results, shown, friction, units)
+            draw_levels(axes, results, shown, friction, units)
 
     return svg(draw_all, (_SIZE[0], _SIZE[1] * len(some)))
 

@@ -6,7 +6,7 @@ from partialslip.judge import Comparison
 from partialslip.output.page import template
 from partialslip.report import answer, rows
 from partialslip.report.figure import from_reference
-from partialslip.report.levels import Shown, draw
+from partialslip.report.levels import Shown, draw_levels
 from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.scene import Scene
@@ -23,14 +23,14 @@ def html(what: Scene | Result | Comparison | Run) -> str:
 
 
 def plot(what: Result | Run, axes: "Axes | None", shown: Shown, in_units: bool) -> "Axes":
-    """Draw ``what`` on ``axes`` (default: axes of a new pyplot figure); see :func:`partialslip.report.levels.draw`.
-    Returns the axes."""
+    """Draw ``what`` on ``axes`` (default: axes of a new pyplot figure), as
+    :func:`partialslip.report.levels.draw_levels`. Returns the axes."""
     if axes is None:
         from matplotlib import pyplot
 
         axes = pyplot.subplots(layout="constrained")[1]
     if isinstance(what, Result):
-        draw(axes, {what.method: what}, shown, None, SI if in_units else None)
+        draw_levels(axes, {what.method: what}, shown, None, SI if in_units else None)
     else:
-        draw(axes, from_reference(what), shown, what.scene.friction, what.scene.units if in_units else None)
+        draw_levels(axes, from_reference(what), shown, what.scene.friction, what.scene.units if in_units else None)
     return axes

@@ -1,11 +1,12 @@
 """A run as texts and table cells, shared by terminal and page."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import msgspec
 import numpy as np
 
+from partialslip.groups import grouped
 from partialslip.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
 from partialslip.plan import Plan
 from partialslip.result import Cost, Result
@@ -109,11 +110,12 @@ def units(run: Run) -> str:
 
 def unjudged(comparison: Comparison) -> list[str]:
     """Return quantities that exist and usually have a bar, but are not judged, one line per reason."""
-    reasons: dict[str, list[str]] = {}
-    for verdict in comparison.verdicts:
-        usual = verdict.quantity in BARS or verdict.quantity == "regime"
-        if verdict.outcome is Outcome.NOT_JUDGED and usual and verdict.reason != NO_BAR and verdict.known:
-            reasons.setdefault(verdict.reason, []).append(verdict.quantity)
+    reasons = grouped(
+        (verdict.reason, verdict.quantity)
+        for verdict in comparison.verdicts
+        if verdict.outcome is Outcome.NOT_JUDGED and verdict.reason != NO_BAR and verdict.known
+        if verdict.quantity in BARS or verdict.quantity == "regime"
+    )
     return [f"not judged: {', '.join(quantities)}: {reason}" for reason, quantities in reasons.items()]
 
 
@@ -145,21 +147,17 @@ def verdict_lines(run: Run) -> tuple[str, ...]:
 
 def effects(plan: Plan) -> list[tuple[str, str, str]]:
     """Return rows of "called for" or "left out" (in the first row of each group), effect, and reason."""
-    groups = {"called for": plan.called_for, "left out": plan.left_out}
-    return [
-        (title if number == 0 else "", effect, why)
-        for title, group in groups.items()
-        for number, (effect, why) in enumerate(group.items())
-    ]
+    return _titled({"called for": plan.called_for.items(), "left out": plan.left_out.items()})
 
 
 def settings(scene: Scene) -> list[tuple[str, str, str]]:
     """Return rows of table (in the first row of each table), key and setting of ``scene``, in its units."""
-    return [
-        (table if number == 0 else "", *line)
-        for table, lines in _set(scene).items()
-        for number, line in enumerate(lines)
-    ]
+    return _titled(_set(scene))
+
+
+def _titled(groups: Mapping[str, Iterable[tuple[str, str]]]) -> list[tuple[str, str, str]]:
+    """Return the rows of ``groups`` by title, with the title in the first row of each."""
+    return [(title if number == 0 else "", *row) for title, rows in groups.items() for number, row in enumerate(rows)]
 
 
 def settings_of_tables(scene: Scene) -> list[tuple[str, str]]:
@@ -199,11 +197,7 @@ def methods(results: Mapping[str, Result], *, compared: bool = False, units: Uni
 
     With ``compared`` the values found are left out: the table of errors shows them.
     """
-    return [
-        (name if number == 0 else "", *line)
-        for name, result in results.items()
-        for number, line in enumerate(facts(result, compared, units).items())
-    ]
+    return _titled({name: facts(result, compared, units).items() for name, result in results.items()})
 
 
 def methods_in_short(results: Mapping[str, Result]) -> list[tuple[str, str]]:
@@ -220,10 +214,8 @@ def _spent(result: Result) -> list[str]:
 
 def run_notes(run: Run) -> list[str]:
     """Return why effects were forced off, and the notes of all methods; a note that several methods share once."""
-    by_note: dict[str, list[str]] = {run.plan.left_out[effect]: [effect] for effect in run.plan.missing}
-    for name, result in run.results.items():
-        for note in result.notes:
-            by_note.setdefault(note, []).append(name)
+    forced_off = [(run.plan.left_out[effect], str(effect)) for effect in run.plan.missing]
+    by_note = grouped([*forced_off, *((note, name) for name, result in run.results.items() for note in result.notes)])
     return [f"{', '.join(names)}: {note}" for note, names in by_note.items()]
 
 

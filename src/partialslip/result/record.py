@@ -102,16 +102,16 @@ class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaul
         """Make the record of ``result``, with or without ``curves``."""
         known: dict[str, Any] = {"p_max": number(result.traction.p_max), "contact_ends": plain(result.ends)}
         slip, surface = (result.slip, result.surface) if curves else (None, None)
-        known["slip"] = slip and _of(SlipRecord, slip)
+        known["slip"] = slip and record_of(SlipRecord, slip)
         known["surface"] = surface and SurfaceRecord(plain(surface.x), plain(surface.sigma))
-        known["traction"] = _of(TractionRecord, result.traction) if curves else None
+        known["traction"] = record_of(TractionRecord, result.traction) if curves else None
         plates = result.plates
-        known["plates"] = plates and _of(PlatesRecord, plates, **({} if curves else {"loop": None}))
-        return _of(cls, result, **known)
+        known["plates"] = plates and record_of(PlatesRecord, plates, **({} if curves else {"loop": None}))
+        return record_of(cls, result, **known)
 
 
-def _of(kind: type[R], source: Any, **known: Any) -> R:
-    """Record of the ``kind`` with the fields of the ``source`` that are not ``known``."""
+def record_of(kind: type[R], source: Any, **known: Any) -> R:
+    """Return a record of the ``kind`` with the fields of the ``source`` that are not ``known``."""
     others = [name for name in kind.__struct_fields__ if name not in known]
     return kind(**known, **{name: plain(getattr(source, name)) for name in others})
 

@@ -46,7 +46,7 @@ DIMENSIONS: dict[str, Dimension] = {
 }
 
 
-def converted(data: Mapping[str, Any], convert: Callable[[float, Dimension], float]) -> dict[str, Any]:
+def with_units(data: Mapping[str, Any], convert: Callable[[float, Dimension], float]) -> dict[str, Any]:
     """Return the tables ``data`` of a scene with ``convert(number, dimension)`` of every number that has a dimension.
 
     Keys that are not in a scene, and values that are no numbers, stay as they are. A mesh without ``unit`` is in the

@@ -15,7 +15,7 @@ import msgspec
 from partialslip.errors import InputError
 from partialslip.inputfile import read_text
 from partialslip.scene import LARGEST, SMALLEST, Scene, Table
-from partialslip.scene.dimensions import converted
+from partialslip.scene.dimensions import with_units
 from partialslip.scene.measured import ProfileFile, tabulated
 from partialslip.units import SI, UNITS, Units
 
@@ -162,7 +162,7 @@ def make_table(kind: type[_Made], data: Mapping[str, Any]) -> _Made:
         written["profile"] = _from_file(profile, units)
     made = _made(kind, place, written, written, units)
     # What a scene must be is the same in all units: checked as written, messages show the numbers that the user knows.
-    return made if units == SI else _made(kind, place, converted(written, units.to_si), written, SI)
+    return made if units == SI else _made(kind, place, with_units(written, units.to_si), written, SI)
 
 
 def _from_file(profile: dict[str, Any], units: Units) -> dict[str, Any]:

@@ -7,7 +7,7 @@ import msgspec
 import tomli_w
 
 from partialslip.scene import Scene
-from partialslip.scene.dimensions import converted
+from partialslip.scene.dimensions import with_units
 from partialslip.units import SI
 
 
@@ -18,7 +18,7 @@ def scene_tables(scene: Scene) -> dict[str, Any]:
     """
     tables, units = msgspec.to_builtins(scene), scene.units
     del tables["shown_in"]
-    return {"units": units.name} | (tables if units == SI else converted(tables, units.from_si))
+    return {"units": units.name} | (tables if units == SI else with_units(tables, units.from_si))
 
 
 def scene_toml(scene: Scene, without: Collection[str] = ()) -> str:

@@ -112,7 +112,7 @@ def _unquoted(field: str) -> str:
     return bare[1:-1] if len(bare) > 1 and bare[0] == bare[-1] == '"' else bare
 
 
-def template(scene: Scene, a: float) -> str:
+def csv_template(scene: Scene, a: float) -> str:
     """A table to fill in for ``scene``: points on a contact of half-width ``a`` (m) and beyond, zero tractions; in the
     scene's units."""
     units, load = scene.units, scene.load

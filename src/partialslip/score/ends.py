@@ -90,7 +90,7 @@ class _Root(NamedTuple):
     moved: float
 
 
-def noise(values: Array, x: Array) -> float:
+def noise_level(values: Array, x: Array) -> float:
     """Standard deviation of the noise in ``values`` at ``x``, (n,) each.
 
     It is estimated from the deviations from the straight line through both neighbours, so that curvature between

@@ -21,7 +21,7 @@ _TOP = 3  # accuracy: number of points with the largest |dq|/(2 p) that bound f
 
 
 class FrictionRead(NamedTuple):
-    """FrictionRead in a slip zone: coefficient ``f`` and its ``uncertainty``, ``sign`` of dq, and the ``scatter``
+    """Friction read in a slip zone: coefficient ``f`` and its ``uncertainty``, ``sign`` of dq, and the ``scatter``
     (standard deviation) of 2 f p - |dq|, Pa. ``seen`` tells whether |dq|/(2 p) is constant in the zone."""
 
     f: float
@@ -32,7 +32,7 @@ class FrictionRead(NamedTuple):
 
 
 def frictions(p: Array, dq: Array, asked: float) -> tuple[FrictionRead, FrictionRead]:
-    """FrictionRead next to the left and to the right end of the contact.
+    """Return the friction next to the left and to the right end of the contact.
 
     A side without a slip zone gets the coefficient of the other side. If neither side has one, both get the
     coefficient ``asked`` for; its uncertainty is the difference from the largest |dq|/(2 p).
@@ -58,7 +58,7 @@ def frictions(p: Array, dq: Array, asked: float) -> tuple[FrictionRead, Friction
 
 
 def _shared(side: FrictionRead, known: FrictionRead) -> FrictionRead:
-    """FrictionRead of one ``side``: its own coefficient if certain and different, otherwise the best ``known`` one."""
+    """Return the friction of one ``side``: its own coefficient if certain and different, else the best ``known``."""
     apart = abs(side.f - known.f)
     if side.seen and side.uncertainty <= _OWN * side.f and apart > _APART * side.uncertainty:
         return side._replace(uncertainty=float(np.hypot(side.uncertainty, apart / _APART)))
@@ -66,7 +66,7 @@ def _shared(side: FrictionRead, known: FrictionRead) -> FrictionRead:
 
 
 def _outer(p: Array, dq: Array) -> FrictionRead:
-    """FrictionRead from the first points; their number minimises the uncertainty.
+    """Return the friction from the first points; their number minimises the uncertainty.
 
     With fewer points noise matters more; with more some of them may stick.
     """

@@ -16,7 +16,7 @@ from partialslip.score.ends import (
     blur,
     drifted_left_end,
     drifted_right_end,
-    noise,
+    noise_level,
     read_left_end,
     read_right_end,
     zone_around_peak,
@@ -87,7 +87,7 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     p0 = 2 * float(pressure @ _widths(samples)) / (np.pi * a)
     first, last = min(contact.first for contact in contacts), max(contact.last for contact in contacts)
     inside = slice(first, last + 1)
-    slips = f > 0 and bool(np.abs(dq).max() > max(ZERO_LEVEL * p0, NOISE_FACTOR * noise(dq, x)))
+    slips = f > 0 and bool(np.abs(dq).max() > max(ZERO_LEVEL * p0, NOISE_FACTOR * noise_level(dq, x)))
     seen = [contact.first > 0 and contact.last + 1 < len(x) for contact in contacts]
     spread = max(blur((contact.left, contact.right), whole) for contact, whole in zip(contacts, seen, strict=True))
     bound = p * scene.friction.at(x) / f if scene.friction.varies else p  # over the largest f
@@ -135,7 +135,7 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
         settings={
             "read": "means over cells" if cells else "values at points",
             "spacing_over_a": _rounded(spacing),
-            "noise_over_p0": _rounded(noise(p[inside], x[inside]) / p0),
+            "noise_over_p0": _rounded(noise_level(p[inside], x[inside]) / p0),
             **(_friction(stick.sides, f) if stick else {}),
             **({"columns": samples.made_of} if samples.made_of else {}),
         },
@@ -166,7 +166,7 @@ def _contacts(samples: Samples, origin: str) -> tuple[SeenContact, SeenContact]:
 
 def _contact(x: Array, p: Array, cells: bool, name: str, origin: str) -> SeenContact:
     """Contact under the pressure ``p`` at the points ``x``, (n,); ``name`` is the column's for messages."""
-    least = NOISE_FACTOR * noise(p, x)
+    least = NOISE_FACTOR * noise_level(p, x)
     touching = zone_around_peak(p, least)
     if touching is None or touching[1] - touching[0] + 1 < FEWEST:
         hint = "; or are the elements of another order (--order)?" if cells else ""
@@ -219,7 +219,7 @@ def _stick_zone(
     sides = frictions(p, dq, asked)
     slacks = [2 * side.uncertainty * p for side in sides]
     room = 2 * min(side.f for side in sides) * p - np.abs(dq)
-    hidden = [NOISE_FACTOR * (side.scatter if side.seen else noise(room, x)) for side in sides]
+    hidden = [NOISE_FACTOR * (side.scatter if side.seen else noise_level(room, x)) for side in sides]
     found = [zone_around_peak(room, least + _F_SIGMAS * slack) for least, slack in zip(hidden, slacks, strict=True)]
     if None in found or room.max() < 2 * max(side.f for side in sides) * p0 * min(_SLIDES, 4 / len(x)):
         return None

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.bars import BARS
+from partialslip.groups import grouped
 from partialslip.judge import (
     ESTIMATE,
     NO_BAR,
@@ -186,9 +187,7 @@ def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
 
 def conclusions(verdicts: Iterable[CaseVerdict]) -> dict[tuple[str, str], Conclusion]:
     """Return what the ``verdicts`` amount to, by case and method (:func:`partialslip.judge.conclude`)."""
-    groups: dict[tuple[str, str], list[CaseVerdict]] = {}
-    for verdict in verdicts:
-        groups.setdefault((verdict.case, verdict.method), []).append(verdict)
+    groups = grouped(((verdict.case, verdict.method), verdict) for verdict in verdicts)
     return {
         group: conclude(
             [verdict for verdict in some if requirement_of(verdict.quantity) not in _CONDITIONS],

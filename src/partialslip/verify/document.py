@@ -11,6 +11,7 @@ from msgspec.structs import replace
 
 from partialslip.bars import CERTIFICATE_BAR
 from partialslip.errors import InputError
+from partialslip.groups import grouped
 from partialslip.inputfile import read_text
 from partialslip.judge import P_BAR, Q_BAR, Outcome
 from partialslip.origin import origin_lines
@@ -173,10 +174,11 @@ def _requirements(verdicts: Sequence[CaseVerdict]) -> list[tuple[str, ...]]:
 def _estimates(verdicts: Sequence[CaseVerdict]) -> list[tuple[str, ...]]:
     """Return rows of requirement, check, number of estimates, ratio of true error to estimate (median, largest), number
     of errors above the estimate, and where the ratio is largest."""
-    groups: dict[str, list[CaseVerdict]] = {}
-    for verdict in verdicts:
-        if verdict.estimate and verdict.error is not None:
-            groups.setdefault(f"{verdict.method}.{verdict.quantity}", []).append(verdict)
+    groups = grouped(
+        (f"{verdict.method}.{verdict.quantity}", verdict)
+        for verdict in verdicts
+        if verdict.estimate and verdict.error is not None
+    )
     table: list[tuple[str, ...]] = []
     for check, some in sorted(groups.items(), key=lambda group: number_of(group[1][0].quantity)):
         ratios = np.array([(each.error or 0.0) / (each.estimate or 1.0) for each in some])
@@ -195,10 +197,7 @@ def _converged(found: Convergence) -> tuple[str, ...]:
 
 def _ladders(entries: Mapping[str, Entry]) -> list[tuple[str, ...]]:
     """Return rows by requirement: ladders, observed order (least, median, largest), largest GCI, errors within it."""
-    groups: dict[str, list[Convergence]] = {}
-    for entry in entries.values():
-        for found in entry.ladder:
-            groups.setdefault(found.quantity, []).append(found)
+    groups = grouped((found.quantity, found) for entry in entries.values() for found in entry.ladder)
     table: list[tuple[str, ...]] = []
     for quantity, some in groups.items():
         orders = [each.order for each in some if each.order is not None]
@@ -232,10 +231,7 @@ def _found(verdict: CaseVerdict) -> tuple[str, ...]:
 
 def _reasons(verdicts: Sequence[CaseVerdict]) -> list[str]:
     """Return the reasons for unusual bars and for missed or unjudged quantities, each reason once."""
-    reasons: dict[str, list[str]] = {}
-    for verdict in verdicts:
-        if verdict.reason:
-            reasons.setdefault(verdict.reason, []).append(f"{verdict.method}.{verdict.quantity}")
+    reasons = grouped((each.reason, f"{each.method}.{each.quantity}") for each in verdicts if each.reason)
     return [f"{', '.join(checks)}: {reason}." for reason, checks in reasons.items()]
 
 
@@ -251,11 +247,10 @@ def _share(verdict: CaseVerdict) -> str:
 
 def _kinds(account: Account) -> list[tuple[str, ...]]:
     """Return rows by kind of loads: number of certificates, median, largest, and case of the largest."""
-    groups: dict[str, list[CaseVerdict]] = {}
-    for case, verdicts in account.verdicts.items():
-        groups.setdefault(account.entries[case].hard, []).extend(_certificates(verdicts))
+    groups = grouped((account.entries[case].hard, verdicts) for case, verdicts in account.verdicts.items())
     table: list[tuple[str, ...]] = []
-    for kind, some in groups.items():
+    for kind, of_kind in groups.items():
+        some = [verdict for verdicts in of_kind for verdict in _certificates(verdicts)]
         values = [verdict.error or 0.0 for verdict in some]
         worst = max(some, key=lambda verdict: verdict.error or 0.0, default=None)
         figures = (f"{np.median(values):.1e}", f"{max(values):.1e}", worst.case) if worst else ("", "", "")

@@ -10,8 +10,8 @@ from typing import Any
 
 from msgspec.structs import replace
 
-from partialslip.batch.ledger import Ledger, key_of, scene_content
-from partialslip.batch.sweep import Progress, Task, sweep, workers
+from partialslip.batch.ledger import Ledger, case_key, scene_content
+from partialslip.batch.sweep import Progress, Task, work_through, workers
 from partialslip.errors import InputError
 from partialslip.inputfile import read_text
 from partialslip.judge import Conclusion, Outcome
@@ -164,7 +164,7 @@ def _verify(
     tasks = [Task(keys[case], work, make) for case, make in makers.items()]
     try:
         with workers(processes=min(processes or os.cpu_count() or 1, len(tasks))) as executor:
-            sweep(tasks, ledger, executor, progress)
+            work_through(tasks, ledger, executor, progress)
         entries = {case: ledger.read(key, Entry) for case, key in keys.items()}
         figures, sketches = (_figures(folder / _SCENES, entries, name) for name in (_FIGURE, _SKETCH))
         page = document(Account(settings, entries, figures, sketches, studies))
@@ -222,10 +222,10 @@ def _cases(
     settings = _settings(name, only, method, seed, count, ladder)
     if settings.method is None or settings.seed is None or settings.count is None:
         makers, extra = suite(name, only), {"ladder": list(SIZES)} if ladder else {}
-        return settings, makers, {case: key_of(_content(make()) | extra) for case, make in makers.items()}
+        return settings, makers, {case: case_key(_content(make()) | extra) for case, make in makers.items()}
     makers = stress_suite(settings.method, settings.seed, settings.count, only)
     # the name holds seed and number, which determine a random scene
-    return settings, makers, {case: key_of({"method": settings.method, "case": case}) for case in makers}
+    return settings, makers, {case: case_key({"method": settings.method, "case": case}) for case in makers}
 
 
 def _settings(

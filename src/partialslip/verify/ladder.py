@@ -22,7 +22,6 @@ from partialslip.judge import compare
 from partialslip.result import Result
 from partialslip.run import run
 from partialslip.scene import Scene
-from partialslip.scene.reading import parse_scene
 from partialslip.verify.case import Case
 
 SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)  # accuracy: in contact half-widths
@@ -91,6 +90,4 @@ def convergence(quantity: str, changes: Sequence[float], error: float | None) ->
 
 
 def _solve(scene: Scene, size: float) -> Result:
-    data = msgspec.to_builtins(scene)
-    data["fem"] = {**data["fem"], "order": 1, "size": size}
-    return run(parse_scene(data), ["fem"]).results["fem"]
+    return run(scene.replace(fem={"order": 1, "size": size}), ["fem"]).results["fem"]

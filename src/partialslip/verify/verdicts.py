@@ -9,6 +9,7 @@ import msgspec
 from rich.console import Console
 
 from partialslip.errors import InputError
+from partialslip.groups import grouped
 from partialslip.inputfile import read_bytes
 from partialslip.judge import NO_BAR, Outcome
 from partialslip.origin import versions
@@ -125,11 +126,12 @@ def print_verdicts(verdicts: Verdicts, console: Console, every: bool = True) -> 
 
 def _without_reference(verdicts: Iterable[CaseVerdict]) -> dict[str, list[str]]:
     """Cases of which no solution is known to hold for m, by the reason."""
-    found: dict[str, list[str]] = {}
-    for verdict in verdicts:
-        unknown = verdict.waived and verdict.known and verdict.reason not in ("", NO_BAR)
-        if verdict.quantity == "m" and unknown and verdict.outcome is Outcome.NOT_JUDGED:
-            found.setdefault(verdict.reason, []).append(verdict.case)
+    found = grouped(
+        (verdict.reason, verdict.case)
+        for verdict in verdicts
+        if verdict.quantity == "m" and verdict.outcome is Outcome.NOT_JUDGED
+        if verdict.waived and verdict.known and verdict.reason not in ("", NO_BAR)
+    )
     return {reason: [*dict.fromkeys(cases)] for reason, cases in found.items()}
 
 
@@ -157,10 +159,11 @@ def every_one(verdicts: Verdicts) -> list[CaseVerdict]:
 def nearest(verdicts: Verdicts) -> list[CaseVerdict]:
     """Return one verdict per case and method: a missed one, else the one nearest to the bar, without estimates: how far
     these are from errors says nothing about the errors."""
-    groups: dict[tuple[str, str], list[CaseVerdict]] = {}
-    for verdict in every_one(verdicts):
-        if missed(verdict) or requirement_of(verdict.quantity) != "estimate":
-            groups.setdefault((verdict.case, verdict.method), []).append(verdict)
+    groups = grouped(
+        ((verdict.case, verdict.method), verdict)
+        for verdict in every_one(verdicts)
+        if missed(verdict) or requirement_of(verdict.quantity) != "estimate"
+    )
     return [min(some, key=bar_left) for some in groups.values()]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from partialslip.convergence import power
 from partialslip.output.svg import svg
-from partialslip.study.cost.ladder import CostPoint, errors_of, front
+from partialslip.study.cost.ladder import CostPoint, by_series, errors_of, front
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,7 +29,7 @@ def errors_svg(points: Sequence[CostPoint], peers: Sequence[CostPoint], title: s
         panels = figure.subplots(1, 2, sharex=True)
         for axes, key, label in zip(panels, ("n", "q"), ("error of n, in a", "error of q, relative L2"), strict=True):
             marks = cycle(_MARKS)
-            for number, (series, found) in enumerate(_by_series([*points, *peers]).items()):
+            for number, (series, found) in enumerate(by_series([*points, *peers]).items()):
                 data = errors_of(found, key)
                 if len(data):
                     outside = series in {point.series for point in peers}
@@ -76,7 +76,7 @@ def phases_svg(points: Sequence[CostPoint], title: str) -> str:
         shares.set(xlabel="unknowns of the last mesh (P4, adapted)", ylabel="CPU s of the process")
         shares.legend(frameon=False, fontsize=8)
         marks = cycle(_MARKS)
-        for number, (series, of) in enumerate(_by_series(points).items()):
+        for number, (series, of) in enumerate(by_series(points).items()):
             data = np.array([[point.counts["dofs"], point.cpu_s] for point in of if "dofs" in point.counts])
             if len(data) > 1:
                 label = f"{series}: {power(*data.T):.2f}"
@@ -87,10 +87,3 @@ def phases_svg(points: Sequence[CostPoint], title: str) -> str:
         figure.suptitle(title, x=0.01, ha="left", fontsize=10)
 
     return svg(draw, (10.5, 4.4))
-
-
-def _by_series(points: Sequence[CostPoint]) -> dict[str, list[CostPoint]]:
-    found: dict[str, list[CostPoint]] = {}
-    for point in points:
-        found.setdefault(point.series, []).append(point)
-    return found

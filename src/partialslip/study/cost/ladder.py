@@ -16,13 +16,13 @@ from partialslip.batch.job import Job, Solved, solve_apart
 from partialslip.batch.ledger import Ledger
 from partialslip.convergence import power
 from partialslip.errors import InputError
+from partialslip.groups import grouped
 from partialslip.inputfile import read_text
 from partialslip.judge.reference import reference
 from partialslip.plan import plan
 from partialslip.report import Record
 from partialslip.result.record import ResultRecord
 from partialslip.scene import Scene
-from partialslip.scene.reading import parse_scene
 from partialslip.strictjson import decoded
 
 SETTING = (
@@ -90,7 +90,7 @@ class CostPoint:
 LADDERS = ("exact", "march", "fem")  # fixed: methods with a ladder
 
 
-class Measured(NamedTuple):
+class MeasuredCosts(NamedTuple):
     """What was measured: ``points``, and how many settings were ``left`` as the budget was spent."""
 
     points: list[CostPoint]
@@ -151,9 +151,7 @@ def _series(
     ``fixed``."""
     found, methods = [], tuple(dict.fromkeys(("exact", method)))
     for setting, fem in settings:
-        data = msgspec.to_builtins(scene)
-        data["fem"] = {**data["fem"], **fixed, **fem}
-        found.append(Job(parse_scene(data), methods, {"series": name, "setting": setting}))
+        found.append(Job(scene.replace(fem={**fixed, **fem}), methods, {"series": name, "setting": setting}))
     return found
 
 
@@ -164,7 +162,7 @@ def measure_costs(
     progress: Callable[[int, int, str, float], None] = lambda *_: None,
     methods: Collection[str] = LADDERS,
     budget: float = math.inf,
-) -> Measured:
+) -> MeasuredCosts:
     """Solve the ladder of ``scene``, one new process per job. Jobs in ``ledger`` are not solved again.
 
     Parameters
@@ -205,15 +203,14 @@ def measure_costs(
             walls[run.name], last[run.series], rest = process.wall_s, spent, rest - spent
         queue = queue[1:]
     progress(len(found), len(found), "", 0.0)
-    return Measured(points(found), len(left))
+    return MeasuredCosts(points(found), len(left))
 
 
 def points(entries: Iterable[Solved]) -> list[CostPoint]:
     """Return medians of the ``entries`` of a ledger by setting."""
-    by_setting: dict[tuple[str, str], list[Solved]] = {}
-    for entry in entries:
-        if entry.run:
-            by_setting.setdefault((str(entry.labels["series"]), str(entry.labels["setting"])), []).append(entry)
+    by_setting = grouped(
+        ((str(entry.labels["series"]), str(entry.labels["setting"])), entry) for entry in entries if entry.run
+    )
     return [_point(series, setting, found) for (series, setting), found in by_setting.items()]
 
 
@@ -310,20 +307,21 @@ def front(points: Iterable[CostPoint]) -> list[CostPoint]:
     return found
 
 
+def by_series(points: Iterable[CostPoint]) -> dict[str, list[CostPoint]]:
+    """Return ``points`` by series."""
+    return grouped((point.series, point) for point in points)
+
+
 def slopes(points: Iterable[CostPoint]) -> dict[str, dict[str, float]]:
     """Return exponents of the errors of m, n and q and of CPU seconds against unknowns, by series of finite elements
     among ``points``."""
-    by_series: dict[str, list[CostPoint]] = {}
-    for point in points:
-        if "dofs" in point.counts:
-            by_series.setdefault(point.series, []).append(point)
     return {
         series: {
             "m, n": power(dofs := [point.counts["dofs"] for point in found], [point.ends for point in found]),
             "q": power(dofs, [point.errors.get("q", np.nan) for point in found]),
             "CPU": power(dofs, [point.cpu_s for point in found]),
         }
-        for series, found in by_series.items()
+        for series, found in by_series(point for point in points if "dofs" in point.counts).items()
     }
 
 

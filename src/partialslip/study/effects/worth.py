@@ -16,7 +16,7 @@ from partialslip.output.files import csv_text
 from partialslip.plan import Effect, Plan, plan, reduced
 from partialslip.report.page import Section
 from partialslip.result import Regime, Result
-from partialslip.result.record import Number, ResultRecord
+from partialslip.result.record import Number, record_of
 from partialslip.scene import Scene
 
 SCHEMA = "partialslip/effects/1"
@@ -281,6 +281,4 @@ def effects_csv(study: EffectStudy) -> str:
 
 def effects_record(study: EffectStudy) -> EffectsRecord:
     """Make the record of ``study``."""
-    whole = ResultRecord.of(study.result, curves=False)
-    summary = msgspec.convert(whole, ResultSummary, from_attributes=True)
-    return EffectsRecord(SCHEMA, study.scene, summary, study.entries)
+    return EffectsRecord(SCHEMA, study.scene, record_of(ResultSummary, study.result), study.entries)

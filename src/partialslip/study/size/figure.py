@@ -10,8 +10,8 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.output.svg import svg
 from partialslip.study.size.case import EQUIVALENT, HALF_PLANE
-from partialslip.study.size.law import LEVELS, Kind, Needed, PointStatus, Trend
-from partialslip.study.size.tables import SizeModel, SizeStudy, size_heading
+from partialslip.study.size.law import LEVELS, Kind, Needed, PointStatus, Sizes, Trend
+from partialslip.study.size.tables import SizeStudy, size_heading
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -71,9 +71,9 @@ def _draw_quantity(axes: "Axes", study: SizeStudy, quantity: str) -> None:
             if law := trend.law:
                 spread = (law.bounds[1] - law.bounds[0]) / 2
                 title.append(f"{model.name}: {law.C:.2g} size$^{{-{law.k:.2f}}}$ (± {spread:.1g})")
-    mesh = study.models[0].sizes.mesh[quantity]
-    axes.plot(study.models[0].sizes.size, np.where(mesh > 0, mesh, np.nan), ".-", color="0.6", ms=3, lw=0.6, zorder=1)
-    for failed in study.models[0].sizes.failed:
+    mesh = study.models[0].mesh[quantity]
+    axes.plot(study.models[0].size, np.where(mesh > 0, mesh, np.nan), ".-", color="0.6", ms=3, lw=0.6, zorder=1)
+    for failed in study.models[0].failed:
         axes.axvline(failed, **_FAILED, zorder=0)
     for level in LEVELS:
         axes.axhline(level, color="0.8", lw=0.6, zorder=0)
@@ -81,9 +81,9 @@ def _draw_quantity(axes: "Axes", study: SizeStudy, quantity: str) -> None:
     axes.set_title("\n".join(title), loc="left", fontsize=8.5)
 
 
-def _draw_trend(axes: "Axes", study: SizeStudy, model: SizeModel, trend: Trend) -> None:
+def _draw_trend(axes: "Axes", study: SizeStudy, model: Sizes, trend: Trend) -> None:
     """Draw points, law and needed sizes of one quantity of one model."""
-    size, off, style = model.sizes.size, model.sizes.off[trend.quantity], _MODELS[model.name]
+    size, off, style = model.size, model.off[trend.quantity], _MODELS[model.name]
     for needed in trend.needed:
         _draw_needed(axes, needed, _farthest(study))
     if law := trend.law:
@@ -104,16 +104,14 @@ def _farthest(study: SizeStudy) -> float:
 
 def _lowest(study: SizeStudy) -> float:
     """Return the smallest difference, error of the mesh or level."""
-    values = [
-        each for model in study.models for found in (model.sizes.off, model.sizes.mesh) for each in found.values()
-    ]
+    values = [each for model in study.models for found in (model.off, model.mesh) for each in found.values()]
     known = np.concatenate([*values, LEVELS])
     return float(known[known > 0].min())
 
 
 def _all_sizes(study: SizeStudy) -> list[float]:
     """Return the sizes that were solved or failed."""
-    return sorted([*study.models[0].sizes.size.tolist(), *study.models[0].sizes.failed])
+    return sorted([*study.models[0].size.tolist(), *study.models[0].failed])
 
 
 def _extrapolated(study: SizeStudy) -> list[float]:
@@ -187,7 +185,7 @@ def _keys(study: SizeStudy) -> "list[Line2D]":
         fitted = any(trend.law for trend in model.trends)
         style = {"color": "black", "lw": 0.9, "ls": _MODELS[model.name]["ls"]}
         entries.append((f"law, {model.name}", style, fitted))
-    mesh = any((each > 0).any() for each in study.models[0].sizes.mesh.values())
+    mesh = any((each > 0).any() for each in study.models[0].mesh.values())
     entries += [
         ("law beyond the fitted sizes", {"color": "black", "lw": 0.9, "ls": ":"},
          any(trend.law for trend in study.trends)),
@@ -196,7 +194,7 @@ def _keys(study: SizeStudy) -> "list[Line2D]":
         ("95 % interval, extrapolated", _MARKS["interval"], bool(_extrapolated(study))),
         ("at most this size", _MARKS["at most"], any(needed.high < math.inf for needed in bounds)),
         ("more than this size", _MARKS["more"], any(needed.low > 0 for needed in bounds)),
-        ("not solved", _FAILED, bool(study.models[0].sizes.failed)),
+        ("not solved", _FAILED, bool(study.models[0].failed)),
     ]  # fmt: skip
     return [Line2D([], [], label=label, **style) for label, style, drawn in entries if drawn]
 

@@ -1,21 +1,66 @@
 """Laws of the differences over the size, and the sizes from which on a body acts as a half-plane."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 from scipy.stats import t as student
 
 from partialslip.arrays import Array
-from partialslip.study.size.sizes import CLEAR, Sizes
+from partialslip.study.size.case import HALF_PLANE
 
+CLEAR = 10.0  # accuracy: a difference counts if it exceeds the mesh's error by this factor
 LEVELS = (1e-2, 1e-3, 1e-4)  # display: differences for which the sizes needed are told
 _FEWEST = 3  # accuracy: points of a law
 _SHARE = 0.95  # accuracy: of confidence
 # accuracy: times the largest solved size: as far as a law is trusted; and the size: the farthest end of its interval
 _BEYOND = 10.0
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """A sweep along one axis: how far half-planes are from the finite elements.
+
+    Parameters
+    ----------
+    name : str
+        ``half-plane``, or ``equivalent`` for half-planes with the data that make them act like the bodies.
+    size : (k,) array
+        Values along the axis.
+    off : mapping of str to (k,) array
+        Difference by quantity: a and p0 (largest p) relative, m and n as fractions of a, p and q in relative L2, and
+        stresses (:func:`stress_quantities`) relative to those of the finite elements.
+    mesh : mapping of str to (k,) array
+        Part of the difference that may be an error of the meshes; NaN if not known.
+    failed : mapping of float to str
+        Values along the axis without a solution, and why.
+    """
+
+    name: str
+    size: Array
+    off: Mapping[str, Array]
+    mesh: Mapping[str, Array]
+    failed: Mapping[float, str] = field(default_factory=dict)
+
+    @property
+    def title(self) -> str:
+        """Title of a table of the differences."""
+        return f"Differences of the {self.name}" if self.name == HALF_PLANE else "Differences of equivalent half-planes"
+
+    @cached_property
+    def trends(self) -> "list[Trend]":
+        """Trends of all quantities that have a value at one size above 0 at least."""
+        known = [quantity for quantity, off in self.off.items() if np.isfinite(off[self.size > 0]).any()]
+        return [trend(self, quantity) for quantity in known]
+
+    def part(self, quantities: Collection[str]) -> "Sizes":
+        """Return the same for some ``quantities`` alone."""
+        off, mesh = ({key: each[key] for key in each if key in quantities} for each in (self.off, self.mesh))
+        return replace(self, off=off, mesh=mesh)
 
 
 class PointStatus(StrEnum):
@@ -146,12 +191,6 @@ class Trend:
     points: tuple[PointStatus, ...]
     law: Law | None
     needed: tuple[Needed, ...]
-
-
-def trends(sizes: Sizes) -> list[Trend]:
-    """Return the trends of all quantities that have a value at one size above 0 at least."""
-    known = [quantity for quantity, off in sizes.off.items() if np.isfinite(off[sizes.size > 0]).any()]
-    return [trend(sizes, quantity) for quantity in known]
 
 
 def trend(sizes: Sizes, quantity: str) -> Trend:

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,15 +11,16 @@ from msgspec.structs import replace
 from partialslip.arrays import Array
 from partialslip.batch.job import Sharing
 from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import Progress, sweep
+from partialslip.batch.sweep import Progress, work_through
 from partialslip.fatigue import HotSpot
 from partialslip.fatigue.spots import SIGMA, off_by
+from partialslip.groups import grouped
 from partialslip.scene import Scene
 from partialslip.study.size.axes import ACCURACY, Axis, cases
 from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE, Sized, solve_sized
+from partialslip.study.size.law import CLEAR, Sizes
 
 DIFFERENCES = ("a", "p0", "p", "m", "n", "q")
-CLEAR = 10.0  # accuracy: a difference counts if it exceeds the mesh's error by this factor
 _COARSER = 8.0  # accuracy: ratio of the accuracies of two successive meshes
 _FINER = 3  # limit: largest number of additional meshes where the half-plane's difference is not clear
 _FINEST = 1e-8  # limit: finest accuracy that rounding allows
@@ -62,7 +62,7 @@ def measure(
         If a worker process dies; finished cases are in the ledger.
     """
     solve, asked = Sharing(solve_sized), cases(scene, axes, (_COARSER, 1.0) if control else (1.0,))
-    sweep([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
+    work_through([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
     finer = [_COARSER**-k for k in range(1, _FINER + 1)] if control else []
     for accuracy in (each for each in finer if each * scene.fem.accuracy >= _FINEST):
         points = _by_point(axes, (ledger.read(case.key, Sized) for case in asked))
@@ -72,34 +72,8 @@ def measure(
             for case in cases(scene, axes, (accuracy,))
             if tuple(case.labels[each.name] for each in axes) in unclear
         ]
-        sweep([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
+        work_through([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
     return [ledger.read(case.key, Sized) for case in asked]
-
-
-@dataclass(frozen=True)
-class Sizes:
-    """A sweep along one axis: how far half-planes are from the finite elements.
-
-    Parameters
-    ----------
-    name : str
-        ``half-plane``, or ``equivalent`` for half-planes with the data that make them act like the bodies.
-    size : (k,) array
-        Values along the axis.
-    off : mapping of str to (k,) array
-        Difference by quantity: a and p0 (largest p) relative, m and n as fractions of a, p and q in relative L2, and
-        stresses (:func:`stress_quantities`) relative to those of the finite elements.
-    mesh : mapping of str to (k,) array
-        Part of the difference that may be an error of the meshes; NaN if not known.
-    failed : mapping of float to str
-        Values along the axis without a solution, and why.
-    """
-
-    name: str
-    size: Array
-    off: Mapping[str, Array]
-    mesh: Mapping[str, Array]
-    failed: Mapping[float, str] = field(default_factory=dict)
 
 
 def along(axis: Axis, entries: Iterable[Sized], name: str = HALF_PLANE) -> Sizes:
@@ -145,11 +119,11 @@ def refused(axes: Sequence[Axis], entries: Iterable[Sized]) -> dict[tuple[float,
 
 def _by_point(axes: Sequence[Axis], entries: Iterable[Sized]) -> dict[tuple[float, ...], list[Sized]]:
     """Return the entries by point of the grid, from the coarsest mesh to the finest, without failed cases."""
-    points: dict[tuple[float, ...], list[Sized]] = {}
-    for entry in sorted(entries, key=lambda entry: -float(entry.labels[ACCURACY])):
-        if entry.run:
-            points.setdefault(tuple(float(entry.labels[each.name]) for each in axes), []).append(entry)
-    return points
+    return grouped(
+        (tuple(float(entry.labels[each.name]) for each in axes), entry)
+        for entry in sorted(entries, key=lambda entry: -float(entry.labels[ACCURACY]))
+        if entry.run
+    )
 
 
 def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], dict[str, float]]]:

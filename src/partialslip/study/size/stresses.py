@@ -6,10 +6,11 @@ from collections.abc import Iterable
 from partialslip.fatigue import HotSpot
 from partialslip.fatigue.places import OVER
 from partialslip.output.files import csv_text
-from partialslip.report.answer import number, scale
+from partialslip.report.answer import scale, with_error
 from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE
-from partialslip.study.size.sizes import DIFFERENCES, Sizes
-from partialslip.study.size.tables import Rows, SizeModel, SizeStudy, marked, share, short
+from partialslip.study.size.law import Sizes
+from partialslip.study.size.sizes import DIFFERENCES
+from partialslip.study.size.tables import Rows, SizeStudy, marked, mesh_share, size_text
 from partialslip.units import Dimension
 
 _SURFACE = "surface"
@@ -37,7 +38,7 @@ def largest_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
         for size, found in study.spots.items():
             spots = [found.get(name, {}).get(key) for name in known]
             rows.append(
-                (key, unit[1], short(size), *(cell for spot in spots for cell in _cells(spot, unit[0], length[0])))
+                (key, unit[1], size_text(size), *(cell for spot in spots for cell in _cells(spot, unit[0], length[0])))
             )
     heads = [head for name in known for head in (name, f"x, {length[1]}")]
     return ("largest", "unit", "size", *heads), rows
@@ -53,14 +54,14 @@ def _cells(spot: HotSpot | None, exponent: int, length: int) -> tuple[str, str]:
     if spot is None:
         return "-", ""
     error = math.nan if spot.error is None else spot.error * abs(spot.value)
-    return number(spot.value, error, exponent), f"{spot.x / 10.0**length:.4g}"
+    return with_error(spot.value, error, exponent), f"{spot.x / 10.0**length:.4g}"
 
 
-def stress_differences_table(study: SizeStudy, model: SizeModel) -> tuple[tuple[str, ...], Rows]:
+def stress_differences_table(study: SizeStudy, model: Sizes) -> tuple[tuple[str, ...], Rows]:
     """Return headings and rows of the relative differences of stresses, by size and place; letters as in
     :func:`partialslip.study.size.tables.differences_table`."""
     part = model.part(stresses_of(study).quantities)
-    sizes, points = part.sizes, {trend.quantity: trend.points for trend in part.trends}
+    sizes, points = part, {trend.quantity: trend.points for trend in part.trends}
     columns = dict.fromkeys(key.partition(".")[0] for key in points)
     rows: Rows = []
     for k, size in enumerate(sizes.size.tolist()):
@@ -69,19 +70,21 @@ def stress_differences_table(study: SizeStudy, model: SizeModel) -> tuple[tuple[
             shown = [key for key in keys if key in points and not math.isnan(sizes.off[key][k])]
             if shown:
                 cells = [marked(sizes.off[key][k], points[key][k]) if key in shown else "" for key in keys]
-                rows.append((short(size), place, *cells, share(sizes, shown, k)))
+                rows.append((size_text(size), place, *cells, mesh_share(sizes, shown, k)))
     return ("size", "stresses", *columns, "mesh"), rows
 
 
 def in_short(study: SizeStudy) -> list[str]:
     """Return by how much the half-plane is off in the largest stresses, and in m and n, a line for each size."""
-    sizes = study.models[0].sizes
+    sizes = study.models[0]
     keys = [key for key in stresses_of(study).quantities if "." not in key]
     lines = []
     for k, size in enumerate(sizes.size.tolist()):
         stresses, ends = _percents(sizes, keys, k, ""), _percents(sizes, ("m", "n"), k, " of a")
         if stresses:
-            lines.append("; ".join(filter(None, (f"size {short(size)}: the half-plane is off by {stresses}", ends))))
+            lines.append(
+                "; ".join(filter(None, (f"size {size_text(size)}: the half-plane is off by {stresses}", ends)))
+            )
     return lines
 
 

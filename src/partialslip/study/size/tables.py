@@ -9,8 +9,8 @@ from partialslip.output.files import csv_text
 from partialslip.scene import Scene
 from partialslip.study.size.axes import Axis
 from partialslip.study.size.case import EQUIVALENT, HALF_PLANE, Sized
-from partialslip.study.size.law import LEVELS, Kind, PointStatus, Trend, trends
-from partialslip.study.size.sizes import Sizes, along, hot_spots_along, refused
+from partialslip.study.size.law import LEVELS, Kind, PointStatus, Sizes, Trend
+from partialslip.study.size.sizes import along, hot_spots_along, refused
 
 Rows = list[tuple[str, ...]]
 _MARKS = {
@@ -32,39 +32,6 @@ _MEANINGS = {
 
 
 @dataclass(frozen=True)
-class SizeModel:
-    """How far half-planes are from bodies of a size.
-
-    Parameters
-    ----------
-    sizes : Sizes
-    trends : list of Trend
-        One per quantity with a value.
-    """
-
-    sizes: Sizes
-    trends: list[Trend]
-
-    @property
-    def name(self) -> str:
-        """Name of the half-planes: ``half-plane`` or ``equivalent``."""
-        return self.sizes.name
-
-    @property
-    def title(self) -> str:
-        """Title of a table of the differences."""
-        return f"Differences of the {self.name}" if self.name == HALF_PLANE else "Differences of equivalent half-planes"
-
-    def part(self, quantities: Collection[str]) -> "SizeModel":
-        """Return the same for some ``quantities`` alone."""
-        off, mesh = (
-            {key: each[key] for key in each if key in quantities} for each in (self.sizes.off, self.sizes.mesh)
-        )
-        trends = [trend for trend in self.trends if trend.quantity in quantities]
-        return SizeModel(replace(self.sizes, off=off, mesh=mesh), trends)
-
-
-@dataclass(frozen=True)
 class SizeStudy:
     """A study of sizes along one axis.
 
@@ -72,7 +39,7 @@ class SizeStudy:
     ----------
     scene : Scene
     axis : Axis
-    models : tuple of SizeModel
+    models : tuple of Sizes
         The half-plane, then equivalent half-planes if a case has them.
     remarks : tuple of str
         Cases that failed or have no equivalent half-planes, and why.
@@ -83,14 +50,14 @@ class SizeStudy:
 
     scene: Scene
     axis: Axis
-    models: tuple[SizeModel, ...]
+    models: tuple[Sizes, ...]
     remarks: tuple[str, ...]
     spots: Mapping[float, Mapping[str, Mapping[str, HotSpot]]] = field(default_factory=dict)
 
     @property
     def quantities(self) -> tuple[str, ...]:
         """Quantities that are compared."""
-        return tuple(self.models[0].sizes.off)
+        return tuple(self.models[0].off)
 
     def part(self, quantities: Collection[str]) -> "SizeStudy":
         """Return the study of some ``quantities`` alone, without remarks."""
@@ -110,7 +77,7 @@ class SizeStudy:
 def size_study(scene: Scene, axis: Axis, entries: Sequence[Sized]) -> SizeStudy:
     """Evaluate the ``entries`` of a ledger for a sweep of ``scene`` along ``axis``."""
     sweeps = [along(axis, entries, name) for name in (HALF_PLANE, EQUIVALENT)]
-    models = tuple(SizeModel(each, trends(each)) for each in sweeps if each.name == HALF_PLANE or each.size.size)
+    models = tuple(each for each in sweeps if each.name == HALF_PLANE or each.size.size)
     return SizeStudy(scene, axis, models, tuple(case_remarks([axis], entries)), hot_spots_along(axis, entries))
 
 
@@ -122,7 +89,9 @@ def case_remarks(axes: Sequence[Axis], entries: Sequence[Sized]) -> list[str]:
         if entry.error
     ]
     if without := refused(axes, entries):
-        points = [short(*point) if len(point) == 1 else f"({', '.join(map(short, point))})" for point in without]
+        points = [
+            size_text(*point) if len(point) == 1 else f"({', '.join(map(size_text, point))})" for point in without
+        ]
         reason, where = next(iter(without.values())), _listed_points(points)
         lines.append(f"no equivalent half-planes at {where}: {reason}")
     return lines
@@ -139,17 +108,16 @@ def size_heading(study: SizeStudy) -> str:
     return f"{study.scene.name}: half-planes against finite elements, over {study.label}"
 
 
-def differences_table(study: SizeStudy, model: SizeModel) -> tuple[tuple[str, ...], Rows]:
+def differences_table(study: SizeStudy, model: Sizes) -> tuple[tuple[str, ...], Rows]:
     """Return headings and rows of the differences by size; a letter says whether the law is fitted to a difference."""
-    found = model.sizes
     points = {trend.quantity: trend.points for trend in model.trends}
     solved: dict[float, tuple[str, ...]] = {
-        size: (*(marked(found.off[key][k], points[key][k]) for key in points), share(found, points, k))
-        for k, size in enumerate(found.size.tolist())
+        size: (*(marked(model.off[key][k], points[key][k]) for key in points), mesh_share(model, points, k))
+        for k, size in enumerate(model.size.tolist())
     }
-    without = study.models[0].sizes.size.tolist() if model.name == EQUIVALENT else ()
-    failed = {size: (*["-"] * len(points), "") for size in (*found.failed, *without)}
-    rows = [(short(size), *cells) for size, cells in sorted((failed | solved).items())] if points else []
+    without = study.models[0].size.tolist() if model.name == EQUIVALENT else ()
+    failed = {size: (*["-"] * len(points), "") for size in (*model.failed, *without)}
+    rows = [(size_text(size), *cells) for size, cells in sorted((failed | solved).items())] if points else []
     return ("size", *points, "mesh"), rows
 
 
@@ -201,13 +169,13 @@ def points_csv(study: SizeStudy) -> str:
     """Return all points of ``study`` as CSV: difference and mesh's error by half-planes, size and quantity, and whether
     it is fitted."""
     rows: list[tuple[object, ...]] = [
-        (model.name, size, trend.quantity, model.sizes.off[trend.quantity][k], model.sizes.mesh[trend.quantity][k],
+        (model.name, size, trend.quantity, model.off[trend.quantity][k], model.mesh[trend.quantity][k],
          trend.points[k])
         for model in study.models
         for trend in model.trends
-        for k, size in enumerate(model.sizes.size.tolist())
+        for k, size in enumerate(model.size.tolist())
     ]  # fmt: skip
-    rows += [("", size, "", "", "", error) for size, error in study.models[0].sizes.failed.items()]
+    rows += [("", size, "", "", "", error) for size, error in study.models[0].failed.items()]
     return csv_text((HALF_PLANES, "size", "quantity", "difference", "error of the mesh", "point"), rows)
 
 
@@ -238,19 +206,19 @@ def marked(difference: float, point: PointStatus) -> str:
     return "-" if math.isnan(difference) else f"{difference:.1e}"
 
 
-def share(sizes: Sizes, quantities: Collection[str], k: int) -> str:
+def mesh_share(sizes: Sizes, quantities: Collection[str], k: int) -> str:
     """Return the largest share of a difference of ``quantities`` that may be an error of the mesh, as text."""
     shares = [sizes.mesh[key][k] / sizes.off[key][k] for key in quantities if sizes.off[key][k] > 0]
     known = [share for share in shares if not math.isnan(share)]
     return "" if not known else f"{max(known):.1%}" if max(known) < 1 else "> 100%"
 
 
-def short(size: float) -> str:
+def size_text(size: float) -> str:
     """Return a size as text."""
     return f"{size:.4g}"
 
 
 def _listed(sizes: Sequence[float]) -> str:
     if len(sizes) <= _LISTED:
-        return ", ".join(map(short, sizes))
-    return f"{len(sizes)} from {short(min(sizes))} to {short(max(sizes))}"
+        return ", ".join(map(size_text, sizes))
+    return f"{len(sizes)} from {size_text(min(sizes))} to {size_text(max(sizes))}"

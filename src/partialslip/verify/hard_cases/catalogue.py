@@ -5,6 +5,7 @@ Cases are grouped in families by what is hard: loads, load histories, bodies or 
 
 import textwrap
 
+from partialslip.groups import grouped
 from partialslip.scene.reading import load_scene, shipped_scenes
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases import bodies, histories, loads, meshes
@@ -69,9 +70,10 @@ def catalogue_page() -> str:
 
 
 def _listed(case: Case) -> str:
-    bars: dict[str, list[str]] = {}
-    for key, bar in case.bars.items():
-        bars.setdefault(bar.reason, []).append(f"{key} " + ("not judged" if bar.value is None else f"{bar.value:g}"))
+    bars = grouped(
+        (bar.reason, f"{key} " + ("not judged" if bar.value is None else f"{bar.value:g}"))
+        for key, bar in case.bars.items()
+    )
     looser = "".join(f" {', '.join(keys)}: {reason}." for reason, keys in bars.items())
     return _filled(f"- `{case.name}` ({', '.join(case.methods)}).{looser}", "  ")
 
