@@ -49,7 +49,7 @@ _EASED_SAFE = {6: 2.0}  # accuracy: the same for meshes that grow faster near th
 _LEAST_OF_A = 1 / 3  # accuracy: of the error of a: least error of any end
 # accuracy: Least errors of m and n where slip turns round, measured: in their own change; and the largest one due to
 # slip that is locked in, in the change of q.
-_OF_TURNED, _MOST = 0.5, 2.0
+_OF_TURNED, _MOST = 0.25, 2.0
 _NARROW = 0.1  # accuracy: of the norm of f p: shear with a smaller norm is confined to narrow strips
 
 # accuracy: Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.
@@ -69,7 +69,7 @@ _OF_LOCKED, _P_OF_LOCKED = 0.004, 0.02
 _SIDE = 0.5  # accuracy: largest error of an end due to the fit, in the element size
 # accuracy: Where slip turns round, ends of the stick zone are known less; at one that moves over nodes that slipped,
 # q is off its bound by little: parts of the element size.
-_TURNED, _CAUGHT_UP = 5.0, 0.05
+_TURNED, _CAUGHT_UP = 2.0, 0.05
 _KINK = 0.03  # accuracy: L2 error of q at a kink, in its strength times the element size
 _STEEP = 0.3  # accuracy: the same at ends of a narrow slip zone, also times element size / gap
 _SHIFT = 1.5  # accuracy: L2 error of q due to a shifted kink, in its strength times the shift
