@@ -8,11 +8,9 @@ error is d itself. If shear is confined to narrow strips, the prefactor is the n
 
 Where ends of zones wander (:attr:`partialslip_fem.mesh_solution.MeshSolution.wanders`), they leave kinks in q within
 elements. Errors then hardly depend on the order, and the change of m, n and q is itself the error. Where slip turns
-round, load steps have no part in it, and both solutions share the errors of q that the way has locked in, so that their
-ends may agree by chance. These errors differ from element to element: an end answers to each like the inverse root of
-its distance, and to all like the root of the sum of squares. While the zone drifts, its width follows from the loads,
-and its place from sums of q in which these errors cancel. An end that drifts is read twice, from the room that q has
-left and from the loads at which the nodes beside it stuck again
+round, load steps have no part in it, and both solutions may agree at the ends by chance: the ends are known no better
+than the slip that the way has locked in (:mod:`partialslip_fem.locked`). An end that drifts is read twice, from the
+room that q has left and from the loads at which the nodes beside it stuck again
 (:attr:`partialslip.friction.zone_ends.StickInterval.caught`): it is not known better than both readings agree.
 
 Where the gap's curvature jumps within elements, p has a kink of the kind x log|x| there. Errors then fall slowly with
@@ -32,6 +30,7 @@ from scipy.interpolate import PPoly
 from partialslip.arrays import Array
 from partialslip.bars import LEAST_SHEAR
 from partialslip.result import Clock
+from partialslip_fem.locked import locked_in
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import within_cells
 from partialslip_fem.problem import Problem
@@ -48,11 +47,9 @@ KEYS = (*END_KEYS, "p", *_SHEARS)
 _SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.9, "n": 1.9, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
 _EASED_SAFE = {6: 2.0}  # accuracy: the same for meshes that grow faster near the ends, by order
 _LEAST_OF_A = 1 / 3  # accuracy: of the error of a: least error of any end
-# accuracy: Least errors of m and n where slip turns round, measured: in their own change; in what they answer to the
-# change of q; in the change of q, where the zone drifts, and at most (0.03 and 0.5 left 14 of 394 beyond, up to 4.4
-# times; these leave 5 of 286, of the same scenes).
-_OF_TURNED, _ANSWERED = 0.5, 2.0
-_DRIFTS, _MOST = 0.1, 2.0
+# accuracy: Least errors of m and n where slip turns round, measured: in their own change; and the largest one due to
+# slip that is locked in, in the change of q.
+_OF_TURNED, _MOST = 0.25, 2.0
 _NARROW = 0.1  # accuracy: of the norm of f p: shear with a smaller norm is confined to narrow strips
 
 # accuracy: Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.
@@ -72,7 +69,7 @@ _OF_LOCKED, _P_OF_LOCKED = 0.004, 0.02
 _SIDE = 0.5  # accuracy: largest error of an end due to the fit, in the element size
 # accuracy: Where slip turns round, ends of the stick zone are known less; at one that moves over nodes that slipped,
 # q is off its bound by little: parts of the element size.
-_TURNED, _CAUGHT_UP = 5.0, 0.05
+_TURNED, _CAUGHT_UP = 2.0, 0.05
 _KINK = 0.03  # accuracy: L2 error of q at a kink, in its strength times the element size
 _STEEP = 0.3  # accuracy: the same at ends of a narrow slip zone, also times element size / gap
 _SHIFT = 1.5  # accuracy: L2 error of q due to a shifted kink, in its strength times the shift
@@ -127,25 +124,11 @@ def smooth_errors(
 
 
 def _of_locked(solution: MeshSolution, other: MeshSolution, change: float) -> list[float]:
-    """Errors of m and n, where slip turns round, due to errors of q that the way locked in; ``change`` is that of q.
-
-    A force F at the distance d inside an end, beside which q has a kink of the strength S, moves the end by
-    2 F/(pi S sqrt(d)).
-    """
-    stick, history, a = solution.stick, solution.history, solution.half_width
-    assert stick
-    assert history
-    if any(stick.moved):
-        return [_DRIFTS * change] * 2
-    of, at = next(_shears(solution, other))
-    forces = np.diff(at.antiderivative()(of.x)) - np.diff(of.antiderivative()(of.x))
-    middles = (of.x[1:] + of.x[:-1]) / 2
-    inside = (middles > stick.left) & (middles < stick.right)
-    ends = solution.zone_ends[2:4]
-    apart = np.maximum(np.abs(middles - ends[:, None]), np.diff(of.x))[:, inside]
-    strengths = np.maximum(_strengths(solution, [history.change / 2], ends)[0], np.finfo(float).tiny)
-    answers = 2 / np.pi * np.sqrt((forces[inside] ** 2 / apart).sum(axis=1)) / strengths / a
-    result: list[float] = np.minimum(_ANSWERED * answers, _MOST * change).tolist()
+    """Errors of m and n, where slip turns round, due to slip that is locked in; ``change`` is that of q."""
+    assert solution.history
+    strengths = _strengths(solution, [solution.history.change / 2], solution.zone_ends[2:4])[0]
+    errors = locked_in(solution, other, strengths) / solution.half_width
+    result: list[float] = np.minimum(errors, _MOST * change).tolist()
     return result
 
 

@@ -112,3 +112,14 @@ def test_an_end_beside_which_room_does_not_grow_is_unsure_by_that_strip(power):
     for of, strip in ((some, 0.0), (faint, 0.45)):
         zone = read_stick_zone(X, BOUND, 2 * BOUND - of, VERTICES, lambda forces: forces, np.full(len(X), 0.5))
         assert zone.strips[1] == pytest.approx(strip, abs=0.05)
+
+
+def test_an_end_in_a_narrow_strip_lies_between_the_nodes_that_stick_and_slip():
+    """A fit reaches across the kink of q at the inner side of the strip over which nodes slipped before."""
+    some = room(-0.31, 0.4)
+    strip = (X > 0.4) & (X < 0.52)
+    some[strip] = 0.01 * BOUND[0]
+    changed = np.where(X > 0.4, 0.5, np.nan)
+    zone = read_stick_zone(X, BOUND, 2 * BOUND - some, VERTICES, lambda forces: forces, changed)
+    assert zone.right == pytest.approx(0.525, abs=1e-12)
+    assert zone.strips == pytest.approx((0.0, 0.025), abs=1e-12)

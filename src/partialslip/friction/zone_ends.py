@@ -7,6 +7,9 @@ in the last elements.
 
 Where the stick zone moves over nodes that have slipped, they stick again, and 2 f p - |dq| falls towards the end like
 distance^(3/2): the force varies like distance^(5/2), and force^(2/5) is smooth.
+
+An end that came back into a narrow strip of such nodes lies between the last node that sticks and the first one that
+slips: a fit would reach across the kink of q at the other side of the strip.
 """
 
 import itertools
@@ -38,7 +41,8 @@ class StickInterval:
     right, and which ends have ``moved`` outwards last, over points that slipped before. ``caught`` are ends that moved,
     as the loads tell at which the nodes beside them stuck again; nan where no nodes did. ``strips`` are lengths
     beside the ends over which so few nodes slipped before that the end is read as if none had, or over which there is
-    hardly any room up to the bound."""
+    hardly any room up to the bound; where more nodes slipped, but too few for a fit, the distance of the nodes between
+    which the end lies."""
 
     left: float
     right: float
@@ -99,18 +103,28 @@ def read_stick_zone(
     if changed is None:
         return StickInterval(left, max(right, left), signs, moved)
     caught = _caught_up(x, changed, sticks), _caught_up(x, changed, sticks[::-1])
-    strips = tuple(
-        max(0.0 if outwards else _strip(x, changed, inside), _flat(x, room, inside))
-        for outwards, inside in zip(moved, (sticks, sticks[::-1]), strict=True)
-    )
+    ends, strips = [left, right], [0.0, 0.0]
+    for side, (inside, beyond) in enumerate(((sticks, first - 1), (sticks[::-1], last))):
+        strips[side] = _flat(x, room, inside)
+        count = 0 if moved[side] or not 0 <= beyond < len(x) else _slipped(changed, inside)
+        if count and _vertices(x[inside[[0, count - 1]]], vertices) < _VERTICES:
+            ends[side] = float(x[inside[0]] + x[beyond]) / 2
+            apart = inside[count] if count <= _RUN else beyond
+            strips[side] = max(strips[side], abs(float(x[apart] - x[inside[0]])))
+    left, right = ends
     return StickInterval(left, max(right, left), signs, moved, caught, (strips[0], strips[1]))
 
 
-def _strip(x: Array, changed: Array, inside: Indices) -> float:
-    """Distance from the first node ``inside`` the stick zone, from an end on, to the first one of the next nodes that
-    has not slipped; 0 if the first one has not."""
-    still = np.flatnonzero(~np.isfinite(changed[inside[: _RUN + 1]]))
-    return abs(float(x[inside[still[0]]] - x[inside[0]])) if len(still) else 0.0
+def _slipped(changed: Array, inside: Indices) -> int:
+    """Number of nodes ``inside`` the stick zone, from an end on, up to the first one that has not slipped; 0 if all
+    have."""
+    still = np.flatnonzero(~np.isfinite(changed[inside]))
+    return int(still[0]) if len(still) else 0
+
+
+def _vertices(between: Array, vertices: Array) -> int:
+    """Number of ``vertices`` (c + 1,) ``between`` two points (2,)."""
+    return abs(int(np.subtract(*np.searchsorted(vertices, between))))
 
 
 def _flat(x: Array, room: Array, inside: Indices) -> float:

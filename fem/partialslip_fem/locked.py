@@ -1,0 +1,113 @@
+"""Errors of the ends of the stick zone due to slip that is locked in where nodes stuck again on the way.
+
+The ends depend on the loads and on the slip s that is locked in within the stick zone, and on nothing else: where no
+node has slipped, s is zero without any error. An error of s answers at an end like a dislocation. With the zone's
+half-width c, the distance t from its middle in c and w = sqrt((1 + t)/(1 - t)), it makes a singularity of the strength
+K = 1/(pi sqrt(2 c)) \\|int w s' dx\\| at the right end, t = 1. The end moves by 2 K/S, where S is the strength of the
+kink of q. An end that moved over points that slipped has no such kink: while the zone drifts its half-width follows
+from the loads, so that both ends move alike.
+
+Two errors of s are known. One is the difference of two solutions on the same mesh. The other has the same sign in both:
+the end that moves outwards waits until the other end, which leaves node after node, has lost one. Then it jumps over
+many nodes at once, however small their elements are. An end that waits while the loads cover the share d of a leg that
+strains by 2 e, and jumps over a length L, lets points ahead slip by too much or too little, by about
+e d L^(3/2)/sqrt(2 c). On both sides of L the slip is right.
+
+An error of s on an interval answers with the change of w over the interval; beside the end, where w is singular, with
+w itself. Errors of different places are independent of each other: their squares are added.
+"""
+
+import numpy as np
+
+from partialslip.arrays import Array, Indices
+from partialslip_fem.mesh_solution import MeshSolution
+
+# accuracy: errors of the ends, in what follows from the difference of the slip in two solutions, and from jumps
+# (measured: benchmarks/estimates.py)
+_DIFFERENT, _JUMPED = 2.0, 0.6
+_TINY = float(np.finfo(float).tiny)
+
+
+def locked_in(solution: MeshSolution, other: MeshSolution, strengths: Array) -> Array:
+    """Errors of the left and the right end of the stick zone of ``solution``, (2,), scaled.
+
+    Parameters
+    ----------
+    solution, other : MeshSolution
+        On the same mesh, with elements of different order.
+    strengths : (2,) array
+        Strengths of the kinks of (q2 - q1)/2 at the ends.
+    """
+    stick, history = solution.stick, solution.history
+    assert stick
+    assert history
+    half_width, middle = (stick.right - stick.left) / 2, (stick.left + stick.right) / 2
+    if half_width <= 0:
+        return np.zeros(2)
+    places, differences = _differences(solution, other)
+    intervals, jumps = _jumps(solution)
+    answers = []
+    for way, strength in zip((-1, 1), strengths.tolist(), strict=True):
+        at = way * (places - middle)[::way] / half_width
+        off = differences[::way]
+        apart = (off[1:] + off[:-1]) / 2 - off[-1:]
+        squares = _DIFFERENT**2 * ((np.diff(_weight(at)) * apart) ** 2).sum()
+        low, high = np.sort(way * (intervals - middle) / half_width, axis=0)
+        weights = np.minimum(_weight(high) - _weight(low), _weight((low + high) / 2))
+        squares += _JUMPED**2 * ((weights * jumps) ** 2).sum()
+        answers.append(2 * np.sqrt(squares) / (np.pi * np.sqrt(2 * half_width) * max(strength, _TINY)))
+    left, right = answers
+    if stick.moved[0] != stick.moved[1]:
+        left = right = right if stick.moved[0] else left
+    return np.array([left, right])
+
+
+def _weight(at: Array) -> Array:
+    """w at the distances ``at`` from the middle of the stick zone, in its half-widths."""
+    result: Array = np.sqrt(np.maximum(1 + at, 0.0) / np.maximum(1 - at, _TINY))
+    return result
+
+
+def _differences(solution: MeshSolution, other: MeshSolution) -> tuple[Array, Array]:
+    """Vertices in the stick zones of both solutions, (k,), and half of the difference of the slip there from load point
+    1 to 2, (k,)."""
+    vertices, slips = solution.lower.x[:: solution.lower.order], []
+    for each in (solution, other):
+        assert each.stick
+        vertices = vertices[(vertices > each.stick.left) & (vertices < each.stick.right)]
+    for each in (solution, other):
+        assert each.history
+        slips.append(np.interp(vertices, each.lower.x[each.nodes], each.history.slip))
+    return vertices, (slips[1] - slips[0]) / 2
+
+
+def _jumps(solution: MeshSolution) -> tuple[Array, Array]:
+    """Intervals of nodes that stuck again at the same instant in the stick zone of ``solution``, (2, j), and errors of
+    half of the slip that is locked in there, (j,)."""
+    stick, history = solution.stick, solution.history
+    assert stick
+    assert history
+    since, x = history.lasting, solution.lower.x[solution.nodes]
+    if since is None:
+        return np.empty((2, 0)), np.empty(0)
+    nodes = np.flatnonzero((x > stick.left) & (x < stick.right) & np.isfinite(since))
+    starts = np.flatnonzero((np.diff(since[nodes], prepend=np.nan) != 0) | (np.diff(nodes, prepend=-2) > 1))
+    first, last = nodes[starts], nodes[np.append(starts[1:], len(nodes))[: len(starts)] - 1]
+    edges = np.concatenate([[stick.left], (x[1:] + x[:-1]) / 2, [stick.right]])
+    intervals = np.clip([edges[first], edges[last + 1]], stick.left, stick.right)
+    (one, two), cycle = history.path.ends, history.path.cycle
+    strain = abs(cycle[two][1] - cycle[one][1]) / 2
+    lengths = np.diff(intervals, axis=0)[0]
+    return intervals, strain * _waited(since, first, last) * lengths**1.5 / np.sqrt(stick.right - stick.left)
+
+
+def _waited(since: Array, first: Indices, last: Indices) -> Array:
+    """Shares of the leg that an end waited before it jumped over the nodes from ``first`` to ``last``, (j,) each: at
+    most since the jump over nodes beside these, and since the last instant at which any node changed."""
+    instants = since[first]
+    apart = np.abs(np.diff(instants, prepend=np.nan, append=np.nan))
+    apart[1:-1][first[1:] > last[:-1] + 1] = np.nan
+    every = np.append(0.0, np.unique(since[np.isfinite(since)]))
+    before = instants - every[np.maximum(np.searchsorted(every, instants) - 1, 0)]
+    result: Array = np.fmin(np.fmin(apart[1:], apart[:-1]), before)
+    return result
