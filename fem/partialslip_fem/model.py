@@ -64,6 +64,7 @@ def solve(
     """
     _check_incompressibility(scene)
     _check_sizes(scene)
+    _check_pivot(scene)
     clock = Clock(allowance)
     width = scene.fem.width or WIDTHS[scene.fem.far_field]
     with clock.phase("mesh"):
@@ -95,6 +96,13 @@ def _check_incompressibility(scene: Scene) -> None:
     for name, elastic in scene.material:
         if scene.material.plane == "strain" and elastic.nu > _LARGEST_NU:
             raise InputError(f"{name}.nu = {elastic.nu}: must be <= {_LARGEST_NU} in plane strain by finite elements")
+
+
+def _check_pivot(scene: Scene) -> None:
+    """Raise InputError for a body that pivots on a contact that slides: its pressure would depend on the slip."""
+    if scene.pin is not None and scene.slides:
+        where = "must keep |Q| below f P at each load point on a body with support 'pivot'"
+        raise InputError(f"load.Q = {list(scene.load.Q)}: {where}")
 
 
 def _check_sizes(scene: Scene) -> None:

@@ -182,6 +182,7 @@ def _checked(scene: Scene) -> Scene:
         raise InputError("bodies: must have upper or lower for equivalent; half-planes are solved by exact")
     if not scene.material.alike:
         raise InputError("material.upper, material.lower: the bodies differ; must be of one material for equivalent")
+    scene.bodies.require_no_pin("for equivalent, whose bodies do not turn; use fem")
     if len({P for P, _ in scene.pressing}) > 1:
         raise InputError("load.P: must be constant for equivalent, as the bodies bend with P; use fem")
     scene.load.require_forces()

@@ -6,7 +6,9 @@ from typing import Any
 from partialslip.units import Dimension
 
 _BODIES = ("bodies.upper", "bodies.lower")
-_BODY: dict[str, Dimension] = {"width": "m", "height": "m", "holder.width": "m", "holder.height": "m", "unit": "m"}
+_BODY: dict[str, Dimension] = dict.fromkeys(
+    ("width", "height", "pivot_height", "holder.width", "holder.height", "unit"), "m"
+)
 
 #: Dimension of every number of a scene, by key; of an array, of all its numbers.
 DIMENSIONS: dict[str, Dimension] = {
