@@ -62,6 +62,7 @@ def solve(
     MissingLibraryError
         If gmsh, a system library that gmsh needs, or the factorisation asked for is missing.
     """
+    scene = scene.left_gripped
     _check_incompressibility(scene)
     _check_sizes(scene)
     _check_pivot(scene)
@@ -82,7 +83,7 @@ def solve_meshed(scene: Scene, plan: Plan, meshes: Sequence[Mesh]) -> Result:
     Lengths of the meshes are in m. The first mesh is the lower body's. Unless the bodies are mirror images, the second
     is the upper body's, turned over to lie below its contact line.
     """
-    clock = Clock()
+    scene, clock = scene.left_gripped, Clock()
     problem = scaled(scene, plan)
     in_lengths = [replace(mesh, points=mesh.points / scene.length) for mesh in meshes]
     width = float(np.abs(in_lengths[0].points[:, 0]).max())

@@ -185,6 +185,9 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             raise InputError(f"load.displacement = {displacement}: must be given only with {why}")
         if self.friction.f == 0:
             raise InputError(f"friction.f = {self.friction.shown}: must be > 0 with load.displacement")
+        if self.bodies.lower.right_grip:
+            given = f"bodies.lower.right_grip = {self.bodies.lower.right_grip}"
+            raise InputError(f"{given}: must be left out with load.displacement; it is a share of a given Q")
 
     def _check_moment(self) -> None:
         """Raise InputError if a moment is given to bodies that do not turn, or an uneven gap to a pad."""
@@ -286,6 +289,28 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     def finite(self) -> bool:
         """Whether a body is finite."""
         return self.bodies != Bodies()
+
+    def at_right_grip(self, Q: npt.ArrayLike, sigma: npt.ArrayLike) -> Array:
+        """Tension on the right side of a ``pulled`` body, Pa: the bulk tension ``sigma`` (Pa), and what the grip there
+        carries of the shear force ``Q`` (N/m), of any shape."""
+        tension, lower = np.asarray(sigma, float), self.bodies.lower
+        if lower is None or not lower.right_grip:
+            return tension
+        height = (lower.holder.height if lower.holder else lower.height) or 0.0
+        return tension + lower.right_grip * np.asarray(Q, float) / height
+
+    @property
+    def left_gripped(self) -> "Scene":
+        """The scene with the tension of :meth:`at_right_grip` as sigma, and no share of Q on the right side."""
+        if self.bodies.lower is None or not self.bodies.lower.right_grip:
+            return self
+        sigma = self.at_right_grip(*zip(*self.load.points, strict=True))
+        lower = msgspec.structs.replace(self.bodies.lower, right_grip=0.0)
+        return msgspec.structs.replace(
+            self,
+            load=msgspec.structs.replace(self.load, sigma=tuple(sigma.tolist())),
+            bodies=msgspec.structs.replace(self.bodies, lower=lower),
+        )
 
     @property
     def pin(self) -> float | None:
