@@ -34,13 +34,13 @@ class Shared:
         self._pressed: tuple[Array, Solution] | None = None
         self._sheared: tuple[Indices, Factored] | None = None
 
-    def press(self, normal: Array, gap: Array, arms: Array | None, near: Sides | None) -> Solution:
+    def press(self, normal: Array, gap: Array, arms: Array | None, near: Sides | None, moment: float = 0.0) -> Solution:
         """Normal forces (n,), as from :func:`partialslip.friction.normal.press` under a force of 1; ``near`` are sides
         (n,) to begin with."""
-        key = gap if arms is None else np.concatenate([gap, arms])
+        key = gap if arms is None else np.concatenate([gap, arms, [moment]])
         if self._pressed and np.array_equal(self._pressed[0], key):
             return replace(self._pressed[1], iterations=0, changes=0)
-        found, _ = press(normal, gap, 1.0, arms, near=None if near is None else (near, 0.0))
+        found = press(normal, gap, 1.0, arms, moment, near=None if near is None else (near, 0.0))
         self._pressed = key, found
         return found
 

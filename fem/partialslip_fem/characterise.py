@@ -31,10 +31,11 @@ def characterise_bodies(scene: Scene) -> Rig:
     Raises
     ------
     InputError
-        If no body of the scene is finite, or a mesh file cannot be read.
+        If no body of the scene is finite, a body pivots, or a mesh file cannot be read.
     """
     if not scene.finite:
         raise InputError("bodies: must have upper or lower: half-planes need no equivalent")
+    scene.bodies.require_no_pin("for a rig, whose bodies do not turn")
     length = _smallest(parts_of(scene, 1.0))
     parts = [part for part in parts_of(scene, length) if part.finite]
     backend = scene.fem.factor or default_backend()

@@ -47,6 +47,11 @@ class CondensedBody:
         (x, y), kappa = self.body.points, self.body.kappa
         return np.array([x**2 / 2 - (5 + kappa) / (1 + kappa) * y**2 / 2, -(3 - kappa) / (1 + kappa) * x * y])
 
+    def turned(self, height: float) -> Array:
+        """Displacements of all nodes, (2, N), of a body that turns by 1 about a pin at the ``height``."""
+        x, y = self.body.points
+        return np.array([-(y + height), x])
+
     @property
     def stretch(self) -> Array:
         """Displacements of the contact line's nodes under the same tension, (2, n); zero along y if uniform."""

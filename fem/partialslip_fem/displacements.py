@@ -47,7 +47,7 @@ def displace_bodies(solution: MeshSolution, problem: Problem) -> tuple[Displaced
     first = solution.pressing.x if solution.first is None else solution.first
     loads = loads or [(0 * line.x, first), (0 * line.x, solution.pressing.x)]
     pressures = tuple(traction(line, normal) for _, normal in loads)
-    strains = np.array(problem.strains)
+    strains, angles = np.array(problem.strains), history.angles if history else (solution.pressing.turn,) * 2
     displaced = []
     for condensed, part, way in zip((solution.bodies * 2)[:2], (problem.parts * 2)[:2], (1, -1), strict=True):
         # q acts in the opposite direction on the lower body
@@ -60,6 +60,8 @@ def displace_bodies(solution: MeshSolution, problem: Problem) -> tuple[Displaced
             u = u + np.multiply.outer(strains[:, 0], condensed.stretched)
             if strains[:, 1].any():  # only half-planes: x counts from the scene's x = 0
                 u = u + np.multiply.outer(strains[:, 1], condensed.bent + problem.origin * condensed.stretched)
+        if problem.pin is not None and part.support == "pivot":
+            u = u + np.multiply.outer(angles, condensed.turned(abs(problem.pin)))
         displaced.append(DisplacedBody(condensed, part, way, u, pressures))
     lower, upper = displaced
     return lower, upper

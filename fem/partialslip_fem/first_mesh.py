@@ -45,10 +45,14 @@ def solve_on_first_mesh(
     check = problem.meshed  # on meshes from files this solution is also the last
     farthest, most = max(map(abs, problem.lines), default=0.0), _WIDER * reach
     if farthest >= most:
+        by_pin = "load.Q, load.M, load.e, pivot_height", ""
+        movers, instead = ("load.M, load.e", "; use march") if problem.pin is None else by_pin
         raise InputError(
-            f"load.M, load.e: must move the line of action of P by less than {most:.3g} sqrt(A R P) for fem, not "
-            f"{farthest:.3g}; use march"
+            f"{movers}: must move the line of action of P by less than {most:.3g} sqrt(A R P) for fem, not "
+            f"{farthest:.3g}{instead}"
         )
+    if farthest >= limit:
+        raise too_narrow(problem)
     while reach <= farthest:  # no pressure within the contact line has this moment
         reach *= 2
     while True:

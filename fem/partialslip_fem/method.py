@@ -62,8 +62,10 @@ def solve(
     MissingLibraryError
         If gmsh, a system library that gmsh needs, or the factorisation asked for is missing.
     """
+    scene = scene.left_gripped
     _check_incompressibility(scene)
     _check_sizes(scene)
+    _check_pivot(scene)
     clock = Clock(allowance)
     width = scene.fem.width or WIDTHS[scene.fem.far_field]
     with clock.phase("mesh"):
@@ -81,7 +83,7 @@ def solve_meshed(scene: Scene, plan: Plan, meshes: Sequence[Mesh]) -> Result:
     Lengths of the meshes are in m. The first mesh is the lower body's. Unless the bodies are mirror images, the second
     is the upper body's, turned over to lie below its contact line.
     """
-    clock = Clock()
+    scene, clock = scene.left_gripped, Clock()
     problem = scaled(scene, plan)
     in_lengths = [replace(mesh, points=mesh.points / scene.length) for mesh in meshes]
     width = float(np.abs(in_lengths[0].points[:, 0]).max())
@@ -95,6 +97,13 @@ def _check_incompressibility(scene: Scene) -> None:
     for name, elastic in scene.material:
         if scene.material.plane == "strain" and elastic.nu > _LARGEST_NU:
             raise InputError(f"{name}.nu = {elastic.nu}: must be <= {_LARGEST_NU} in plane strain by finite elements")
+
+
+def _check_pivot(scene: Scene) -> None:
+    """Raise InputError for a body that pivots on a contact that slides: its pressure would depend on the slip."""
+    if scene.pin is not None and scene.slides:
+        where = "must keep |Q| below f P at each load point on a body with support 'pivot'"
+        raise InputError(f"load.Q = {list(scene.load.Q)}: {where}")
 
 
 def _check_sizes(scene: Scene) -> None:

@@ -32,12 +32,15 @@ def plates_of(problem: Problem, solution: MeshSolution) -> Plates | None:
     sheared = [solution.on_line(q) for q in history.at_ends]
     around = history.around
     moved, Q = around.shifts, around.forces.sum(axis=1)
+    x, pin, on = solution.lower.x, problem.pin, np.flatnonzero(last > 0)
+    opened = [gap - angle * x for gap, angle in zip(opened, history.angles, strict=True)]
     return Plates(
         at_points=np.array([float(each.x.sum()) for each in history.points[-len(history.path.cycle) :]]),
         displacement=np.array(history.shifts),
         approach=np.array([_approach(C, *each) for each in zip((first, last), sheared, opened, strict=True)]),
-        compliance=_stuck_between(C, solution.lower.x, np.flatnonzero(last > 0), (solution.left, solution.right)),
+        compliance=_stuck_between(C, x, on, (solution.left, solution.right), pin),
         loop=np.column_stack([np.append(0.0, moved), np.append(Q[-1], Q)]),
+        turn=None if pin is None else np.array(history.angles),
     )
 
 
@@ -55,10 +58,10 @@ def compliance_error(problem: Problem, solution: MeshSolution, other: MeshSoluti
     (first, last), (another, final) = _touching(solution), _touching(other)
     k, j = solution.lower.order, other.lower.order
     begin, end = max(-(-first // k), -(-another // j)), min(last // k, final // j)  # vertices, which both share
-    x, on = solution.lower.x, np.arange(begin * k, end * k + 1)
-    compliance, by_width = _answering(C, x, on)
+    x, on, across = solution.lower.x, np.arange(begin * k, end * k + 1), np.arange(begin * j, end * j + 1)
+    compliance, by_width = _answering(C, x, on, problem.pin)
     unit = np.abs(compliance).max()
-    changed = np.abs(compliance - _stuck(D, np.arange(begin * j, end * j + 1))).max() / unit
+    changed = np.abs(compliance - _stuck(D, other.lower.x, across, problem.pin)).max() / unit
     exponents = [exponent for part in problem.parts for exponent in part.exponents.values()]
     elements = _SAFE * changed / abs(1 - (k / j) ** (4 * min(exponents, default=1.0)))
     spacing = max(x[first] - x[first - 1], x[last + 1] - x[last]) / ((x[last] - x[first]) / 2)
@@ -94,32 +97,35 @@ def _approach(C: Relative, p: Array, q: Array, gap: Array) -> float:
     return float(opening.mean())
 
 
-def _stuck_between(C: Relative, x: Array, on: Indices, ends: tuple[float, float]) -> Array:
+def _stuck_between(C: Relative, x: Array, on: Indices, ends: tuple[float, float], pin: float | None) -> Array:
     """Displacements of :func:`_stuck` of bodies that stick from end to end; the last nodes ``on`` the contact are off
     its ``ends`` by up to the distance of the next node."""
-    compliance, by_width = _answering(C, x, on)
+    compliance, by_width = _answering(C, x, on, pin)
     result: Array = compliance + by_width * np.log((ends[1] - ends[0]) / (x[on[-1]] - x[on[0]]))
     return result
 
 
-def _answering(C: Relative, x: Array, on: Indices) -> tuple[Array, Array]:
+def _answering(C: Relative, x: Array, on: Indices, pin: float | None) -> tuple[Array, Array]:
     """Displacements of :func:`_stuck`, and their derivative by the logarithm of the width, from a contact that is
     shorter by a node at both ends; (2, 2) each."""
-    compliance = _stuck(C, on)
+    compliance = _stuck(C, x, on, pin)
     if len(on) < _FEWEST:
         return compliance, 0 * compliance
     wider = np.log((x[on[-1]] - x[on[0]]) / (x[on[-2]] - x[on[1]]))
-    return compliance, (compliance - _stuck(C, on[1:-1])) / wider
+    return compliance, (compliance - _stuck(C, x, on[1:-1], pin)) / wider
 
 
-def _stuck(C: Relative, on: Indices) -> Array:
+def _stuck(C: Relative, x: Array, on: Indices, pin: float | None) -> Array:
     """Displacements (2, 2), along x and y, of plates under unit forces, of bodies that stick to each other at the nodes
-    ``on``: C F - R u = 0 and R^T F = 1, with one column of R for each direction."""
+    ``on``: C F - R u = 0 and R^T F = 1, with one column of R for each direction. A plate on a ``pin`` turns: R has one
+    more column, and F no moment about the pin."""
     assert C.xx is not None
     count = len(on)
     across = np.zeros((count, count)) if C.xy is None else submatrix(C.xy, on, on)
     every = np.block([[submatrix(C.xx, on, on), across], [across.T, submatrix(C.yy, on, on)]])
-    uniform = np.kron(np.eye(2), np.ones((count, 1)))
-    stiffness = uniform.T @ la.solve(every, uniform, assume_a="pos")
-    result: Array = np.linalg.inv(stiffness)
+    rigid = np.kron(np.eye(2), np.ones((count, 1)))
+    if pin is not None:
+        rigid = np.column_stack([rigid, np.append(np.full(count, pin), x[on])])
+    stiffness = rigid.T @ la.solve(every, rigid, assume_a="pos")
+    result: Array = np.linalg.inv(stiffness)[:2, :2]
     return result

@@ -23,11 +23,12 @@ from partialslip_fem.elasticity import ALL_AROUND, Held
 from partialslip_fem.factor import Backend, default_backend
 from partialslip_meshes import Corner, Mesh, read
 
-Support = Literal["clamped", "roller", "sides"]
+Support = Literal["clamped", "roller", "sides", "pivot"]
 _HELD: dict[Support, Held] = {
     "clamped": (("back",), ("back",)),
     "roller": (("left", "right"), ("back",)),
     "sides": (("left", "right"), ("left", "right")),
+    "pivot": (("back",), ("back",)),  # displacements count from the plate, which turns
 }
 
 
@@ -100,7 +101,7 @@ class Part:
     @property
     def even(self) -> bool:
         """Whether the part is sure to be a mirror image of itself."""
-        return not self.mesh and (not self.pulled or self.support == "clamped")
+        return not self.mesh and (not self.pulled or self.support in ("clamped", "pivot"))
 
     def meshed_like(self, other: "Part") -> bool:
         """Whether both stand for half-planes with elements of one size: their meshes are the same."""
@@ -192,6 +193,10 @@ class Problem:
         P and M at load points 1 and 2, where the pressure varies.
     largest : int
         Load point with the larger P, 1 or 2.
+    pin : float or None
+        Height of the pin of a body that pivots over the contact line, negative for the lower body.
+    moment : float
+        Moment of the loads about the origin, or about the pin, where the pressure does not vary.
     """
 
     gap: Callable[[Array], Array]
@@ -215,6 +220,8 @@ class Problem:
     length: float = 1.0
     pressing: tuple[tuple[float, float], tuple[float, float]] | None = None
     largest: int = 2
+    pin: float | None = None
+    moment: float = 0.0
 
     @property
     def f(self) -> float:
@@ -237,11 +244,24 @@ class Problem:
 
     @property
     def lines(self) -> tuple[float, ...]:
-        """Lines of action of P at the load points, where the pressure varies."""
+        """Lines of action of P at the load points, where the pressure varies: where it has no moment."""
         loads: tuple[tuple[float, float], ...] = self.pressing or ()
         if self.path and self.path.presses_anew:
             loads = tuple((P, M) for *_, P, M in self.path.cycle)
+        if self.pin is not None:
+            loads = loads or ((1.0, self.moment),)
+            if self.path and self.path.actuator is None:  # otherwise Q is not known yet
+                count = len(self.path.cycle)
+                loads = tuple(
+                    (P, M - self.pin * Q)
+                    for (Q, *_), (P, M) in zip(self.path.cycle, loads * (count // len(loads)), strict=True)
+                )
         return tuple(M / P for P, M in loads)
+
+    @property
+    def contact_moves(self) -> bool:
+        """Whether the pressure varies along the path: with P or M, or with Q on a body that pivots."""
+        return self.pressing is not None or (self.pin is not None and self.path is not None)
 
     @property
     def beta(self) -> float:
@@ -305,6 +325,8 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         length=L,
         pressing=_at_load_points(scene) if scene.presses_anew else None,
         largest=scene.largest,
+        pin=None if scene.pin is None else scene.pin / L,
+        moment=0.0 if scene.pin is None else scaled_pressing(scene)[0][1],
     )
 
 

@@ -137,6 +137,7 @@ def _plates(problem: Problem, adapted: Adapted, scene: Scene) -> Plates | None:
         loop=found.loop * [A * P, P],
         error=adapted.plates_error,
         displacement_error=None if off is None else A * P * off,
+        turn=None if found.turn is None else A * P / scene.length * found.turn,
     )
 
 

@@ -10,7 +10,7 @@ from partialslip.arrays import Array, Indices
 from partialslip.bars import BARS
 from partialslip.friction import coulomb_constant_pressure, coulomb_varying_pressure, coupled, step_errors
 from partialslip.friction.active_set import Solution
-from partialslip.friction.coupled_step import Relative
+from partialslip.friction.coupled_step import Pivot, Relative
 from partialslip.friction.history import History, certified
 from partialslip.friction.load_path import Path, stretched
 from partialslip.friction.normal import Presses
@@ -127,7 +127,7 @@ def solve_contact(
         if stick:  # on a coarse mesh the ends of the stick zone may lie outside the contact
             left_at_1, right_at_1 = ends_at_1 or (left, right)
             stick = replace(stick, left=max(stick.left, left, left_at_1), right=min(stick.right, right, right_at_1))
-        if stick and problem.pressing:
+        if stick and problem.contact_moves:
             left_at_1, right_at_1 = ends_at_1 or (left, right)
             stick = within(stick, (max(left, left_at_1), min(right, right_at_1)), line.x[:: line.order])
         leftmost, rightmost = min([left, *ends_at_1[:1]]), max([right, *ends_at_1[1:]])
@@ -208,14 +208,16 @@ def _contact_forces(
             trail,
         )
         near = BARS["q"] * problem.accuracy
+        pivot = None if problem.pin is None else Pivot(line.x, problem.pin, problem.moment)
         loaded = C, gap, stretch, moved[1], problem.f_at(line.x)
-        history, pressing, first = coupled.march(*loaded, path, pressed, along, near)
+        history, pressing, first = coupled.march(*loaded, path, pressed, along, near, pivot)
         nodes = np.flatnonzero(history.bound > 0)
-        most = np.maximum(*history.pressures) if problem.pressing else None
+        most = np.maximum(*history.pressures) if problem.contact_moves else None
         left: step_errors.Errors = {}
         moves = np.zeros((2, 2))
         if check and path.moves:
-            finer, *_ = coupled.march(*loaded, step_errors.other_steps(path), pressed, replace(along, trail=None), near)
+            other = step_errors.other_steps(path), pressed, replace(along, trail=None), near, pivot
+            finer, *_ = coupled.march(*loaded, *other)
             left, moves = _path_errors(problem, line, history, finer), step_errors.of_plates(history, finer)
         return _ContactForces(pressing, history.of(nodes), nodes, first, left, most=most, trail=trail, path_moves=moves)
     opened = gap if path else gap - problem.strains[1][0] * stretch[1]
@@ -224,7 +226,7 @@ def _contact_forces(
         presses = Presses(C.yy, opened, arms)
         return _under_varying_pressure(problem, C, lower, presses, problem.pressing, check)
     apart = -((line.x < before.left) | (line.x > before.right)).astype(np.int8) if before else None
-    pressing = shared.press(C.yy, opened, arms, apart)
+    pressing = shared.press(C.yy, opened, arms, apart, problem.moment)
     nodes = np.flatnonzero(pressing.x > 0)
     if not path:
         return _ContactForces(pressing, None, nodes)

@@ -165,11 +165,13 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
     varies = [f"P goes between {units.span(forces, 'N/m')}"] if len(set(forces)) > 1 else []
     varies += [f"M goes between {units.span(moments, 'N')}"] if len(set(moments)) > 1 else []
     turned = f"{scene.M or 0.0:g} N" if len(set(moments)) == 1 else "M"
+    pivots = scene.pin is not None
+    by_pin = f"a body turns until the moment of pressure and shear about its pin is {turned}"
     return {
         "normal": (True, f"two bodies are pressed together by {'P' if anew else 'a constant P'}", ""),
         "varying-pressure": (anew, ", ".join(varies), "P is constant" + ", and so is M" * any(moments)),
-        "moment": (not scene.even and scene.M is not None,
-                   f"the bodies turn until the moment of the pressure is {turned}",
+        "moment": (pivots or (not scene.even and scene.M is not None),
+                   by_pin if pivots else f"the bodies turn until the moment of the pressure is {turned}",
                    "no moment acts, and the gap is even" if scene.even else "the bodies do not turn"),
         "friction": (friction, why, no_friction),
         "shear": (any(driving) or moved, f"{drives_by[0]} goes between {scene.units.span(driving, drives_by[1])}",
@@ -241,6 +243,7 @@ def _refuse(scene: Scene, forced: dict[Effect, bool], own: _Decisions, start: bo
          and (coupled or scene.presses_anew or not scene.load.in_phase or moved),
          own["history"][1]),
         ("history", "history" in off and start, own["history"][1]),
+        ("coupling", "coupling" in off and scene.pin is not None, "a body pivots: shear changes the pressure"),
         ("finite-size", "finite-size" in on and not scene.finite, "bodies.upper and bodies.lower have no size"),
         ("far-field", "far-field" in on and None not in (scene.bodies.upper, scene.bodies.lower),
          "both bodies are finite: there is no half-plane around them"),

@@ -32,6 +32,8 @@ SCENE = {
     "fem": {"size": 0.04},
 }  # fmt: skip
 CLAMPED = {"bodies.upper.support": "clamped", "bodies.lower.support": "clamped"}
+PIVOT = {"bodies.upper.support": "pivot", "bodies.upper.pivot_height": 3e-4}
+HIGH_PIVOT = PIVOT | {"bodies.upper.pivot_height": 2e-3, "load.Q": [-5e3, 0.0], "load.cycles": 1}  # ends in the middle
 PULLED = {"bodies.lower.pulled": True, "bodies.upper.support": "clamped"}
 ALIKE = {"bodies.upper": {"width": 8e-3, "height": 3e-3}, "bodies.lower": {"width": 8e-3, "height": 3e-3}}
 
@@ -52,7 +54,8 @@ def graded(low, high, at_low, at_high):
 
 def bonded(scene, a, fine=1e-4):
     """Compliance (2, 2) of the plates of two blocks that are bonded where \\|x\\| <= ``a``, by elements of eight nodes
-    on one mesh of rectangles for each body: another element family, another solver, no condensation."""
+    on one mesh of rectangles for each body: another element family, another solver, no condensation. An upper plate on
+    a pin turns until the forces on it have no moment."""
     bodies = []
     for body, way in ((scene.bodies.lower, -1), (scene.bodies.upper, 1)):
         side, corner = body.width / 2, 1e-3 * body.height
@@ -70,8 +73,8 @@ def bonded(scene, a, fine=1e-4):
         along_x[np.concatenate([basis.nodal_dofs[0], basis.facet_dofs[0]])] = True
         if body.pulled:
             sides &= at[0] < 0
-        on_x = {"clamped": back, "roller": sides, "sides": sides}[body.support]
-        on_y = {"clamped": back, "roller": back, "sides": sides}[body.support]
+        on_x = {"clamped": back, "pivot": back, "roller": sides, "sides": sides}[body.support]
+        on_y = {"clamped": back, "pivot": back, "roller": back, "sides": sides}[body.support]
         plates += [offset + np.flatnonzero(on_x & along_x), offset + np.flatnonzero(on_y & ~along_x)]
         nodes = np.flatnonzero(face)
         glued.append(offset + nodes[np.lexsort((at[0, nodes], ~along_x[nodes]))])
@@ -86,16 +89,22 @@ def bonded(scene, a, fine=1e-4):
     K = (J.T @ K @ J).tocsc()
     held = numbers[np.concatenate(plates)]
     free = np.setdiff1d(np.arange(len(kept)), held)
-    u = np.zeros((len(kept), 2))
+    u = np.zeros((len(kept), 2 if scene.pin is None else 3))
     u[numbers[plates[2]], 0] = u[numbers[plates[3]], 1] = 1.0
+    if scene.pin is not None:
+        places = np.hstack([basis.doflocs for _, _, basis, _ in bodies])
+        u[numbers[plates[2]], 2] = scene.pin - places[1, plates[2]]
+        u[numbers[plates[3]], 2] = places[0, plates[3]]
     solve = spla.splu(K[free][:, free])
-    for column in range(2):
-        u[free, column] = solve.solve(-(K[free][:, held] @ u[held, column]))
-    return np.linalg.inv(u.T @ (K @ u))
+    for column in u.T:
+        column[free] = solve.solve(-(K[free][:, held] @ column[held]))
+    return np.linalg.inv(u.T @ (K @ u))[:2, :2]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("changes", [{}, CLAMPED, PULLED], ids=["sides and roller", "clamped", "pulled"])
+@pytest.mark.parametrize(
+    "changes", [{}, CLAMPED, PULLED, HIGH_PIVOT], ids=["sides and roller", "clamped", "pulled", "pivot"]
+)
 def test_stiffness_against_another_element_family(changes):
     scene = parse_scene(SCENE).replace({**changes, "fem.size": None, "fem.accuracy": 1e-3, "load.steps": 1})
     found = run(scene, "fem")["fem"]
@@ -107,7 +116,7 @@ def test_stiffness_against_another_element_family(changes):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("spring", [None, 3e9])
-@pytest.mark.parametrize("changes", [{}, ALIKE], ids=["coupled", "mirror images"])
+@pytest.mark.parametrize("changes", [{}, ALIKE, PIVOT], ids=["coupled", "mirror images", "pivot"])
 def test_displacements_of_plates_are_the_inverse_of_forces(changes, spring):
     """On one mesh: moved as far as Q moves them, plates bear Q; all else is the same. An elastic actuator goes Q/k
     farther."""

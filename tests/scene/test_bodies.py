@@ -19,10 +19,11 @@ BLOCK = "width=0.04, height=0.02"  # a = 1 mm, R = 50 mm
         ("width=1, height='1'", "height = '1': must be a number, not a string"),
         (
             f"{BLOCK}, colour=1",
-            "colour: unknown key; known are kind, width, height, holder, mesh, unit, support, pulled",
+            "colour: unknown key; known are kind, width, height, holder, mesh, unit, support, pivot_height, pulled, "
+            "right_grip",
         ),
         (f"kind='cylinder', {BLOCK}", "kind = 'cylinder': must be one of 'block', 'pad'"),
-        (f"support='glued', {BLOCK}", "support = 'glued': must be one of 'clamped', 'roller', 'sides'"),
+        (f"support='glued', {BLOCK}", "support = 'glued': must be one of 'clamped', 'roller', 'sides', 'pivot'"),
         (f"pulled=1, {BLOCK}", "pulled = 1: must be true or false, not a whole number"),
         (f"pulled=true, {BLOCK}", "pulled = true: must have support 'roller' or 'sides', not 'clamped'"),
         (f"holder={{width=1}}, {BLOCK}", "holder.height: missing"),

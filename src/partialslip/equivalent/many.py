@@ -48,7 +48,7 @@ def stick_zone(scene: Scene, rig: Rig, dQ: npt.ArrayLike, dsigma: npt.ArrayLike)
     loads = np.broadcast_arrays(np.asarray(dQ, float), np.asarray(dsigma, float))
     if not (shape := loads[0].shape):
         one_step_zone(pressed, pressed.f, dQ, dsigma)  # raises if the contact slides
-    flat_Q, flat_sigma = (load.ravel() for load in loads)
+    flat_Q, flat_sigma = loads[0].ravel(), scene.at_right_grip(*loads).ravel()
     centre, c, s = np.empty(flat_Q.size), np.empty(flat_Q.size), np.empty(flat_Q.size, int)
     for start in range(0, flat_Q.size, _CHUNK):
         part = slice(start, start + _CHUNK)

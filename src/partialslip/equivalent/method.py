@@ -72,10 +72,10 @@ def solve(
     """
     if start:
         raise InputError("start: must not be given for equivalent; use fem")
-    clock = Clock()
+    scene, clock = _checked(scene), Clock()
     with clock.phase("rig"):
         progress("characterising the bodies")
-        rig = _called_for(rig_of(_checked(scene)), scene)
+        rig = _called_for(rig_of(scene), scene)
     with clock.phase("half-planes"):
         found, seen, data = stand_ins(scene, rig, progress)
     closed = found.method == "exact"
@@ -138,7 +138,8 @@ def stand_ins(scene: Scene, rig: Rig, progress: Callable[[str], None] = lambda _
     InputError
         As :func:`solve`.
     """
-    closed = _checked(scene).load.in_phase and has_closed_form(half_planes(scene, None))
+    scene = _checked(scene)
+    closed = scene.load.in_phase and has_closed_form(half_planes(scene, None))
     return _iterated(_called_for(rig, scene), scene, closed, progress)
 
 
@@ -177,15 +178,17 @@ def _bent(profile: Profile, curvature: float) -> dict[str, Any]:
 
 
 def _checked(scene: Scene) -> Scene:
-    """Raise InputError if half-planes cannot stand for the bodies of ``scene``."""
+    """The ``scene``, with what a grip on the right carries of Q as tension; InputError if half-planes cannot stand for
+    its bodies."""
     if not scene.finite:
         raise InputError("bodies: must have upper or lower for equivalent; half-planes are solved by exact")
     if not scene.material.alike:
         raise InputError("material.upper, material.lower: the bodies differ; must be of one material for equivalent")
+    scene.bodies.require_no_pin("for equivalent, whose bodies do not turn; use fem")
     if len({P for P, _ in scene.pressing}) > 1:
         raise InputError("load.P: must be constant for equivalent, as the bodies bend with P; use fem")
     scene.load.require_forces()
-    return scene
+    return scene.left_gripped
 
 
 def _iterated(rig: Rig, scene: Scene, closed: bool, progress: Callable[[str], None]) -> StandIns:

@@ -181,6 +181,9 @@ def _check(scene: Scene) -> None:
     scene.load.require_forces()
     if any(scene.load.sigma_slope):
         raise InputError(f"load.sigma_slope = {list(scene.load.sigma_slope)}: must be 0 or left out to export")
+    scene.bodies.require_no_pin("to export")
+    if scene.bodies.lower and (share := scene.bodies.lower.right_grip):
+        raise InputError(f"bodies.lower.right_grip = {share}: must be 0 or left out to export")
     if scene.meshed:
         name = next(name for name, body in scene.bodies if body.mesh is not None)
         raise InputError(f"{name}.mesh: must be left out to export; give width and height")

@@ -27,7 +27,7 @@ class Solution:
     ``residual`` (n,) is the distance of each multiplier from the projection of the augmented multiplier, ``imbalance``
     the distance of the sum from the total, both in units of x. ``iterations`` counts the linear solves of the
     active-set iteration, ``changes`` the changes of the active set: 0 if one linear solve sufficed. ``shift`` is the
-    rigid one.
+    rigid one, ``turn`` the angle by which bodies that turn have turned since they were apart.
     """
 
     x: Array
@@ -37,6 +37,7 @@ class Solution:
     iterations: int
     changes: int = 0
     shift: float = 0.0
+    turn: float = 0.0
 
     def spread(self, where: Indices, count: int) -> "Solution":
         """The solution at ``count`` members, of which those with the indices ``where`` have been solved; the others

@@ -11,7 +11,7 @@ import numpy as np
 from partialslip.arrays import Array, Mask
 from partialslip.errors import InputError
 from partialslip.friction.active_set import Solution
-from partialslip.friction.coupled_step import LoadStep, Pair, Relative, solve_near
+from partialslip.friction.coupled_step import LoadStep, Pair, Pivot, Relative, solve_near
 from partialslip.friction.history import History, certified, follow, resting, still
 from partialslip.friction.load_path import Path
 from partialslip.friction.pressing import Pressed, Punch, Punches, Stages, disproportion
@@ -64,9 +64,17 @@ class Nodes:
 
 
 def press(
-    C: Relative, gap: Array, f: Array, line: Nodes | None, least: int, accuracy: float, P: float = 1.0
+    C: Relative,
+    gap: Array,
+    f: Array,
+    line: Nodes | None,
+    least: int,
+    accuracy: float,
+    P: float = 1.0,
+    pivot: Pivot | None = None,
 ) -> Pressed:
-    """Press the bodies together under a force from 0 to ``P``, with friction and without Q.
+    """Press the bodies together under a force from 0 to ``P``, with friction and without Q. The moment of a ``pivot``
+    grows with the force.
 
     Nodes that stick keep their displacement. Under a parabolic gap bodies are pressed in one small step from an
     earlier stage, known from flat punches about its vertex (:mod:`partialslip.friction.pressing`). Others are pressed
@@ -77,14 +85,15 @@ def press(
     """
     assert C.xx is not None
     assert C.xy is not None
-    zero, xx, xy = 0 * gap, C.xx, C.xy
+    zero, xx, xy, whole = 0 * gap, C.xx, C.xy, P
     apart = resting(zero), resting(zero)
 
     trail = line.trail if line is not None else None
     number = itertools.count()
 
     def step(P: float, gap: Array, kept: Array, before: Pair, key: Hashable = None) -> Pair:
-        this = LoadStep(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept, C.factors)
+        under = pivot and pivot._replace(moment=pivot.moment * P / whole)
+        this = LoadStep(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept, C.factors, None, under)
         return solve_near(this, [before], trail if key != _ANEW else None, ("pressing", key or next(number)))
 
     def steps(count: int) -> list[Pair]:
@@ -261,6 +270,7 @@ def march(
     pressed: Array | None = None,
     line: Nodes | None = None,
     accuracy: float = 1e-3,
+    pivot: Pivot | None = None,
 ) -> tuple[History, Solution, Pressed | None]:
     """Press the bodies together with friction and follow the path of the loads.
 
@@ -285,14 +295,21 @@ def march(
         Nodes of the contact line.
     accuracy : float
         Tolerance of q for the steps of pressing, relative L2.
+    pivot : Pivot, optional
+        Pin on which a body turns; its moment is that of the path where the pressure varies.
     """
     assert C.xx is not None
     xx, xy = C.xx, C.xy if C.xy is not None else 0 * C.xx
     full = replace(C, xy=xy)
     gap = gap - path.begin[1] * stretch[1]
     first: Pressed | None = None
+
+    def turning(load: Sequence[float] | Array) -> Pivot | None:
+        return pivot and pivot._replace(moment=float(load[4])) if path.presses_anew else pivot
+
     if pressed is None:
-        first = press(full, gap, f, line, path.substeps, accuracy, path.begin[3] if path.presses_anew else 1.0)
+        P, begins = (path.begin[3], turning(path.begin)) if path.presses_anew else (1.0, pivot)
+        first = press(full, gap, f, line, path.substeps, accuracy, P, begins)
         done = [(first.normal, first.tangential)]
     else:
         done = [(resting(pressed), resting(0 * gap if path.before is None else path.before))]
@@ -303,15 +320,17 @@ def march(
         Q, strain = float(load[0]), float(change[1])
         if not change.any():
             normal = done[-1][0]
-            done.append((replace(still(normal), rest=normal.rest), still(before)))
+            done.append((replace(still(normal), rest=normal.rest), replace(still(before), turn=normal.turn)))
             return done[-1][1], normal.x
         gap = gap - strain * stretch[1]
         kept = xx @ before.x + xy @ done[-1][0].x + strain * stretch[0] + change[2] * bent
+        if pivot:
+            kept = kept - pivot.height * done[-1][0].turn
         starts = [done[-1], *done[-cycle : 1 - cycle]]  # the previous step, and this step of the previous cycle
         P = float(load[3]) if path.presses_anew else 1.0
         if path.actuator is not None:  # which was bent by the forces before the step
             Q = float(change[0]) + path.actuator * float(before.x.sum())
-        this = LoadStep(xx, C.yy, xy, full.opening, f, P, gap, Q, kept, full.factors, path.actuator)
+        this = LoadStep(xx, C.yy, xy, full.opening, f, P, gap, Q, kept, full.factors, path.actuator, turning(load))
         normal, sheared = solve_near(this, starts, line.trail if line is not None else None, ("path", len(done)))
         if path.actuator is not None and not ((normal.x > 0) & (sheared.sides == 0)).any():
             raise InputError("load.displacement: must keep |Q| below f P; the contact slides on the way")

@@ -4,11 +4,15 @@ Scaled as in :mod:`partialslip.friction.history`. The surfaces' relative displac
 along x) and v (opening, along y) under normal forces p and tangential forces q (of the lower body on the upper one):
 
     u = C_xx q + C_xy p,    v = C_xy^T q + C_yy p.
+
+A body on a pin turns by an angle, which opens the gap at x by minus x times the angle, and moves the surfaces along x
+by minus the height of the pin times the angle, until the moment of the forces about the pin is the given one.
 """
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg as la
@@ -16,6 +20,7 @@ import scipy.linalg as la
 from partialslip.arrays import Array, Mask, submatrix
 from partialslip.friction.active_set import Sides, Solution, solve_bounded
 from partialslip.friction.history import resting
+from partialslip.friction.normal import press
 from partialslip.friction.partition import Factors, Forces, longest
 from partialslip.friction.warm_start import Trail
 
@@ -24,7 +29,7 @@ _PATIENCE = 4  # cost: iterations without progress before the method changes
 _CLOSE = 32  # cost: changes of sides in an iteration without progress below which rounding errors may matter
 
 Pair = tuple[Solution, Solution]
-_Solver = Callable[[Array, Array], Forces]  # forces for the displacements (2, n) that sum to the totals (2,)
+_Solver = Callable[[Array, Array], Forces]  # forces for the displacements (2, n) that have the totals (2,) or (3,)
 
 
 @dataclass(frozen=True)
@@ -59,6 +64,25 @@ class Relative:
         return Factors(self) if self.yx is None else None
 
 
+class Pivot(NamedTuple):
+    """Pin on which one of the bodies turns: ``arms`` (n,) are the distances of the nodes from its axis along x,
+    ``height`` is that of the pin over the contact line, negative below it, ``moment`` that of the loads: int x p dx
+    plus the height times the sum of q."""
+
+    arms: Array
+    height: float
+    moment: float
+
+    def of(self, p: Array, q: Array) -> float:
+        """Moment of the forces ``p`` and ``q`` (n,) about the pin."""
+        return float(self.arms @ p) + self.height * float(q.sum())
+
+    @property
+    def turned(self) -> Array:
+        """Displacements (2, n) along y and x that nodes make up for if the body turns by 1."""
+        return np.stack([self.arms, np.full(len(self.arms), self.height)])
+
+
 @dataclass(frozen=True)
 class LoadStep:
     """Problem of one load step with friction ``f`` (n,): p sums to ``P`` over the ``gap`` (n,) before loading, q sums
@@ -66,6 +90,7 @@ class LoadStep:
     ``factors`` are those of the compliances, which many steps share.
 
     If an ``actuator`` drives the bodies, its end moves by ``Q``: by the shift, and its compliance times the sum of q.
+    A body on a ``pivot`` turns until the forces have its moment; ``kept`` counts from where no body has turned.
     """
 
     xx: Array
@@ -79,21 +104,24 @@ class LoadStep:
     kept: Array
     factors: Factors | None = None
     actuator: float | None = None
+    pivot: Pivot | None = None
 
     @property
     def _totals(self) -> Array:
-        return np.array([self.P, self.Q])
+        return np.array([self.P, self.Q, *([self.pivot.moment] if self.pivot else [])])
 
     @property
     def _units(self) -> Array:
-        """Units of the totals, (2,), in that of force."""
-        return np.array([1.0, 1.0 if self.actuator is None else self.actuator + float(np.diag(self.xx).max())])
+        """Units of the totals, in that of force."""
+        along = 1.0 if self.actuator is None else self.actuator + float(np.diag(self.xx).max())
+        return np.array([1.0, along, *([1.0] if self.pivot else [])])
 
     def _borne(self, found: Forces) -> Array:
-        """What of the totals (2,) the forces bear."""
-        p, q, (_, shift) = found
+        """What of the totals the forces bear."""
+        p, q, (_, shift, *_) = found
         Q = float(q.sum())
-        return np.array([p.sum(), Q if self.actuator is None else self.actuator * Q + shift])
+        along = Q if self.actuator is None else self.actuator * Q + shift
+        return np.array([p.sum(), along, *([self.pivot.of(p, q)] if self.pivot else [])])
 
     @cached_property
     def _load(self) -> Array:
@@ -104,13 +132,20 @@ class LoadStep:
         """One fixed-point iteration: solve for p with the old q, then for q with the new p; both problems are
         convex."""
         n, pushed = len(self.gap), self.gap + self.yx @ q.x
-        pressed = solve_bounded(self.yy, -pushed, np.zeros(n), np.full(n, np.inf), self.P, p.sides)
+        arms, about = None, 0.0
+        if self.pivot:
+            Q = self.Q if self.actuator is None else float(q.x.sum())
+            arms, about = self.pivot.arms, self.pivot.moment - self.pivot.height * Q
+        pressed = press(self.yy, pushed, self.P, arms, about, (p.sides, p.turn))
         on = np.flatnonzero(pressed.x > 0)
         bound = self.f[on] * pressed.x[on]
         free = (self.kept - self.xy @ pressed.x)[on]
+        if self.pivot:
+            free = free + pressed.turn * self.pivot.height
         sheared = self._held(submatrix(self.xx, on, on), free, bound, q.sides[on]).spread(on, n)
         moved = self.yx @ (sheared.x - q.x)  # opening due to the change of q, which p does not include yet
-        return replace(pressed, residual=np.abs(moved - moved[on].mean()) / np.diag(self.yy)), sheared
+        left = np.abs(moved - moved[on].mean()) / np.diag(self.yy)
+        return replace(pressed, residual=left), replace(sheared, turn=pressed.turn)
 
     def _held(self, C: Array, free: Array, bound: Array, sides: Sides) -> Solution:
         """Tangential forces of the nodes that touch, for given normal ones. The end of an actuator is one more node,
@@ -149,14 +184,15 @@ class LoadStep:
                     refined, iteration = True, iteration - 1
                     continue
                 zero = np.zeros(len(self.gap))
-                p_off, q_off = (np.abs(self._borne(found) - self._totals) / self._units).tolist()
+                p_off, q_off, *turned_off = (np.abs(self._borne(found) - self._totals) / self._units).tolist()
+                p_off, turn = max(p_off, *turned_off, 0.0), float(found.rigid[2]) if self.pivot else 0.0
                 p_in, q_in = np.maximum(p_new, 0.0), np.clip(q_new, -bound, bound)
                 p_rest, q_rest = np.where(touch, 0.0, np.maximum(opening, 0.0)), np.where(slip == 0, 0.0, rest)
                 p_left = np.abs(p_new - np.maximum(pushed, 0.0)) + np.abs(p_new - p_in)
                 q_left = np.where(touch, np.abs(q_new - np.clip(augmented, -bound, bound)), zero)
                 return (
-                    Solution(p_in, p_rest, p_left, p_off, iteration, iteration - 1, float(found.rigid[0])),
-                    Solution(q_in, q_rest, q_left, q_off, 0, 0, float(found.rigid[1])),
+                    Solution(p_in, p_rest, p_left, p_off, iteration, iteration - 1, float(found.rigid[0]), turn),
+                    Solution(q_in, q_rest, q_left, q_off, 0, 0, float(found.rigid[1]), turn),
                 )
             wrong = int((touches != touch).sum() + (slips != slip).sum())
             chances = _PATIENCE if wrong < fewest else chances - 1
@@ -183,11 +219,12 @@ class LoadStep:
 
     def _scale(self, found: Forces) -> Array:
         """Scale (2, n) of rounding errors of the forces."""
-        p, q, (approach, shift) = found
+        p, q, (approach, shift, *_) = found
+        gap, kept = self._turned(found)
         result: Array = (np.abs(p).sum() + np.abs(q).sum()) + np.stack(
             [
-                (np.abs(self.gap) + abs(approach)) / np.diag(self.yy),
-                (np.abs(self.kept) + abs(shift)) / np.diag(self.xx),
+                (np.abs(gap) + abs(approach)) / np.diag(self.yy),
+                (np.abs(kept) + abs(shift)) / np.diag(self.xx),
             ]
         )
         return result
@@ -195,15 +232,40 @@ class LoadStep:
     def _off(self, found: Forces, but: tuple[int, int] = (0, 0)) -> Array:
         """Opening of the gap, and slip, under the forces, (2, n). Nodes from the first up to the second of ``but``,
         which are known to touch and to stick, are left out."""
-        p, q, (approach, shift) = found
+        p, q, (approach, shift, *_) = found
+        gap, kept = self._turned(found)
         result = np.zeros((2, len(p)))
         for rows in (slice(0, but[0]), slice(but[1], None)):
-            result[0, rows] = self.yy[rows] @ p + self.yx[rows] @ q + self.gap[rows] - approach
-            result[1, rows] = self.xx[rows] @ q + self.xy[rows] @ p - self.kept[rows] - shift
+            result[0, rows] = self.yy[rows] @ p + self.yx[rows] @ q + gap[rows] - approach
+            result[1, rows] = self.xx[rows] @ q + self.xy[rows] @ p - kept[rows] - shift
         return result
+
+    def _turned(self, found: Forces) -> tuple[Array, Array]:
+        """The gap before loading, and what nodes that stick keep, (n,) each, between bodies that have turned."""
+        if not self.pivot:
+            return self.gap, self.kept
+        along_y, along_x = found.rigid[2] * self.pivot.turned
+        return self.gap - along_y, self.kept + along_x
 
     def _solver(self, touch: Mask, slip: Sides) -> _Solver:
         """What solves the linear system of one partition."""
+        solve = self._solver_without_pivot(touch, slip)
+        if not (pivot := self.pivot):
+            return solve
+        by_turn = solve(pivot.turned, np.zeros(2))
+        rate = pivot.of(by_turn.p, by_turn.q)
+
+        def turned(load: Array, totals: Array) -> Forces:
+            found = solve(load, totals[:2])
+            # a single node has no lever
+            turn = (float(totals[2]) - pivot.of(found.p, found.q)) / rate if touch.sum() > 1 else 0.0
+            p, q, rigid = (each + turn * more for each, more in zip(found, by_turn, strict=True))
+            return Forces(p, q, np.append(rigid, turn))
+
+        return turned
+
+    def _solver_without_pivot(self, touch: Mask, slip: Sides) -> _Solver:
+        """The same of bodies that do not turn."""
         if self.factors and (partition := self.factors.partition(touch, slip, self.f)):
             return partial(partition.solve, actuator=self.actuator)
         on, sticks = np.flatnonzero(touch), np.flatnonzero(touch & (slip == 0))

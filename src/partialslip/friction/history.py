@@ -146,6 +146,12 @@ class History:
         return float(since[self.path.ends[0]]), float(since[self.path.ends[1]])
 
     @property
+    def angles(self) -> tuple[float, float]:
+        """Angles by which a body on a pin has turned at load points 1 and 2 of the last cycle."""
+        first, second = (self.points[end - len(self.path.cycle)].turn for end in self.path.ends)
+        return first, second
+
+    @property
     def repeats(self) -> bool:
         """Whether q changed over the last cycle by less than ``STEADY`` times the change over half a cycle."""
         return bool(self._moved.max() <= STEADY * np.abs(self.change).max())

@@ -27,8 +27,8 @@ def press(
     arms: Array | None = None,
     moment: float = 0.0,
     near: tuple[Sides, float] | None = None,
-) -> tuple[Solution, float]:
-    """Nodal normal forces (n,), none tensile, that close ``gap`` (n,) and sum to ``P``; and the angle of rotation.
+) -> Solution:
+    """Nodal normal forces (n,), none tensile, that close ``gap`` (n,) and sum to ``P``.
 
     ``normal`` is the compliance along y, (n, n). With ``arms`` (n,), the abscissae of the nodes, the bodies turn until
     the forces have the ``moment``. The moment grows with the angle, and is linear in it while no node changes sides;
@@ -39,7 +39,7 @@ def press(
     sides, angle = near or (None, 0.0)
     found = solve_bounded(normal, (0.0 if arms is None else angle * arms) - gap, *free, sides)
     if arms is None:
-        return found, 0.0
+        return found
     low, high, iterations, changes = -np.inf, np.inf, found.iterations, found.changes
     for _ in range(_TURNS):
         off = float(arms @ found.x) - moment
@@ -56,7 +56,8 @@ def press(
         iterations, changes = iterations + found.iterations, changes + found.changes
     off, lever = abs(float(arms @ found.x) - moment), float(np.abs(arms) @ found.x)
     turned = off / max(lever, abs(moment)) * P if off else 0.0  # a single node below the force has no lever
-    return replace(found, imbalance=max(found.imbalance, turned), iterations=iterations, changes=changes), float(angle)
+    off = max(found.imbalance, turned)
+    return replace(found, imbalance=off, iterations=iterations, changes=changes, turn=float(angle))
 
 
 class Presses:
@@ -79,8 +80,8 @@ class Presses:
     def __call__(self, P: float, M: float) -> Solution:
         """Solution under ``P`` and ``M``, about the origin of the arms."""
         if (P, M) not in self._known:
-            found, angle = press(*self._problem, P, self._arms, M, self._near)
-            self._near = found.sides, angle
+            found = press(*self._problem, P, self._arms, M, self._near)
+            self._near = found.sides, found.turn
             self._known[P, M] = found
         return self._known[P, M]
 

@@ -39,7 +39,8 @@ class Compliances(Protocol):
 
 
 class Forces(NamedTuple):
-    """Forces ``p`` and ``q`` (n,) of a partition, and the rigid motion of the bodies, (2,): approach and shift."""
+    """Forces ``p`` and ``q`` (n,) of a partition, and the rigid motion of the bodies: approach, shift and, of a body on
+    a pin, the angle by which it has turned."""
 
     p: Array
     q: Array

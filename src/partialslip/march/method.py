@@ -46,6 +46,7 @@ def solve(
     clock = Clock(allowance)
     scene.load.require_forces()
     if not scene.material.alike:
+        scene.require_no_moment("by march with bodies of different materials")
         return march(unlike.UnlikeBodies(scene, plan, start, clock), progress)[0]
     problem = similar.SimilarBodies(scene, plan, start, clock, added)
     found, level = march(problem, progress)

@@ -210,7 +210,7 @@ def _solve_on(
             return contact_ends(vertices, p, x[p > 0], q, problem.beta)
 
         if not path:
-            pressing, _ = press(C.yy, gap, 1.0)
+            pressing = press(C.yy, gap, 1.0)
             return UnlikeLevel(vertices, None, None, pressing, None, (ends(pressing.x),) * 2)
         begins = None
         if problem.start:

@@ -22,6 +22,7 @@ _SMALLEST = 24.0, 16.0  # display: half-width and height of the smallest part, h
 _ROUND = 34.0  # display: height of the curved face of a body that stands for a half-plane
 _HATCH = 9.0  # display: distance and length of the strokes of a clamp
 _ROLLER = 4.5  # display: radius
+_BEYOND = 14.0  # display: largest distance of a pin behind the body
 _ARROW = 34.0  # display: length
 
 Point = tuple[float, float]
@@ -120,7 +121,9 @@ def _face(scene: Scene, half: float, depth: float, way: float) -> list[Point]:
 
 
 def _support(body: Body, half: float, top: float, back: float, way: float) -> list[str]:
-    """Return the support: hatched plates, and rollers where the body can slide."""
+    """Return the support: hatched plates, rollers where the body can slide, and the pin on which it turns."""
+    if body.support == "pivot":
+        return _pin(body, half, back, way)
     left, right = (_MIDDLE - half, top), (_MIDDLE + half, top)
     if body.support == "clamped":
         return _plate((_MIDDLE - half, back), (_MIDDLE + half, back), (0.0, way))
@@ -130,6 +133,18 @@ def _support(body: Body, half: float, top: float, back: float, way: float) -> li
         return [shape for (start, end), out in held for shape in _plate(start, end, out)]
     rolling = [(((_MIDDLE - half, back), (_MIDDLE + half, back)), (0.0, way)), *held]
     return [shape for (start, end), out in rolling for shape in _rollers(start, end, out)]
+
+
+def _pin(body: Body, half: float, back: float, way: float) -> list[str]:
+    """Return the plate of a body that turns, and the pin, which hangs on a hatched plate."""
+    whole = sum(height for _, height in _parts(body))
+    height = (back - _LINE) * (body.pivot_height or 0.0) / whole if whole else back - _LINE + way * _BEYOND
+    at = way * min(way * height, way * (back - _LINE) + _BEYOND) + _LINE
+    circle = f'<circle cx="{_MIDDLE}" cy="{at:.1f}" r="{_ROLLER}" fill="#ffffff" stroke="#000000"/>'
+    foot = at + way * _ROLLER
+    hung = _plate((_MIDDLE - 2 * _HATCH, foot), (_MIDDLE + 2 * _HATCH, foot), (0.0, way))
+    return [_line([(_MIDDLE - half, back), (_MIDDLE + half, back)], 2.2), _line([(_MIDDLE, back), (_MIDDLE, at)]),
+            circle, *hung]  # fmt: skip
 
 
 def _plate(start: Point, end: Point, out: Point) -> list[str]:

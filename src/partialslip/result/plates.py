@@ -22,7 +22,7 @@ class Plates(Short):
         the bodies were pressed together; positive where Q is. NaN if it is not known: cycles on the way to the steady
         state were skipped.
     approach : (2,) array
-        Approach of the plates along y since the bodies first touched, m.
+        Approach of the plates along y since the bodies first touched, m; on the axis of the pin, if a body pivots.
     compliance : (2, 2) array
         Displacements along x and y (rows) under unit forces along x and y (columns) at load point 2, 1/Pa, while
         nothing slips and the contact keeps its size.
@@ -35,6 +35,9 @@ class Plates(Short):
     displacement_error : float or None
         Estimated error of the displacement under given loads, m; None on meshes as given. If the plates are moved, Q
         is off by this times the stiffness.
+    turn : (2,) array or None
+        Angle by which the lower body's plate has turned counterclockwise at load points 1 and 2, less that of the upper
+        body's, rad; None if no body pivots. Displacements are then those of the pin.
     """
 
     at_points: Array
@@ -44,6 +47,7 @@ class Plates(Short):
     loop: Array
     error: float | None = None
     displacement_error: float | None = None
+    turn: Array | None = None
 
     def told(self, scene: Scene) -> Scene:
         """Return ``scene`` with the Q that its plates bear, if their displacements drive it; otherwise as it is."""

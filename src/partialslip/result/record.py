@@ -57,6 +57,7 @@ class PlatesRecord(Short, msgspec.Struct, frozen=True, omit_defaults=True):
     loop: tuple[Numbers, ...] | None = None
     error: Number = None
     displacement_error: Number = None
+    turn: Numbers | None = None
 
 
 class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):

@@ -74,8 +74,9 @@ class State(Short):
         check("P", self.P, scene.pressing[-1].P, lambda P: scene.units.labelled(P, "N/m", 10))
         M = scene.pressing[-1].M
         # bodies that do not turn carry a moment where shear or bending moves their pressure
-        if M is not None and (not scene.even or (scene.material.alike and not scene.finite)):
-            moment = _moment(self.p)
+        pin = scene.pin
+        if M is not None and (not scene.even or pin is not None or (scene.material.alike and not scene.finite)):
+            moment = _moment(self.p) + (pin or 0.0) * self.Q
             check("M", moment, M, lambda M: scene.units.labelled(M, "N", 10), _TURNED * self.P * scene.length)
         check("A", self.A, scene.material.A, lambda A: f"{A:.10g} 1/Pa")
 

@@ -131,6 +131,8 @@ def key_of(scene: Scene) -> str:
     bodies = msgspec.to_builtins(scene.bodies)
     bodies.pop("equivalent", None)
     for name, body in scene.bodies:
+        for key in ("pivot_height", "right_grip"):  # no body with a rig pivots; where Q is carried is part of the loads
+            bodies[name.removeprefix("bodies.")].pop(key)
         if body.mesh is not None:
             bodies[name.removeprefix("bodies.")]["mesh"] = checksum(body.mesh, LARGEST_MESH)
     parts = [bodies, scene.material, scene.profile if scene.bodies.pad else None]

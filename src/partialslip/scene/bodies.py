@@ -27,10 +27,12 @@ class Body(Table, frozen=True, kw_only=True):
     lengths in units of ``unit`` (m).
 
     ``support`` holds the body, or its holder, and carries P and Q. ``clamped``: the back is fixed to a rigid plate that
-    does not rotate. ``roller``: the back slides along a plate (the middle plane of a specimen of twice the height), and
+    does not rotate. ``pivot``: this plate turns on a pin on the axis x = 0, at the distance ``pivot_height`` (m) from
+    the contact line, until the moment of all forces about the pin is the given one; P and Q act at the pin. ``roller``:
+    the back slides along a plate (the middle plane of a specimen of twice the height), and
     the sides cannot move along x. ``sides``: the sides are fixed to rigid plates. All other boundaries are free.
     ``pulled`` (lower body only): sigma acts as a traction on the right side, which has no support, and is carried by
-    the left side.
+    the left side. The grip on the right side carries the share ``right_grip`` of Q, and the left side the rest.
     """
 
     kind: Literal["block", "pad"] = "block"
@@ -39,8 +41,10 @@ class Body(Table, frozen=True, kw_only=True):
     holder: Holder | None = None
     mesh: Annotated[str, msgspec.Meta(min_length=1)] | None = None
     unit: Positive | None = None
-    support: Literal["clamped", "roller", "sides"] = "clamped"
+    support: Literal["clamped", "roller", "sides", "pivot"] = "clamped"
+    pivot_height: Annotated[float, msgspec.Meta(ge=0)] | None = None
     pulled: bool = False
+    right_grip: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
 
     def check(self, name: str) -> None:
         """Raise InputError if fields contradict each other; ``name`` is the body's name in the scene file."""
@@ -53,8 +57,16 @@ class Body(Table, frozen=True, kw_only=True):
             raise InputError(f"{name}.holder: must not be given together with mesh")
         if self.unit is not None and self.mesh is None:
             raise InputError(f"{name}.unit = {self.unit}: must be given only together with mesh")
-        if self.pulled and self.support == "clamped":
-            raise InputError(f"{name}.pulled = true: must have support 'roller' or 'sides', not 'clamped'")
+        if self.pulled and self.support in ("clamped", "pivot"):
+            raise InputError(f"{name}.pulled = true: must have support 'roller' or 'sides', not {self.support!r}")
+        if self.right_grip and not (self.pulled and self.mesh is None):
+            only = "must be given only with pulled = true, width and height"
+            raise InputError(f"{name}.right_grip = {self.right_grip}: {only}")
+        if self.support == "pivot" and self.pivot_height is None:
+            raise InputError(f"{name}.pivot_height: missing; must be given with support 'pivot'")
+        if self.pivot_height is not None and self.support != "pivot":
+            given = f"{name}.pivot_height = {self.pivot_height}"
+            raise InputError(f"{given}: must be given only with support 'pivot', not {self.support!r}")
         tables = {name: (self.width, self.height)}
         if self.holder:
             tables[f"{name}.holder"] = (self.holder.width, self.holder.height)
@@ -79,6 +91,10 @@ class Bodies(Table, frozen=True, kw_only=True):
             raise InputError(f"bodies.equivalent = {self.equivalent!r}: must be given only with bodies.upper or lower")
         if self.upper and self.upper.pulled:
             raise InputError("bodies.upper.pulled = true: must be false; sigma acts on the lower body")
+        if self.upper and self.lower and self.upper.support == self.lower.support == "pivot":
+            raise InputError(
+                "bodies.lower.support = 'pivot': must be another; bodies.upper pivots, and two pins bear no Q"
+            )
         if self.upper and self.lower and self.upper.kind == self.lower.kind == "pad":
             raise InputError("bodies.lower.kind = 'pad': must be 'block'; bodies.upper is a pad")
 
@@ -86,6 +102,24 @@ class Bodies(Table, frozen=True, kw_only=True):
         """Names in the scene file and bodies, of the finite bodies."""
         named = {"bodies.upper": self.upper, "bodies.lower": self.lower}
         return ((name, body) for name, body in named.items() if body)
+
+    @property
+    def pivots(self) -> str | None:
+        """Name of the body that pivots; None if there is none."""
+        return next((name for name, body in self if body.support == "pivot"), None)
+
+    @property
+    def pin(self) -> float | None:
+        """Height of the pin of the body that pivots over the contact line, m, negative for the lower body; None if no
+        body pivots."""
+        way = {"bodies.upper": 1.0, "bodies.lower": -1.0}
+        heights = (way[name] * (body.pivot_height or 0.0) for name, body in self if body.support == "pivot")
+        return next(heights, None)
+
+    def require_no_pin(self, purpose: str) -> None:
+        """Raise InputError if a body pivots, which the ``purpose`` (in words) does not know."""
+        if self.pivots:
+            raise InputError(f"{self.pivots}.support = 'pivot': must be another {purpose}")
 
     @property
     def pad(self) -> str | None:

@@ -6,7 +6,8 @@ from typing import Any
 from partialslip.units import Dimension
 
 _BODIES = ("bodies.upper", "bodies.lower")
-_BODY: dict[str, Dimension] = {"width": "m", "height": "m", "holder.width": "m", "holder.height": "m", "unit": "m"}
+_LENGTHS = ("width", "height", "pivot_height", "holder.width", "holder.height", "unit")
+_BODY: dict[str, Dimension] = {**dict.fromkeys(_LENGTHS, "m"), "right_grip": "1"}
 
 #: Dimension of every number of a scene, by key; of an array, of all its numbers.
 DIMENSIONS: dict[str, Dimension] = {

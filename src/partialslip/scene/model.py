@@ -185,15 +185,20 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             raise InputError(f"load.displacement = {displacement}: must be given only with {why}")
         if self.friction.f == 0:
             raise InputError(f"friction.f = {self.friction.shown}: must be > 0 with load.displacement")
+        if self.bodies.lower.right_grip:
+            given = f"bodies.lower.right_grip = {self.bodies.lower.right_grip}"
+            raise InputError(f"{given}: must be left out with load.displacement; it is a share of a given Q")
 
     def _check_moment(self) -> None:
         """Raise InputError if a moment is given to bodies that do not turn, or an uneven gap to a pad."""
         key = next((key for key in ("M", "e") if getattr(self.load, key) is not None), None)
+        if (pivots := self.bodies.pivots) and not self.profile.turns:
+            raise InputError(f"{pivots}.support = 'pivot': must not be given with profile.tilt = 'fixed'")
         if key and not self.profile.turns:
             raise InputError(f"load.{key} = {getattr(self.load, key)}: must not be given with profile.tilt = 'fixed'")
         still = ""  # bodies that do not turn
         if self.finite:
-            still = "finite bodies, whose plates do not turn"
+            still = "" if pivots else "finite bodies, whose plates do not turn; one must have support 'pivot'"
         elif not self.material.alike:
             still = "bodies of different materials, which are not turned"
         if key and still:
@@ -216,6 +221,13 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         for key in ("M", "e", "sigma_slope"):
             if np.any(getattr(self.load, key) or 0.0):
                 raise InputError(f"load.{key} = {getattr(self.load, key)}: must be 0 or left out {purpose}")
+
+    def require_no_moment(self, purpose: str) -> None:
+        """Raise InputError if the bodies turn, which the ``purpose`` (in words) does not know: those of an uneven gap,
+        or under a moment."""
+        if not self.even and self.M is not None:
+            key = "load.e" if self.load.e is not None else "load.M" if self.load.M is not None else "profile.tilt"
+            raise InputError(f"{key}: must be left out {purpose}, which are not turned")
 
     def require_uniform_friction(self, purpose: str) -> None:
         """Raise InputError if the coefficient of friction varies along x, which the ``purpose`` (in words) does not
@@ -277,6 +289,34 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     def finite(self) -> bool:
         """Whether a body is finite."""
         return self.bodies != Bodies()
+
+    def at_right_grip(self, Q: npt.ArrayLike, sigma: npt.ArrayLike) -> Array:
+        """Tension on the right side of a ``pulled`` body, Pa: the bulk tension ``sigma`` (Pa), and what the grip there
+        carries of the shear force ``Q`` (N/m), of any shape."""
+        tension, lower = np.asarray(sigma, float), self.bodies.lower
+        if lower is None or not lower.right_grip:
+            return tension
+        height = (lower.holder.height if lower.holder else lower.height) or 0.0
+        return tension + lower.right_grip * np.asarray(Q, float) / height
+
+    @property
+    def left_gripped(self) -> "Scene":
+        """The scene with the tension of :meth:`at_right_grip` as sigma, and no share of Q on the right side."""
+        if self.bodies.lower is None or not self.bodies.lower.right_grip:
+            return self
+        sigma = self.at_right_grip(*zip(*self.load.points, strict=True))
+        lower = msgspec.structs.replace(self.bodies.lower, right_grip=0.0)
+        return msgspec.structs.replace(
+            self,
+            load=msgspec.structs.replace(self.load, sigma=tuple(sigma.tolist())),
+            bodies=msgspec.structs.replace(self.bodies, lower=lower),
+        )
+
+    @property
+    def pin(self) -> float | None:
+        """Height of the pin of a body that pivots over the contact line, m, negative for the lower body; None if no
+        body pivots. The moment of pressure and shear about it is M."""
+        return None if self.effects.moment is False else self.bodies.pin
 
     @property
     def slides(self) -> bool:
@@ -367,8 +407,9 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
 
     @property
     def origin(self) -> float:
-        """x of the line of action of P, M/P, at the load point :attr:`largest`, m; zero if the bodies do not turn."""
-        return (self.M or 0.0) / self.P
+        """x of the line of action of P, M/P, at the load point :attr:`largest`, m; zero if the bodies do not turn, and
+        of finite bodies."""
+        return 0.0 if self.finite else (self.M or 0.0) / self.P
 
     @property
     def length(self) -> float:

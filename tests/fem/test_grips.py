@@ -1,0 +1,91 @@
+"""Two grips of a pulled specimen: shares of Q on its two sides."""
+
+import numpy as np
+import pytest
+
+from partialslip import InputError, load_state, parse_scene, run
+from partialslip.equivalent.many import stick_zone
+from partialslip.export.model import outlined
+from partialslip.run import characterise
+
+SCENE = {
+    "name": "grips", "material": {"E": 72.1e9, "nu": 0.33}, "profile": {"kind": "hertz", "R": 0.01},
+    "friction": {"f": 0.5}, "load": {"P": 135750.0, "Q": [-20e3, 20e3], "sigma": [-15e6, 15e6], "cycles": 2},
+    "bodies": {
+        "upper": {"width": 12e-3, "height": 5e-3},
+        "lower": {"width": 20e-3, "height": 3e-3, "support": "roller", "pulled": True},
+    },
+    "fem": {"size": 0.1},
+}  # fmt: skip
+
+
+def solved(changes=None, method="fem", **asked):
+    return run(parse_scene(SCENE).replace(changes or {}), method, **asked)[method]
+
+
+def grip(share):
+    return {"bodies.lower.right_grip": share}
+
+
+@pytest.mark.slow
+def test_the_right_grip_is_the_mirror_image_of_the_left_one():
+    """Where the right side carries all of Q, the left one bears sigma alone."""
+    right = solved(grip(1.0))
+    left = solved({"load.Q": [20e3, -20e3]})
+    assert (right.m, right.n) == pytest.approx((left.n, left.m), abs=1e-3 * left.a)
+    other = solved()
+    assert abs(right.m - other.m) > 5e-3 * left.a
+
+
+@pytest.mark.slow
+def test_sections_bear_their_shares():
+    """int sigma_xx dy over sections of the specimen on both sides of the contact."""
+    share, t = 0.3, 3e-3
+    found = solved(grip(share) | {"fem.size": 0.2}, subsurface=True)
+    y = -t / 2 * (1 + np.polynomial.legendre.leggauss(20)[0])
+    weights = np.polynomial.legendre.leggauss(20)[1] * t / 2
+    for x, carried in ((-7e-3, -(1 - share)), (7e-3, share)):
+        stress = found.stress_at(np.full_like(y, x), y)
+        borne = np.array([weights @ stress[point, 0] for point in (0, 1)])
+        assert borne == pytest.approx(
+            np.array(SCENE["load"]["sigma"]) * t + carried * np.array([-20e3, 20e3]), rel=2e-3
+        )
+
+
+@pytest.mark.slow
+def test_equivalent_half_planes_know_both_grips():
+    fem, found = solved(grip(0.7) | {"fem.size": 0.04}), solved(grip(0.7), "equivalent")
+    assert (found.m, found.n) == pytest.approx((fem.m, fem.n), abs=2e-3 * fem.a)
+    scene = parse_scene(SCENE).replace(grip(0.7))
+    many = stick_zone(scene, characterise(scene), 40e3, 30e6)
+    assert many.centre == pytest.approx(found.stick_centre, abs=2e-3 * fem.a)
+
+
+def test_a_run_goes_on_from_a_state(tmp_path):
+    first = solved(grip(0.5) | {"fem.size": 0.3})
+    first.state.save(tmp_path / "state.npz")
+    again = run(
+        parse_scene(SCENE).replace(grip(0.5) | {"fem.size": 0.3}), "fem", start=load_state(tmp_path / "state.npz")
+    )["fem"]
+    assert (again.m, again.n) == pytest.approx((first.m, first.n), abs=1e-3 * first.a)
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        (grip(1.2), r"bodies.lower.right_grip = 1.2: must be <= 1"),
+        (grip(0.2) | {"bodies.lower.pulled": False}, r"right_grip = 0.2: must be given only with pulled = true"),
+        (
+            grip(0.2) | {"load.Q": [0.0, 0.0], "load.displacement": [0.0, 1e-6]},
+            r"right_grip = 0.2: must be left out with load.displacement",
+        ),
+    ],
+)
+def test_bad_input_is_one_line(changes, told):
+    with pytest.raises(InputError, match=told):
+        solved(changes)
+
+
+def test_decks_know_one_grip():
+    with pytest.raises(InputError, match=r"bodies.lower.right_grip = 0.2: must be 0 or left out to export"):
+        outlined(parse_scene(SCENE).replace(grip(0.2)))
