@@ -3,6 +3,7 @@
 from partialslip_meshes.blocks import Corner as Corner
 from partialslip_meshes.blocks import block as block
 from partialslip_meshes.blocks import quad_block as quad_block
+from partialslip_meshes.fans import fanned as fanned
 from partialslip_meshes.grading import Eased as Eased
 from partialslip_meshes.grading import size_at as size_at
 from partialslip_meshes.mesh import Mesh as Mesh

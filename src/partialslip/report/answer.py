@@ -206,7 +206,7 @@ def _plates(run: Run) -> Iterator[tuple[str, str]]:
         moved = [with_error(each, 0.0 if given else off, exponent) for each in plates.displacement]
         yield "plates along x", f"{', '.join(moved)} {label} at load points 1, 2{by}"
     if plates.turn is not None:
-        turned = [number(each, math.nan) for each in plates.turn]
+        turned = [with_error(each, math.nan) for each in plates.turn]
         yield "plate turns by", f"{', '.join(turned)} rad at load points 1, 2{by}"
     exponent, label = _unit(run, max(plates.stiffness), "Pa")
     along = [with_error(each, error * each, exponent) for each in plates.stiffness]
