@@ -1,4 +1,4 @@
-"""Boundary elements that share no code with partialslip, on half-planes: boundary.py [PROBLEM ...] [--cells N ...].
+"""Boundary elements that share no code with partialslip: boundary.py [PROBLEM ...] [--cells N ...].
 
 The script needs numpy alone. It reads the problems' files and the frozen targets as plain data, and has its own
 kernels, contact and friction. It appends a line of JSON for every run to boundary.jsonl, of which docs/verification.md
@@ -17,7 +17,8 @@ coupling g = (b_u - b_l)/K, lengths in a and tractions in p0 = a/(R K), gap and 
     slip = u_x of the lower body less that of the upper one = (1/pi) int q ln|x - s| ds + g int p dx + e x + const,
 
 where e is the strain by the bulk tension. p and q are linear between equally spaced nodes, for which both integrals are
-exact. Gap and slip are prescribed at the nodes.
+exact. Gap and slip are prescribed at the nodes. What the shape of a body of a size adds to gap and slip comes from
+boundary_bodies.py.
 
 Contact and friction. In each load increment all nodes are open, sticking, or slipping one way. One linear system has p
 and q of all nodes in contact, and both constants. Its solution tells which nodes change: p < 0 opens, gap < 0 closes,
@@ -34,12 +35,20 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from boundary_bodies import added
 
 Array = np.ndarray[Any, np.dtype[Any]]
 
 OUT = Path(__file__).parent / "boundary.jsonl"
 DATA = Path(__file__).parents[2] / "src" / "partialslip" / "benchmark"
-PROBLEMS = ("PS-02", "PS-18", "PS-22", "PS-25")  # the first has an exact solution, and checks this script
+PROBLEMS = (
+    "PS-02",
+    "PS-18",
+    "PS-22",
+    "PS-23",
+    "PS-24",
+    "PS-25",
+)  # the first has an exact solution, and checks this script
 CELLS = (50, 100, 200)
 HALF = 1.05  # a: half-width of the line of nodes
 INCREMENTS = 128  # of a cycle
@@ -67,17 +76,38 @@ class Line:
         Per half-width.
     coupling, f : float
         g of the module, and the coefficient of friction.
+    arc : float
+        a/R if the profile is an arc; 0 for a parabola.
     """
 
-    def __init__(self, cells: int, coupling: float, f: float) -> None:
+    def __init__(self, cells: int, coupling: float, f: float, arc: float = 0.0) -> None:
         self.h, self.f, count = 1 / cells, f, round(HALF * cells)
         self.x = np.arange(-count, count + 1) * self.h
+        self.apart = self.x**2 / (1 + np.sqrt(1 - (arc * self.x) ** 2))
         nodes = np.subtract.outer(self.x, self.x) / self.h
         log = self.h * (_twice(nodes + 1) - 2 * _twice(nodes) + _twice(nodes - 1) + np.log(self.h)) / np.pi
         below = coupling * self.h * (np.tri(len(self.x)) - np.eye(len(self.x)) / 2)
         self.gap_of, self.slip_of = (-log, below), (below, log)
         self.state = np.where(np.abs(self.x) < 1.5 * self.h, STICK, OPEN)
         self.slip, self.iterations = np.zeros_like(self.x), 0
+
+    def add(self, upper: float, lower: float, shapes: list[tuple[Array, Array]]) -> None:
+        """Add what the shapes of the upper and the lower body do (:func:`boundary_bodies.added`), whose shares of K are
+        ``upper`` and ``lower``."""
+        (xx_u, xz_u, zx_u, zz_u), (xx_l, xz_l, zx_l, zz_l) = (
+            [share * self._at_nodes(places, found[:, of, :, by]) for of in (0, 1) for by in (0, 1)]
+            for share, (places, found) in zip((upper, lower), shapes, strict=True)
+        )
+        self.gap_of = self.gap_of[0] + zz_u + zz_l, self.gap_of[1] + zx_u - zx_l
+        self.slip_of = self.slip_of[0] + xz_l - xz_u, self.slip_of[1] - xx_u - xx_l
+
+    def _at_nodes(self, places: Array, found: Array) -> Array:
+        """Displacements at the nodes by tractions at the nodes, from those at a few places."""
+        powers = len(places) - 1
+        fitted = np.polynomial.chebyshev.chebvander(self.x / HALF, powers)
+        fitted = fitted @ np.linalg.inv(np.polynomial.chebyshev.chebvander(places / HALF, powers))
+        result: Array = self.h * fitted @ found @ fitted.T
+        return result
 
     def load(self, P: float, Q: float, strain: float) -> Increment:
         """Go to these loads in one increment. Raises ArithmeticError if nodes go on to change."""
@@ -105,7 +135,7 @@ class Line:
         sticks, both = (state == STICK)[:, None], np.ix_(at, at)
         matrix, right = np.zeros((2 * count + 2, 2 * count + 2)), np.zeros(2 * count + 2)
         matrix[:count, : 2 * count] = np.hstack([part[both] for part in self.gap_of])
-        matrix[:count, -2], right[:count] = 1, -(self.x[at] ** 2) / 2
+        matrix[:count, -2], right[:count] = 1, -self.apart[at]
         friction = np.hstack([np.diag(-self.f * state), np.eye(count)])
         stuck = np.hstack([part[both] for part in self.slip_of])
         matrix[count:-2, : 2 * count] = np.where(sticks, stuck, friction)
@@ -116,7 +146,7 @@ class Line:
         found = np.linalg.solve(matrix, right)
         p, q = np.zeros((2, len(self.x)))
         p[at], q[at] = found[:count], found[count:-2]
-        gap = self.x**2 / 2 + self.gap_of[0] @ p + self.gap_of[1] @ q + found[-2]
+        gap = self.apart + self.gap_of[0] @ p + self.gap_of[1] @ q + found[-2]
         slip = strain * self.x + self.slip_of[0] @ p + self.slip_of[1] @ q + found[-1]
         return p, q, gap, slip
 
@@ -160,9 +190,13 @@ def task(number: str, cells: int) -> Task:
     p0 = a / (R * K)
     Q = np.array(load.get("Q", [])) / (p0 * a)
     strain = np.array(load.get("sigma", 0 * Q)) * k_l / (2 * K * p0)
-    line = Line(cells, (b_u - b_l) / K, scene["friction"]["f"])
+    bodies = scene.get("bodies", {})
+    pad = any(body["kind"] == "pad" for body in bodies.values())
+    line = Line(cells, (b_u - b_l) / K, scene["friction"]["f"], a / R if pad else 0.0)
+    if bodies:
+        line.add(k_u / K, k_l / K, [added(bodies[name], both["nu"], HALF, a, R) for name in ("upper", "lower")])
     # pressing makes unlike bodies slip: the contact then grows by one node an increment
-    pressed = 1 if b_u == b_l else cells
+    pressed = 1 if b_u == b_l and not pad else cells
     return Task(line, a, p0, R, list(zip(Q.tolist(), strain.tolist(), strict=True)), load.get("cycles", 2), pressed)
 
 
