@@ -11,6 +11,7 @@ from partialslip.halfplane import Contact, adhered, hysteresis, one_step_zone
 from partialslip.halfplane import stick_zone as stick_zone_under
 from partialslip.halfplane.gradual_table import parted, tabled
 from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.steady import stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 from partialslip.map.figure import ends_svg
@@ -30,6 +31,8 @@ def main(folder: Path) -> None:
     """Write all figures into ``folder``."""
     folder.mkdir(parents=True, exist_ok=True)
     figures = {
+        "signs": svg(_signs, (7.4, 3.6)),
+        "cycle": svg(_cycle, _SIZE),
         "adhered": svg(_adhered, _SIZE),
         "small-tension": svg(lambda figure: _tractions(figure, 0.75, 2.4), _SIZE),
         "large-tension": svg(lambda figure: _tractions(figure, 0.3, 4.0), _SIZE),
@@ -40,6 +43,70 @@ def main(folder: Path) -> None:
     }
     for name, text in figures.items():
         (folder / f"{name}.svg").write_text(text, "utf-8")
+
+
+def _signs(figure: "Figure") -> None:
+    """Two bodies, the loads that act on them, and q on both sides of the contact line: signs of section 1."""
+    axes = figure.subplots()
+    axes.set(xlim=(-3.4, 3.4), ylim=(-1.55, 1.75), aspect="equal")
+    axes.set_axis_off()
+    x = np.linspace(-2.4, 2.4, 201)
+    gap = np.where(
+        np.abs(x) > 1, 0.5 * (np.abs(x) * np.sqrt(np.maximum(x**2 - 1, 0)) - np.arccosh(np.maximum(np.abs(x), 1))), 0
+    )
+    axes.fill_between(x, np.minimum(0.36 * gap, 1.0), 1.0, color="0.93", lw=0)
+    axes.plot(x, 0.36 * gap, color="black", lw=1)
+    axes.fill_between(x, -1.0, 0.0, color="0.86", lw=0)
+    axes.plot(x[[0, -1]], [0, 0], color="black", lw=1)
+    m, n = 0.75, 0.35
+    axes.plot([-1, 1], [0, 0], color="black", lw=2.2, solid_capstyle="butt")
+    for place, text in ((-1, "-a"), (-m, "-m"), (n, "n"), (1, "a")):
+        axes.plot([place, place], [-0.28, 0.06], color="black", lw=0.8)
+        axes.text(place, -0.33, text, ha="center", va="top", fontsize=9)
+    axes.text((n - m) / 2, -0.33, "sticks", ha="center", va="top", fontsize=9)
+    _arrow(axes, (0, 1.7), (0, 1.05), "P", (0.1, 1.45))
+    _arrow(axes, (0, -1.5), (0, -1.05), "P", (0.1, -1.35))
+    _arrow(axes, (-0.7, 1.2), (-1.5, 1.2), "Q", (-1.1, 1.28))
+    _arrow(axes, (0.7, -1.2), (1.5, -1.2), "Q", (1.1, -1.45))
+    _arrow(axes, (2.45, -0.5), (3.15, -0.5), "σ", (2.8, -0.42))
+    _arrow(axes, (-2.45, -0.5), (-3.15, -0.5), "σ", (-2.8, -0.42))
+    _arrow(axes, (-0.25, 0.13), (0.3, 0.13), "q", (0.38, 0.09))
+    _arrow(axes, (0.05, -0.13), (-0.5, -0.13), "", (0, 0))
+    axes.text(-2.3, 0.82, "body 1", va="center", fontsize=10)
+    axes.text(-2.3, -0.82, "body 2", va="center", fontsize=10)
+    _arrow(axes, (2.5, 0.25), (3.1, 0.25), "x", (3.15, 0.2))
+    _arrow(axes, (2.5, 0.25), (2.5, 0.85), "y", (2.45, 0.92))
+
+
+def _arrow(
+    axes: "Axes", start: tuple[float, float], end: tuple[float, float], text: str, at: tuple[float, float]
+) -> None:
+    axes.annotate(
+        "", end, start, arrowprops={"arrowstyle": "-|>", "color": "black", "lw": 1.2, "shrinkA": 0, "shrinkB": 0}
+    )
+    axes.text(*at, text, fontsize=10)
+
+
+def _cycle(figure: "Figure") -> None:
+    """Load points and mean of a cycle under large tension, with the bound on the mean of Q."""
+    axes = figure.subplots()
+    Qf, sf, mean = 0.3, 4.0, np.array([0.8, 0.25])  # sigma and Q, in f p0 and f P
+    bound = one_step(Qf, sf, Hertz()).mean_load_bound
+    half = np.array([sf / 2, Qf])
+    second, first = mean + half, mean - half
+    axes.axhspan(-bound, bound, color="0.88", lw=0, label="where the mean must be")
+    for slides in (-1, 1):
+        axes.axhline(slides, color="black", lw=1, ls=":", label="slides: |Q| = f P" if slides > 0 else None)
+    axes.plot(*np.transpose([(0, 0), second]), color="black", lw=1.2, ls="--", label="first loading")
+    axes.plot(*np.transpose([first, second]), color="black", lw=1.6, label="cycle between load points 1 and 2")
+    axes.plot(*np.transpose([first, second]), "o", color="black", ms=5)
+    axes.plot(*mean, "o", color="black", mfc="white", ms=6, label="mean")
+    for point, text in ((first, "1"), (second, "2")):
+        axes.annotate(text, point, xytext=(6, -12), textcoords="offset points")
+    axes.axhline(0, color="0.7", lw=0.6, zorder=0)
+    axes.axvline(0, color="0.7", lw=0.6, zorder=0)
+    axes.set(xlim=(-2.2, 3.6), ylim=(-1.15, 1.15), xlabel="σ/(f p0)", ylabel="Q/(f P)")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
 
 
 def _adhered(figure: "Figure") -> None:

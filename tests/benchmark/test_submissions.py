@@ -96,10 +96,12 @@ def test_the_zip_has_all_that_is_needed_and_is_always_the_same(tmp_path):
     assert max(map(len, readme.splitlines())) <= 120
 
 
+@pytest.mark.slow  # solves all of them for their figures
 def test_the_page_has_every_problem():
     problems = read_problems()
     page = book_page(problems, [], made_now())
     assert [number for number, problem in problems.items() if f"{number} {problem.title}" not in page] == []
+    assert page.count("p/p0, targets") == len(problems)
 
 
 def test_commands(tmp_path, monkeypatch, capsys):

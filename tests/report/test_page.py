@@ -277,3 +277,14 @@ def test_a_command_with_bytes_that_are_no_text_is_written(tmp_path):
     assert main(["run", "hertz-shear", "--with", "exact", "--out", str(folder)]) == 0
     made = json.loads((folder / "results.json").read_text("utf-8"))["made"]
     assert "no?text" in made["command"]
+
+
+def test_q_of_the_sketch_pushes_the_upper_body_along_minus_x():
+    """Q is the resultant of q on the upper body, which acts along +x; the force from outside balances it."""
+    svg = sketch_svg(partialslip.load_scene("hertz-shear"))
+    heads = [
+        np.array([corner.split(",") for corner in found.split()], float)  # the tip is the first corner
+        for found in re.findall(r'<polygon points="([^"]+)" fill="#000000"', svg)
+    ]
+    (along,) = (head for head in heads if head[0, 1] == head[:, 1].mean() and head[0, 1] < 100)  # above the bodies
+    assert along[0, 0] < along[1:, 0].min()

@@ -5,6 +5,7 @@ from importlib.resources import files as resources
 
 import msgspec
 
+from partialslip.benchmark.figure import problem_svg
 from partialslip.benchmark.grade import LIMITS
 from partialslip.benchmark.ladder import CLIMB_HEADS, climb_rows
 from partialslip.benchmark.neutral import files as model_files
@@ -35,6 +36,7 @@ def book_page(problems: Mapping[str, Problem], submissions: Sequence[Submission]
         overview=[_overview(problem) for problem in problems.values()],
         problems=list(problems.values()),
         sketches={number: sketch_svg(problem.scene) for number, problem in problems.items()},
+        figures={number: problem_svg(problem, submissions) for number, problem in problems.items()},
         data={number: _data(problem) for number, problem in problems.items()},
         targets={number: _targets(problem) for number, problem in problems.items()},
         ladders={number: _ladders(problem, submissions) for number, problem in problems.items()},

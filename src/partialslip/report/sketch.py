@@ -186,7 +186,8 @@ def _loads(scene: Scene) -> list[str]:
     if load.displacement is not None:
         shapes.append(_text(6, top + 24, f"lower \u2212 upper plate: {_values([*load.driving], 'm', scene.units)}"))
     elif any(load.driving):
-        shapes += [_arrow((_MIDDLE - 10 - _ARROW, top + 20), (_MIDDLE - 10, top + 20))]
+        # Q is the resultant of q, which acts on the upper body along +x: what balances it acts along -x
+        shapes += [_arrow((_MIDDLE - 10, top + 20), (_MIDDLE - 10 - _ARROW, top + 20))]
         shown = f"Q = {_values([*load.driving], 'N/m', scene.units)}"
         shapes += [_text(_MIDDLE - 18 - _ARROW, top + 24, shown, "end")]
     if any(sigma) or any(slope):

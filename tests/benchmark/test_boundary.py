@@ -1,0 +1,102 @@
+"""Boundary elements that share no code with partialslip confirm targets, and the page shows what they found."""
+
+import ast
+import importlib
+import itertools
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SCRIPT = ROOT / "benchmarks" / "peers" / "boundary.py"
+BODIES = SCRIPT.with_name("boundary_bodies.py")
+CELLS = 50
+SLOW = ("PS-02", "PS-18", "PS-23", "PS-24")
+NU = 0.33
+
+
+@pytest.fixture(autouse=True)
+def scripts(monkeypatch):
+    """The script and its neighbour, with few elements around bodies."""
+    monkeypatch.syspath_prepend(SCRIPT.parent)
+    bodies = importlib.import_module("boundary_bodies")
+    monkeypatch.setattr(bodies, "CORNER", 0.02)
+    monkeypatch.setattr(bodies, "GROWTH", 0.12)
+    return importlib.import_module("boundary"), bodies
+
+
+@pytest.mark.parametrize("file", [SCRIPT, BODIES])
+def test_it_imports_nothing_of_partialslip(file):
+    found = set()
+    for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {name.name.partition(".")[0] for name in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            found.add(node.module.partition(".")[0])
+    assert {name for name in found if name.startswith("partialslip")} == set()
+    assert "numpy" in found
+
+
+@pytest.mark.parametrize("number", ["PS-22", "PS-25", *(pytest.param(slow, marks=pytest.mark.slow) for slow in SLOW)])
+def test_coarse_elements_come_near_the_targets(number, scripts):
+    """With elements of 0.02 a lengths are right to a third of an element, tractions to 4e-3."""
+    errors = scripts[0].measured(number, CELLS)["errors"]
+    lengths = {"a", "m", "n", "left_1", "right_1", "left_2", "right_2"}
+    assert {key for key in lengths & errors.keys() if abs(errors[key]) > 1 / (3 * CELLS)} == set()
+    unsure = {key for key, target in scripts[0].targets(number).items() if target["uncertainty"] > 1e-2}
+    off = {key for key, error in errors.items() if "@" in key and abs(error) > 4e-3}
+    assert off - unsure == set()
+    assert abs(errors.get("dissipated", 0)) < 2e-3
+
+
+def test_a_frictionless_pressure_is_that_of_hertz(scripts):
+    line = scripts[0].Line(CELLS, 0.0, 0.0)
+    end = line.load(np.pi / 2, 0.0, 0.0)
+    inside = np.abs(line.x) < 0.9
+    assert np.allclose(end.p[inside], np.sqrt(1 - line.x[inside] ** 2), atol=1e-3)
+    assert end.dissipated == 0
+
+
+def test_the_field_of_a_point_force_is_elastic(scripts):
+    """Stresses by Hooke's law from the displacements, differenced, are the tractions."""
+    E = 2 * (1 - NU**2)
+    shear, lame = E / (2 * (1 + NU)), E * NU / ((1 + NU) * (1 - 2 * NU))
+    places, step = np.array([[0.7, 0.9], [-1.2, 0.5], [0.3, 2.0]]), 1e-5
+    for way, normal in itertools.product((0, 1), np.eye(2)):
+        passed = places @ normal / (places**2).sum(axis=1)
+        slopes = np.zeros((3, 2, 2))
+        for axis, moved in enumerate(step * np.eye(2)):
+            ends = [scripts[1].flamant(places + side * moved, passed, way, NU)[0] for side in (1, -1)]
+            slopes[:, :, axis] = (ends[0] - ends[1]) / (2 * step)
+        strain = (slopes + slopes.transpose(0, 2, 1)) / 2
+        stress = 2 * shear * strain + lame * np.trace(strain, axis1=1, axis2=2)[:, None, None] * np.eye(2)
+        assert np.allclose(stress @ normal, scripts[1].flamant(places, passed, way, NU)[1], atol=1e-8)
+
+
+def test_shapes_are_reciprocal(scripts):
+    """A force along x at A moves B along z as a force along z at B moves A along x, but for rigid motion."""
+    block = {"kind": "block", "width": 14.0, "height": 6.0, "support": "clamped"}
+    places, found = scripts[1].added(block, NU, 1.0, 1.0, 50.0)
+    by_x, by_z = found[:, 1, :, 0], found[:, 0, :, 1].T
+    slopes = [np.polyfit(places, moved.mean(axis=1), 1)[0] for moved in (by_x, by_z)]
+    assert slopes[0] == pytest.approx(slopes[1], rel=0.03)
+    for way in (0, 1):
+        same = found[:, way, :, way]
+        assert np.allclose(same, same.T, atol=5e-2 * np.ptp(same))
+
+
+@pytest.mark.fault
+def test_a_coupling_left_out_is_seen(scripts):
+    """Unlike bodies treated as alike miss the shear of PS-22 by more than a tenth of f p0."""
+    given = scripts[0].task("PS-22", CELLS)
+    alike = given._replace(line=scripts[0].Line(CELLS, 0.0, given.line.f))
+    found, wanted = scripts[0].values("PS-22", alike), scripts[0].targets("PS-22")
+    assert abs(found["q1@0.5"] - wanted["q1@0.5"]["value"]) / wanted["q1@0.5"]["scale"] > 0.1
+
+
+def test_the_table_is_todays(scripts):
+    lines = [json.loads(line) for line in (SCRIPT.parent / "boundary.jsonl").read_text("utf-8").splitlines()]
+    assert {line["problem"] for line in lines} == set(scripts[0].PROBLEMS)
+    assert scripts[0].table(lines) in (ROOT / "docs" / "verification.md").read_text("utf-8")
