@@ -25,7 +25,14 @@ from partialslip_fem.elasticity import Body
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import nodal_forces, projected
 from partialslip_fem.problem import Problem
-from partialslip_fem.zones import contact_ends_of, growth_when_pressed, resultants_of, shear_kinks, stick_zone_of
+from partialslip_fem.zones import (
+    cell_means,
+    contact_ends_of,
+    growth_when_pressed,
+    resultants_of,
+    shear_kinks,
+    stick_zone_of,
+)
 from partialslip_meshes import Mesh
 
 
@@ -206,6 +213,7 @@ def _contact_forces(
             problem.nearly_similar,
             reach,
             trail,
+            means=partial(cell_means, line),
         )
         near = BARS["q"] * problem.accuracy
         pivot = None if problem.pin is None else Pivot(line.x, problem.pin, problem.moment)

@@ -44,7 +44,8 @@ class Nodes:
     needed without ``stages``. ``similar``: whether half-planes are pressed together under a parabolic gap, so that all
     stages of pressing are similar; ``stages`` gives them, by default from a flat punch on the nodes. ``sized``: the
     same of like bodies of a size, nearly; ``nearly_similar``: of any bodies of a size. ``near``: about the half-width.
-    ``trail``: where steps begin."""
+    ``trail``: where steps begin. ``means(forces)``: means over cells of the traction of nodal forces (n,), times the
+    roots of the cells' widths, (c,); by default each node has its own cell."""
 
     x: Array
     weights: Array
@@ -56,6 +57,7 @@ class Nodes:
     near: float | None = None
     trail: Trail | None = None
     stages: Stages | None = None
+    means: Callable[[Array], Array] | None = None
 
     def half_width(self, forces: Pair) -> float:
         """Half-width of the contact under the ``forces``."""
@@ -79,6 +81,8 @@ def press(
     Nodes that stick keep their displacement. Under a parabolic gap bodies are pressed in one small step from an
     earlier stage, known from flat punches about its vertex (:mod:`partialslip.friction.pressing`). Others are pressed
     in at least ``least`` steps, doubled until q changes by less than ``accuracy`` (relative L2), or up to the limit.
+    Nodes touch one by one, in one step or the next, and lock in more or less than their neighbours: the change is that
+    of means over cells.
 
     ``C`` are the compliances, ``gap`` (n,) the gap before loading, ``f`` (n,) the coefficients of friction, ``line``
     the nodes.
@@ -125,7 +129,7 @@ def press(
     last, count = steps(least), least
     while True:
         before, last, count = last, steps(2 * count), 2 * count
-        errors = {"q": 2 * off(last[-1][1].x, before[-1][1].x)}
+        errors = {"q": 2 * _changed(line, last[-1][1].x, before[-1][1].x, off)}
         if line is not None:
             errors["a"] = 2 * _moved(line, last[-1], before[-1])
         grown = last[-1][0].x - last[-2][0].x, last[-1][1].x - last[-2][1].x
@@ -143,6 +147,14 @@ def _moved(line: Nodes, forces: Pair, others: Pair) -> float:
     """Largest distance between the ends of two contacts, in half-widths."""
     (left, right), (l_other, r_other) = (line.ends(p.x, q.x) for p, q in (forces, others))
     return max(abs(left - l_other), abs(right - r_other)) * 2 / (right - left)
+
+
+def _changed(line: Nodes | None, q: Array, other: Array, off: _Off) -> float:
+    """Relative L2 difference of two tangential forces (n,), of means over cells where the ``line`` has any."""
+    if line is None or line.means is None:
+        return off(q, other)
+    size = float(np.linalg.norm(line.means(q)))
+    return float(np.linalg.norm(line.means(q - other))) / size if size > 0 else 0.0
 
 
 def _settled(
