@@ -196,7 +196,7 @@ class Problem:
     pin : float or None
         Height of the pin of a body that pivots over the contact line, negative for the lower body.
     moment : float
-        Moment of the loads about the origin, or about the pin, where the pressure does not vary.
+        Moment about the pin, where P and M do not vary.
     """
 
     gap: Callable[[Array], Array]
@@ -251,17 +251,13 @@ class Problem:
         if self.pin is not None:
             loads = loads or ((1.0, self.moment),)
             if self.path and self.path.actuator is None:  # otherwise Q is not known yet
-                count = len(self.path.cycle)
-                loads = tuple(
-                    (P, M - self.pin * Q)
-                    for (Q, *_), (P, M) in zip(self.path.cycle, loads * (count // len(loads)), strict=True)
-                )
+                loads = tuple((P, M - self.pin * Q) for Q, *_, P, M in self.path.cycle)
         return tuple(M / P for P, M in loads)
 
     @property
     def contact_moves(self) -> bool:
-        """Whether the pressure varies along the path: with P or M, or with Q on a body that pivots."""
-        return self.pressing is not None or (self.pin is not None and self.path is not None)
+        """Whether the pressure varies: with P or M, or along the path with Q on a body that pivots."""
+        return self.pressing is not None or (self.path is not None and self.path.presses_anew)
 
     @property
     def beta(self) -> float:
@@ -307,7 +303,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         gap=lambda x: scene.gap_at(x * L + origin) / (A * P),
         kinks=tuple((kink - origin) / L for kink in scene.profile.kinks),
         friction=scene.friction,
-        path=load_path(scene, plan, start),
+        path=load_path(scene, plan, start, scene.pin is not None),
         parts=parts[:1] if scene.fem.lower_size == 1 and not plan.needs("coupling") and scene.mirrored else parts,
         order=scene.fem.elements,
         far_field=scene.fem.far_field,

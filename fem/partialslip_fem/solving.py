@@ -216,7 +216,7 @@ def _contact_forces(
             means=partial(cell_means, line),
         )
         near = BARS["q"] * problem.accuracy
-        pivot = None if problem.pin is None else Pivot(line.x, problem.pin, problem.moment)
+        pivot = None if problem.pin is None else Pivot(line.x, problem.pin, 0.0)
         loaded = C, gap, stretch, moved[1], problem.f_at(line.x)
         history, pressing, first = coupled.march(*loaded, path, pressed, along, near, pivot)
         nodes = np.flatnonzero(history.bound > 0)

@@ -308,7 +308,7 @@ def march(
     accuracy : float
         Tolerance of q for the steps of pressing, relative L2.
     pivot : Pivot, optional
-        Pin on which a body turns; its moment is that of the path where the pressure varies.
+        Pin on which a body turns; its moment is that of the path.
     """
     assert C.xx is not None
     xx, xy = C.xx, C.xy if C.xy is not None else 0 * C.xx
@@ -317,11 +317,11 @@ def march(
     first: Pressed | None = None
 
     def turning(load: Sequence[float] | Array) -> Pivot | None:
-        return pivot and pivot._replace(moment=float(load[4])) if path.presses_anew else pivot
+        return pivot and pivot._replace(moment=float(load[4]))
 
     if pressed is None:
-        P, begins = (path.begin[3], turning(path.begin)) if path.presses_anew else (1.0, pivot)
-        first = press(full, gap, f, line, path.substeps, accuracy, P, begins)
+        P = path.begin[3] if path.presses_anew else 1.0
+        first = press(full, gap, f, line, path.substeps, accuracy, P, turning(path.begin))
         done = [(first.normal, first.tangential)]
     else:
         done = [(resting(pressed), resting(0 * gap if path.before is None else path.before))]

@@ -25,6 +25,8 @@ _LIMIT = 10.0
 # accuracy: change over a cycle, in f p, that ends cycles near enough to the limit for ratios of changes to tell it
 _NEAR = 1e-6
 _BESIDE = 5  # accuracy: neighbouring nodes of which the one that moves most tells how far the steady state is
+# accuracy: slip of nodes that stay in contact, in that of nodes that open, below which they settle
+_NO_SLIP = 1e-3
 _CREEPS = 0.5  # accuracy: of the path of slip in a cycle: net slip from which on a node creeps
 _SLIPS = 1e-9  # accuracy: distance of |dq| from the bound, relative, at which a node slips
 
@@ -206,13 +208,15 @@ class History:
 
     @property
     def ratchets(self) -> float:
-        """Largest net slip of the last cycle, relative to the largest slip of half a cycle."""
+        """Largest net slip of the last cycle, relative to the largest slip of half a cycle, of nodes that stay in
+        contact; nearly 0 if they do not slip."""
         held = (self.pressures[0] > 0) & (self.pressures[1] > 0)  # nodes that open may close elsewhere
         if self.held is not None:
             held = self.held
         if not held.any():
             return 0.0
         half = float(np.abs(self.slip[held]).max())
+        half = max(half, _NO_SLIP * float(np.abs(self.slip).max()))
         return float(np.abs(self.net_slip[held]).max()) / half if half > 0 else 0.0
 
     @property

@@ -22,7 +22,8 @@ _SHARE = 0.5
 @dataclass(frozen=True)
 class Path:
     """Loads at the points of a ``cycle``, scaled: Q, the relative strain of the surfaces due to bulk tension at the
-    scene's x = 0, and its slope along x; where the pressure varies, then P and M, too. Where an ``actuator`` of this
+    scene's x = 0, and its slope along x; where the pressure varies, then P and M, too: M about the pin if a body is on
+    one. Where an ``actuator`` of this
     compliance drives the bodies (0: a rigid one; None: none does), its displacement stands in place of Q.
 
     ``ends`` are the indices of load points 1 and 2, the extremes of the cycle; ``in_phase`` says whether the points lie
@@ -91,8 +92,9 @@ class Path:
         return max(len(way) for way in self.fractions)
 
 
-def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | None:
-    """Scaled path of the loads of ``scene`` from ``start`` (default: zero load); None if ``plan`` has no friction."""
+def load_path(scene: Scene, plan: Plan, start: State | None = None, on_pin: bool = False) -> Path | None:
+    """Scaled path of the loads of ``scene`` from ``start`` (default: zero load); None if ``plan`` has no friction.
+    ``on_pin``: whether a body is on a pin, so that its pressure varies with Q."""
     if not plan.needs("friction"):
         return None
     P, load, A = scene.P, scene.load, scene.material.A
@@ -107,11 +109,11 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None) -> Path | No
     ]
     half, one_way = start is None and not plan.needs("history"), False
     loads: list[tuple[float, ...]] = [*along]
-    if scene.presses_anew:
+    if scene.presses_anew or on_pin:
         presses = scaled_pressing(scene)
         loads = [(*each, *down) for each, down in zip(along, (presses[-1], *presses), strict=True)]
         changes = np.abs(np.diff([loads[0], loads[-1], *loads[1:]], axis=0))
-        even = scene.even and actuator is None and not scene.friction.varies
+        even = scene.even and actuator is None and not scene.friction.varies and not on_pin
         one_way = even and bool((changes[:, 0] >= scene.friction.f * changes[:, 3]).all())
     begin, *cycle = loads
     # under mean loads the change of a cycle falls with its number only, and little of q changes
