@@ -44,7 +44,7 @@ class Body(Table, frozen=True, kw_only=True):
     support: Literal["clamped", "roller", "sides", "pivot"] = "clamped"
     pivot_height: Annotated[float, msgspec.Meta(ge=0)] | None = None
     pulled: bool = False
-    right_grip: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
+    right_grip: Annotated[float, msgspec.Meta(ge=0, le=1)] | None = None
 
     def check(self, name: str) -> None:
         """Raise InputError if fields contradict each other; ``name`` is the body's name in the scene file."""

@@ -305,7 +305,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         if self.bodies.lower is None or not self.bodies.lower.right_grip:
             return self
         sigma = self.at_right_grip(*zip(*self.load.points, strict=True))
-        lower = msgspec.structs.replace(self.bodies.lower, right_grip=0.0)
+        lower = msgspec.structs.replace(self.bodies.lower, right_grip=None)
         return msgspec.structs.replace(
             self,
             load=msgspec.structs.replace(self.load, sigma=tuple(sigma.tolist())),
