@@ -69,7 +69,7 @@ _OF_LOCKED, _P_OF_LOCKED = 0.004, 0.02
 _SIDE = 0.5  # accuracy: largest error of an end due to the fit, in the element size
 # accuracy: Where slip turns round, ends of the stick zone are known less; at one that moves over nodes that slipped,
 # q is off its bound by little: parts of the element size.
-_TURNED, _CAUGHT_UP = 2.0, 0.05
+_TURNED, _CAUGHT_UP = 5.0, 0.05
 _KINK = 0.03  # accuracy: L2 error of q at a kink, in its strength times the element size
 _STEEP = 0.3  # accuracy: the same at ends of a narrow slip zone, also times element size / gap
 _SHIFT = 1.5  # accuracy: L2 error of q due to a shifted kink, in its strength times the shift
