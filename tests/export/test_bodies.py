@@ -47,7 +47,7 @@ def test_finite_and_unlike_bodies_carry_the_loads(overrides, tmp_path):
 @pytest.mark.fault
 def test_a_pull_that_is_left_out_is_seen(tmp_path, monkeypatch):
     """The specimen is not pulled: no force on the lower body."""
-    monkeypatch.setattr(parts.Part, "pull", property(lambda part: np.zeros(len(part.mesh.points))))
+    monkeypatch.setattr(parts.MeshedBody, "pull", property(lambda part: np.zeros(len(part.mesh.points))))
     with pytest.raises(AssertionError):
         test_finite_and_unlike_bodies_carry_the_loads(PULLED, tmp_path)
 

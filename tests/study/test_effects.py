@@ -87,7 +87,7 @@ def spied(monkeypatch):
     spy(condensation, "factor", "factor")
     spy(bodies, "half_plane", "half_plane")
     spy(bodies, "press", "press")
-    spy(solving.constant, "march", "march")
+    spy(solving.coulomb_constant_pressure, "march", "march")
     spy(solving.coupled, "march", "coupled")
     spy(condensation.Condensation, "displace", "displace")
     return calls
