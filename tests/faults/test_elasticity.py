@@ -105,8 +105,8 @@ def test_contact_points_beyond_a_hidden_gap_dropped(monkeypatch, sound, red):
 
     def cut_off(normal, gap, P, *_, **__):
         candidates = np.flatnonzero(gap < limit)
-        solution, angle = true(normal[np.ix_(candidates, candidates)], gap[candidates], P)
-        return solution.spread(candidates, len(gap)), angle
+        solution = true(normal[np.ix_(candidates, candidates)], gap[candidates], P)
+        return solution.spread(candidates, len(gap))
 
     monkeypatch.setattr(bodies, "press", cut_off)
     monkeypatch.setattr(goals, "FINEST", 1e-2)
