@@ -167,7 +167,7 @@ def test_march_in_steps_ratchets_under_constant_pressure_where_the_way_says_so()
     """0.008 f P inside and outside the bound, at 0.185; both load points alone would allow a mean of 0.209."""
 
     def scene(mean):
-        varies = varying((0.9, 0.9), 1.2, 8.0, mean=mean, cycles=400, steps=16)
+        varies = varying((0.9, 0.9), 1.2, 8.0, mean=mean, cycles=120, steps=16)
         return varies.replace(load={"P": varies.P})
 
     bound, P = run(scene(0.0), ["exact"])["exact"].limits["Q_mean"], scene(0.0).P
