@@ -23,8 +23,8 @@ _SHARE = 0.5
 class Path:
     """Loads at the points of a ``cycle``, scaled: Q, the relative strain of the surfaces due to bulk tension at the
     scene's x = 0, and its slope along x; where the pressure varies, then P and M, too: M about the pin if a body is on
-    one. Where an ``actuator`` of this
-    compliance drives the bodies (0: a rigid one; None: none does), its displacement stands in place of Q.
+    one. Where an ``actuator`` of this compliance drives the bodies (0: a rigid one; None: none does), its displacement
+    stands in place of Q.
 
     ``ends`` are the indices of load points 1 and 2, the extremes of the cycle; ``in_phase`` says whether the points lie
     on one line. The path begins at ``begin`` with the tangential forces ``before`` (n,) (None: zero), goes to the last

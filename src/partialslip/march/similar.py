@@ -240,10 +240,8 @@ def _solve_level(
             along = partial(coulomb_varying_pressure.march, x, tangential, moved, f, presses)
             history, stepped = follow_or_step(along, path, scene.fem.accuracy, errors if choose else None)
         else:
-            history, stepped = (
-                coulomb_constant_pressure.march(tangential, moved, normal.forces(frame, vertices), f, path),
-                {},
-            )
+            history = coulomb_constant_pressure.march(tangential, moved, normal.forces(frame, vertices), f, path)
+            stepped = {}
         inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in reversed(history.visited)]
         if history.turns and history.never_slips is not None:
             inner.append(turning_points(x, history.never_slips, history.slips))
