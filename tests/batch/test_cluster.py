@@ -69,8 +69,9 @@ def test_no_logger_of_dask_speaks_meanwhile(name):
     pytest.importorskip("distributed")
     logger = logging.getLogger(name)
     level = logger.level
-    with _silence():
-        assert not logger.isEnabledFor(logging.CRITICAL)
+    speak = _silence()
+    assert not logger.isEnabledFor(logging.CRITICAL)
+    speak()
     assert logger.level == level
 
 

@@ -94,28 +94,32 @@ def dask(address: str) -> Iterator[Cluster]:
     except ImportError:
         raise MissingLibraryError("--cluster: needs dask.distributed: pip install distributed") from None
     _reach(address)
-    with _silence():
-        try:
-            client = Client(address, timeout=_ANSWERS, set_as_default=False)
-        except Exception as error:  # any kind: the server may not be Dask
-            raise InputError(f"--cluster {address!r}: no Dask scheduler answers there: {_said(error)}") from None
-        try:
-            cluster = Cluster(client, address)
-            cluster.greet()
-            yield cluster
-        except CancelledError:
-            raise PartialslipError(f"--cluster {address!r}: connection to the scheduler lost; {_GO_ON}") from None
-        except PartialslipError:
+    speak = _silence()
+    try:
+        client = Client(address, timeout=_ANSWERS, set_as_default=False)
+    except Exception as error:  # any kind: the server may not be Dask
+        speak()
+        raise InputError(f"--cluster {address!r}: no Dask scheduler answers there: {_said(error)}") from None
+    try:
+        cluster = Cluster(client, address)
+        cluster.greet()
+        yield cluster
+    except CancelledError:
+        raise PartialslipError(f"--cluster {address!r}: connection to the scheduler lost; {_GO_ON}") from None
+    except PartialslipError:
+        raise
+    except Exception as error:
+        if type(error).__module__.partition(".")[0] not in ("distributed", "dask", "tornado") and not isinstance(
+            error, (ImportError, OSError, RuntimeError)
+        ):
             raise
-        except Exception as error:
-            if type(error).__module__.partition(".")[0] not in ("distributed", "dask", "tornado") and not isinstance(
-                error, (ImportError, OSError, RuntimeError)
-            ):
-                raise
-            raise PartialslipError(f"--cluster {address!r}: {_said(error)}; {_GO_ON}") from None
-        finally:
-            with suppress(Exception):  # the scheduler may be lost
-                client.close(timeout=2 if client.status == "running" else 0.1)
+        raise PartialslipError(f"--cluster {address!r}: {_said(error)}; {_GO_ON}") from None
+    finally:
+        connected = client.status == "running"
+        with suppress(Exception):  # the scheduler may be lost
+            client.close(timeout=2 if connected else 0.1)
+        if connected:
+            speak()  # else a thread of Dask tries to reconnect for some seconds, and would say so
 
 
 def _reach(address: str) -> None:
@@ -135,19 +139,18 @@ def _said(error: BaseException) -> str:
     return (said.strip().splitlines() or [type(error).__name__])[0]
 
 
-@contextmanager
-def _silence() -> Iterator[None]:
-    """Silence the logs of Dask and the libraries below; errors are reported in one line instead.
+def _silence() -> Callable[[], None]:
+    """Silence the logs of Dask and the libraries below, errors of which are one line instead; return what ends this.
 
     Dask gives some loggers levels of their own, such as tornado.application: these ignore the level of their parent.
     """
     known = {*_LOGGERS, *(name for name in logging.root.manager.loggerDict if name.startswith(_BELOW))}
-    loggers = [logging.getLogger(name) for name in sorted(known)]
-    levels = [logger.level for logger in loggers]
-    for logger in loggers:
+    levels = {logging.getLogger(name): logging.getLogger(name).level for name in sorted(known)}
+    for logger in levels:
         logger.setLevel(logging.CRITICAL + 1)
-    try:
-        yield
-    finally:
-        for logger, level in zip(loggers, levels, strict=True):
+
+    def speak() -> None:
+        for logger, level in levels.items():
             logger.setLevel(level)
+
+    return speak
