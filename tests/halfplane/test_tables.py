@@ -6,6 +6,7 @@ import pytest
 import partialslip
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.loading import loading
+from partialslip.halfplane.method import spacing_error
 from partialslip.halfplane.punch import Punch, _unit
 from partialslip.halfplane.shape import Given
 from partialslip.halfplane.tables import table_error
@@ -111,6 +112,17 @@ def test_work_does_not_grow_with_the_square_of_the_points():
     few, many = (contact(table(np.linspace(0, 1.5, count))).shape for count in (100, 1000))
     assert few._panels._which.shape[1] == many._panels._which.shape[1] <= 6
     assert len(many.rule(0.3, 0.2, 1).t) < 4 * len(few.rule(0.3, 0.2, 1).t)
+
+
+def test_a_zone_that_slips_inside_costs_the_error_of_a_table_nothing(monkeypatch):
+    """It takes seconds to follow, and hardly changes by what the table leaves out."""
+
+    def followed(*_):
+        raise AssertionError
+
+    monkeypatch.setattr("partialslip.halfplane.gradual_path.inner.Way", followed)
+    found = spacing_error(table(np.linspace(0, 1.5, 30), Qf=0.85, sf=9.0))
+    assert 1e-5 < found["m"] < 1e-2
 
 
 @pytest.mark.fault

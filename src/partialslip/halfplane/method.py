@@ -121,8 +121,9 @@ def spacing_error(scene: Scene) -> dict[str, float]:
         return {}
     if scene.free or scene.slides or not plan(scene).needs("friction"):
         return table_error(scene, contact(scene), None)
-    pressed, cycle, *_ = _change(scene)
-    return table_error(scene, pressed, cycle)
+    pressed, load = contact(scene), scene.load
+    require_carried([Q for Q, _ in load.points], pressed.f * scene.P)
+    return table_error(scene, pressed, half_cycle(pressed, pressed.f, load.dQ, load.dsigma, load.dslope, parts=False))
 
 
 def path_dependent(scene: Scene) -> bool:

@@ -46,7 +46,7 @@ def table_error(scene: Scene, pressed: Contact, cycle: Loading | Turning | None)
         errors["left"], errors["right"] = (np.abs(moved) / a).tolist()
     if cycle and not cycle.nothing:
         load = scene.load
-        coarse_cycle = half_cycle(other, other.f, load.dQ, load.dsigma, load.dslope)
+        coarse_cycle = half_cycle(other, other.f, load.dQ, load.dsigma, load.dslope, parts=False)
         ends, moved = np.array(cycle.ends), pressed.scaled(other.centre + np.array(coarse_cycle.ends) * other.a)
         errors["m"], errors["n"] = np.abs(moved - ends).tolist()
         dq, coarse_dq = (

@@ -212,10 +212,13 @@ class Followed:
         return self.cycle.turn * self.q(self.cycle.mirror * x)
 
 
-def half_cycle(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0) -> Loading | Turning:
+def half_cycle(
+    pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0, *, parts: bool = True
+) -> Loading | Turning:
     """Half a steady cycle between loads that change by ``dQ`` (N/m), ``dsigma`` (Pa) and ``dslope`` (Pa/m), of any
     sign, with |dQ| < 2 f P. Where slip turns round and the gradual way is not known, the single step, which does not
-    hold (:attr:`Loading.holds`).
+    hold (:attr:`Loading.holds`). Without ``parts`` a slip zone inside the stick zone is not followed, and the way has
+    no certificate: for differences between pressures that are nearly the same.
 
     Raises
     ------
@@ -226,8 +229,8 @@ def half_cycle(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: flo
     if once.nothing or once.gf or once.holds:
         return once
     try:
-        way = steady(Loads(once.sf, math.pi * once.Qf), once.seen)
-        sure = not way.parted and pressed.friction_bound.convex
+        way = steady(Loads(once.sf, math.pi * once.Qf), once.seen, parts)
+        sure = not parts or (not way.parted and pressed.friction_bound.convex)
         holds = sure or certificate(way).worst < _HELD
     except LostError:
         return once
