@@ -80,10 +80,10 @@ def test_the_exact_method_says_that_it_has_no_closed_form():
 
 
 @pytest.mark.slow
-def test_two_hundred_cycles_all_certified():
+def test_a_hundred_cycles_all_certified():
     """Q 0.1 .. 0.7 f P and sigma 1 .. 5 f p0: every leg has its certificate, and q changes ever less."""
-    result = marched([0.1, 0.7], [1, 5], "load.cycles=200")
-    assert 10 < result.counts["cycles"] <= 200
+    result = marched([0.1, 0.7], [1, 5], "load.cycles=100")
+    assert 10 < result.counts["cycles"] <= 100
     assert result.counts["events"] > 0  # slip turns round
     assert result.certificate["kkt"] < 1e-11
     assert result.certificate["equilibrium"] < 1e-12  # rounding of a sum over hundreds of cells

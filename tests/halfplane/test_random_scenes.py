@@ -262,7 +262,7 @@ def slow(first, end, step=1):
 # Gradual loads whose slip turns round are followed, which takes seconds a scene: of these the first 96, two of each
 # kind on each profile; number 70 once went on for ever. More of them are in test_certificate, in test_gradual_table and
 # in ``verify --suite stress``, which has a hundred scenes of another seed.
-NEARLY_STUCK = slow(KINDS.index("near-stuck"), 7_500, len(KINDS))
+NEARLY_STUCK = slow(KINDS.index("near-stuck"), 3_750, len(KINDS))
 FOLLOWED = 2 * len(KINDS) * len(PROFILES)
 
 

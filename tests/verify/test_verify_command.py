@@ -327,6 +327,7 @@ def test_random_scenes_of_all_kinds_have_certificates(method, part, monkeypatch)
     minutes where a stick zone fades away (tests/fem/test_random_cycles.py has such a scene)."""
     monkeypatch.setattr(goals, "FINEST", FINEST)
     numbers = [kind + len(KINDS) * (kind % len(PROFILES)) for kind in range(part, len(KINDS), PARTS)]
+    numbers = [14 if number == 46 else number for number in numbers]  # whose 130 cycles take two minutes
     certified(stress_suite(method, 1, 1, list(map(str, numbers))))
 
 
