@@ -146,7 +146,7 @@ def condense(meshes: Sequence[Mesh], problem: Problem, width: float, clock: Cloc
 
 def _condensed(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) -> CondensedBody:
     with clock.phase("assembly"):
-        assembled = body(mesh, part.kappa, problem.order, part.compliance, part.held, part.pulled)
+        assembled = body(mesh, part.kappa, problem.order, part.compliance, part.held, part.pulled, part.gripped)
     far = None
     if problem.far_field == "half-plane" and not part.finite:
         with clock.phase("far field"):

@@ -53,8 +53,9 @@ class Condensation:
         # before take_inverse_of_schur, which may use the factor up
         self.pulled: Array | None = None
         if body.pull is not None:
-            self.pulled = np.zeros(len(body.pull))
-            self.pulled[self._free] = self._factor.back_substitute(body.pull[self._free, None])[:, 0]
+            pulled, load = body.pulling()
+            pulled[self._free] = self._factor.back_substitute(load[self._free, None])[:, 0]
+            self.pulled = body.under_unit_tension(pulled)
         self.compliance, moved = self._factor.take_inverse_of_schur()
         if self._far:
             self.compliance += moved @ self._far.moments

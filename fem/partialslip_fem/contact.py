@@ -60,6 +60,13 @@ class CondensedBody:
         result: Array = self.stretched[:, self.body.contact[0]]
         return result
 
+    def at_right_grip(self, shear: Array, normal: Array) -> float:
+        """Force along x on the plate that holds the right side of the lower body under contact forces ``shear`` and
+        ``normal`` (n,), by reciprocity: a plate that moves by 1 moves the contact line as the tension does."""
+        moved = self.stretched
+        u, v = self.stretch
+        return float((shear @ u + normal @ v) / moved[0, self.body.gripped[0]])
+
 
 def relative_compliances(bodies: Sequence[CondensedBody], coupled: bool = True) -> Relative:
     """Relative displacements of the two surfaces under unit nodal forces, at the nodes of the lower contact line.

@@ -42,10 +42,7 @@ def displace_bodies(solution: MeshSolution, problem: Problem) -> tuple[Displaced
     Positive q acts from the lower on the upper body; the bulk tension acts in the lower body.
     """
     history, line = solution.history, solution.lower
-    load_points = zip(history.at_ends, history.pressures, strict=True) if history else ()
-    loads = [(solution.on_line(shear), solution.on_line(normal)) for shear, normal in load_points]
-    first = solution.pressing.x if solution.first is None else solution.first
-    loads = loads or [(0 * line.x, first), (0 * line.x, solution.pressing.x)]
+    loads = solution.forces
     pressures = tuple(traction(line, normal) for _, normal in loads)
     strains, angles = np.array(problem.strains), history.angles if history else (solution.pressing.turn,) * 2
     displaced = []

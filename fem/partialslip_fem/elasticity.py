@@ -1,7 +1,7 @@
 """The elastic body: triangles in scikit-fem, scaled by a pair's compliance A."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -44,6 +44,8 @@ class Body:
         Nodes of the whole side with the contact line, from left to right.
     pull : (2 N,) array or None
         Nodal forces of a unit tension on the right side, if the body is pulled there.
+    gripped : (g,) int array
+        Held degrees of freedom along x of a right side that a plate pulls; empty if it is free.
     """
 
     order: int
@@ -58,6 +60,24 @@ class Body:
     points: Array
     face: Indices
     pull: Array | None = None
+    gripped: Indices = field(default_factory=lambda: np.empty(0, np.int64))
+
+    def pulling(self) -> tuple[Array, Array]:
+        """Displacements of all nodes (zero but for those of the plate that pulls), and nodal forces that then pull the
+        body, (2 N,) each; :meth:`under_unit_tension` scales what they cause."""
+        assert self.pull is not None
+        moved = np.zeros(len(self.pull))
+        moved[self.gripped] = 1.0
+        return moved, -(self.stiffness @ moved) if len(self.gripped) else self.pull
+
+    def under_unit_tension(self, u: Array) -> Array:
+        """Displacements (2 N,) under a unit tension, from those that :meth:`pulling` causes, ``u`` (2 N,): the mean
+        tension on a side that a plate moves follows from them."""
+        assert self.pull is not None
+        if not len(self.gripped):
+            return u
+        result: Array = u * (self.pull.sum() / (self.stiffness[self.gripped] @ u).sum())
+        return result
 
     @property
     def weights(self) -> Array:
@@ -99,6 +119,7 @@ def body(
     compliance: float = 1.0,
     held: Held = (ALL_AROUND, ALL_AROUND),
     pulled: bool = False,
+    gripped: bool = False,
 ) -> Body:
     """Assemble a body on ``mesh``.
 
@@ -111,6 +132,8 @@ def body(
         Lines of the mesh that are held along x, and along y.
     pulled : bool
         Whether to assemble the nodal forces of a tension on the right side.
+    gripped : bool
+        Whether a plate that is held pulls this side.
     """
     triangles, element = triangles_of(mesh), ELEMENTS[order]()
     basis = skfem.Basis(triangles, element, intorder=1)  # for the numbers of unknowns only
@@ -141,6 +164,7 @@ def body(
         points=basis.doflocs,
         face=face,
         pull=pull,
+        gripped=on(mesh.lines["right"]) if gripped else np.empty(0, np.int64),
     )
 
 

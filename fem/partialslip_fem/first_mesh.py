@@ -45,8 +45,10 @@ def solve_on_first_mesh(
     check = problem.meshed  # on meshes from files this solution is also the last
     farthest, most = max(map(abs, problem.lines), default=0.0), _WIDER * reach
     if farthest >= most:
-        by_pin = "load.Q, load.M, load.e, pivot_height", ""
-        movers, instead = ("load.M, load.e", "; use march") if problem.pin is None else by_pin
+        movers, instead = "load.M, load.e", "; use march"
+        if problem.pin is not None:
+            pivots = next(part.name for part in problem.parts if part.support == "pivot")
+            movers, instead = f"load.Q, load.M, load.e, bodies.{pivots}.pivot_height", ""
         raise InputError(
             f"{movers}: must move the line of action of P by less than {most:.3g} sqrt(A R P) for fem, not "
             f"{farthest:.3g}{instead}"

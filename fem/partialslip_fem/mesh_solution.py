@@ -254,6 +254,16 @@ class MeshSolution:
         """Traction along the contact line that is equivalent to ``forces`` (k,) on the nodes in contact."""
         return traction(self.lower, self.on_line(forces))
 
+    @property
+    def forces(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """Nodal forces along x and across on the contact line, (n,) each, at load points 1 and 2."""
+        second = self.pressing.x
+        if not self.history:
+            first = second if self.first is None else self.first
+            return (0 * first, first), (0 * second, second)
+        at_1, at_2 = zip(self.history.at_ends, self.history.pressures, strict=True)
+        return (self.on_line(at_1[0]), self.on_line(at_1[1])), (self.on_line(at_2[0]), self.on_line(at_2[1]))
+
     def on_line(self, values: Array) -> Array:
         """Extend ``values`` (k,) on the nodes in contact by zeros to the whole contact line, (n,)."""
         result = np.zeros(len(self.lower.x))

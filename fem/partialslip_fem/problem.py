@@ -80,6 +80,8 @@ class Part:
         Which sides of a finite body are held.
     pulled : bool
         Whether the bulk tension acts on the right side.
+    gripped : bool
+        Whether a plate that is held pulls the right side.
     """
 
     name: str
@@ -92,6 +94,7 @@ class Part:
     mesh: Mesh | None = None
     support: Support = "clamped"
     pulled: bool = False
+    gripped: bool = False
 
     @property
     def finite(self) -> bool:
@@ -112,9 +115,8 @@ class Part:
         """Lines of the mesh that are held along x, and along y."""
         if not self.finite:
             return ALL_AROUND, ALL_AROUND
-        along_x, along_y = (
-            [line for line in lines if line != "right" or not self.pulled] for lines in _HELD[self.support]
-        )
+        free = ["right"] if self.pulled and not self.gripped else []
+        along_x, along_y = ([line for line in lines if line not in free] for lines in _HELD[self.support])
         return along_x, along_y
 
     @cached_property
@@ -363,7 +365,7 @@ def _finite(plain: Part, body: Body | None, scene: Scene, L: float) -> Part:
         return plain
     holder = body.holder
     face = PadFace(scene.profile, L) if body.kind == "pad" else None
-    part = replace(plain, face=face, support=body.support, pulled=body.pulled)
+    part = replace(plain, face=face, support=body.support, pulled=body.pulled, gripped=body.gripped)
     if body.mesh is not None:
         needed = {line for lines in part.held for line in lines} | ({"right"} if body.pulled else set())
         field = f"bodies.{part.name}.mesh"

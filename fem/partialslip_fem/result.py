@@ -120,7 +120,15 @@ def to_result(
         surface=along_surfaces(displaced, solution.contact_ends, L, stress, origin) if displaced else None,
         edges=edges_near_contact(solution, L, origin),
         plates=plates,
+        right_grip=_right_grip(problem, solution, scene.P),
     )
+
+
+def _right_grip(problem: Problem, solution: MeshSolution, P: float) -> Array | None:
+    """Forces on the plate that holds the right side of the lower body, (2,), N/m."""
+    if not problem.parts[0].gripped:
+        return None
+    return P * np.array([solution.bodies[0].at_right_grip(*forces) for forces in solution.forces])
 
 
 def _plates(problem: Problem, adapted: Adapted, scene: Scene) -> Plates | None:

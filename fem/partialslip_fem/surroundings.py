@@ -81,7 +81,7 @@ def left_over(part: Part, mesh: Mesh, order: int, places: Array, backend: Backen
     """The body ``part`` on ``mesh``, and displacements (2 N, 2 l + 1) of its nodes, less those of Flamant's solutions:
     under unit forces at ``places`` (l,) along x, then along y; and those under a unit tension at its end, if it is
     pulled there."""
-    own = body(mesh, part.kappa, order, part.compliance, part.held, part.pulled)
+    own = body(mesh, part.kappa, order, part.compliance, part.held, part.pulled, part.gripped)
     nodes = own.points.shape[1]
     z = own.points[0] + 1j * own.points[1]
     known = np.zeros((2 * nodes, 2 * len(places) + 1))
@@ -90,11 +90,13 @@ def left_over(part: Part, mesh: Mesh, order: int, places: Array, backend: Backen
     known[own.held, :-1] = -np.where(along_y[:, None], held[1], held[0]).transpose(1, 0, 2).reshape(len(own.held), -1)
     load = np.zeros_like(known)
     load[:, :-1] = _tractions_left(part, mesh, order, places)
+    load[:, :-1] -= own.stiffness @ known[:, :-1]
     if own.pull is not None:
-        load[:, -1] = own.pull
+        known[:, -1], load[:, -1] = own.pulling()
     free = np.setdiff1d(np.arange(2 * nodes), own.held)
-    load -= own.stiffness @ known
     known[free] = factor(own.stiffness, free[:-1], free[-1:], backend).back_substitute(load[free])
+    if own.pull is not None:
+        known[:, -1] = own.under_unit_tension(known[:, -1])
     return own, known
 
 

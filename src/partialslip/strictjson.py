@@ -8,6 +8,7 @@ that is too deep, and values of another type: text is no number.
 import json
 import math
 import re
+from collections.abc import Mapping
 from typing import Any, NoReturn, TypeVar
 
 import msgspec
@@ -16,6 +17,17 @@ from partialslip.errors import InputError
 
 _Kind = TypeVar("_Kind")
 _DIGITS = 19  # fixed: of the largest whole numbers of 64 bits
+KINDS = {
+    "object": "an object",
+    "array": "an array",
+    "float": "a number",
+    "int": "a whole number",
+    "str": "a string",
+    "bool": "true or false",
+    "date": "a date",
+    "time": "a time",
+    "datetime": "a date and time",
+}  #: Types of msgspec in plain words.
 _SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 
 
@@ -66,8 +78,29 @@ def converted(tree: Any, kind: type[_Kind], told: str) -> _Kind:
     try:
         return msgspec.convert(tree, kind)
     except msgspec.ValidationError as error:
-        said = error.__cause__ if isinstance(error.__cause__, InputError) else error
+        said = error.__cause__ if isinstance(error.__cause__, InputError) else _said(str(error))
         raise InputError(f"{told}: {said}") from None
+
+
+def _said(message: str) -> str:
+    """What is wrong where, from the ``message`` of msgspec."""
+    what, _, where = message.partition(" - at `$")
+    path = where.rstrip("`").removeprefix(".")
+    if field := re.fullmatch(r"(?s)Object (missing required|contains unknown) field `(.*)`", what):
+        key = f"{path}.{_short(field[2])}" if path else _short(field[2])
+        return f"{key}: {'missing' if field[1].startswith('missing') else 'unknown key'}"
+    place = f"{_short(path)}: " if path else ""
+    return f"{place}must be {wanted(what) or what.replace('`', '').removeprefix('Expected ')}"
+
+
+def wanted(what: str, kinds: Mapping[str, str] = KINDS) -> str | None:
+    """Return the type or the bound that a value must have, in plain words, from ``what`` msgspec says; ``kinds`` are
+    the words of types. None if it says something else."""
+    if wrong := re.fullmatch(r"Expected `([a-z]+(?: \| [a-z]+)*)`, got `(?:datetime\.)?([a-z]+)`", what):
+        types = [kinds.get(kind, kind) for kind in wrong[1].split(" | ") if kind != "null"]
+        return f"{' or '.join(types)}, not {kinds.get(wrong[2], wrong[2])}"
+    bound = re.fullmatch(r"Expected `(?:float|int)(?: \| (?:null|str))*` (.*)", what)
+    return bound[1] if bound else None
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -76,7 +76,7 @@ def test_the_last_three_of_more_meshes_count():
         ({"ladder": [{"h": 1, "values": {}}, {"h": 0.5, "values": {}}]}, "ladder: must have 3 meshes or more, not 2"),
         ({"ladder": [{"h": h, "values": {}} for h in (1, 2, 3)]}, r"ladder\[1\].h = 2.0: must be less than 1.0"),
         ({"ladder": [{"h": h, "values": {"a": 1.0}} for h in (3, 2, 1)]}, "values: must be those of the last mesh"),
-        ({"ladder": [{"h": -1, "values": {}}] * 3}, "Expected `float` > 0"),
+        ({"ladder": [{"h": -1, "values": {}}] * 3}, "must be > 0"),
         (
             {"ladder": [{"h": 3, "values": {"b": 1}}, {"h": 2, "values": {}}, {"h": 1, "values": {}}]},
             r"ladder\[0\].values.b: no target has this key",

@@ -53,12 +53,46 @@ def test_sections_bear_their_shares():
 
 
 @pytest.mark.slow
-def test_equivalent_half_planes_know_both_grips():
-    fem, found = solved(grip(0.7) | {"fem.size": 0.04}), solved(grip(0.7), "equivalent")
+@pytest.mark.parametrize("share", [0.7, "stiffness"])
+def test_equivalent_half_planes_know_both_grips(share):
+    fem, found = solved(grip(share) | {"fem.size": 0.04}), solved(grip(share), "equivalent")
     assert (found.m, found.n) == pytest.approx((fem.m, fem.n), abs=2e-3 * fem.a)
+    if share == "stiffness":
+        return
     scene = parse_scene(SCENE).replace(grip(0.7))
     many = stick_zone(scene, characterise(scene), 40e3, 30e6)
     assert many.centre == pytest.approx(found.stick_centre, abs=2e-3 * fem.a)
+
+
+@pytest.mark.slow
+def test_a_plate_on_the_right_bears_what_the_section_beside_it_bears():
+    """The force is found by reciprocity; stresses on a section between contact and plate have the same resultant."""
+    t, found = 3e-3, solved(grip("stiffness") | {"fem.size": 0.2}, subsurface=True)
+    y = -t / 2 * (1 + np.polynomial.legendre.leggauss(20)[0])
+    weights = np.polynomial.legendre.leggauss(20)[1] * t / 2
+    stress = found.stress_at(np.full_like(y, 7e-3), y)
+    borne = np.array([weights @ stress[point, 0] for point in (0, 1)])
+    assert borne - np.array(SCENE["load"]["sigma"]) * t == pytest.approx(found.right_grip, abs=2e-3 * 20e3)
+
+
+def test_the_share_of_a_plate_on_the_right_follows_from_the_stiffness():
+    """A contact in the middle is as far from both plates: each carries half of Q. P stretches the block along x, which
+    both plates hinder by the same force: Poisson's, of a bar, but for what is near the contact."""
+    E, nu, width = 72.1e9, 0.33, 20e-3
+    found = solved(grip("stiffness") | {"fem.size": 0.3})
+    first, second = found.right_grip
+    assert second - first == pytest.approx(20e3, rel=1e-3)
+    strain = nu * (1 + nu) / E * SCENE["load"]["P"]  # P/l of a bar of the length l that is pressed across, times l
+    assert (first + second) / 2 == pytest.approx(-strain * E / (1 - nu**2) * 3e-3 / width, rel=1e-2)
+
+
+def test_a_plate_on_the_right_holds_what_it_pulls():
+    """Sigma moves the plate so that the right side bears sigma on average. Half of Q on either side makes the contact
+    nearly that of a share of one half, but for the steady force of P."""
+    held = solved(grip("stiffness") | {"fem.size": 0.3})
+    halved = solved(grip(0.5) | {"fem.size": 0.3})
+    left = solved({"fem.size": 0.3})
+    assert abs(held.m - halved.m) < 0.2 * abs(left.m - halved.m)
 
 
 def test_a_run_goes_on_from_a_state(tmp_path):
@@ -77,7 +111,13 @@ def test_a_run_goes_on_from_a_state(tmp_path):
         (grip(0.2) | {"bodies.lower.pulled": False}, r"right_grip = 0.2: must be given only with pulled = true"),
         (
             grip(0.2) | {"load.Q": [0.0, 0.0], "load.displacement": [0.0, 1e-6]},
-            r"right_grip = 0.2: must be left out with load.displacement",
+            r"right_grip = 0.2: must be 'stiffness' or left out with load.displacement",
+        ),
+        (grip("glued"), r"bodies.lower.right_grip = 'glued': must be a number or 'stiffness'"),
+        (grip(True), r"bodies.lower.right_grip = True: must be a number or a string, not true or false"),
+        (
+            grip("stiffness") | {"bodies.lower.pulled": False},
+            r"bodies.lower.right_grip = 'stiffness': must be given only with pulled = true$",
         ),
     ],
 )
@@ -86,6 +126,7 @@ def test_bad_input_is_one_line(changes, told):
         solved(changes)
 
 
-def test_decks_know_one_grip():
-    with pytest.raises(InputError, match=r"bodies.lower.right_grip = 0.2: must be 0 or left out to export"):
-        outlined(parse_scene(SCENE).replace(grip(0.2)))
+@pytest.mark.parametrize("share", [0.2, "stiffness"])
+def test_decks_know_one_grip(share):
+    with pytest.raises(InputError, match=rf"bodies.lower.right_grip = {share!r}: must be 0 or left out to export"):
+        outlined(parse_scene(SCENE).replace(grip(share)))

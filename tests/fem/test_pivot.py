@@ -195,6 +195,10 @@ def test_the_sketch_shows_the_pin():
             "bodies.upper.support = 'pivot': must not be given with profile.tilt = 'fixed'",
         ),
         ({"bodies.upper.pivot_height": 0.5}, "must be wider than the contact|must move the line of action"),
+        (
+            {"bodies.upper.pivot_height": 0.5, "bodies.upper.width": 0.4, "bodies.lower.width": 0.4},
+            r"load.Q, load.M, load.e, bodies.upper.pivot_height: must move the line of action of P by less than",
+        ),
     ],
 )
 def test_bad_input_is_one_line(changes, told):

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 import partialslip
 from partialslip.cli import main
+from partialslip.errors import MissingLibraryError
 from partialslip.origin import made_now, origin_lines
 from partialslip.output.svg import with_dark_mode
 from partialslip.plan import plan
@@ -23,6 +24,7 @@ from partialslip.report.page import Section, run_page, study_page
 from partialslip.report.sketch import sketch_svg
 from partialslip.run import compared
 from partialslip.study.cost import ladder
+from partialslip.verify import verify_suite
 
 MADE = made_now("partialslip run hertz-shear --set 'friction.f=0.4'", ["friction.f=0.4"])
 EDGES = np.array([[[-1.2, 0], [0, -0.8]], [[0, -0.8], [1.2, 0]]]) * A
@@ -269,6 +271,13 @@ def test_a_missing_library_is_named_before_anything_is_solved(command, tmp_path,
     monkeypatch.setitem(sys.modules, "weasyprint", None)
     said = refused(*command.split(), "--pdf", "--out", str(tmp_path / "none"))
     assert said == "partialslip: --pdf needs WeasyPrint: pip install 'partialslip[pdf]'\n"
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_verification_from_python_names_a_missing_library_before_anything_is_solved(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "weasyprint", None)
+    with pytest.raises(MissingLibraryError, match=r"report.pdf needs WeasyPrint"):
+        verify_suite("quick", pdf=True, out=tmp_path / "none", processes=1)
     assert not (tmp_path / "none").exists()
 
 

@@ -198,15 +198,21 @@ def more_terms(data):
 
 SPOILED = {
     "NaN": (lambda path: path.write_text(path.read_text().replace("0.00", "NaN", 1)), "not a rig: "),
-    "null": (spoiled(lambda data: data["terms"]["xx"][0].__setitem__(0, None)), "not a rig: .*`null`"),
-    "text": (spoiled(lambda data: data["terms"]["xx"][0].__setitem__(0, "1")), "not a rig: .*`str`"),
+    "null": (
+        spoiled(lambda data: data["terms"]["xx"][0].__setitem__(0, None)),
+        "not a rig: .*: must be a number, not null",
+    ),
+    "text": (
+        spoiled(lambda data: data["terms"]["xx"][0].__setitem__(0, "1")),
+        "not a rig: .*: must be a number, not a string",
+    ),
     "infinite": (
         lambda path: path.write_text(re.sub(r'"reach": [^,]*', '"reach": 1e999', path.read_text())),
         "not a rig: ",
     ),
-    "no reach": (spoiled(lambda data: data.pop("reach")), "not a rig: .*missing required field `reach`"),
+    "no reach": (spoiled(lambda data: data.pop("reach")), "not a rig: reach: missing"),
     "negative reach": (spoiled(lambda data: data.update(reach=-1.0)), "not a rig: .*reach"),
-    "more": (spoiled(lambda data: data.update(more=1)), "not a rig: .*unknown field `more`"),
+    "more": (spoiled(lambda data: data.update(more=1)), "not a rig: more: unknown key"),
     "shape": (spoiled(more_terms), r"terms.xx: must have 12 rows of 12 numbers|terms\.\w+: must have"),
     "short row": (
         spoiled(lambda data: data["rough"]["pulled"][0].pop()),

@@ -147,12 +147,23 @@ def test_a_peer_is_met_at_its_best_error_and_in_its_time():
     assert math.isnan(cost.against(ours[:1], [point("peer", 0.01, 1e-5)], "m")["cpu"])
 
 
-@pytest.mark.parametrize("line", ["{}", "[]", "no", '{"scene": "hertz-large-tension", "method": "x"}'])
-def test_what_is_no_peers_result_is_refused(tmp_path, capsys, line):
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("{}", "scene: missing"),
+        ("[]", "must be an object, not an array"),
+        ("no", "not JSON"),
+        ('{"scene": "hertz-large-tension", "method": "x"}', "setting: missing"),
+        ('{"scene": 3}', "scene: must be a string, not a whole number"),
+    ],
+)
+def test_what_is_no_peers_result_is_refused(tmp_path, capsys, line, told):
     (tmp_path / "peers.jsonl").write_text(line + "\n", "utf-8")
     arguments = ["study", "cost", "hertz-large-tension", "--peers", str(tmp_path / "peers.jsonl")]
     assert main([*arguments, "--out", str(tmp_path / "out")]) == 2
-    assert capsys.readouterr().err.count("\n") == 1
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert told in said
     assert not (tmp_path / "out").exists()
 
 

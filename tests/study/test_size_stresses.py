@@ -9,6 +9,7 @@ from size_entries import entries, scene, sized
 
 from partialslip.batch.ledger import Ledger
 from partialslip.batch.sweep import workers
+from partialslip.errors import InputError
 from partialslip.fatigue import HotSpot
 from partialslip.study.size import sizes as size
 from partialslip.study.size import stresses, tables
@@ -16,6 +17,7 @@ from partialslip.study.size.axes import axis as read
 from partialslip.study.size.axes import cases as make
 from partialslip.study.size.case import Sized, solve_sized
 from partialslip.study.size.figure import size_svg
+from partialslip.study.size.stresses import criteria_of
 
 
 def with_stresses(entry, fem, half_plane, error=1e-6):
@@ -115,3 +117,29 @@ def test_the_range_of_stress_comes_near_that_of_the_half_plane_like_m_but_the_me
     assert order("principal.line") == pytest.approx([2, 2], abs=0.2)
     assert 0.5 < order("sigma_xx")[0] < order("sigma_xx")[1] < 1.0
     assert all(sizes.mesh["sigma_xx"] < sizes.off["sigma_xx"] / 10)
+
+
+def test_criteria_are_those_that_the_scene_or_the_user_asks_for():
+    """swt and principal need no constants: without an own one swt alone is shown."""
+    asking = scene().replace({"fatigue.distance": 1e-4})
+    assert criteria_of(asking, None) == ["swt"]
+    findley = asking.replace({"fatigue.k_findley": 0.3})
+    assert criteria_of(findley, None) == ["findley"]
+    assert criteria_of(findley, ["principal", "findley"]) == ["principal", "findley"]
+    spots = dict.fromkeys(("sigma_xx", "principal", "principal.line", "swt", "swt.line"))
+    (shown,) = size.with_criteria([Sized(labels={}, stresses={"fem": spots})], ["swt"])
+    assert [*shown.stresses["fem"]] == ["sigma_xx", "swt", "swt.line"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "names", "told"),
+    [
+        ({"fatigue.distance": 1e-4}, ["ruiz"], "--criterion ruiz: must be another for a study of sizes"),
+        ({"fatigue.distance": 1e-4}, ["findley"], "fatigue.k_findley: missing"),
+        ({"fatigue.distance": 1e-4}, ["mises"], "criterion 'mises': must be of principal, swt"),
+        ({}, ["swt"], "--criterion swt: must be given only with a table fatigue"),
+    ],
+)
+def test_criteria_that_a_study_cannot_show_are_refused(changes, names, told):
+    with pytest.raises(InputError, match=told):
+        criteria_of(scene().replace(changes), names)

@@ -130,7 +130,7 @@ def add_verbose(parser: argparse.ArgumentParser, what: str) -> None:
 
 # Options that do not change the results.
 _NEUTRAL = {"command", "scene", "overrides", "own_process", "line", "default"}
-_NEUTRAL |= {"out", "force", "json", "pdf", "verbose", "save", "processes", "cluster"}
+_NEUTRAL |= {"out", "force", "json", "pdf", "verbose", "save", "processes", "cluster", "shown"}
 
 
 def methods_of(text: str, known: Collection[str]) -> list[str]:

@@ -43,6 +43,9 @@ def add(topics: Commands) -> None:
                       help="address of a Dask scheduler; the cluster's workers solve the cases")  # fmt: skip
     size.add_argument("--one-mesh", action="store_true",
                       help="one mesh per size, without further meshes to check the error of the mesh")  # fmt: skip
+    size.add_argument("--criterion", metavar="CRITERIA", dest="shown",
+                      help="fatigue criteria to show, separated by commas, as for partialslip fatigue (default: all "
+                      "whose constants the table fatigue has; swt if it has none)")  # fmt: skip
     add_out(size, "results/NAME-size-HASH")
     add_pdf(size)
     size.set_defaults(command=_size)
@@ -61,6 +64,10 @@ def _size(options: argparse.Namespace) -> int:
     for each in axes if len(axes) > 1 else []:
         if len(set(each.values)) < 2 or min(each.values) <= 0:
             raise InputError(f"--over {each.name}: must have at least 2 values, all > 0, for a map")
+    from partialslip.study.size.stresses import criteria_of
+
+    names = None if options.shown is None else [name.strip() for name in options.shown.split(",")]
+    shown = criteria_of(scene, names)  # before anything is solved
     name = f"{scene.name}-size"
 
     def find(folder: Path) -> Findings:
@@ -71,7 +78,7 @@ def _size(options: argparse.Namespace) -> int:
         ledger = study_ledger(folder)
         with counting(name) as progress, workers(options.cluster, options.processes) as executor:
             entries = sizes.measure(scene, axes, ledger, executor, progress, control=not options.one_mesh)
-        return _evaluated(scene, axes, entries, ledger.path)
+        return _evaluated(scene, axes, sizes.with_criteria(entries, shown), ledger.path)
 
     return present(options, "study size", name, scene, find)
 

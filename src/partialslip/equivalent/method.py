@@ -77,7 +77,7 @@ def solve(
         progress("characterising the bodies")
         rig = _called_for(rig_of(scene), scene)
     with clock.phase("half-planes"):
-        found, seen, data = stand_ins(scene, rig, progress)
+        found, seen, data = _found(rig, scene, progress)
     closed = found.method == "exact"
     coarser = half_planes(scene, data_of(rig.coarser, scene, moments_of(rig, scene, found), found, shear=closed))
     shares = dict(found.shares) | estimate(rig, scene, seen, data, coarser, shear=closed)
@@ -139,8 +139,13 @@ def stand_ins(scene: Scene, rig: Rig, progress: Callable[[str], None] = lambda _
         As :func:`solve`.
     """
     scene = _checked(scene)
+    return _found(_called_for(rig, scene), scene, progress)
+
+
+def _found(rig: Rig, scene: Scene, progress: Callable[[str], None]) -> StandIns:
+    """Half-planes that act like the bodies of a ``scene`` that is checked, with the ``rig`` that it calls for."""
     closed = scene.load.in_phase and has_closed_form(half_planes(scene, None))
-    return _iterated(_called_for(rig, scene), scene, closed, progress)
+    return _iterated(rig, scene, closed, progress)
 
 
 def _called_for(rig: Rig, scene: Scene) -> Rig:

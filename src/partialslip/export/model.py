@@ -183,7 +183,7 @@ def _check(scene: Scene) -> None:
         raise InputError(f"load.sigma_slope = {list(scene.load.sigma_slope)}: must be 0 or left out to export")
     scene.bodies.require_no_pin("to export")
     if scene.bodies.lower and (share := scene.bodies.lower.right_grip):
-        raise InputError(f"bodies.lower.right_grip = {share}: must be 0 or left out to export")
+        raise InputError(f"bodies.lower.right_grip = {share!r}: must be 0 or left out to export")
     if scene.meshed:
         name = next(name for name, body in scene.bodies if body.mesh is not None)
         raise InputError(f"{name}.mesh: must be left out to export; give width and height")

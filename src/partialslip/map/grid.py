@@ -136,7 +136,7 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
     if scene is None:
         return _mapped(Hertz(), _TOP, progress)
     require_friction(scene)
-    scene.require_even("for a map")
+    scene.require_even("for a map", "partialslip.halfplane.one_step_zone takes others, many loads at once")
     if scene.presses_anew:
         raise InputError(f"load.P = {scene.load.P}: must be one number for a map over dQ and dsigma")
     pressed = contact(scene)

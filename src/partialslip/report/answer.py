@@ -84,7 +84,8 @@ def answers(run: Run) -> list[tuple[str, str]]:
     """Return pairs of quantity and value of ``run``.
 
     Quantities are the stick zone, a, p0, at both load points the largest shear and the largest sigma_xx along the
-    surface of the lower body, and the forces, displacements and stiffnesses of the plates of two finite bodies.
+    surface of the lower body, the forces, displacements and stiffnesses of the plates of two finite bodies, and what a
+    grip on the right side bears.
 
     A value has the digits that the method's own estimate of its error leaves, and the error: ``0.888 +- 0.003``. Values
     that the answering method does not know come from the first that knows them, which is named. What the noise and
@@ -92,7 +93,7 @@ def answers(run: Run) -> list[tuple[str, str]]:
     """
     result = run.results[run.answering]
     own = [*_stick(run, result), *_noise(run), *_spacing(run), *_contact(run, result)]
-    return [*own, *_shears(run), *_stresses(run), *_plates(run)]
+    return [*own, *_shears(run), *_stresses(run), *_plates(run), *_right_grip(run)]
 
 
 def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
@@ -211,6 +212,18 @@ def _plates(run: Run) -> Iterator[tuple[str, str]]:
     exponent, label = _unit(run, max(plates.stiffness), "Pa")
     along = [with_error(each, error * each, exponent) for each in plates.stiffness]
     yield "stiffness, x and y", f"{', '.join(along)} {label} per unit depth, while all sticks{by}"
+
+
+def _right_grip(run: Run) -> Iterator[tuple[str, str]]:
+    """Yield the force on the plate that holds the right side of the lower body, and its share of Q."""
+    known = _first(run, lambda result: result.right_grip is not None)
+    if not known or (forces := known.result.right_grip) is None:
+        return
+    exponent, label = _unit(run, float(np.abs(forces).max()), "N/m")
+    borne = ", ".join(with_error(force, math.nan, exponent) for force in forces)
+    load = known.result.plates.told(run.scene).load if known.result.plates else run.scene.load
+    share = f", {np.diff(forces)[0] / load.dQ:.1%} of the change of Q" if load.dQ and not run.scene.presses_anew else ""
+    yield "right grip", f"{borne} {label} besides sigma at load points 1, 2{share}{_by(known)}"
 
 
 def _first(run: Run, knows: Callable[[Result], bool]) -> _Known | None:

@@ -128,7 +128,7 @@ def _support(body: Body, half: float, top: float, back: float, way: float) -> li
     if body.support == "clamped":
         return _plate((_MIDDLE - half, back), (_MIDDLE + half, back), (0.0, way))
     sides = [((left, (left[0], back)), (-1.0, 0.0)), ((right, (right[0], back)), (1.0, 0.0))]
-    held = [side for side in sides if not (body.pulled and side[1][0] > 0)]
+    held = [side for side in sides if not (body.pulled and not body.gripped and side[1][0] > 0)]
     if body.support == "sides":
         return [shape for (start, end), out in held for shape in _plate(start, end, out)]
     rolling = [(((_MIDDLE - half, back), (_MIDDLE + half, back)), (0.0, way)), *held]
@@ -193,9 +193,10 @@ def _loads(scene: Scene) -> list[str]:
     if any(sigma) or any(slope):
         lower = scene.bodies.lower
         half, height = _HALF_PLANE if lower is None else _GIVEN if lower.mesh is not None else _drawn(scene, lower)[0]
+        beyond = _MIDDLE + half + (2 * _ROLLER + _HATCH if lower and lower.gripped else 0) + 4
         for share in (0.25, 0.75):
             y = _LINE + share * height
-            shapes.append(_arrow((_MIDDLE + half + 4, y), (_MIDDLE + half + 4 + _ARROW, y)))
+            shapes.append(_arrow((beyond, y), (beyond + _ARROW, y)))
             if not (lower and lower.pulled):
                 shapes.append(_arrow((_MIDDLE - half - 4, y), (_MIDDLE - half - 4 - _ARROW, y)))
         shown = f"σ = {_values(sigma, 'Pa', scene.units)}"

@@ -67,8 +67,8 @@ class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaul
     ``stick_half_width``, ``stick_centre``, ``p_max``, ``settings``, ``counts``, ``limits``, ``certificate``,
     ``last_cycle_change``, ``estimate``, ``shares``, ``undetermined``, ``path_dependent``, ``end_slips``,
     ``permanent``, ``notes``, ``cost``. ``contact_ends`` are the left and right end (m) at load point 1 and at load
-    point 2. ``plates`` are those of two finite bodies. ``slip``, ``surface`` and ``traction`` are None if the result
-    has none, and in ledgers, which keep no curves.
+    point 2. ``plates`` are those of two finite bodies, ``right_grip`` is what a held right side bears. ``slip``,
+    ``surface`` and ``traction`` are None if the result has none, and in ledgers, which keep no curves.
     """
 
     a: Number
@@ -97,6 +97,7 @@ class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaul
     surface: SurfaceRecord | None = None
     traction: TractionRecord | None = None
     plates: PlatesRecord | None = None
+    right_grip: Numbers | None = None
 
     @classmethod
     def of(cls, result: Result, curves: bool = True) -> "ResultRecord":

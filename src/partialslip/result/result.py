@@ -104,6 +104,9 @@ class Result(Drawn):
     plates : Plates or None
         Forces and displacements of the plates that hold two finite bodies (:class:`partialslip.result.Plates`), and
         how stiff the rig is (fem).
+    right_grip : (2,) array or None
+        Force along x that the plate on the right side of the lower body bears besides sigma, at load points 1 and 2,
+        N/m, positive where Q is: its share of Q, and what P stretches (fem, with ``right_grip`` = "stiffness").
     """
 
     method: str
@@ -134,6 +137,7 @@ class Result(Drawn):
     permanent: tuple[float, float] | None = None
     edges: tuple[Array, Array] | tuple[()] = ()
     plates: Plates | None = None
+    right_grip: Array | None = None
 
     def __repr__(self) -> str:
         """Method, regime, a, m, n and p0, in a line."""

@@ -131,9 +131,11 @@ def key_of(scene: Scene) -> str:
     bodies = msgspec.to_builtins(scene.bodies)
     bodies.pop("equivalent", None)
     for name, body in scene.bodies:
-        for key in ("pivot_height", "right_grip"):  # no body with a rig pivots; where Q is carried is part of the loads
-            bodies[name.removeprefix("bodies.")].pop(key)
+        own = bodies[name.removeprefix("bodies.")]
+        del own["pivot_height"]  # no body with a rig pivots
+        if not body.gripped:  # a given share of Q is part of the loads
+            del own["right_grip"]
         if body.mesh is not None:
-            bodies[name.removeprefix("bodies.")]["mesh"] = checksum(body.mesh, LARGEST_MESH)
+            own["mesh"] = checksum(body.mesh, LARGEST_MESH)
     parts = [bodies, scene.material, scene.profile if scene.bodies.pad else None]
     return hashlib.sha256(msgspec.json.encode(parts, order="sorted")).hexdigest()[:16]

@@ -32,7 +32,9 @@ class Body(Table, frozen=True, kw_only=True):
     the back slides along a plate (the middle plane of a specimen of twice the height), and
     the sides cannot move along x. ``sides``: the sides are fixed to rigid plates. All other boundaries are free.
     ``pulled`` (lower body only): sigma acts as a traction on the right side, which has no support, and is carried by
-    the left side. The grip on the right side carries the share ``right_grip`` of Q, and the left side the rest.
+    the left side. The grip on the right side carries the share ``right_grip`` of Q, and the left side the rest. With
+    ``right_grip`` = "stiffness" a rigid plate holds the right side as the left one. Sigma moves this plate; it stands
+    still while P and Q act, and the shares follow from the stiffness of the body.
     """
 
     kind: Literal["block", "pad"] = "block"
@@ -44,7 +46,17 @@ class Body(Table, frozen=True, kw_only=True):
     support: Literal["clamped", "roller", "sides", "pivot"] = "clamped"
     pivot_height: Annotated[float, msgspec.Meta(ge=0)] | None = None
     pulled: bool = False
-    right_grip: Annotated[float, msgspec.Meta(ge=0, le=1)] | None = None
+    right_grip: Annotated[float, msgspec.Meta(ge=0, le=1)] | Literal["stiffness"] | None = None
+
+    @property
+    def gripped(self) -> bool:
+        """Whether a plate holds the right side of a pulled body, so that its share of Q is a result."""
+        return self.right_grip == "stiffness"
+
+    @property
+    def right_share(self) -> float:
+        """Share of Q that is given to the right side of a pulled body."""
+        return self.right_grip if isinstance(self.right_grip, (int, float)) else 0.0
 
     def check(self, name: str) -> None:
         """Raise InputError if fields contradict each other; ``name`` is the body's name in the scene file."""
@@ -59,9 +71,9 @@ class Body(Table, frozen=True, kw_only=True):
             raise InputError(f"{name}.unit = {self.unit}: must be given only together with mesh")
         if self.pulled and self.support in ("clamped", "pivot"):
             raise InputError(f"{name}.pulled = true: must have support 'roller' or 'sides', not {self.support!r}")
-        if self.right_grip and not (self.pulled and self.mesh is None):
-            only = "must be given only with pulled = true, width and height"
-            raise InputError(f"{name}.right_grip = {self.right_grip}: {only}")
+        if self.right_grip and not (self.pulled and (self.gripped or self.mesh is None)):
+            only = "must be given only with pulled = true" + ("" if self.gripped else ", width and height")
+            raise InputError(f"{name}.right_grip = {self.right_grip!r}: {only}")
         if self.support == "pivot" and self.pivot_height is None:
             raise InputError(f"{name}.pivot_height: missing; must be given with support 'pivot'")
         if self.pivot_height is not None and self.support != "pivot":

@@ -185,9 +185,9 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             raise InputError(f"load.displacement = {displacement}: must be given only with {why}")
         if self.friction.f == 0:
             raise InputError(f"friction.f = {self.friction.shown}: must be > 0 with load.displacement")
-        if self.bodies.lower.right_grip:
-            given = f"bodies.lower.right_grip = {self.bodies.lower.right_grip}"
-            raise InputError(f"{given}: must be left out with load.displacement; it is a share of a given Q")
+        if share := self.bodies.lower.right_share:
+            instead = "must be 'stiffness' or left out with load.displacement; it is a share of a given Q"
+            raise InputError(f"bodies.lower.right_grip = {share}: {instead}")
 
     def _check_moment(self) -> None:
         """Raise InputError if a moment is given to bodies that do not turn, or an uneven gap to a pad."""
@@ -213,11 +213,11 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             near = f"must keep the line of action of P within {most:g} m of x = 0"
             raise InputError(f"load.{key} = {getattr(self.load, key)}: {near}")
 
-    def require_even(self, purpose: str) -> None:
+    def require_even(self, purpose: str, instead: str = "") -> None:
         """Raise InputError if the pressure of half-planes is not even, or the tension varies along x, which the
-        ``purpose`` (in words) needs."""
+        ``purpose`` (in words) needs; ``instead`` says what takes a gap that is not even."""
         if not self.profile.even:
-            raise InputError(f"profile.x: must begin at 0 {purpose}; only even gaps")
+            raise InputError(f"profile.x: must begin at 0 {purpose}; only even gaps{instead and '; '}{instead}")
         for key in ("M", "e", "sigma_slope"):
             if np.any(getattr(self.load, key) or 0.0):
                 raise InputError(f"load.{key} = {getattr(self.load, key)}: must be 0 or left out {purpose}")
@@ -292,17 +292,18 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
 
     def at_right_grip(self, Q: npt.ArrayLike, sigma: npt.ArrayLike) -> Array:
         """Tension on the right side of a ``pulled`` body, Pa: the bulk tension ``sigma`` (Pa), and what the grip there
-        carries of the shear force ``Q`` (N/m), of any shape."""
+        carries of the shear force ``Q`` (N/m) by a given share, of any shape."""
         tension, lower = np.asarray(sigma, float), self.bodies.lower
-        if lower is None or not lower.right_grip:
+        if lower is None or not lower.right_share:
             return tension
         height = (lower.holder.height if lower.holder else lower.height) or 0.0
-        return tension + lower.right_grip * np.asarray(Q, float) / height
+        return tension + lower.right_share * np.asarray(Q, float) / height
 
     @property
     def left_gripped(self) -> "Scene":
-        """The scene with the tension of :meth:`at_right_grip` as sigma, and no share of Q on the right side."""
-        if self.bodies.lower is None or not self.bodies.lower.right_grip:
+        """The scene with the tension of :meth:`at_right_grip` as sigma, and no given share of Q on the right
+        side."""
+        if self.bodies.lower is None or not self.bodies.lower.right_share:
             return self
         sigma = self.at_right_grip(*zip(*self.load.points, strict=True))
         lower = msgspec.structs.replace(self.bodies.lower, right_grip=None)

@@ -17,6 +17,7 @@ from partialslip.inputfile import read_text
 from partialslip.scene import LARGEST, SMALLEST, Scene, Table
 from partialslip.scene.dimensions import with_units
 from partialslip.scene.measured import ProfileFile, tabulated
+from partialslip.strictjson import KINDS, wanted
 from partialslip.units import SI, UNITS, Units
 
 _LARGEST_FILE = 500_000  # limit: bytes; a profile and a cycle of 1,000 numbers each take 120,000
@@ -26,17 +27,7 @@ _DEEPEST = 10  # limit: nested tables and arrays; a scene has three levels
 # A dotted key of more than 20 parts: the time of tomllib grows at least like the square of their number.
 _DEEP_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){20}""", re.ASCII)
 _Made = TypeVar("_Made", bound=Table)
-_KINDS = {
-    "object": "a table",
-    "array": "an array",
-    "float": "a number",
-    "int": "a whole number",
-    "str": "a string",
-    "bool": "true or false",
-    "date": "a date",
-    "time": "a time",
-    "datetime": "a date and time",
-}
+_KINDS = KINDS | {"object": "a table"}
 
 
 def shipped_scenes() -> dict[str, str]:
@@ -345,14 +336,12 @@ def _allowed(what: str, kind: Any) -> str:
         words = [
             word for option in (kind, *get_args(kind)) for word in get_args(option) if isinstance(word, (str, int))
         ]
-        return "one of " + ", ".join(map(repr, words))
+        numbers = any(getattr(option, "__origin__", option) is float for option in get_args(kind))
+        return ("a number or " if numbers else "one of ") + ", ".join(map(repr, words))
     if length := re.fullmatch(r"Expected `array` of length (>=|<=) (\d+)", what):
         return f"an array of at {'least' if length[1] == '>=' else 'most'} {length[2]} numbers"
-    if wrong := re.fullmatch(r"Expected `([a-z]+(?: \| [a-z]+)*)`, got `(?:datetime\.)?([a-z]+)`", what):
-        kinds = [_KINDS.get(kind, kind) for kind in wrong[1].split(" | ") if kind != "null"]
-        return f"{' or '.join(kinds)}, not {_KINDS.get(wrong[2], wrong[2])}"
-    if bound := re.fullmatch(r"Expected `(?:float|int)(?: \| null)?` (.*)", what):
-        return bound[1]
+    if told := wanted(what, _KINDS):
+        return told
     if what == "Number out of range":
         return f"of a size from {SMALLEST} to {LARGEST}"
     if "`str` of length >=" in what:

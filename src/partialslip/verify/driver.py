@@ -17,6 +17,7 @@ from partialslip.inputfile import read_text
 from partialslip.judge import Conclusion, Outcome
 from partialslip.methods import REFERENCES
 from partialslip.output.files import write_texts
+from partialslip.output.page import check_pdf
 from partialslip.output.place import Request, placed
 from partialslip.plan import plan
 from partialslip.report.figure import traction_svg
@@ -136,6 +137,8 @@ def verify_suite(
     """
     if processes is not None and processes < 1:
         raise InputError(f"--processes {processes}: must be >= 1")
+    if pdf:
+        check_pdf(PDF)  # before anything is solved
     settings, makers, keys = _cases(name, only, method, seed, count, ladder)
     settings = replace(settings, block=block)
     studies = [read_study(Path(each)) for each in include]

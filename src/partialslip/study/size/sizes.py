@@ -96,6 +96,18 @@ def along(axis: Axis, entries: Iterable[Sized], name: str = HALF_PLANE) -> Sizes
     )
 
 
+def with_criteria(entries: Iterable[Sized], names: Sequence[str]) -> list[Sized]:
+    """Return ``entries`` with the largest sigma_xx and, of fatigue criteria, those with these ``names`` alone."""
+    wanted = {SIGMA, *names}
+    return [
+        replace(entry, stresses={
+            by: {key: spot for key, spot in spots.items() if key.partition(".")[0] in wanted}
+            for by, spots in entry.stresses.items()
+        })
+        for entry in entries
+    ]  # fmt: skip
+
+
 def stress_quantities(entries: Iterable[Sized]) -> tuple[str, ...]:
     """Return the stresses of ``entries``, in the order of :func:`partialslip.fatigue.hot_spots`."""
     return tuple(dict.fromkeys(key for entry in entries for key in entry.stresses.get(FEM, {})))

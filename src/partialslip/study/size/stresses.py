@@ -1,12 +1,15 @@
 """The stresses of a size study as headings, rows, sentences and CSV: what breaks a body, beside where it sticks."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
+from partialslip.errors import InputError
 from partialslip.fatigue import HotSpot
+from partialslip.fatigue.criteria import CRITERIA, RUIZ, chosen
 from partialslip.fatigue.places import OVER
 from partialslip.output.files import csv_text
 from partialslip.report.answer import scale, with_error
+from partialslip.scene import Fatigue, Scene
 from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE
 from partialslip.study.size.law import Sizes
 from partialslip.study.size.sizes import DIFFERENCES
@@ -14,8 +17,29 @@ from partialslip.study.size.tables import Rows, SizeStudy, marked, mesh_share, s
 from partialslip.units import Dimension
 
 _SURFACE = "surface"
+_USUAL = "swt"  # display: the criterion of scenes that have no constants of a criterion
 _MODELS = (FEM, HALF_PLANE, EQUIVALENT)
 NOT_ASKED = "no stresses: not asked for by a table fatigue; --set effects.subsurface=true tells the largest sigma_xx"
+
+
+def criteria_of(scene: Scene, names: Sequence[str] | None) -> list[str]:
+    """Return the fatigue criteria that a study of ``scene`` shows: ``names``, or all whose constants the scene has; swt
+    if it has none.
+
+    Raises
+    ------
+    InputError
+        If a criterion is unknown or is not evaluated by the study, or a constant is missing.
+    """
+    if names is None:
+        return [name for name in chosen(scene, None) if CRITERIA[name].needs] or [_USUAL]
+    found = chosen(scene, names)
+    if RUIZ in found:
+        raise InputError(f"--criterion {RUIZ}: must be another for a study of sizes; use partialslip fatigue")
+    if scene.fatigue == Fatigue():
+        needs = "a table fatigue, for example --set fatigue.distance=LENGTH"
+        raise InputError(f"--criterion {','.join(found)}: must be given only with {needs}")
+    return found
 
 
 def stresses_of(study: SizeStudy) -> SizeStudy:
