@@ -23,7 +23,7 @@ from partialslip.errors import InputError
 from partialslip.export import export
 from partialslip.judge import compare
 from partialslip.score.method import scored
-from partialslip.score.read import read
+from partialslip.score.read import read_tractions
 
 SCENES = ("hertz-small-tension", "hertz-large-tension")
 KEYS = ("a", "m", "n", "p", "q")
@@ -90,7 +90,9 @@ def calculix(scene, contact, normal, stick, size):
         try:
             if done.code != 0 or "Job finished" not in done.text:
                 return CodeOutcome(None, "gave up", *cost)
-            return CodeOutcome(scored(scene, read(deck.with_suffix(".frd"), scene), "calculix", "job.frd"), "", *cost)
+            return CodeOutcome(
+                scored(scene, read_tractions(deck.with_suffix(".frd"), scene), "calculix", "job.frd"), "", *cost
+            )
         except InputError as error:
             return CodeOutcome(None, str(error), *cost)
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import scipy.special
 
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone
@@ -36,7 +36,7 @@ class Case(NamedTuple):
 
 
 def shape_of(flat: float) -> Shape:
-    return Punch(flat) if flat else Hertz()
+    return Punch(flat) if flat else HertzShape()
 
 
 def pressure(flat: float):
@@ -223,8 +223,8 @@ def test_the_sample_reaches_all_ends():
 
 def dropped_sign(monkeypatch):
     """Both ends taken to slip the same way, whatever the regime."""
-    right = Hertz.conditions
-    monkeypatch.setattr(Hertz, "conditions", lambda self, edge, c, s: right(self, edge, c, np.abs(s)))
+    right = HertzShape.conditions
+    monkeypatch.setattr(HertzShape, "conditions", lambda self, edge, c, s: right(self, edge, c, np.abs(s)))
 
 
 def modulus_for_parameter(monkeypatch):
@@ -240,7 +240,9 @@ def test_a_fault_in_the_conditions_is_caught(fault, monkeypatch):
     sample = [case for case in cases(0.0) if 0.05 < case.Qf < 0.9 and case.zone.half_width > 0.05]
     sample = [case for case in sample if 1 + case.zone.centre - case.zone.half_width > 0.05]
     fault(monkeypatch)
-    worst = {s: [max(errors(c, stick_zone(c.Qf, c.sf, Hertz()))) for c in sample if c.zone.s == s] for s in (1, -1)}
+    worst = {
+        s: [max(errors(c, stick_zone(c.Qf, c.sf, HertzShape()))) for c in sample if c.zone.s == s] for s in (1, -1)
+    }
     assert max(worst[1]) <= 1e-12
     assert len(worst[-1]) >= 5
     assert min(worst[-1]) > 1e-4

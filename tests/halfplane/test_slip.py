@@ -11,13 +11,13 @@ from scipy.optimize import brentq
 import partialslip
 from partialslip.halfplane import Contact, hysteresis
 from partialslip.halfplane import slip as slip_module
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.slip import density, dissipation, slip
 from partialslip.halfplane.steady import stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 
-HERTZ = Hertz()
+HERTZ = HertzShape()
 SHAPES = [HERTZ, Punch(0.1), Punch(0.5), Punch(0.9)]
 # (Qf, sf): small tension with sf <= 4 Qf, large tension with c >= 4 Qf/sf, so that slip does not reverse
 SMALL = [(0.19, 0.4), (0.5, 0.0), (0.75, 2.4), (0.3, 1.1)]

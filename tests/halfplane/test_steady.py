@@ -6,13 +6,13 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone, transition
 from partialslip.result import StickZone
 
-HERTZ = Hertz()
+HERTZ = HertzShape()
 SHAPES = [HERTZ, Punch(0.05), Punch(0.5), Punch(0.95)]
 
 

@@ -13,7 +13,7 @@ import partialslip
 from partialslip.errors import InputError
 from partialslip.halfplane import Contact, contact, contact_of, hysteresis, steady
 from partialslip.halfplane import one_step_zone as stick_zone
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
 
 MATERIAL = {"E": 115e9, "nu": 0.32}
@@ -184,7 +184,7 @@ def test_a_loop_of_a_contact_that_slides_is_refused(dQ):
         hysteresis(PRESSED, 1e-11, F, dQ * 2 * F * PRESSED.P, 0.0)
 
 
-@pytest.mark.parametrize("shape", [Hertz(), Punch(0.5)])
+@pytest.mark.parametrize("shape", [HertzShape(), Punch(0.5)])
 def test_continuous_through_the_transition(shape):
     Qf = np.array([1e-3, 0.2, 0.6, 0.95])[:, None]
     at = steady.transition(Qf, shape)
@@ -271,7 +271,7 @@ def test_a_table_of_pieces_is_the_sum_of_its_punches():
     A = partialslip.scene.Material(**MATERIAL).A
     assert pressed.a**2 / (A * 0.05) * sum(parts) == pytest.approx(1e6, rel=1e-12)
     at = np.linspace(-0.99, 0.99, 31)
-    mixed = (parts[0] * Hertz().pressure(at) + parts[1] * Punch(b / pressed.a).pressure(at)) / sum(parts)
+    mixed = (parts[0] * HertzShape().pressure(at) + parts[1] * Punch(b / pressed.a).pressure(at)) / sum(parts)
     assert pressed.shape.pressure(at) == pytest.approx(mixed, rel=1e-12)
 
 
@@ -364,7 +364,7 @@ def test_a_contact_beyond_its_table_is_refused():
 # --- how the two unknowns are found
 
 
-@pytest.mark.parametrize("shape", [Hertz(), Punch(0.5)])
+@pytest.mark.parametrize("shape", [HertzShape(), Punch(0.5)])
 def test_bracketing_finds_the_same(shape):
     random = np.random.default_rng(5)
     Qf, sf = random.random(50), 12 * random.random(50)
@@ -396,7 +396,7 @@ def test_newton_always_ends_for_hertz(monkeypatch):
     transitions = 8 * Qf / (1 + np.sqrt(1 - Qf))
     sf[::4] = transitions[::4] * (1 + 1e-9 * random.choice([-1, 1], count))
     monkeypatch.setattr(steady, "_bracketed", fail)
-    centre, c, s = steady.stick_zones(Qf, sf, Hertz())
+    centre, c, s = steady.stick_zones(Qf, sf, HertzShape())
     assert ((c > 0) & (c <= 1) & (centre <= 0) & (centre - c >= -1)).all()
     apart = np.abs(sf - transitions) > 1e-14  # by more than rounding of the zone's end
     assert apart.mean() > 0.95

@@ -13,7 +13,7 @@ from partialslip.errors import InputError
 from partialslip.gradual import turns_round
 from partialslip.halfplane import Contact, Stress, cauchy, contact_of
 from partialslip.halfplane import stress as stress_module
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.slip import density
 from partialslip.halfplane.steady import stick_zone
@@ -21,7 +21,7 @@ from partialslip.halfplane.traction import half_range
 from partialslip.halfplane.turning import half_cycle
 
 F = 0.4
-SHAPES = {"hertz": Hertz(), "0.5": Punch(0.5), "0.95": Punch(0.95), "table": Punch(np.linspace(0, 0.8, 5))}
+SHAPES = {"hertz": HertzShape(), "0.5": Punch(0.5), "0.95": Punch(0.95), "table": Punch(np.linspace(0, 0.8, 5))}
 LOADS = [(0.5, 0.0), (0.75, 2.4), (0.3, 4.0), (0.1, 10.0)]  # (Qf, sf): shear alone, small and large tension
 DEPTHS = [1e-8, 1e-5, 1e-3, 0.03, 0.5, 4.0]
 
@@ -104,7 +104,7 @@ def flamant(stress, x, y, Qf, sf):
 
 @pytest.mark.parametrize("depth", DEPTHS)
 def test_hertz_without_friction(depth):
-    stress = scaled(Hertz(), 0.0, 0.0)
+    stress = scaled(HertzShape(), 0.0, 0.0)
     x = places(stress)
     expected = mcewen(x, depth)
     for y, sign in ((-depth, 1), (depth, -1)):
@@ -116,7 +116,7 @@ def test_hertz_without_friction(depth):
 def test_hertz_sliding(depth):
     """Nearly sliding, a stick zone of 1e-6 a. sigma_xy and sigma_yy due to the shear q = f p follow from sigma_xx and
     sigma_xy due to p (Johnson, section 7.1)."""
-    stress = scaled(Hertz(), 1 - 1e-12, 0.0)
+    stress = scaled(HertzShape(), 1 - 1e-12, 0.0)
     x = np.concatenate([np.linspace(-2, -0.2, 50), np.linspace(0.2, 2, 50)])
     pressed = mcewen(x, depth)
     one, two = stress.inside(x, -depth + 0 * x)
@@ -179,10 +179,10 @@ def test_resultants_of_a_deep_line(Qf, sf, shape):
 def test_surface_of_small_tension(Qf, sf):
     """Hertz: -p +- 2 f (w - sqrt(x^2 - 1)) + dsigma/4, w and the root counting outside the stick zone and the contact;
     at the trailing edge 2 f sqrt((1 - n)(1 + m)) + dsigma/4."""
-    stress, zone = scaled(Hertz(), Qf, sf), stick_zone(Qf, sf, Hertz())
+    stress, zone = scaled(HertzShape(), Qf, sf), stick_zone(Qf, sf, HertzShape())
     x = np.linspace(-3, 3, 601)
     strain = 2 * (outside_root(x, zone.centre, zone.half_width) - outside_root(x, 0.0, 1.0))
-    p = Hertz().pressure(x)
+    p = HertzShape().pressure(x)
     for body, side in zip(stress.surface(x), (1, -1), strict=True):
         for found, way in zip(body, (-1, 1), strict=True):
             assert found == pytest.approx(-p + way * F * (side * strain + sf / 4), rel=0, abs=1e-12)
@@ -226,7 +226,7 @@ def test_surface_is_the_limit_of_the_inside(Qf, sf, shape):
 @pytest.mark.parametrize(("Qf", "sf"), [(0.75, 2.4), (0.3, 4.0)])
 def test_trailing_edge_with_thirty_digits(Qf, sf, flat):
     """Strain at x = 1 by the bounded inversion, 2 w(1)/pi [ int_n^1 p/(w(1-t)) dt - s int_{-1}^{-m} p/(w(1-t)) dt ]."""
-    shape = Punch(flat) if flat else Hertz()
+    shape = Punch(flat) if flat else HertzShape()
     zone = stick_zone(Qf, sf, shape)
     with mp.workdps(30):
         e, c, b = mp.mpf(zone.centre), mp.mpf(zone.half_width), mp.mpf(flat)
@@ -272,17 +272,17 @@ def test_signs_of_the_loads(Qf, sf):
 
 def test_a_stick_zone_too_narrow_to_be_told_from_a_jump():
     for sf in (60.0, 100.0, 130.0, 400.0):  # down to a half-width of 1e-34 a
-        stress, zone = scaled(Hertz(), 0.1, sf), stick_zone(0.1, sf, Hertz())
+        stress, zone = scaled(HertzShape(), 0.1, sf), stick_zone(0.1, sf, HertzShape())
         x = np.array([-0.9, -0.3, 0.1, 0.3, 0.99])
         lower, upper = stress.surface(x)[:, 1]
-        assert lower - upper == pytest.approx(2 * F * density(x, zone, Hertz()), rel=0, abs=1e-12)
+        assert lower - upper == pytest.approx(2 * F * density(x, zone, HertzShape()), rel=0, abs=1e-12)
         lower, upper = stress.surface(np.array([zone.centre]))[:, 1]
         assert lower == pytest.approx(upper, rel=1e-14)
 
 
 def test_a_pressure_of_ones_own():
     own = Stress(contact_of(lambda x: 3e8 * np.sqrt(np.maximum(1 - (x / 2e-3) ** 2, 0)), 2e-3), F, 2e5, 1e8)
-    hertz = Stress(Contact(2e-3, 3e8 * math.pi * 1e-3, Hertz()), F, 2e5, 1e8)
+    hertz = Stress(Contact(2e-3, 3e8 * math.pi * 1e-3, HertzShape()), F, 2e5, 1e8)
     x, y = np.linspace(-5e-3, 5e-3, 101), np.linspace(-3e-3, 3e-3, 101)
     assert own.inside(x, y) == pytest.approx(hertz.inside(x, y), rel=0, abs=3e8 * 1e-11)
 
@@ -321,7 +321,7 @@ def test_only_where_asked_for_and_known():
     pressed = result("hertz-large-tension", "load.Q=[0, 0]", "load.sigma=[0, 0]")
     assert pressed.surface.at(np.array([0.0])) == pytest.approx(-pressed.p0, rel=1e-12)
     with pytest.raises(InputError, match="slides"):
-        scaled(Hertz(), 1.0, 0.0)
+        scaled(HertzShape(), 1.0, 0.0)
 
 
 # --- deliberate faults
@@ -331,12 +331,12 @@ def test_only_where_asked_for_and_known():
 def test_poles_near_a_panel_left_to_its_rule_are_caught(monkeypatch):
     monkeypatch.setattr(cauchy, "_NEAR", 0.0)
     x = np.linspace(-0.9, 0.9, 19)
-    found = scaled(Hertz(), 0.0, 0.0).inside(x, -1e-3 + 0 * x)[0]
+    found = scaled(HertzShape(), 0.0, 0.0).inside(x, -1e-3 + 0 * x)[0]
     assert np.abs(found - mcewen(x, 1e-3)).max() > 1e-2
 
 
 @pytest.mark.fault
 def test_the_change_taken_for_the_load_point_is_caught(monkeypatch):
     monkeypatch.setattr(stress_module, "half_range", lambda *args: 2 * half_range(*args))
-    edge = scaled(Hertz(), 0.5, 0.0).surface(np.array([1.0]))[0, 1, 0]
+    edge = scaled(HertzShape(), 0.5, 0.0).surface(np.array([1.0]))[0, 1, 0]
     assert abs(edge / (2 * F * math.sqrt(0.5)) - 1) > 0.5

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
@@ -15,7 +15,7 @@ LOADS = [(0.19, 0.4), (0.75, 2.4), (0.4, 4.03), (0.3, 8.0), (0.0, 3.0), (0.9, 20
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(400)
 
 
-HERTZ = Hertz()
+HERTZ = HertzShape()
 SHAPES = [HERTZ, Punch(0.1), Punch(0.6), Punch(0.95)]
 every_shape = pytest.mark.parametrize("shape", SHAPES)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
 from partialslip.march.cells import compliance, forces, graded_cells
 
@@ -22,7 +22,7 @@ def test_cells_grow_from_the_points(size, growth):
     assert np.all(widths >= 0.4 * (size + growth * distance))
 
 
-@pytest.mark.parametrize("shape", [Hertz(), Punch(0.5)])
+@pytest.mark.parametrize("shape", [HertzShape(), Punch(0.5)])
 def test_forces_are_the_integrals_of_the_pressure(shape):
     vertices = graded_cells(np.array([-1.0, -0.5, 0.5, 1.0]), 1e-3, 0.1)
     pressed = forces(shape, vertices)

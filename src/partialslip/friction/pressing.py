@@ -91,7 +91,7 @@ class Stages(Protocol):
 
 
 @dataclass(frozen=True)
-class Punch:
+class FlatPunch:
     """Flat punch under the force 1, on nodes, of bodies that are pressed together under a parabola.
 
     Parameters

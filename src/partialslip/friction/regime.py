@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 
@@ -11,26 +10,13 @@ from partialslip.bars import Asked
 from partialslip.friction.end_slips import end_slips
 from partialslip.friction.history import STEADY, History
 from partialslip.friction.zone_ends import StickInterval
-from partialslip.result import FRICTIONLESS, PATH_DEPENDENT, EndSlip, Regime
+from partialslip.result import FRICTIONLESS, PATH_DEPENDENT, Regime, SteadyState
 from partialslip.scene import Scene
 
 # accuracy: from load point to load point: with fewer, p while a node slips is known roughly where it varies
 _FEW_STEPS = 8
 _WORK = 1e-9  # accuracy: dissipated energy, in f P times a displacement of A P, above rounding
 _RATCHETS = 1e-3  # limit: net slip of a cycle, relative to the slip of half a cycle, above which a steady q ratchets
-
-
-class SteadyState(NamedTuple):
-    """``regime``, ``centre`` and ``half_width`` of the stick zone (None if nothing sticks), ``notes``, how the ends of
-    the contact slip, where the pressure varies, and the ends of the zone that never slips, (nan, nan) if there is none,
-    None if it is not known."""
-
-    regime: Regime
-    centre: float | None
-    half_width: float | None
-    notes: tuple[str, ...]
-    slips: tuple[EndSlip, EndSlip] | None = None
-    permanent: tuple[float, float] | None = None
 
 
 def steady_state(
@@ -51,10 +37,10 @@ def steady_state(
     """
     load, anew = scene.load, history is not None and history.path.presses_anew
     if scene.free:
-        return SteadyState("frictionless", None, None, (FRICTIONLESS,))
+        return SteadyState("frictionless", notes=(FRICTIONLESS,))
     if scene.slides:
         note = "the contact slides: |Q| >= f P at a load point; there is no steady partial slip"
-        return SteadyState("sliding", None, None, (note,))
+        return SteadyState("sliding", notes=(note,))
     if pressed and stick:
         note = "no load but P acts: the stick zone is where the surfaces have stuck since they touched"
         return SteadyState("pressing", (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, (note,))
@@ -62,7 +48,7 @@ def steady_state(
         history is None or stick is None or (not (load.dQ or load.dsigma or load.dslope) and not anew)
     ):  # all of the contact sticks
         left, right = common or (-half_width, half_width)
-        return SteadyState("stuck", (right + left) / 2, (right - left) / 2, ())
+        return SteadyState("stuck", (right + left) / 2, (right - left) / 2)
     notes: tuple[str, ...] = ()
     apart = common is not None and common[0] >= common[1]
     if apart:
@@ -88,7 +74,7 @@ def steady_state(
         steps = "a step" if history.path.most_steps == 1 else f"{history.path.most_steps} steps"
         notes += (f"slip and dissipated energy are rough: {steps} from load point to load point (load.steps)",)
     if apart:
-        return SteadyState(regime, None, None, notes, slips)
+        return SteadyState(regime, notes=notes, slips=slips)
     permanent = permanent_zone(x, history, stick) if x is not None and history.turns and regime != "ratchets" else None
     centre, half = (stick.right + stick.left) / 2, (stick.right - stick.left) / 2
     return SteadyState(regime, centre, half, notes, slips, permanent)

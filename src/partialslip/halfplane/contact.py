@@ -9,15 +9,14 @@ import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch, punch_force
 from partialslip.halfplane.shape import Bound, Given, Shape
 from partialslip.halfplane.steady import TOO_STEEP, UNEVEN_FRICTION, drive, stick_zones
-from partialslip.halfplane.uneven import press
+from partialslip.halfplane.uneven import press_uneven
 from partialslip.result import StickZone
 from partialslip.result.fields import AtPoints
-from partialslip.scene import FlatRounded, Pressing, Scene
-from partialslip.scene import Hertz as HertzProfile
+from partialslip.scene import FlatRounded, Hertz, Pressing, Scene
 from partialslip.scene.profiles import Curvature
 
 _INSIDE = np.cos(np.arange(1, 200) / 200 * np.pi)  # places, in a, at which a hollow flat must be in contact
@@ -120,9 +119,9 @@ def _pressed(scene: Scene, pressing: Pressing | None) -> Contact:
         )
     A, profile = scene.material.A, scene.profile
     P, M = pressing or (scene.P, scene.M)
-    if isinstance(profile, HertzProfile):
+    if isinstance(profile, Hertz):
         a, origin = math.sqrt(2 * A * profile.R * P / math.pi), (M or 0.0) / P
-        return Contact(a, P, Hertz(), origin, origin / profile.R)
+        return Contact(a, P, HertzShape(), origin, origin / profile.R)
     if not profile.even or M:
         return _uneven(scene, profile.curvature, Pressing(P, M))
     at, steps = profile.curvature_steps()
@@ -167,7 +166,7 @@ def tilted_contact(scene: Scene, P: float, tilt: float) -> Contact:
     profile = scene.profile
     if tilt == 0:
         return contact(scene, Pressing(P, None))
-    if isinstance(profile, HertzProfile):
+    if isinstance(profile, Hertz):
         turned = replace(_pressed(scene, Pressing(P, None)), centre=tilt * profile.R)
     else:
         turned = _uneven(scene, profile.curvature.tilted(tilt), Pressing(P, None))
@@ -177,7 +176,7 @@ def tilted_contact(scene: Scene, P: float, tilt: float) -> Contact:
 def _uneven(scene: Scene, gap: Curvature, pressing: Pressing) -> Contact:
     """Contact of a ``gap`` that is not even, or under a moment."""
     A, (P, M) = scene.material.A, pressing
-    pressed = press(gap, A * P, None if M is None else A * M, scene.length)
+    pressed = press_uneven(gap, A * P, None if M is None else A * M, scene.length)
     if not pressed:
         shown, span = scene.units.plain(P, "N/m"), scene.units.span(gap.reach, "m")
         raise InputError(f"load.P = {shown}: must keep the contact within profile.x, between {span}")

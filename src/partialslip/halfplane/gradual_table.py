@@ -15,7 +15,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from partialslip.arrays import Array, Mask
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.steady import stick_zones
 from partialslip.result import StickZone
 
@@ -29,7 +29,7 @@ def tabled(Qf: Array, sf: Array) -> StickZone[Array]:
     m and n are within 1e-6 of the solver (``benchmarks/gradual_table.py --check``), also where an inner zone slips that
     makes no difference in the end (``benchmarks/inner_table.py --check``).
     """
-    once = stick_zones(Qf, sf, Hertz())
+    once = stick_zones(Qf, sf, HertzShape())
     left, right = np.full((2, len(Qf)), np.nan)
     sign = np.zeros(len(Qf), int)
     holds = again(Qf, sf, once)

@@ -7,7 +7,7 @@ from partialslip.arrays import Array
 from partialslip.halfplane.shape import Conditions, Shape
 
 
-class Hertz(Shape):
+class HertzShape(Shape):
     """Hertz pressure, p/p0 = sqrt(1 - x^2)."""
 
     def pressure(self, x: Array) -> Array:

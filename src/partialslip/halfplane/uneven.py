@@ -119,7 +119,7 @@ class PressedBodies(NamedTuple):
     tilt: float
 
 
-def press(of: Curvature, force: float, moment: float | None, scale: float) -> PressedBodies | None:
+def press_uneven(of: Curvature, force: float, moment: float | None, scale: float) -> PressedBodies | None:
     """Press two half-planes together; None if the contact extends beyond the range in which the gap is known.
 
     Parameters
@@ -147,7 +147,7 @@ def press(of: Curvature, force: float, moment: float | None, scale: float) -> Pr
 
 @dataclass(frozen=True)
 class _Search:
-    """Search for the ends of the contact; fields as the arguments of :func:`press`. The unknowns are u, with the
+    """Search for the ends of the contact; fields as the arguments of :func:`press_uneven`. The unknowns are u, with the
     distance beyond the flat ``tiny`` sinh(u)."""
 
     of: Curvature

@@ -16,7 +16,7 @@ from partialslip.errors import InputError
 from partialslip.export import export
 from partialslip.scene import Scene
 from partialslip.score.method import scored
-from partialslip.score.read import read
+from partialslip.score.read import read_tractions
 
 _DOFS = re.compile(r"number of equations\s+(\d+)")
 
@@ -58,7 +58,7 @@ class Calculix:
             if why := _unfinished(done.code, done.text, deck.with_suffix(".sta")):
                 return CodeOutcome(None, why, *cost)
             try:
-                result = scored(scene, read(deck.with_suffix(".frd"), scene), "calculix", "job.frd")
+                result = scored(scene, read_tractions(deck.with_suffix(".frd"), scene), "calculix", "job.frd")
             except InputError as error:
                 return CodeOutcome(None, f"no results: {error}", *cost)
         return CodeOutcome(result, "", *cost)

@@ -47,7 +47,7 @@ class Certificate(NamedTuple):
         return max(self)
 
 
-def certificate(half: HalfCycle) -> Certificate:
+def certificate_of(half: HalfCycle) -> Certificate:
     """Certificate of a steady half cycle, at six stages of each phase and more where it drifts far."""
     return certify(half.loads, stages(half))
 

@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.judge import Bar
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.given_meshes import flat_triangles, one_node, shifted
@@ -26,7 +26,7 @@ def few_nodes() -> Iterator[Case]:
     reason = f"one mesh of elements of {size:g} a: what is smaller cannot be seen"
     coarse = {key: Bar(bar, reason) for key, bar in (("fem.a", size / 2), ("fem.m", size), ("fem.n", size))}
     for name, c in (("one-stick-node", size / 2), ("no-stick-node", size / 500)):
-        loads = Hertz().conditions(np.array(0.7 - c), np.array(c), np.array(-1))
+        loads = HertzShape().conditions(np.array(0.7 - c), np.array(c), np.array(-1))
         scene = hard_scene(name, float(loads.Qf), float(loads.sf), fem={"size": size, "order": 1})
         yield Case(name, scene, ("fem",), coarse)
     reason = "one node knows no half-width: less than its element is all that can be said"
