@@ -16,8 +16,7 @@ from pathlib import Path
 from partialslip import load_scene, run
 from partialslip.benchmark.codes.calculix import Calculix
 from partialslip.benchmark.codes.getfem import GetFEM
-from partialslip.benchmark.codes.process import ran
-from partialslip.benchmark.codes.solved import CodeOutcome
+from partialslip.benchmark.codes.process import CodeOutcome, ran
 from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError
 from partialslip.export import export

@@ -177,8 +177,7 @@ def _settled(
 
 def _covered(line: Nodes, half_width: float) -> Mask:
     """Nodes (n,) that a flat punch of the ``half_width`` covers."""
-    result: Mask = np.abs(line.x) <= half_width * (1 + _STICKS)
-    return result
+    return np.abs(line.x) <= half_width * (1 + _STICKS)
 
 
 def _punch(line: Nodes, half_width: float, guess: Pair, step: _Press) -> Pair:

@@ -72,18 +72,15 @@ class Contact:
 
     def places(self, scaled: npt.ArrayLike) -> Array:
         """Places, m, at the ``scaled`` distances (any shape) from the middle of the contact, fractions of a."""
-        result: Array = self.centre + self.a * np.asarray(scaled, float)
-        return result
+        return self.centre + self.a * np.asarray(scaled, float)
 
     def pressure(self, x: npt.ArrayLike) -> Array:
         """Pressure, Pa, at ``x``, m: a number, a list or an array of any shape."""
-        found: Array = AtPoints(lambda points: self.p0 * self.shape.pressure(self.scaled(points)))(x)
-        return found
+        return AtPoints(lambda points: self.p0 * self.shape.pressure(self.scaled(points)))(x)
 
     def scaled(self, x: npt.ArrayLike) -> Array:
         """Distance of ``x`` (m) from the middle of the contact, as a fraction of a."""
-        result: Array = (np.asarray(x, float) - self.centre) / self.a
-        return result
+        return (np.asarray(x, float) - self.centre) / self.a
 
 
 def contact(scene: Scene, pressing: Pressing | None = None) -> Contact:
@@ -129,8 +126,7 @@ def _pressed(scene: Scene, pressing: Pressing | None) -> Contact:
 
     def psi(beyond: float) -> Array:
         """arccos(b/a) by the half-angle form, accurate if the contact is hardly wider than the flat."""
-        result: Array = 2 * np.arcsin(np.sqrt(np.maximum(beyond - (at - inner), 0.0) / (2 * (inner + beyond))))
-        return result
+        return 2 * np.arcsin(np.sqrt(np.maximum(beyond - (at - inner), 0.0) / (2 * (inner + beyond))))
 
     def excess(log_beyond: float) -> float:
         beyond = math.exp(log_beyond)

@@ -65,12 +65,10 @@ def again(Qf: Array, sf: Array, once: StickZone[Array]) -> Mask:
     """Whether one step has the zone of gradual loads, although slip turns round: the ends slip the same way at last,
     and all points that slipped the other way before slip again. Then the left end of the zone has come as far as
     1 - 2 c*, where it is when the zone begins to drift."""
-    result: Mask = (once.s > 0) & (sf * (1 - once.left) <= 8 * Qf)
-    return result
+    return (once.s > 0) & (sf * (1 - once.left) <= 8 * Qf)
 
 
 @functools.cache
 def table() -> dict[str, Any]:
     """The table, as its file has it."""
-    found: dict[str, Any] = json.loads(PLACE.read_text())
-    return found
+    return json.loads(PLACE.read_text())

@@ -220,5 +220,4 @@ def _root(function: Callable[..., Array], low: Array, high: Array, *args: Array)
 
     with np.errstate(invalid="ignore"):  # find_root divides 0 by 0 in intervals of rounding size
         found = find_root(function, (low, high), args=args)
-    result: Array = np.where(found.success, found.x, np.where(found.f_bracket[1] >= 0, high, low))
-    return result
+    return np.where(found.success, found.x, np.where(found.f_bracket[1] >= 0, high, low))

@@ -235,8 +235,7 @@ def _tabled(line: MapLine, shape: Shape) -> Mask:
     Qf, sf = np.where(on, line.Qf, 0), np.where(on, line.sf, 0)
     zone = stick_zones(Qf, sf, shape)
     turned = turns_round(Qf, sf, zone.s, zone.centre, zone.half_width)
-    result: Mask = on & turned & ~np.isnan(tabled(Qf, sf).centre)
-    return result
+    return on & turned & ~np.isnan(tabled(Qf, sf).centre)
 
 
 def _parts(line: MapLine, kept: Mask) -> list[MapLine]:

@@ -196,8 +196,7 @@ def _widths(samples: Samples) -> Array:
     if ends is None:
         x = samples.x
         ends = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]])
-    widths: Array = np.diff(ends)
-    return widths
+    return np.diff(ends)
 
 
 def _stick_zone(
@@ -286,8 +285,7 @@ class Sampled:
 
     def _at(self, x: Array, values: Array) -> Array:
         if len(values) == len(self.x):
-            found: Array = np.interp(x, self.x, values, left=0.0, right=0.0)
-            return found
+            return np.interp(x, self.x, values, left=0.0, right=0.0)
         cell = np.clip(np.searchsorted(self.x, x) - 1, 0, len(values) - 1)
         return np.where((x >= self.x[0]) & (x <= self.x[-1]), values[cell], 0.0)
 

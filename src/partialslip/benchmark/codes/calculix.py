@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from partialslip.benchmark.codes.process import LONGEST, ran
-from partialslip.benchmark.codes.solved import CodeOutcome
+from partialslip.benchmark.codes.process import LONGEST, CodeOutcome, ran
 from partialslip.benchmark.increments import gradual, told
 from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError

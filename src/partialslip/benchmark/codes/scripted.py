@@ -9,8 +9,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from partialslip.benchmark.codes.process import LONGEST, python_with, ran
-from partialslip.benchmark.codes.solved import CodeOutcome
+from partialslip.benchmark.codes.process import LONGEST, CodeOutcome, python_with, ran
 from partialslip.errors import InputError
 from partialslip.export.load_steps import Step
 from partialslip.scene import Scene

@@ -79,8 +79,7 @@ class Drift:
             return 0.0
         if self.progress(high) <= progress:
             return float(high)  # the steady zone stops at a break, where the right end stood before
-        found: float = brentq(lambda tau: self.progress(tau) - progress, low, high, xtol=1e-16, rtol=1e-15)
-        return found
+        return brentq(lambda tau: self.progress(tau) - progress, low, high, xtol=1e-16, rtol=1e-15)
 
     def accumulated(self, place_: Array, tau: float) -> Array:
         """Change of q during the drift to the travel ``tau``, at places (k,): distances to the left from the zone's
@@ -125,8 +124,7 @@ def _density(share: Array, rest: Array) -> Array:
     """Basis of h on a panel of unit length, (..., degrees): polynomials in s over d(share)/ds, smooth where h is
     integrated."""
     s, slope = at_share(share, rest)
-    result: Array = powers(s) / slope[..., None]
-    return result
+    return powers(s) / slope[..., None]
 
 
 @functools.lru_cache(maxsize=16)

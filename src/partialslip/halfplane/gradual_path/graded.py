@@ -46,8 +46,7 @@ def share_at(s: Array) -> tuple[Array, Array]:
 
 def powers(s: Array) -> Array:
     """Chebyshev polynomials on [0, 1] at ``s``, (..., DEGREES)."""
-    result: Array = np.moveaxis(_polynomials(s, DEGREES), 0, -1)
-    return result
+    return np.moveaxis(_polynomials(s, DEGREES), 0, -1)
 
 
 def _polynomials(s: Array, count: int) -> Array:
@@ -73,8 +72,7 @@ _INTEGRALS = np.stack(  # coefficients of the integrals from s = 0 of the polyno
 
 def integrals(s: Array) -> Array:
     """Integrals from 0 to ``s`` of the polynomials, (..., DEGREES)."""
-    result: Array = np.moveaxis(_polynomials(s, DEGREES + 1), 0, -1) @ _INTEGRALS
-    return result
+    return np.moveaxis(_polynomials(s, DEGREES + 1), 0, -1) @ _INTEGRALS
 
 
 class Smooth:
@@ -110,8 +108,7 @@ class Smooth:
     @property
     def cuts(self) -> Array:
         """Places at which the interpolant changes."""
-        cuts: Array = self.low + self._ends[1:-1]
-        return cuts
+        return self.low + self._ends[1:-1]
 
     def __call__(self, x: Array) -> Array:
         return self.near(x - self.low, self.high - x)

@@ -162,8 +162,7 @@ class HalfCycle:
 
         def half(from_low: Array, from_high: Array) -> Array:
             locked = mean(from_low, from_high) - (at_low * from_high + at_high * from_low) / (high - low)
-            settled: Array = q.within(low, high, from_low, from_high) - locked
-            return settled
+            return q.within(low, high, from_low, from_high) - locked
 
         middle = Piece(low, high, 0.0).plus(half)
         return Tractions.of(q.shape, [*q.between(-1.0, low), middle, *q.between(high, 1.0)]).joined()

@@ -204,7 +204,6 @@ def _mixed(one: Piece, other: Piece, share: float) -> Piece:
             )
             for part in (one, other)
         )
-        result: Array = first + share * (second - first)
-        return result
+        return first + share * (second - first)
 
     return Piece(low, high, one.factor, Smooth(low, high, rest))
