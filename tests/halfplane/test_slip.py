@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from quadrature import integrate
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
@@ -30,18 +31,6 @@ LOOPS = [  # wide flats take seconds each
     for load in SMALL + LARGE
     for shape in SHAPES
 ]
-
-GRID = np.linspace(-3.5, 3.5, 281)
-NODES, TO_END = np.tanh(np.pi / 2 * np.sinh(GRID)), 2 / (1 + np.exp(np.pi * np.sinh(GRID)))
-WEIGHTS = (GRID[1] - GRID[0]) * np.pi / 2 * np.cosh(GRID) / np.cosh(np.pi / 2 * np.sinh(GRID)) ** 2
-
-
-def integrate(function, ends):
-    """Over pieces between ascending ``ends``, for square roots and logarithms there."""
-    low, high = np.array(ends)[:-1, None], np.array(ends)[1:, None]
-    half = (high - low) / 2
-    x = np.where(NODES < 0, low + half * (1 + NODES), high - half * TO_END)
-    return float((half * WEIGHTS * function(x.ravel()).reshape(x.shape)).sum())
 
 
 def between(low, high, *inner):
