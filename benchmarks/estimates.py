@@ -34,7 +34,7 @@ from partialslip.friction.threads import one_thread
 from partialslip.gradual import turns_round
 from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_path.half_cycle import steady
-from partialslip.halfplane.gradual_path.mean_bound import room
+from partialslip.halfplane.gradual_path.mean_bound import gradual_mean_load_bound
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.steady import stick_zone, transition
 from partialslip.judge import compare
@@ -224,7 +224,7 @@ def loads(random: np.random.Generator, kind: str, shape: Any) -> tuple[Array, Ar
             if kind == "turning":
                 return Qf * ways, sf / 2 * ways
             with suppress(LostError):
-                Q = random.uniform(-0.9, 0.9) * room(steady(Loads(sf, math.pi * Qf), shape))
+                Q = random.uniform(-0.9, 0.9) * gradual_mean_load_bound(steady(Loads(sf, math.pi * Qf), shape))
                 return Q + Qf * ways, sf * (random.uniform(-0.5, 0.5) + ways / 2)
     Qf = 10 ** random.uniform(-5, -2.5) if kind == "narrow strip" else random.uniform(0.1, 0.85)
     at = float(transition(Qf, shape))

@@ -33,10 +33,10 @@ from partialslip.gradual import turns_round
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, LostError, steady
 from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.gradual_table import PLACE, tabled
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.steady import stick_zone, stick_zones
 
-HERTZ = Hertz()
+HERTZ = HertzShape()
 CYCLES, STEADY = 8, 1e-8  # half cycles from a neighbour, and the last change: changes fall faster than tenfold
 ALONG, ACROSS = 9, (8, 14)  # nodes along s_f, and across a patch: as many as it takes
 SETTLED = 1e-7  # last coefficients of a patch that has enough nodes

@@ -14,7 +14,7 @@ from partialslip.friction.history import History
 from partialslip.friction.load_path import Path
 from partialslip.friction.threads import one_thread
 from partialslip.friction.zone_ends import read_stick_zone as read_zone
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
@@ -53,8 +53,8 @@ def orders() -> None:
     """Meshes graded to the ends of the contact and of the stick zone that the mesh before found."""
     print(f"{'case':28} {'cells':>6} {'m':>9} {'n':>9} {'q':>9}   orders of m, n, q in 1/cells")
     cases = [
-        ("Hertz, small", Hertz(), 0.4, 1.2),
-        ("Hertz, large", Hertz(), 0.3, 4.0),
+        ("Hertz, small", HertzShape(), 0.4, 1.2),
+        ("Hertz, large", HertzShape(), 0.3, 4.0),
         ("flat 0.5, large", Punch(0.5), 0.3, 4.0),
     ]
     for name, shape, Qf, sf in cases:
@@ -84,7 +84,7 @@ def orders() -> None:
 
 def example(cycles: int = 200) -> None:
     """Q 0.1..0.7 f P, sigma 1..5 f p0: every step certified, change of q from cycle to cycle at the loaded end."""
-    f, shape = 0.5, Hertz()
+    f, shape = 0.5, HertzShape()
     zone = stick_zone(0.3, 4.0, shape)
     m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
     vertices = graded_cells(np.array([-1.0, -m, n, 1.0]), 2e-3, 0.1)
@@ -108,7 +108,7 @@ def example(cycles: int = 200) -> None:
 
 def settling() -> None:
     """f = 0.5, dQ/(2fP) = 0.2546, dsigma/(f p0) = 1.6: cycles until the range of q changes by less than 1e-6 f p0."""
-    f, shape, Qf, sf = 0.5, Hertz(), 0.2546, 1.6
+    f, shape, Qf, sf = 0.5, HertzShape(), 0.2546, 1.6
     zone = stick_zone(Qf, sf, shape)
     bound = one_step(Qf, sf, shape).mean_load_bound
     m, n = zone.half_width - zone.centre, zone.half_width + zone.centre

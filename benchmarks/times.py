@@ -9,7 +9,7 @@ import pytest
 
 import partialslip
 from partialslip import halfplane
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 
 SCENES = sorted(partialslip.shipped_scenes())
 
@@ -30,7 +30,7 @@ def test_accuracy(benchmark, accuracy):
 
 
 def test_many_stick_zones(benchmark):
-    contact = halfplane.Contact(a=1.0, P=np.pi / 2, shape=Hertz())
+    contact = halfplane.Contact(a=1.0, P=np.pi / 2, shape=HertzShape())
     random = np.random.default_rng(0)
     f, share = 0.5, random.random((2, 100_000))
     dsigma = share[1] * 16 * f * (1 - np.sqrt(1 - share[0]))

@@ -21,11 +21,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.halfplane.contact import Contact
-from partialslip.halfplane.gradual_path.certificate import certificate, stages
+from partialslip.halfplane.gradual_path.certificate import certificate_of, stages
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, once, steady
 from partialslip.halfplane.gradual_path.phases import Drifting
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step as single
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.turning import half_cycle
@@ -71,13 +71,13 @@ def solved(kind, Qf, sf, shape):
         return Row(kind, seconds, why=reason(Qf, sf, shape)), None
     else:
         way = found.way
-    return Row(kind, seconds, certificate(way).worst), found
+    return Row(kind, seconds, certificate_of(way).worst), found
 
 
 def reason(Qf, sf, shape):
     """Why the way is not known."""
     try:
-        return f"certificate {certificate(steady(Loads(sf, math.pi * Qf), shape)).worst:.1e}"
+        return f"certificate {certificate_of(steady(Loads(sf, math.pi * Qf), shape)).worst:.1e}"
     except LostError as error:
         return str(error) or "lost"
 
@@ -96,7 +96,7 @@ def main(quotas, means, seed):
     random, rows, number = np.random.default_rng([37, seed]), [], 0
     while any(quotas.values()):
         number += 1
-        shape = Punch(random.uniform(0.1, 0.9)) if number % 3 == 2 else Hertz()
+        shape = Punch(random.uniform(0.1, 0.9)) if number % 3 == 2 else HertzShape()
         Qf, sf = random.uniform(0.02, 0.99), random.uniform(0.1, 20)
         kind = kind_of(Qf, sf, shape)
         if not quotas[kind]:

@@ -10,7 +10,7 @@ from partialslip.gradual import turns_round
 from partialslip.halfplane import Contact, adhered, hysteresis, one_step_zone
 from partialslip.halfplane import stick_zone as stick_zone_under
 from partialslip.halfplane.gradual_table import parted, tabled
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.steady import stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _STYLES = ("-", "--", ":")
 _SIZE = (7.4, 3.8)
-_UNIT = Contact(a=1.0, P=np.pi / 2, shape=Hertz())  # p0 = 1
+_UNIT = Contact(a=1.0, P=np.pi / 2, shape=HertzShape())  # p0 = 1
 
 
 def main(folder: Path) -> None:
@@ -91,7 +91,7 @@ def _cycle(figure: "Figure") -> None:
     """Load points and mean of a cycle under large tension, with the bound on the mean of Q."""
     axes = figure.subplots()
     Qf, sf, mean = 0.3, 4.0, np.array([0.8, 0.25])  # sigma and Q, in f p0 and f P
-    bound = one_step(Qf, sf, Hertz()).mean_load_bound
+    bound = one_step(Qf, sf, HertzShape()).mean_load_bound
     half = np.array([sf / 2, Qf])
     second, first = mean + half, mean - half
     axes.axhspan(-bound, bound, color="0.88", lw=0, label="where the mean must be")
@@ -121,7 +121,7 @@ def _adhered(figure: "Figure") -> None:
 
 def _tractions(figure: "Figure", Qf: float, sf: float) -> None:
     """Shear at both load points under fully reversed loads, and the friction bounds."""
-    axes, shape = figure.subplots(), Hertz()
+    axes, shape = figure.subplots(), HertzShape()
     zone = stick_zone(Qf, sf, shape)
     m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
     ends = np.array([-1.0, -m, n, 1.0])
@@ -157,7 +157,7 @@ def _turning(figure: "Figure") -> None:
 def _regions(figure: "Figure") -> None:
     """Where slip turns round, where an inner zone slips, and by how much m and n of one step are off there."""
     Qf, sf = np.meshgrid(np.linspace(0, 1, 400, endpoint=False), np.linspace(0, 10, 400))
-    once = stick_zones(Qf.ravel(), sf.ravel(), Hertz())
+    once = stick_zones(Qf.ravel(), sf.ravel(), HertzShape())
     turned = turns_round(Qf.ravel(), sf.ravel(), once.s, once.centre, once.half_width)
     zone, inner = tabled(Qf.ravel(), sf.ravel()), np.zeros(Qf.size)
     inner[turned] = parted(Qf.ravel()[turned], sf.ravel()[turned])

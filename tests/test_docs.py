@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 
 FOLDER = Path(__file__).parents[1] / "docs"
@@ -65,7 +65,7 @@ def test_there_is_something_to_check():
 @pytest.mark.parametrize("row", SPOT.findall(DOCS["theory.md"]), ids=lambda row: f"{row[0]}-{row[1]}")
 def test_spot_values(row):
     Qf, sf, s, m, n, bound = row
-    cycle = one_step(float(Qf), float(sf), Hertz())
+    cycle = one_step(float(Qf), float(sf), HertzShape())
     zone = cycle.zone
     assert zone.s == int(s)
     assert (len(m), len(n)) == (14, 14)  # twelve digits

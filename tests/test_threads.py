@@ -94,25 +94,6 @@ def test_what_is_kept_is_the_thread_s_own(alone):
     assert second[-1]["factorizations"] == 0
 
 
-def test_an_open_gmsh_session_does_not_matter(alone):
-    """Nor is it changed."""
-    import gmsh
-
-    gmsh.initialize([], readConfigFiles=False, interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.option.setNumber("Mesh.MeshSizeFactor", 3)
-        gmsh.model.add("mine")
-        gmsh.model.geo.addPoint(1, 2, 3)
-        gmsh.model.geo.synchronize()
-        assert same(solved(SETTINGS[0]), alone[0])
-        assert gmsh.model.getCurrent() == "mine"
-        assert gmsh.model.getEntities() == [(0, 1)]
-        assert gmsh.option.getNumber("Mesh.MeshSizeFactor") == 3
-    finally:
-        gmsh.finalize()
-
-
 def test_limits_that_overlap(alone):
     """The first one in comes out before the second one: BLAS stays on one thread until both are out."""
     del alone

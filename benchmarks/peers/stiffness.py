@@ -16,14 +16,13 @@ from pathlib import Path
 from partialslip import load_scene, run
 from partialslip.benchmark.codes.calculix import Calculix
 from partialslip.benchmark.codes.getfem import GetFEM
-from partialslip.benchmark.codes.process import ran
-from partialslip.benchmark.codes.solved import CodeOutcome
+from partialslip.benchmark.codes.process import CodeOutcome, ran
 from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError
 from partialslip.export import export
 from partialslip.judge import compare
 from partialslip.score.method import scored
-from partialslip.score.read import read
+from partialslip.score.read import read_tractions
 
 SCENES = ("hertz-small-tension", "hertz-large-tension")
 KEYS = ("a", "m", "n", "p", "q")
@@ -90,7 +89,9 @@ def calculix(scene, contact, normal, stick, size):
         try:
             if done.code != 0 or "Job finished" not in done.text:
                 return CodeOutcome(None, "gave up", *cost)
-            return CodeOutcome(scored(scene, read(deck.with_suffix(".frd"), scene), "calculix", "job.frd"), "", *cost)
+            return CodeOutcome(
+                scored(scene, read_tractions(deck.with_suffix(".frd"), scene), "calculix", "job.frd"), "", *cost
+            )
         except InputError as error:
             return CodeOutcome(None, str(error), *cost)
 

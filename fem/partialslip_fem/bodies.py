@@ -81,8 +81,7 @@ class Grading(NamedTuple):
     def at(self, points: Array) -> Array:
         """Element sizes at ``points`` (k,) of the contact line."""
         places, sizes = np.array([*self.sizes]), np.array([*self.sizes.values()])
-        smallest: Array = size_at(sizes, self.growth, np.abs(points[:, None] - places), self.eased).min(axis=1)
-        return smallest
+        return size_at(sizes, self.growth, np.abs(points[:, None] - places), self.eased).min(axis=1)
 
 
 class Kept(threading.local):

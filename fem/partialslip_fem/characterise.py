@@ -79,8 +79,7 @@ def _to_powers(points: Array) -> Array:
     powers = np.zeros((count, count))
     for n in range(count):
         powers[: n + 1, n] = chebyshev.cheb2poly(np.eye(count)[n, : n + 1])
-    result: Array = powers @ np.linalg.inv(chebyshev.chebvander(points, count - 1))
-    return result
+    return powers @ np.linalg.inv(chebyshev.chebvander(points, count - 1))
 
 
 def _smallest(parts: Sequence[Part]) -> float:

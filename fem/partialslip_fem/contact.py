@@ -57,8 +57,7 @@ class CondensedBody:
         """Displacements of the contact line's nodes under the same tension, (2, n); zero along y if uniform."""
         if self.condensation.pulled is None:
             return np.array([self.body.x, 0 * self.body.x])
-        result: Array = self.stretched[:, self.body.contact[0]]
-        return result
+        return self.stretched[:, self.body.contact[0]]
 
     def at_right_grip(self, shear: Array, normal: Array) -> float:
         """Force along x on the plate that holds the right side of the lower body under contact forces ``shear`` and

@@ -82,8 +82,7 @@ class Body:
     @property
     def weights(self) -> Array:
         """Length of the contact line per node, (n,): row sums of ``mass``. Traction times weight is the nodal force."""
-        result: Array = np.asarray(self.mass.sum(axis=1)).ravel()
-        return result
+        return np.asarray(self.mass.sum(axis=1)).ravel()
 
     @cached_property
     def mass_factor(self) -> spla.SuperLU:
@@ -93,14 +92,12 @@ class Body:
     @property
     def held_points(self) -> Array:
         """Coordinates of the nodes held along x, (2, h)."""
-        result: Array = self.points[:, self.held[self.held < self.points.shape[1]]]
-        return result
+        return self.points[:, self.held[self.held < self.points.shape[1]]]
 
     @property
     def face_x(self) -> Array:
         """x of the nodes of the face, (s,)."""
-        result: Array = self.points[0, self.face]
-        return result
+        return self.points[0, self.face]
 
 
 @skfem.LinearForm
@@ -141,8 +138,7 @@ def body(
 
     def on(lines: Indices) -> Indices:
         nodes = basis.get_dofs(facets_of(triangles, lines)).flatten()
-        in_order: Indices = nodes[np.argsort(basis.doflocs[0, nodes], kind="stable")]
-        return in_order
+        return nodes[np.argsort(basis.doflocs[0, nodes], kind="stable")]
 
     line = mesh.lines["contact"]
     contact, face = on(line), on(np.concatenate([line, mesh.lines.get("face", line)]))
@@ -218,8 +214,7 @@ def _along(order: int) -> Array:
     """Integrals of the products of the shape functions of an edge of the length 1, (order + 1, order + 1)."""
     points, weights = np.polynomial.legendre.leggauss(order + 1)
     values = shapes(order, (1 + points) / 2)
-    result: Array = values.T @ (values * weights[:, None] / 2)
-    return result
+    return values.T @ (values * weights[:, None] / 2)
 
 
 def _mass(x: Array, order: int) -> sp.csr_matrix:
@@ -236,5 +231,4 @@ def facets_of(triangles: skfem.MeshTri, lines: Indices) -> Indices:
     ends = np.sort(lines, axis=1)
     known = triangles.facets[0].astype(np.int64) * count + triangles.facets[1]
     order = np.argsort(known)
-    found: Indices = order[np.searchsorted(known, ends[:, 0] * count + ends[:, 1], sorter=order)]
-    return found
+    return order[np.searchsorted(known, ends[:, 0] * count + ends[:, 1], sorter=order)]

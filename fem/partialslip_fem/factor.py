@@ -172,8 +172,7 @@ class _Cholmod:
         rank = np.empty(count, dtype=np.int64)
         by_degree = np.asarray(self._cvxopt.amd.order(self._lower(K[:count, :count][nodes][:, nodes]))).ravel()
         rank[nodes[by_degree]] = np.arange(len(nodes))
-        order: Indices = np.argsort(rank[inner % count], kind="stable")
-        return order
+        return np.argsort(rank[inner % count], kind="stable")
 
     def _numeric(self, matrix: sp.spmatrix) -> object:
         cholmod, as_it_is = self._cvxopt.cholmod, self._cvxopt.matrix(np.arange(matrix.shape[0]))
@@ -217,4 +216,4 @@ def _import_cvxopt() -> ModuleType:
         import cvxopt.cholmod
     except ImportError:
         raise MissingLibraryError("fem.factor = 'cholmod': cvxopt is missing; pip install partialslip[fast]") from None
-    return cvxopt  # type: ignore[no-any-return]
+    return cvxopt

@@ -199,8 +199,7 @@ def gaps(solution: MeshSolution, problem: Problem) -> Array:
     if solution.stick:
         across[2:4] = apart[2, 3]
         apart[2, 3] = apart[3, 2] = np.inf
-    found: Array = np.maximum(np.array([across, apart.min(axis=1)]) / solution.half_width, _NO_GAP)
-    return found
+    return np.maximum(np.array([across, apart.min(axis=1)]) / solution.half_width, _NO_GAP)
 
 
 def worst(errors: Mapping[str, float]) -> float:

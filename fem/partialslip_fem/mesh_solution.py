@@ -151,8 +151,7 @@ class MeshSolution:
         and its two neighbours, which matter where elements grow fast."""
         vertices = self.lower.x[:: self.lower.order]
         cells = np.searchsorted(vertices, points)[:, None] + np.arange(-2, 1)
-        sizes: Array = np.diff(vertices)[np.clip(cells, 0, len(vertices) - 2)].mean(axis=1)
-        return sizes
+        return np.diff(vertices)[np.clip(cells, 0, len(vertices) - 2)].mean(axis=1)
 
     @property
     def contact_end_places(self) -> tuple[list[int], list[int]]:

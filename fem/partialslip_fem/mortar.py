@@ -23,8 +23,7 @@ def transfer(onto: Body, other: Body) -> Array:
     preserves constant and linear functions, so that T^T preserves forces and moments. If the nodes match, T is the
     identity. The other line may be longer.
     """
-    projected: Array = spla.spsolve(onto.mass.tocsc(), _products(onto, other).toarray())
-    return projected
+    return spla.spsolve(onto.mass.tocsc(), _products(onto, other).toarray())
 
 
 def nodal_forces(body: Body, traction: PPoly) -> Array:
@@ -54,8 +53,7 @@ def projected(body: Body, gap: Callable[[Array], Array], breaks: Sequence[float]
     missing = weights * (gap(starts + offsets) - (shape * values[nodes]).sum(axis=1))
     missing[~np.isin(np.searchsorted(vertices, starts + offsets), cells)] = 0.0
     work = np.bincount(nodes.ravel(), (missing[:, None] * shape).ravel(), len(body.x))
-    result: Array = values + body.mass_factor.solve(work)
-    return result
+    return values + body.mass_factor.solve(work)
 
 
 def within_cells(vertices: Array, points: Sequence[float]) -> Array:
@@ -63,8 +61,7 @@ def within_cells(vertices: Array, points: Sequence[float]) -> Array:
     inside = np.array([each for each in points if vertices[0] < each < vertices[-1]])
     after = np.searchsorted(vertices, inside)
     beside = np.minimum(vertices[after] - inside, inside - vertices[after - 1])
-    result: Array = inside[beside > _ON_VERTEX * (vertices[after] - vertices[after - 1])]
-    return result
+    return inside[beside > _ON_VERTEX * (vertices[after] - vertices[after - 1])]
 
 
 def _products(onto: Body, other: Body) -> sp.csr_matrix:

@@ -101,8 +101,7 @@ def _stuck_between(C: Relative, x: Array, on: Indices, ends: tuple[float, float]
     """Displacements of :func:`_stuck` of bodies that stick from end to end; the last nodes ``on`` the contact are off
     its ``ends`` by up to the distance of the next node."""
     compliance, by_width = _answering(C, x, on, pin)
-    result: Array = compliance + by_width * np.log((ends[1] - ends[0]) / (x[on[-1]] - x[on[0]]))
-    return result
+    return compliance + by_width * np.log((ends[1] - ends[0]) / (x[on[-1]] - x[on[0]]))
 
 
 def _answering(C: Relative, x: Array, on: Indices, pin: float | None) -> tuple[Array, Array]:
@@ -127,5 +126,4 @@ def _stuck(C: Relative, x: Array, on: Indices, pin: float | None) -> Array:
     if pin is not None:
         rigid = np.column_stack([rigid, np.append(np.full(count, pin), x[on])])
     stiffness = rigid.T @ la.solve(every, rigid, assume_a="pos")
-    result: Array = np.linalg.inv(stiffness)[:2, :2]
-    return result
+    return np.linalg.inv(stiffness)[:2, :2]

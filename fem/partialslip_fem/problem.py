@@ -47,8 +47,7 @@ class PadFace:
     length: float
 
     def __call__(self, x: Array) -> Array:
-        result: Array = self.profile.face_at(x * self.length) / self.length
-        return result
+        return self.profile.face_at(x * self.length) / self.length
 
     @property
     def radius(self) -> float:

@@ -60,5 +60,4 @@ class Polynomials:
 
 def inside_elements(polynomial: PPoly, points: Array) -> Array:
     """Values of ``polynomial`` at ``points`` (k,); zero off its cells."""
-    values: Array = np.nan_to_num(polynomial(points, extrapolate=False), nan=0.0)
-    return values
+    return np.nan_to_num(polynomial(points, extrapolate=False), nan=0.0)

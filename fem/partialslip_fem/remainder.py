@@ -126,5 +126,4 @@ def _forces(tractions: PPoly) -> Array:
     moments = np.einsum("cgs,cg,cgk->sk", tractions(x), half * _WEIGHTS, values.reshape(*x.shape, -1), optimize=True)
     back = chebyshev.chebvander(chebyshev.chebpts1(_PLACES), _PLACES - 1) * 2 / _PLACES
     back[:, 0] /= 2
-    result: Array = moments @ back.T
-    return result
+    return moments @ back.T

@@ -1,12 +1,14 @@
 """The result of the last mesh, in SI units: tractions, zones, certificate, estimates, counts, notes."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.friction.history import certificate, last_cycle_change
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.regime import doubts, steady_state, steps_of_coupled
-from partialslip.friction.restart import begun, known_to
+from partialslip.friction.restart import begun, end_state
 from partialslip.friction.step_errors import summed
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, StressAt, Traction
@@ -49,6 +51,7 @@ def to_result(
     change = last_cycle_change(history, weights, problem.f, p0) if history else None
     pushed = solution.slips_when_pressed
     found = steady_state(scene, history, solution.stick, solution.half_width, pushed, x, solution.common)
+    found = found.placed(origin, L)
 
     made = _factorizations(solution)
     inside = plan.needs("subsurface")
@@ -75,21 +78,15 @@ def to_result(
     # errors of the steps alone say nothing of quantities whose discretisation errors are not known: meshes as given
     estimate = {key: float(sum(share.get(key, 0.0) for share in shares.values())) for key in keys}
     (left1, right1), (left2, right2) = solution.contact_ends
-    return Result(
-        method="fem",
-        a=solution.half_width * L,
-        p0=p0 * stress,
-        regime=found.regime,
-        stick_centre=None if found.centre is None else found.centre * L + origin,
-        stick_half_width=None if found.half_width is None else found.half_width * L,
-        traction=Traction(
-            x=x * L + origin,
-            values=tractions.scaled(x),
-            at=tractions.at,
-            breaks=np.unique([*solution.zone_ends, *solution.kinks, *problem.kinks]) * L + origin,
-            cells=solution.lower.x[:: solution.lower.order] * L + origin,
-        ),
-        cost=clock.cost(),
+    traction = Traction(
+        x=x * L + origin,
+        values=tractions.scaled(x),
+        at=tractions.at,
+        breaks=np.unique([*solution.zone_ends, *solution.kinks, *problem.kinks]) * L + origin,
+        cells=solution.lower.x[:: solution.lower.order] * L + origin,
+    )
+    return replace(
+        Result.of("fem", found, solution.half_width * L, p0 * stress, traction, clock),
         slip=Slip(x * L + origin, history.slip * unit, history.dissipated * unit * scene.P) if history else None,
         settings={
             "bodies": _bodies(solution, problem),
@@ -111,8 +108,6 @@ def to_result(
         + _note_on_the_allowance(adapted, scene)
         + doubts(change, estimate, accuracy),
         bodies=tuple(deformed(body, L, unit, stress, origin) for body in displaced),
-        end_slips=found.slips,
-        permanent=(found.permanent[0] * L + origin, found.permanent[1] * L + origin) if found.permanent else None,
         contact_ends=((left1 * L + origin, right1 * L + origin), (left2 * L + origin, right2 * L + origin)),
         state=_state(scene, problem, solution, estimate if adapted.errors else {}),
         stress_at=StressAt(BodyStresses.of(scene, problem, solution).inside) if known_inside else None,
@@ -157,9 +152,7 @@ def _state(scene: Scene, problem: Problem, solution: MeshSolution, errors: dict[
     p, q = (solution.shear(forces) for forces in history.end[::-1])
     L, origin = scene.length, problem.origin * scene.length
     p, q = (rescaled(each, scene.P / L, L, origin) for each in (p, q))
-    Q, sigma, slope = scene.load.along[-1]
-    error = known_to(errors, solution.history, solution.lower.weights[solution.nodes])
-    return State(scene.pressing[-1].P, scene.material.A, Q, sigma, p, q, slope, error)
+    return end_state(scene, p, q, errors, solution.history, solution.lower.weights[solution.nodes])
 
 
 def _certificate(problem: Problem, solution: MeshSolution, p0: float) -> dict[str, float]:

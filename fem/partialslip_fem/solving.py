@@ -26,12 +26,12 @@ from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import nodal_forces, projected
 from partialslip_fem.problem import Problem
 from partialslip_fem.zones import (
-    cell_means,
     contact_ends_of,
     growth_when_pressed,
     resultants_of,
     shear_kinks,
     stick_zone_of,
+    weighted_means,
 )
 from partialslip_meshes import Mesh
 
@@ -213,7 +213,7 @@ def _contact_forces(
             problem.nearly_similar,
             reach,
             trail,
-            means=partial(cell_means, line),
+            means=partial(weighted_means, line),
         )
         near = BARS["q"] * problem.accuracy
         pivot = None if problem.pin is None else Pivot(line.x, problem.pin, 0.0)

@@ -147,8 +147,7 @@ def _tractions_left(part: Part, mesh: Mesh, order: int, places: Array) -> Array:
 
 def _on_face(part: Part, x: Array) -> Complex:
     """Points x + iy of the face at ``x``."""
-    result: Complex = x + 1j * height(part, x)
-    return result
+    return x + 1j * height(part, x)
 
 
 def height(part: Part, x: Array) -> Array:

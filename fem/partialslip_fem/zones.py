@@ -37,11 +37,10 @@ def resultants_of(line: Body, normal: Array, shear: Array) -> tuple[Array, Array
     return points, *(traction(line, forces).antiderivative()(points) for forces in (normal, shear))
 
 
-def cell_means(line: Body, forces: Array) -> Array:
+def weighted_means(line: Body, forces: Array) -> Array:
     """Means over the cells of the contact line, (c,), of the traction that is equivalent to nodal ``forces`` (n,),
     times the roots of the cells' widths: their norm is an L2 norm."""
-    means: Array = _cell_forces(line, forces) / np.sqrt(np.diff(line.x[:: line.order]))
-    return means
+    return _cell_forces(line, forces) / np.sqrt(np.diff(line.x[:: line.order]))
 
 
 def stick_zone_of(

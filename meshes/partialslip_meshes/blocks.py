@@ -136,8 +136,7 @@ def _made(
     number[named] = np.arange(len(named))
 
     def cells(nodes: bytes, corners: int) -> npt.NDArray[np.int64]:
-        result: npt.NDArray[np.int64] = number[np.frombuffer(nodes, dtype=np.uint64).reshape(-1, corners)]
-        return result
+        return number[np.frombuffer(nodes, dtype=np.uint64).reshape(-1, corners)]
 
     return (
         np.ascontiguousarray(np.frombuffer(coordinates).reshape(-1, 3)[:, :2]),

@@ -44,8 +44,7 @@ def _opposite(points: npt.NDArray[np.float64], around: _Rows, vertex: int) -> _R
     along = points[edges] - points[vertex]
     lengths = np.linalg.norm(along, axis=2)
     cosines = (along[:, 0] * along[:, 1]).sum(axis=1) / lengths.prod(axis=1)
-    widest: _Rows = edges[np.argmin(cosines)]
-    return widest
+    return edges[np.argmin(cosines)]
 
 
 def _halved(points: npt.NDArray[np.float64], triangles: _Rows, edge: _Rows) -> tuple[npt.NDArray[np.float64], _Rows]:

@@ -40,8 +40,7 @@ def size_at(size: _Array, growth: float, distance: _Array, eased: Eased | None =
     if eased is None:
         return size + growth * distance
     far = (distance / (distance + eased.within)) ** eased.power
-    result: _Array = size + distance / (1 / eased.steepest + (1 / growth - 1 / eased.steepest) * far)
-    return result
+    return size + distance / (1 / eased.steepest + (1 / growth - 1 / eased.steepest) * far)
 
 
 def formula(size: float, growth: float, eased: Eased | None = None) -> str:

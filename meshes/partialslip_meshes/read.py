@@ -194,8 +194,7 @@ def _boundary(corners: Indices, count: int, refuse: Refuse) -> Indices:
     graph = coo_array((np.ones(len(beside)), (beside, other)), shape=(len(corners), len(corners)))
     if (pieces := connected_components(graph)[0]) > 1:
         refuse(f"must be one piece, connected by common nodes, not {pieces}")
-    result: Indices = edges[~shared]
-    return result
+    return edges[~shared]
 
 
 def _lines(found: "meshio.Mesh", boundary: Indices, refuse: Refuse) -> Iterator[tuple[str, Indices]]:
@@ -270,10 +269,8 @@ def _lay(points: Array, contact: Indices, face: Callable[[Array], Array] | None,
 def _among(edges: Indices, others: Indices) -> npt.NDArray[np.bool_]:
     """Which of the ``edges`` are among the ``others``; nodes of each edge must be sorted."""
     count = max(edges.max(initial=0), others.max(initial=0)) + 1
-    found: npt.NDArray[np.bool_] = np.isin(edges @ [count, 1], others @ [count, 1])
-    return found
+    return np.isin(edges @ [count, 1], others @ [count, 1])
 
 
 def _cross(a: Array, b: Array) -> Array:
-    result: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-    return result
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]

@@ -11,7 +11,4 @@ if TYPE_CHECKING:
 def frame(columns: Mapping[str, object]) -> "DataFrame":
     """Return ``columns`` as a pandas data frame; a column of None becomes NaN."""
     pandas = importlib.import_module("pandas")  # the exact solver needs NumPy and SciPy alone
-    table: DataFrame = pandas.DataFrame(
-        {name: float("nan") if values is None else values for name, values in columns.items()}
-    )
-    return table
+    return pandas.DataFrame({name: float("nan") if values is None else values for name, values in columns.items()})

@@ -25,8 +25,7 @@ def left_end_turns(Qf: _Numbers, sf: _Numbers, s: _Numbers, half_width: _Numbers
     of the stick zone (for positive changes). Slip does not reverse if this keeps one sign: positive from c = 1 on if
     both ends slip the same way (``s`` = 1), negative down to the last c if they slip opposite ways (-1).
     """
-    result: Mask = np.where(np.asarray(s) > 0, sf > 4 * Qf, half_width * sf < 4 * Qf)
-    return result
+    return np.where(np.asarray(s) > 0, sf > 4 * Qf, half_width * sf < 4 * Qf)
 
 
 def turns_round(Qf: _Numbers, sf: _Numbers, s: _Numbers, centre: _Numbers, half_width: _Numbers) -> Mask:
@@ -40,8 +39,7 @@ def turns_round(Qf: _Numbers, sf: _Numbers, s: _Numbers, centre: _Numbers, half_
     left = left_end_turns(Qf, sf, s, half_width)
     # -4 Qf/sf is outside; multiplied by sf, which may be 0
     pushed = (np.asarray(s) < 0) & (np.abs(4 * Qf + sf * centre) > sf * half_width)
-    result: Mask = left | pushed
-    return result
+    return left | pushed
 
 
 def may_turn_round(scene: Scene) -> bool:

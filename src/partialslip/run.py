@@ -313,7 +313,7 @@ def _slid(scene: Scene, result: Result) -> Result:
     return dataclasses.replace(result, undetermined={**result.undetermined, **dict.fromkeys(("q", "q1", "q2"), _ONE)})
 
 
-def with_stresses(scene: AnyScene, method: str | None = None, progress: Progress = lambda _: None) -> Result:
+def solved_with_stresses(scene: AnyScene, method: str | None = None, progress: Progress = lambda _: None) -> Result:
     """Solve ``scene`` with the stresses in the bodies.
 
     By default the method is the reference (:func:`partialslip.judge.reference.reference`), and march where exact does

@@ -58,8 +58,7 @@ class Drawn(Notebook):
         InputError
             If ``what`` is none of these, or no method knows it.
         """
-        drawn: Axes = _display().plot(self, axes, what, in_units)
-        return drawn
+        return _display().plot(self, axes, what, in_units)
 
 
 def _display() -> Any:

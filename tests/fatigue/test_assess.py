@@ -160,7 +160,7 @@ PULLED = SCENE.replace(bodies={"lower": {"width": 40e-3, "height": 4e-3, "suppor
      "fatigue.distance = 0.007 m: must not leave the lower body below the hot spot; the body is 0.006 m high"),
 ])  # fmt: skip
 def test_a_distance_beyond_the_body_is_refused_before_anything_is_solved(scene, said, monkeypatch):
-    monkeypatch.setattr("partialslip.fatigue.assessment.with_stresses", None)
+    monkeypatch.setattr("partialslip.fatigue.assessment.solved_with_stresses", None)
     assert line_of(partialslip.assess, scene) == said
 
 

@@ -10,7 +10,7 @@ import partialslip
 from partialslip.bars import CERTIFICATE_BAR
 from partialslip.halfplane import contact, loading, steady
 from partialslip.halfplane import traction as exact_traction
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.judge import compare
 from partialslip.run import compared
 
@@ -38,8 +38,8 @@ def test_sign_of_x_instead_of_the_slip_zones(monkeypatch, sound, red):
 
 @pytest.mark.fault
 def test_both_ends_taken_to_slip_the_same_way(monkeypatch, sound, red):
-    scene, true = sound(LARGE), Hertz.conditions
-    monkeypatch.setattr(Hertz, "conditions", lambda self, edge, c, s: true(self, edge, c, np.abs(s)))
+    scene, true = sound(LARGE), HertzShape.conditions
+    monkeypatch.setattr(HertzShape, "conditions", lambda self, edge, c, s: true(self, edge, c, np.abs(s)))
     red("certificate: shear", closed_form(scene).certificate["shear"], CERTIFICATE_BAR)
 
 

@@ -17,7 +17,7 @@ from partialslip import plan
 from partialslip.friction import coupled
 from partialslip.friction.coupled_step import LoadStep
 from partialslip.friction.coupled_step import solve as solve_step
-from partialslip.friction.pressing import Punch, Punches
+from partialslip.friction.pressing import FlatPunch, Punches
 from partialslip_fem import solve, solving
 
 BETA = 1 / 7
@@ -90,7 +90,7 @@ def test_one_step_of_pressing_forgets_what_stuck_early(monkeypatch, pressed):
         p, q = solve_step(LoadStep(C.xx, C.yy, C.xy, C.opening, f, 1.0, gap, 0.0, kept), [(zero, zero)])
         return coupled.Pressed(p, q, 1, {"q": 0.0, "a": 0.0}, (p.x, q.x), f)
 
-    monkeypatch.setattr(coupled, "press", at_once)
+    monkeypatch.setattr(coupled, "press_coupled", at_once)
     wrong = solve(scene(0.3), plan(scene(0.3)))
     assert wrong.m / wrong.a < 0.8
     assert abs(wrong.a - pressed(0.3).a) > 2e-3 * wrong.a
@@ -102,7 +102,7 @@ def test_punches_add_up_to_a_parabola():
     edges = np.concatenate([[-1.0], np.sin(np.linspace(-np.pi / 2, np.pi / 2, 402)[1:-1:2]), [1.0]])
     weights, normal = np.diff(edges)[: len(x)], np.diff(np.arcsin(edges)) / np.pi
     left = 0.5 + np.arcsin(x[3:-3]) / np.pi
-    stages = Punch((-1.0, 1.0), x, weights, (normal, 0 * x), x[3:-3], (left, 0 * left))
+    stages = FlatPunch((-1.0, 1.0), x, weights, (normal, 0 * x), x[3:-3], (left, 0 * left))
     for share, nodes, error in ((1.0, 0.99, 2e-4), (0.9, 0.88, 1e-3)):
         p, q = stages.stage(1.0, share)
         expected = share * 2 / np.pi * np.sqrt(np.maximum(1 - (x / share) ** 2, 0.0))
@@ -123,7 +123,7 @@ def test_punches_of_like_bodies_of_a_size_add_up():
         -np.diff(np.sqrt(1 - edges**2)),
     )
     left = 0.5 + np.arcsin(x[3:-3]) / np.pi, -np.sqrt(1 - x[3:-3] ** 2)
-    stages = Punch((-1.0, 1.0), x, weights, (normal, shear), x[3:-3], left, sized=True)
+    stages = FlatPunch((-1.0, 1.0), x, weights, (normal, shear), x[3:-3], left, sized=True)
     for share, nodes, error in ((1.0, 0.99, 1e-2), (0.9, 0.88, 1e-2)):  # of 201 nodes
         _, q = stages.stage(1.0, share)
         root = np.sqrt(np.maximum(1 - (x / share) ** 2, 0.0))
@@ -139,7 +139,7 @@ def test_a_stage_bears_its_load_and_no_shear():
     weights = np.gradient(x)
     normal = weights / np.sqrt(1 - x**2)
     forces = normal, 0.3 * np.sign(x) * normal
-    p, q = Punch((-1.0, 1.0), x, weights, forces, x, tuple(map(np.cumsum, forces))).stage(1.0, 0.95)
+    p, q = FlatPunch((-1.0, 1.0), x, weights, forces, x, tuple(map(np.cumsum, forces))).stage(1.0, 0.95)
     assert p.sum() == pytest.approx(0.95**2)
     assert abs(q.sum()) < 1e-12
 
@@ -299,7 +299,7 @@ def test_a_pad_is_pressed_with_the_shear_of_the_closed_form(monkeypatch):
 def test_shear_of_a_pad_that_does_not_grow_is_seen(monkeypatch):
     """Deliberate fault: stages of like bodies of a size as of unlike half-planes, whose shear under one force does not
     grow with the half-width. The second punch does not enter the stages, and tells how similar bodies are."""
-    monkeypatch.setattr(coupled, "Punch", lambda *args: Punch(*args[:-1]))
+    monkeypatch.setattr(coupled, "FlatPunch", lambda *args: FlatPunch(*args[:-1]))
     assert shape(locked_in(PAD)[0])[1] > 0.1
 
 

@@ -15,7 +15,7 @@ from partialslip.friction.path_following import Bounds, Follower
 from partialslip.friction.zone_ends import read_stick_zone
 from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
 
 N = 120
@@ -51,7 +51,7 @@ def followed(tangential, stretch, bound, path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("shape", [Hertz(), Punch(0.5)], ids=["Hertz", "flat"])
+@pytest.mark.parametrize("shape", [HertzShape(), Punch(0.5)], ids=["Hertz", "flat"])
 def test_legs_in_one_step_are_those_that_are_gradual(shape):
     """On random loads with mean values one step is taken only where it leads to what following the leg leads to, and
     each way is taken often."""
@@ -70,7 +70,7 @@ def test_legs_in_one_step_are_those_that_are_gradual(shape):
 @pytest.mark.parametrize(("Qf", "sf"), DRIFTS)
 def test_drifting_zone(Qf, sf):
     """Ends, and q, of the exact steady state, in cells of 1e-3 a at the ends; one step is off by many times as much."""
-    exact = steady(Loads(sf, np.pi * Qf), Hertz()).last
+    exact = steady(Loads(sf, np.pi * Qf), HertzShape()).last
     vertices, *problem = cells(points=(-1, *exact.zone, 1), size=1e-3, growth=0.07)
     x = problem[1][0]
     history = march(*problem, 1.0, loads(Qf, sf))
@@ -87,7 +87,7 @@ def test_drifting_zone(Qf, sf):
 
 def drifted(unsteady=None, Qf=0.55, sf=7.0):
     """The exact left end, which drifts, and the zone in cells of 1e-3 a at the ends, without the ``unsteady`` room."""
-    exact = steady(Loads(sf, np.pi * Qf), Hertz()).last
+    exact = steady(Loads(sf, np.pi * Qf), HertzShape()).last
     vertices, *problem = cells(points=(-1, *exact.zone, 1), size=1e-3, growth=0.07)
     history = march(*problem, 1.0, loads(Qf, sf))
     bound, change = history.bound, history.change
@@ -247,7 +247,7 @@ def test_legs_from_the_displacements_of_another_leg_are_noticed(monkeypatch):
 def test_one_step_taken_for_enough(monkeypatch):
     """Deliberate fault: the rates at the ends of a leg are not asked for. Each step has its certificate; m is off by
     what section 7 of docs/theory.md warns of."""
-    exact = steady(Loads(7.0, np.pi * 0.55), Hertz()).last.zone
+    exact = steady(Loads(7.0, np.pi * 0.55), HertzShape()).last.zone
     vertices, *problem = cells(points=(-1, *exact, 1), size=1e-3, growth=0.07)
 
     def off():

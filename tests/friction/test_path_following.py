@@ -10,7 +10,7 @@ from partialslip.friction import path_following
 from partialslip.friction.active_set import solve_bounded
 from partialslip.friction.path_following import Bounds, Follower
 from partialslip.friction.tableau import Tableau
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.march.cells import compliance, forces
 
 CERTIFIED = 1e-11  # residuals, in f P: rounding errors of a few hundred pivots
@@ -20,7 +20,7 @@ DRIFTS = (0.6434668934976868, 8.670889385947003)  # (Q_f, s_f): the stick zone d
 def hertz(cells=120):
     """Compliance, bound and displacements under tension of Hertz contact on equal cells: a = f = A = p0 = 1."""
     vertices = np.linspace(-1, 1, cells + 1)
-    return compliance(vertices / 2), np.pi / 2 * forces(Hertz(), vertices), (vertices[1:] + vertices[:-1]) / 8
+    return compliance(vertices / 2), np.pi / 2 * forces(HertzShape(), vertices), (vertices[1:] + vertices[:-1]) / 8
 
 
 def loaded(load, problem, stages=()):

@@ -3,19 +3,19 @@
 import numpy as np
 import pytest
 
-from partialslip.halfplane.gradual_path.certificate import certificate, certify, stages
+from partialslip.halfplane.gradual_path.certificate import certificate_of, certify, stages
 from partialslip.halfplane.gradual_path.drift import Drift
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
 from partialslip.halfplane.gradual_path.phases import Retreating
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
 
 HELD = 1e-9  # f p0
 
 
 def cycle(Qf, sf, shape=None):
-    return steady(Loads(sf, np.pi * Qf), shape or Hertz())
+    return steady(Loads(sf, np.pi * Qf), shape or HertzShape())
 
 
 @pytest.mark.parametrize(
@@ -28,7 +28,7 @@ def cycle(Qf, sf, shape=None):
     ],
 )
 def test_all_conditions_hold(Qf, sf):
-    assert certificate(cycle(Qf, sf)).worst < HELD
+    assert certificate_of(cycle(Qf, sf)).worst < HELD
 
 
 @pytest.mark.slow
@@ -41,7 +41,7 @@ def test_all_conditions_hold_under_random_loads(seed):
             found = cycle(rng.uniform(0.4, 0.99), rng.uniform(7, 15))
         except LostError:
             continue
-        assert certificate(found).worst < 1e-7
+        assert certificate_of(found).worst < 1e-7
         judged += 1
 
 
@@ -52,20 +52,20 @@ def test_a_zone_inside_left_out_is_seen():
     the bound on the way, by a quarter of f p0."""
     found = cycle(0.8989503087286937, 14.038013448105065)
     one = HalfCycle(found.loads, found.start, found, parts=False)
-    assert certificate(found).worst < 1e-8
-    assert certificate(one).bound > 0.1
-    assert certificate(one).steady < 1e-8
+    assert certificate_of(found).worst < 1e-8
+    assert certificate_of(one).bound > 0.1
+    assert certificate_of(one).steady < 1e-8
 
 
 def test_all_conditions_hold_under_a_flat_rounded_punch():
-    assert certificate(cycle(0.55, 7.0, Punch(0.4))).worst < HELD
+    assert certificate_of(cycle(0.55, 7.0, Punch(0.4))).worst < HELD
 
 
 @pytest.mark.fault
 def test_a_kernel_of_drift_off_by_a_percent_is_seen(monkeypatch):
     found, right = cycle(0.55, 7.0), Drift.accumulated
     monkeypatch.setattr(Drift, "accumulated", lambda self, place, tau: 1.01 * right(self, place, tau))
-    seen = certificate(HalfCycle(found.loads, found.start, found))
+    seen = certificate_of(HalfCycle(found.loads, found.start, found))
     assert seen.stick > 1e-5
     assert seen.equilibrium > 1e-5
 
@@ -74,7 +74,7 @@ def test_a_kernel_of_drift_off_by_a_percent_is_seen(monkeypatch):
 def test_a_drifting_zone_a_percent_too_wide_is_seen(monkeypatch):
     right = Loads.least.fget
     monkeypatch.setattr(Loads, "least", property(lambda self: 1.01 * right(self)))
-    assert certificate(cycle(0.55, 7.0)).worst > 1e-5
+    assert certificate_of(cycle(0.55, 7.0)).worst > 1e-5
 
 
 @pytest.mark.fault
@@ -91,7 +91,7 @@ def test_half_a_cycle_that_is_not_steady_is_seen():
     found = cycle(0.55, 7.0)
     path = stages(found)
     first = HalfCycle(found.loads, -path[-2].q, found)
-    assert certificate(first).steady > 1e-5
+    assert certificate_of(first).steady > 1e-5
 
 
 @pytest.mark.fault

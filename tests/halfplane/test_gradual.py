@@ -11,7 +11,7 @@ import partialslip
 from partialslip.gradual import _QF, _SF, _SLOPE, may_turn_round, turns_round
 from partialslip.halfplane import method
 from partialslip.halfplane.contact import contact
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import loading
 from partialslip.halfplane.method import path_dependent
 from partialslip.halfplane.punch import Punch
@@ -30,12 +30,12 @@ def test_the_box_known_beforehand_lies_inside_the_exact_domain():
     Qf = np.linspace(1e-3, _QF, 60)
     Qf, share = np.meshgrid(Qf, np.linspace(0, 1, 60), indexing="ij")
     sf = _SLOPE * Qf + share * (_SF - _SLOPE * Qf)
-    for load in zip(Qf.ravel(), sf.ravel(), *(each.ravel() for each in stick_zones(Qf, sf, Hertz())), strict=True):
+    for load in zip(Qf.ravel(), sf.ravel(), *(each.ravel() for each in stick_zones(Qf, sf, HertzShape())), strict=True):
         Q, tension, centre, half_width, s = map(float, load)
         assert not turns_round(Q, tension, s, centre, half_width)
 
 
-@pytest.mark.parametrize("shape", [Hertz(), Punch(0.3), Punch(0.8), Punch([0.0, 0.5], [1.0, 2.0])])
+@pytest.mark.parametrize("shape", [HertzShape(), Punch(0.3), Punch(0.8), Punch([0.0, 0.5], [1.0, 2.0])])
 def test_the_condition_is_the_rate_along_the_way(shape):
     """The adhered traction of the stick zone always drives both ends in the direction of slip, and points that slip are
     pushed that way from the beginning: checked along gradual loading, at random loads."""
@@ -111,7 +111,7 @@ def test_slip_that_turns_round_makes_the_difference():
     """Boundary elements, a = p0 = f = 1: small steps and one step agree if and only if slip does not reverse."""
     for Qf, sf, turns in ((0.3, 4.0, False), (0.75, 4.5, True)):
         path = [(Qf, sf / 2), (-Qf, -sf / 2)]
-        (_, widths, p, (_, once)), (*_, (_, gradual)) = (march(Hertz(), path, steps=steps) for steps in (1, 24))
+        (_, widths, p, (_, once)), (*_, (_, gradual)) = (march(HertzShape(), path, steps=steps) for steps in (1, 24))
         apart = np.sqrt((once - gradual) ** 2 @ widths / (p**2 @ widths))
         assert (apart > 2e-2) == turns
         assert apart < 1e-9 or turns

@@ -11,7 +11,7 @@ from partialslip.gradual import turns_round
 from partialslip.halfplane import contact, gradual_table, stick_zone
 from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.steady import stick_zones
 from partialslip.scene.reading import load_scene
 
@@ -25,7 +25,7 @@ def turned(count, seed=SEED, inner=False):
     random = np.random.default_rng(seed)
     tried = (400 if inner else 40) * count
     Qf, sf = random.random(tried), 10.4 * random.random(tried)
-    zone = stick_zones(Qf, sf, Hertz())
+    zone = stick_zones(Qf, sf, HertzShape())
     there = turns_round(Qf, sf, zone.s, zone.centre, zone.half_width)
     there &= gradual_table.parted(Qf, sf) == inner
     there[there] = ~np.isnan(gradual_table.tabled(Qf[there], sf[there]).centre)
@@ -34,7 +34,7 @@ def turned(count, seed=SEED, inner=False):
 
 def solved(Qf, sf):
     """Ends by the solver."""
-    return np.array([steady(Loads(s, math.pi * Q), Hertz()).last.zone for Q, s in zip(Qf, sf, strict=True)]).T
+    return np.array([steady(Loads(s, math.pi * Q), HertzShape()).last.zone for Q, s in zip(Qf, sf, strict=True)]).T
 
 
 def off(Qf, sf, true=None):
@@ -109,7 +109,7 @@ def test_one_step_holds_again_where_all_slips_again():
     """Just above the least tension under which slip turns round, small tension in closed form holds."""
     Qf = np.array([0.2, 0.6, 0.9])
     sf = 4 * Qf * (1 + 1e-3)
-    once = stick_zones(Qf, sf, Hertz())
+    once = stick_zones(Qf, sf, HertzShape())
     assert gradual_table.again(Qf, sf, once).all()
     np.testing.assert_allclose(solved(Qf, sf), [once.left, once.right], rtol=0, atol=1e-9)
 
@@ -169,7 +169,7 @@ def along_lines(count=10, points=400, seed=SEED + 5):
     ends[: count // 2, :, 0] = (0.3, 0.98)  # across the region in which slip turns round
     ends[count // 2 :, :, 1] = (0.05, 10)
     Qf, sf = np.moveaxis(ends[:, :1] + share[:, None] * (ends[:, 1:] - ends[:, :1]), 2, 0)
-    zone = stick_zones(Qf.ravel(), sf.ravel(), Hertz())
+    zone = stick_zones(Qf.ravel(), sf.ravel(), HertzShape())
     there = turns_round(Qf.ravel(), sf.ravel(), zone.s, zone.centre, zone.half_width)
     gradual = gradual_table.tabled(Qf.ravel()[there], sf.ravel()[there])
     for values, found in zip(zone, gradual, strict=True):
@@ -196,7 +196,7 @@ def test_zones_of_one_step_show_as_jumps(monkeypatch):
     real = gradual_table.tabled
 
     def one_step(Qf, sf):
-        zone, once = real(Qf, sf), stick_zones(Qf, sf, Hertz())
+        zone, once = real(Qf, sf), stick_zones(Qf, sf, HertzShape())
         inner = gradual_table.parted(Qf, sf)
         return type(zone)(*(np.where(inner, *pair) for pair in zip(once, zone, strict=True)))
 

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from partialslip.halfplane.gradual_path import certificate as certificates
-from partialslip.halfplane.gradual_path.certificate import certificate, certify
+from partialslip.halfplane.gradual_path.certificate import certificate_of, certify
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady, stuck
 from partialslip.halfplane.gradual_path.inner_rates import other_root
 from partialslip.halfplane.gradual_path.retreat import Zone
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage, common_zones
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 
 LOADS = Loads(7.2, np.pi * 0.9975)
 
@@ -20,7 +20,7 @@ LOADS = Loads(7.2, np.pi * 0.9975)
 @functools.cache
 def parted():
     """The steady half cycle, and its phase with the inner zone."""
-    half = steady(LOADS, Hertz())
+    half = steady(LOADS, HertzShape())
     return half, half.phases[0]
 
 
@@ -59,7 +59,7 @@ def test_both_intervals_move_alike():
     ],
 )
 def test_hard_ways_are_followed(Qf, sf):
-    assert certificate(steady(Loads(sf, np.pi * Qf), Hertz())).worst < 1e-9
+    assert certificate_of(steady(Loads(sf, np.pi * Qf), HertzShape())).worst < 1e-9
 
 
 def test_points_that_change_from_one_interval_to_the_other_have_slipped():
@@ -84,7 +84,7 @@ def test_points_of_a_vanished_interval_that_count_as_stuck_are_seen(monkeypatch)
         return common_zones((one, other) for one in before.sticks for other in after.sticks)
 
     loads = Loads(15.993849408989083, np.pi * 0.40770240756657306)
-    before = steady(loads, Hertz(), parts=False)
+    before = steady(loads, HertzShape(), parts=False)
     half = HalfCycle(loads, -before.settled, before)
     way = [half.phases[0].at(0.05 * half.phases[0].last.progress), half.phases[0].last]
     assert certify(loads, way).stick < 1e-8
@@ -95,7 +95,7 @@ def test_points_of_a_vanished_interval_that_count_as_stuck_are_seen(monkeypatch)
 @pytest.mark.slow
 def test_the_inner_zone_closes_when_event_driven_cells_say_so():
     """At (0.85, 9), by cells that are followed event by event and share nothing with the package."""
-    half = steady(Loads(9.0, np.pi * 0.85), Hertz())
+    half = steady(Loads(9.0, np.pi * 0.85), HertzShape())
     x, q, closes = event_cells.follow(200, 0.85, 9.0)
     assert closes == pytest.approx(half.phases[0].last.progress, abs=2e-2)
     assert np.abs(q - half.last.q(x)).mean() < 5e-3
@@ -114,14 +114,14 @@ def test_a_kink_beside_the_right_end_left_out_is_seen(monkeypatch):
 
     monkeypatch.setattr(HalfCycle, "stuck", property(stuck))
     with pytest.raises(LostError):
-        steady(Loads(9.55338, np.pi * 0.53022), Hertz())
+        steady(Loads(9.55338, np.pi * 0.53022), HertzShape())
 
 
 @pytest.mark.slow
 def test_states_are_mixed_where_their_parts_meet_and_between():
     """A state is on the way to itself; half-way between two states that are alike, places at which parts meet are, too,
     and q on the bound stays there. States with other parts are not mixed."""
-    one, other = parted()[0].last.q, steady(Loads(7.21, LOADS.shear), Hertz()).last.q
+    one, other = parted()[0].last.q, steady(Loads(7.21, LOADS.shear), HertzShape()).last.q
     x = np.linspace(-1, 1, 801)[1:-1]
     np.testing.assert_allclose(one.toward(one, 0.3)(x), one(x), atol=1e-9)
     half = one.toward(other, 0.5)
@@ -130,7 +130,7 @@ def test_states_are_mixed_where_their_parts_meet_and_between():
     np.testing.assert_allclose(outer[1], (outer[0] + outer[2]) / 2, atol=1e-14)
     assert np.abs(half(x[x > outer[1][1]])) == pytest.approx(np.sqrt(1 - x[x > outer[1][1]] ** 2))
     assert np.abs(half(x) - (one(x) + other(x)) / 2).mean() < 1e-4
-    assert one.toward(steady(Loads(7.0, np.pi * 0.55), Hertz()).last.q, 0.5) is None
+    assert one.toward(steady(Loads(7.0, np.pi * 0.55), HertzShape()).last.q, 0.5) is None
 
 
 @pytest.mark.fault

@@ -5,14 +5,14 @@ import itertools
 import numpy as np
 import pytest
 
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.slip import density
 from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range
 
 LOADS = {"small tension": (0.75, 2.4), "large tension": (0.3, 4.0), "beside the middle": (0.2, 8.0)}
-SHAPES = {"hertz": Hertz(), "flat with round corners": Punch(0.5)}
+SHAPES = {"hertz": HertzShape(), "flat with round corners": Punch(0.5)}
 PLACES = np.array([-0.97, -0.81, -0.4, 0.03, 0.35, 0.62, 0.98])
 STEPS = 3000  # of a piece
 

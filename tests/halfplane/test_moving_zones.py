@@ -7,7 +7,7 @@ import pytest
 from partialslip import halfplane, load_scene, run
 from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 
 SHEAR = load_scene("hertz-shear")
 P0 = halfplane.contact(SHEAR).p0
@@ -42,7 +42,7 @@ def error_of_q(found, q):
 @pytest.mark.parametrize(("Qf", "sf"), DRIFTS)
 def test_drift(Qf, sf, method):
     """Ends and q within twice their estimates; one step from load point to load point is off by 1e-2 a."""
-    found, exact = solved(Qf, sf, method, "fem.accuracy=1e-4"), steady(Loads(sf, np.pi * Qf), Hertz()).last
+    found, exact = solved(Qf, sf, method, "fem.accuracy=1e-4"), steady(Loads(sf, np.pi * Qf), HertzShape()).last
     for key, end in (("m", -exact.zone.left), ("n", exact.zone.right)):
         assert abs(getattr(found, key) / found.a - end) <= 2 * found.estimate[key]
     assert error_of_q(found, exact.q) <= 2 * found.estimate["q"]
@@ -76,7 +76,7 @@ TAKES_BACK = 0.55, 4.4
 
 
 def off_where_points_are_taken_back():
-    found, true = solved(*TAKES_BACK, "fem", "fem.accuracy=1e-4"), steady(loads(*TAKES_BACK), Hertz()).last.zone
+    found, true = solved(*TAKES_BACK, "fem", "fem.accuracy=1e-4"), steady(loads(*TAKES_BACK), HertzShape()).last.zone
     return max(abs(found.m / found.a + true.left), abs(found.n / found.a - true.right))
 
 

@@ -16,7 +16,7 @@ import partialslip
 from partialslip.errors import InputError
 from partialslip.halfplane import Contact, contact, contact_of, method
 from partialslip.halfplane import one_step_zone as stick_zone
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import loading
 from partialslip.halfplane.slip import dissipation
 from partialslip.halfplane.steady import transition
@@ -200,7 +200,7 @@ def complaints(answer):
         yield f"-n <= m <= a, |n| <= a: m = {m / a} a, n = {n / a} a"
     if "Q_mean" in limits and abs(limits["Q_mean"] / (f * pressed.P) - answer.room) > ROUGH:
         yield f"room for {limits['Q_mean'] / (f * pressed.P)} f P in place of {answer.room}"
-    if isinstance(pressed.shape, Hertz) and "dsigma_transition" in limits:
+    if isinstance(pressed.shape, HertzShape) and "dsigma_transition" in limits:
         Qf = abs(answer.shear) / (2 * f * pressed.P)
         turns = 8 * Qf / (1 + math.sqrt(1 - Qf))
         if abs(limits["dsigma_transition"] / (f * pressed.p0) - turns) > TIGHT * turns + TINY:

@@ -6,13 +6,14 @@ import boundary_elements
 import mpmath
 import numpy as np
 import pytest
+from digits import pressure
 
 import partialslip
 from partialslip import halfplane
 from partialslip.errors import InputError
 from partialslip.halfplane import steady
 from partialslip.halfplane.contact import Contact
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import loading, one_step
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Conditions
@@ -22,7 +23,7 @@ from partialslip.halfplane.traction import half_range
 from partialslip.run import default_methods
 
 P = math.pi / 2  # of a contact with a = p0 = 1
-UNIT = Contact(1.0, P, Hertz())
+UNIT = Contact(1.0, P, HertzShape())
 LOADS = [(0.3, 0.5, 1.2), (0.3, 4, 1.2), (0.3, 4, -1.2), (-0.2, 0.6, 3), (-0.2, 5, 3), (0.5, 1, -2), (0, 0, 2)]
 
 
@@ -40,7 +41,7 @@ def random_loads(count, seed, largest=8.0):
 def test_small_tension_of_hertz_is_that_of_another_curvature():
     """c^2 = (1 - Qf)/(1 + gf/8) and e = -sf/(8 + gf)."""
     Qf, sf, gf = random_loads(2000, 1)
-    zones = stick_zones(Qf, sf, Hertz(), gf)
+    zones = stick_zones(Qf, sf, HertzShape(), gf)
     c, e = np.sqrt((1 - Qf) / (1 + gf / 8)), -sf / (8 + gf)
     small = (c - e < 1) & ((1 + gf / 8) * (1 - Qf) < 3)
     assert small.sum() > 500
@@ -49,24 +50,7 @@ def test_small_tension_of_hertz_is_that_of_another_curvature():
     assert (zones.s[small] == 1).all()
 
 
-def pressure(shape):
-    """Pressure in 30 digits."""
-    if isinstance(shape, Hertz):
-        return lambda t: mpmath.sqrt(max((1 - t) * (1 + t), 0))
-    psi0 = mpmath.asin(mpmath.mpf(float(shape.flats[0])))
-
-    def p(t):
-        if abs(t) >= 1:
-            return mpmath.mpf(0)
-        psi = mpmath.asin(t)
-        logs = mpmath.sin(psi) * mpmath.log(abs(mpmath.sin(psi + psi0) / mpmath.sin(psi - psi0)))
-        logs += mpmath.sin(psi0) * mpmath.log(abs(mpmath.tan((psi + psi0) / 2) * mpmath.tan((psi - psi0) / 2)))
-        return ((mpmath.pi - 2 * psi0) * mpmath.cos(psi) + logs) / (mpmath.pi - 2 * psi0 - mpmath.sin(2 * psi0))
-
-    return p
-
-
-@pytest.mark.parametrize(("shape", "count"), [(Hertz(), 16), (Punch(0.5), 6)])
+@pytest.mark.parametrize(("shape", "count"), [(HertzShape(), 16), (Punch(0.5), 6)])
 def test_the_conditions_hold_in_30_digits(shape, count):
     """The two consistency conditions of docs/theory.md by quadrature, with t = e +- c cosh(theta)."""
     Qf, sf, gf = random_loads(count, 2, largest=4.0)
@@ -74,7 +58,7 @@ def test_the_conditions_hold_in_30_digits(shape, count):
     known = np.isfinite(zones.half_width)
     assert known.mean() > 0.6
     assert len(set(zones.s[known].tolist())) == 2
-    p = pressure(shape)
+    p = pressure(shape.flats[0] if isinstance(shape, Punch) else 0)
     with mpmath.workdps(30):
         for Q, S, G, e, c, s in np.transpose([Qf, sf, gf, *zones])[known].tolist():
             e, c = mpmath.mpf(e), mpmath.mpf(c)
@@ -94,7 +78,7 @@ def test_the_conditions_hold_in_30_digits(shape, count):
             assert abs(sums[1] - mpmath.pi / 2 * Q - mpmath.pi / 16 * G * c**2) < 1e-10
 
 
-@pytest.mark.parametrize("shape", [Hertz(), Punch(0.5)])
+@pytest.mark.parametrize("shape", [HertzShape(), Punch(0.5)])
 def test_bracketing_finds_the_same(shape):
     Qf, sf, gf = random_loads(30, 3)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -109,7 +93,7 @@ def test_without_a_slope_nothing_changes_bit_for_bit():
     random = np.random.default_rng(4)
     Qf, sf = random.random(300), 12 * random.random(300)
     gf = np.where(random.random(300) < 0.5, 0.0, 0.1)
-    plain, mixed = stick_zones(Qf, sf, Hertz()), stick_zones(Qf, sf, Hertz(), gf)
+    plain, mixed = stick_zones(Qf, sf, HertzShape()), stick_zones(Qf, sf, HertzShape(), gf)
     for one, other in zip(plain, mixed, strict=True):
         assert (one == other)[gf == 0].all()
     assert (plain.half_width != mixed.half_width)[gf != 0].all()
@@ -118,22 +102,12 @@ def test_without_a_slope_nothing_changes_bit_for_bit():
     assert all((a == b).all() for a, b in zip(one, other, strict=True))
 
 
-def test_a_small_slope_changes_little():
-    """First order in the slope: no jump from the solution without it, in any regime."""
-    random = np.random.default_rng(5)
-    Qf, sf = random.uniform(0.05, 0.9, 50), random.exponential(3.0, 50)
-    plain = stick_zones(Qf, sf, Punch(0.4))
-    near = [stick_zones(Qf, sf, Punch(0.4), gf) for gf in (-1e-6, 1e-6)]
-    assert near[0].half_width == pytest.approx(plain.half_width, rel=1e-5)
-    assert (near[0].centre + near[1].centre) / 2 == pytest.approx(plain.centre, abs=1e-9)
-
-
 def test_mirroring_and_turning():
     """Mirrored, dQ and dslope change sign; turned, all loads do."""
     random = np.random.default_rng(6)
     dQ, dsigma = 2 * P * random.uniform(-0.6, 0.6, 200), random.normal(0, 4, 200)
     dslope = 2 * random.normal(0, 1, 200)
-    for shape in (Hertz(), Punch(0.5)):
+    for shape in (HertzShape(), Punch(0.5)):
         pressed = Contact(1.0, P, shape, centre=0.3)
         mirrored = Contact(1.0, P, shape, centre=-0.3)
         one = halfplane.stick_zone(pressed, 1.0, dQ, dsigma, dslope)
@@ -149,7 +123,7 @@ def test_mirroring_and_turning():
 
 def test_the_slope_counts_from_the_origin_of_the_scene():
     """A contact beside the middle sees the tension of its place."""
-    beside = Contact(1.0, P, Hertz(), centre=2.0)
+    beside = Contact(1.0, P, HertzShape(), centre=2.0)
     one, other = halfplane.stick_zone(beside, 1.0, 0.4, 0.3, 0.5), halfplane.stick_zone(UNIT, 1.0, 0.4, 1.3, 0.5)
     assert one.centre - 2.0 == pytest.approx(other.centre, abs=1e-14)
     assert one.half_width == other.half_width
@@ -162,14 +136,14 @@ def test_points_inside_that_would_slip_first_are_refused():
     assert held.slides.tolist() == [False, False]
     with pytest.raises(InputError, match=r"^dslope = 30.0: exact does not hold: the tension varies so much along x"):
         halfplane.stick_zone(UNIT, 1.0, 0.0, 0.0, 30.0)
-    _, _, p, (q,) = boundary_elements.march(Hertz(), [(0.0, 0.0, 15.0)], steps=1)
+    _, _, p, (q,) = boundary_elements.march(HertzShape(), [(0.0, 0.0, 15.0)], steps=1)
     assert q[len(q) // 2] == -p[len(q) // 2]
 
 
 # --- tractions and slip
 
 
-@pytest.mark.parametrize("shape", [Hertz(), Punch(0.5)])
+@pytest.mark.parametrize("shape", [HertzShape(), Punch(0.5)])
 @pytest.mark.parametrize(("Qf", "sf", "gf"), LOADS)
 def test_tractions_are_those_of_boundary_elements(shape, Qf, sf, gf):
     """From nothing, under the bound f p: Qf = Q/(f P), sf = 2 sigma/(f p0)."""
@@ -189,7 +163,7 @@ def test_slip_is_the_integral_of_its_density(Qf, sf, gf):
 @pytest.mark.parametrize(("Qf", "sf", "gf"), [*LOADS, (-0.5, 0.3, 6.0)])
 def test_the_bound_of_mean_loads_is_the_room_of_the_stick_zone(Qf, sf, gf):
     """All along the way, or at the load points where slip reverses."""
-    cycle, shape = one_step(Qf, sf, Hertz(), gf), Hertz()
+    cycle, shape = one_step(Qf, sf, HertzShape(), gf), HertzShape()
     angle = (np.arange(4000) + 0.5) / 4000 * np.pi
     x = cycle.zone.centre + cycle.zone.half_width * np.cos(angle)
     q = half_range(x, cycle.zone, shape, gf)
@@ -206,8 +180,8 @@ def test_a_slope_of_the_wrong_sign_is_seen(monkeypatch):
     """A deliberate fault: the slope's part of the conditions with the other sign."""
     true = Conditions.sloped
     monkeypatch.setattr(Conditions, "sloped", lambda self, gf, *rest: true(self, -gf, *rest))
-    x, widths, _, (q,) = boundary_elements.march(Hertz(), [(0.3, 2.0, 0.6)], count=160, steps=1)
-    h = half_range(x, stick_zone(0.3, 4.0, Hertz(), 1.2), Hertz(), 1.2)
+    x, widths, _, (q,) = boundary_elements.march(HertzShape(), [(0.3, 2.0, 0.6)], count=160, steps=1)
+    h = half_range(x, stick_zone(0.3, 4.0, HertzShape(), 1.2), HertzShape(), 1.2)
     assert np.sqrt(((h - q) ** 2 @ widths) / (q**2 @ widths)) > 0.03
 
 
@@ -216,7 +190,7 @@ def test_where_slip_does_not_reverse_steps_do_not_matter():
     for Qf, sf, gf, turns in ((0.3, 4.0, 1.2, False), (-0.4, 2.0, 6.0, False), (0.0, 0.0, 22.0, True)):
         assert loading(UNIT, 1.0, 2 * P * Qf, sf, gf, bound=2).turns_round == turns
         cycle = [(Qf, sf / 2, gf / 2), (-Qf, -sf / 2, -gf / 2), (Qf, sf / 2, gf / 2)]
-        one, many = (boundary_elements.march(Hertz(), cycle, 160, steps)[3] for steps in (1, 24))
+        one, many = (boundary_elements.march(HertzShape(), cycle, 160, steps)[3] for steps in (1, 24))
         apart = np.abs((one[2] - one[1]) - (many[2] - many[1])).max()
         assert (apart > 1e-3) == turns
 
@@ -268,27 +242,6 @@ def test_exact_and_finite_elements_agree(name):
     if found["exact"].surface:
         unit = 0.3 * found["exact"].p0
         assert found["fem"].surface.at(x) == pytest.approx(found["exact"].surface.at(x), abs=3e-3 * unit)
-
-
-def test_units_do_not_matter():
-    one = SCENES["large tension"]
-    other = partialslip.parse_scene(
-        {
-            **{key: value for key, value in partialslip.record.msgspec.to_builtins(one).items() if key != "shown_in"},
-            "material": {"E": 72e3, "nu": 0.33},
-            "profile": {"kind": "hertz", "R": 10.0},
-            "load": {
-                "P": one.P / 1e3,
-                "Q": np.array(one.load.Q) / 1e3,
-                "sigma": np.array(one.load.sigma) / 1e6,
-                "sigma_slope": np.array(one.load.sigma_slope) / 1e9,
-            },
-            "units": "N-mm",
-        }
-    )
-    found = [partialslip.run(each, "exact")["exact"] for each in (one, other)]
-    assert found[1].stick_half_width == pytest.approx(found[0].stick_half_width, rel=1e-12)
-    assert found[1].stick_centre == pytest.approx(found[0].stick_centre, rel=1e-11)
 
 
 def test_a_slope_calls_for_tension():

@@ -9,7 +9,7 @@ from varying_scenes import varying
 import partialslip
 from partialslip import InputError, load_scene
 from partialslip.halfplane import Contact, Stress, states
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 
 ALUMINIUM = "fretting-aluminium"
 SCENES = {
@@ -160,7 +160,7 @@ def test_much_friction_adheres():
     expected = np.stack([-2 * T.real + y * T_z.imag + sigma, -y * T_z.imag, T.imag + y * T_z.real])
     off = []
     for f in (1e3, 1e4, 1e5):
-        one, two = Stress(Contact(1.0, math.pi / 2, Hertz()), f, 2 * Q, 2 * sigma).inside(x, y)
+        one, two = Stress(Contact(1.0, math.pi / 2, HertzShape()), f, 2 * Q, 2 * sigma).inside(x, y)
         off.append(np.abs((two - one) / 2 - expected).max())
     assert off[0] / off[1] == pytest.approx(10, rel=0.05)
     assert off[1] / off[2] == pytest.approx(10, rel=0.05)

@@ -1,56 +1,26 @@
-"""Tractions: resultants, bounds, the adhered limit, and no relative strain in the stick zone."""
+"""Tractions: the pressure, the adhered limit, room for a mean of Q, and no relative strain in the stick zone."""
 
 import numpy as np
 import pytest
+from quadrature import integrate
 
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
-from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import adhered, half_range
-from partialslip.result import StickZone
 
 LOADS = [(0.19, 0.4), (0.75, 2.4), (0.4, 4.03), (0.3, 8.0), (0.0, 3.0), (0.9, 20.0), (0.4, 87.8), (0.5, 2.3431457535)]
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(400)
 
 
-HERTZ = Hertz()
+HERTZ = HertzShape()
 SHAPES = [HERTZ, Punch(0.1), Punch(0.6), Punch(0.95)]
 every_shape = pytest.mark.parametrize("shape", SHAPES)
 
 
-def integrate(function, zone: StickZone, shape: Shape = HERTZ) -> float:
-    """Over [-1, 1], for square roots at the ends of the zones and logarithmic kinks at the flat's."""
-    ends = np.unique(
-        np.clip([-1.0, *shape.kinks, zone.centre - zone.half_width, zone.centre + zone.half_width, 1.0], -1, 1)
-    )
-    u = np.linspace(-3.5, 3.5, 241)
-    x = np.tanh(np.pi / 2 * np.sinh(u))
-    weights = (u[1] - u[0]) * np.pi / 2 * np.cosh(u) / np.cosh(np.pi / 2 * np.sinh(u)) ** 2
-    points = (ends[1:] + ends[:-1])[:, None] / 2 + np.diff(ends)[:, None] / 2 * x
-    return float(np.sum(np.diff(ends)[:, None] / 2 * weights * function(points.ravel()).reshape(points.shape)))
-
-
-@every_shape
-@pytest.mark.parametrize(("Qf", "sf"), LOADS)
-def test_resultant_is_the_shear_force(Qf, sf, shape):
-    zone = stick_zone(Qf, sf, shape)
-    assert integrate(lambda x: half_range(x, zone, shape), zone, shape) == pytest.approx(Qf * np.pi / 2, abs=1e-12)
-
-
 @every_shape
 def test_resultant_of_the_pressure(shape):
-    zone = StickZone(0.0, 1.0, 1)
-    assert integrate(shape.pressure, zone, shape) == pytest.approx(np.pi / 2, abs=1e-12)
-
-
-@every_shape
-@pytest.mark.parametrize(("Qf", "sf"), LOADS)
-def test_friction_bound_holds_everywhere(Qf, sf, shape):
-    zone = stick_zone(Qf, sf, shape)
-    x = np.concatenate([np.linspace(-1, 1, 2001), zone.centre + zone.half_width * np.linspace(-1, 1, 201)])
-    assert np.all(np.abs(half_range(x, zone, shape)) <= shape.pressure(x) + 1e-13)
+    assert integrate(shape.pressure, [-1.0, *shape.kinks, 1.0]) == pytest.approx(np.pi / 2, abs=1e-12)
 
 
 @every_shape
@@ -60,10 +30,8 @@ def test_what_sticks_does_not_move(Qf, sf, shape):
     zone = stick_zone(Qf, sf, shape)
     for x in zone.centre + zone.half_width * np.array([-0.9, -0.5, 0.1, 0.7, 0.95]):
         here = half_range(np.array([x]), zone, shape)[0]
-        split = type("Split", (Shape,), {"kinks": (*shape.kinks, x)})()
-        smooth = integrate(
-            lambda s, x=x, here=here: (half_range(s, zone, shape) - here) / (x - s + (s == x)), zone, split
-        )
+        ends = np.unique(np.clip([-1.0, *shape.kinks, zone.left, x, zone.right, 1.0], -1, 1))
+        smooth = integrate(lambda s, x=x, here=here: (half_range(s, zone, shape) - here) / (x - s + (s == x)), ends)
         principal = smooth + here * np.log((x + 1) / (1 - x))
         assert principal / np.pi + sf / 8 == pytest.approx(0, abs=1e-6)  # kinks at both sides of the pole cost digits
 
@@ -114,12 +82,6 @@ def test_the_mean_load_bound_of_an_example():
     """With half-width 0.9, dQ = 1.2 and dsigma = 8: both load points alone have room for 0.2087."""
     P = np.pi * 0.9**2 / 2
     assert one_step(0.6 / P, 8 / 0.9, HERTZ).mean_load_bound * P == pytest.approx(0.184963, abs=1e-6)
-
-
-@every_shape
-def test_mean_load_bound_of_small_tension_is_gross_sliding(shape):
-    assert one_step(0.19, 0.4, shape).mean_load_bound == pytest.approx(0.81, abs=1e-11)
-    assert one_step(0.19, 0.4, HERTZ).mean_load_bound == pytest.approx(0.81, abs=1e-14)
 
 
 @every_shape

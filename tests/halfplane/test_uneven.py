@@ -7,7 +7,7 @@ from refusing import line_of
 
 from partialslip import parse_scene, run
 from partialslip.halfplane import contact, contact_of, stick_zone
-from partialslip.halfplane.uneven import _Search, press
+from partialslip.halfplane.uneven import _Search, press_uneven
 
 TABLE = np.linspace(-2e-3, 2.5e-3, 91)
 SIDES = np.where(TABLE < 0, TABLE**2 / 0.02, TABLE**2 / 0.04 + np.maximum(TABLE, 0) ** 4 * 3e4)
@@ -53,7 +53,7 @@ def integrals(pressed):
 def test_even_contacts_are_a_special_case(profile, moment):
     scene = made(profile)
     even, A = contact(scene), scene.material.A
-    found = press(scene.profile.curvature, A * scene.P, moment, scene.length)
+    found = press_uneven(scene.profile.curvature, A * scene.P, moment, scene.length)
     x = np.linspace(-1, 1, 101)
     assert found.a == pytest.approx(even.a, rel=1e-14)
     assert abs(found.centre) < 1e-14 * even.a
@@ -80,9 +80,9 @@ def test_brackets_where_newton_fails(monkeypatch, profile, moment):
     scene = made(profile)
     force = scene.material.A * scene.P
     given = scene.profile.curvature, force, None if moment is None else force * moment, scene.length
-    found = press(*given)
+    found = press_uneven(*given)
     monkeypatch.setattr(_Search, "newton", lambda *_: None)
-    bracketed = press(*given)
+    bracketed = press_uneven(*given)
     assert (bracketed.centre, bracketed.a) == pytest.approx((found.centre, found.a), abs=1e-9 * found.a)
 
 
@@ -97,7 +97,7 @@ def test_far_from_the_middle():
 
 def test_moment_moves_a_parabola():
     scene = made("hertz", M=3.0)
-    found = press(scene.profile.curvature, scene.material.A * scene.P, scene.material.A * 3.0, scene.length)
+    found = press_uneven(scene.profile.curvature, scene.material.A * scene.P, scene.material.A * 3.0, scene.length)
     pressed = contact(scene)
     assert (pressed.centre, pressed.tilt) == pytest.approx((3e-5, 3e-3), rel=1e-14)
     assert (found.centre, found.a, found.tilt) == pytest.approx((3e-5, pressed.a, 3e-3), rel=1e-13)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from partialslip.friction.load_path import Path
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.march.cells import compliance, forces, graded_cells
 
 
@@ -11,7 +11,7 @@ def cells(shape=None, points=(-1, 1), size=1e-2, growth=0.1):
     """Compliance, displacements under tension and bound on graded cells: a = f = A = 1, forces in f P."""
     vertices = graded_cells(np.array(points, float), size, growth)
     x = (vertices[1:] + vertices[:-1]) / 2
-    return vertices, compliance(vertices / 2), np.array([x, x**2 / 2]), forces(shape or Hertz(), vertices)
+    return vertices, compliance(vertices / 2), np.array([x, x**2 / 2]), forces(shape or HertzShape(), vertices)
 
 
 def loads(Qf, sf, **more):

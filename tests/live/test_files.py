@@ -13,7 +13,7 @@ from partialslip.errors import InputError
 from partialslip.gradual import turns_round
 from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_table import tabled
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.steady import stick_zones
 from partialslip.live import live_page
 from partialslip.output import place
@@ -51,7 +51,7 @@ def test_what_it_knows_of_the_scene(text):
     for kind, way in (("m", -1), ("n", 1)):
         points = [(*point, line["value"]) for line in known["map"][kind] for point in line["points"][::7]]
         Qf, sf, value = np.array([point for point in points if point[0] < 0.95]).T  # Qf is rounded
-        once, gradual = stick_zones(Qf, sf, Hertz()), tabled(Qf, sf)
+        once, gradual = stick_zones(Qf, sf, HertzShape()), tabled(Qf, sf)
         turned = turns_round(Qf, sf, once.s, once.centre, once.half_width) & ~np.isnan(gradual.centre)
         ends = [zone.half_width + way * zone.centre for zone in (gradual, once)]
         assert len(Qf) > 40

@@ -13,7 +13,7 @@ from partialslip.gradual import turns_round
 from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.gradual_table import parted, tabled
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.steady import stick_zones
 from partialslip.live import page
@@ -49,7 +49,7 @@ def turned():
     """Random loads (k, 2) whose slip turns round."""
     random = np.random.default_rng(4711)
     Qf, sf = random.random(2000), 12 * random.random(2000)
-    zone = stick_zones(Qf, sf, Hertz())
+    zone = stick_zones(Qf, sf, HertzShape())
     return np.column_stack([Qf, sf])[turns_round(Qf, sf, zone.s, zone.centre, zone.half_width)]
 
 
@@ -81,7 +81,7 @@ def test_the_page_against_the_solver_where_an_inner_zone_slips():
     found = asked(loads[:40])
     for (Q, s), zone in zip(loads.tolist(), found, strict=False):
         with contextlib.suppress(LostError):
-            ends.append((zone[:2], steady(Loads(s, np.pi * Q), Hertz()).last.zone))
+            ends.append((zone[:2], steady(Loads(s, np.pi * Q), HertzShape()).last.zone))
         if len(ends) == 20:
             break
     np.testing.assert_allclose(*np.swapaxes(ends, 0, 1), rtol=0, atol=1e-4)
@@ -105,7 +105,7 @@ def test_tension_alone_leaves_room_for_a_mean_of_Q():
     """Without shear the zone stays in the middle: the points at which dq has an extreme on the way are one point."""
     tensions = np.linspace(0.5, 12, 47)
     bounds = answered(BOUND, tensions.tolist())
-    assert bounds == pytest.approx([one_step(0.0, sf, Hertz()).mean_load_bound for sf in tensions], abs=1e-9)
+    assert bounds == pytest.approx([one_step(0.0, sf, HertzShape()).mean_load_bound for sf in tensions], abs=1e-9)
 
 
 @pytest.mark.fault

@@ -9,7 +9,7 @@ from opening import LARGE, answer, opened
 
 import partialslip
 from partialslip import halfplane
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.steady import stick_zone, stick_zones, transition
 from partialslip.halfplane.traction import half_range
@@ -48,7 +48,7 @@ def all_loads():
     parts = [
         (Qf, sf),
         np.meshgrid(near, [0, 1e-9, 1e-3, 0.5, 3, 7.9, 8.1, 12, 50]),
-        (some[:, None], transition(some, Hertz())[:, None] * (1 + off)),
+        (some[:, None], transition(some, HertzShape())[:, None] * (1 + off)),
         np.meshgrid([0, 1e-6, 0.1, 0.5, 0.9, 0.99], np.logspace(1.5, 5, 15)),
         (0.5, [1e5, 1e6, 1e9]),
     ]
@@ -59,7 +59,7 @@ def all_loads():
 def worst(page, Qf, sf):
     """Return the largest error of m and n, as a fraction of a."""
     centre, half_width, _, _ = zones(page, Qf, sf)
-    true_centre, true_half_width, _ = stick_zones(Qf, sf, Hertz())
+    true_centre, true_half_width, _ = stick_zones(Qf, sf, HertzShape())
     return max(np.abs(half_width + way * centre - true_half_width - way * true_centre).max() for way in (-1, 1))
 
 
@@ -68,11 +68,11 @@ def test_stick_zones(page):
     assert len(Qf) > 4800
     assert worst(page, Qf, sf) < 1e-9
     _, half_width, s, steps = zones(page, Qf, sf)
-    _, true, true_s = stick_zones(Qf, sf, Hertz())
+    _, true, true_s = stick_zones(Qf, sf, HertzShape())
     conditioned = Qf < 1 - 1e-5  # beyond, the rounding of Qf affects c
     np.testing.assert_allclose(half_width[conditioned], true[conditioned], rtol=1e-9)
     assert true.min() == 1e-100
-    clear = np.abs(sf - transition(Qf, Hertz())) > 1e-12
+    clear = np.abs(sf - transition(Qf, HertzShape())) > 1e-12
     np.testing.assert_array_equal(s[clear], true_s[clear])
     assert steps.max() <= 20  # Newton always converges
 
@@ -99,20 +99,22 @@ def test_a_wrong_formula_shows(browser, folder, true, fault):
     "loads", [(0.19, 0.4), (0.75, 2.4), (0.3, 4.0), (0.4, 4.03), (0.3, 8.0), (0.9, 9.0), (0.0, 3.0)]
 )
 def test_tractions(page, loads):
-    zone = stick_zone(*loads, Hertz())
+    zone = stick_zone(*loads, HertzShape())
     scripts = "hertz.tractions(hertz.stickZone({0}, {1}))", "hertz.meanLoadBound(hertz.stickZone({0}, {1}), {0}, {1})"
     points, bound = (page.run(script.format(*loads)) for script in scripts)
     x, p, q = (np.array([point[key] for point in points]) for key in ("x", "p", "q"))
     assert (np.diff(x) >= -1e-15).all()
     np.testing.assert_allclose((x[0], x[-1]), (-1, 1), rtol=0, atol=1e-15)
-    np.testing.assert_allclose(p, Hertz().pressure(x), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(p, HertzShape().pressure(x), rtol=0, atol=1e-12)
     ends = zone.centre + zone.half_width * np.array([-1, 1])
     inside = np.abs(x[:, None] - ends).min(axis=1) > 1e-9  # q has its steepest slope at the ends
-    np.testing.assert_allclose(q[inside], half_range(x[inside], zone, Hertz()), rtol=0, atol=1e-9)
-    assert bound == pytest.approx(one_step(*loads, Hertz()).mean_load_bound, abs=1e-9)
-    peak = np.abs(half_range(np.union1d(x[inside], [0.0, *np.clip(ends, -1, 1)]), zone, Hertz())).max()
+    np.testing.assert_allclose(q[inside], half_range(x[inside], zone, HertzShape()), rtol=0, atol=1e-9)
+    assert bound == pytest.approx(one_step(*loads, HertzShape()).mean_load_bound, abs=1e-9)
+    peak = np.abs(half_range(np.union1d(x[inside], [0.0, *np.clip(ends, -1, 1)]), zone, HertzShape())).max()
     assert page.run("hertz.largest(hertz.stickZone({}, {}))".format(*loads)) == pytest.approx(peak, abs=1e-9)
-    assert page.run(f"hertz.transition({loads[0]})") == pytest.approx(float(transition(loads[0], Hertz())), abs=1e-12)
+    assert page.run(f"hertz.transition({loads[0]})") == pytest.approx(
+        float(transition(loads[0], HertzShape())), abs=1e-12
+    )
 
 
 @pytest.mark.parametrize(("overrides", "regime"), SIGNS, ids=[f"{' '.join(loads)}" for loads, _ in SIGNS])

@@ -15,7 +15,7 @@ from partialslip.gradual import turns_round
 from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.steady import stick_zone, stick_zones, transition
@@ -93,9 +93,9 @@ def test_table_against_one_zone_at_a_time(hertz):
     assert list(table[0]) == ["Qf", "sf", "m_over_a", "n_over_a", "half_width_over_a", "regime", "loads"]
     for row in table[::37]:
         Qf, sf = float(row["Qf"]), float(row["sf"])
-        zone, turns = stick_zone(Qf, sf, Hertz()), one_step(Qf, sf, Hertz()).turns_round
+        zone, turns = stick_zone(Qf, sf, HertzShape()), one_step(Qf, sf, HertzShape()).turns_round
         if turns and row["loads"] == "gradual":
-            left, right = steady(Loads(sf, np.pi * Qf), Hertz()).last.zone
+            left, right = steady(Loads(sf, np.pi * Qf), HertzShape()).last.zone
             zone = StickZone((left + right) / 2, (right - left) / 2, 0)
         else:
             assert (row["loads"] == "one step") == turns
@@ -109,7 +109,7 @@ def test_table_against_closed_forms(hertz):
     table = rows(hertz)
     Qf, sf, m, n = (column(table, key) for key in ("Qf", "sf", "m_over_a", "n_over_a"))
     assert (len(table), Qf.max(), sf.max()) == (50 * 51, 0.98, 10.0)
-    once = stick_zones(Qf, sf, Hertz())
+    once = stick_zones(Qf, sf, HertzShape())
     plain = ~turns_round(Qf, sf, once.s, once.centre, once.half_width)  # others are in the test above
     table, Qf, sf, m, n = (
         [row for row, kept in zip(table, plain, strict=True) if kept],
@@ -125,7 +125,7 @@ def test_table_against_closed_forms(hertz):
     assert (n[~either] < m[~either]).all()
 
 
-@pytest.mark.parametrize("shape", [Hertz(), Punch(0.6)], ids=["hertz", "punch"])
+@pytest.mark.parametrize("shape", [HertzShape(), Punch(0.6)], ids=["hertz", "punch"])
 @pytest.mark.usefixtures("coarse")
 def test_lines_lead_through_their_stick_zones(shape):
     data = grid._mapped(shape, 10.0, lambda _: None)
@@ -137,7 +137,9 @@ def test_lines_lead_through_their_stick_zones(shape):
                 continue
             zones = grid._zones(Qf, sf, shape)
             there = (
-                grid._tabled(grid.MapLine(0.0, Qf, sf), shape) if isinstance(shape, Hertz) else np.zeros(len(Qf), bool)
+                grid._tabled(grid.MapLine(0.0, Qf, sf), shape)
+                if isinstance(shape, HertzShape)
+                else np.zeros(len(Qf), bool)
             )
             found = zones.zone.half_width + way * zones.zone.centre
             np.testing.assert_allclose(found[~there], line.at, rtol=0, atol=1e-9)
@@ -145,7 +147,7 @@ def test_lines_lead_through_their_stick_zones(shape):
     assert {line.at for line in data.n_lines} == set(grid.N_LEVELS)
 
 
-@pytest.mark.parametrize("shape", [Hertz(), Punch(0.6)], ids=["hertz", "punch"])
+@pytest.mark.parametrize("shape", [HertzShape(), Punch(0.6)], ids=["hertz", "punch"])
 @pytest.mark.usefixtures("coarse")
 def test_border_is_where_the_regime_turns(shape):
     data = grid._mapped(shape, 10.0, lambda _: None)
@@ -200,7 +202,7 @@ def test_a_scene_on_the_map(tmp_path, monkeypatch, capsys):
     assert main(["map", "hertz-large-tension"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "hertz-large-tension: large tension, m = 0.8038533 a, n = 0.2949287 a"
-    transition, bound = 8 * (1 - 0.6**0.5) * 200, one_step(0.4, 4.03, Hertz()).mean_load_bound
+    transition, bound = 8 * (1 - 0.6**0.5) * 200, one_step(0.4, 4.03, HertzShape()).mean_load_bound
     assert f"{transition:.4g} MPa" in lines[1]
     assert f"{bound * np.pi * 100:.4g} kN/m" in lines[1]
     assert len(lines) == 3

@@ -6,14 +6,14 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from partialslip import InputError, halfplane, load_scene
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
 
-HERTZ, LOADED = Hertz(), halfplane.contact(load_scene("hertz-large-tension"))
+HERTZ, LOADED = HertzShape(), halfplane.contact(load_scene("hertz-large-tension"))
 SHAPES = st.one_of(st.just(HERTZ), st.sampled_from([Punch(flat) for flat in (0.5, 0.95)]))
 SHEARS = st.one_of(  # dQ/(2 f P): anywhere, next to stuck, next to sliding
     st.floats(0.0, 0.999), st.floats(-9, -3).map(lambda e: 10**e), st.floats(-9, -3).map(lambda e: 1 - 10**e)

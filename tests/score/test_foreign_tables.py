@@ -10,7 +10,7 @@ from refusing import line_of
 from partialslip import InputError, load_scene, run
 from partialslip.cli import main
 from partialslip.score import headers, score
-from partialslip.score.read import read
+from partialslip.score.read import read_tractions
 
 SCENE = load_scene("fretting-aluminium")
 EXACT = run(SCENE, ["exact"]).results["exact"]
@@ -40,7 +40,7 @@ TABLES = {
 def test_tables_of_other_codes(tmp_path, code):
     path = tmp_path / "t.txt"
     path.write_text(TABLES[code], "utf-8")
-    found = read(path, SCENE)
+    found = read_tractions(path, SCENE)
     for column, wanted in ((found.x, X), (found.p, P), (found.dq, DQ)):
         assert column == pytest.approx(wanted, rel=1e-12, abs=1e-9 * np.abs(wanted).max())
     assert ("CPRESS" in found.made_of) == ("CPRESS" in TABLES[code])
@@ -48,14 +48,14 @@ def test_tables_of_other_codes(tmp_path, code):
         assert any("at load point 2" in note for note in found.notes)
         turning = load_scene("fretting-aluminium", ["load.Q=[0.0, 38750.0]", "load.sigma=[0.0, 1e8]"])
         with pytest.raises(InputError, match="not fully reversed"):
-            read(path, turning)
+            read_tractions(path, turning)
 
 
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-8-sig", "utf-8"])
 def test_encodings(tmp_path, encoding):
     path = tmp_path / "t.csv"
     path.write_text("x,p,dq\n" + lines(X, P, DQ), encoding)
-    assert read(path, SCENE).p == pytest.approx(P)
+    assert read_tractions(path, SCENE).p == pytest.approx(P)
 
 
 def test_columns_by_name_number_and_difference(tmp_path):
@@ -63,11 +63,11 @@ def test_columns_by_name_number_and_difference(tmp_path):
     table = lines(X * 1e3, DQ * 0.25 / 1e6, DQ * 1.25 / 1e6, P)
     path.write_text(f"X (mm),S1 (MPa),S2 (MPa),PN\n{table}", "utf-8")
     for shear in ("S2-S1", "3-2", "S2 (MPa) - S1", "-S1+S2"):
-        found = read(path, SCENE, chosen={"x": "X", "p": "4", "dq": shear})
+        found = read_tractions(path, SCENE, chosen={"x": "X", "p": "4", "dq": shear})
         assert found.dq == pytest.approx(DQ, abs=1e-9 * P.max())
         assert found.x == pytest.approx(X)
     path.write_text(table, "utf-8")  # no header line
-    found = read(path, SCENE, chosen={"x": "1", "p": "4", "q1": "2", "q2": "3"}, factors=(1e-3, 1, 1e6))
+    found = read_tractions(path, SCENE, chosen={"x": "1", "p": "4", "q1": "2", "q2": "3"}, factors=(1e-3, 1, 1e6))
     assert found.dq == pytest.approx(DQ, abs=1e-9 * P.max())
 
 
@@ -76,7 +76,7 @@ def test_rows_without_values_are_left_out_and_counted(tmp_path):
     rows = lines(X, P, DQ).splitlines()
     rows[5:5] = ["1.0,,", "2.0,NoValue,NoValue", "3.0,-,-"]
     path.write_text("x,p,dq\n" + "\n".join(rows), "utf-8")
-    found = read(path, SCENE)
+    found = read_tractions(path, SCENE)
     assert len(found.x) == len(X)
     assert found.notes == ("3 rows without values were left out",)
 
@@ -114,7 +114,7 @@ def test_centre_auto_puts_x_in_the_middle(tmp_path, capsys):
 def test_what_cannot_be_read_is_one_line(tmp_path, table, columns, said):
     path = tmp_path / "t.csv"
     path.write_text(table, "utf-8")
-    assert re.search(said, line_of(read, path, SCENE, chosen=columns))
+    assert re.search(said, line_of(read_tractions, path, SCENE, chosen=columns))
 
 
 def test_names_of_other_codes_change_a_sign_at_most():
@@ -139,10 +139,10 @@ IN_MM = {
 def test_a_table_is_in_the_units_of_its_scene_unless_it_states_others(tmp_path, kind):
     path = tmp_path / "t.txt"
     path.write_text(IN_MM[kind], "utf-8")
-    found = read(path, SHOWN)
+    found = read_tractions(path, SHOWN)
     for column, wanted in ((found.x, X), (found.p, P), (found.dq, DQ)):
         assert column == pytest.approx(wanted, rel=1e-12, abs=1e-9 * np.abs(wanted).max())
-    assert read(path, SHOWN, factors=(1.0, 1.0, -1.0)).dq == pytest.approx(-found.dq)
+    assert read_tractions(path, SHOWN, factors=(1.0, 1.0, -1.0)).dq == pytest.approx(-found.dq)
 
 
 def test_nodal_forces_are_in_N_per_mm_of_depth(tmp_path):
@@ -150,7 +150,7 @@ def test_nodal_forces_are_in_N_per_mm_of_depth(tmp_path):
     for scene, size, force in ((SCENE, 1.0, 1.0), (SHOWN, 1e-3, 1e3)):
         path = tmp_path / "t.csv"
         path.write_text("x,Fn,dFt\n" + lines(X / size, P * h / force, DQ * h / force), "utf-8")
-        assert read(path, scene).p[1:-1] == pytest.approx(P[1:-1], rel=1e-9)
+        assert read_tractions(path, scene).p[1:-1] == pytest.approx(P[1:-1], rel=1e-9)
 
 
 def test_a_table_in_other_units_than_the_scene_is_named_with_the_factors_that_help(tmp_path):
@@ -192,7 +192,7 @@ def test_a_result_of_an_exported_deck_states_the_units_of_the_deck(tmp_path, end
         text.replace(next(line for line in text.splitlines() if line.startswith(plain[:16])), name), "ascii"
     )
     (tmp_path / "si.frd").write_text(text, "ascii")
-    found, known = read(path, SHOWN), read(tmp_path / "si.frd", SCENE)
+    found, known = read_tractions(path, SHOWN), read_tractions(tmp_path / "si.frd", SCENE)
     assert found.x == pytest.approx(known.x * size, rel=1e-12)
     assert ["the units of the deck" in note for note in found.notes] == [True] * bool(ending)
     assert found.p == pytest.approx(known.p * {1.0: 1.0}.get(size, size**-2), rel=1e-12)

@@ -5,7 +5,7 @@ import pytest
 
 from partialslip import load_scene
 from partialslip.score.method import scored
-from partialslip.score.read import read
+from partialslip.score.read import read_tractions
 
 UNLIKE = ["material.upper={E=2e11, nu=0.3}", "load={p0=400e6}", "friction.f=0.1"]
 
@@ -20,6 +20,6 @@ def test_ends_where_shear_leaves_the_bound_smoothly(count, tmp_path):
     room = np.maximum(1 - (x / c) ** 2, 0.0) ** 1.5
     table = np.column_stack([x * 1e-3, p * 4e8, *[-np.sign(x) * f * p * (1 - room) * 4e8] * 2])
     np.savetxt(tmp_path / "made.csv", table, delimiter=",", header="x,p,q1,q2", comments="")
-    found = scored(scene, read(tmp_path / "made.csv", scene), "made", "made.csv")
+    found = scored(scene, read_tractions(tmp_path / "made.csv", scene), "made", "made.csv")
     assert found.regime == "pressing"
     assert (found.m / 1e-3, found.n / 1e-3) == pytest.approx((c, c), abs=0.5 / count)

@@ -13,7 +13,7 @@ from partialslip.errors import InputError
 from partialslip.judge import compare
 from partialslip.score import calculix
 from partialslip.score.mistakes import mistakes
-from partialslip.score.read import read
+from partialslip.score.read import read_tractions
 from partialslip.score.samples import Samples
 
 method = importlib.import_module("partialslip.score.method")
@@ -31,7 +31,7 @@ def table(scene=SCENE, count=101):
 
 def scored(path, content, names="x,p,p1,dq", scene=SCENE):
     np.savetxt(path, content, delimiter=",", header=names, comments="")
-    found = method.scored(scene, read(path, scene), path.name, str(path))
+    found = method.scored(scene, read_tractions(path, scene), path.name, str(path))
     return found, compare(found, varying.solved(scene), scene, None)
 
 
@@ -61,39 +61,41 @@ def test_point_data(tmp_path):
     points, line = np.column_stack([x, 0 * x, 0 * x]), np.column_stack([np.arange(100), np.arange(1, 101)])
     mesh = meshio.Mesh(points, [("line", line)], point_data={"p": p, "p1": p1, "dq": dq})
     meshio.write(tmp_path / "t.vtu", mesh)
-    assert read(tmp_path / "t.vtu", SCENE).p1 == pytest.approx(p1)
+    assert read_tractions(tmp_path / "t.vtu", SCENE).p1 == pytest.approx(p1)
     del mesh.point_data["p1"]
     meshio.write(tmp_path / "t.vtu", mesh)
     with pytest.raises(InputError, match="must have p and p1, and one of dq"):
-        read(tmp_path / "t.vtu", SCENE)
+        read_tractions(tmp_path / "t.vtu", SCENE)
 
 
 def test_calculix_at_both_load_points():
     found = calculix.read_frd(FRD.read_text(), "a.frd", None, (0, 1, 2))
     turned = calculix.read_frd(FRD.read_text(), "a.frd", None, (1, 0, 2))
     assert np.array_equal(found["p1"], turned["p"])
-    assert read(FRD, SCENE).p1 is not None
-    assert read(FRD, SCENE.replace(load={"P": SCENE.P})).p1 is None
+    assert read_tractions(FRD, SCENE).p1 is not None
+    assert read_tractions(FRD, SCENE.replace(load={"P": SCENE.P})).p1 is None
 
 
 def test_what_is_missing_or_too_much_is_named(tmp_path):
     path, constant = tmp_path / "t.csv", SCENE.replace(load={"P": SCENE.P})
     np.savetxt(path, table()[:, [0, 1, 3]], delimiter=",", header="x,p,dq", comments="")
     with pytest.raises(InputError, match=r"must include p1, p at load point 1.*--columns p1="):
-        read(path, SCENE)
-    assert read(path, SCENE, chosen={"x": "x", "p": "p", "p1": "p", "dq": "dq"}).p1 is not None
+        read_tractions(path, SCENE)
+    assert read_tractions(path, SCENE, chosen={"x": "x", "p": "p", "p1": "p", "dq": "dq"}).p1 is not None
     with pytest.raises(InputError, match="--columns p1: must be left out"):
-        read(path, constant, chosen={"x": "x", "p": "p", "p1": "p", "dq": "dq"})
+        read_tractions(path, constant, chosen={"x": "x", "p": "p", "p1": "p", "dq": "dq"})
     np.savetxt(path, table() * [1, 1, 0, 1], delimiter=",", header="x,p,p1,dq", comments="")
     with pytest.raises(InputError, match="p1 > 0 at 0 points"):
-        read(path, SCENE)
-    assert read(path, constant).p1 is None
+        read_tractions(path, SCENE)
+    assert read_tractions(path, constant).p1 is None
 
 
 def test_half_of_the_change_is_not_the_shear_at_a_load_point(tmp_path):
     """Unless the loads are fully reversed, as those of the same scene with constant P are."""
     np.savetxt(tmp_path / "t.csv", table() * [1, 1, 1, 0.5], delimiter=",", header="x,p,p1,q", comments="")
-    found, reversed_ = (read(tmp_path / "t.csv", scene) for scene in (SCENE, SCENE.replace(load={"P": SCENE.P})))
+    found, reversed_ = (
+        read_tractions(tmp_path / "t.csv", scene) for scene in (SCENE, SCENE.replace(load={"P": SCENE.P}))
+    )
     assert found.q2 is None
     assert np.array_equal(reversed_.q2, found.dq / 2)
 

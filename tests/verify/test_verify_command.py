@@ -25,7 +25,7 @@ from partialslip.march import similar as marching
 from partialslip.run import run
 from partialslip.scene.reading import load_scene
 from partialslip.verify import Case, driver, run_case, stress_suite, suite
-from partialslip.verify.hard_cases.given_meshes import shifted
+from partialslip.verify.hard_cases.meshes import shifted
 from partialslip.verify.random_scenes import KINDS, PROFILES, draw
 from partialslip.verify.suites import _same, stress_numbers
 from partialslip.verify.verdicts import VerificationRecord

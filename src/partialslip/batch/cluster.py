@@ -43,8 +43,7 @@ class Cluster(Executor):
 
     def submit(self, do: Callable[..., Any], /, *arguments: Any, **named: Any) -> Future[Any]:
         """Submit the call ``do(*arguments, **named)`` to the scheduler."""
-        future: Future[Any] = self._pool.submit(do, *arguments, **named)
-        return future
+        return self._pool.submit(do, *arguments, **named)
 
     def check(self) -> None:
         """Raise PartialslipError if the scheduler is lost, or if there has been no worker for 30 s."""

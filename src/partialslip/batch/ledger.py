@@ -178,8 +178,7 @@ def _unsealed(line: bytes) -> dict[str, Any]:
     text += b"}"
     if not seal or end != _sum(text) + b'"}':
         raise ValueError
-    entry: dict[str, Any] = decoded(text, dict, "entry")
-    return entry
+    return decoded(text, dict, "entry")
 
 
 def _sum(text: bytes) -> bytes:

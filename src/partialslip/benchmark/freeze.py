@@ -206,7 +206,6 @@ def _mean(key: str, result: Result, other: Result) -> float | None:
     first = int(np.clip(np.searchsorted(cells, float(place) * result.a) - 1, 0, len(cells) - 2))
 
     def values(x: Array) -> Array:
-        found: Array = getattr(of.at(x), name)
-        return found
+        return getattr(of.at(x), name)
 
     return float(means(values, cells[first : first + 2], of.breaks)[0])

@@ -13,7 +13,7 @@ from partialslip.fatigue import assess
 from partialslip.result import Result
 from partialslip.scene import Scene
 from partialslip.score.method import scored
-from partialslip.score.read import read
+from partialslip.score.read import read_tractions
 from partialslip.units import Dimension
 
 GROUPS = ("contact", "stick", "tractions", "levels", "slip", "stress")  # levels: q1 and q2
@@ -125,6 +125,6 @@ def answer_from(problem: Problem, file: str | Path, columns: Mapping[str, str] |
     InputError
         If the file cannot be read.
     """
-    samples = read(Path(file), problem.scene, (1.0, 1.0, 1.0), 1, None, columns)
+    samples = read_tractions(Path(file), problem.scene, (1.0, 1.0, 1.0), 1, None, columns)
     answer = answer_of(problem, scored(problem.scene, samples, "table", str(file)))
     return msgspec.structs.replace(answer, cpu_s=None, memory_mb=None)  # those of reading

@@ -62,8 +62,7 @@ def _command(arguments: Sequence[str] | None) -> int:
     line = shlex.join(["partialslip", *(sys.argv[1:] if arguments is None else arguments)])
     line = line.encode("utf-8", "replace").decode()  # bytes of file names that are no text cannot be written
     options = parser().parse_args(arguments, argparse.Namespace(own_process=arguments is None, line=line))
-    code: int = options.command(options)
-    return code
+    return options.command(options)
 
 
 def parser() -> argparse.ArgumentParser:

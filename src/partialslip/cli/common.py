@@ -86,8 +86,7 @@ def origin(options: argparse.Namespace) -> "Made":
 
     if "made" not in options:
         options.made = made_now(options.line, options.overrides)
-    made: Made = options.made
-    return made
+    return options.made
 
 
 def print_long_path(scene: "Scene", methods: Sequence[str]) -> None:

@@ -55,7 +55,7 @@ def _fatigue(options: argparse.Namespace) -> int:
     from partialslip.fatigue import assess, tables
     from partialslip.fatigue.criteria import check_distance, chosen
     from partialslip.fatigue.page import drawn, sections, write_assessment
-    from partialslip.run import with_stresses
+    from partialslip.run import solved_with_stresses
 
     names = None if options.criterion is None else [name.strip() for name in options.criterion.split(",")]
     try:
@@ -71,7 +71,7 @@ def _fatigue(options: argparse.Namespace) -> int:
 
     def find(folder: Path) -> Findings:
         with working(name) as tell:
-            result = with_stresses(scene, options.method, tell)
+            result = solved_with_stresses(scene, options.method, tell)
             tell("criteria")
             found = assess(scene, result, names, body=options.body)
             tell("figures")

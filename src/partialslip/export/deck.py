@@ -99,8 +99,7 @@ def bodies(
 
 def sheeted(nodes: Indices, count: int, sheets: int) -> Indices:
     """Repeat ``nodes`` for each of the ``sheets``, which have ``count`` nodes each."""
-    result: Indices = (nodes + count * np.arange(sheets)[:, None]).ravel()
-    return result
+    return (nodes + count * np.arange(sheets)[:, None]).ravel()
 
 
 def rows(form: str, table: Array | Indices, first: int) -> list[str]:

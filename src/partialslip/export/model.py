@@ -75,8 +75,7 @@ class Model:
     def bulk(self, step: Step) -> Array:
         """Displacements of the lower body's outer nodes under the bulk tension of ``step``, (k, 2), m."""
         lower = self.parts[0]
-        moved: Array = lower.mesh.points[lower.outer] * (lower.strained * step.sigma)
-        return moved
+        return lower.mesh.points[lower.outer] * (lower.strained * step.sigma)
 
     def in_units(self, units: Units) -> "Model":
         """Convert the model from SI to ``units``."""

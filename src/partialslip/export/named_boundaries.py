@@ -134,5 +134,4 @@ def _pulls(lower: MeshedBody, to: str) -> dict[str, float]:
 
 def _along(points: Array, edges: Indices) -> Array:
     """Vectors along ``edges``, (k, 2)."""
-    along: Array = np.diff(points[edges], axis=1)[:, 0]
-    return along
+    return np.diff(points[edges], axis=1)[:, 0]

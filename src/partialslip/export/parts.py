@@ -72,8 +72,7 @@ class MeshedBody:
     @property
     def strained(self) -> Array:
         """Strains along x and y under a unit bulk tension of a long body, (2,), 1/Pa; zero if the body is pulled."""
-        strains: Array = (1 + self.nu) / self.E * np.array([1 - self.nu, -self.nu]) * (not self.pulled)
-        return strains
+        return (1 + self.nu) / self.E * np.array([1 - self.nu, -self.nu]) * (not self.pulled)
 
     @property
     def pull(self) -> Array:

@@ -15,7 +15,7 @@ from partialslip.fatigue.edges import Edge, edges
 from partialslip.fatigue.places import OVER, averaged, depths, largest_at, surface_points
 from partialslip.fatigue.planes import Critical
 from partialslip.result import Result
-from partialslip.run import with_stresses
+from partialslip.run import solved_with_stresses
 from partialslip.scene import Scene
 from partialslip.scene.reading import AnyScene, as_scene
 
@@ -148,7 +148,7 @@ def assess(
         The table ``fatigue`` holds the constants of the criteria and the distance of averages.
     result : Result, optional
         Of ``scene``, with stresses: ``partialslip.run(scene, method, subsurface=True)[method]``. By default the scene
-        is solved by the method that knows them (:func:`partialslip.run.with_stresses`).
+        is solved by the method that knows them (:func:`partialslip.run.solved_with_stresses`).
     criteria : iterable of str, optional
         Of principal, swt, fatemi-socie, findley, dang-van, crossland and ruiz. Default: all whose constants the scene
         has.
@@ -165,7 +165,7 @@ def assess(
     if body not in BODIES:
         raise InputError(f"body {body!r}: must be of {', '.join(BODIES)}")
     check_distance(scene, body)
-    result = with_stresses(scene) if result is None else result
+    result = solved_with_stresses(scene) if result is None else result
     scene = result.plates.told(scene) if result.plates else scene
     if result.stress_at is None:
         why = result.undetermined.get("stresses", "run the scene with subsurface=True, or by another method")

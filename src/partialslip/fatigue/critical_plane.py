@@ -143,8 +143,7 @@ def swt_measure(E: float, nu: float) -> Measure:
 
     def measure(at: OnPlanes) -> Array:
         strain = ((1 + nu) * at.normal - nu * at.trace) / E
-        result: Array = np.maximum(largest(at.normal), 0.0) * range_of(strain) / 2
-        return result
+        return np.maximum(largest(at.normal), 0.0) * range_of(strain) / 2
 
     return measure
 

@@ -35,8 +35,7 @@ def dang_van(stress: Array, alpha: float) -> Array:
     half, zz, xy = deviator - smallest_sphere(deviator)[0]  # (xx - yy)/sqrt(2), sqrt(3/2) zz, sqrt(2) xy
     radius = np.hypot(half, xy) / np.sqrt(2)
     tresca = np.maximum(radius, (radius + np.sqrt(1.5) * np.abs(zz)) / 2)  # principal values -zz/2 +- radius and zz
-    result: Array = (tresca + alpha * pressure).max(axis=0)
-    return result
+    return (tresca + alpha * pressure).max(axis=0)
 
 
 def crossland(stress: Array, alpha: float) -> Array:
@@ -60,8 +59,7 @@ def crossland(stress: Array, alpha: float) -> Array:
     219-235.
     """
     pressure, deviator = _split(stress)
-    result: Array = smallest_sphere(deviator)[1] / np.sqrt(2) + alpha * pressure.max(axis=0)
-    return result
+    return smallest_sphere(deviator)[1] / np.sqrt(2) + alpha * pressure.max(axis=0)
 
 
 def _split(stress: Array) -> tuple[Array, Array]:
@@ -131,13 +129,11 @@ def _around_five(corners: Array) -> tuple[Array, Array, Indices]:
 
 
 def _distances(points: Array, centre: Array) -> Array:
-    result: Array = np.sqrt(((points - centre) ** 2).sum(axis=0))
-    return result
+    return np.sqrt(((points - centre) ** 2).sum(axis=0))
 
 
 def _farthest(points: Array, centre: Array) -> Indices:
-    result: Indices = _distances(points, centre[:, None]).argmax(axis=0)
-    return result
+    return _distances(points, centre[:, None]).argmax(axis=0)
 
 
 def _taken(points: Array, number: Indices) -> Array:

@@ -105,8 +105,7 @@ def largest(values: Array) -> Array:
 
 def range_of(values: Array) -> Array:
     """Return the range of ``values`` (s, ...) along the load path."""
-    result: Array = largest(values) - functools.reduce(np.minimum, values)
-    return result
+    return largest(values) - functools.reduce(np.minimum, values)
 
 
 def longest_chord(shear: tuple[Array, Array]) -> Array:
@@ -218,8 +217,7 @@ def _may_win(value: Array, angle: Array, tilt: Array) -> Mask:
     highest, angle_0, tilt_0 = (np.take_along_axis(each, best, axis=0) for each in (value, angle, tilt))
     turned = np.abs((angle - angle_0 + np.pi / 2) % np.pi - np.pi / 2) * ANGLES / np.pi
     apart = np.maximum(turned, np.abs(tilt - tilt_0) * (TILTS - 1) / (np.pi / 2)) > _SAME
-    result: Mask = (apart & (value >= highest - _CLOSE * np.abs(highest))) | (np.arange(len(value))[:, None] == best)
-    return result
+    return (apart & (value >= highest - _CLOSE * np.abs(highest))) | (np.arange(len(value))[:, None] == best)
 
 
 def _newton(f: Array) -> tuple[Array, Array]:

@@ -122,8 +122,7 @@ class Factored:
 
     def _refined(self, inverse: Array, g: Array) -> Array:
         x = inverse @ g
-        result: Array = x + inverse @ (g - self.C @ x)
-        return result
+        return x + inverse @ (g - self.C @ x)
 
     def line(self, free: Mask, g: Array, held: Array, all_free: Array | None) -> AffineFamily:
         """Solutions with C x - ``g`` - shift = 0 at the ``free`` members (n,), the others at ``held`` (n,)."""
@@ -158,8 +157,7 @@ class Factored:
 
     def newton(self, free: Mask, gradient: Array) -> Array:
         """Changes of the ``free`` members (n,), k of them, that make their ``gradient`` (k,) vanish."""
-        result: Array = -self._back(self.C, np.flatnonzero(free), gradient)[0]
-        return result
+        return -self._back(self.C, np.flatnonzero(free), gradient)[0]
 
     def _back(self, matrix: Array, members: Indices, *loads: Array) -> Array:
         """Solutions of the rows and columns ``members`` of ``matrix`` for ``loads``, (m,) each."""
@@ -167,8 +165,7 @@ class Factored:
             self._factor = _cholesky(submatrix(matrix, members, members))
             self._last = matrix, members
         found, _ = la.lapack.dpotrs(self._factor, np.array(loads).T, lower=True)
-        result: Array = found.T
-        return result
+        return found.T
 
 
 def _cholesky(matrix: Array) -> Array:
@@ -307,8 +304,7 @@ class _BlockPivoting:
     @property
     def free(self) -> Mask:
         """Members between the bounds, (n,)."""
-        result: Mask = self._side == 0
-        return result
+        return self._side == 0
 
     def to_next_free(self, r: Array, more: bool) -> float:
         """With every member at a bound: free the first member that changes as the shift grows (``more``) or falls;
@@ -394,13 +390,11 @@ class _BlockPivoting:
         noise = self._noise(x, shift) / self.diagonal
         augmented = x - r / self.diagonal
         above, below = augmented > self._upper + noise, augmented < self._lower - noise
-        sides: Sides = above.astype(np.int8) - below
-        return sides
+        return above.astype(np.int8) - below
 
     def _noise(self, x: Array, shift: float) -> Array:
         """Rounding error of r."""
-        noise: Array = 4 * _EPS * (self.diagonal * np.abs(x).sum() + np.abs(self._g) + abs(shift))
-        return noise
+        return 4 * _EPS * (self.diagonal * np.abs(x).sum() + np.abs(self._g) + abs(shift))
 
     def _turn(self, wanted: Sides) -> None:
         """Move members to the ``wanted`` sides; a member at the other bound is freed first."""

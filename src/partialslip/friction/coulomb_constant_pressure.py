@@ -9,7 +9,6 @@ rates at both ends of the leg, and by the sides of the nodes on the way.
 Scaled as in :mod:`partialslip.friction.history`.
 """
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,7 +22,6 @@ from partialslip.scene.model import require_carried
 
 _AT = 1e-12  # accuracy: distance from the bound, relative, at which a node is on it
 _LEFT = 0.9, 0.5  # accuracy: of a leg: where slip on the way is looked at
-_STAGES = 32  # accuracy: fewest stages between load points at which forces are kept where slip turns round
 _SLIGHT = 1e-6  # accuracy: of the longest path of slip: what mean loads let slip less in each cycle
 # accuracy: of the bound: what forces may be off where a leg is taken for the mirror image of the one before
 _MIRRORED = 1e-10
@@ -98,8 +96,7 @@ class _Done:
         """Slip along +x and along -x, (2, n)."""
         if self.leg:
             return self.leg.slipped
-        result: Array = np.array([-self.found.rest, self.found.rest]).clip(0)
-        return result
+        return np.array([-self.found.rest, self.found.rest]).clip(0)
 
     @property
     def range(self) -> tuple[Array, Array]:
@@ -111,12 +108,8 @@ class _Done:
 
     @property
     def changed(self) -> Array | None:
-        """Share of the leg at which each node last began to slip or to stick, (n,); nan where a node slips so little
-        that it does not slip in the steady state."""
-        if not self.leg:
-            return None
-        slips = self.leg.path > _SLIGHT * self.leg.path.max()
-        return np.where(slips, np.where(self.leg.slips, self.leg.began, self.leg.stuck), np.nan)
+        """As of :meth:`Leg.changed`; None if the leg was taken in one step."""
+        return self.leg.changed(self.leg.path > _SLIGHT * self.leg.path.max()) if self.leg else None
 
 
 class _Contact:
@@ -137,12 +130,9 @@ class _Contact:
         self.factored, self._stretch, self._path, self._near = factored, stretch, path, near
         self.legs: list[_Done] = []
         self._cycle = len(path.cycle)
-        self._one_way = len({load[1:3] for load in (path.begin, *path.cycle)}) == 1  # Q drives all slip one way
         factored.expect(1 + self._cycle * (0 if path.half else min(path.cycles, _EXPECTED)))
         self._stretched = factored.refined(stretch.T)
         self._follower: Follower | None = None
-        stages = path.substeps * math.ceil(_STAGES / path.substeps)
-        self._stages = tuple((np.arange(1, stages + 1) / stages).tolist())
 
     def followed(self) -> History:
         """Follow the path."""
@@ -161,7 +151,9 @@ class _Contact:
         if self._followed:
             return self._follow(start, load, change)
         found = self._one_step(start, float(load[0]), change, self._known)
-        if self._one_way or (self._suffices(start, change, found) and self._agrees(start, load, change, found)):
+        if self._path.tension_stays or (
+            self._suffices(start, change, found) and self._agrees(start, load, change, found)
+        ):
             return _Done(start, load, change, found)
         return self._follow(start, load, change)
 
@@ -243,11 +235,12 @@ class _Contact:
         off = float(load[0] - change[0]) - float(start.sum())
         Q = float(change[0]) + (off if abs(off) > _AT * float(self._bound.sum()) else 0.0)
         try:
-            leg = self._follower.leg(Bounds.constant(self._bound), start, change[1:3] @ self._stretch, Q, self._stages)
+            leg = self._follower.leg(
+                Bounds.constant(self._bound), start, change[1:3] @ self._stretch, Q, self._path.stages
+            )
         except SlidesError:  # so near to sliding that rounding lets no node stick: a step still has an answer
             return _Done(start, load, change, self._one_step(start, float(load[0]), change, None))
-        found = Solution(leg.forces, leg.rest, leg.residual, leg.imbalance, 1, leg.pivots, leg.shift)
-        return _Done(start, load, change, found, leg)
+        return _Done(start, load, change, leg.solution, leg)
 
     def _mirrored(self, start: Array, load: Array, change: Array) -> _Done | None:
         """The mirror image of the leg before, if this leg begins at minus the loads and the forces of that one, to
@@ -294,7 +287,7 @@ class _Contact:
     def _around(self, done: _Done) -> tuple[tuple[float, ...], Array, Array]:
         """Fractions of a leg, ascending to 1, the forces (s, n) there, and the rigid shifts (s,) up to there."""
         if done.leg:
-            return self._stages, done.leg.stages, done.leg.shifts
+            return self._path.stages, done.leg.stages, done.leg.shifts
         count, Q = self._path.substeps, float(done.load[0] - done.change[0])
         shares = (np.arange(1, count + 1) / count).tolist()
         between = [

@@ -7,7 +7,6 @@ Scaled as in :mod:`partialslip.friction.history`.
 """
 
 import itertools
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,7 +19,6 @@ from partialslip.friction.normal import Presses
 from partialslip.friction.path_following import Bounds, Follower, Leg, joined
 from partialslip.scene.model import require_carried
 
-_STAGES = 32  # accuracy: fewest stages between load points at which forces are kept
 _REPEATS = 1e-12  # accuracy: change of q over a cycle, in f p, that is rounding of the events
 _SLIGHT = 1e-6  # accuracy: of the longest path of slip: none
 _NOTHING = 1e-11  # accuracy: slip, relative to the largest possible: rounding
@@ -53,14 +51,12 @@ class _Done:
     @property
     def held(self) -> Mask:
         """Nodes that are in contact throughout."""
-        held: Mask = self.pressed.values.min(axis=0) > 0
-        return held
+        return self.pressed.values.min(axis=0) > 0
 
     @property
     def _slips(self) -> Mask:
         least = max(_SLIGHT * float(self.leg.path.max()), _NOTHING * float(self.bounds.values.max(axis=0).sum()))
-        slips: Mask = self.held & (self.leg.path > least)
-        return slips
+        return self.held & (self.leg.path > least)
 
     @property
     def turns(self) -> int:
@@ -71,9 +67,8 @@ class _Done:
 
     @property
     def changed(self) -> Array:
-        """Share of the leg at which each node last began to slip or to stick, (n,); nan where a node slips so little
-        that it does not slip in the steady state."""
-        return np.where(self._slips, np.where(self.leg.slips, self.leg.began, self.leg.stuck), np.nan)
+        """As of :meth:`Leg.changed`."""
+        return self.leg.changed(self._slips)
 
 
 class _Contact:
@@ -93,8 +88,6 @@ class _Contact:
             require_carried([load[0]], float(each.values[-1].sum()))
         self._follower = Follower(submatrix(tangential, self._on, self._on))
         self._legs: list[_Done] = []
-        stages = path.substeps * math.ceil(_STAGES / path.substeps)
-        self._stages = tuple((np.arange(1, stages + 1) / stages).tolist())
 
     def followed(self) -> History:
         """Follow the path."""
@@ -110,10 +103,9 @@ class _Contact:
         # a state of another mesh has the load, and keeps the bounds, to an error of that mesh only
         start = np.clip(before.x[on], -bounds.values[0], bounds.values[0])
         g, Q = (change[1:3] @ self._stretch)[on], float(load[0]) - float(start.sum())
-        leg = self._follower.leg(bounds, start, g, Q, self._stages)
+        leg = self._follower.leg(bounds, start, g, Q, self._path.stages)
         self._legs.append(_Done(pressed, bounds, leg))
-        found = Solution(leg.forces, leg.rest, leg.residual, leg.imbalance, 1, leg.pivots, leg.shift)
-        return found.spread(on, self._count), self._spread(pressed.values[-1])
+        return leg.solution.spread(on, self._count), self._spread(pressed.values[-1])
 
     def _spread(self, values: Array) -> Array:
         return spread(values, self._on, self._count)
@@ -121,10 +113,10 @@ class _Contact:
     def _completed(self, history: History) -> History:
         """``history`` with what is known of its legs."""
         path, last = history.path, self._legs[-len(self._path.cycle) :]
-        stages = np.zeros((2, len(last) * len(self._stages), self._count))
+        stages = np.zeros((2, len(last) * len(path.stages), self._count))
         stages[:, :, self._on] = [
             np.concatenate([each.leg.stages for each in last]),
-            np.concatenate([each.pressed.stages(self._stages) for each in last]),
+            np.concatenate([each.pressed.stages(path.stages) for each in last]),
         ]
         forces, pressures = stages
         shifts = joined([each.leg.shifts for each in last])
@@ -140,7 +132,7 @@ class _Contact:
             held=self._spread(np.logical_and.reduce([each.held for each in last])).astype(bool),
             slipped=np.array([self._spread(each) for each in np.sum([each.leg.slipped for each in last], axis=0)]),
             dissipated=sum(each.leg.dissipated for each in last),
-            around=Steps((self._stages,) * len(last), forces, pressures, self._f, shifts),
+            around=Steps((path.stages,) * len(last), forces, pressures, self._f, shifts),
             turns=turns,
             changed=changed if path.in_phase else None,
             events=sum(each.leg.events for each in self._legs),

@@ -93,8 +93,7 @@ def march(
 def _spanned(forces: Array) -> Mask:
     """Nodes between the first and the last node with a force; single ones among them may be open."""
     on, numbers = np.flatnonzero(forces > 0), np.arange(len(forces))
-    result: Mask = (numbers >= on[0]) & (numbers <= on[-1])
-    return result
+    return (numbers >= on[0]) & (numbers <= on[-1])
 
 
 class _Step:
@@ -130,8 +129,7 @@ class _Step:
         free = np.flatnonzero((sides == 0) & (self._bound > 0))
         q = sides * self._bound
         if not ratios[:, free].any():
-            found: Array = ratios @ q
-            return found
+            return ratios @ q
         factor = la.cho_factor(submatrix(self._C, free, free), check_finite=False)
         moved = la.cho_solve(
             factor,
@@ -142,8 +140,7 @@ class _Step:
         missing = np.append(self._Q - q.sum(), np.zeros(len(kept))) - by.sum(axis=0)
         by = by + np.outer(uniform, missing / uniform.sum())
         q[free] = by[:, 0]
-        result: Array = np.linalg.solve(np.eye(len(kept)) - ratios[:, free] @ by[:, 1:], ratios @ q)
-        return result
+        return np.linalg.solve(np.eye(len(kept)) - ratios[:, free] @ by[:, 1:], ratios @ q)
 
     def _bounded(self, free: Array, near: Sides) -> Solution:
         on, bound = self._on, self._bound[self._on]

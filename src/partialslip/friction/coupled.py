@@ -14,7 +14,7 @@ from partialslip.friction.active_set import Solution
 from partialslip.friction.coupled_step import LoadStep, Pair, Pivot, Relative, solve_near
 from partialslip.friction.history import History, certified, follow, resting, still
 from partialslip.friction.load_path import Path
-from partialslip.friction.pressing import Pressed, Punch, Punches, Stages, disproportion
+from partialslip.friction.pressing import FlatPunch, Pressed, Punches, Stages, disproportion
 from partialslip.friction.warm_start import Trail
 from partialslip.friction.zone_ends import CORNER
 
@@ -65,7 +65,7 @@ class Nodes:
         return (right - left) / 2
 
 
-def press(
+def press_coupled(
     C: Relative,
     gap: Array,
     f: Array,
@@ -177,8 +177,7 @@ def _settled(
 
 def _covered(line: Nodes, half_width: float) -> Mask:
     """Nodes (n,) that a flat punch of the ``half_width`` covers."""
-    result: Mask = np.abs(line.x) <= half_width * (1 + _STICKS)
-    return result
+    return np.abs(line.x) <= half_width * (1 + _STICKS)
 
 
 def _punch(line: Nodes, half_width: float, guess: Pair, step: _Press) -> Pair:
@@ -199,13 +198,13 @@ def _similar(
         p, q = stages.stage(reach, 1 - size)
         return step(1.0, gap, C.moved(p, q)[0], (replace(first[0], x=p), replace(first[1], x=q)))
 
-    def from_a_punch(half_width: float) -> Punch:
+    def from_a_punch(half_width: float) -> FlatPunch:
         p, q = (each.x for each in _punch(line, half_width, none, step))
         left, right = line.ends(p, q, rise=CORNER)  # between the last node and the next one
         assert line.resultants
         points, *forces = line.resultants(p, q)
         between = left - vertex, right - vertex
-        return Punch(between, line.x, line.weights, (p, q), points - vertex, (forces[0], forces[1]), line.sized)
+        return FlatPunch(between, line.x, line.weights, (p, q), points - vertex, (forces[0], forces[1]), line.sized)
 
     reach, count, unlike = line.near or line.half_width(first), 1, 0.0
     while True:
@@ -321,7 +320,7 @@ def march(
 
     if pressed is None:
         P = path.begin[3] if path.presses_anew else 1.0
-        first = press(full, gap, f, line, path.substeps, accuracy, P, turning(path.begin))
+        first = press_coupled(full, gap, f, line, path.substeps, accuracy, P, turning(path.begin))
         done = [(first.normal, first.tangential)]
     else:
         done = [(resting(pressed), resting(0 * gap if path.before is None else path.before))]

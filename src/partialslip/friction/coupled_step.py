@@ -221,13 +221,12 @@ class LoadStep:
         """Scale (2, n) of rounding errors of the forces."""
         p, q, (approach, shift, *_) = found
         gap, kept = self._turned(found)
-        result: Array = (np.abs(p).sum() + np.abs(q).sum()) + np.stack(
+        return (np.abs(p).sum() + np.abs(q).sum()) + np.stack(
             [
                 (np.abs(gap) + abs(approach)) / np.diag(self.yy),
                 (np.abs(kept) + abs(shift)) / np.diag(self.xx),
             ]
         )
-        return result
 
     def _off(self, found: Forces, but: tuple[int, int] = (0, 0)) -> Array:
         """Opening of the gap, and slip, under the forces, (2, n). Nodes from the first up to the second of ``but``,

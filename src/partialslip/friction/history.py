@@ -126,8 +126,7 @@ class History:
         """Half of the admissible range of q: the mean of the bounds at load points 1 and 2."""
         first, second = self.bounds
         known = (first + second) / 2
-        result: Array = known if self.room is None else (self.room + np.abs(self.change)) / 2
-        return result
+        return known if self.room is None else (self.room + np.abs(self.change)) / 2
 
     @property
     def bounds(self) -> tuple[Array, Array]:
@@ -137,8 +136,7 @@ class History:
     @property
     def change(self) -> Array:
         """q2 - q1."""
-        result: Array = self.q2 - self.q1
-        return result
+        return self.q2 - self.q1
 
     @property
     def shifts(self) -> tuple[float, float]:
@@ -161,8 +159,7 @@ class History:
     @property
     def _moved(self) -> Array:
         """Change of the forces over the last cycle, (n,), without sign."""
-        result: Array = np.abs(self.points[-1].x - self.points[-1 - len(self.path.cycle)].x)
-        return result
+        return np.abs(self.points[-1].x - self.points[-1 - len(self.path.cycle)].x)
 
     @property
     def unsteady(self) -> Array | None:
@@ -203,8 +200,7 @@ class History:
         off = np.abs(self.points[last].x - self.points[last - cycle].x)
         counts = (self.bound > 0) & (np.isfinite(self.changed) if self.changed is not None else True)
         moved: Array = np.divide(off, self.bound, out=np.zeros_like(off), where=counts)
-        result: Array = sliding_window_view(np.pad(moved, _BESIDE // 2), _BESIDE).max(axis=-1)
-        return result
+        return sliding_window_view(np.pad(moved, _BESIDE // 2), _BESIDE).max(axis=-1)
 
     @property
     def ratchets(self) -> float:
@@ -227,8 +223,7 @@ class History:
     @property
     def slips(self) -> Mask:
         """Nodes that slip from load point 1 to 2, (n,)."""
-        slips: Mask = np.abs(self.change) >= (2 - _SLIPS) * self.bound
-        return slips
+        return np.abs(self.change) >= (2 - _SLIPS) * self.bound
 
     @property
     def never_slips(self) -> Mask | None:
@@ -300,8 +295,7 @@ class Steps(NamedTuple):
     @property
     def bounds(self) -> Array:
         """Friction bounds f p (s, n)."""
-        bounds: Array = np.broadcast_to(self.f * self.pressures, self.forces.shape)
-        return bounds
+        return np.broadcast_to(self.f * self.pressures, self.forces.shape)
 
 
 def _settled(path: Path, forces: Array, before: Array, bound: Array, largest: float) -> bool:

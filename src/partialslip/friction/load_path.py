@@ -1,6 +1,7 @@
 """Path of the loads, scaled: lengths by sqrt(A R P), forces by P, displacements by A P."""
 
 import itertools
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,6 +18,7 @@ MOST_CYCLES = 200
 _SETTLED, _STILL = 5e-3, (1e-7, 1e-6)
 # accuracy: of the accuracy of a, m and n: the same under other loads; q may be off by 15 times that accuracy
 _SHARE = 0.5
+_STAGES = 32  # accuracy: fewest stages of a leg that is followed event by event
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,17 @@ class Path:
         """``ways``, by default ``substeps`` equal steps."""
         equal = tuple(np.linspace(0, 1, self.substeps + 1)[1:].tolist())
         return self.ways or (equal,) * (1 + len(self.cycle))
+
+    @property
+    def stages(self) -> tuple[float, ...]:
+        """Shares of each leg, ascending to 1, at which forces are kept where legs are followed event by event."""
+        count = self.substeps * math.ceil(_STAGES / self.substeps)
+        return tuple((np.arange(1, count + 1) / count).tolist())
+
+    @property
+    def tension_stays(self) -> bool:
+        """Whether the bulk tension is constant: at constant pressure, Q drives all slip one way then."""
+        return len({load[1:3] for load in (self.begin, *self.cycle)}) == 1
 
     @property
     def halved(self) -> "Path":

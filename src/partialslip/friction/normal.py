@@ -145,8 +145,7 @@ class Presses:
         moments = [-float(self._arms[closed] @ each[:-1][closed]) for each in (pressed, tilted)]
         # a single node has no lever
         angle = (M - moments[0]) / moments[1] if np.count_nonzero(closed) > 1 else 0.0
-        result: Array = (pressed + angle * tilted)[:-1]
-        return result
+        return (pressed + angle * tilted)[:-1]
 
     @property
     def solutions(self) -> list[Solution]:

@@ -129,8 +129,7 @@ class Nested:
 
     def transposed(self, forces: Array) -> Array:
         """L^-T ``forces``, (m,)."""
-        result: Array = la.blas.dtrsv(self.L, forces, lower=True, trans=True)
-        return result
+        return la.blas.dtrsv(self.L, forces, lower=True, trans=True)
 
     def tail(self, core: int, count: int) -> tuple[int, Array]:
         """How many of the first ``core`` nodes are eliminated, and the compliances of those that follow, up to

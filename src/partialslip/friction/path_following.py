@@ -20,7 +20,7 @@ import scipy.linalg as la
 
 from partialslip.arrays import Array, Indices, Mask
 from partialslip.errors import PartialslipError
-from partialslip.friction.active_set import inverse
+from partialslip.friction.active_set import Solution, inverse
 from partialslip.friction.tableau import Tableau
 
 _EPS = float(np.finfo(float).eps)
@@ -67,8 +67,7 @@ class Bounds(NamedTuple):
         place = np.interp(shares, self.at, np.arange(len(self.at)))
         before = np.minimum(place.astype(np.int64), len(self.at) - 2)
         weight = (place - before)[:, None]
-        result: Array = (1 - weight) * self.values[before] + weight * self.values[before + 1]
-        return result
+        return (1 - weight) * self.values[before] + weight * self.values[before + 1]
 
 
 @dataclass(frozen=True)
@@ -127,10 +126,19 @@ class Leg:
         return replace(self, lowest=-self.highest, highest=-self.lowest, events=0, pivots=0, **turned)
 
     @property
+    def solution(self) -> Solution:
+        """The end of the leg, as one step."""
+        return Solution(self.forces, self.rest, self.residual, self.imbalance, 1, self.pivots, self.shift)
+
+    def changed(self, slips: Mask) -> Array:
+        """Share of the leg at which each node last began to slip or to stick, (n,); nan at nodes other than ``slips``:
+        they slip so little that they do not slip in the steady state."""
+        return np.where(slips, np.where(self.slips, self.began, self.stuck), np.nan)
+
+    @property
     def slipped(self) -> Array:
         """Slip along +x and along -x, (2, n)."""
-        result: Array = np.array([self.path - self.rest, self.path + self.rest]) / 2
-        return result
+        return np.array([self.path - self.rest, self.path + self.rest]) / 2
 
 
 def joined(shifts: Sequence[Array]) -> Array:
@@ -142,8 +150,7 @@ def joined(shifts: Sequence[Array]) -> Array:
 def noise(rate: Array, g: Array, shift: float, diagonal: Array) -> Array:
     """Rounding errors (n,) of the rates of forces (n,) under the rates ``g`` (n,) and ``shift`` of displacements;
     ``diagonal`` (n,) is that of the compliance."""
-    result: Array = 16 * _EPS * (float(np.abs(rate).sum()) + (np.abs(g) + abs(shift)) / diagonal)
-    return result
+    return 16 * _EPS * (float(np.abs(rate).sum()) + (np.abs(g) + abs(shift)) / diagonal)
 
 
 class Follower:
@@ -326,8 +333,7 @@ class _Leg:
 
     def _off(self) -> Array:
         """Errors of the displacements (n,): the way from the beginning, by a product with C, less what is added up."""
-        result: Array = self._C @ (self._forces - self._start) - self._at * self._g - self._shift - self._rest
-        return result
+        return self._C @ (self._forces - self._start) - self._at * self._g - self._shift - self._rest
 
     def _begin(self) -> None:
         """Begin with the nodes that slipped last, or with none: whichever is nearer to the rates of this leg."""
@@ -356,20 +362,17 @@ class _Leg:
 
     def _rate(self) -> Array:
         """T' (n,)."""
-        result: Array = np.where(self._tableau.sticks, -self._p[:-1], 0.0) + self._along
-        return result
+        return np.where(self._tableau.sticks, -self._p[:-1], 0.0) + self._along
 
     def _room(self) -> Array:
         """What must not be negative (n,): T' away from the moving bound at nodes on it that stick, the rate of slip
         along T at nodes that slip; 0 at the other nodes."""
-        result: Array = np.where(self._tableau.sticks, self._sides, -self._sides) * self._p[:-1]
-        return result
+        return np.where(self._tableau.sticks, self._sides, -self._sides) * self._p[:-1]
 
     def _tolerance(self) -> Array:
         """What of :meth:`_room` cannot be told from zero: rates that change forces by less than ``_AT`` of the bound
         over the leg, or rounding errors."""
-        result: Array = np.maximum(self._noise, self._least) * np.where(self._tableau.sticks, 1.0, self._diagonal)
-        return result
+        return np.maximum(self._noise, self._least) * np.where(self._tableau.sticks, 1.0, self._diagonal)
 
     def _settle(self) -> None:
         """Find which of the nodes on their bounds slip: no node is pushed beyond its bound, and none slips against its

@@ -82,8 +82,7 @@ class PiecewiseCauchy:
         legendre = np.polynomial.legendre.legvander(place, _COUNT - 1)
         moments = np.add.reduceat(np.einsum("rcs,csk->rck", values, legendre), self._first, axis=1)
         back = np.polynomial.legendre.legvander(_NODES, _COUNT - 1) * (np.arange(_COUNT) + 0.5)
-        result: Array | Complex = (moments @ back.T) * _WEIGHTS
-        return result
+        return (moments @ back.T) * _WEIGHTS
 
     def _closed(self, local: Array, z: Complex, cell: Indices) -> tuple[Complex, Complex]:
         """Integrals and derivatives (r, pairs) of the ``local`` coefficients (r, k + 1, c) over one cell for each pair
@@ -113,8 +112,7 @@ def _about_the_middle(coefficients: Array, half: Array) -> Array:
     degree = coefficients.shape[1] - 1
     scaled = coefficients[:, ::-1] * half ** np.arange(degree + 1)[:, None]
     shift = np.array([[math.comb(power, k) for power in range(degree + 1)] for k in range(degree + 1)], float)
-    result: Array = np.einsum("kp,rpc->rkc", shift, scaled)
-    return result
+    return np.einsum("kp,rpc->rkc", shift, scaled)
 
 
 def _divided(c: Array) -> Array:

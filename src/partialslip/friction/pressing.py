@@ -91,7 +91,7 @@ class Stages(Protocol):
 
 
 @dataclass(frozen=True)
-class Punch:
+class FlatPunch:
     """Flat punch under the force 1, on nodes, of bodies that are pressed together under a parabola.
 
     Parameters
@@ -184,8 +184,7 @@ def _of_second_power(angle: Array) -> Array:
 
 def _of_third_power(angle: Array) -> Array:
     """Integral of 1/sin^3 from the ``angle`` (m,) to pi/2."""
-    result: Array = (np.cos(angle) / np.sin(angle) ** 2 - np.log(np.tan(angle / 2))) / 2
-    return result
+    return (np.cos(angle) / np.sin(angle) ** 2 - np.log(np.tan(angle / 2))) / 2
 
 
 @dataclass(frozen=True)
@@ -231,8 +230,7 @@ class Punches:
         grown = np.linalg.lstsq(under.T, gap[closed].min() - gap[some], rcond=None)[0]
         along = self._tables(self.along[:count], lambda ratio: (1 - ratio**-2) / 2)
         found = grown @ self._sums(along, self.x[near], reach, share)
-        result: Array = np.interp(self.x, self.x[near], found)
-        return result
+        return np.interp(self.x, self.x[near], found)
 
     def _sums(self, tables: list[tuple[Array, Array]], x: Array, reach: float, share: float) -> Array:
         """Integrals at ``x`` (m,) over half-widths s up to ``share``, of what the ``tables`` tell of the first punches,

@@ -2,35 +2,22 @@
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.bars import Asked
-from partialslip.friction.end_slips import end_slips
 from partialslip.friction.history import STEADY, History
 from partialslip.friction.zone_ends import StickInterval
-from partialslip.result import FRICTIONLESS, PATH_DEPENDENT, EndSlip, Regime
+from partialslip.result import FRICTIONLESS, PATH_DEPENDENT, EndSlip, Regime, SteadyState
 from partialslip.scene import Scene
 
 # accuracy: from load point to load point: with fewer, p while a node slips is known roughly where it varies
 _FEW_STEPS = 8
+_MANY = 2  # accuracy: nodes of both contacts beside the stick zone from which on the end slips throughout
+_SLIPS = 1e-6  # accuracy: slip in a cycle, in the largest possible slip, above rounding
 _WORK = 1e-9  # accuracy: dissipated energy, in f P times a displacement of A P, above rounding
 _RATCHETS = 1e-3  # limit: net slip of a cycle, relative to the slip of half a cycle, above which a steady q ratchets
-
-
-class SteadyState(NamedTuple):
-    """``regime``, ``centre`` and ``half_width`` of the stick zone (None if nothing sticks), ``notes``, how the ends of
-    the contact slip, where the pressure varies, and the ends of the zone that never slips, (nan, nan) if there is none,
-    None if it is not known."""
-
-    regime: Regime
-    centre: float | None
-    half_width: float | None
-    notes: tuple[str, ...]
-    slips: tuple[EndSlip, EndSlip] | None = None
-    permanent: tuple[float, float] | None = None
 
 
 def steady_state(
@@ -51,10 +38,10 @@ def steady_state(
     """
     load, anew = scene.load, history is not None and history.path.presses_anew
     if scene.free:
-        return SteadyState("frictionless", None, None, (FRICTIONLESS,))
+        return SteadyState("frictionless", notes=(FRICTIONLESS,))
     if scene.slides:
         note = "the contact slides: |Q| >= f P at a load point; there is no steady partial slip"
-        return SteadyState("sliding", None, None, (note,))
+        return SteadyState("sliding", notes=(note,))
     if pressed and stick:
         note = "no load but P acts: the stick zone is where the surfaces have stuck since they touched"
         return SteadyState("pressing", (stick.right + stick.left) / 2, (stick.right - stick.left) / 2, (note,))
@@ -62,7 +49,7 @@ def steady_state(
         history is None or stick is None or (not (load.dQ or load.dsigma or load.dslope) and not anew)
     ):  # all of the contact sticks
         left, right = common or (-half_width, half_width)
-        return SteadyState("stuck", (right + left) / 2, (right - left) / 2, ())
+        return SteadyState("stuck", (right + left) / 2, (right - left) / 2)
     notes: tuple[str, ...] = ()
     apart = common is not None and common[0] >= common[1]
     if apart:
@@ -70,7 +57,7 @@ def steady_state(
     elif stick.left == stick.right:
         notes = ("not resolved: the stick zone is smaller than an element; m and n are where slip changes sign",)
     regime: Regime = "small tension" if stick.signs[0] == stick.signs[1] else "large tension"
-    slips = end_slips(x, history, stick) if anew and x is not None and load.in_phase else None
+    slips = _end_slips(x, history, stick) if anew and x is not None and load.in_phase else None
     if slips and {"never", "part of the cycle"}.intersection(slips):
         regime = "no slip" if set(slips) == {"never"} else "sticking ends"
     if not load.in_phase:
@@ -88,10 +75,32 @@ def steady_state(
         steps = "a step" if history.path.most_steps == 1 else f"{history.path.most_steps} steps"
         notes += (f"slip and dissipated energy are rough: {steps} from load point to load point (load.steps)",)
     if apart:
-        return SteadyState(regime, None, None, notes, slips)
+        return SteadyState(regime, notes=notes, slips=slips)
     permanent = permanent_zone(x, history, stick) if x is not None and history.turns and regime != "ratchets" else None
     centre, half = (stick.right + stick.left) / 2, (stick.right - stick.left) / 2
     return SteadyState(regime, centre, half, notes, slips, permanent)
+
+
+def _end_slips(x: Array, history: History, stick: StickInterval) -> tuple[EndSlip, EndSlip]:
+    """How the left and the right end of the contact slip from load point 1 to 2, from a ``history`` at the nodes ``x``
+    (n,), ascending, and its ``stick`` zone.
+
+    An end slips forwards or backwards where nodes that are always in contact slip beside the stick zone. Otherwise the
+    stick zone reaches as far as both contacts do, and nodes beside it may slip during part of the cycle.
+    """
+    assert history.slipped is not None
+    most = _SLIPS * float(np.maximum(*history.bounds).sum())
+    always = (history.bounds[0] > 0) & (history.bounds[1] > 0)
+    found: list[EndSlip] = []
+    for outside, places in ((x < stick.left, slice(None)), (x > stick.right, slice(None, None, -1))):
+        beside = np.flatnonzero(outside & always)[places]
+        if len(beside) >= _MANY:
+            found.append("forwards" if history.change[beside[0]] > 0 else "backwards")
+        elif (history.slipped[:, outside] > most).any():
+            found.append("part of the cycle")
+        else:
+            found.append("never")
+    return found[0], found[1]
 
 
 def permanent_zone(x: Array, history: History, stick: StickInterval) -> tuple[float, float] | None:

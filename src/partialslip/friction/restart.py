@@ -10,6 +10,7 @@ from cycle to cycle, about as large a part of the error gets into q2 - q1 as q c
 """
 
 from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +19,10 @@ from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.friction.history import History, last_cycle_change
 from partialslip.friction.step_errors import Errors
 from partialslip.result.state import State
+from partialslip.scene import Scene
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 # limit: relative L2 difference of pressures of two contacts; shear of unlike bodies changes p by a tenth
 _ANOTHER = 0.25
@@ -64,12 +69,19 @@ def begun(
     return {key: share for key, share in shares.items() if key in errors}, notes
 
 
-def known_to(errors: Mapping[str, float], history: History, weights: Array) -> float | None:
-    """Error of q at the end of the path, its L2 norm relative to that of p, from all ``errors`` of q1 and q2; None if
-    these are not known. Arguments as for :func:`begun`."""
+def end_state(
+    scene: Scene, p: "PPoly", q: "PPoly", errors: Mapping[str, float], history: History, weights: Array
+) -> State:
+    """State at the end of the path of the loads of ``scene``, with the tractions ``p`` and ``q``, Pa over m.
+
+    Its error of q is that of all ``errors`` of q1 and q2; None if these are not known. The other arguments are as for
+    :func:`begun`.
+    """
     pressed = _pressed(history, weights)
     norms = _norms(history, weights)
-    return max((errors[key] * norms[key] / pressed for key in ("q1", "q2") if key in errors), default=None)
+    error = max((errors[key] * norms[key] / pressed for key in ("q1", "q2") if key in errors), default=None)
+    Q, sigma, slope = scene.load.along[-1]
+    return State(scene.pressing[-1].P, scene.material.A, Q, sigma, p, q, slope, error)
 
 
 def _pressed(history: History, weights: Array) -> float:

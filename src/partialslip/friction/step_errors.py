@@ -82,8 +82,7 @@ def of_plates(history: History, finer: History) -> Array:
     """Errors of the rigid shift and of the tangential force at load points 1 and 2 (columns), (2, 2): twice the change
     due to ``finer`` steps, as in :func:`along_path`."""
     one, other = (np.array([each.shifts, [q.sum() for q in each.at_ends]]) for each in (history, finer))
-    errors: Array = 2 * np.abs(one - other)
-    return errors
+    return 2 * np.abs(one - other)
 
 
 def other_steps(path: Path) -> Path:

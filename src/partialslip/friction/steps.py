@@ -55,4 +55,4 @@ def follow_or_step(
 def one_step_suffices(path: Path) -> bool:
     """Whether the bulk tension is constant, so that Q drives all slip one way, which is known from the loads
     (:attr:`Path.one_way`)."""
-    return path.one_way and len({load[1:3] for load in (path.begin, *path.cycle)}) == 1
+    return path.one_way and path.tension_stays

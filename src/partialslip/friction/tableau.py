@@ -64,8 +64,7 @@ class Tableau:
         """:meth:`column` of each of the ``nodes`` (k,), (n + 1, k)."""
         self._add()
         rows = np.arange(len(self._V))[:, None]
-        result: Array = self._V[np.maximum(rows, nodes), np.minimum(rows, nodes)]
-        return result
+        return self._V[np.maximum(rows, nodes), np.minimum(rows, nodes)]
 
     def pivot(self, node: int, column: Array) -> None:
         """Let the ``node`` slip if it sticks, and stick if it slips; ``column`` is :meth:`column` of it."""

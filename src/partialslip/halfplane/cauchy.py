@@ -115,8 +115,7 @@ def _in_v(panels: Array) -> tuple[Array, Array]:
 
 def _ellipse(zeta: Complex) -> Array:
     """Sum of the distances from -1 and 1."""
-    result: Array = np.abs(zeta - 1) + np.abs(zeta + 1)
-    return result
+    return np.abs(zeta - 1) + np.abs(zeta + 1)
 
 
 def _pole(functions: Array, zeta: Complex, logarithm: Complex) -> Complex:
@@ -133,5 +132,4 @@ def _pole(functions: Array, zeta: Complex, logarithm: Complex) -> Complex:
     near = _ellipse(zeta) < _NEAR
     interpolant = (rest * kernel) @ _BARYCENTRIC / np.where(near, kernel @ _BARYCENTRIC, 1.0)
     left_out = np.where(near, logarithm - rule, 0.0)
-    result: Complex = (rest * kernel) @ _WEIGHTS + value * (rule + left_out) + interpolant * left_out
-    return result
+    return (rest * kernel) @ _WEIGHTS + value * (rule + left_out) + interpolant * left_out

@@ -9,15 +9,14 @@ import numpy.typing as npt
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch, punch_force
 from partialslip.halfplane.shape import Bound, Given, Shape
 from partialslip.halfplane.steady import TOO_STEEP, UNEVEN_FRICTION, drive, stick_zones
-from partialslip.halfplane.uneven import press
+from partialslip.halfplane.uneven import press_uneven
 from partialslip.result import StickZone
 from partialslip.result.fields import AtPoints
-from partialslip.scene import FlatRounded, Pressing, Scene
-from partialslip.scene import Hertz as HertzProfile
+from partialslip.scene import FlatRounded, Hertz, Pressing, Scene
 from partialslip.scene.profiles import Curvature
 
 _INSIDE = np.cos(np.arange(1, 200) / 200 * np.pi)  # places, in a, at which a hollow flat must be in contact
@@ -73,18 +72,15 @@ class Contact:
 
     def places(self, scaled: npt.ArrayLike) -> Array:
         """Places, m, at the ``scaled`` distances (any shape) from the middle of the contact, fractions of a."""
-        result: Array = self.centre + self.a * np.asarray(scaled, float)
-        return result
+        return self.centre + self.a * np.asarray(scaled, float)
 
     def pressure(self, x: npt.ArrayLike) -> Array:
         """Pressure, Pa, at ``x``, m: a number, a list or an array of any shape."""
-        found: Array = AtPoints(lambda points: self.p0 * self.shape.pressure(self.scaled(points)))(x)
-        return found
+        return AtPoints(lambda points: self.p0 * self.shape.pressure(self.scaled(points)))(x)
 
     def scaled(self, x: npt.ArrayLike) -> Array:
         """Distance of ``x`` (m) from the middle of the contact, as a fraction of a."""
-        result: Array = (np.asarray(x, float) - self.centre) / self.a
-        return result
+        return (np.asarray(x, float) - self.centre) / self.a
 
 
 def contact(scene: Scene, pressing: Pressing | None = None) -> Contact:
@@ -120,9 +116,9 @@ def _pressed(scene: Scene, pressing: Pressing | None) -> Contact:
         )
     A, profile = scene.material.A, scene.profile
     P, M = pressing or (scene.P, scene.M)
-    if isinstance(profile, HertzProfile):
+    if isinstance(profile, Hertz):
         a, origin = math.sqrt(2 * A * profile.R * P / math.pi), (M or 0.0) / P
-        return Contact(a, P, Hertz(), origin, origin / profile.R)
+        return Contact(a, P, HertzShape(), origin, origin / profile.R)
     if not profile.even or M:
         return _uneven(scene, profile.curvature, Pressing(P, M))
     at, steps = profile.curvature_steps()
@@ -130,8 +126,7 @@ def _pressed(scene: Scene, pressing: Pressing | None) -> Contact:
 
     def psi(beyond: float) -> Array:
         """arccos(b/a) by the half-angle form, accurate if the contact is hardly wider than the flat."""
-        result: Array = 2 * np.arcsin(np.sqrt(np.maximum(beyond - (at - inner), 0.0) / (2 * (inner + beyond))))
-        return result
+        return 2 * np.arcsin(np.sqrt(np.maximum(beyond - (at - inner), 0.0) / (2 * (inner + beyond))))
 
     def excess(log_beyond: float) -> float:
         beyond = math.exp(log_beyond)
@@ -167,7 +162,7 @@ def tilted_contact(scene: Scene, P: float, tilt: float) -> Contact:
     profile = scene.profile
     if tilt == 0:
         return contact(scene, Pressing(P, None))
-    if isinstance(profile, HertzProfile):
+    if isinstance(profile, Hertz):
         turned = replace(_pressed(scene, Pressing(P, None)), centre=tilt * profile.R)
     else:
         turned = _uneven(scene, profile.curvature.tilted(tilt), Pressing(P, None))
@@ -177,7 +172,7 @@ def tilted_contact(scene: Scene, P: float, tilt: float) -> Contact:
 def _uneven(scene: Scene, gap: Curvature, pressing: Pressing) -> Contact:
     """Contact of a ``gap`` that is not even, or under a moment."""
     A, (P, M) = scene.material.A, pressing
-    pressed = press(gap, A * P, None if M is None else A * M, scene.length)
+    pressed = press_uneven(gap, A * P, None if M is None else A * M, scene.length)
     if not pressed:
         shown, span = scene.units.plain(P, "N/m"), scene.units.span(gap.reach, "m")
         raise InputError(f"load.P = {shown}: must keep the contact within profile.x, between {span}")

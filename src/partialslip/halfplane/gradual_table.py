@@ -15,7 +15,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from partialslip.arrays import Array, Mask
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.steady import stick_zones
 from partialslip.result import StickZone
 
@@ -29,7 +29,7 @@ def tabled(Qf: Array, sf: Array) -> StickZone[Array]:
     m and n are within 1e-6 of the solver (``benchmarks/gradual_table.py --check``), also where an inner zone slips that
     makes no difference in the end (``benchmarks/inner_table.py --check``).
     """
-    once = stick_zones(Qf, sf, Hertz())
+    once = stick_zones(Qf, sf, HertzShape())
     left, right = np.full((2, len(Qf)), np.nan)
     sign = np.zeros(len(Qf), int)
     holds = again(Qf, sf, once)
@@ -65,12 +65,10 @@ def again(Qf: Array, sf: Array, once: StickZone[Array]) -> Mask:
     """Whether one step has the zone of gradual loads, although slip turns round: the ends slip the same way at last,
     and all points that slipped the other way before slip again. Then the left end of the zone has come as far as
     1 - 2 c*, where it is when the zone begins to drift."""
-    result: Mask = (once.s > 0) & (sf * (1 - once.left) <= 8 * Qf)
-    return result
+    return (once.s > 0) & (sf * (1 - once.left) <= 8 * Qf)
 
 
 @functools.cache
 def table() -> dict[str, Any]:
     """The table, as its file has it."""
-    found: dict[str, Any] = json.loads(PLACE.read_text())
-    return found
+    return json.loads(PLACE.read_text())

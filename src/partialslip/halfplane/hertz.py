@@ -7,12 +7,11 @@ from partialslip.arrays import Array
 from partialslip.halfplane.shape import Conditions, Shape
 
 
-class Hertz(Shape):
+class HertzShape(Shape):
     """Hertz pressure, p/p0 = sqrt(1 - x^2)."""
 
     def pressure(self, x: Array) -> Array:
-        result: Array = np.sqrt(np.maximum((1 - x) * (1 + x), 0.0))
-        return result
+        return np.sqrt(np.maximum((1 - x) * (1 + x), 0.0))
 
     def difference(self, t: Array, x: Array) -> Array:
         total = self.pressure(t) + self.pressure(x)

@@ -113,8 +113,7 @@ def _zeros(Qf: float, sf: float, gf: float, stages: StickZone[Array]) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         stem = -(linear + np.copysign(np.sqrt(linear**2 - 4 * square * constant), linear)) / 2
         found = stages.centre + np.hstack([np.divide(stem, square), constant / stem])
-    result: Array = np.where(np.isfinite(found), found, stages.centre)
-    return result
+    return np.where(np.isfinite(found), found, stages.centre)
 
 
 def _resultant(angle: float, slips: dict[int, tuple[Array, Array]], zone: StickZone[float], gf: float = 0.0) -> float:

@@ -4,6 +4,7 @@ import functools
 import math
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -24,7 +25,7 @@ from partialslip.halfplane.turning import Turning, half_cycle
 from partialslip.halfplane.varying import closed_form, require_closed_form, steady_cycle
 from partialslip.halfplane.varying_result import solve_varying
 from partialslip.plan import Plan, plan
-from partialslip.result import Clock, Regime, Result, Slip, StressAt, Traction
+from partialslip.result import Clock, Regime, Result, Slip, SteadyState, StressAt, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene, Tabulated
 from partialslip.scene.model import require_carried
@@ -63,7 +64,7 @@ def solve(
             require_closed_form(scene)
         return solve_varying(scene, plan, start is not None, clock)
     pressed, regime, cycle = _steady_state(scene, plan, clock)
-    a, p0, f = pressed.a, pressed.p0, pressed.f
+    a, f = pressed.a, pressed.f
     found = _levels(scene, pressed, regime, cycle, start)
     turns = cycle is not None and not cycle.holds
     tractions = ExactTractions(pressed, f, cycle, found if isinstance(found, Levels) else None)
@@ -76,25 +77,22 @@ def solve(
     slips = cycle and not cycle.nothing
     why = undetermined(regime, turns, found) | (no_stresses(found) if inside and not stress else {})
     slip = _slip(scene, pressed, cycle) if cycle and slips and regime != "ratchets" else None
-    return Result(
-        method="exact",
-        a=a,
-        p0=p0,
-        regime=regime,
-        stick_centre=pressed.centre + cycle.mirror * cycle.zone.centre * a if cycle else None,
-        stick_half_width=cycle.zone.half_width * a if cycle else None,
-        traction=Traction(x, tractions.at(x), tractions.at, breaks),
-        cost=clock.cost(),
+    state = SteadyState(regime, notes=remarks(regime, turns, why, _SLIDES, _RATCHETS))
+    if cycle:
+        zone = cycle.zone
+        state = state._replace(centre=pressed.centre + cycle.mirror * zone.centre * a, half_width=zone.half_width * a)
+        if slips and regime != "ratchets" and not turns:
+            state = state._replace(permanent=_permanent(pressed, cycle))
+    return replace(
+        Result.of("exact", state, a, pressed.p0, Traction(x, tractions.at(x), tractions.at, breaks), clock),
         slip=slip,
         settings={"model": "two half-planes, steady state"},
         limits=_limits(scene, pressed, cycle) if plan.needs("friction") or (scene.slides and f > 0) else {},
         certificate=cycle.certificate if cycle and slips else {},
-        notes=remarks(regime, turns, why, _SLIDES, _RATCHETS),
         surface=surface,
         stress_at=StressAt(stress.inside) if stress else None,
         undetermined=why,
         path_dependent=turns,
-        permanent=_permanent(pressed, cycle) if cycle and slips and regime != "ratchets" and not turns else None,
         contact_ends=(pressed.ends,) * 2 if pressed.centre else None,
     )
 

@@ -93,5 +93,4 @@ def _clenshaw(place: Array, coefficients: Array, column: Indices) -> Array:
     one, two = np.zeros_like(place), np.zeros_like(place)
     for row in coefficients[:0:-1]:
         one, two = row[column] + 2 * place * one - two, one
-    result: Array = coefficients[0][column] + place * one - two
-    return result
+    return coefficients[0][column] + place * one - two

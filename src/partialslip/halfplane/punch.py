@@ -45,8 +45,7 @@ class Punch(Shape):
     def pressure(self, x: Array) -> Array:
         x = np.minimum(np.abs(x), 1.0)
         sum_ = self._all(x) if len(self.flats) <= FEW else self._panels(x)
-        result: Array = np.where(x < 1, np.maximum(sum_, 0.0), 0.0)
-        return result
+        return np.where(x < 1, np.maximum(sum_, 0.0), 0.0)
 
     def _all(self, x: Array) -> Array:
         total = np.zeros_like(x)
@@ -74,8 +73,7 @@ def _unit(x: Array, flats: Array, wedges: Array) -> Array:
     both = t * tau
     u, v = (t + tau) / (1 + both), np.abs(t - tau) / np.where(both == 1, 1.0, 1 - both)
     u, v = np.where(u == 0, 1.0, u), np.where(v == 0, 1.0, v)
-    result: Array = wedges * cosine + (x + flats) * np.log(u) - (x - flats) * np.log(v)
-    return result
+    return wedges * cosine + (x + flats) * np.log(u) - (x - flats) * np.log(v)
 
 
 def punch_force(psi: Array) -> Array:
@@ -84,5 +82,4 @@ def punch_force(psi: Array) -> Array:
     P = a^2/(2 A) times the sum over steps w of curvature of w times this resultant.
     """
     series = 4 / 3 * psi**3 * (1 - psi**2 / 5 * (1 - 2 * psi**2 / 21))
-    result: Array = np.where(psi < 1e-2, series, 2 * psi - np.sin(2 * psi))
-    return result
+    return np.where(psi < 1e-2, series, 2 * psi - np.sin(2 * psi))

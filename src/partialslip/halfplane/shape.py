@@ -121,8 +121,7 @@ class Shape:
 
         def theta(width: Array) -> Array:
             """theta at the distance ``width`` from the stick zone: cosh(theta) - 1 = width/c in half-angle form."""
-            result: Array = 2 * np.arcsinh(np.sqrt(np.maximum(width, 0.0) / (2 * c[..., None])))
-            return result
+            return 2 * np.arcsinh(np.sqrt(np.maximum(width, 0.0) / (2 * c[..., None])))
 
         end = theta((1 - centre - c if side > 0 else edge)[..., None])
         inner = theta(side * (np.array(self.kinks) - centre[..., None]) - c[..., None])
@@ -130,13 +129,11 @@ class Shape:
         ends = np.sort(np.clip(ends, 0.0, end), axis=-1)
         # drop empty pieces, which belong to kinks outside this slip zone
         widest = np.diff(ends).reshape(-1, ends.shape[-1] - 1).max(axis=0, initial=0.0)
-        kept: Array = ends[..., np.append(True, (widest > 0) | (widest.max() == 0))]
-        return kept
+        return ends[..., np.append(True, (widest > 0) | (widest.max() == 0))]
 
     def _quotient(self, t: Array, values: Array, x: Array) -> Array:
         step = t - x
-        result: Array = (values - self.pressure(x)) / np.where(step == 0, np.inf, step)
-        return result
+        return (values - self.pressure(x)) / np.where(step == 0, np.inf, step)
 
 
 class Mirrored(Shape):
@@ -234,8 +231,7 @@ class Given(Shape):
         values = np.asarray(self._function(np.clip(x, -1.0, 1.0).ravel()), float)
         if values.shape != (np.size(x),):
             raise InputError(f"pressure: must return one value for each point, {np.size(x)}, not {values.shape}")
-        result: Array = np.where(np.abs(x) < 1, values.reshape(np.shape(x)) / self.scale, 0.0)
-        return result
+        return np.where(np.abs(x) < 1, values.reshape(np.shape(x)) / self.scale, 0.0)
 
 
 class Bound(Given):

@@ -92,8 +92,7 @@ def dissipation(zone: StickZone[float], shape: Shape, gf: float = 0.0) -> tuple[
 
 
 def _slips(x: Array, zone: StickZone[float], side: int) -> npt.NDArray[np.bool_]:
-    result: npt.NDArray[np.bool_] = (side * (x - zone.centre) > zone.half_width) & (np.abs(x) <= 1)
-    return result
+    return (side * (x - zone.centre) > zone.half_width) & (np.abs(x) <= 1)
 
 
 def _kernels(eta: Array) -> tuple[Callable[[Rule], Array], Callable[[Rule], Array]]:
@@ -104,13 +103,11 @@ def _kernels(eta: Array) -> tuple[Callable[[Rule], Array], Callable[[Rule], Arra
         theta = rule.theta
         apart = np.abs(np.sinh((eta - theta) / 2))
         logarithm = np.log(np.sinh((eta + theta) / 2) / np.where(apart == 0, 1.0, apart))
-        result: Array = np.sinh(eta) + eta * np.cosh(theta) - np.sinh(theta) * logarithm
-        return result
+        return np.sinh(eta) + eta * np.cosh(theta) - np.sinh(theta) * logarithm
 
     def across(rule: Rule) -> Array:
         theta = rule.theta
         logarithm = np.log(np.cosh((eta + theta) / 2) / np.cosh((eta - theta) / 2))
-        result: Array = np.sinh(eta) - eta * np.cosh(theta) + np.sinh(theta) * logarithm
-        return result
+        return np.sinh(eta) - eta * np.cosh(theta) + np.sinh(theta) * logarithm
 
     return same, across

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from partialslip.arrays import Array, Indices, Mask
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.shape import NARROW, Conditions, Shape
 from partialslip.halfplane.traction import within_bound
 from partialslip.result import StickZone
@@ -87,8 +87,8 @@ def _solve(Qf: Array, sf: Array, shape: Shape, gf: Array | None = None, checked:
     known: an increment of the loads adds the adhered traction of the stick zone, singular at the zone's ends, and the
     ends move until the sum is bounded. Newton's unknown for the half-width is log c.
     """
-    edge, c, exact = Hertz().guess(Qf, sf) if gf is None else Hertz().sloped_guess(Qf, sf, gf)
-    active = np.flatnonzero(~exact | (not isinstance(shape, Hertz)))
+    edge, c, exact = HertzShape().guess(Qf, sf) if gf is None else HertzShape().sloped_guess(Qf, sf, gf)
+    active = np.flatnonzero(~exact | (not isinstance(shape, HertzShape)))
     last = _last(shape, gf)
     for _ in range(_STEPS):
         if not len(active):
@@ -200,7 +200,7 @@ def _last(shape: Shape, gf: Array | None) -> int:
 
 def _touching(Qf: Array, shape: Shape, gf: Array | None = None) -> Array:
     """Half-width of the stick zone that touches the contact's end, at the transition to large tension."""
-    if isinstance(shape, Hertz):
+    if isinstance(shape, HertzShape):
         stiffness = 1.0 if gf is None else 1 + gf / 8
         return np.maximum(np.sqrt((1 - Qf) / stiffness), NARROWEST)  # paper, eq. (22)
     low, slope = math.log(NARROWEST) + 0 * Qf, () if gf is None else (gf,)
@@ -220,5 +220,4 @@ def _root(function: Callable[..., Array], low: Array, high: Array, *args: Array)
 
     with np.errstate(invalid="ignore"):  # find_root divides 0 by 0 in intervals of rounding size
         found = find_root(function, (low, high), args=args)
-    result: Array = np.where(found.success, found.x, np.where(found.f_bracket[1] >= 0, high, low))
-    return result
+    return np.where(found.success, found.x, np.where(found.f_bracket[1] >= 0, high, low))

@@ -81,8 +81,7 @@ class Shear:
         found = unit * under_shear(T, y * T_z, at.side)
         # no relative strain in the stick zone: the bodies share the tension
         found[0] = np.where(sticks, -at.side * tension / 2, found[0])
-        result: Array = found + under_tension(tension, self.slope, at.depth, at.side)
-        return result
+        return found + under_tension(tension, self.slope, at.depth, at.side)
 
 
 @dataclass(frozen=True)
@@ -112,8 +111,7 @@ class Turned:
         x = self.contact.scaled(at.x)
         sticks = (y == 0) & (x >= left) & (x <= right)
         found[0] = np.where(sticks, -at.side * self.sigma / 2, found[0])
-        result: Array = found + under_tension(self.sigma + 0 * at.x, 0.0, at.depth, at.side)
-        return result
+        return found + under_tension(self.sigma + 0 * at.x, 0.0, at.depth, at.side)
 
 
 def half_of(contact: Contact, change: Loading | Turning | PartOfWay, sigma: float, slope: float) -> Shear | Turned:
@@ -173,8 +171,7 @@ class Points(NamedTuple):
 
     def scaled(self, contact: Contact) -> Complex:
         """x + i y, scaled by ``contact``, for Cauchy integrals."""
-        z: Complex = contact.scaled(self.x) + 1j * np.minimum(-self.depth / contact.a, -_SURFACE)
-        return z
+        return contact.scaled(self.x) + 1j * np.minimum(-self.depth / contact.a, -_SURFACE)
 
 
 class StressState(NamedTuple):
@@ -305,11 +302,9 @@ class Stress:
 
         Continuous; usually largest at the trailing edge of the contact, where the slope is infinite.
         """
-        found: Array = AtPoints(self._fields.surface)(x)
-        return found
+        return AtPoints(self._fields.surface)(x)
 
     def inside(self, x: npt.ArrayLike, y: npt.ArrayLike) -> Array:
         """sigma_xx, sigma_yy and sigma_xy (Pa) at the points (``x``, ``y``), m: (2, 3, ...), by load point, component
         and the common shape of ``x`` and ``y``. Points with y <= 0 are in the lower body."""
-        found: Array = AtPoints(lambda x, y: self._fields.at(Points.of(x, y), self._fields.ends))(x, y)
-        return found
+        return AtPoints(lambda x, y: self._fields.at(Points.of(x, y), self._fields.ends))(x, y)

@@ -14,8 +14,7 @@ def adhered(x: npt.ArrayLike, a: float, dQ: float, dsigma: float) -> Array:
     dq = (dQ/pi + x dsigma/4)/sqrt(a^2 - x^2): paper, eq. (1). ``a`` in m, ``dQ`` in N/m, ``dsigma`` in Pa.
     """
     x = np.asarray(x, float)
-    result: Array = (dQ / np.pi + x * dsigma / 4) / np.sqrt((a - x) * (a + x))
-    return result
+    return (dQ / np.pi + x * dsigma / 4) / np.sqrt((a - x) * (a + x))
 
 
 _AT_ONCE = 2**22  # cost: pairs of points in memory
@@ -53,15 +52,13 @@ def within_bound(zones: StickZone[Array], shape: Shape, gf: Array) -> Mask:
     close = np.flatnonzero(left < _CLOSE)
     if len(close):
         left[close] = _room(StickZone(*(each[close] for each in zones)), shape, gf[close], _MANY)
-    result: Mask = left > -_ROUNDING
-    return result
+    return left > -_ROUNDING
 
 
 def _room(zones: StickZone[Array], shape: Shape, gf: Array, places: Array) -> Array:
     """Least p - \\|dq\\|/2 in stick ``zones`` (k,), in f p0 sqrt((n-x)(x+m))/a, at ``places`` between -1 and 1."""
     p, h, half = inside(zones, np.broadcast_to(places, (len(gf), len(places))), shape, gf)
-    result: Array = ((p - np.abs(h)) / half).min(axis=1)
-    return result
+    return ((p - np.abs(h)) / half).min(axis=1)
 
 
 def inside(zones: StickZone[Array], y: Array, shape: Shape, gf: Array) -> tuple[Array, Array, Array]:
@@ -94,5 +91,4 @@ def _inside(x: Array, zone: StickZone[float], shape: Shape) -> Array:
         arcs += sign * 2 * np.arctan2(tangent * far, near)
         for part in np.array_split(np.arange(len(x)), len(x) * len(t) // _AT_ONCE + 1):
             smooth[part] += side * sign * (shape.difference(t, x[part, None]) @ weights)
-    result: Array = (shape.pressure(x) * arcs + to_left * to_right * smooth) / np.pi
-    return result
+    return (shape.pressure(x) * arcs + to_left * to_right * smooth) / np.pi

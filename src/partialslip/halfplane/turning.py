@@ -7,10 +7,10 @@ from functools import cached_property
 
 from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
-from partialslip.halfplane.gradual_path.certificate import certificate
+from partialslip.halfplane.gradual_path.certificate import certificate_of
 from partialslip.halfplane.gradual_path.from_zero import MOST_CYCLES, from_zero
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
-from partialslip.halfplane.gradual_path.mean_bound import room
+from partialslip.halfplane.gradual_path.mean_bound import gradual_mean_load_bound
 from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Tractions
@@ -117,7 +117,7 @@ class Turning:
     def mean_load_bound(self) -> float:
         """Largest \\|Q_mean\\|/(f P) of a steady state whose half cycle this is: the room that the points that never
         slip have all along the way (frictional Melan theorem: Klarbring, Ciavarella and Barber, 2007)."""
-        return room(self.way)
+        return gradual_mean_load_bound(self.way)
 
     def loop(self, shares: Array) -> tuple[Array, Array]:
         """Relative displacement of the bodies less that of the adhered contact, and moment of q, since the beginning of
@@ -231,7 +231,7 @@ def half_cycle(
     try:
         way = steady(Loads(once.sf, math.pi * once.Qf), once.seen, parts)
         sure = not parts or (not way.parted and pressed.friction_bound.convex)
-        holds = sure or certificate(way).worst < _HELD
+        holds = sure or certificate_of(way).worst < _HELD
     except LostError:
         return once
     return Turning(once, way) if holds else once

@@ -119,7 +119,7 @@ class PressedBodies(NamedTuple):
     tilt: float
 
 
-def press(of: Curvature, force: float, moment: float | None, scale: float) -> PressedBodies | None:
+def press_uneven(of: Curvature, force: float, moment: float | None, scale: float) -> PressedBodies | None:
     """Press two half-planes together; None if the contact extends beyond the range in which the gap is known.
 
     Parameters
@@ -147,7 +147,7 @@ def press(of: Curvature, force: float, moment: float | None, scale: float) -> Pr
 
 @dataclass(frozen=True)
 class _Search:
-    """Search for the ends of the contact; fields as the arguments of :func:`press`. The unknowns are u, with the
+    """Search for the ends of the contact; fields as the arguments of :func:`press_uneven`. The unknowns are u, with the
     distance beyond the flat ``tiny`` sinh(u)."""
 
     of: Curvature
@@ -261,10 +261,7 @@ class Uneven(Shape):
                 sums += weight * self._half_step(inside, np.array(number))
         else:
             sums = self._panels(inside)
-        result: Array = np.where(
-            np.abs(x) < 1, np.maximum(self._base * np.sqrt((1 - inside) * (1 + inside)) + sums, 0.0), 0.0
-        )
-        return result
+        return np.where(np.abs(x) < 1, np.maximum(self._base * np.sqrt((1 - inside) * (1 + inside)) + sums, 0.0), 0.0)
 
     def _half_step(self, x: Array, number: Indices) -> Array:
         """h at ``x`` of the half-steps with the indices ``number``; arrays that broadcast to one shape.
@@ -283,8 +280,7 @@ class Uneven(Shape):
         within = 2 * t * np.arctan(tau) - 2 * apart * (log + ratio)
         safe = np.where(inner, t, 1.0)
         beyond = 2 * tau**3 * square / (safe * (1 + tau**2)) + 2 * t * _arctan_rest(tau) - 2 * apart * log
-        result: Array = 2 / square * np.where(inner, beyond, within)
-        return result
+        return 2 / square * np.where(inner, beyond, within)
 
     @property
     def _panels(self) -> Panels:
@@ -309,5 +305,4 @@ def _rest(z: Array, direct: Array, sign: float) -> Array:
     square, sums = np.minimum(z, _SMALL) ** 2 * sign, np.zeros_like(z)
     for k in range(_SERIES, 0, -1):
         sums = square * (1 / (2 * k + 1) + sums)
-    result: Array = np.where(z < _SMALL, z * sums, direct)
-    return result
+    return np.where(z < _SMALL, z * sums, direct)

@@ -67,8 +67,7 @@ class Cycle:
     def dq(self, x: Array) -> Array:
         """Change of shear traction at ``x`` (m), Pa."""
         if self.change:
-            found: Array = self.scene.friction.f * self.mean.p0 * self.change.traction(self.mean.scaled(x))
-            return found
+            return self.scene.friction.f * self.mean.p0 * self.change.traction(self.mean.scaled(x))
         load, (one, other) = self.scene.load, (self.first, self.second)
         if load.dQ == 0 and load.dsigma == 0 and load.dslope == 0:
             return np.zeros(np.shape(x))
@@ -109,8 +108,7 @@ class Cycle:
         forth, back = self._stages
         ways = [first, *between(forth, 0 * x), second], [second, *between(back, dq), first]
         rooms = [[_least(np.array([bound + sign * moved for bound, moved in way])) for way in ways] for sign in (1, -1)]
-        tightest: Array = np.array([[-1.0], [1.0]]) * np.min(rooms, axis=1)
-        return tightest
+        return np.array([[-1.0], [1.0]]) * np.min(rooms, axis=1)
 
     @functools.cached_property
     def _stages(self) -> tuple[list[PressureStage], list[PressureStage]]:
@@ -125,8 +123,7 @@ class Cycle:
 
     @property
     def _kinks(self) -> list[float]:
-        kinks: list[float] = self.mean.places(self.mean.shape.kinks).tolist()
-        return kinks
+        return self.mean.places(self.mean.shape.kinks).tolist()
 
     def slip(self) -> tuple[Array, Array, float]:
         """Points (m), their slip from load point 1 to 2 (m) while they are in contact, and the work dissipated in a
@@ -283,15 +280,14 @@ def _least(values: Array) -> Array:
     """Least of ``values`` (n, k) at n evenly spaced places, (k,): of the parabola through the least one and its two
     neighbours."""
     if len(values) < 3:
-        return values.min(axis=0)  # type: ignore[no-any-return]
+        return values.min(axis=0)
     place = values.argmin(axis=0)
     before, at, after = (
         np.take_along_axis(values, np.clip(place + way, 0, len(values) - 1)[None], 0)[0] for way in (-1, 0, 1)
     )
     bend = before - 2 * at + after
     inside = (place > 0) & (place < len(values) - 1) & (bend > 0)
-    found: Array = np.where(inside, at - (after - before) ** 2 / (8 * np.where(inside, bend, 1.0)), at)
-    return found
+    return np.where(inside, at - (after - before) ** 2 / (8 * np.where(inside, bend, 1.0)), at)
 
 
 def _integral(function: Callable[[Array], Array], low: float, high: float, kinks: list[float]) -> Array:
@@ -302,8 +298,7 @@ def _integral(function: Callable[[Array], Array], low: float, high: float, kinks
     half = np.diff(ends)[:, None] / 2
     angle = np.pi / 2 * (1 + _NODES)
     x = ends[:-1, None] + half * (1 - np.cos(angle))
-    result: Array = function(x.ravel()) @ (half * np.pi / 2 * _WEIGHTS * np.sin(angle)).ravel()
-    return result
+    return function(x.ravel()) @ (half * np.pi / 2 * _WEIGHTS * np.sin(angle)).ravel()
 
 
 def _crossings(function: Callable[[Array], Array], low: float, high: float) -> list[float]:

@@ -1,7 +1,7 @@
 """The exact method under varying normal load and moment: the steady cycle as a result; SI units."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from partialslip.halfplane.stress import BEYOND, along_surface
 from partialslip.halfplane.tractions import sample
 from partialslip.halfplane.varying import Cycle, steady_cycle
 from partialslip.plan import Plan
-from partialslip.result import PATH_DEPENDENT, Clock, Regime, Result, Slip, StressAt, Traction, TractionAt
+from partialslip.result import PATH_DEPENDENT, Clock, Regime, Result, Slip, SteadyState, StressAt, Traction, TractionAt
 from partialslip.scene import Scene
 
 _ROUNDING = 1e-9  # accuracy: lengths in a, tractions in f p0
@@ -84,25 +84,20 @@ def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Resu
     if inside and not stress:
         why |= no_stresses(loaded)
     far = np.array([-1.0, 1.0]) * (abs(sum(largest.ends)) / 2 + BEYOND * largest.a)
-    return Result(
-        method="exact",
-        a=largest.a,
-        p0=largest.p0,
-        regime=regime,
-        stick_centre=(left + right) / 2 if known else None,
-        stick_half_width=(right - left) / 2 if known else None,
-        traction=Traction(x, tractions.at(x), tractions.at, breaks),
-        cost=clock.cost(),
+    centre, half_width = ((left + right) / 2, (right - left) / 2) if known else (None, None)
+    notes = remarks(regime, turns, why, _SLIDES, _RATCHETS)
+    state = SteadyState(regime, centre, half_width, notes, cycle.slips if cycle else None)
+    traction = Traction(x, tractions.at(x), tractions.at, breaks)
+    return replace(
+        Result.of("exact", state, largest.a, largest.p0, traction, clock),
         slip=Slip(*cycle.slip()) if cycle and cycle.change and regime != "ratchets" else None,
         settings={"model": "two half-planes, steady state under varying pressure"},
         limits=_limits(scene, cycle) if cycle else {},
         certificate=cycle.change.certificate if cycle and cycle.change else {},
-        notes=remarks(regime, turns, why, _SLIDES, _RATCHETS),
         surface=along_surface(stress.surface, np.sort([*far, *breaks])) if stress else None,
         stress_at=StressAt(stress.inside) if stress else None,
         undetermined=why,
         path_dependent=turns,
-        end_slips=cycle.slips if cycle else None,
         contact_ends=(first.ends, second.ends),
     )
 

@@ -8,7 +8,7 @@ from partialslip.errors import InputError
 from partialslip.gradual import turns_round
 from partialslip.halfplane.contact import Contact, one_step_zone
 from partialslip.halfplane.gradual_table import tabled
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.turning import half_cycle
 from partialslip.result import StickZone
 
@@ -65,7 +65,7 @@ def stick_zone(
     if not turned.any():
         return zone
     centre, half_width, s = (np.array(values) for values in zone)
-    if turned.ndim and isinstance(contact.friction_bound, Hertz):
+    if turned.ndim and isinstance(contact.friction_bound, HertzShape):
         found = tabled(Qf[turned], sf[turned])
         side = contact.a * np.where(dQ_ * dsigma_ < 0, -1, 1)[turned]
         centre[turned], half_width[turned], s[turned] = (

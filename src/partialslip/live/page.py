@@ -157,5 +157,4 @@ def _points(line: MapLine, top: float) -> Array:
 
 
 def _listed(points: Array) -> list[Any]:
-    listed: list[Any] = points.round(_ROUNDED).tolist()
-    return listed
+    return points.round(_ROUNDED).tolist()

@@ -19,7 +19,7 @@ from partialslip.errors import InputError
 from partialslip.gradual import turns_round
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.gradual_table import tabled
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zones, transition
 from partialslip.judge.reference import reference
@@ -134,7 +134,7 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
         :func:`partialslip.halfplane.contact`.
     """
     if scene is None:
-        return _mapped(Hertz(), _TOP, progress)
+        return _mapped(HertzShape(), _TOP, progress)
     require_friction(scene)
     scene.require_even("for a map", "partialslip.halfplane.one_step_zone takes others, many loads at once")
     if scene.presses_anew:
@@ -191,7 +191,7 @@ def _n_line(n: float, shape: Shape) -> MapLine:
 def _lines(once: list[MapLine], of: str, shape: Shape) -> list[MapLine]:
     """Return lines of equal m or n under gradual loads: the lines of a single step, ``once``, and in place of their
     parts where the table of gradual zones has others, lines through a fine grid of gradual zones."""
-    if not isinstance(shape, Hertz):
+    if not isinstance(shape, HertzShape):
         return once
     from contourpy import contour_generator  # takes long to import
 
@@ -235,8 +235,7 @@ def _tabled(line: MapLine, shape: Shape) -> Mask:
     Qf, sf = np.where(on, line.Qf, 0), np.where(on, line.sf, 0)
     zone = stick_zones(Qf, sf, shape)
     turned = turns_round(Qf, sf, zone.s, zone.centre, zone.half_width)
-    result: Mask = on & turned & ~np.isnan(tabled(Qf, sf).centre)
-    return result
+    return on & turned & ~np.isnan(tabled(Qf, sf).centre)
 
 
 def _parts(line: MapLine, kept: Mask) -> list[MapLine]:
@@ -260,7 +259,7 @@ def _zones(Qf: Array, sf: Array, shape: Shape, progress: Callable[[float], None]
         parts.append(stick_zones(Qf.ravel()[part], sf.ravel()[part], shape))
     zone = StickZone(*(np.concatenate(values).reshape(Qf.shape) for values in zip(*parts, strict=True)))
     turned = turns_round(Qf, sf, zone.s, zone.centre, zone.half_width)
-    if isinstance(shape, Hertz):
+    if isinstance(shape, HertzShape):
         gradual = tabled(Qf[turned], sf[turned])
         known = ~np.isnan(gradual.centre)
         at = np.flatnonzero(turned)[known]

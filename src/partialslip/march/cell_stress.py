@@ -167,5 +167,4 @@ def _slope(nodes: Array, values: Array, x: Array) -> Array:
     own = (weights * here).sum(axis=1)
     quotient = np.where(here, 0.0, weights / np.where(here, 1.0, step)) / own[:, None]
     at = (values * here).sum(axis=1)
-    result: Array = (quotient * (values - at[:, None])).sum(axis=1)
-    return result
+    return (quotient * (values - at[:, None])).sum(axis=1)

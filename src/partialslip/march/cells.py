@@ -33,15 +33,13 @@ def _growing(size: float, growth: float, distance: float) -> Array:
     """Distances of the ends of cells from a point, from 0 to ``distance``."""
     reach = np.log1p(growth * distance / size)
     count = max(int(np.ceil(reach / growth)), 1) if distance > 0 else 0
-    result: Array = size / growth * np.expm1(np.linspace(0, reach, count + 1))
-    return result
+    return size / growth * np.expm1(np.linspace(0, reach, count + 1))
 
 
 def on_cells(traction: PPoly, places: Array) -> Array:
     """Forces (c,) of a piecewise ``traction`` on the cells between ``places`` (c + 1,); none beyond its ends."""
     resultant, known = traction.antiderivative(), traction.x
-    result: Array = np.diff(resultant(np.clip(places, known[0], known[-1])))
-    return result
+    return np.diff(resultant(np.clip(places, known[0], known[-1])))
 
 
 def off_cells(forces: Array, places: Array) -> PPoly:
@@ -58,8 +56,7 @@ def norm_parts(vertices: Array, loads: Array, cells: Array) -> Array:
     """Parts (c,) of the L2 norm of the means over ``cells`` (c + 1,) of forces ``loads`` (n,) between ``vertices``
     (n + 1,)."""
     resultant = np.concatenate([[0.0], np.cumsum(loads)])
-    result: Array = np.diff(np.interp(cells, vertices, resultant)) / np.sqrt(np.diff(cells))
-    return result
+    return np.diff(np.interp(cells, vertices, resultant)) / np.sqrt(np.diff(cells))
 
 
 def relative_change(found: Array, others: Array, least: float) -> float:
@@ -113,5 +110,4 @@ def compliance(vertices: Array) -> Array:
 
 def _primitive(z: Array) -> Array:
     """Second antiderivative of log|z|."""
-    result: Array = z**2 / 2 * np.log(np.abs(z) + (z == 0)) - 3 / 4 * z**2
-    return result
+    return z**2 / 2 * np.log(np.abs(z) + (z == 0)) - 3 / 4 * z**2

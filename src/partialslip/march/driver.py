@@ -7,7 +7,7 @@ Scaled: lengths by the unit of the problem, forces by P, displacements by A P.
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -16,11 +16,11 @@ from partialslip.arrays import Array, Indices
 from partialslip.bars import BARS
 from partialslip.friction.history import History
 from partialslip.friction.load_path import Path
-from partialslip.friction.regime import SteadyState, doubts
-from partialslip.friction.restart import begun, known_to
+from partialslip.friction.regime import doubts
+from partialslip.friction.restart import begun, end_state
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.march.cells import off_cells, on_cells
-from partialslip.result import Clock, Result, Slip, Traction
+from partialslip.result import Clock, Result, Slip, SteadyState, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene
 
@@ -192,22 +192,21 @@ def _result(
     notes: tuple[str, ...],
 ) -> Result:
     scene, history, answer = problem.scene, level.history, problem.answer(level)
-    found, accuracy = answer.found, scene.fem.accuracy
-    if found.centre is None:
+    accuracy, traction = scene.fem.accuracy, answer.traction
+    if answer.found.centre is None:
         errors = {key: error for key, error in errors.items() if key not in ("m", "n")}
-    origin, length, unit = problem.origin, problem.length, scene.material.A * scene.P  # of displacement
-    x = answer.traction.x
-    return Result(
-        method="march",
-        a=answer.a,
-        p0=answer.p0,
-        regime=found.regime,
-        stick_centre=None if found.centre is None else origin + found.centre * length,
-        stick_half_width=None if found.half_width is None else found.half_width * length,
-        traction=answer.traction,
-        cost=problem.clock.cost(),
-        state=_state(problem, level, history, answer.pressed, errors) if history else None,
-        slip=Slip(x, history.slip[answer.cells] * unit, history.dissipated * unit * scene.P) if history else None,
+    found = answer.found.placed(problem.origin, problem.length)
+    unit = scene.material.A * scene.P  # of displacement
+    state = slip = None
+    if history:
+        places = problem.places(level)
+        p, q = (off_cells(scene.P * forces, places) for forces in (answer.pressed, history.end[0]))
+        state = end_state(scene, p, q, errors, history, np.diff(level.vertices))
+        slip = Slip(traction.x, history.slip[answer.cells] * unit, history.dissipated * unit * scene.P)
+    return replace(
+        Result.of("march", found, answer.a, answer.p0, traction, problem.clock),
+        state=state,
+        slip=slip,
         settings={"model": answer.model, "accuracy": accuracy},
         counts={
             "cells": len(level.vertices) - 1,
@@ -225,19 +224,4 @@ def _result(
         shares=shares,
         notes=found.notes + notes + answer.notes + doubts(answer.change, errors, accuracy),
         contact_ends=answer.contact_ends,
-        end_slips=found.slips,
-        permanent=_placed(problem, *found.permanent) if found.permanent else None,
     )
-
-
-def _placed(problem: Problem[L], left: float, right: float) -> tuple[float, float]:
-    """Two places, m."""
-    return problem.origin + problem.length * left, problem.origin + problem.length * right
-
-
-def _state(problem: Problem[L], level: L, history: History, pressed: Array, errors: Errors) -> State:
-    """State at the end of the path of the loads, with the normal forces ``pressed`` (c,) on the cells."""
-    scene, places = problem.scene, problem.places(level)
-    p, q = (off_cells(scene.P * forces, places) for forces in (pressed, history.end[0]))
-    error = known_to(errors, history, np.diff(level.vertices))
-    return State(scene.pressing[-1].P, scene.material.A, *scene.load.points[-1], p, q, scene.load.along[-1][2], error)

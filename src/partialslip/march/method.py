@@ -50,4 +50,4 @@ def solve(
         return march(unlike.UnlikeBodies(scene, plan, start, clock), progress)[0]
     problem = similar.SimilarBodies(scene, plan, start, clock, added)
     found, level = march(problem, progress)
-    return similar.with_stresses(found, problem.normal, level, clock) if plan.needs("subsurface") else found
+    return similar.add_stresses(found, problem.normal, level, clock) if plan.needs("subsurface") else found

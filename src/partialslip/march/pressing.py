@@ -70,7 +70,7 @@ class NormalLoads:
         if not self.scene.presses_anew:
             return [-1.0, 1.0]
         scaled = np.clip(self.frame.scaled([*self.first.ends, *self.second.ends, *self.last.ends]), -1.0, 1.0)
-        return np.union1d(scaled, [-1.0, 1.0]).tolist()  # type: ignore[no-any-return]
+        return np.union1d(scaled, [-1.0, 1.0]).tolist()
 
     @property
     def common(self) -> tuple[float, float]:
@@ -83,8 +83,7 @@ class NormalLoads:
     def within(self, points: Sequence[float]) -> list[float]:
         """Those ``points`` (m) that lie in the frame, scaled."""
         scaled = self.frame.scaled(points)
-        inside: list[float] = scaled[np.abs(scaled) < 1].tolist()
-        return inside
+        return scaled[np.abs(scaled) < 1].tolist()
 
     def forces(self, of: Contact, vertices: Array) -> Array:
         """Normal forces (c,) of the contact ``of`` on the cells between ``vertices`` (c + 1,), in P of the scene."""

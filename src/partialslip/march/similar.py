@@ -165,7 +165,7 @@ class SimilarBodies(driver.Problem[SimilarLevel]):
         )
 
 
-def with_stresses(found: Result, normal: NormalLoads, level: SimilarLevel, clock: Clock) -> Result:
+def add_stresses(found: Result, normal: NormalLoads, level: SimilarLevel, clock: Clock) -> Result:
     """Result with stresses, where q1 and q2 are known."""
     scene = normal.scene
     if level.history:

@@ -93,5 +93,4 @@ def _paced(line: Array) -> Array:
 def _distance(points: Array, others: Array) -> Array:
     """Return the distances (n,) of ``points`` (n, 2) to the nearest of ``others`` (k, 2), 1 at most."""
     apart = points[:, None] - others
-    result: Array = np.sqrt((apart**2).sum(axis=-1)).min(axis=1, initial=1.0)
-    return result
+    return np.sqrt((apart**2).sum(axis=-1)).min(axis=1, initial=1.0)

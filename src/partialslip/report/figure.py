@@ -183,8 +183,7 @@ def _spread(result: Result) -> Array:
     """Return some of the nodes, m, about evenly spread over the contact."""
     x = result.traction.x
     nearest = np.abs(x[:, None] - np.linspace(x[0], x[-1], _MARKERS)).argmin(axis=0)
-    spread: Array = x[np.unique(nearest)]
-    return spread
+    return x[np.unique(nearest)]
 
 
 _POINTS = 401  # display: of the fitted gap

@@ -12,6 +12,7 @@ from partialslip.result.result import PATH_DEPENDENT as PATH_DEPENDENT
 from partialslip.result.result import EndSlip as EndSlip
 from partialslip.result.result import Regime as Regime
 from partialslip.result.result import Result as Result
+from partialslip.result.result import SteadyState as SteadyState
 from partialslip.result.state import State as State
 from partialslip.result.state import load_state as load_state
 from partialslip.result.stick_zone import StickZone as StickZone

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from partialslip.arrays import Array
 from partialslip.frame import frame
-from partialslip.result.cost import Cost
+from partialslip.result.cost import Clock, Cost
 from partialslip.result.fields import DeformedBody, Slip, StressAt, SurfaceStress
 from partialslip.result.plates import Plates
 from partialslip.result.state import State
@@ -32,6 +32,27 @@ Regime = Literal[
     "frictionless",
 ]
 EndSlip = Literal["forwards", "backwards", "never", "part of the cycle"]
+
+
+class SteadyState(NamedTuple):
+    """What a method finds of the steady state: ``regime``, ``centre`` and ``half_width`` of the stick zone (None if
+    nothing sticks), ``notes``, how the ends of the contact slip, where the pressure varies, and the ends of the zone
+    that never slips, (nan, nan) if there is none, None if it is not known. Lengths are in any one unit."""
+
+    regime: Regime
+    centre: float | None = None
+    half_width: float | None = None
+    notes: tuple[str, ...] = ()
+    slips: tuple[EndSlip, EndSlip] | None = None
+    permanent: tuple[float, float] | None = None
+
+    def placed(self, origin: float, length: float) -> "SteadyState":
+        """The same in m: ``length`` (m) is the unit, and the zero is at ``origin`` (m)."""
+        return self._replace(
+            centre=None if self.centre is None else origin + self.centre * length,
+            half_width=None if self.half_width is None else self.half_width * length,
+            permanent=self.permanent and (origin + self.permanent[0] * length, origin + self.permanent[1] * length),
+        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -138,6 +159,38 @@ class Result(Drawn):
     edges: tuple[Array, Array] | tuple[()] = ()
     plates: Plates | None = None
     right_grip: Array | None = None
+
+    @classmethod
+    def of(
+        cls, method: str, found: SteadyState, half_width: float, p0: float, traction: Traction, clock: Clock
+    ) -> "Result":
+        """What every method finds; with :func:`dataclasses.replace` a method adds the rest.
+
+        Parameters
+        ----------
+        method : str
+            Name of the method.
+        found : SteadyState
+            In m.
+        half_width, p0 : float
+            ``a`` and ``p0`` of the result, m and Pa.
+        traction : Traction
+        clock : Clock
+            Has counted the seconds.
+        """
+        return cls(
+            method=method,
+            a=half_width,
+            p0=p0,
+            regime=found.regime,
+            stick_centre=found.centre,
+            stick_half_width=found.half_width,
+            traction=traction,
+            cost=clock.cost(),
+            notes=found.notes,
+            end_slips=found.slips,
+            permanent=found.permanent,
+        )
 
     def __repr__(self) -> str:
         """Method, regime, a, m, n and p0, in a line."""

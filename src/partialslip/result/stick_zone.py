@@ -33,8 +33,7 @@ class StickZone(NamedTuple, Generic[Number]):
     @property
     def slides(self) -> Mask:
         """Whether the contact slides as a whole and there is no stick zone; an array of the zones' shape."""
-        result: Mask = np.asarray(self.s) == 0
-        return result
+        return np.asarray(self.s) == 0
 
     @property
     def left(self) -> Number:

@@ -143,8 +143,7 @@ class Load(Table, frozen=True, kw_only=True):
         varies."""
         values, (first, second) = self._leading, self.ends
         way: float = values[second] - values[first]
-        result: Array = (values - values[first]) / (way or 1.0)
-        return result
+        return (values - values[first]) / (way or 1.0)
 
     def stations(self, phases: Array) -> tuple[Indices, Array]:
         """Index (s,) of the load point that is passed last at ``phases`` (s,) of a cycle, and share (s,) of the way to

@@ -264,8 +264,7 @@ def _integrated(at: Array, middles: Array, times: int) -> Array:
     whole = at[:, None] ** times
     beyond = np.maximum(at[:, None] - middles[1:-1], 0.0) ** times
     steps = np.concatenate([whole, beyond], axis=1) / times
-    result: Array = np.column_stack([steps[:, :-1] - steps[:, 1:], steps[:, -1]])
-    return result
+    return np.column_stack([steps[:, :-1] - steps[:, 1:], steps[:, -1]])
 
 
 def _check(x: Array, residuals: Array, keys: ProfileFile, noise: float) -> None:

@@ -73,8 +73,7 @@ class Curvature(NamedTuple):
         ahead = np.maximum(x[..., None] - self.breaks[right], 0.0)
         behind = np.maximum(self.breaks[~right] - x[..., None], 0.0)
         sums = ahead**times @ steps[right] - (-1) ** times * (behind**times @ steps[~right])
-        result: Array = (base * (x - self.lowest) ** times + sums) / times
-        return result
+        return (base * (x - self.lowest) ** times + sums) / times
 
 
 class Even(Table, frozen=True, kw_only=True):
@@ -108,8 +107,7 @@ class Hertz(Even, frozen=True, kw_only=True, tag_field="kind", tag="hertz"):
 
     def gap_at(self, x: Array) -> Array:
         """Gap before loading at ``x`` (m), m."""
-        result: Array = x**2 / (2 * self.R)
-        return result
+        return x**2 / (2 * self.R)
 
     @property
     def widest(self) -> float:
@@ -160,8 +158,7 @@ class FlatRounded(Even, frozen=True, kw_only=True, tag_field="kind", tag="flat-r
 
     def gap_at(self, x: Array) -> Array:
         """Gap before loading at ``x`` (m), m."""
-        result: Array = np.maximum(np.abs(x) - self.b, 0.0) ** 2 / (2 * self.R) + np.square(x) * (self.bow / 2)
-        return result
+        return np.maximum(np.abs(x) - self.b, 0.0) ** 2 / (2 * self.R) + np.square(x) * (self.bow / 2)
 
     @property
     def widest(self) -> float:
@@ -279,8 +276,7 @@ class Tabulated(Table, frozen=True, kw_only=True, tag_field="kind", tag="tabulat
             return self.curvature.gap_at(x)
         at, steps = self.curvature_steps()
         beyond = np.maximum(np.abs(x)[..., None] - at, 0.0)
-        result: Array = beyond**2 @ steps / 2
-        return result
+        return beyond**2 @ steps / 2
 
     @property
     def widest(self) -> float:

@@ -19,7 +19,7 @@ from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.score.ends import FEWEST
 from partialslip.score.method import centred, scored
 from partialslip.score.mistakes import in_another_unit, mistakes
-from partialslip.score.read import read
+from partialslip.score.read import read_tractions
 
 _STRIPS = 2.0  # accuracy: widths of a strip that is not resolved: largest error that it may cause
 
@@ -90,7 +90,7 @@ def score(
         raise InputError(f"centre {centre!r}: must be 'given' or 'auto'")
     if centre == "auto" and not scene.even:
         raise InputError("centre 'auto': must be 'given' with a moment or an uneven gap: the middle is not at x = 0")
-    found = read(file, scene, factors, order, at, columns)
+    found = read_tractions(file, scene, factors, order, at, columns)
     if centre == "auto":
         found = centred(found, str(file), scene.units)
     result = scored(scene, found, name, str(file))

@@ -222,8 +222,7 @@ def _means(keys: Indices, block: ContactStress) -> Array:
     total = np.zeros((len(keys), 2))
     np.add.at(total, at, block.stress)
     np.add.at(count, at, 1.0)
-    result: Array = total / np.maximum(count, 1.0)[:, None]
-    return result
+    return total / np.maximum(count, 1.0)[:, None]
 
 
 def _middles(lines: Sequence[str], keys: Indices, numbers: Indices, x: Array, origin: str) -> Array:
@@ -254,8 +253,7 @@ def _middles(lines: Sequence[str], keys: Indices, numbers: Indices, x: Array, or
         means.append([nodes[corner] for corner in local])
     count = np.array([len(nodes) for nodes in means])
     at = _x_of_nodes(numbers, x, np.concatenate(means), origin)
-    result: Array = np.add.reduceat(at, np.cumsum(count) - count) / count
-    return result
+    return np.add.reduceat(at, np.cumsum(count) - count) / count
 
 
 def _x_of_nodes(numbers: Indices, x: Array, wanted: Indices, origin: str) -> Array:
@@ -265,8 +263,7 @@ def _x_of_nodes(numbers: Indices, x: Array, wanted: Indices, origin: str) -> Arr
     if not known.all():
         hint = "for plane elements CalculiX prints nodes of the expanded solids: score the .frd file instead"
         raise InputError(f"{origin}: node {wanted[~known][0]}: must be in the .frd file; {hint}")
-    result: Array = x[order][place]
-    return result
+    return x[order][place]
 
 
 def _integer(word: str, line: int, origin: str) -> int:

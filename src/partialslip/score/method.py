@@ -7,7 +7,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.result import Clock, Regime, Result, Traction, TractionAt
+from partialslip.result import Clock, Regime, Result, SteadyState, Traction, TractionAt
 from partialslip.scene import Scene
 from partialslip.score.ends import (
     NOISE_FACTOR,
@@ -123,15 +123,10 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
         notes += (f"m and n are not given: {why}",)
     if regime == "sliding" and not scene.slides:
         notes += ("no stick zone found: |dq|/(2 p) is the same everywhere, within the uncertainty of the points",)
-    return Result(
-        method=name,
-        a=a,
-        p0=p0,
-        regime=regime,
-        stick_centre=(known[0].x + known[1].x) / 2 if known else None,
-        stick_half_width=(known[1].x - known[0].x) / 2 if known else None,
-        traction=_traction(samples, [end for contact in contacts for end in contact.ends], scene.load.in_phase),
-        cost=clock.cost(),
+    centre, half_width = ((known[0].x + known[1].x) / 2, (known[1].x - known[0].x) / 2) if known else (None, None)
+    traction = _traction(samples, [end for contact in contacts for end in contact.ends], scene.load.in_phase)
+    return replace(
+        Result.of(name, SteadyState(regime, centre, half_width, notes), a, p0, traction, clock),
         settings={
             "read": "means over cells" if cells else "values at points",
             "spacing_over_a": _rounded(spacing),
@@ -141,7 +136,6 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
         },
         counts={"points": len(x), "contact_nodes": last - first + 1},
         estimate=uncertainty,
-        notes=notes,
         contact_ends=(contacts[0].ends, contacts[1].ends),
         undetermined=dict.fromkeys("mn", why) if why else {},
     )
@@ -202,8 +196,7 @@ def _widths(samples: Samples) -> Array:
     if ends is None:
         x = samples.x
         ends = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]])
-    widths: Array = np.diff(ends)
-    return widths
+    return np.diff(ends)
 
 
 def _stick_zone(
@@ -292,8 +285,7 @@ class Sampled:
 
     def _at(self, x: Array, values: Array) -> Array:
         if len(values) == len(self.x):
-            found: Array = np.interp(x, self.x, values, left=0.0, right=0.0)
-            return found
+            return np.interp(x, self.x, values, left=0.0, right=0.0)
         cell = np.clip(np.searchsorted(self.x, x) - 1, 0, len(values) - 1)
         return np.where((x >= self.x[0]) & (x <= self.x[-1]), values[cell], 0.0)
 

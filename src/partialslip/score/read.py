@@ -31,7 +31,7 @@ def check(file: Path) -> None:
     check_regular(file, LARGEST)
 
 
-def read(
+def read_tractions(
     file: Path,
     scene: Scene,
     factors: tuple[float, float, float] = (1.0, 1.0, 1.0),

@@ -137,8 +137,7 @@ def _merged(values: Array) -> Array:
     if not new.any():
         return values
     first = np.flatnonzero(new)
-    merged: Array = np.add.reduceat(values, first, axis=1) / np.diff(np.append(first, len(x)))
-    return merged
+    return np.add.reduceat(values, first, axis=1) / np.diff(np.append(first, len(x)))
 
 
 def _cells(x: Array, order: int) -> Array:
@@ -148,5 +147,4 @@ def _cells(x: Array, order: int) -> Array:
     else:
         widths = np.diff(x[::2])
         inner = np.sort(np.concatenate([x[:-1:2] + widths / 6, x[2::2] - widths / 6]))
-    cells: Array = np.concatenate([[x[0]], inner, [x[-1]]])
-    return cells
+    return np.concatenate([[x[0]], inner, [x[-1]]])

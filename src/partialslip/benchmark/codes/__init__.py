@@ -10,7 +10,7 @@ from partialslip.benchmark.codes.calculix import Calculix
 from partialslip.benchmark.codes.getfem import GetFEM
 from partialslip.benchmark.codes.kratos import Kratos
 from partialslip.benchmark.codes.own import Own
-from partialslip.benchmark.codes.solved import CodeOutcome
+from partialslip.benchmark.codes.process import CodeOutcome
 from partialslip.benchmark.measured import answer_of
 from partialslip.benchmark.problem import Problem, read_problems
 from partialslip.benchmark.submission import META, Answer, Meta, Rung, Submission, read_submission, write_submission

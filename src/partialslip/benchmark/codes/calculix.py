@@ -8,15 +8,14 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from partialslip.benchmark.codes.process import LONGEST, ran
-from partialslip.benchmark.codes.solved import CodeOutcome
+from partialslip.benchmark.codes.process import LONGEST, CodeOutcome, ran
 from partialslip.benchmark.increments import gradual, told
 from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError
 from partialslip.export import export
 from partialslip.scene import Scene
 from partialslip.score.method import scored
-from partialslip.score.read import read
+from partialslip.score.read import read_tractions
 
 _DOFS = re.compile(r"number of equations\s+(\d+)")
 
@@ -58,7 +57,7 @@ class Calculix:
             if why := _unfinished(done.code, done.text, deck.with_suffix(".sta")):
                 return CodeOutcome(None, why, *cost)
             try:
-                result = scored(scene, read(deck.with_suffix(".frd"), scene), "calculix", "job.frd")
+                result = scored(scene, read_tractions(deck.with_suffix(".frd"), scene), "calculix", "job.frd")
             except InputError as error:
                 return CodeOutcome(None, f"no results: {error}", *cost)
         return CodeOutcome(result, "", *cost)

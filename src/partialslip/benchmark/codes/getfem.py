@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from partialslip.benchmark.codes.process import CodeOutcome
 from partialslip.benchmark.codes.scripted import Host, of_scene, solved
-from partialslip.benchmark.codes.solved import CodeOutcome
 from partialslip.benchmark.increments import gradual, told
 from partialslip.benchmark.neutral import GROWTH
 from partialslip.errors import InputError

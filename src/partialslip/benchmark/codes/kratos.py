@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from partialslip.benchmark.codes.process import CodeOutcome
 from partialslip.benchmark.codes.scripted import Host, of_scene, solved
-from partialslip.benchmark.codes.solved import CodeOutcome
 from partialslip.benchmark.increments import gradual
 from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError

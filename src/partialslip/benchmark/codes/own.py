@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import partialslip
-from partialslip.benchmark.codes.solved import CodeOutcome
+from partialslip.benchmark.codes.process import CodeOutcome
 from partialslip.errors import PartialslipError
 from partialslip.run import run
 from partialslip.scene import Scene

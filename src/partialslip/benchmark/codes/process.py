@@ -1,4 +1,4 @@
-"""Run another code in a process of its own, on one thread, and measure what it costs."""
+"""Run another code in a process of its own, on one thread, and measure what it costs; what a code hands over."""
 
 import os
 import shutil
@@ -8,8 +8,33 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
+from partialslip.result import Result
+
 LONGEST = 1800.0  # limit: s
 _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+
+
+class CodeOutcome(NamedTuple):
+    """Outcome of a code.
+
+    Parameters
+    ----------
+    result : Result or None
+        None if the code did not finish.
+    why : str
+        Why it did not.
+    unknowns : int or None
+    cpu_s : float or None
+        CPU seconds of the processes.
+    memory_mb : float or None
+        Peak memory.
+    """
+
+    result: Result | None
+    why: str = ""
+    unknowns: int | None = None
+    cpu_s: float | None = None
+    memory_mb: float | None = None
 
 
 class Ran(NamedTuple):

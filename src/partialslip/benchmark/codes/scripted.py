@@ -9,13 +9,12 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from partialslip.benchmark.codes.process import LONGEST, python_with, ran
-from partialslip.benchmark.codes.solved import CodeOutcome
+from partialslip.benchmark.codes.process import LONGEST, CodeOutcome, python_with, ran
 from partialslip.errors import InputError
 from partialslip.export.load_steps import Step
 from partialslip.scene import Scene
 from partialslip.score.method import scored
-from partialslip.score.read import read
+from partialslip.score.read import read_tractions
 from partialslip.strictjson import decoded
 
 TABLE = "table.csv"
@@ -75,7 +74,7 @@ def solved(host: Host, scene: Scene, parameters: Mapping[str, Any], folder: Path
         unknowns = told.unknowns
         if told.gave_up:
             return failed(f"did not converge in step {told.gave_up!r}", unknowns)
-        result = scored(scene, read(folder / TABLE, scene), "", TABLE)
+        result = scored(scene, read_tractions(folder / TABLE, scene), "", TABLE)
     except InputError as error:
         return failed(f"no results: {error}", unknowns)
     return CodeOutcome(result, "", unknowns, done.cpu_s, done.memory_mb)

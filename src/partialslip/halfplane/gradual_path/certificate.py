@@ -47,7 +47,7 @@ class Certificate(NamedTuple):
         return max(self)
 
 
-def certificate(half: HalfCycle) -> Certificate:
+def certificate_of(half: HalfCycle) -> Certificate:
     """Certificate of a steady half cycle, at six stages of each phase and more where it drifts far."""
     return certify(half.loads, stages(half))
 
@@ -142,11 +142,9 @@ class _Panels:
             apart = self._near - self._origin[rows, None]
             apart += self._off - self._offset[rows, None]
             found.append(np.reciprocal(apart, out=apart) @ change)
-        result: Array = -np.concatenate(found) / np.pi
-        return result
+        return -np.concatenate(found) / np.pi
 
     def cumulative(self, values: Array) -> Array:
         """Integral of ``values`` at the points from -1 to the points."""
         parts = self._shares * values
-        result: Array = np.cumsum(parts) - parts / 2
-        return result
+        return np.cumsum(parts) - parts / 2

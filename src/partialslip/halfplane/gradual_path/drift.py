@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.arrays import Array
-from partialslip.halfplane.gradual_path.graded import DEGREES, RESTS, SHARES, integrals, place, powers, spans
+from partialslip.halfplane.gradual_path.graded import DEGREES, RESTS, SHARES, at_share, integrals, powers, spans
 
 _WIDTHS = 4  # accuracy: of the zone, after which a break of its beginning is seen no more
 # accuracy: last coefficients of h above which a panel is halved, and panels that are not
@@ -64,7 +64,7 @@ class Drift:
         if not self._densities:
             return 0.0
         low, high = self._ends[number : number + 2]
-        s, _ = place(np.array((tau - low) / (high - low)), np.array((high - tau) / (high - low)))
+        s, _ = at_share(np.array((tau - low) / (high - low)), np.array((high - tau) / (high - low)))
         return self._progress[number] + float(integrals(s) @ self._densities[number])
 
     def travel(self, progress: float, most: float) -> float:
@@ -79,8 +79,7 @@ class Drift:
             return 0.0
         if self.progress(high) <= progress:
             return float(high)  # the steady zone stops at a break, where the right end stood before
-        found: float = brentq(lambda tau: self.progress(tau) - progress, low, high, xtol=1e-16, rtol=1e-15)
-        return found
+        return brentq(lambda tau: self.progress(tau) - progress, low, high, xtol=1e-16, rtol=1e-15)
 
     def accumulated(self, place_: Array, tau: float) -> Array:
         """Change of q during the drift to the travel ``tau``, at places (k,): distances to the left from the zone's
@@ -98,7 +97,7 @@ class Drift:
             seen, which = np.unique(first + 1j * last, return_inverse=True)
             from_first, to_last, weights = spans(seen.real, seen.imag)
             share, rest = (seen.real - low)[:, None] + from_first, (high - seen.imag)[:, None] + to_last
-            s, slope = place(share / (high - low), rest / (high - low))
+            s, slope = at_share(share / (high - low), rest / (high - low))
             weights *= np.polynomial.chebyshev.chebval(2 * s - 1, density) / slope / (high - low)
             left, right = (first - at)[:, None] + from_first[which], (at + 1 - last)[:, None] + to_last[which]
             result[here] += np.einsum("ki,ki->k", weights[which], np.sqrt(left / right))
@@ -124,9 +123,8 @@ class Drift:
 def _density(share: Array, rest: Array) -> Array:
     """Basis of h on a panel of unit length, (..., degrees): polynomials in s over d(share)/ds, smooth where h is
     integrated."""
-    s, slope = place(share, rest)
-    result: Array = powers(s) / slope[..., None]
-    return result
+    s, slope = at_share(share, rest)
+    return powers(s) / slope[..., None]
 
 
 @functools.lru_cache(maxsize=16)

@@ -11,7 +11,7 @@ from partialslip.halfplane.gradual_path.certificate import certify, stages
 from partialslip.halfplane.gradual_path.graded import Smooth
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
-from partialslip.halfplane.gradual_path.tractions import Part, Tractions
+from partialslip.halfplane.gradual_path.tractions import Piece, Tractions
 
 MOST_CYCLES = 30  # limit: loads that tend to the steady state more slowly are not followed
 _REPEATS = 1e-10  # accuracy: change of q over a cycle, in f p0, that is none: states are interpolated to this tolerance
@@ -43,7 +43,7 @@ def from_zero(first: Loads, steady: HalfCycle, cycles: int) -> tuple[Tractions, 
     first = Loads(*(sign * load for load in first))
     if min(first) < 0:
         raise LostError("the loads at load point 2 and their changes differ in sign")
-    nothing = Tractions.of(shape, [Part(-1.0, 1.0, 0.0, Smooth(-1.0, 1.0, lambda low, high: 0 * (low + high)))])
+    nothing = Tractions.of(shape, [Piece(-1.0, 1.0, 0.0, Smooth(-1.0, 1.0, lambda low, high: 0 * (low + high)))])
     way = HalfCycle(first, nothing, steady.middle)
     ways, q, guess, change = [_checked(way)], way.last.q if sign > 0 else -way.last.q, steady, np.inf
     for _ in range(cycles):

@@ -26,7 +26,7 @@ def spans(low: Array, high: Array) -> tuple[Array, Array, Array]:
     return _FROM_LOW * half, _FROM_HIGH * half, _WEIGHTS * half
 
 
-def place(share: Array, rest: Array) -> tuple[Array, Array]:
+def at_share(share: Array, rest: Array) -> tuple[Array, Array]:
     """s, and the slope d(share)/ds, at the ``share`` of an interval; ``rest`` = 1 - share.
 
     share = sin^2(pi/2 sin^2(pi/2 s)) is of the fourth order in s at both ends: roots and logarithms at the ends become
@@ -38,16 +38,15 @@ def place(share: Array, rest: Array) -> tuple[Array, Array]:
     return s, 4 * _HALF_PI**2 * np.sqrt(share * rest * inner * outer)
 
 
-def shares(s: Array) -> tuple[Array, Array]:
-    """Share of an interval at ``s``, and 1 - share; the inverse of :func:`place`."""
+def share_at(s: Array) -> tuple[Array, Array]:
+    """Share of an interval at ``s``, and 1 - share; the inverse of :func:`at_share`."""
     inner = _HALF_PI * np.sin(_HALF_PI * s) ** 2
     return np.sin(inner) ** 2, np.cos(inner) ** 2
 
 
 def powers(s: Array) -> Array:
     """Chebyshev polynomials on [0, 1] at ``s``, (..., DEGREES)."""
-    result: Array = np.moveaxis(_polynomials(s, DEGREES), 0, -1)
-    return result
+    return np.moveaxis(_polynomials(s, DEGREES), 0, -1)
 
 
 def _polynomials(s: Array, count: int) -> Array:
@@ -61,7 +60,7 @@ def _polynomials(s: Array, count: int) -> Array:
 
 
 NODES = (1 - np.cos(np.pi * (np.arange(DEGREES) + 0.5) / DEGREES)) / 2
-SHARES, RESTS = shares(NODES)
+SHARES, RESTS = share_at(NODES)
 _TO_COEFFICIENTS = powers(NODES).T * 2 / DEGREES
 _TO_COEFFICIENTS[0] /= 2
 _VALUES = powers(NODES).T  # at the nodes, of polynomials with given coefficients
@@ -73,8 +72,7 @@ _INTEGRALS = np.stack(  # coefficients of the integrals from s = 0 of the polyno
 
 def integrals(s: Array) -> Array:
     """Integrals from 0 to ``s`` of the polynomials, (..., DEGREES)."""
-    result: Array = np.moveaxis(_polynomials(s, DEGREES + 1), 0, -1) @ _INTEGRALS
-    return result
+    return np.moveaxis(_polynomials(s, DEGREES + 1), 0, -1) @ _INTEGRALS
 
 
 class Smooth:
@@ -110,8 +108,7 @@ class Smooth:
     @property
     def cuts(self) -> Array:
         """Places at which the interpolant changes."""
-        cuts: Array = self.low + self._ends[1:-1]
-        return cuts
+        return self.low + self._ends[1:-1]
 
     def __call__(self, x: Array) -> Array:
         return self.near(x - self.low, self.high - x)
@@ -123,7 +120,7 @@ class Smooth:
         length = ends[number + 1] - ends[number]
         share = np.clip((from_low - ends[number]) / length, 0.0, 1.0)
         rest = np.clip((from_high - (ends[-1] - ends[number + 1])) / length, 0.0, 1.0)
-        s = place(share, rest)[0]
+        s = at_share(share, rest)[0]
         result: Array
         if len(s) > _FEW:
             result = np.einsum("ji,ij->i", _polynomials(s, DEGREES), self._pieces[number])

@@ -13,7 +13,7 @@ from partialslip.halfplane.gradual_path.inner_way import SHUT
 from partialslip.halfplane.gradual_path.phases import Drifting, Leading, Phase, Resting, Retreating
 from partialslip.halfplane.gradual_path.retreat import Retreat, Zone
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage, common_zones, lasting
-from partialslip.halfplane.gradual_path.tractions import Part, Tractions
+from partialslip.halfplane.gradual_path.tractions import Piece, Tractions
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
@@ -162,10 +162,9 @@ class HalfCycle:
 
         def half(from_low: Array, from_high: Array) -> Array:
             locked = mean(from_low, from_high) - (at_low * from_high + at_high * from_low) / (high - low)
-            settled: Array = q.within(low, high, from_low, from_high) - locked
-            return settled
+            return q.within(low, high, from_low, from_high) - locked
 
-        middle = Part(low, high, 0.0).plus(half)
+        middle = Piece(low, high, 0.0).plus(half)
         return Tractions.of(q.shape, [*q.between(-1.0, low), middle, *q.between(high, 1.0)]).joined()
 
 
@@ -201,7 +200,7 @@ def once(loads: Loads, shape: Shape) -> Tractions:
         return half_range(zone.left + from_low, zone, shape)
 
     middle = Smooth(zone.left, zone.right, half)
-    pieces = Part(-1.0, zone.left, zone.s), Part(zone.left, zone.right, 0.0, middle), Part(zone.right, 1.0, 1.0)
+    pieces = Piece(-1.0, zone.left, zone.s), Piece(zone.left, zone.right, 0.0, middle), Piece(zone.right, 1.0, 1.0)
     return Tractions.of(shape, pieces)
 
 

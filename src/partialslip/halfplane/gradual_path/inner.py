@@ -9,7 +9,7 @@ from partialslip.halfplane.gradual_path.inner_rates import A, B, L, R
 from partialslip.halfplane.gradual_path.inner_way import Way
 from partialslip.halfplane.gradual_path.retreat import Zone
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
-from partialslip.halfplane.gradual_path.tractions import Part, Tractions
+from partialslip.halfplane.gradual_path.tractions import Piece, Tractions
 
 _PATIENT = 24  # cost: steps without progress, for ways that are lost with fewer
 
@@ -33,7 +33,7 @@ class Parted:
         self.last = last = self.at(self.way.progress)
         if self.way.vanished and last.inner:
             zone = Zone(last.inner.right, right=last.zone.right)
-            parts = Part(-1.0, zone.left, -1.0), *last.q.between(zone.left, 1.0)
+            parts = Piece(-1.0, zone.left, -1.0), *last.q.between(zone.left, 1.0)
             self.last = Stage(last.progress, zone, Tractions.of(first.q.shape, parts))
         elif not self.way.closed:
             raise LostError("an inner zone slips up to the end of the half cycle")
@@ -52,7 +52,7 @@ class Parted:
         left, low, high, right = (float(each) for each in ends[:4])
         shut = way.closed and progress == way.progress  # what is left of the inner zone is no part of its own
 
-        def added(part: Part, first: int, last: int) -> Part:
+        def added(part: Piece, first: int, last: int) -> Piece:
             def change(from_low: Array, from_high: Array) -> Array:
                 result, to_first = np.empty_like(from_low), np.maximum(part.low - ends[first] + from_low, 0.0)
                 to_last = ends[last] - part.high + from_high
@@ -65,10 +65,10 @@ class Parted:
 
         cuts = [low if shut else high, *sorted(cut for cut in way.kinks if high < cut < right), right]
         parts = [
-            Part(-1.0, left, -1.0),
+            Piece(-1.0, left, -1.0),
             *(added(part, L, A) for part in q.between(left, low)),
-            *([] if shut else [Part(low, high, -1.0)]),
-            *(added(Part(*span, -1.0), B, R) for span in itertools.pairwise(cuts)),
-            Part(right, 1.0, 1.0),
+            *([] if shut else [Piece(low, high, -1.0)]),
+            *(added(Piece(*span, -1.0), B, R) for span in itertools.pairwise(cuts)),
+            Piece(right, 1.0, 1.0),
         ]
         return Stage(progress, Zone(left, right), Tractions.of(q.shape, parts), Zone(low, low if shut else high))

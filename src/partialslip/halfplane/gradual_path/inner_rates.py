@@ -110,8 +110,7 @@ def root(ends: Array, least: float) -> Array:
     first, second, third = (weights * to_low**k for k in range(3))
     total = (left + low + high + right) / 2 - least - 2 * low  # (z0 - a) + (z1 - a)
     product = (total * second.sum(axis=1) - third.sum(axis=1)) / first.sum(axis=1)
-    result: Array = low + total / 2 + np.sqrt(np.maximum(total**2 / 4 - product, 0.0))
-    return result
+    return low + total / 2 + np.sqrt(np.maximum(total**2 / 4 - product, 0.0))
 
 
 def taken(ends: Array, least: float) -> Array:
@@ -132,8 +131,7 @@ def taken(ends: Array, least: float) -> Array:
         if largest > _FALLS * before:  # the slope has changed
             slope = np.zeros(0)
         before = largest
-    result: Array = high
-    return result
+    return high
 
 
 Event = tuple[str | int, float]
@@ -157,13 +155,11 @@ class Panel(NamedTuple):
     @property
     def end(self) -> Array:
         """Ends and z0 at the end of the panel."""
-        result: Array = self.begin + self.offsets @ LAST
-        return result
+        return self.begin + self.offsets @ LAST
 
     def at(self, s: Array) -> Array:
         """Offsets (5, ...) at ``s``."""
-        result: Array = (self.offsets @ cardinal(np.ravel(s)).T).reshape(5, *np.shape(s))
-        return result
+        return (self.offsets @ cardinal(np.ravel(s)).T).reshape(5, *np.shape(s))
 
     @property
     def tail(self) -> float:
@@ -179,8 +175,7 @@ class Panel(NamedTuple):
     def speeds(self, s: Array) -> Array:
         """Mean speeds (5,) of the ends and z0 between two places."""
         at, share = self.at(s), self.by.share(s)
-        result: Array = (at[:, 1] - at[:, 0]) / (self.length * (share[1] - share[0]))
-        return result
+        return (at[:, 1] - at[:, 0]) / (self.length * (share[1] - share[0]))
 
     def place(self, x: Array) -> Array:
         """s (n,) at which b, which moves to the left, is at ``x``."""
@@ -191,8 +186,7 @@ class Panel(NamedTuple):
             middle = (low + high) / 2
             later = cardinal(middle) @ way > offsets
             low, high = np.where(later, middle, low), np.where(later, high, middle)
-        result: Array = (low + high) / 2
-        return result
+        return (low + high) / 2
 
 
 def ways(panels: list[Panel], progress: Array) -> Array:

@@ -35,8 +35,7 @@ class Seen:
         points of the left one."""
         other = (apart[L] + apart[A] + apart[B] + apart[R]) / 2 - self._least - apart[Z]
         root_ = np.sqrt(np.abs(apart[L] * apart[A] * apart[B] * apart[R]))
-        result: Array = self._tension / 4 * apart[Z] * other / np.where(root_ == 0, np.inf, root_)
-        return result
+        return self._tension / 4 * apart[Z] * other / np.where(root_ == 0, np.inf, root_)
 
     def seen(
         self, begin: Array, end: int, offsets: Array, until: float = np.inf, only: Mask | None = None

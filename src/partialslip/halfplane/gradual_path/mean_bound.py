@@ -15,7 +15,7 @@ _PANELS = 64  # accuracy: of the zone that never slips; the integrand bends wher
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
-def room(way: HalfCycle) -> float:
+def gradual_mean_load_bound(way: HalfCycle) -> float:
     """Room for a mean of Q, relative to f P: int (p - max \\|dq_t - dq/2\\|) dx over the points that never slip, dq_t
     being the change of q so far; 0 if there are no such points.
 

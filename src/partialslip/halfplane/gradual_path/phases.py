@@ -7,7 +7,7 @@ from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.drift import Drift
 from partialslip.halfplane.gradual_path.retreat import Retreat, Zone
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
-from partialslip.halfplane.gradual_path.tractions import Part, Tractions
+from partialslip.halfplane.gradual_path.tractions import Piece, Tractions
 
 
 class Phase(Protocol):
@@ -83,16 +83,16 @@ class Retreating:
         return start.less(1.0, zone.right - from_right) - self.retreat.inside(zone, from_left, from_right)
 
     def _stage(self, progress: float, zone: Zone) -> Stage:
-        def added(part: Part) -> Part:
+        def added(part: Piece) -> Piece:
             after, before = part.low - zone.left, zone.right - part.high
             return part.plus(
                 lambda from_low, from_high: self.retreat.inside(zone, after + from_low, before + from_high)
             )
 
         parts = [
-            Part(-1.0, zone.left, self.retreat.sign),
+            Piece(-1.0, zone.left, self.retreat.sign),
             *map(added, self.first.q.between(*zone)),
-            Part(zone.right, 1.0, 1.0),
+            Piece(zone.right, 1.0, 1.0),
         ]
         return Stage(progress, zone, Tractions.of(self.first.q.shape, parts))
 
@@ -134,7 +134,7 @@ class Drifting:
         if self.travel >= self._most and travel == self.travel:
             left = -1.0
 
-        def added(part: Part) -> Part:
+        def added(part: Piece) -> Piece:
             def change(from_low: Array, from_high: Array) -> Array:
                 from_left = part.low - left0 + from_low
                 if part.high <= left0:
@@ -145,10 +145,10 @@ class Drifting:
 
         cuts = [left0 - width * each for each in self._drift.ends if left < left0 - width * each]
         cuts = sorted(each for each in {left, *cuts, min(left0, right)} if left <= each <= min(left0, right))
-        back = [Part(low, high, -1.0) for low, high in itertools.pairwise(cuts)]
+        back = [Piece(low, high, -1.0) for low, high in itertools.pairwise(cuts)]
         parts = [
-            Part(-1.0, left, -1.0),
+            Piece(-1.0, left, -1.0),
             *map(added, [*back, *q.between(left0, right)]),
-            Part(right, 1.0, 1.0),
+            Piece(right, 1.0, 1.0),
         ]
         return Stage(progress, Zone(left, right), Tractions.of(q.shape, parts))

@@ -242,8 +242,7 @@ class Retreat:
         gap = max(1 - side * end, 0.0)
 
         def theta(width: Array) -> Array:
-            result: Array = 2 * np.arcsinh(np.sqrt(np.maximum(width, 0.0) / (2 * c)))
-            return result
+            return 2 * np.arcsinh(np.sqrt(np.maximum(width, 0.0) / (2 * c)))
 
         last = float(theta(np.array(gap)))
         inner = theta(side * (self._breaks - end))

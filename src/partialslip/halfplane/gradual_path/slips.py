@@ -119,8 +119,7 @@ def _mismatch(way: HalfCycle, first: Stage, last: Stage, x: Array) -> Array:
         values = (last.q(at.ravel()) - first.q(at.ravel())).reshape(at.shape)
         result += (shares * values * np.log(np.maximum(distance, 1e-300))).sum(axis=1)
     tension = (last.progress - first.progress) * way.loads.tension
-    found: Array = result / np.pi + tension / 4 * x
-    return found
+    return result / np.pi + tension / 4 * x
 
 
 def _sampled(first: Stage, last: Stage) -> tuple[Array, Array, Array]:

@@ -19,7 +19,7 @@ _COEFFICIENTS = np.linalg.inv(np.polynomial.chebyshev.chebvander(_WINDOW, 23))
 _ALIKE = 1e-2  # accuracy: of a run of parts, within which cuts of two states correspond
 
 
-class Part(NamedTuple):
+class Piece(NamedTuple):
     """From ``low`` to ``high`` the traction is ``factor`` p plus a ``smooth`` rest: without a rest, the point is on the
     friction bound."""
 
@@ -34,7 +34,7 @@ class Part(NamedTuple):
             return np.zeros_like(from_low)
         return self.smooth.near(self.low - self.smooth.low + from_low, self.smooth.high - self.high + from_high)
 
-    def plus(self, change: Callable[[Array, Array], Array]) -> "Part":
+    def plus(self, change: Callable[[Array, Array], Array]) -> "Piece":
         """The part with a ``change`` added; ``change(from_low, from_high)`` takes distances from both ends."""
 
         def values(from_low: Array, from_high: Array) -> Array:
@@ -48,10 +48,10 @@ class Tractions:
     """Shear traction over [-1, 1] in ``parts``, from left to right."""
 
     shape: Shape
-    parts: tuple[Part, ...]
+    parts: tuple[Piece, ...]
 
     @classmethod
-    def of(cls, shape: Shape, parts: Iterable[Part]) -> "Tractions":
+    def of(cls, shape: Shape, parts: Iterable[Piece]) -> "Tractions":
         """Tractions of ``parts``, of which empty ones are dropped."""
         return cls(shape, tuple(part for part in parts if part.high > part.low))
 
@@ -103,17 +103,17 @@ class Tractions:
         return result
 
     def __neg__(self) -> "Tractions":
-        negated = (Part(low, high, -factor, None if rest is None else -rest) for low, high, factor, rest in self.parts)
+        negated = (Piece(low, high, -factor, None if rest is None else -rest) for low, high, factor, rest in self.parts)
         return Tractions(self.shape, tuple(negated))
 
-    def between(self, low: float, high: float) -> list[Part]:
+    def between(self, low: float, high: float) -> list[Piece]:
         """Parts between two places."""
         cut = (part._replace(low=max(part.low, low), high=min(part.high, high)) for part in self.parts)
         return [part for part in cut if part.high > part.low]
 
     def joined(self) -> "Tractions":
         """The same tractions, in which parts are one where q is smooth from one to the next."""
-        parts: list[Part] = []
+        parts: list[Piece] = []
         for run in _runs(self.parts):
             group = run[:1]
             for part in run[1:]:
@@ -136,7 +136,7 @@ class Tractions:
         return Tractions(self.shape, tuple(mixed)) if whole else None
 
 
-def _smooth_between(left: Part, right: Part) -> bool:
+def _smooth_between(left: Piece, right: Piece) -> bool:
     """Whether q is smooth where two parts meet: in a window there, its Chebyshev coefficients decay."""
     reach = min(left.high - left.low, right.high - right.low) / 2
     before, after = reach * -_WINDOW[_WINDOW < 0], reach * _WINDOW[_WINDOW > 0]
@@ -145,7 +145,7 @@ def _smooth_between(left: Part, right: Part) -> bool:
     return bool(np.abs(found[-_LAST:]).max() < _DECAYED)
 
 
-def _one(parts: list[Part]) -> Part:
+def _one(parts: list[Piece]) -> Piece:
     """One part in place of neighbours with the same factor."""
     if len(parts) == 1:
         return parts[0]
@@ -160,16 +160,16 @@ def _one(parts: list[Part]) -> Part:
             result[here] = part.rest(low - part.low + from_low[here], part.high - high + from_high[here])
         return result
 
-    return Part(low, high, parts[0].factor, Smooth(low, high, rest))
+    return Piece(low, high, parts[0].factor, Smooth(low, high, rest))
 
 
-def _runs(parts: Iterable[Part]) -> list[list[Part]]:
+def _runs(parts: Iterable[Piece]) -> list[list[Piece]]:
     """Neighbouring parts with the same factor."""
     groups = itertools.groupby(parts, key=lambda part: (part.factor, part.smooth is None))
     return [list(group) for _, group in groups]
 
 
-def _matched(one: list[Part], other: list[Part]) -> list[tuple[Part, Part]]:
+def _matched(one: list[Piece], other: list[Piece]) -> list[tuple[Piece, Piece]]:
     """Parts that correspond, one by one; places at which only one of the runs is cut cut the other, too."""
     runs = one, other
     width = [run[-1].high - run[0].low for run in runs]
@@ -192,10 +192,10 @@ def _matched(one: list[Part], other: list[Part]) -> list[tuple[Part, Part]]:
     return found
 
 
-def _mixed(one: Part, other: Part, share: float) -> Part:
+def _mixed(one: Piece, other: Piece, share: float) -> Piece:
     low, high = one.low + share * (other.low - one.low), one.high + share * (other.high - one.high)
     if one.smooth is None or not high > low:
-        return Part(low, high, one.factor)
+        return Piece(low, high, one.factor)
 
     def rest(from_low: Array, from_high: Array) -> Array:
         first, second = (
@@ -204,7 +204,6 @@ def _mixed(one: Part, other: Part, share: float) -> Part:
             )
             for part in (one, other)
         )
-        result: Array = first + share * (second - first)
-        return result
+        return first + share * (second - first)
 
-    return Part(low, high, one.factor, Smooth(low, high, rest))
+    return Piece(low, high, one.factor, Smooth(low, high, rest))

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.scenes import MANY_CYCLES, family, hard_scene
@@ -32,7 +32,7 @@ the bound, too. The accuracy is 1e-3: the first cycles take many steps.
 """,
 )
 def mean_loads() -> Iterator[Case]:
-    bound = one_step(0.3, 4.0, Hertz()).mean_load_bound
+    bound = one_step(0.3, 4.0, HertzShape()).mean_load_bound
     for share in (0.5, 0.9, 0.98, 1.02):
         name = f"mean-load-{share:g}"
         yield Case(
@@ -49,7 +49,7 @@ accuracy is 1e-3.
 """,
 )
 def cycles() -> Iterator[Case]:
-    bound = one_step(0.3, 4.0, Hertz()).mean_load_bound
+    bound = one_step(0.3, 4.0, HertzShape()).mean_load_bound
     scene = hard_scene(
         "cycles-200", 0.3, 4.0, Q_mean=0.995 * bound, sigma_mean=3.0, load={"cycles": 200}, fem=MANY_CYCLES
     )

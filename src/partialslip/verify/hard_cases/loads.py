@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from partialslip.halfplane.hertz import Hertz
+from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.steady import transition
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.scenes import MANY_STEPS, PEAKS, family, hard_scene
@@ -55,7 +55,7 @@ passes smoothly through zero.
 """,
 )
 def at_transition() -> Iterator[Case]:
-    at = float(transition(0.5, Hertz()))
+    at = float(transition(0.5, HertzShape()))
     for name, sf in (("below", at * (1 - 1e-9)), ("at", at), ("above", at * (1 + 1e-9))):
         yield Case(f"transition-{name}", hard_scene(f"transition-{name}", 0.5, sf))
 
@@ -75,7 +75,7 @@ steps is the reference, and the accuracy is 1e-2.
 def huge_tension() -> Iterator[Case]:
     for power in (3, 5, 8):
         name, c = f"huge-tension-1e-{power}", 10.0**-power
-        loads = Hertz().conditions(np.array(0.7 - c), np.array(c), np.array(-1))  # centre -0.3 a
+        loads = HertzShape().conditions(np.array(0.7 - c), np.array(c), np.array(-1))  # centre -0.3 a
         yield Case(name, hard_scene(name, float(loads.Qf), float(loads.sf), fem=MANY_STEPS))
 
 

@@ -27,7 +27,7 @@ def main(told):
     """Solve all steps, write the table, and print unknowns and CPU seconds as JSON."""
     gf.util_trace_level(0)
     gf.util_warning_level(0)
-    contact, tractions, before, gave_up = Contact(told), [], np.zeros(4), None
+    contact, tractions, before, gave_up = ContactProblem(told), [], np.zeros(4), None
     for step in told["steps"]:
         after = np.array([step[key] for key in _LOADS])
         for share in (np.arange(step["increments"]) + 1) / step["increments"]:
@@ -45,7 +45,7 @@ def main(told):
     print(json.dumps({"unknowns": contact.model.nbdof(), "cpu_s": time.process_time(), "gave_up": gave_up}))
 
 
-class Contact:
+class ContactProblem:
     """Two bodies in contact: ``model``, and nodes ``x`` of the tractions."""
 
     def __init__(self, told):
