@@ -14,6 +14,7 @@ from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
 from partialslip.friction.load_path import Path, load_path, lower_strain, scaled_pressing
+from partialslip.friction.pressing import PARABOLA, EvenGap
 from partialslip.plan import Plan
 from partialslip.result.state import State
 from partialslip.scene import Friction, Hertz, Profile, Scene
@@ -176,8 +177,8 @@ class Problem:
         Whether displacements inside the bodies are needed.
     strains : two of (float, float)
         Bulk strain of the lower surface at load points 1 and 2, at the scene's x = 0, and its slope along x.
-    parabolic : bool
-        Whether the gap is a parabola in which the bodies are pressed together by P alone, with one f.
+    even_gap : EvenGap or None
+        Curvature of the gap, if the bodies are pressed together by P alone, with one f, in a convex even gap.
     nearly_similar : bool
         Whether bodies of a size are mirror images of themselves, on elements of one size: the contact nearly keeps its
         shape, and elements are as fine for what it was when it was small.
@@ -212,7 +213,7 @@ class Problem:
     coupled: bool = True
     inside: bool = True
     strains: tuple[tuple[float, float], ...] = ((0.0, 0.0), (0.0, 0.0))
-    parabolic: bool = False
+    even_gap: EvenGap | None = None
     nearly_similar: bool = False
     accuracy: float = 1e-3
     turns: bool = False
@@ -270,13 +271,14 @@ class Problem:
 
     @property
     def similar(self) -> bool:
-        """Whether the contact keeps its shape while it grows, as in Hertz contact of half-planes."""
-        return self.parabolic and not self._sized
+        """Whether the contact grows in similar ways, as that of half-planes in an even gap."""
+        return self.even_gap is not None and not self._sized
 
     @property
     def sized(self) -> bool:
         """The same, nearly, of bodies of one material and of a size, which are coupled."""
-        return self.parabolic and self._sized and self.coupled and not (self.beta or self.start)
+        even = self.even_gap is not None and (self.even_gap.parabolic or all(part.even for part in self.parts))
+        return even and self._sized and self.coupled and not (self.beta or self.start)
 
     @property
     def _sized(self) -> bool:
@@ -298,7 +300,8 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
     """
     P, A, L, origin = scene.P, scene.material.A, scene.length, scene.origin
     parts, at_ends = parts_of(scene, L), [scene.load.tension[end] for end in scene.load.ends]
-    parabolic = isinstance(scene.profile, Hertz) and scene.even and not (scene.presses_anew or scene.friction.varies)
+    even_gap = _even_gap(scene, L)
+    parabolic = even_gap is not None and even_gap.parabolic
     return Problem(
         gap=lambda x: scene.gap_at(x * L + origin) / (A * P),
         kinks=tuple((kink - origin) / L for kink in scene.profile.kinks),
@@ -313,7 +316,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
         strains=tuple((lower_strain(scene, sigma), lower_strain(scene, slope * L)) for sigma, slope in at_ends),
-        parabolic=parabolic,
+        even_gap=even_gap,
         nearly_similar=parabolic and scene.finite and scene.fem.size is not None and all(part.even for part in parts),
         accuracy=scene.fem.accuracy,
         turns=plan.needs("moment"),
@@ -324,6 +327,19 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         pin=None if scene.pin is None else scene.pin / L,
         moment=0.0 if scene.pin is None else scaled_pressing(scene)[0][1],
     )
+
+
+def _even_gap(scene: Scene, length: float) -> EvenGap | None:
+    """Curvature of the gap of ``scene``, lengths in ``length``, m; None if the contact does not grow with P alone, with
+    one f, in a convex even gap."""
+    if not scene.even or scene.presses_anew or scene.friction.varies:
+        return None
+    if isinstance(scene.profile, Hertz):
+        return PARABOLA
+    if (scene.profile.curvature.values < 0).any():
+        return None
+    places, steps = scene.profile.curvature_steps()
+    return EvenGap(places / length, steps)
 
 
 def parts_of(scene: Scene, length: float) -> tuple[Part, Part]:
