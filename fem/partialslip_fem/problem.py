@@ -14,10 +14,10 @@ from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
 from partialslip.friction.load_path import Path, load_path, lower_strain, scaled_pressing
-from partialslip.friction.pressing import PARABOLA, EvenGap
+from partialslip.friction.pressing import EvenGap, even_gap
 from partialslip.plan import Plan
 from partialslip.result.state import State
-from partialslip.scene import Friction, Hertz, Profile, Scene
+from partialslip.scene import Friction, Profile, Scene
 from partialslip.scene.bodies import Body
 from partialslip_fem.corners import free_exponent, held_exponent, size
 from partialslip_fem.elasticity import ALL_AROUND, Held
@@ -300,8 +300,8 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
     """
     P, A, L, origin = scene.P, scene.material.A, scene.length, scene.origin
     parts, at_ends = parts_of(scene, L), [scene.load.tension[end] for end in scene.load.ends]
-    even_gap = _even_gap(scene, L)
-    parabolic = even_gap is not None and even_gap.parabolic
+    under = even_gap(scene, L)
+    parabolic = under is not None and under.parabolic
     return Problem(
         gap=lambda x: scene.gap_at(x * L + origin) / (A * P),
         kinks=tuple((kink - origin) / L for kink in scene.profile.kinks),
@@ -316,7 +316,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
         strains=tuple((lower_strain(scene, sigma), lower_strain(scene, slope * L)) for sigma, slope in at_ends),
-        even_gap=even_gap,
+        even_gap=under,
         nearly_similar=parabolic and scene.finite and scene.fem.size is not None and all(part.even for part in parts),
         accuracy=scene.fem.accuracy,
         turns=plan.needs("moment"),
@@ -327,19 +327,6 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         pin=None if scene.pin is None else scene.pin / L,
         moment=0.0 if scene.pin is None else scaled_pressing(scene)[0][1],
     )
-
-
-def _even_gap(scene: Scene, length: float) -> EvenGap | None:
-    """Curvature of the gap of ``scene``, lengths in ``length``, m; None if the contact does not grow with P alone, with
-    one f, in a convex even gap."""
-    if not scene.even or scene.presses_anew or scene.friction.varies:
-        return None
-    if isinstance(scene.profile, Hertz):
-        return PARABOLA
-    if (scene.profile.curvature.values < 0).any():
-        return None
-    places, steps = scene.profile.curvature_steps()
-    return EvenGap(places / length, steps)
 
 
 def parts_of(scene: Scene, length: float) -> tuple[Part, Part]:

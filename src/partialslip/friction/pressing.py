@@ -41,6 +41,7 @@ import numpy as np
 from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
 from partialslip.friction.zone_ends import StickInterval
+from partialslip.scene import Hertz, Scene
 
 _STICKS = 1e-9  # accuracy: relative tolerance of the friction bound
 _TELLING = 1e-9  # accuracy: tolerance of lengths, relative to the half-width
@@ -125,6 +126,19 @@ class EvenGap(NamedTuple):
 
 
 PARABOLA = EvenGap(np.zeros(1), np.ones(1))
+
+
+def even_gap(scene: Scene, length: float) -> EvenGap | None:
+    """Return the curvature of the gap of ``scene``, lengths in ``length``, m; None if the contact does not grow with P
+    alone, with one f, in a convex even gap."""
+    if not scene.even or scene.presses_anew or scene.friction.varies:
+        return None
+    if isinstance(scene.profile, Hertz):
+        return PARABOLA
+    if (scene.profile.curvature.values < 0).any():
+        return None
+    places, steps = scene.profile.curvature_steps()
+    return EvenGap(places / length, steps)
 
 
 @dataclass(frozen=True)
