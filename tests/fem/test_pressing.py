@@ -365,7 +365,7 @@ def test_a_flat_pressed_like_a_parabola_is_seen(monkeypatch):
 def test_shear_of_a_pad_that_does_not_grow_is_seen(monkeypatch):
     """Deliberate fault: stages of like bodies of a size as of unlike half-planes, whose shear under one force does not
     grow with the half-width. The second punch does not enter the stages, and tells how similar bodies are."""
-    monkeypatch.setattr(coupled, "Punch", lambda *args: Punch(*args[:-1]))
+    monkeypatch.setattr(coupled, "Punch", lambda *args: Punch(*args[:6], False, *args[7:]))
     assert shape(locked_in(PAD)[0])[1] > 0.1
 
 
