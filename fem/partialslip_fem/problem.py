@@ -14,9 +14,10 @@ from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
 from partialslip.friction.load_path import Path, load_path, lower_strain, scaled_pressing
+from partialslip.friction.pressing import EvenGap, even_gap
 from partialslip.plan import Plan
 from partialslip.result.state import State
-from partialslip.scene import Friction, Hertz, Profile, Scene
+from partialslip.scene import Friction, Profile, Scene
 from partialslip.scene.bodies import Body
 from partialslip_fem.corners import free_exponent, held_exponent, size
 from partialslip_fem.elasticity import ALL_AROUND, Held
@@ -177,8 +178,8 @@ class Problem:
         Whether displacements inside the bodies are needed.
     strains : two of (float, float)
         Bulk strain of the lower surface at load points 1 and 2, at the scene's x = 0, and its slope along x.
-    parabolic : bool
-        Whether the gap is a parabola in which the bodies are pressed together by P alone, with one f.
+    even_gap : EvenGap or None
+        Curvature of the gap, if the bodies are pressed together by P alone, with one f, in a convex even gap.
     nearly_similar : bool
         Whether bodies of a size are mirror images of themselves, on elements of one size: the contact nearly keeps its
         shape, and elements are as fine for what it was when it was small.
@@ -213,7 +214,7 @@ class Problem:
     coupled: bool = True
     inside: bool = True
     strains: tuple[tuple[float, float], ...] = ((0.0, 0.0), (0.0, 0.0))
-    parabolic: bool = False
+    even_gap: EvenGap | None = None
     nearly_similar: bool = False
     accuracy: float = 1e-3
     turns: bool = False
@@ -271,13 +272,14 @@ class Problem:
 
     @property
     def similar(self) -> bool:
-        """Whether the contact keeps its shape while it grows, as in Hertz contact of half-planes."""
-        return self.parabolic and not self._sized
+        """Whether the contact grows in similar ways, as that of half-planes in an even gap."""
+        return self.even_gap is not None and not self._sized
 
     @property
     def sized(self) -> bool:
         """The same, nearly, of bodies of one material and of a size, which are coupled."""
-        return self.parabolic and self._sized and self.coupled and not (self.beta or self.start)
+        even = self.even_gap is not None and (self.even_gap.parabolic or all(part.even for part in self.parts))
+        return even and self._sized and self.coupled and not (self.beta or self.start)
 
     @property
     def _sized(self) -> bool:
@@ -299,7 +301,8 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
     """
     P, A, L, origin = scene.P, scene.material.A, scene.length, scene.origin
     parts, at_ends = parts_of(scene, L), [scene.load.tension[end] for end in scene.load.ends]
-    parabolic = isinstance(scene.profile, Hertz) and scene.even and not (scene.presses_anew or scene.friction.varies)
+    under = even_gap(scene, L)
+    parabolic = under is not None and under.parabolic
     return Problem(
         gap=lambda x: scene.gap_at(x * L + origin) / (A * P),
         kinks=tuple((kink - origin) / L for kink in scene.profile.kinks),
@@ -314,7 +317,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
         strains=tuple((lower_strain(scene, sigma), lower_strain(scene, slope * L)) for sigma, slope in at_ends),
-        parabolic=parabolic,
+        even_gap=under,
         nearly_similar=parabolic and scene.finite and scene.fem.size is not None and all(part.even for part in parts),
         accuracy=scene.fem.accuracy,
         turns=plan.needs("moment"),

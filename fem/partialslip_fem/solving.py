@@ -14,7 +14,7 @@ from partialslip.friction.coupled_step import Pivot, Relative
 from partialslip.friction.history import History, certified
 from partialslip.friction.load_path import Path, stretched
 from partialslip.friction.normal import Presses
-from partialslip.friction.pressing import Pressed
+from partialslip.friction.pressing import PARABOLA, Pressed
 from partialslip.friction.steps import follow_or_step
 from partialslip.friction.warm_start import Trail
 from partialslip.friction.zone_ends import within
@@ -214,6 +214,7 @@ def _contact_forces(
             reach,
             trail,
             means=partial(weighted_means, line),
+            under=problem.even_gap or PARABOLA,
         )
         near = BARS["q"] * problem.accuracy
         pivot = None if problem.pin is None else Pivot(line.x, problem.pin, 0.0)

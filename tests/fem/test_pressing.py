@@ -9,6 +9,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import ellipk, ellipkm1
 
@@ -17,7 +18,9 @@ from partialslip import plan
 from partialslip.friction import coupled
 from partialslip.friction.coupled_step import LoadStep
 from partialslip.friction.coupled_step import solve as solve_step
-from partialslip.friction.pressing import FlatPunch, Punches
+from partialslip.friction.pressing import EvenGap, FlatPunch, Punches
+from partialslip.halfplane.punch import Punch as Flats
+from partialslip.judge.means import norm_errors
 from partialslip_fem import solve, solving
 
 BETA = 1 / 7
@@ -130,6 +133,32 @@ def test_punches_of_like_bodies_of_a_size_add_up():
         expected = share * 2 * x * root / (weights @ root * 2 / np.pi / share)  # at nodes, too, the sum is the load
         inside = np.abs(x) < nodes
         assert q[inside] / weights[inside] == pytest.approx(expected[inside], abs=error)
+
+
+@pytest.mark.parametrize("flat", [0.3, 0.9])
+def test_punches_add_up_to_a_flat_rounded_contact(flat):
+    """The pressure is that of the exact method, also after a part of the half-width; shear t/sqrt(1 - t^2) under flat
+    punches, which grows like their half-width, is integrated numerically."""
+    x = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 201))
+    edges = np.concatenate([[-1.0], np.sin(np.linspace(-np.pi / 2, np.pi / 2, 402)[1:-1:2]), [1.0]])
+    weights, normal = np.diff(edges)[: len(x)], np.diff(np.arcsin(edges)) / np.pi
+    forces = normal, -np.diff(np.sqrt(1 - edges**2))
+    left = 0.5 + np.arcsin(x[3:-3]) / np.pi, -np.sqrt(1 - x[3:-3] ** 2)
+    gap = EvenGap(np.array([flat]), np.ones(1))
+    punch = FlatPunch((-1.0, 1.0), x, weights, forces, x[3:-3], left, sized=True, gap=gap)
+    for share in (1.0, 0.95):
+        p, q = (each / weights for each in punch.stage(1.0, share))
+        inside = np.abs(x) < 0.98 * share
+        exact = Flats(flat / share).pressure(x / share)
+        assert p[inside] == pytest.approx(exact[inside] * p[100] / exact[100], rel=1e-3)
+        assert weights @ p == pytest.approx(gap.force(share) / gap.force(1.0))
+        at = np.array([32, 60, 90, 130])
+        expected = [
+            t * quad(lambda s, t=t: np.arccos(flat / s) / np.sqrt(1 - (t / s) ** 2), max(abs(t), flat), share)[0]
+            for t in x[at].tolist()
+        ]
+        assert q[at] == pytest.approx(np.array(expected) / gap.force(1.0), rel=5e-3, abs=1e-2)  # of 201 nodes
+    assert not np.any(punch.stage(1.0, flat / 2))  # before the corners bear
 
 
 def test_a_stage_bears_its_load_and_no_shear():
@@ -247,6 +276,20 @@ def test_estimates_of_unlike_half_planes_hold(accuracy, march):
     assert result.estimate["m"] < accuracy
 
 
+@pytest.mark.slow
+def test_unlike_half_planes_are_pressed_under_a_flat_with_rounded_corners():
+    """The contact grows like a flat punch, whose stick zone does not depend on the profile: fem's punch on nodes and
+    march's on cells of its own agree. Steps of finite size, from which march read it before, were off by 5e-3."""
+    of = scene(0.2).replace(profile={"kind": "flat-rounded", "R": 0.05, "b": 1e-3}, load={"P": 3e5})
+    fem, march = (partialslip.run(of, method)[method] for method in ("fem", "march"))
+    parabola = partialslip.run(scene(0.2), "march")["march"]
+    assert march.m / march.a == pytest.approx(parabola.m / parabola.a, abs=1e-6)
+    assert abs(fem.m / fem.a - march.m / march.a) < fem.estimate["m"] + march.estimate["m"]
+    assert abs(fem.n / fem.a - march.n / march.a) < fem.estimate["n"] + march.estimate["n"]
+    off = norm_errors(fem.traction, march.traction, 0.2, ("q1",))["q1"]
+    assert off < fem.estimate["q1"] + march.estimate["q1"] < 0.02
+
+
 PAD = partialslip.parse_scene(
     {
         "name": "pressed-pad",
@@ -294,12 +337,35 @@ def test_a_pad_is_pressed_with_the_shear_of_the_closed_form(monkeypatch):
     assert by_steps.shares["steps"]["q1"] > 0.1
 
 
+FLAT_PAD = PAD.replace(profile={"kind": "flat-rounded", "R": 0.01, "b": 0.3e-3}, load={"P": 8e4}, fem={"size": 0.04})
+
+
+def test_a_flat_rounded_pad_is_pressed_as_step_by_step(monkeypatch):
+    """Flat punches from the flat to the contact's ends, against 64 steps of all of P, which take longer."""
+    inside = PARTS < 0.7  # beside the flat's ends, at 0.74, 64 steps are not enough
+    found, result = locked_in(FLAT_PAD)
+    monkeypatch.setattr(coupled, "_similar", lambda *_: None)
+    stepped, by_steps = locked_in(FLAT_PAD)
+    assert result.counts["pressing_steps"] < by_steps.counts["pressing_steps"] / 4
+    off = np.linalg.norm((stepped - found)[inside]) / np.linalg.norm(found[inside])
+    assert off < result.shares["steps"]["q1"] < 0.05
+
+
+@pytest.mark.fault
+def test_a_flat_pressed_like_a_parabola_is_seen(monkeypatch):
+    """Deliberate fault: the force of the punches grows as under a parabola, from the middle."""
+    found, _ = locked_in(FLAT_PAD)
+    monkeypatch.setattr(EvenGap, "rate", lambda _, half_widths: half_widths)
+    wrong, told = locked_in(FLAT_PAD)
+    assert np.linalg.norm(wrong - found) > 2 * told.shares["steps"]["q1"] * np.linalg.norm(found)
+
+
 @pytest.mark.slow
 @pytest.mark.fault
 def test_shear_of_a_pad_that_does_not_grow_is_seen(monkeypatch):
     """Deliberate fault: stages of like bodies of a size as of unlike half-planes, whose shear under one force does not
     grow with the half-width. The second punch does not enter the stages, and tells how similar bodies are."""
-    monkeypatch.setattr(coupled, "FlatPunch", lambda *args: FlatPunch(*args[:-1]))
+    monkeypatch.setattr(coupled, "FlatPunch", lambda *args: FlatPunch(*args[:6], False, *args[7:]))
     assert shape(locked_in(PAD)[0])[1] > 0.1
 
 

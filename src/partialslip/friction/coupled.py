@@ -14,7 +14,7 @@ from partialslip.friction.active_set import Solution
 from partialslip.friction.coupled_step import LoadStep, Pair, Pivot, Relative, solve_near
 from partialslip.friction.history import History, certified, follow, resting, still
 from partialslip.friction.load_path import Path
-from partialslip.friction.pressing import FlatPunch, Pressed, Punches, Stages, disproportion
+from partialslip.friction.pressing import PARABOLA, EvenGap, FlatPunch, Pressed, Punches, Stages, disproportion
 from partialslip.friction.warm_start import Trail
 from partialslip.friction.zone_ends import CORNER
 
@@ -41,9 +41,10 @@ class Nodes:
     """Nodes of the contact line: ``x`` (n,), ``weights`` (n,) that turn tractions into forces, and ``ends(p, q,
     rise=...) -> (left, right)``, the ends of the contact under nodal forces along y and x, (n,) each. ``resultants(p,
     q) -> (points, normal, tangential)``: points (k,) within the contact, and the forces on their left, (k,) each;
-    needed without ``stages``. ``similar``: whether half-planes are pressed together under a parabolic gap, so that all
-    stages of pressing are similar; ``stages`` gives them, by default from a flat punch on the nodes. ``sized``: the
-    same of like bodies of a size, nearly; ``nearly_similar``: of any bodies of a size. ``near``: about the half-width.
+    needed without ``stages``. ``similar``: whether half-planes are pressed together under the even gap ``under``, so
+    that the contact grows in similar ways; ``stages`` gives them, by default from a flat punch on the nodes. ``sized``:
+    the same of like bodies of a size, nearly; ``nearly_similar``: of any bodies of a size, under a parabola. ``near``:
+    about the half-width.
     ``trail``: where steps begin. ``means(forces)``: means over cells of the traction of nodal forces (n,), times the
     roots of the cells' widths, (c,); by default each node has its own cell."""
 
@@ -58,6 +59,7 @@ class Nodes:
     trail: Trail | None = None
     stages: Stages | None = None
     means: Callable[[Array], Array] | None = None
+    under: EvenGap = PARABOLA
 
     def half_width(self, forces: Pair) -> float:
         """Half-width of the contact under the ``forces``."""
@@ -78,8 +80,8 @@ def press_coupled(
     """Press the bodies together under a force from 0 to ``P``, with friction and without Q. The moment of a ``pivot``
     grows with the force.
 
-    Nodes that stick keep their displacement. Under a parabolic gap bodies are pressed in one small step from an
-    earlier stage, known from flat punches about its vertex (:mod:`partialslip.friction.pressing`). Others are pressed
+    Nodes that stick keep their displacement. Under an even gap bodies are pressed in one small step from an earlier
+    stage, known from flat punches about its vertex (:mod:`partialslip.friction.pressing`). Others are pressed
     in at least ``least`` steps, doubled until q changes by less than ``accuracy`` (relative L2), or up to the limit.
     Nodes touch one by one, in one step or the next, and lock in more or less than their neighbours: the change is that
     of means over cells.
@@ -114,7 +116,7 @@ def press_coupled(
 
     vertex, settled = 0.0, _SETTLED * accuracy / _ENDS
     if line is not None and (line.similar or line.sized or line.nearly_similar):
-        vertex = _vertex(line.x, gap)
+        vertex = _vertex(line.x, gap) if line.under.parabolic else 0.0
         line = replace(line, x=line.x - vertex)
     if (
         line is not None
@@ -204,7 +206,9 @@ def _similar(
         assert line.resultants
         points, *forces = line.resultants(p, q)
         between = left - vertex, right - vertex
-        return FlatPunch(between, line.x, line.weights, (p, q), points - vertex, (forces[0], forces[1]), line.sized)
+        return FlatPunch(
+            between, line.x, line.weights, (p, q), points - vertex, (forces[0], forces[1]), line.sized, line.under
+        )
 
     reach, count, unlike = line.near or line.half_width(first), 1, 0.0
     while True:

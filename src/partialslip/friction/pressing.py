@@ -1,4 +1,4 @@
-"""Self-similar pressing of coupled half-planes under a parabolic gap.
+"""Self-similar pressing of coupled half-planes under an even gap, a parabola first.
 
 With friction, points that stick keep the relative displacement at which they stuck. For half-planes and a parabola all
 stages of pressing are similar. At a half-width s the contact grows as under a flat punch of half-width s, in which the
@@ -15,7 +15,14 @@ same strain wherever it acts. Then q under a flat punch with one force grows lik
 
     q(x) = int_x^a q_flat(x/s) 2 s ds / a^3,
 
-with a second punch to tell how far that is true. In other bodies of a size the stages are nearly similar: what a punch
+with a second punch to tell how far that is true. Under another even gap the contact grows as under a flat punch, too,
+and only the force P(s) of the half-width s differs:
+
+    q(x) = int_x^a q_flat(x/s) P'(s) ds / s,    of like bodies of a size q_flat(x/s) P'(s) ds / a,
+
+where a step w of the gap's curvature at |x| = b adds w s arccos(b/s) to P'(s), as on half-planes.
+
+In other bodies of a size the stages are nearly similar: what a punch
 does at x/s depends on (s/W)^2, W being the size. What counts of an earlier stage are the displacements at which points
 stick,
 
@@ -27,17 +34,21 @@ follows from the gap, which the displacements along y close in the same way.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
 from partialslip.friction.zone_ends import StickInterval
+from partialslip.scene import Hertz, Scene
 
 _STICKS = 1e-9  # accuracy: relative tolerance of the friction bound
 _TELLING = 1e-9  # accuracy: tolerance of lengths, relative to the half-width
 _POINTS, _WEIGHTS = (np.polynomial.legendre.leggauss(16) + np.array([[1.0], [0.0]])) / 2
+# accuracy: points between the half-widths at which a place is covered first and last (measured: q is off by 1e-8, by
+# 1.5e-4 where slip leaves kinks)
+_STAGES, _BY_STAGE = (np.polynomial.legendre.leggauss(128) + np.array([[1.0], [0.0]])) / 2
 _NEAR, _SOME = 1.05, 64  # accuracy: nodes that matter, in half-widths of the contact; how many are enough for the gap
 _FAR = np.geomspace(1.01, 1e3, 40)  # beyond the last node, in its distance
 _CLOSED = 0.98  # accuracy: nodes that are certainly closed, in half-widths of the contact
@@ -90,16 +101,56 @@ class Stages(Protocol):
         contact, which belongs to the force 1."""
 
 
+class EvenGap(NamedTuple):
+    """Convex even gap whose curvature gains the ``steps`` (k,) at |x| = ``places`` (k,), ascending, in any units."""
+
+    places: Array
+    steps: Array
+
+    @property
+    def parabolic(self) -> bool:
+        """Whether the gap is a parabola."""
+        return len(self.places) == 1 and not self.places[0]
+
+    def force(self, half_width: float) -> float:
+        """Force that presses half-planes together up to the ``half_width``, in a unit of its own."""
+        psi = np.arccos(np.minimum(self.places / half_width, 1.0))
+        return float(half_width**2 * (self.steps @ (2 * psi - np.sin(2 * psi)))) / 4
+
+    def rate(self, half_widths: Array) -> Array:
+        """Derivative of the force with the half-width, at ``half_widths`` of any shape."""
+        total = np.zeros_like(half_widths)
+        for place, step in zip(self.places.tolist(), self.steps.tolist(), strict=True):
+            total += step * np.arccos(np.minimum(place / half_widths, 1.0))
+        return half_widths * total
+
+
+PARABOLA = EvenGap(np.zeros(1), np.ones(1))
+
+
+def even_gap(scene: Scene, length: float) -> EvenGap | None:
+    """Return the curvature of the gap of ``scene``, lengths in ``length``, m; None if the contact does not grow with P
+    alone, with one f, in a convex even gap."""
+    if not scene.even or scene.presses_anew or scene.friction.varies:
+        return None
+    if isinstance(scene.profile, Hertz):
+        return PARABOLA
+    if (scene.profile.curvature.values < 0).any():
+        return None
+    places, steps = scene.profile.curvature_steps()
+    return EvenGap(places / length, steps)
+
+
 @dataclass(frozen=True)
 class FlatPunch:
-    """Flat punch under the force 1, on nodes, of bodies that are pressed together under a parabola.
+    """Flat punch under the force 1, on nodes, of bodies that are pressed together under an even gap.
 
     Parameters
     ----------
     corners : (float, float)
         Where the punch ends, as its forces tell: a node covers part of the space to the next one.
     x : (n,) array
-        Nodes, from the vertex of the parabola.
+        Nodes, from the vertex of the gap.
     weights : (n,) array
         Factors that turn tractions into forces.
     forces : two of (n,) array
@@ -111,6 +162,8 @@ class FlatPunch:
     sized : bool
         Whether bodies are alike and of a size: the strain with which their surfaces move along x under a force is the
         same for all punches, so that q under one force grows like the half-width.
+    gap : EvenGap
+        The gap, from its vertex; default: a parabola.
     """
 
     corners: tuple[float, float]
@@ -120,6 +173,7 @@ class FlatPunch:
     points: Array
     left: tuple[Array, Array]
     sized: bool = False
+    gap: EvenGap = PARABOLA
     last: float = 2.5e-3
 
     @property
@@ -133,21 +187,42 @@ class FlatPunch:
 
     def stage(self, half_width: float, share: float) -> tuple[Array, Array]:
         """As of :class:`Stages`: punches of all half-widths have tractions of the same form."""
-        scaled = self.x / (half_width * share)
-        p, q = (
-            self.weights * self._summed(scaled, float(forces.sum()), left, sized)
-            for forces, left, sized in zip(self.forces, self.left, (False, self.sized), strict=True)
-        )
+        reach = half_width * share
+        if reach <= self.gap.places[0] > 0:  # a flat that bears nothing yet
+            return 0 * self.x, 0 * self.x
+        totals, overs = [float(forces.sum()) for forces in self.forces], (None, half_width if self.sized else None)
+        if self.gap.parabolic and not self.sized:  # sums over cells are exact, also where slip leaves kinks
+            p, q = (self.weights * self._summed(self.x / reach, *each) for each in zip(totals, self.left, strict=True))
+        else:
+            of = zip(totals, self.left, overs, strict=True)
+            p, q = (self.weights * self._integrated(reach, *each) for each in of)
+        borne = self.gap.force(reach) / self.gap.force(half_width)
         # correct the sums: the discretisation error is small, but not compared with the increment of the last step
-        grown = share ** (3 if self.sized else 2)
-        return p * share**2 / p.sum(), (q - q.sum() / p.sum() * p) * grown / p.sum()
+        return p * borne / p.sum(), (q - q.sum() / p.sum() * p) * borne / p.sum()
 
-    def _summed(self, x: Array, total: float, left: Array, sized: bool) -> Array:
-        """2 |x|^k times the integral of traction(t)/t^(k + 1) from |x| to 1 at ``x`` (m,), k = 2 if the traction grows
-        with the half-width of the ``sized`` punch, else 1, lengths in half-widths; from the forces on the ``left`` (k,)
-        of the points and the ``total``. With t = sin(angle), they are nearly linear in the angle, even beside the
-        corners, where nodal tractions are inaccurate."""
-        power, kernel = (2, _of_third_power) if sized else (1, _of_second_power)
+    def _integrated(self, reach: float, total: float, left: Array, over: float | None) -> Array:
+        """Integral of traction(x/s) P'(s)/s over the half-widths s up to ``reach`` at the nodes (n,), with ``over`` in
+        place of the last s if given; from the forces on the ``left`` (k,) of the points and the ``total``. With w =
+        sqrt(s^2 - x^2), it is that of the force by angle (:meth:`_summed`) P'(s)/s dw."""
+        at = (self.points - sum(self.corners) / 2) / self.half_width
+        known = np.abs(at) < 1
+        angle = np.concatenate([[-np.pi / 2], np.arcsin(at[known]), [np.pi / 2]])
+        density = np.diff(np.concatenate([[0.0], left[known], [total]])) / np.diff(angle)
+        inside = np.abs(self.x) < reach
+        x = self.x[inside, None]
+        first, last = (np.sqrt(np.maximum(end**2 - x**2, 0.0)) for end in (self.gap.places[0], reach))
+        w = first + (last - first) * _STAGES**2
+        s = np.hypot(x, w)
+        by_angle = np.interp(np.arctan2(x, w), (angle[1:] + angle[:-1]) / 2, density)
+        weights = 2 * (last - first) * _STAGES * _BY_STAGE
+        result = np.zeros(len(self.x))
+        result[inside] = (by_angle * self.gap.rate(s) / (over or s) * weights).sum(axis=-1)
+        return result
+
+    def _summed(self, x: Array, total: float, left: Array) -> Array:
+        """2 |x| times the integral of traction(t)/t^2 from |x| to 1 at ``x`` (m,), lengths in half-widths; from the
+        forces on the ``left`` (k,) of the points and the ``total``. With t = sin(angle), they are nearly linear in the
+        angle, even beside the corners, where nodal tractions are inaccurate."""
         middle = sum(self.corners) / 2
         points = np.concatenate([[-1.0], (self.points - middle) / self.half_width, [1.0]])
         left, result = np.concatenate([[0.0], left, [total]]), np.zeros(len(x))
@@ -156,13 +231,14 @@ class FlatPunch:
             beyond = (at > _TELLING) & (at < 1)
             angle = np.concatenate([[0.0], np.arcsin(at[beyond]), [np.pi / 2]])
             force = np.concatenate([[np.interp(0.0, at, outside)], outside[beyond], [0.0]])
-            density, beyond_angle = -np.diff(force) / np.diff(angle), np.append(kernel(angle[1:-1]), 0.0)
-            sums = np.append(np.cumsum((density[1:] * -np.diff(beyond_angle))[::-1])[::-1], 0.0)
+            # 1/tan(angle) is the integral of 1/sin^2 from the angle to pi/2
+            density, kernel = -np.diff(force) / np.diff(angle), np.append(1 / np.tan(angle[1:-1]), 0.0)
+            sums = np.append(np.cumsum((density[1:] * -np.diff(kernel))[::-1])[::-1], 0.0)
             side = np.flatnonzero((way * x < 1) & ((way * x > 0) | ((x == 0) & (way > 0))))
             own = np.arcsin(way * x[side])
             cell = np.searchsorted(angle, own, "right") - 1
-            inner, near = sums[cell] - density[cell] * beyond_angle[cell], np.maximum(own, _TELLING)
-            result[side] = 2 * np.sin(near) ** power * (inner + density[cell] * kernel(near))
+            inner, near = sums[cell] - density[cell] * kernel[cell], np.maximum(own, _TELLING)
+            result[side] = 2 * np.sin(near) * (inner + density[cell] / np.tan(near))
         return result
 
 
@@ -175,16 +251,6 @@ def disproportion(x: Array, punch: tuple[Array, Array], other: tuple[Array, Arra
     own, its = ((sides * q).sum(axis=1) / np.sqrt(p @ x**2) for p, q in (punch, other))
     scale = float(np.abs(own).max())
     return float(np.abs(its - own).max() / scale) if scale > 0 else 0.0
-
-
-def _of_second_power(angle: Array) -> Array:
-    """Integral of 1/sin^2 from the ``angle`` (m,) to pi/2."""
-    return 1 / np.tan(angle)
-
-
-def _of_third_power(angle: Array) -> Array:
-    """Integral of 1/sin^3 from the ``angle`` (m,) to pi/2."""
-    return (np.cos(angle) / np.sin(angle) ** 2 - np.log(np.tan(angle / 2))) / 2
 
 
 @dataclass(frozen=True)
